@@ -1,0 +1,56 @@
+#pragma once
+#include <string>
+
+#include "config/field.hpp"
+
+namespace handcast::config {
+
+struct Replay {
+  std::string directory;
+  bool loop = true;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Replay& replay) {
+  visitor.field("directory", replay.directory, Choices{}, "Folder of the recording; relative to the rig file.");
+  visitor.field("loop", replay.loop, "Start again at the end of the recording.");
+}
+
+struct Camera {
+  std::string backend = "twin";
+  double rate_hz = 525;
+  double exposure_ms = 1.85;
+  Replay replay;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Camera& camera) {
+  visitor.field("backend", camera.backend, Choices{}, "Where frames come from; `handcast-camera --backends` lists what this build has.");
+  visitor.field("rate_hz", camera.rate_hz, between(1, 2000, "Hz"), "Frames a second asked of the camera.");
+  visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"), "Time the shutter is open.");
+  visitor.section("replay", camera.replay, "For backend = \"replay\": grey PNG pictures in camera/ with their times in camera_timestamps.npy.");
+}
+
+struct Pose {
+  std::string backend = "twin";
+  Replay replay;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Pose& pose) {
+  visitor.field("backend", pose.backend, Choices{}, "Where hand poses come from; `handcast-pose --backends` lists what this build has.");
+  visitor.section("replay", pose.replay, "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and bones_{left,right}.npy.");
+}
+
+struct Landmarks {
+  std::string backend = "twin";
+  Replay replay;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Landmarks& landmarks) {
+  visitor.field("backend", landmarks.backend, Choices{}, "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has.");
+  visitor.section("replay", landmarks.replay, "For backend = \"replay\": landmarks_{left,right}.npy with landmarks_timestamps.npy.");
+}
+
+}  // namespace handcast::config

@@ -1,0 +1,100 @@
+#pragma once
+#include <string>
+
+#include "config/field.hpp"
+
+/// The digital twin: a true hand and the errors of the sensors that watch it. Defaults: METHOD's figures, the same for every rig that is compared.
+namespace handcast::config {
+
+struct TwinTracker {
+  double rate_hz = 110.6;
+  double age_ms = 9.1;
+  double age_sd_ms = 0.4;
+  double scale = 1.05;
+  double offset_mm = 5;
+  double rotation_deg = 0.5;
+  double drift_px = 3;
+  double noise_mm = 0.1;
+  double dropout = 0;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, TwinTracker& tracker) {
+  visitor.field("rate_hz", tracker.rate_hz, between(1, 1000, "Hz"), "Samples a second.");
+  visitor.field("age_ms", tracker.age_ms, between(0, 500, "ms"), "Mean age of a sample when it arrives.");
+  visitor.field("age_sd_ms", tracker.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that age.");
+  visitor.field("scale", tracker.scale, between(0.5, 2), "Size of the hand it reports, about the wrist; 1 is true.");
+  visitor.field("offset_mm", tracker.offset_mm, between(0, 200, "mm"), "How far off the hand is placed, in a direction drawn from the seed.");
+  visitor.field("rotation_deg", tracker.rotation_deg, between(0, 45, "deg"), "How far it is turned, about an axis drawn from the seed.");
+  visitor.field("drift_px", tracker.drift_px, between(0, 100, "px"), "Slow drift of every joint at 0.2-1.5 Hz: RMS per axis, in camera pixels at the hand's distance.");
+  visitor.field("noise_mm", tracker.noise_mm, between(0, 50, "mm"), "White noise per joint and axis.");
+  visitor.field("dropout", tracker.dropout, between(0, 1), "Share of samples that are lost.");
+}
+
+struct TwinDetector {
+  double age_ms = 16.2;
+  double age_sd_ms = 1.9;
+  double noise_px = 1;
+  double dropout = 0;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, TwinDetector& detector) {
+  visitor.field("age_ms", detector.age_ms, between(0, 500, "ms"), "Mean time from the middle of an exposure to its landmarks; it runs back to back.");
+  visitor.field("age_sd_ms", detector.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that time.");
+  visitor.field("noise_px", detector.noise_px, between(0, 50, "px"), "White noise per landmark and axis.");
+  visitor.field("dropout", detector.dropout, between(0, 1), "Share of detections that find nothing.");
+}
+
+struct TwinImage {
+  double gain = 190;
+  double background = 9;
+  double noise = 2;
+  double sleeve_mm = 110;
+  int blur_samples = 2;
+  double delivery_ms = 0.3;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, TwinImage& image) {
+  visitor.field("gain", image.gain, between(1, 2000), "Grey value of skin that faces the lamp at the nominal distance.");
+  visitor.field("background", image.background, between(0, 255), "Grey value of the empty scene.");
+  visitor.field("noise", image.noise, between(0, 50), "Standard deviation of a pixel.");
+  visitor.field("sleeve_mm", image.sleeve_mm, between(0, 400, "mm"), "Where the bright sleeve begins, from the wrist towards the elbow.");
+  visitor.field("blur_samples", image.blur_samples, between(1, 16), "Instants of the exposure that are averaged.");
+  visitor.field("delivery_ms", image.delivery_ms, between(0, 50, "ms"), "From the end of the exposure to the frame in memory.");
+}
+
+struct TwinShape {
+  double length_spread = 0.04;
+  double width_spread = 0.06;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, TwinShape& shape) {
+  visitor.field("length_spread", shape.length_spread, between(0, 0.2), "How far a true bone length may be from the model's (share, drawn from the seed).");
+  visitor.field("width_spread", shape.width_spread, between(0, 0.3), "The same for widths.");
+}
+
+struct Twin {
+  std::string motion = "builtin:open_close";
+  double speed = 1;
+  int seed = 1;
+  TwinShape shape;
+  TwinTracker tracker;
+  TwinDetector detector;
+  TwinImage image;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Twin& twin) {
+  visitor.field("motion", twin.motion, Choices{}, "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, still; or a folder with a recording.");
+  visitor.field("speed", twin.speed, between(0.01, 20), "Plays the motion faster or slower.");
+  visitor.field("seed", twin.seed, between(0, 1e9), "Everything random is drawn from this number.");
+  visitor.section("shape", twin.shape, "How the true hand differs from the model.");
+  visitor.section("tracker", twin.tracker, "The errors of the hand tracker.");
+  visitor.section("detector", twin.detector, "The errors of the landmark detector.");
+  visitor.section("image", twin.image, "The look of the camera images.");
+}
+
+}  // namespace handcast::config
