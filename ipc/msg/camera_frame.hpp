@@ -12,7 +12,7 @@ namespace handcast::msg {
 struct CameraFrame {
   static constexpr std::string_view layout = "CameraFrame/1";
 
-  Header header;                  ///< origin: the middle of the exposure
+  Header header;  ///< origin: the middle of the exposure
   std::int64_t exposure_ns = 0;
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;

@@ -6,8 +6,8 @@
 
 namespace handcast::msg {
 
-inline constexpr int kJoints = 26;    ///< XR_EXT_hand_tracking, in its order
-inline constexpr int kMaxHands = 2;   ///< per rig
+inline constexpr int kJoints = 26;   ///< XR_EXT_hand_tracking, in its order
+inline constexpr int kMaxHands = 2;  ///< per rig
 
 enum class Side : std::uint32_t { left = 0, right = 1 };
 

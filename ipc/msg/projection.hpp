@@ -28,17 +28,17 @@ struct ProjectedHand {
 struct Projection {
   static constexpr std::string_view layout = "Projection/1";
 
-  Header header;                 ///< origin: that of the newest camera frame used
-  std::int64_t target_ns = 0;    ///< the middle of the time the frame was drawn for
-  std::int64_t lit_ns = 0;       ///< the middle of the time it was lit, as the projector reports it
-  std::uint32_t width_px = 0;    ///< of the projector
+  Header header;               ///< origin: that of the newest camera frame used
+  std::int64_t target_ns = 0;  ///< the middle of the time the frame was drawn for
+  std::int64_t lit_ns = 0;     ///< the middle of the time it was lit, as the projector reports it
+  std::uint32_t width_px = 0;  ///< of the projector
   std::uint32_t height_px = 0;
   std::int32_t region_x_px = 0;  ///< top-left of the region
   std::int32_t region_y_px = 0;
   std::uint32_t region_width_px = 0;
   std::uint32_t region_height_px = 0;
   std::uint32_t hand_count = 0;
-  std::uint32_t foldovers = 0;   ///< drawn triangles or grid cells that the correction turned over
+  std::uint32_t foldovers = 0;  ///< drawn triangles or grid cells that the correction turned over
   std::array<ProjectedHand, kMaxHands> hands{};
 
   static constexpr std::size_t bytes(std::size_t width, std::size_t height) { return sizeof(Projection) + width * height * 4; }

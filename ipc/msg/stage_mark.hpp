@@ -9,9 +9,19 @@ namespace handcast::msg {
 
 /// A step of the way from exposure to photons. The order is the order of the time sheet.
 enum class Stage : std::uint32_t {
-  capture, sample, detect,                                    // one per sensor daemon
-  predict, skin, correct, mask, draw, warp, fill, compose,    // inside one projector frame
-  frame, present,                                             // the whole frame in software; handing it to the projector
+  capture,
+  sample,
+  detect,  // one per sensor daemon
+  predict,
+  skin,
+  correct,
+  mask,
+  draw,
+  warp,
+  fill,
+  compose,  // inside one projector frame
+  frame,
+  present,  // the whole frame in software; handing it to the projector
   count
 };
 

@@ -1,17 +1,19 @@
 #pragma once
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
-#include <span>
+#include <new>
+#include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/ring/ring_writer.hpp"
 #include "ipc/shm/segment.hpp"
 
 namespace handcast::ipc {
 
-class RingWriter;
-
-/// A slot of shared memory, on loan to be filled in place. Published or given back (abandoned) exactly once.
+/// A slot of shared memory, on loan to be filled in place. Published or given back (abandoned) exactly once, while its
+/// Writer lives.
 template <class T>
 class Loan {
  public:
@@ -21,14 +23,26 @@ class Loan {
   /// Bytes after T for messages with a tail.
   std::size_t tail_bytes() const { return tail_bytes_; }
 
-  Loan(Loan&& other) noexcept;
-  Loan& operator=(Loan&& other) noexcept;
-  ~Loan();  ///< abandons what was not published
+  Loan(Loan&& other) noexcept
+      : ring_(std::exchange(other.ring_, nullptr)), message_(std::exchange(other.message_, nullptr)), tail_bytes_(other.tail_bytes_) {}
+  Loan& operator=(Loan&& other) noexcept {
+    std::swap(ring_, other.ring_);
+    std::swap(message_, other.message_);
+    std::swap(tail_bytes_, other.tail_bytes_);
+    other.abandon();
+    return *this;
+  }
+  ~Loan() { abandon(); }  ///< abandons what was not published
 
  private:
   template <class>
   friend class Writer;
   Loan(RingWriter* ring, T* message, std::size_t tail_bytes) : ring_(ring), message_(message), tail_bytes_(tail_bytes) {}
+  std::byte* take() { return reinterpret_cast<std::byte*>(std::exchange(message_, nullptr)); }
+  void abandon() {
+    if (message_) ring_->abandon(take());
+  }
+
   RingWriter* ring_ = nullptr;
   T* message_ = nullptr;
   std::size_t tail_bytes_ = 0;
@@ -40,23 +54,34 @@ class Writer {
  public:
   /// Takes the ring's writer lock (released by the kernel when the process dies) and continues after the last message of a
   /// predecessor. Errors: bad_data (the ring is of another type), unavailable (another writer lives).
-  static Result<Writer> attach(Segment segment);
-  Writer(Writer&&) noexcept;
-  Writer& operator=(Writer&&) noexcept;
-  ~Writer();
+  static Result<Writer> attach(Segment segment) {
+    auto ring = RingWriter::attach(std::move(segment), shape_of<T>());
+    if (!ring) return tl::make_unexpected(std::move(ring.error()));
+    return Writer(std::move(*ring));
+  }
 
   /// A slot with a default T in it. Empty (tests false) where every slot is leased: drop the own message.
-  Loan<T> loan();
-  /// Stamps header.published_ns and makes the message visible.
-  void publish(Loan<T>&& loan);
-  /// loan + copy + publish for small messages.
-  void publish(const T& message);
+  Loan<T> loan() {
+    auto* bytes = ring_->loan();
+    return {ring_.get(), bytes ? new (bytes) T{} : nullptr, ring_->payload_bytes() - sizeof(T)};
+  }
+  /// Stamps header.published_ns and makes the message visible. An empty loan is nothing to publish.
+  void publish(Loan<T>&& loan) {
+    if (!loan) return;
+    if (loan.ring_ != ring_.get()) std::abort();  // a slot of another ring
+    ring_->publish(loan.take());
+  }
+  /// loan + copy + publish for small messages without a tail.
+  void publish(const T& message) {
+    static_assert(!HasTail<T>, "a message with a tail is written in place: loan()");
+    ring_->publish_copy(reinterpret_cast<const std::byte*>(&message), sizeof(T));
+  }
 
-  std::uint64_t published() const;  ///< by this writer
-  std::uint64_t dropped() const;
+  std::uint64_t published() const { return ring_->published(); }  ///< by this writer
+  std::uint64_t dropped() const { return ring_->dropped(); }      ///< for want of a slot
 
  private:
-  explicit Writer(std::unique_ptr<RingWriter> ring);
+  explicit Writer(std::unique_ptr<RingWriter> ring) : ring_(std::move(ring)) {}
   std::unique_ptr<RingWriter> ring_;
 };
 

@@ -2,20 +2,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/msg/header.hpp"
+#include "ipc/shm/layout.hpp"
 
 namespace handcast::ipc {
 
 /// What a ring is made for. `payload_bytes` is the largest message, tail included.
 struct RingSpec {
-  std::string stream;               ///< "camera.frames"
-  std::uint64_t type_hash = 0;      ///< msg::type_hash<T>()
+  std::string stream;           ///< "camera.frames"
+  std::uint64_t type_hash = 0;  ///< msg::type_hash<T>()
   std::size_t payload_bytes = 0;
   int slots = 4;
-  bool keep_history = false;        ///< reuse the oldest slot instead of the most recently freed: next() and at() see back
+  bool keep_history = false;  ///< reuse the oldest slot instead of the most recently freed: next() and at() see back
 
   template <class T>
   static RingSpec of(std::string stream, int slots, bool keep_history, std::size_t payload_bytes = sizeof(T)) {
@@ -24,13 +26,14 @@ struct RingSpec {
 };
 
 /// The shared memory of one ring: a sealed memfd (SHRINK | GROW), without a name anywhere. Made by the supervisor,
-/// inherited by the services; mapped as long as the object lives.
+/// inherited by the services (its descriptor is close-on-exec: whoever spawns a service passes it on by hand); mapped as
+/// long as the object lives.
 class Segment {
  public:
   /// Makes, sizes, seals and formats the memory of a ring. Errors: unavailable (memory, descriptors), bad_config (sizes).
   static Result<Segment> create(const RingSpec& spec);
   /// Maps the ring behind a descriptor (which is taken over). Errors: bad_data with a sentence that says what differs:
-  /// not a ring, other layout version, other boot, impossible sizes, unsealed.
+  /// not a ring, other layout version, other boot, impossible sizes, unsealed; unavailable (no memory to map it in).
   static Result<Segment> open(UniqueFd fd);
 
   Segment(Segment&&) noexcept;
@@ -44,12 +47,22 @@ class Segment {
   std::uint64_t type_hash() const;
   std::size_t payload_bytes() const;
   int slots() const;
+  bool keep_history() const;
+  std::int64_t created_ns() const;
+
+  /// The first byte of a slot; `slot` must be within 0 .. slots() - 1.
+  std::byte* slot_at(int slot) const;
+  /// Errors: bad_data, where the ring is for another type of message or its slots are too small for one.
+  Result<void> require(std::string_view layout, std::uint64_t type_hash, std::size_t bytes) const;
 
  private:
-  Segment(UniqueFd fd, std::byte* data, std::size_t size) : fd_(std::move(fd)), data_(data), size_(size) {}
+  Segment(UniqueFd fd, std::byte* data, const SegmentHeader& header);
+  void unmap();
+
   UniqueFd fd_;
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
+  SegmentHeader header_;  ///< as it was validated: what others do to the shared one changes no bound of ours
 };
 
 }  // namespace handcast::ipc

@@ -1,0 +1,120 @@
+// Readers against a writer that overwrites what they read, on as few slots as a ring can have, with threads in place of
+// processes and one mapping for all, so that ThreadSanitizer sees both sides.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <thread>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/ring/copy.hpp"
+#include "ipc/ring/protocol.hpp"
+#include "ipc/ring/real_atomics.hpp"
+
+namespace handcast::ipc {
+namespace {
+
+constexpr std::size_t kWords = 512;
+constexpr std::size_t kHalf = kWords / 2 * sizeof(PayloadWord);
+constexpr int kRows = 3;
+
+/// A ring in private memory: the production protocol, messages of equal words.
+class SmallRing {
+ public:
+  using Payload = std::array<PayloadWord, kWords>;
+
+  SmallRing(int slots, bool keep_history)
+      : lines_(std::make_unique<ControlWords<RealAtomics>::Line[]>(control_lines(slots, kRows))),
+        payloads_(std::make_unique<Payload[]>(static_cast<std::size_t>(slots))),
+        words_(lines_.get(), slots, keep_history, kRows) {}
+
+  const ControlWords<RealAtomics>& words() const { return words_; }
+  std::byte* slot(int number) { return reinterpret_cast<std::byte*>(payloads_[static_cast<std::size_t>(number)].data()); }
+
+ private:
+  std::unique_ptr<ControlWords<RealAtomics>::Line[]> lines_;
+  std::unique_ptr<Payload[]> payloads_;
+  ControlWords<RealAtomics> words_;
+};
+
+struct Tally {
+  std::uint64_t taken = 0, torn = 0, backwards = 0, overwritten = 0;
+};
+
+void write_until(SmallRing& ring, const std::atomic<int>& readers_left) {
+  WriterCore<RealAtomics> writer(ring.words());
+  writer.attach();
+  SmallRing::Payload payload;
+  while (readers_left.load(std::memory_order_relaxed) > 0) {
+    const int slot = writer.loan();
+    ASSERT_NE(slot, kNoSlot);
+    payload.fill(writer.next_sequence());
+    const auto* from = reinterpret_cast<const std::byte*>(payload.data());
+    copy_to_slot(ring.slot(slot), from, kHalf);
+    if (writer.next_sequence() % 8 == 0) std::this_thread::yield();
+    copy_to_slot(ring.slot(slot) + kHalf, from + kHalf, kHalf);
+    writer.publish(slot);
+  }
+}
+
+enum class Verb { next, latest, nearest };
+
+Tally read_some(SmallRing& ring, int row, Verb verb) {
+  ReaderCore<RealAtomics> reader(ring.words(), row, 0);
+  reader.start();
+  SmallRing::Payload payload;
+  std::uint64_t copies = 0, last = 0;
+  const auto copy = [&](int slot) {  // every third one loses the processor half way
+    auto* to = reinterpret_cast<std::byte*>(payload.data());
+    copy_from_slot(to, ring.slot(slot), kHalf);
+    if (++copies % 3 == 0) std::this_thread::yield();
+    copy_from_slot(to + kHalf, ring.slot(slot) + kHalf, kHalf);
+  };
+  const auto first_word = [&](int slot) {
+    return static_cast<std::int64_t>(load_relaxed(*reinterpret_cast<const PayloadWord*>(ring.slot(slot))));
+  };
+  Tally tally;
+  while (tally.taken < 20000) {
+    Taken taken;
+    const auto outcome = verb == Verb::next     ? reader.next(copy, taken)
+                         : verb == Verb::latest ? reader.latest(copy, taken)
+                                                : reader.nearest(static_cast<std::int64_t>(last) + 5, first_word, copy, taken);
+    if (outcome == Outcome::nothing) reader.wait(now_ns() + 1'000'000);
+    if (outcome != Outcome::taken) continue;
+    ++tally.taken;
+    const auto wrong = [&](PayloadWord word) { return word != taken.sequence; };
+    if (std::any_of(payload.begin(), payload.end(), wrong)) ++tally.torn;
+    if (verb != Verb::nearest && taken.sequence <= last) ++tally.backwards;
+    last = taken.sequence;
+    tally.overwritten = copies - tally.taken;
+  }
+  return tally;
+}
+
+class Torn : public ::testing::TestWithParam<std::pair<int, bool>> {};
+
+TEST_P(Torn, NoReaderEverGetsAMessageThatWasOverwrittenWhileItWasCopied) {
+  SmallRing ring(GetParam().first, GetParam().second);
+  std::atomic<int> readers_left{kRows};
+  std::array<Tally, kRows> tallies;
+  {
+    std::jthread writer([&] { write_until(ring, readers_left); });
+    std::array<std::jthread, kRows> readers;
+    for (int row = 0; row < kRows; ++row)
+      readers[static_cast<std::size_t>(row)] = std::jthread([&, row] {
+        tallies[static_cast<std::size_t>(row)] = read_some(ring, row, static_cast<Verb>(row));
+        --readers_left;
+      });
+  }
+  for (const auto& tally : tallies) {
+    EXPECT_EQ(tally.torn, 0u) << "of " << tally.taken << " messages; " << tally.overwritten << " were caught";
+    EXPECT_EQ(tally.backwards, 0u);
+    EXPECT_GT(tally.overwritten, 0u) << "the test must catch readers in the middle of a copy";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OnFewSlots, Torn, ::testing::Values(std::pair{2, false}, std::pair{3, true}));
+
+}  // namespace
+}  // namespace handcast::ipc
