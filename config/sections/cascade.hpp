@@ -7,16 +7,32 @@
 namespace handcast::config {
 
 struct Predict {
-  std::string method = "velocity";
+  std::string method = "acceleration";
   double limit_ms = 40;
   double still_mm_s = 8;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Predict& predict) {
-  visitor.field("method", predict.method, Choices{"hold", "velocity"}, "hold: the newest pose as it is. velocity: two-point constant velocity to the time of the photons.");
-  visitor.field("limit_ms", predict.limit_ms, between(0, 200, "ms"), "How far beyond the newest sample a pose is extrapolated; then it is held.");
-  visitor.field("still_mm_s", predict.still_mm_s, between(0, 1000, "mm/s"), "Below this speed a joint is held, not extrapolated: a still hand gives still light.");
+  visitor.field("method", predict.method, Choices{"hold", "velocity", "acceleration"},
+                "hold: the newest pose as it is. velocity: two-point constant velocity to the time of the photons. acceleration: the same "
+                "and as much "
+                "of the acceleration as stands out of the tracker's noise.");
+  visitor.field("limit_ms", predict.limit_ms, between(0, 200, "ms"),
+                "How far beyond the newest sample a pose is extrapolated; then it is held.");
+  visitor.field("still_mm_s", predict.still_mm_s, between(0, 1000, "mm/s"),
+                "Below this speed a joint is held, not extrapolated: a still hand gives still light.");
+}
+
+struct Skin {
+  bool fit = true;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Skin& skin) {
+  visitor.field(
+      "fit", skin.fit,
+      "Aim and stretch every bone of the drawn hand to reach the tracker's next joint. false: move it stiffly with its own joint.");
 }
 
 struct Filter {
@@ -24,19 +40,25 @@ struct Filter {
   double process = 3e3;
   double noise_px = 1.14;
   double blend_ms = 6;
+  double blend_px = 8;
   bool hindsight = true;
   double lost_ms = 300;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Filter& filter) {
-  visitor.field("method", filter.method, Choices{"none", "naive", "paper", "offset_kalman"},
-                "How old landmarks Q become landmarks now. none: not at all. naive: as they were seen. paper: Q + P_now - P_then per joint. "
-                "offset_kalman: a constant-velocity Kalman filter on the offset Q - P.");
+  visitor.field(
+      "method", filter.method, Choices{"none", "naive", "paper", "offset_kalman"},
+      "How old landmarks Q become landmarks now. none: not at all. naive: as they were seen. paper: Q + P_now - P_then per joint. "
+      "offset_kalman: a constant-velocity Kalman filter on the offset Q - P.");
   visitor.field("process", filter.process, between(0, 1e9, "px^2/s^3"), "offset_kalman: how fast the offset may change.");
   visitor.field("noise_px", filter.noise_px, between(0.01, 50, "px"), "offset_kalman: standard deviation of a landmark.");
-  visitor.field("blend_ms", filter.blend_ms, between(0, 50, "ms"), "The jump each new sample makes is blended in over this time: larger is stiller, smaller is quicker. 0: not at all.");
-  visitor.field("hindsight", filter.hindsight, "Take P at the landmarks' time from tracker samples that arrived since, not as it was predicted then.");
+  visitor.field("blend_ms", filter.blend_ms, between(0, 50, "ms"),
+                "The jump each new sample makes is blended in over this time: larger is stiller, smaller is quicker. 0: not at all.");
+  visitor.field("blend_px", filter.blend_px, between(0, 100, "px"),
+                "Of a jump no more than this is held back: fast motion is not delayed.");
+  visitor.field("hindsight", filter.hindsight,
+                "Take P at the landmarks' time from tracker samples that arrived since, not as it was predicted then.");
   visitor.field("lost_ms", filter.lost_ms, between(1, 10000, "ms"), "Landmarks older than this fade out and the tracker alone is used.");
 }
 
@@ -51,25 +73,31 @@ struct Correct {
 
 template <class Visitor>
 void describe(Visitor& visitor, Correct& correct) {
-  visitor.field("method", correct.method, Choices{"none", "grid", "vertices"},
-                "How the drawing is moved onto the landmarks. grid: similarity moving least squares on a grid over the whole image, as in the paper. "
-                "vertices: per-bone similarities blended by skin weights, handing over to moving least squares where a bone is foreshortened.");
+  visitor.field(
+      "method", correct.method, Choices{"none", "grid", "vertices"},
+      "How the drawing is moved onto the landmarks. grid: similarity moving least squares on a grid over the whole image, as in the paper. "
+      "vertices: per-bone similarities blended by skin weights, handing over to moving least squares where a bone is foreshortened.");
   visitor.field("alpha", correct.alpha, between(0.1, 4), "Moving least squares: weights fall with distance^(-2 alpha).");
   visitor.field("grid_columns", correct.grid_columns, between(3, 201), "grid: nodes across the image.");
   visitor.field("grid_rows", correct.grid_rows, between(3, 201), "grid: nodes down the image.");
-  visitor.field("bone_short_px", correct.bone_short_px, between(0, 200, "px"), "vertices: a bone seen shorter than this is left to moving least squares.");
-  visitor.field("bone_long_px", correct.bone_long_px, between(1, 400, "px"), "vertices: a bone seen longer than this moves as a bone; between the two they are blended.");
+  visitor.field("bone_short_px", correct.bone_short_px, between(0, 200, "px"),
+                "vertices: a bone seen shorter than this is left to moving least squares.");
+  visitor.field("bone_long_px", correct.bone_long_px, between(1, 400, "px"),
+                "vertices: a bone seen longer than this moves as a bone; between the two they are blended.");
 }
 
 struct Mask {
   double threshold = 0;
   double forearm_mm = 14;
+  bool advance = true;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Mask& mask) {
   visitor.field("threshold", mask.threshold, between(0, 255), "Grey value above which a pixel may be hand. 0: chosen from every image.");
-  visitor.field("forearm_mm", mask.forearm_mm, between(-100, 400, "mm"), "Where the hand ends on the forearm, measured from the wrist joint towards the elbow.");
+  visitor.field("forearm_mm", mask.forearm_mm, between(-100, 400, "mm"),
+                "Where the hand ends on the forearm, measured from the wrist joint towards the elbow.");
+  visitor.field("advance", mask.advance, "Move the mask on with the hand, from the image's exposure to the time of the photons.");
 }
 
 struct Fill {
@@ -82,15 +110,18 @@ struct Fill {
 template <class Visitor>
 void describe(Visitor& visitor, Fill& fill) {
   visitor.field("method", fill.method, Choices{"none", "reflect"},
-                "none: the drawing as it is, not even masked by the camera image. reflect: light off the hand is removed and hand without light is filled from the "
+                "none: the drawing as it is, not even masked by the camera image. reflect: light off the hand is removed and hand without "
+                "light is filled from the "
                 "nearest lit pixel, its texture coordinates reflected.");
   visitor.field("reach_px", fill.reach_px, between(1, 32, "px"), "The longest way a pixel is filled from.");
   visitor.field("fade_px", fill.fade_px, between(0, 32, "px"), "The last stretch of the reach over which the fill fades to dark.");
-  visitor.field("seam_uv", fill.seam_uv, between(0, 1), "A reflected step in texture coordinates larger than this crosses a seam: the seed's own are used.");
+  visitor.field("seam_uv", fill.seam_uv, between(0, 1),
+                "A reflected step in texture coordinates larger than this crosses a seam: the seed's own are used.");
 }
 
 struct Cascade {
   Predict predict;
+  Skin skin;
   Filter filter;
   Correct correct;
   Mask mask;
@@ -100,6 +131,7 @@ struct Cascade {
 template <class Visitor>
 void describe(Visitor& visitor, Cascade& cascade) {
   visitor.section("predict", cascade.predict, "Where is the hand when the light arrives?");
+  visitor.section("skin", cascade.skin, "Pose the drawn hand.");
   visitor.section("filter", cascade.filter, "Where are the landmarks now?");
   visitor.section("correct", cascade.correct, "Move the drawing onto the landmarks.");
   visitor.section("mask", cascade.mask, "What of the camera image is hand?");

@@ -28,7 +28,8 @@ void describe(Visitor& visitor, Camera& camera) {
   visitor.field("backend", camera.backend, Choices{}, "Where frames come from; `handcast-camera --backends` lists what this build has.");
   visitor.field("rate_hz", camera.rate_hz, between(1, 2000, "Hz"), "Frames a second asked of the camera.");
   visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"), "Time the shutter is open.");
-  visitor.section("replay", camera.replay, "For backend = \"replay\": grey PNG pictures in camera/ with their times in camera_timestamps.npy.");
+  visitor.section("replay", camera.replay,
+                  "For backend = \"replay\": grey PNG pictures in camera/ with their times in camera_timestamps.npy.");
 }
 
 struct Pose {
@@ -39,7 +40,8 @@ struct Pose {
 template <class Visitor>
 void describe(Visitor& visitor, Pose& pose) {
   visitor.field("backend", pose.backend, Choices{}, "Where hand poses come from; `handcast-pose --backends` lists what this build has.");
-  visitor.section("replay", pose.replay, "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and bones_{left,right}.npy.");
+  visitor.section("replay", pose.replay,
+                  "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and bones_{left,right}.npy.");
 }
 
 struct Landmarks {
@@ -49,7 +51,8 @@ struct Landmarks {
 
 template <class Visitor>
 void describe(Visitor& visitor, Landmarks& landmarks) {
-  visitor.field("backend", landmarks.backend, Choices{}, "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has.");
+  visitor.field("backend", landmarks.backend, Choices{},
+                "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has.");
   visitor.section("replay", landmarks.replay, "For backend = \"replay\": landmarks_{left,right}.npy with landmarks_timestamps.npy.");
 }
 

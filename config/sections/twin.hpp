@@ -3,7 +3,8 @@
 
 #include "config/field.hpp"
 
-/// The digital twin: a true hand and the errors of the sensors that watch it. Defaults: METHOD's figures, the same for every rig that is compared.
+/// The digital twin: a true hand and the errors of the sensors that watch it. Defaults: METHOD's figures, the same for every rig that is
+/// compared.
 namespace handcast::config {
 
 struct TwinTracker {
@@ -24,9 +25,11 @@ void describe(Visitor& visitor, TwinTracker& tracker) {
   visitor.field("age_ms", tracker.age_ms, between(0, 500, "ms"), "Mean age of a sample when it arrives.");
   visitor.field("age_sd_ms", tracker.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that age.");
   visitor.field("scale", tracker.scale, between(0.5, 2), "Size of the hand it reports, about the wrist; 1 is true.");
-  visitor.field("offset_mm", tracker.offset_mm, between(0, 200, "mm"), "How far off the hand is placed, in a direction drawn from the seed.");
+  visitor.field("offset_mm", tracker.offset_mm, between(0, 200, "mm"),
+                "How far off the hand is placed, in a direction drawn from the seed.");
   visitor.field("rotation_deg", tracker.rotation_deg, between(0, 45, "deg"), "How far it is turned, about an axis drawn from the seed.");
-  visitor.field("drift_px", tracker.drift_px, between(0, 100, "px"), "Slow drift of every joint at 0.2-1.5 Hz: RMS per axis, in camera pixels at the hand's distance.");
+  visitor.field("drift_px", tracker.drift_px, between(0, 100, "px"),
+                "Slow drift of every joint at 0.2-1.5 Hz: RMS per axis, in camera pixels at the hand's distance.");
   visitor.field("noise_mm", tracker.noise_mm, between(0, 50, "mm"), "White noise per joint and axis.");
   visitor.field("dropout", tracker.dropout, between(0, 1), "Share of samples that are lost.");
 }
@@ -40,7 +43,8 @@ struct TwinDetector {
 
 template <class Visitor>
 void describe(Visitor& visitor, TwinDetector& detector) {
-  visitor.field("age_ms", detector.age_ms, between(0, 500, "ms"), "Mean time from the middle of an exposure to its landmarks; it runs back to back.");
+  visitor.field("age_ms", detector.age_ms, between(0, 500, "ms"),
+                "Mean time from the middle of an exposure to its landmarks; it runs back to back.");
   visitor.field("age_sd_ms", detector.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that time.");
   visitor.field("noise_px", detector.noise_px, between(0, 50, "px"), "White noise per landmark and axis.");
   visitor.field("dropout", detector.dropout, between(0, 1), "Share of detections that find nothing.");
@@ -72,12 +76,14 @@ struct TwinShape {
 
 template <class Visitor>
 void describe(Visitor& visitor, TwinShape& shape) {
-  visitor.field("length_spread", shape.length_spread, between(0, 0.2), "How far a true bone length may be from the model's (share, drawn from the seed).");
+  visitor.field("length_spread", shape.length_spread, between(0, 0.2),
+                "How far a true bone length may be from the model's (share, drawn from the seed).");
   visitor.field("width_spread", shape.width_spread, between(0, 0.3), "The same for widths.");
 }
 
 struct Twin {
   std::string motion = "builtin:open_close";
+  std::string hands = "both";
   double speed = 1;
   int seed = 1;
   TwinShape shape;
@@ -88,7 +94,9 @@ struct Twin {
 
 template <class Visitor>
 void describe(Visitor& visitor, Twin& twin) {
-  visitor.field("motion", twin.motion, Choices{}, "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, still; or a folder with a recording.");
+  visitor.field("motion", twin.motion, Choices{},
+                "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, still; or a folder with a recording.");
+  visitor.field("hands", twin.hands, Choices{"both", "left", "right"}, "Which of the motion's hands are there.");
   visitor.field("speed", twin.speed, between(0.01, 20), "Plays the motion faster or slower.");
   visitor.field("seed", twin.seed, between(0, 1e9), "Everything random is drawn from this number.");
   visitor.section("shape", twin.shape, "How the true hand differs from the model.");

@@ -1,0 +1,68 @@
+#include "config/rig.hpp"
+
+#include <fmt/format.h>
+
+#include "config/load.hpp"
+#include "config/settings.hpp"
+
+namespace handcast::config {
+namespace {
+
+/// The settings that name files or folders.
+constexpr std::string_view kPaths[] = {"calibration",
+                                       "camera.replay.directory",
+                                       "pose.replay.directory",
+                                       "landmarks.replay.directory",
+                                       "hand.left",
+                                       "hand.right",
+                                       "content.left",
+                                       "content.right",
+                                       "twin.motion"};
+
+/// Makes the relative paths absolute; "" and "builtin:…" are no paths.
+void resolve_paths(const Listing& listing, const std::filesystem::path& folder) {
+  for (const auto path : kPaths) {
+    auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
+    if (text.empty() || text.starts_with("builtin:")) continue;
+    text = (folder / text).lexically_normal().string();
+  }
+}
+
+/// What no single setting can say about itself.
+void check_together(const Rig& rig, std::string_view file, Faults& faults) {
+  const auto& correct = rig.cascade.correct;
+  if (correct.bone_short_px >= correct.bone_long_px)
+    faults.add(fmt::format("{}: cascade.correct.bone_short_px: {} px must be less than cascade.correct.bone_long_px, {} px", file,
+                           correct.bone_short_px, correct.bone_long_px));
+}
+
+}  // namespace
+
+Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  const auto document = parse_document(toml, file.string());
+  if (!document) return tl::make_unexpected(document.error());
+
+  Rig rig;
+  const auto listing = list_settings(rig);
+  Faults faults;
+  apply_document(*document, file.string(), listing, faults);
+  resolve_paths(listing, std::filesystem::absolute(file).parent_path());
+  for (const auto& setting : settings) apply_assignment(setting, listing, faults);
+  resolve_paths(listing, std::filesystem::current_path());
+  check_together(rig, file.string(), faults);
+  if (!faults.empty()) return tl::make_unexpected(faults.to_error());
+  return rig;
+}
+
+Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  const auto text = read_text(file);
+  if (!text) return tl::make_unexpected(text.error());
+  return parse_rig(*text, file, settings);
+}
+
+std::string print_rig(const Rig& rig) {
+  auto copy = rig;
+  return print_settings(list_settings(copy), "Every setting of this rig.");
+}
+
+}  // namespace handcast::config
