@@ -16,17 +16,17 @@ struct CameraModel {
   double cx_px = 359.5, cy_px = 269.5;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
 
-  glm::dmat3 matrix() const;                                    ///< K
-  glm::dvec2 project(const glm::dvec3& point_m) const;          ///< to undistorted px; z must be > 0
-  glm::dvec2 distort(const glm::dvec2& undistorted_px) const;   ///< to where the lens puts it in the image
-  glm::dvec2 undistort(const glm::dvec2& image_px) const;       ///< the inverse, by Newton iterations
+  glm::dmat3 matrix() const;                                   ///< K
+  glm::dvec2 project(const glm::dvec3& point_m) const;         ///< to undistorted px; z must be > 0
+  glm::dvec2 distort(const glm::dvec2& undistorted_px) const;  ///< to where the lens puts it in the image
+  glm::dvec2 undistort(const glm::dvec2& image_px) const;      ///< the inverse, by Newton iterations
 };
 
 /// What a calibrated rig knows of itself. Transforms read right to left.
 struct Calibration {
   CameraModel camera;
-  glm::dmat4 camera_from_tracker{1};      ///< rigid, metres
-  glm::dmat3 projector_from_camera{1};    ///< homography, undistorted camera px -> projector px (the rig is coaxial)
+  glm::dmat4 camera_from_tracker{1};    ///< rigid, metres
+  glm::dmat3 projector_from_camera{1};  ///< homography, undistorted camera px -> projector px (the rig is coaxial)
   int projector_width_px = 1024;
   int projector_height_px = 768;
 

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include "calib/calibration.hpp"
+#include "calib/rigid.hpp"
+#include "config/load.hpp"
+#include "config/settings.hpp"
+
+/// The calibration file: TOML, with the same declarations, messages and printer as a rig file.
+namespace handcast::calib {
+
+using config::between;
+using config::Range;
+
+struct CameraSection {
+  int width_px, height_px;
+  std::vector<double> focal_px, centre_px, distortion;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, CameraSection& camera) {
+  visitor.field("width_px", camera.width_px, between(16, 16384, "px"), "Width of the image.");
+  visitor.field("height_px", camera.height_px, between(16, 16384, "px"), "Height of the image.");
+  visitor.field("focal_px", camera.focal_px, between(1, 1e6, "px"), "Focal lengths fx, fy.");
+  visitor.field("centre_px", camera.centre_px, between(-1e5, 1e5, "px"),
+                "Principal point cx, cy; (0, 0) is the centre of the top-left pixel.");
+  visitor.field("distortion", camera.distortion, between(-1e3, 1e3), "Brown-Conrady coefficients k1, k2, p1, p2, k3.");
+}
+
+struct TransformSection {
+  std::vector<double> x, y, z;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, TransformSection& rows) {
+  visitor.field("x", rows.x, between(-100, 100), "Camera x (right) of the tracker's three axes and of its origin.");
+  visitor.field("y", rows.y, between(-100, 100), "Camera y (down) of the same.");
+  visitor.field("z", rows.z, between(-100, 100), "Camera z (forward) of the same.");
+}
+
+struct ProjectorSection {
+  int width_px, height_px;
+  std::vector<double> x, y, w;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, ProjectorSection& projector) {
+  visitor.field("width_px", projector.width_px, between(16, 16384, "px"), "Width of the picture.");
+  visitor.field("height_px", projector.height_px, between(16, 16384, "px"), "Height of the picture.");
+  visitor.field("x", projector.x, Range{}, "First row of the homography from undistorted camera pixels to projector pixels.");
+  visitor.field("y", projector.y, Range{}, "Second row.");
+  visitor.field("w", projector.w, Range{}, "Third row: what both are divided by.");
+}
+
+struct File {
+  CameraSection camera;
+  TransformSection camera_from_tracker;
+  ProjectorSection projector;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, File& file) {
+  visitor.section("camera", file.camera, "The infrared camera.");
+  visitor.section("camera_from_tracker", file.camera_from_tracker, "Rigid, in rows; the last column in metres.");
+  visitor.section("projector", file.projector, "The projector, coaxial with the camera.");
+}
+
+namespace {
+
+constexpr double kRigidTolerance = 1e-3;
+
+template <class Matrix>
+std::vector<double> row_of(const Matrix& matrix, int row) {
+  std::vector<double> values;
+  for (int column = 0; column < Matrix::length(); ++column) values.push_back(matrix[column][row]);
+  return values;
+}
+
+template <class Matrix>
+void set_row(Matrix& matrix, int row, const std::vector<double>& values) {
+  for (int column = 0; column < Matrix::length(); ++column) matrix[column][row] = values[column];
+}
+
+File to_file(const Calibration& calibration) {
+  const auto& c = calibration.camera;
+  const auto& tracker = calibration.camera_from_tracker;
+  const auto& homography = calibration.projector_from_camera;
+  return {{c.width_px, c.height_px, {c.fx_px, c.fy_px}, {c.cx_px, c.cy_px}, {c.k1, c.k2, c.p1, c.p2, c.k3}},
+          {row_of(tracker, 0), row_of(tracker, 1), row_of(tracker, 2)},
+          {calibration.projector_width_px, calibration.projector_height_px, row_of(homography, 0), row_of(homography, 1),
+           row_of(homography, 2)}};
+}
+
+CameraModel to_camera_model(const CameraSection& s) {
+  return {s.width_px,      s.height_px,     s.focal_px[0],   s.focal_px[1],   s.centre_px[0], s.centre_px[1],
+          s.distortion[0], s.distortion[1], s.distortion[2], s.distortion[3], s.distortion[4]};
+}
+
+Calibration to_calibration(const File& file) {
+  Calibration calibration;
+  calibration.camera = to_camera_model(file.camera);
+  const auto& tracker = file.camera_from_tracker;
+  set_row(calibration.camera_from_tracker, 0, tracker.x);
+  set_row(calibration.camera_from_tracker, 1, tracker.y);
+  set_row(calibration.camera_from_tracker, 2, tracker.z);
+  const auto& projector = file.projector;
+  calibration.projector_width_px = projector.width_px;
+  calibration.projector_height_px = projector.height_px;
+  set_row(calibration.projector_from_camera, 0, projector.x);
+  set_row(calibration.projector_from_camera, 1, projector.y);
+  set_row(calibration.projector_from_camera, 2, projector.w);
+  return calibration;
+}
+
+void check(const Calibration& calibration, std::string_view file, config::Faults& faults) {
+  if (const double off = distance_from_rigid(calibration.camera_from_tracker); !(off < kRigidTolerance))
+    faults.add(
+        fmt::format("{}: camera_from_tracker: its first three columns are not a right-handed rotation (off by {:.2g}; {} is allowed)", file,
+                    off, kRigidTolerance));
+  if (!(std::abs(glm::determinant(calibration.projector_from_camera)) > 1e-9))
+    faults.add(fmt::format("{}: projector: the homography's rows x, y, w depend on each other", file));
+}
+
+}  // namespace
+
+Result<Calibration> load_calibration(const std::filesystem::path& path) {
+  if (path.empty()) return reference_rig();
+  const auto text = config::read_text(path);
+  if (!text) return tl::make_unexpected(text.error());
+  const auto document = config::parse_document(*text, path.string());
+  if (!document) return tl::make_unexpected(document.error());
+
+  auto file = to_file(reference_rig());
+  config::Faults faults;
+  config::apply_document(*document, path.string(), config::list_settings(file), faults);
+  auto calibration = to_calibration(file);
+  if (faults.empty()) check(calibration, path.string(), faults);
+  if (!faults.empty()) return tl::make_unexpected(faults.to_error());
+  calibration.camera_from_tracker = orthonormalised(calibration.camera_from_tracker);
+  return calibration;
+}
+
+std::string print_calibration(const Calibration& calibration) {
+  auto file = to_file(calibration);
+  return config::print_settings(config::list_settings(file), "What a rig knows of itself.");
+}
+
+}  // namespace handcast::calib

@@ -1,0 +1,60 @@
+#include "calib/calibration.hpp"
+
+/// The lens: Brown-Conrady, as in OpenCV's "Camera Calibration and 3D Reconstruction".
+namespace handcast::calib {
+namespace {
+
+glm::dvec2 to_normalised(const CameraModel& camera, const glm::dvec2& px) {
+  return {(px.x - camera.cx_px) / camera.fx_px, (px.y - camera.cy_px) / camera.fy_px};
+}
+
+glm::dvec2 to_px(const CameraModel& camera, const glm::dvec2& normalised) {
+  return {normalised.x * camera.fx_px + camera.cx_px, normalised.y * camera.fy_px + camera.cy_px};
+}
+
+/// Where the lens puts a ray, and how that moves with the ray (d distorted / d ray). Both without a unit, at z = 1.
+struct Bent {
+  glm::dvec2 point;
+  glm::dmat2 slope;
+};
+
+Bent bend(const CameraModel& c, const glm::dvec2& ray) {
+  const double x = ray.x, y = ray.y;
+  const double r2 = x * x + y * y;
+  const double radial = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  const double radial_slope = 2 * (c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3));  // d radial / d x = radial_slope * x
+
+  Bent bent;
+  bent.point.x = x * radial + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x);
+  bent.point.y = y * radial + c.p1 * (r2 + 2 * y * y) + 2 * c.p2 * x * y;
+  const double mixed = x * y * radial_slope + 2 * c.p1 * x + 2 * c.p2 * y;
+  bent.slope[0] = {radial + x * x * radial_slope + 2 * c.p1 * y + 6 * c.p2 * x, mixed};
+  bent.slope[1] = {mixed, radial + y * y * radial_slope + 6 * c.p1 * y + 2 * c.p2 * x};
+  return bent;
+}
+
+}  // namespace
+
+glm::dmat3 CameraModel::matrix() const { return {fx_px, 0, 0, 0, fy_px, 0, cx_px, cy_px, 1}; }
+
+glm::dvec2 CameraModel::project(const glm::dvec3& point_m) const { return to_px(*this, glm::dvec2(point_m) / point_m.z); }
+
+glm::dvec2 CameraModel::distort(const glm::dvec2& undistorted_px) const {
+  return to_px(*this, bend(*this, to_normalised(*this, undistorted_px)).point);
+}
+
+glm::dvec2 CameraModel::undistort(const glm::dvec2& image_px) const {
+  constexpr int kIterations = 8;  // converges quadratically: 3 do for the image itself
+  constexpr double kDone = 1e-24;
+  const auto seen = to_normalised(*this, image_px);
+  auto ray = seen;
+  for (int i = 0; i < kIterations; ++i) {
+    const auto bent = bend(*this, ray);
+    const auto step = glm::inverse(bent.slope) * (seen - bent.point);
+    ray += step;
+    if (glm::dot(step, step) < kDone) break;
+  }
+  return to_px(*this, ray);
+}
+
+}  // namespace handcast::calib

@@ -1,0 +1,165 @@
+#include "calib/calibration.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <glm/gtc/type_ptr.hpp>
+#include <iterator>
+
+namespace handcast::calib {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::filesystem::path file_with(const std::string& text) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "handcast_calibration_test.toml";
+  std::ofstream(file) << text;
+  return file;
+}
+
+double largest_difference(const auto& a, const auto& b) {
+  double largest = 0;
+  for (int column = 0; column < a.length(); ++column)
+    for (int row = 0; row < a[0].length(); ++row) largest = std::max(largest, std::abs(a[column][row] - b[column][row]));
+  return largest;
+}
+
+/// The bytes of a file of the authors' published calibration; empty where the outside data is absent.
+std::string published(const std::string& name) {
+  const char* data = std::getenv("HANDCAST_DATA");
+  const char* source = std::getenv("HANDCAST_SOURCE");
+  const auto folder = data ? std::filesystem::path(data) : std::filesystem::path(source ? source : ".") / "../shared/data";
+  std::ifstream stream(folder / "calibration" / name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The numbers of the array `name` (".npy", uncompressed) in a file: they start where its header's line ends.
+template <class Number>
+std::vector<Number> numbers_of(const std::string& bytes, const std::string& name, std::size_t count) {
+  const auto data = bytes.find('\n', bytes.find("\x93NUMPY", bytes.find(name))) + 1;
+  std::vector<Number> numbers(count);
+  std::memcpy(numbers.data(), bytes.data() + data, count * sizeof(Number));
+  return numbers;
+}
+
+TEST(ReferenceRig, HasTheLensItsAuthorsPublished) {
+  const auto bytes = published("cam_calibration.npz");
+  if (bytes.empty()) GTEST_SKIP() << "no ../shared/data/calibration/cam_calibration.npz";
+  const auto lens = numbers_of<double>(bytes, "cam_distortion.npy", 5);
+  const auto matrix = numbers_of<double>(bytes, "cam_intrinsics.npy", 9);
+  const auto camera = reference_rig().camera;
+  const double ours[] = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(ours[i], lens[i], 1e-8) << i;
+  EXPECT_LT(largest_difference(camera.matrix(), glm::transpose(glm::make_mat3(matrix.data()))), 1e-3);
+}
+
+TEST(ReferenceRig, PlacesTheTrackerWhereItsAuthorsPublished) {
+  const auto bytes = published("w2c.npy");
+  if (bytes.empty()) GTEST_SKIP() << "no ../shared/data/calibration/w2c.npy";
+  auto view = glm::dmat4(glm::make_mat4(numbers_of<float>(bytes, "", 16).data()));  // OpenGL's camera: y up, z backward; mm
+  view[3] *= glm::dvec4(1e-3, 1e-3, 1e-3, 1);
+  const glm::dmat4 flip(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
+  EXPECT_LT(largest_difference(reference_rig().camera_from_tracker, flip * view), 1e-6);
+}
+
+TEST(ReferenceRig, PlacesTheTrackerByARightHandedRotation) {
+  const auto transform = reference_rig().camera_from_tracker;
+  const glm::dmat3 rotation(transform);
+  EXPECT_NEAR(glm::determinant(rotation), 1, 1e-12);
+  EXPECT_LT(largest_difference(rotation * glm::transpose(rotation), glm::dmat3(1)), 1e-12);
+}
+
+TEST(ReferenceRig, HasItsCameraWhereTheAuthorsMeasuredItInMetres) {
+  const auto origin = glm::inverse(reference_rig().camera_from_tracker)[3];
+  EXPECT_NEAR(origin.x, -0.0469, 1e-4);
+  EXPECT_NEAR(origin.y, -0.1607, 1e-4);
+  EXPECT_NEAR(origin.z, 0.4600, 1e-4);
+}
+
+TEST(ReferenceRig, SeesTheHandsPlaceInTheMiddleOfTheImage) {
+  const auto rig = reference_rig();
+  const auto hand = rig.camera_from_tracker * glm::dvec4(-0.06, 0.2, 0.01, 1);
+  ASSERT_GT(hand.z, 0);
+  const auto px = rig.camera.project(hand);
+  EXPECT_GT(px.x, 0);
+  EXPECT_LT(px.x, rig.camera.width_px);
+}
+
+TEST(ReferenceRig, CoversTheProjectorsPictureWithTheCamerasToTwoPercent) {
+  const auto rig = reference_rig();
+  const glm::dvec2 last(rig.projector_width_px - 1, rig.projector_height_px - 1);
+  EXPECT_LT(glm::distance(rig.to_projector({359.5, 269.5}), last / 2.0), 1e-9);
+  EXPECT_LT(glm::distance(rig.to_projector({-0.1, -0.1}), {0, 0}), 10);
+  EXPECT_LT(glm::distance(rig.to_projector({719, 539}), last), 10);
+}
+
+TEST(ReferenceRig, HasATrueHomography) {
+  const auto rig = reference_rig();
+  const auto left = rig.to_projector({0, 269}), middle = rig.to_projector({359, 269}), right = rig.to_projector({718, 269});
+  EXPECT_GT(std::abs(glm::distance(left, middle) - glm::distance(middle, right)), 0.5) << "no keystone";
+  EXPECT_GT(std::abs(right.y - left.y), 3) << "not turned";
+}
+
+TEST(Calibration, ToCameraIsTheInverseOfToProjector) {
+  const auto rig = reference_rig();
+  for (double x : {0.0, 300.5, 1023.0})
+    for (double y : {0.0, 200.25, 767.0}) EXPECT_LT(glm::distance(rig.to_projector(rig.to_camera({x, y})), {x, y}), 1e-9);
+}
+
+TEST(Calibration, MillimetresPerPixelGrowWithTheDistance) {
+  const auto rig = reference_rig();
+  EXPECT_NEAR(rig.mm_per_projector_px(0.5), 500 / 1162.2776 * 720 / 1024, 1e-6);
+  EXPECT_NEAR(rig.mm_per_projector_px(1.0), 2 * rig.mm_per_projector_px(0.5), 1e-12);
+}
+
+TEST(CalibrationFile, ReadsBackAsItWasPrinted) {
+  auto rig = reference_rig();
+  rig.camera.fx_px = 1000.0 / 3;
+  rig.camera.width_px = 640;
+  rig.projector_height_px = 800;
+  const auto back = load_calibration(file_with(print_calibration(rig)));
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_EQ(back->camera.fx_px, rig.camera.fx_px);
+  EXPECT_EQ(back->camera.k3, rig.camera.k3);
+  EXPECT_EQ(back->camera.width_px, 640);
+  EXPECT_EQ(back->projector_height_px, 800);
+  EXPECT_LT(largest_difference(back->camera_from_tracker, rig.camera_from_tracker), 1e-15);
+  EXPECT_EQ(back->projector_from_camera, rig.projector_from_camera);
+}
+
+TEST(CalibrationFile, NoFileIsTheReferenceRig) {
+  const auto rig = load_calibration("");
+  ASSERT_TRUE(rig);
+  EXPECT_EQ(print_calibration(*rig), print_calibration(reference_rig()));
+}
+
+TEST(CalibrationFile, SaysWhatIsWrongAndWhere) {
+  const auto rig = load_calibration(file_with("[camera]\nwidth_px = 0\nfocal_px = [5]\n"));
+  ASSERT_FALSE(rig);
+  EXPECT_EQ(rig.error().code, Errc::bad_config);
+  EXPECT_THAT(rig.error().what, HasSubstr("toml:2: camera.width_px: 0 is outside 16..16384 px"));
+  EXPECT_THAT(rig.error().what, HasSubstr("toml:3: camera.focal_px: must be a list of 2 numbers, not of 1"));
+}
+
+TEST(CalibrationFile, RefusesAMirroredTracker) {
+  const auto rig = load_calibration(file_with("[camera_from_tracker]\nx = [1, 0, 0, 0]\ny = [0, 1, 0, 0]\nz = [0, 0, -1, 0]\n"));
+  ASSERT_FALSE(rig);
+  EXPECT_THAT(rig.error().what, HasSubstr("not a right-handed rotation"));
+}
+
+TEST(CalibrationFile, RefusesAHomographyWithoutAnInverse) {
+  const auto rig = load_calibration(file_with("[projector]\nx = [1, 0, 0]\ny = [2, 0, 0]\nw = [0, 0, 1]\n"));
+  ASSERT_FALSE(rig);
+  EXPECT_THAT(rig.error().what, HasSubstr("homography"));
+}
+
+TEST(CalibrationFile, IsNamedWhenItIsMissing) {
+  const auto rig = load_calibration("/no/such/calibration.toml");
+  ASSERT_FALSE(rig);
+  EXPECT_THAT(rig.error().what, HasSubstr("/no/such/calibration.toml"));
+}
+
+}  // namespace
+}  // namespace handcast::calib
