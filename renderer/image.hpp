@@ -15,6 +15,7 @@ struct Rect {
   bool empty() const { return x1 <= x0 || y1 <= y0; }
   Rect grown(int px) const { return {x0 - px, y0 - px, x1 + px, y1 + px}; }
   Rect within(int width, int height) const { return {std::max(x0, 0), std::max(y0, 0), std::min(x1, width), std::min(y1, height)}; }
+  Rect overlap(const Rect& o) const { return {std::max(x0, o.x0), std::max(y0, o.y0), std::min(x1, o.x1), std::min(y1, o.y1)}; }
   Rect joined(const Rect& o) const {
     if (empty()) return o;
     if (o.empty()) return *this;

@@ -27,11 +27,11 @@ struct HandMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> uv;
-  std::vector<std::array<std::uint8_t, 4>> joints;     ///< up to four joints a vertex, unused ones have weight 0
-  std::vector<std::array<float, 4>> weights;           ///< sum to 1
-  std::vector<std::uint8_t> chart;                     ///< connected part of the UV layout: 1 back, 2 palm, ... (0 is never used)
-  std::vector<std::array<std::uint16_t, 3>> triangles; ///< counter-clockwise seen from outside
-  std::array<glm::mat4, kJoints> rest{};               ///< joint to model space at rest
+  std::vector<std::array<std::uint8_t, 4>> joints;      ///< up to four joints a vertex, unused ones have weight 0
+  std::vector<std::array<float, 4>> weights;            ///< sum to 1
+  std::vector<std::uint8_t> chart;                      ///< connected part of the UV layout: 1 back, 2 palm, ... (0 is never used)
+  std::vector<std::array<std::uint16_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::array<glm::mat4, kJoints> rest{};                ///< joint to model space at rest
 
   std::size_t vertex_count() const { return positions.size(); }
 };

@@ -1,0 +1,276 @@
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <glm/gtc/type_ptr.hpp>
+#include <optional>
+
+#include "renderer/hand/hand_mesh.hpp"
+#include "renderer/hand/mesh_charts.hpp"
+
+// The one file that knows tinygltf. Its loader checks the JSON but not that accessors stay inside their buffers: that is done here.
+namespace handcast::renderer {
+namespace {
+
+constexpr std::size_t kMaxVertices = 65535;
+
+/// Reads accessors as rows of `width` numbers; the first trouble is kept and everything after it reads as nothing.
+class ArrayReader {
+ public:
+  explicit ArrayReader(const tinygltf::Model& model) : model_(model) {}
+
+  /// `count * width` numbers; integers flagged as normalised become 0..1.
+  template <class T>
+  std::vector<T> read(int accessor_index, int width, const char* what) {
+    std::vector<T> numbers;
+    const auto bytes = locate(accessor_index, width, what);
+    if (!bytes) return numbers;
+    const tinygltf::Accessor& accessor = model_.accessors[accessor_index];
+    numbers.reserve(accessor.count * width);
+    for (std::size_t row = 0; row < accessor.count; ++row)
+      for (int k = 0; k < width; ++k) {
+        const double value = number(accessor, bytes->data + row * bytes->stride, k);
+        if (!std::isfinite(value)) return complain(fmt::format("its {} hold a number that is not finite", what)), std::vector<T>{};
+        numbers.push_back(static_cast<T>(value));
+      }
+    return numbers;
+  }
+  const std::optional<std::string>& trouble() const { return trouble_; }
+  void complain(std::string what) {
+    if (!trouble_) trouble_ = std::move(what);
+  }
+
+ private:
+  struct Rows {
+    const unsigned char* data;
+    std::size_t stride;
+  };
+
+  std::optional<Rows> locate(int index, int width, const char* what) {
+    const auto refuse = [&](const char* why) {
+      complain(fmt::format("its {} {}", what, why));
+      return std::nullopt;
+    };
+    if (index < 0 || index >= std::ssize(model_.accessors)) return refuse("are missing");
+    const tinygltf::Accessor& accessor = model_.accessors[index];
+    if (accessor.bufferView < 0 || accessor.bufferView >= std::ssize(model_.bufferViews)) return refuse("have no buffer view");
+    const tinygltf::BufferView& view = model_.bufferViews[accessor.bufferView];
+    if (view.buffer < 0 || view.buffer >= std::ssize(model_.buffers)) return refuse("have no buffer");
+    const auto& buffer = model_.buffers[view.buffer].data;
+    const int component = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
+    if (component <= 0 || tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != width)
+      return refuse("have an unexpected type");
+    const std::size_t row = static_cast<std::size_t>(component) * width, stride = view.byteStride ? view.byteStride : row;
+    if (accessor.count == 0) return refuse("are empty");
+    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) return refuse("lie outside their buffer");
+    if (accessor.byteOffset > view.byteLength || row > view.byteLength - accessor.byteOffset ||
+        (accessor.count - 1) > (view.byteLength - accessor.byteOffset - row) / stride)
+      return refuse("lie outside their buffer view");
+    return Rows{buffer.data() + view.byteOffset + accessor.byteOffset, stride};
+  }
+
+  template <class Component>
+  static double component_at(const unsigned char* row, int k, bool normalized) {
+    Component value;
+    std::memcpy(&value, row + sizeof(Component) * k, sizeof value);
+    return normalized ? double(value) / double(std::numeric_limits<Component>::max()) : double(value);
+  }
+
+  static double number(const tinygltf::Accessor& accessor, const unsigned char* row, int k) {
+    switch (accessor.componentType) {
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        return component_at<std::uint8_t>(row, k, accessor.normalized);
+      case TINYGLTF_COMPONENT_TYPE_BYTE:
+        return component_at<std::int8_t>(row, k, accessor.normalized);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        return component_at<std::uint16_t>(row, k, accessor.normalized);
+      case TINYGLTF_COMPONENT_TYPE_SHORT:
+        return component_at<std::int16_t>(row, k, accessor.normalized);
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        return component_at<std::uint32_t>(row, k, accessor.normalized);
+      case TINYGLTF_COMPONENT_TYPE_DOUBLE:
+        return component_at<double>(row, k, false);
+      default:
+        return component_at<float>(row, k, false);
+    }
+  }
+
+  const tinygltf::Model& model_;
+  std::optional<std::string> trouble_;
+};
+
+/// "Left_Index-Finger-Tip", "r-little-finger-tip" -> WebXR's own spelling.
+std::string plain_name(std::string name) {
+  for (char& c : name) c = c == '_' || c == ' ' || c == '.' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const std::string_view prefix : {"left-", "right-", "l-", "r-"})
+    if (name.starts_with(prefix)) {
+      name.erase(0, prefix.size());
+      break;
+    }
+  if (name.starts_with("little-")) name.replace(0, 6, "pinky");
+  return name;
+}
+
+/// The palm, the tips and the metacarpals of the fingers may be missing: they carry little or no skin.
+bool may_be_missing(int joint) {
+  const std::string_view name = kJointNames[joint];
+  return name == "palm" || name.ends_with("-tip") || name.ends_with("finger-metacarpal");
+}
+
+/// Fills hand.rest and returns our joint for each joint of the skin; those with names we do not know count as the wrist.
+std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Model& model, const tinygltf::Skin& skin, HandMesh& hand) {
+  std::vector<std::uint8_t> ours(skin.joints.size(), 1);
+  std::array<bool, kJoints> found{};
+  const auto inverse = reader.read<float>(skin.inverseBindMatrices, 16, "inverse bind matrices");
+  if (inverse.size() < skin.joints.size() * 16) return reader.complain("its inverse bind matrices are too few"), ours;
+  for (std::size_t k = 0; k < skin.joints.size(); ++k) {
+    const int node = skin.joints[k];
+    if (node < 0 || node >= std::ssize(model.nodes)) return reader.complain("its skin names a node that is not there"), ours;
+    const auto known = std::find(kJointNames.begin(), kJointNames.end(), plain_name(model.nodes[node].name));
+    if (known == kJointNames.end()) continue;
+    const auto joint = static_cast<std::size_t>(known - kJointNames.begin());
+    hand.rest[joint] = glm::inverse(glm::make_mat4(inverse.data() + k * 16));
+    ours[k] = static_cast<std::uint8_t>(joint);
+    found[joint] = true;
+  }
+  std::string missing;
+  for (int j = 0; j < kJoints; ++j)
+    if (!found[j] && !may_be_missing(j)) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", kJointNames[j]);
+  if (!missing.empty()) reader.complain(fmt::format("its skin lacks the joints {}", missing));
+  for (int k = 1; k <= kJoints; ++k) {
+    const int j = k % kJoints;  // from the wrist on and the palm last: parents first
+    if (!found[j] && kJointParent[j] >= 0) hand.rest[j] = hand.rest[kJointParent[j]];
+  }
+  return ours;
+}
+
+int attribute(const tinygltf::Primitive& primitive, const char* name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive, const std::vector<std::uint8_t>& ours, HandMesh& hand) {
+  const auto joints = reader.read<std::uint32_t>(attribute(primitive, "JOINTS_0"), 4, "joint indices");
+  const auto weights = reader.read<float>(attribute(primitive, "WEIGHTS_0"), 4, "weights");
+  if (joints.size() != weights.size()) return reader.complain("it has not one set of joints per set of weights");
+  for (std::size_t v = 0; v < joints.size(); v += 4) {
+    std::array<std::uint8_t, 4> joint{};
+    std::array<float, 4> weight{};
+    float sum = 0;
+    for (int k = 0; k < 4; ++k) {
+      if (!(weights[v + k] > 0)) continue;
+      if (joints[v + k] >= ours.size()) return reader.complain("it binds a vertex to a joint that is not there");
+      joint[k] = ours[joints[v + k]];
+      sum += weight[k] = weights[v + k];
+    }
+    if (sum <= 0) joint = {1, 0, 0, 0}, weight = {sum = 1, 0, 0, 0};
+    for (float& w : weight) w /= sum;
+    hand.joints.push_back(joint);
+    hand.weights.push_back(weight);
+  }
+}
+
+void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, std::size_t first, std::size_t count, HandMesh& hand) {
+  std::vector<std::uint32_t> indices;
+  if (primitive.indices >= 0)
+    indices = reader.read<std::uint32_t>(primitive.indices, 1, "indices");
+  else
+    for (std::uint32_t v = 0; v < count; ++v) indices.push_back(v);
+  for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
+    std::array<std::uint16_t, 3> triangle;
+    for (int c = 0; c < 3; ++c) {
+      if (indices[k + c] >= count) return reader.complain(fmt::format("a triangle names vertex {} of {}", indices[k + c], count));
+      triangle[c] = static_cast<std::uint16_t>(first + indices[k + c]);
+    }
+    hand.triangles.push_back(triangle);
+  }
+}
+
+void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive, const std::vector<std::uint8_t>& ours, HandMesh& hand) {
+  const std::size_t first = hand.vertex_count();
+  const auto positions = reader.read<float>(attribute(primitive, "POSITION"), 3, "positions");
+  const std::size_t count = positions.size() / 3;
+  if (first + count > kMaxVertices) return reader.complain(fmt::format("it has more than {} vertices", kMaxVertices));
+  std::vector<float> normals(count * 3), uv(count * 2);
+  if (attribute(primitive, "NORMAL") >= 0) normals = reader.read<float>(attribute(primitive, "NORMAL"), 3, "normals");
+  if (attribute(primitive, "TEXCOORD_0") >= 0) uv = reader.read<float>(attribute(primitive, "TEXCOORD_0"), 2, "texture coordinates");
+  read_weights(reader, primitive, ours, hand);
+  if (reader.trouble()) return;
+  if (normals.size() != count * 3 || uv.size() != count * 2 || hand.weights.size() != first + count)
+    return reader.complain("its vertex attributes differ in number");
+  for (std::size_t v = 0; v < count; ++v) {
+    hand.positions.emplace_back(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
+    hand.normals.emplace_back(normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]);
+    hand.uv.emplace_back(uv[2 * v], uv[2 * v + 1]);
+  }
+  read_triangles(reader, primitive, first, count, hand);
+}
+
+/// For a file without normals: the mean of the triangles around a vertex.
+void fill_missing_normals(HandMesh& hand) {
+  std::vector<glm::vec3> sum(hand.vertex_count());
+  for (const auto& t : hand.triangles) {
+    const glm::vec3& a = hand.positions[t[0]];
+    const glm::vec3 n = glm::cross(hand.positions[t[1]] - a, hand.positions[t[2]] - a);
+    for (const auto v : t) sum[v] += n;
+  }
+  for (std::size_t v = 0; v < hand.vertex_count(); ++v)
+    if (hand.normals[v] == glm::vec3(0)) hand.normals[v] = sum[v] / std::max(glm::length(sum[v]), 1e-20f);
+}
+
+/// Pictures in the file are not needed, so they are not decoded.
+bool ignore_picture(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) { return true; }
+
+bool parse(const std::filesystem::path& file, tinygltf::Model& model, std::string& error) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, 4> magic{};
+  in.read(magic.data(), magic.size());
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(ignore_picture, nullptr);
+  std::string warning;
+  try {
+    return std::string_view(magic.data(), 4) == "glTF" ? loader.LoadBinaryFromFile(&model, &error, &warning, file.string())
+                                                       : loader.LoadASCIIFromFile(&model, &error, &warning, file.string());
+  } catch (const std::exception& exception) {
+    error = exception.what();
+    return false;
+  }
+}
+
+const tinygltf::Node* first_skinned_node(const tinygltf::Model& model) {
+  for (const tinygltf::Node& node : model.nodes)
+    if (node.skin >= 0 && node.skin < std::ssize(model.skins) && node.mesh >= 0 && node.mesh < std::ssize(model.meshes)) return &node;
+  return nullptr;
+}
+
+}  // namespace
+
+Result<HandMesh> load_hand(const std::filesystem::path& file, Side side) {
+  const auto refuse = [&](const std::string& why) { return fail(Errc::bad_config, fmt::format("hand '{}': {}", file.string(), why)); };
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return refuse("there is no such file");
+  tinygltf::Model model;
+  std::string error;
+  if (!parse(file, model, error))
+    return refuse(fmt::format("it is not a glTF file that can be read ({})", error.substr(0, error.find('\n'))));
+  const tinygltf::Node* node = first_skinned_node(model);
+  if (!node) return refuse("it holds no skinned mesh");
+
+  HandMesh hand;
+  hand.side = side;
+  ArrayReader reader(model);
+  const auto ours = read_skeleton(reader, model, model.skins[node->skin], hand);
+  for (const tinygltf::Primitive& primitive : model.meshes[node->mesh].primitives)
+    if (!reader.trouble() && (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode < 0))
+      read_primitive(reader, primitive, ours, hand);
+  if (reader.trouble()) return refuse(*reader.trouble());
+  if (hand.triangles.empty()) return refuse("its skinned mesh has no triangles");
+  fill_missing_normals(hand);
+  number_charts(hand);
+  return hand;
+}
+
+}  // namespace handcast::renderer

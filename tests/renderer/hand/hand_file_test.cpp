@@ -1,0 +1,184 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "tests/renderer/hand/mesh_checks.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+using namespace testing;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class HandFile : public ::testing::Test {
+ protected:
+  HandFile() : folder_(std::filesystem::temp_directory_path() / ("handcast-hand-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~HandFile() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+
+  std::filesystem::path saved() const {
+    const auto file = path("hand.glb");
+    EXPECT_TRUE(save_hand(mean_hand(Side::left), file));
+    return file;
+  }
+
+  /// The saved hand with its JSON (and, if asked for, its binary part) changed.
+  std::filesystem::path changed(const std::function<void(json&)>& change, std::size_t binary_bytes = ~std::size_t{0}) const {
+    std::ifstream in(saved(), std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    std::uint32_t length;
+    std::memcpy(&length, bytes.data() + 12, 4);
+    json gltf = json::parse(bytes.substr(20, length));
+    const std::string binary = bytes.substr(20 + length + 8).substr(0, binary_bytes);
+    change(gltf);
+    std::string text = gltf.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::ofstream out(path("changed.glb"), std::ios::binary);
+    const auto put = [&](std::size_t value) {
+      const auto word = static_cast<std::uint32_t>(value);
+      out.write(reinterpret_cast<const char*>(&word), 4);
+    };
+    out << "glTF";
+    for (const std::size_t word : {std::size_t{2}, 28 + text.size() + binary.size(), text.size()}) put(word);
+    out << "JSON" << text;
+    put(binary.size());
+    out << std::string("BIN\0", 4) << binary;
+    return path("changed.glb");
+  }
+
+  static std::string refusal(const std::filesystem::path& file) {
+    const auto hand = load_hand(file, Side::left);
+    if (hand) return "(it was read)";
+    EXPECT_EQ(hand.error().code, Errc::bad_config);
+    EXPECT_THAT(hand.error().what, HasSubstr(file.filename().string()));
+    return hand.error().what;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST_F(HandFile, ComesBackAsItWasSaved) {
+  const HandMesh& hand = mean_hand(Side::left);
+  const auto read = load_hand(saved(), Side::left);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->positions, hand.positions);
+  EXPECT_EQ(read->normals, hand.normals);
+  EXPECT_EQ(read->uv, hand.uv);
+  EXPECT_EQ(read->joints, hand.joints);
+  EXPECT_EQ(read->triangles, hand.triangles);
+  EXPECT_EQ(read->chart, hand.chart);
+  for (std::size_t v = 0; v < hand.vertex_count(); ++v)
+    for (int k = 0; k < 4; ++k) ASSERT_NEAR(read->weights[v][k], hand.weights[v][k], 1e-6);
+  for (int j = 0; j < kJoints; ++j)
+    for (int k = 0; k < 16; ++k) ASSERT_NEAR(read->rest[j][k / 4][k % 4], hand.rest[j][k / 4][k % 4], 1e-6);
+}
+
+TEST_F(HandFile, ARefitWorksOnALoadedHand) {
+  const auto read = load_hand(saved(), Side::left);
+  ASSERT_TRUE(read);
+  const HandMesh direct = refit_hand(mean_hand(Side::left), another_person()), loaded = refit_hand(*read, another_person());
+  for (std::size_t v = 0; v < direct.vertex_count(); ++v) ASSERT_LT(glm::distance(direct.positions[v], loaded.positions[v]), 2e-5f);
+}
+
+TEST_F(HandFile, HandsMadeByTheBuildAreFound) {
+  for (const Side side : {Side::left, Side::right}) {
+    const auto hand = load_hand_or_default({}, side);
+    ASSERT_TRUE(hand) << hand.error().what;
+    EXPECT_EQ(hand->side, side);
+    const float thumb_side = side == Side::left ? 1.0f : -1.0f;
+    EXPECT_GT(hand->rest[5][3].x * thumb_side, 0.05f);
+  }
+}
+
+TEST_F(HandFile, AssetsFolderOfTheEnvironmentComesFirst) {
+  setenv("HANDCAST_ASSETS", "/somewhere", 1);
+  EXPECT_EQ(default_hand_file(Side::right), "/somewhere/hand_right.glb");
+  unsetenv("HANDCAST_ASSETS");
+  EXPECT_NE(default_hand_file(Side::right).string().find("share/handcast/hand_right.glb"), std::string::npos);
+}
+
+TEST_F(HandFile, NamesMayCarryASideAndUnderscores) {
+  const auto file = changed([](json& gltf) {
+    for (json& node : gltf["nodes"]) {
+      std::string name = "Left_" + node["name"].get<std::string>();
+      std::replace(name.begin(), name.end(), '-', '_');
+      node["name"] = name;
+    }
+  });
+  const auto read = load_hand(file, Side::left);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->joints, mean_hand(Side::left).joints);
+}
+
+TEST_F(HandFile, AMissingMetacarpalIsTakenFromItsParent) {
+  const auto file = changed([](json& gltf) { gltf["nodes"][21]["name"] = "bone"; });
+  const auto read = load_hand(file, Side::left);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->rest[21], read->rest[1]);
+}
+
+TEST_F(HandFile, MissingJointsAreNamed) {
+  const auto file = changed([](json& gltf) { gltf["nodes"][8]["name"] = gltf["nodes"][3]["name"] = "bone"; });
+  EXPECT_THAT(refusal(file), HasSubstr("thumb-phalanx-proximal, index-finger-phalanx-intermediate"));
+}
+
+TEST_F(HandFile, AFileThatIsNotThereIsSaid) { EXPECT_THAT(refusal(path("nothing.glb")), HasSubstr("no such file")); }
+
+TEST_F(HandFile, AFileThatIsNoGltfIsSaid) {
+  for (const std::string content : {"", "plain text", "glTF\2\0\0\0 cut off"}) {
+    std::ofstream(path("odd.glb"), std::ios::binary) << content;
+    EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("not a glTF file"));
+  }
+}
+
+TEST_F(HandFile, AMeshWithoutSkinIsSaid) {
+  const auto file = changed([](json& gltf) {
+    gltf.erase("skins");
+    gltf["nodes"][26].erase("skin");
+  });
+  EXPECT_THAT(refusal(file), HasSubstr("no skinned mesh"));
+}
+
+TEST_F(HandFile, AnIndexBeyondTheVerticesIsSaid) {
+  const auto file = changed([](json& gltf) {
+    for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"})
+      gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"][attribute].get<int>()]["count"] = 100;
+  });
+  EXPECT_THAT(refusal(file), HasSubstr("a triangle names vertex"));
+}
+
+TEST_F(HandFile, AnAccessorBeyondItsBufferIsSaid) {
+  const auto file = changed([](json& gltf) { gltf["accessors"][0]["count"] = 1000000; });
+  EXPECT_THAT(refusal(file), HasSubstr("outside"));
+}
+
+TEST_F(HandFile, MoreVerticesThanIndicesCanNameAreSaid) {
+  const auto file = changed([](json& gltf) {
+    for (int k = 0; k < 5; ++k) {
+      gltf["accessors"][k]["bufferView"] = 7;
+      gltf["accessors"][k]["count"] = 70000;
+    }
+    gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 70100}, {"byteStride", 1}});
+  });
+  const std::string said = refusal(file);
+  EXPECT_TRUE(said.find("more than 65535") != std::string::npos || said.find("not a glTF") != std::string::npos) << said;
+}
+
+TEST_F(HandFile, AFolderThatCannotBeWrittenIsSaid) {
+  const auto result = save_hand(mean_hand(Side::left), path("no/such/folder/hand.glb"));
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().what, HasSubstr("cannot be written"));
+}
+
+}  // namespace
+}  // namespace handcast::renderer
