@@ -26,13 +26,13 @@ class MovingLeastSquares {
 
 /// A regular grid over an image, each node moved: a piecewise linear warp, each cell split along its diagonal (0,0)-(1,1).
 struct WarpGrid {
-  int columns = 0, rows = 0;       ///< nodes
-  Rect area;                       ///< the image area the undeformed grid spans, corner nodes on its corner pixels
-  std::vector<glm::vec2> nodes;    ///< moved positions, row by row
+  int columns = 0, rows = 0;     ///< nodes
+  Rect area;                     ///< the image area the undeformed grid spans, corner nodes on its corner pixels
+  std::vector<glm::vec2> nodes;  ///< moved positions, row by row
 
-  glm::vec2 source(int column, int row) const;         ///< where a node stood
-  glm::vec2 operator()(glm::vec2 v) const;             ///< the warp at any point (outside the area: of the nearest cell)
-  int foldovers() const;                               ///< triangles turned over
+  glm::vec2 source(int column, int row) const;  ///< where a node stood
+  glm::vec2 operator()(glm::vec2 v) const;      ///< the warp at any point (outside the area: of the nearest cell)
+  int foldovers() const;                        ///< triangles turned over
 };
 
 /// The paper's correction: `settings.grid_columns x grid_rows` nodes over the whole image.

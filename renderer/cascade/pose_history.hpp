@@ -13,8 +13,10 @@ namespace handcast::renderer {
 /// Positions are interpolated linearly, orientations by normalised quaternion blending. Samples may come late or out of order.
 class PoseHistory {
  public:
+  /// `span_ns`: how far back samples are kept.
   explicit PoseHistory(const config::Predict& settings, std::int64_t span_ns = 250'000'000);
 
+  /// A sample with the time of an older one replaces it; one with a number that is not finite is dropped.
   void push(std::int64_t origin_ns, const msg::HandPose& pose);
   void clear();
 
@@ -22,7 +24,11 @@ class PoseHistory {
   std::int64_t newest_ns() const;  ///< 0 where empty
 
   /// The hand at `time_ns`; nothing where the history is empty, or ends more than `lost_ns` before `time_ns`.
-  /// Before the oldest sample: the oldest. Beyond the newest: by config::Predict::method, joint by joint.
+  /// Before the oldest sample: the oldest. Beyond the newest: by config::Predict::method, joint by joint. "velocity" goes on as
+  /// between the two newest samples; a joint slower than still_mm_s over the last 50 ms rests at its mean over them instead
+  /// (noise of the samples does not reach the light), fading over to motion up to twice that speed. "acceleration" bends that
+  /// way by the acceleration of the three newest samples, as far as it stands out of the tracker's noise: of the whole hand
+  /// first, whose mean is quieter, then of each joint against it.
   std::optional<msg::HandPose> at(std::int64_t time_ns, std::int64_t lost_ns = 200'000'000) const;
 
  private:
@@ -30,6 +36,10 @@ class PoseHistory {
     std::int64_t origin_ns;
     msg::HandPose pose;
   };
+  msg::HandPose predicted(std::int64_t time_ns) const;
+  const Sample* earlier_than(const Sample& sample) const;  ///< the newest that is far enough before it to tell a velocity
+  std::array<glm::vec3, msg::kJoints> bends_m(const Sample& newest, const Sample& base, std::int64_t ahead_ns) const;
+
   config::Predict settings_;
   std::int64_t span_ns_;
   std::deque<Sample> samples_;

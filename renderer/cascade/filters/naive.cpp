@@ -1,0 +1,42 @@
+#include "renderer/cascade/filters/filters.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+/// Q as it was seen. A point missing in the newest detection stays where it was seen last.
+class NaiveFilter final : public CarryFilter {
+ public:
+  void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& seen, const TrackerAt&) override {
+    if (origin_ns < origin_ns_) return;
+    origin_ns_ = origin_ns;
+    for (int i = 0; i < kLandmarks; ++i) {
+      if (!was_seen(seen.points[i])) continue;
+      seen_px_[i] = position_px(seen.points[i]);
+      known_[i] = any_ = true;
+    }
+  }
+
+  std::optional<LandmarkPoints> at(std::int64_t, std::int64_t, const LandmarkPoints& tracker) override {
+    if (!any_) return std::nullopt;
+    std::array<glm::vec2, kLandmarks> offsets{};
+    for (int i = 0; i < kLandmarks; ++i) offsets[i] = seen_px_[i] - tracker[i];
+    lend_offsets(offsets, known_);
+    LandmarkPoints points;
+    for (int i = 0; i < kLandmarks; ++i) points[i] = tracker[i] + offsets[i];
+    return points;
+  }
+
+  void forget() override { *this = NaiveFilter(); }
+
+ private:
+  LandmarkPoints seen_px_{};
+  std::array<bool, kLandmarks> known_{};
+  bool any_ = false;
+  std::int64_t origin_ns_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<CarryFilter> make_naive_filter() { return std::make_unique<NaiveFilter>(); }
+
+}  // namespace handcast::renderer

@@ -1,0 +1,63 @@
+#include "renderer/cascade/threshold.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr double kRimShare = 0.25;     ///< of the way from the dark mean to the bright one: skin that turns away from the lamp is hand too
+constexpr double kLeastContrast = 10;  ///< grey values between the means of the parts
+constexpr double kLeastSeparation = 0.7;  ///< share of the variance between the parts: one bell of noise has 0.64
+
+using Histogram = std::array<std::uint32_t, 256>;
+
+/// Two histograms in turn, so that equal neighbours do not wait for each other's count.
+Histogram histogram_of(GreyView image, Rect region) {
+  Histogram even{}, odd{};
+  for (int y = region.y0; y < region.y1; y += 2) {
+    const std::uint8_t* row = image.row(y);
+    int x = region.x0;
+    for (; x + 2 < region.x1; x += 4) {
+      ++even[row[x]];
+      ++odd[row[x + 2]];
+    }
+    if (x < region.x1) ++even[row[x]];
+  }
+  for (int grey = 0; grey < 256; ++grey) even[grey] += odd[grey];
+  return even;
+}
+
+}  // namespace
+
+int choose_threshold(GreyView image, Rect region) {
+  const Histogram histogram = histogram_of(image, region);
+  double count = 0, sum = 0, squares = 0;
+  for (int grey = 0; grey < 256; ++grey) {
+    const double n = histogram[grey];
+    count += n;
+    sum += n * grey;
+    squares += n * grey * grey;
+  }
+  if (count == 0) return 0;
+  const double variance = squares / count - (sum / count) * (sum / count);
+
+  double dark_count = 0, dark_sum = 0, best = 0, dark_mean = 0, bright_mean = 0;
+  for (int grey = 0; grey < 255; ++grey) {
+    dark_count += histogram[grey];
+    dark_sum += static_cast<double>(histogram[grey]) * grey;
+    const double bright_count = count - dark_count;
+    if (dark_count == 0 || bright_count == 0) continue;
+    const double dark = dark_sum / dark_count, bright = (sum - dark_sum) / bright_count;
+    const double between = dark_count * bright_count / (count * count) * (bright - dark) * (bright - dark);
+    if (between <= best) continue;
+    best = between;
+    dark_mean = dark;
+    bright_mean = bright;
+  }
+  if (bright_mean - dark_mean < kLeastContrast || best < kLeastSeparation * variance) return 0;
+  return static_cast<int>(std::lround(dark_mean + kRimShare * (bright_mean - dark_mean)));
+}
+
+}  // namespace handcast::renderer
