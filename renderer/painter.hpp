@@ -28,9 +28,9 @@ using SurfaceId = std::uint8_t;
 constexpr SurfaceId surface_id(int hand_index, std::uint8_t chart) { return static_cast<SurfaceId>(hand_index * 64 + chart); }
 
 struct FillCounts {
-  int lit = 0;      ///< region D: render and hand
-  int filled = 0;   ///< region C that got light
-  int dark = 0;     ///< region C that stayed dark: nothing within reach
+  int lit = 0;     ///< region D: render and hand
+  int filled = 0;  ///< region C that got light
+  int dark = 0;    ///< region C that stayed dark: nothing within reach
 };
 
 /// A back end: the same passes over the same buffers, compared by tests. Buffers have the projector's size; each pass

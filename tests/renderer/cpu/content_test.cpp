@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "renderer/content/textures.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Two square sheets 100 mm wide, the back in chart 1 (left half of the texture) and the palm in chart 2.
+HandMesh two_sheets() {
+  HandMesh hand;
+  for (const int side : {0, 1}) {
+    const auto first = static_cast<std::uint16_t>(hand.positions.size());
+    for (const auto& [x, z] : {std::pair{-0.05f, -0.05f}, {0.05f, -0.05f}, {0.05f, 0.05f}, {-0.05f, 0.05f}}) {
+      hand.positions.emplace_back(x, 0, z);
+      hand.normals.emplace_back(0, side == 0 ? 1 : -1, 0);
+      hand.uv.emplace_back(0.25f + 0.5f * side + 2 * (side == 0 ? x : -x), 0.5f + 4 * z);
+      hand.joints.push_back({0, 0, 0, 0});
+      hand.weights.push_back({1, 0, 0, 0});
+      hand.chart.push_back(static_cast<std::uint8_t>(side + 1));
+    }
+    hand.triangles.push_back({first, static_cast<std::uint16_t>(first + 1), static_cast<std::uint16_t>(first + 2)});
+    hand.triangles.push_back({first, static_cast<std::uint16_t>(first + 2), static_cast<std::uint16_t>(first + 3)});
+  }
+  hand.rest.fill(glm::mat4(1));
+  return hand;
+}
+
+/// A file in the temporary folder that is gone afterwards.
+class TemporaryFile {
+ public:
+  TemporaryFile(const char* name, std::string_view bytes) : path_(std::filesystem::temp_directory_path() / name) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+  }
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(Content, EveryBuiltinPaintsTheWholeLayout) {
+  const HandMesh hand = two_sheets();
+  for (const char* name : {"atlas", "checker", "skeleton", "white"}) {
+    const auto texture = load_content(std::string("builtin:") + name, hand);
+    ASSERT_TRUE(texture) << texture.error().what;
+    EXPECT_EQ(texture->width(), 1024);
+    EXPECT_EQ(texture->height(), 640);
+    for (const std::uint32_t texel : texture->pixels()) ASSERT_EQ(texel >> 24, 255u);
+  }
+}
+
+TEST(Content, ColoursGoOnPastTheChartsOutline) {
+  const auto texture = load_content("builtin:checker", two_sheets());
+  ASSERT_TRUE(texture);
+  constexpr int kRight = static_cast<int>(0.35 * 1024) - 1;  // last column of chart 1
+  for (int away = 4; away <= 20; ++away) EXPECT_EQ(texture->at(kRight + away, 320), texture->at(kRight + 4, 320)) << away;
+  EXPECT_NE(texture->at(kRight + 4, 320), texture->at(512, 20)) << "padding is not the ground";
+}
+
+TEST(Content, BackAndPalmOfTheAtlasDiffer) {
+  const auto texture = load_content("builtin:atlas", two_sheets());
+  ASSERT_TRUE(texture);
+  EXPECT_NE(texture->at(256 + 20, 300), texture->at(768 - 20, 300));
+}
+
+TEST(Content, AnUnknownBuiltinIsNamedTogetherWithTheKnownOnes) {
+  const auto texture = load_content("builtin:stripes", two_sheets());
+  ASSERT_FALSE(texture);
+  EXPECT_EQ(texture.error().code, Errc::bad_config);
+  EXPECT_THAT(texture.error().what, HasSubstr("stripes"));
+  EXPECT_THAT(texture.error().what, HasSubstr("atlas"));
+}
+
+TEST(Content, AMissingFileAndAFileThatIsNoPictureAreToldApart) {
+  const auto missing = load_content("/nowhere/picture.png", two_sheets());
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Errc::bad_config);
+  EXPECT_THAT(missing.error().what, HasSubstr("no picture file '/nowhere/picture.png'"));
+  const TemporaryFile text("handcast_content_test.png", "this is not a picture");
+  const auto wrong = load_content(text.path(), two_sheets());
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().code, Errc::bad_config);
+  EXPECT_THAT(wrong.error().what, HasSubstr("not a PNG or JPEG"));
+}
+
+TEST(Content, APictureIsReadWithRedInTheLowestByteAndTheTopRowFirst) {
+  using namespace std::string_view_literals;
+  // Binary PPM, which the same reader takes: red, green / blue, white.
+  const TemporaryFile picture("handcast_content_test.ppm", "P6 2 2 255\n\xff\0\0\0\xff\0\0\0\xff\xff\xff\xff"sv);
+  const auto texture = load_content(picture.path(), two_sheets());
+  ASSERT_TRUE(texture) << texture.error().what;
+  EXPECT_EQ(texture->at(0, 0), 0xff0000ffu);
+  EXPECT_EQ(texture->at(1, 0), 0xff00ff00u);
+  EXPECT_EQ(texture->at(0, 1), 0xffff0000u);
+  EXPECT_EQ(texture->at(1, 1), 0xffffffffu);
+}
+
+}  // namespace
+}  // namespace handcast::renderer
