@@ -18,17 +18,17 @@ namespace handcast::renderer {
 /// One hand of a finished frame, for scores and traces.
 struct FrameHand {
   Side side = Side::left;
-  LandmarkPoints tracker{};              ///< P at the target time, undistorted camera px
-  LandmarkPoints corrected{};            ///< Q̂ (P where nothing corrects)
-  bool has_landmarks = false;            ///< corrected differs from the tracker by what the filter knows
-  std::span<const glm::vec2> landings;   ///< per vertex: where its light lands, projector px
+  LandmarkPoints tracker{};             ///< P at the target time, undistorted camera px
+  LandmarkPoints corrected{};           ///< Q̂ (P where nothing corrects)
+  bool has_landmarks = false;           ///< corrected differs from the tracker by what the filter knows
+  std::span<const glm::vec2> landings;  ///< per vertex: where its light lands, projector px
 };
 
 /// One finished frame. Everything it points to is valid until the next render().
 struct Frame {
   std::int64_t target_ns = 0;
-  Rect region;                           ///< all light is inside
-  View<const std::uint32_t> colour;      ///< the projector's size; defined inside `region`; alpha 0: dark
+  Rect region;                       ///< all light is inside
+  View<const std::uint32_t> colour;  ///< the projector's size; defined inside `region`; alpha 0: dark
   std::span<const FrameHand> hands;
   int foldovers = 0;
   FillCounts fill;
