@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/join.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::service {
@@ -28,11 +29,11 @@ std::vector<std::string_view> names_of(std::span<const Entry> table) {
 
 /// Opens the back end called `name`. An unknown name is bad_config, with the known ones in the sentence.
 template <class Interface, class... Args>
-Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::string_view name, std::span<const Backend<Interface, Args...>> table,
-                                                const Args&... args) {
+Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::string_view name,
+                                                std::span<const Backend<Interface, Args...>> table, const Args&... args) {
   for (const auto& entry : table)
     if (entry.name == name) return entry.open(args...);
-  return fail(Errc::bad_config, fmt::format("{}: no back end '{}'; this build has: {}", what, name, fmt::join(names_of(table), ", ")));
+  return fail(Errc::bad_config, fmt::format("{}: no back end '{}'; this build has: {}", what, name, config::join(names_of(table), ", ")));
 }
 
 }  // namespace handcast::service

@@ -24,6 +24,7 @@
 ///   env    HANDCAST_RINGS="camera.frames=5,pose.hands=6"  descriptors of the rings' segments
 ///          HANDCAST_READY_FD=7       gets one newline when the daemon is ready
 ///          HANDCAST_EPOCH_NS=...     monotonic time of the rig's start: the twin's time zero, the same for every daemon
+///          HANDCAST_OUT=DIR          where to leave what is to be kept (scores, pictures); absent: nowhere
 ///   exit   0 stopped as asked, 100 a person must change something (do not restart), 111 restart may help
 ///   SIGTERM, SIGINT: stop
 namespace handcast::service {
@@ -88,9 +89,9 @@ class Context {
 
 /// What a daemon tells about itself: `--help`, `--version`, `--backends`.
 struct Description {
-  std::string_view name;                       ///< "camera"
-  std::string_view summary;                    ///< one sentence for --help
-  std::vector<std::string_view> backends;      ///< names, in the order of the table
+  std::string_view name;                   ///< "camera"
+  std::string_view summary;                ///< one sentence for --help
+  std::vector<std::string_view> backends;  ///< names, in the order of the table
 };
 
 /// The main of every daemon: parses the command line, loads the rig, runs `body`, turns its errors into exit codes.

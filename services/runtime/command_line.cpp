@@ -1,0 +1,47 @@
+#include "services/runtime/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace handcast::service {
+namespace {
+
+bool takes_value(std::string_view option) { return option == "--config" || option == "--set"; }
+
+Result<void> apply(CommandLine& line, std::string_view option, std::string_view value) {
+  if (option == "--config")
+    line.config_file = value;
+  else if (value.find('=') == std::string_view::npos)
+    return fail(Errc::bad_config, fmt::format("--set {}: expected path=value", value));
+  else
+    line.settings.emplace_back(value);
+  return {};
+}
+
+}  // namespace
+
+Result<CommandLine> parse_command_line(int argc, const char* const* argv) {
+  using Task = CommandLine::Task;
+  CommandLine line;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view option = argv[i];
+    if (option == "--help" || option == "-h")
+      line.task = Task::help;
+    else if (option == "--version")
+      line.task = Task::version;
+    else if (option == "--backends")
+      line.task = Task::backends;
+    else if (!takes_value(option))
+      return fail(Errc::bad_config, fmt::format("unknown argument '{}'; --help lists the known ones", option));
+    else if (i + 1 == argc)
+      return fail(Errc::bad_config, fmt::format("{} needs a value", option));
+    else if (const auto applied = apply(line, option, argv[++i]); !applied)
+      return tl::make_unexpected(applied.error());
+  }
+  if (line.task == Task::serve && line.config_file.empty())
+    return fail(Errc::bad_config, "--config FILE is missing; `handcast up FILE` starts this program with a whole rig");
+  return line;
+}
+
+}  // namespace handcast::service

@@ -1,0 +1,54 @@
+#include <cstdio>
+
+#include "services/runtime/command_line.hpp"
+#include "services/runtime/context.hpp"
+#include "services/runtime/stop_signal.hpp"
+
+namespace handcast::service {
+namespace {
+
+void print_help(const Description& description) {
+  fmt::print(
+      "handcast-{} — {}\n\n"
+      "usage: handcast-{} --config RIG.toml [--set path=value]...\n\n"
+      "  --config FILE      the rig\n"
+      "  --set path=value   a setting that overrides the file's; may be repeated\n"
+      "  --backends         the back ends of this build, one name a line\n"
+      "  --version, --help\n\n"
+      "`handcast up RIG.toml` starts this program together with the rest of the rig and hands it its rings.\n",
+      description.name, description.summary, description.name);
+}
+
+int serve(const Description& description, const CommandLine& line, const std::function<void(Context&)>& body) {
+  install_stop_signals();
+  auto rig = must(config::load_rig(line.config_file, line.settings));
+  auto calibration = must(calib::load_calibration(rig.calibration));
+  Context context(std::string(description.name), std::move(rig), std::move(calibration));
+  body(context);
+  log::info("stopped");
+  return 0;
+}
+
+}  // namespace
+
+int run(const Description& description, int argc, char** argv, const std::function<void(Context&)>& body) {
+  using Task = CommandLine::Task;
+  log::set_program(description.name);
+  const auto line = must(parse_command_line(argc, argv));
+  switch (line.task) {
+    case Task::help:
+      print_help(description);
+      return 0;
+    case Task::version:
+      fmt::print("handcast-{} {}\n", description.name, HANDCAST_VERSION);
+      return 0;
+    case Task::backends:
+      for (const auto name : description.backends) fmt::print("{}\n", name);
+      return 0;
+    case Task::serve:
+      break;
+  }
+  return serve(description, line, body);
+}
+
+}  // namespace handcast::service

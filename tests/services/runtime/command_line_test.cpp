@@ -1,0 +1,48 @@
+#include "services/runtime/command_line.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/runtime/environment.hpp"
+
+namespace handcast::service {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+Result<CommandLine> parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "handcast-camera");
+  return parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+TEST(CommandLine, SettingsKeepTheirOrder) {
+  const auto line = parse({"--set", "a.b=1", "--config", "rig.toml", "--set", "a.b=x=y"});
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->config_file, "rig.toml");
+  EXPECT_THAT(line->settings, ElementsAre("a.b=1", "a.b=x=y"));
+}
+
+TEST(CommandLine, WhatCannotBeUnderstoodIsNamed) {
+  EXPECT_THAT(parse({"--config"}).error().what, HasSubstr("--config needs a value"));
+  EXPECT_THAT(parse({"--frobnicate"}).error().what, HasSubstr("'--frobnicate'"));
+  EXPECT_THAT(parse({"--config", "rig.toml", "--set", "rate"}).error().what, HasSubstr("path=value"));
+  EXPECT_THAT(parse({}).error().what, HasSubstr("handcast up"));
+  EXPECT_EQ(parse({}).error().code, Errc::bad_config);
+}
+
+TEST(CommandLine, QuestionsNeedNoConfiguration) {
+  EXPECT_EQ(parse({"--backends"})->task, CommandLine::Task::backends);
+  EXPECT_EQ(parse({"--version"})->task, CommandLine::Task::version);
+  EXPECT_EQ(parse({"--help"})->task, CommandLine::Task::help);
+}
+
+TEST(Environment, RingsAreReadAndNonsenseIsLeftOut) {
+  EXPECT_THAT(parse_rings("camera.frames=5,pose.hands=61"), ElementsAre(Pair("camera.frames", 5), Pair("pose.hands", 61)));
+  EXPECT_THAT(parse_rings(""), IsEmpty());
+  EXPECT_THAT(parse_rings("=5,a,b=,c=x,d=-1,e=7z,f=7"), ElementsAre(Pair("f", 7)));
+}
+
+}  // namespace
+}  // namespace handcast::service

@@ -1,0 +1,184 @@
+// Daemons of a few lines, run in a process of their own, judged by their exit codes and last words.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "ipc/msg/hand_poses.hpp"
+#include "services/runtime/context.hpp"
+
+namespace handcast::service {
+namespace {
+
+using testing::ExitedWithCode;
+using testing::HasSubstr;
+
+ipc::Segment make_ring(const ipc::RingSpec& spec) { return ipc::Segment::create(spec).value(); }
+
+class Run : public testing::Test {
+ protected:
+  void SetUp() override {
+    GTEST_FLAG_SET(death_test_style, "fast");
+    char name[] = "/tmp/handcast-runtime-XXXXXX";
+    ASSERT_NE(mkdtemp(name), nullptr);
+    folder_ = name;
+    rig_ = (folder_ / "rig.toml").string();
+    write_rig("name = \"desk\"\n");
+    for (const auto* variable : {"HANDCAST_RINGS", "HANDCAST_READY_FD", "HANDCAST_EPOCH_NS"}) unsetenv(variable);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write_rig(const std::string& text) { std::ofstream(rig_) << text; }
+  int daemon(const std::function<void(Context&)>& body, std::vector<std::string> arguments = {}) {
+    if (arguments.empty()) arguments = {"--config", rig_};
+    arguments.insert(arguments.begin(), "handcast-pose");
+    std::vector<char*> pointers;
+    for (auto& argument : arguments) pointers.push_back(argument.data());
+    return run({"pose", "Samples the hand tracker.", {"twin", "replay"}}, static_cast<int>(pointers.size()), pointers.data(), body);
+  }
+  static void give_rings(const ipc::Segment& poses, const ipc::Segment& marks) {
+    setenv("HANDCAST_RINGS", fmt::format("pose.hands={},marks.pose={}", poses.fd(), marks.fd()).c_str(), 1);
+  }
+
+  std::filesystem::path folder_;
+  std::string rig_;
+  ipc::Segment poses_ = make_ring(ipc::RingSpec::of<msg::HandPoses>("pose.hands", 8, true));
+  ipc::Segment marks_ = make_ring(ipc::RingSpec::of<msg::StageMarks>("marks.pose", 64, true));
+};
+
+void do_nothing(Context&) {}
+
+TEST_F(Run, ADaemonThatIsAskedToStopEndsWithZero) {
+  const auto until_told = [](Context& context) {
+    context.ready();
+    raise(SIGTERM);
+    while (context.running()) FAIL() << "still running after SIGTERM";
+  };
+  EXPECT_EXIT(_exit(daemon(until_told)), ExitedWithCode(0), "stopped");
+}
+
+TEST_F(Run, AWriteIntoAClosedPipeDoesNotEndADaemon) {
+  const auto write_to_nobody = [](Context&) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    close(ends[0]);
+    EXPECT_EQ(write(ends[1], "x", 1), -1);
+  };
+  EXPECT_EXIT(_exit(daemon(write_to_nobody)), ExitedWithCode(0), "");
+}
+
+TEST_F(Run, ABrokenRigFileIsExitHundredWithItsLine) {
+  write_rig("[camera]\nrate_hz = -5\n");
+  EXPECT_EXIT(_exit(daemon(do_nothing)), ExitedWithCode(kExitConfig), "rig.toml:2.*rate_hz");
+  EXPECT_EXIT(_exit(daemon(do_nothing, {"--config", "/nowhere/rig.toml"})), ExitedWithCode(kExitConfig), "/nowhere/rig.toml");
+}
+
+TEST_F(Run, SettingsOfTheCommandLineWin) {
+  const auto expect_rate = [](Context& context) { _exit(context.rig().camera.rate_hz == 77 ? 5 : 6); };
+  EXPECT_EXIT(_exit(daemon(expect_rate, {"--config", rig_, "--set", "camera.rate_hz=77"})), ExitedWithCode(5), "");
+}
+
+TEST_F(Run, StartedByHandTheSentenceNamesTheCommandThatWorks) {
+  const auto open_ring = [](Context& context) { must(context.writer<msg::HandPoses>("pose.hands")); };
+  EXPECT_EXIT(_exit(daemon(open_ring)), ExitedWithCode(kExitConfig), "handcast up");
+}
+
+TEST_F(Run, WhatRestartingMayHelpIsExitHundredAndEleven) {
+  const auto fail_with = [](Errc code) { return [code](Context&) { must(Result<int>(fail(code, "the tracker is unplugged"))); }; };
+  EXPECT_EXIT(_exit(daemon(fail_with(Errc::disconnected))), ExitedWithCode(kExitRestart), "the tracker is unplugged");
+  EXPECT_EXIT(_exit(daemon(fail_with(Errc::unavailable))), ExitedWithCode(kExitRestart), "");
+  EXPECT_EXIT(_exit(daemon(fail_with(Errc::bad_config))), ExitedWithCode(kExitConfig), "");
+}
+
+TEST_F(Run, TimeoutsAndBadItemsAreToleratedAndALostDeviceIsNot) {
+  const auto body = [](Context& context) {
+    for (int i = 0; i < 1000; ++i) context.tolerate({Errc::timeout, "no frame"});
+    context.tolerate({Errc::bad_data, "half a frame"});
+    context.tolerate({Errc::disconnected, "camera gone"});
+  };
+  EXPECT_EXIT(_exit(daemon(body)), ExitedWithCode(kExitRestart), "camera gone");
+}
+
+TEST_F(Run, AThousandTimeoutsAreOneLineOfLog) {
+  const auto body = [](Context& context) {
+    for (int i = 0; i < 1000; ++i) context.tolerate({Errc::timeout, "no frame"});
+  };
+  testing::internal::CaptureStderr();
+  daemon(body);
+  const auto log = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(log.find("no frame"), log.rfind("no frame"));
+  EXPECT_THAT(log, HasSubstr("no frame"));
+}
+
+TEST_F(Run, ReadyIsOneNewlineOnTheReadyDescriptor) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  setenv("HANDCAST_READY_FD", std::to_string(ends[1]).c_str(), 1);
+  daemon([](Context& context) {
+    context.ready();
+    context.ready();
+  });
+  char bytes[8];
+  EXPECT_EQ(read(ends[0], bytes, sizeof bytes), 1) << "and then the end: the descriptor is closed";
+  EXPECT_EQ(bytes[0], '\n');
+  EXPECT_EQ(read(ends[0], bytes, sizeof bytes), 0);
+  close(ends[0]);
+}
+
+TEST_F(Run, TheEpochIsTheSupervisors) {
+  setenv("HANDCAST_EPOCH_NS", "123456789", 1);
+  std::int64_t epoch_ns = 0;
+  daemon([&](Context& context) { epoch_ns = context.epoch_ns(); });
+  EXPECT_EQ(epoch_ns, 123456789);
+}
+
+TEST_F(Run, MessagesAndMarksArriveInTheRingsHandedOver) {
+  give_rings(poses_, marks_);
+  auto poses = ipc::Reader<msg::HandPoses>::attach(std::move(poses_)).value();
+  auto marks = ipc::Reader<msg::StageMarks>::attach(std::move(marks_)).value();
+  daemon([](Context& context) {
+    auto writer = must(context.writer<msg::HandPoses>("pose.hands"));
+    msg::HandPoses message;
+    message.header = {.frame_id = 7, .origin_ns = 70};
+    writer.publish(message);
+    const msg::StageMark sample{.stage = msg::Stage::sample, .reserved = 0, .begin_ns = 1, .end_ns = 2};
+    context.mark(message.header, {&sample, 1});
+  });
+  const auto pose = poses.next(Deadline::now());
+  ASSERT_TRUE(pose);
+  EXPECT_EQ((*pose)->header.frame_id, 7u);
+  const auto mark = marks.next(Deadline::now());
+  ASSERT_TRUE(mark);
+  EXPECT_EQ((*mark)->header.origin_ns, 70);
+  EXPECT_EQ((*mark)->count, 1u);
+  EXPECT_EQ((*mark)->marks[0].stage, msg::Stage::sample);
+}
+
+TEST_F(Run, AnIdleDaemonBeatsItsHeartAndABusyOneNeedNot) {
+  give_rings(poses_, marks_);
+  auto marks = ipc::Reader<msg::StageMarks>::attach(std::move(marks_)).value();
+  daemon([](Context& context) {
+    for (int i = 0; i < 1000; ++i) context.running();  // within 100 ms: one beat
+  });
+  const auto beat = marks.next(Deadline::now());
+  ASSERT_TRUE(beat);
+  EXPECT_EQ((*beat)->count, 0u);
+  EXPECT_LT(marks.received(), 100u);
+}
+
+TEST_F(Run, ARingOfAnotherTypeIsRefusedWithItsName) {
+  setenv("HANDCAST_RINGS", fmt::format("pose.hands={}", marks_.fd()).c_str(), 1);
+  const auto open_ring = [](Context& context) { must(context.writer<msg::HandPoses>("pose.hands")); };
+  EXPECT_EXIT(_exit(daemon(open_ring)), ExitedWithCode(kExitRestart), "");
+}
+
+TEST_F(Run, TheListOfBackEndsIsOneNameALine) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(daemon(do_nothing, {"--backends"}), 0);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "twin\nreplay\n");
+}
+
+}  // namespace
+}  // namespace handcast::service
