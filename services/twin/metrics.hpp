@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "ipc/msg/stage_mark.hpp"
@@ -22,18 +21,40 @@ class Metrics {
   /// Landings of a fixed set of surface points in successive frames; jitter is the RMS of what remains after the truth's own motion.
   void add_jitter(double square_px, int samples);
 
+  /// What was never measured is null; every bin and both hands are always there.
   /// {"frames","interior_mm":{mean,p95,p99},"interior_px":{...},"coverage","spill","iou","seam_px","jitter_px","foldovers",
   ///  "equivalent_latency_ms","frame_us":{p50,p99},"stage_us":{stage:{p50,p99}},"bins":{...},"hands":{"left":{...}}}
   nlohmann::json to_json() const;
 
  private:
-  struct Bin {
-    std::vector<float> px, mm;
-    std::int64_t frames = 0, hand = 0, lit = 0, spill = 0, joined = 0;
-    double seam = 0, lag = 0, speed2 = 0;
+  /// Numbers of which the mean is exact and percentiles are close: beyond a fixed count every second one is forgotten, by their
+  /// place in the row and not by chance.
+  class Samples {
+   public:
+    void add(float value);
+    bool empty() const { return count_ == 0; }
+    double mean() const { return sum_ / static_cast<double>(count_); }
+    double percentile(double share) const;
+
+   private:
+    std::vector<float> kept_;
+    std::uint64_t stride_ = 1, count_ = 0;
+    double sum_ = 0;
   };
-  std::map<std::string, Bin> bins_;   ///< "all", "bin:<=0.1", "hand:left", ...
-  std::map<std::uint32_t, std::vector<float>> stage_us_;
+  struct Bin {
+    Samples px, mm;
+    std::int64_t frames = 0, hand_px = 0, lit_px = 0, spill_px = 0, union_px = 0;
+    double seam_px = 0, lag_px_s = 0, speed2_px_s2 = 0;
+
+    void add(const FrameScore::Hand& hand);
+    void write(nlohmann::json& json) const;
+  };
+  static void write_spread(nlohmann::json& json, const Samples& samples, bool with_mean);
+
+  Bin all_;
+  std::array<Bin, 5> by_speed_;
+  std::array<Bin, 2> by_side_;
+  std::map<msg::Stage, Samples> stage_us_;
   std::int64_t foldovers_ = 0, frames_ = 0;
   double jitter_square_ = 0;
   std::int64_t jitter_samples_ = 0;

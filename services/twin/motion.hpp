@@ -12,8 +12,8 @@
 
 namespace handcast::twin {
 
-using renderer::JointFrames;
 using msg::Side;
+using renderer::JointFrames;
 
 /// Where the true joints are: a smooth function of time, the same whenever it is asked. Tracker space, metres.
 class Motion {

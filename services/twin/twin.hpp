@@ -26,28 +26,28 @@ class Twin {
   virtual ~Twin() = default;
 
   // --- the truth ---
-  virtual std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const = 0;      ///< tracker space
-  virtual const renderer::HandMesh& true_hand(Side side) const = 0;                           ///< topology of the model's mesh
+  virtual std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const = 0;  ///< tracker space
+  virtual const renderer::HandMesh& true_hand(Side side) const = 0;                      ///< topology of the model's mesh
   /// The true places of the 21 landmarks, undistorted camera px.
   virtual std::optional<std::array<glm::vec2, msg::kLandmarks>> landmarks(Side side, std::int64_t time_ns) const = 0;
 
   // --- the tracker: sample k, and when it arrives ---
   struct TrackerSample {
-    msg::HandPoses poses;          ///< header.origin_ns, header.frame_id = k; count 0 where the sample is lost
+    msg::HandPoses poses;  ///< header.origin_ns, header.frame_id = k; count 0 where the sample is lost
     std::int64_t arrival_ns = 0;
   };
   virtual TrackerSample tracker_sample(std::uint64_t k) const = 0;
-  virtual std::int64_t tracker_time_ns(std::uint64_t k) const = 0;                            ///< origin of sample k
+  virtual std::int64_t tracker_time_ns(std::uint64_t k) const = 0;  ///< origin of sample k
 
   // --- the camera: frame k ---
-  virtual std::int64_t camera_origin_ns(std::uint64_t k) const = 0;                           ///< middle of its exposure
-  virtual std::int64_t camera_arrival_ns(std::uint64_t k) const = 0;                          ///< in memory
+  virtual std::int64_t camera_origin_ns(std::uint64_t k) const = 0;   ///< middle of its exposure
+  virtual std::int64_t camera_arrival_ns(std::uint64_t k) const = 0;  ///< in memory
   virtual void camera_image(std::uint64_t k, renderer::View<std::uint8_t> image) const = 0;
 
   // --- the detector, run number n, on the camera frame (id, origin) it is given ---
   struct Detection {
     msg::Landmarks landmarks;
-    std::int64_t age_ns = 0;       ///< it is done this long after the frame's origin
+    std::int64_t age_ns = 0;  ///< it is done this long after the frame's origin
   };
   virtual Detection detect(std::uint64_t n, std::uint64_t frame_id, std::int64_t origin_ns) const = 0;
 };
@@ -57,14 +57,14 @@ struct FrameScore {
   std::int64_t lit_ns = 0;
   struct Hand {
     Side side = Side::left;
-    double speed_m_s = 0;                 ///< mean speed of the true visible surface points
-    std::vector<float> interior_px;       ///< per scored surface point
+    double speed_m_s = 0;            ///< mean speed of the true visible surface points
+    std::vector<float> interior_px;  ///< per scored surface point
     std::vector<float> interior_mm;
-    int hand_px = 0, lit_px = 0;          ///< true hand pixels; those with light
-    int spill_px = 0;                     ///< lit pixels on neither hand nor arm, given to the nearest hand
-    int union_px = 0;                     ///< for IoU: true hand or lit (arm left out)
-    double seam_px = 0;                   ///< length of the edge of light inside the true hand
-    double lag_px_s = 0, speed2_px_s2 = 0;///< sums of error . velocity and |velocity|^2: equivalent latency = lag / speed2
+    int hand_px = 0, lit_px = 0;            ///< true hand pixels; those with light
+    int spill_px = 0;                       ///< lit pixels on neither hand nor arm, given to the nearest hand
+    int union_px = 0;                       ///< for IoU: true hand or lit (arm left out)
+    double seam_px = 0;                     ///< length of the edge of light inside the true hand
+    double lag_px_s = 0, speed2_px_s2 = 0;  ///< sums of error . velocity and |velocity|^2: equivalent latency = lag / speed2
   };
   std::vector<Hand> hands;
 };

@@ -1,0 +1,36 @@
+#include "services/twin/detector.hpp"
+
+#include <algorithm>
+
+#include "ipc/base/clock.hpp"
+#include "services/twin/random.hpp"
+
+namespace handcast::twin {
+
+DetectorModel::DetectorModel(const config::TwinDetector& settings, int seed, const calib::CameraModel& camera)
+    : settings_(settings), seed_(seed), camera_(camera) {}
+
+std::int64_t DetectorModel::age_ns(std::uint64_t run) const {
+  const double age_ms = settings_.age_ms + settings_.age_sd_ms * Random(seed_, Stream::detector_age).normal(run);
+  return ms_to_ns(std::max(age_ms, std::min(1.0, settings_.age_ms)));
+}
+
+bool DetectorModel::lost(std::uint64_t run) const { return Random(seed_, Stream::detector_loss).uniform(run) < settings_.dropout; }
+
+msg::HandLandmarks DetectorModel::report(std::uint64_t run, msg::Side side, const std::array<glm::vec2, msg::kLandmarks>& truth) const {
+  const Random random(seed_, Stream::detector_noise);
+  msg::HandLandmarks hand;
+  hand.side = side;
+  hand.presence = 0.95f;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const std::uint64_t draw = (static_cast<std::uint64_t>(side) * msg::kLandmarks + i) * 2;
+    const glm::dvec2 noise(random.normal(run, draw), random.normal(run, draw + 1));
+    const glm::dvec2 seen = glm::dvec2(truth[i]) + noise * settings_.noise_px;
+    const glm::dvec2 image = camera_.distort(truth[i]);
+    const bool inside = image.x > -0.5 && image.y > -0.5 && image.x < camera_.width_px - 0.5 && image.y < camera_.height_px - 0.5;
+    hand.points[i] = {static_cast<float>(seen.x), static_cast<float>(seen.y), inside ? 1.0f : 0.0f};
+  }
+  return hand;
+}
+
+}  // namespace handcast::twin
