@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/result.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "services/runtime/backends.hpp"
+
+namespace handcast::camera {
+
+/// A camera that delivers grey frames of the calibration's size. One thread.
+class Camera {
+ public:
+  virtual ~Camera() = default;
+
+  /// Fills `frame` and the `tail_bytes` behind it with the next image; waits for one until the deadline. Frame ids and origins
+  /// increase from call to call; images that nobody fetched in time are skipped, never queued.
+  /// Errors: timeout, bad_data (this image is lost), disconnected, bad_config (the image does not fit the tail).
+  virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes, Deadline deadline) = 0;
+};
+
+/// Opened with the rig, its calibration and its epoch (ns).
+using CameraBackend = service::Backend<Camera, config::Rig, calib::Calibration, std::int64_t>;
+
+std::span<const CameraBackend> camera_backends();
+
+/// Opens the back end that rig.camera.backend names.
+Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig, const calib::Calibration& calibration, std::int64_t epoch_ns);
+
+}  // namespace handcast::camera

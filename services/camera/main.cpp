@@ -1,0 +1,35 @@
+#include "services/camera/camera.hpp"
+#include "services/runtime/context.hpp"
+
+using namespace handcast;
+using namespace std::chrono_literals;
+using service::must;
+
+/// Frames from the camera into shared memory: camera.frames.
+static void run_camera(service::Context& context) {
+  const auto source = must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns()));
+  auto frames = must(context.writer<msg::CameraFrame>("camera.frames"));
+
+  context.ready();
+  while (context.running()) {
+    auto slot = frames.loan();
+    if (!slot) {
+      context.tolerate({Errc::timeout, "camera: readers hold every slot of camera.frames"});
+      sleep_until_ns(now_ns() + to_ns(1ms));
+      continue;
+    }
+    if (const auto captured = source->capture(*slot, slot.tail_bytes(), Deadline::in(50ms)); !captured) {
+      context.tolerate(captured.error());
+      continue;
+    }
+    const msg::Header header = slot->header;
+    frames.publish(std::move(slot));
+    context.mark(header, std::array{msg::StageMark{msg::Stage::capture, 0, header.origin_ns, now_ns()}});
+  }
+}
+
+int main(int argc, char** argv) {
+  const service::Description description{"camera", "Delivers the frames of the infrared camera.",
+                                         service::names_of(camera::camera_backends())};
+  return service::run(description, argc, argv, run_camera);
+}

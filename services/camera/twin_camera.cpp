@@ -1,0 +1,57 @@
+#include "services/camera/camera.hpp"
+#include "services/camera/frame_size.hpp"
+#include "services/timing/first_at.hpp"
+#include "services/twin/twin.hpp"
+
+namespace handcast::camera {
+namespace {
+
+/// The twin's camera in real time. An image is a function of its number alone, so it is drawn before it arrives and handed
+/// over when it does: a frame is never late for having been drawn, there are only fewer of them on a slow machine.
+class TwinCamera final : public Camera {
+ public:
+  TwinCamera(std::unique_ptr<twin::Twin> twin, const config::Camera& settings, const calib::CameraModel& model, std::int64_t epoch_ns)
+      : twin_(std::move(twin)), model_(model), exposure_ns_(ms_to_ns(settings.exposure_ms)), epoch_ns_(epoch_ns) {}
+
+  Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes, Deadline deadline) override {
+    if (auto room = check_room(model_.width_px, model_.height_px, tail_bytes); !room) return room;
+    const auto arrival_ns = [&](std::uint64_t k) { return epoch_ns_ + twin_->camera_arrival_ns(k); };
+    const std::uint64_t k = timing::first_at(next_, now_ns() + drawing_ns_, arrival_ns);
+    if (arrival_ns(k) > deadline.time_ns()) {
+      sleep_until_ns(deadline.time_ns());
+      return fail(Errc::timeout, "camera 'twin': no frame before the deadline");
+    }
+    draw(k, frame);
+    sleep_until_ns(arrival_ns(k));
+    next_ = k + 1;
+    return {};
+  }
+
+ private:
+  void draw(std::uint64_t k, msg::CameraFrame& frame) {
+    const std::int64_t begin_ns = now_ns();
+    frame.header.frame_id = k;
+    frame.header.origin_ns = epoch_ns_ + twin_->camera_origin_ns(k);
+    frame.exposure_ns = exposure_ns_;
+    frame.width_px = static_cast<std::uint32_t>(model_.width_px);
+    frame.height_px = static_cast<std::uint32_t>(model_.height_px);
+    twin_->camera_image(k, {frame.pixels(), model_.width_px, model_.height_px, model_.width_px});
+    drawing_ns_ += (now_ns() - begin_ns - drawing_ns_) / 8;
+  }
+
+  std::unique_ptr<twin::Twin> twin_;
+  calib::CameraModel model_;
+  std::int64_t exposure_ns_, epoch_ns_;
+  std::int64_t drawing_ns_ = 0;  ///< what an image takes to draw, smoothed
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Camera>> open_twin(const config::Rig& rig, const calib::Calibration& calibration, const std::int64_t& epoch_ns) {
+  auto twin = twin::Twin::create(rig, calibration);
+  if (!twin) return fail_in("camera 'twin'", twin.error());
+  return std::make_unique<TwinCamera>(std::move(*twin), rig.camera, calibration.camera, epoch_ns);
+}
+
+}  // namespace handcast::camera

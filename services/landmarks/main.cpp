@@ -1,0 +1,37 @@
+#include "services/landmarks/detector.hpp"
+#include "services/runtime/context.hpp"
+
+using namespace handcast;
+using namespace std::chrono_literals;
+using service::must;
+
+/// Landmarks of the newest camera frame, back to back: landmarks.hands. Frames that came meanwhile are passed over.
+static void run_landmarks(service::Context& context) {
+  const auto detector = must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns()));
+  auto frames = must(context.reader<msg::CameraFrame>("camera.frames"));
+  auto hands = must(context.writer<msg::Landmarks>("landmarks.hands"));
+
+  context.ready();
+  while (context.running()) {
+    const auto frame = frames.latest(Deadline::in(50ms));
+    if (!frame) {
+      context.tolerate(frame.error());
+      continue;
+    }
+    const std::int64_t begin_ns = now_ns();
+    auto found = detector->detect(**frame, Deadline::in(50ms));
+    while (!found && found.error().code == Errc::timeout && context.running()) found = detector->detect(**frame, Deadline::in(50ms));
+    if (!found) {
+      context.tolerate(found.error());
+      continue;
+    }
+    hands.publish(*found);
+    context.mark(found->header, std::array{msg::StageMark{msg::Stage::detect, 0, begin_ns, now_ns()}});
+  }
+}
+
+int main(int argc, char** argv) {
+  const service::Description description{"landmarks", "Finds the landmarks of the hands in camera images.",
+                                         service::names_of(landmarks::detector_backends())};
+  return service::run(description, argc, argv, run_landmarks);
+}

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "services/landmarks/detector.hpp"
+#include "services/timing/loop.hpp"
+#include "services/twin/recording.hpp"
+
+namespace handcast::landmarks {
+namespace fs = std::filesystem;
+namespace {
+
+using Track = std::vector<msg::HandLandmarks>;  ///< one hand over the recording; empty: not recorded
+
+/// Recorded landmarks: the ones nearest in the recording's time to the image.
+class ReplayDetector final : public Detector {
+ public:
+  ReplayDetector(std::array<Track, msg::kMaxHands> hands, timing::Loop loop) : hands_(std::move(hands)), loop_(std::move(loop)) {}
+
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, Deadline deadline) override {
+    const auto item = loop_.nearest(frame.header.origin_ns);
+    if (!item) {
+      sleep_until_ns(deadline.time_ns());
+      return fail(Errc::timeout, "landmarks 'replay': the recording is over");
+    }
+    msg::Landmarks landmarks;
+    landmarks.header = {frame.header.frame_id, frame.header.origin_ns, 0};
+    for (const auto& hand : hands_)
+      if (!hand.empty() && hand[item->index].presence > 0) landmarks.hands[landmarks.count++] = hand[item->index];
+    return landmarks;
+  }
+
+ private:
+  std::array<Track, msg::kMaxHands> hands_;
+  timing::Loop loop_;
+};
+
+/// A landmark that is not a number was not seen; a hand without any was not there.
+msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side side) {
+  msg::HandLandmarks hand;
+  hand.side = side;
+  for (std::size_t i = 0; i < msg::kLandmarks; ++i) {
+    const double* point = &array.values[(index * msg::kLandmarks + i) * 2];
+    if (!std::isfinite(point[0]) || !std::isfinite(point[1])) continue;
+    hand.points[i] = {static_cast<float>(point[0]), static_cast<float>(point[1]), 1};
+    hand.presence = 1;
+  }
+  return hand;
+}
+
+Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side) {
+  if (!fs::exists(file)) return Track{};
+  const auto array = twin::read_npy(file);
+  if (!array) return tl::make_unexpected(array.error());
+  if (array->shape != std::vector<std::size_t>{count, msg::kLandmarks, 2})
+    return fail(Errc::bad_config, fmt::format("'{}' has the shape ({}); expected ({}, {}, 2), as many as landmarks_timestamps.npy",
+                                              file.string(), fmt::join(array->shape, ", "), count, msg::kLandmarks));
+  Track track;
+  for (std::size_t i = 0; i < count; ++i) track.push_back(hand_at(*array, i, side));
+  return track;
+}
+
+Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int64_t epoch_ns) {
+  const fs::path folder = settings.directory;
+  if (folder.empty()) return fail(Errc::bad_config, "landmarks.replay.directory names no folder");
+  const auto stamps_us = twin::read_npy(folder / "landmarks_timestamps.npy");
+  if (!stamps_us) return tl::make_unexpected(stamps_us.error());
+  std::vector<std::int64_t> times_ns;
+  for (const double time_us : stamps_us->values) times_ns.push_back(static_cast<std::int64_t>(time_us) * 1000);
+
+  std::array<Track, msg::kMaxHands> hands;
+  for (const auto& [side, name] : {std::pair{msg::Side::left, "landmarks_left.npy"}, {msg::Side::right, "landmarks_right.npy"}}) {
+    auto track = read_track(folder / name, times_ns.size(), side);
+    if (!track) return tl::make_unexpected(track.error());
+    hands[static_cast<std::size_t>(side)] = std::move(*track);
+  }
+  if (hands[0].empty() && hands[1].empty())
+    return fail(Errc::bad_config, fmt::format("'{}' holds neither landmarks_left.npy nor landmarks_right.npy", folder.string()));
+  auto loop = timing::Loop::make(std::move(times_ns), epoch_ns, settings.loop, ms_to_ns(10));
+  if (!loop) return fail_in("landmarks_timestamps.npy", loop.error());
+  return std::make_unique<ReplayDetector>(std::move(hands), std::move(*loop));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Detector>> open_replay(const config::Rig& rig, const calib::Calibration&, const std::int64_t& epoch_ns) {
+  auto detector = read(rig.landmarks.replay, epoch_ns);
+  if (!detector) return fail_in("landmarks 'replay'", detector.error());
+  return detector;
+}
+
+}  // namespace handcast::landmarks

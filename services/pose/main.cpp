@@ -1,0 +1,28 @@
+#include "services/pose/pose_source.hpp"
+#include "services/runtime/context.hpp"
+
+using namespace handcast;
+using namespace std::chrono_literals;
+using service::must;
+
+/// Samples of the hand tracker: pose.hands. One without a hand is published too, so that readers know it looked.
+static void run_pose(service::Context& context) {
+  const auto source = must(pose::open_pose_source(context.rig(), context.calibration(), context.epoch_ns()));
+  auto hands = must(context.writer<msg::HandPoses>("pose.hands"));
+
+  context.ready();
+  while (context.running()) {
+    msg::HandPoses poses;
+    if (const auto sampled = source->sample(poses, Deadline::in(50ms)); !sampled) {
+      context.tolerate(sampled.error());
+      continue;
+    }
+    hands.publish(poses);
+    context.mark(poses.header, std::array{msg::StageMark{msg::Stage::sample, 0, poses.header.origin_ns, now_ns()}});
+  }
+}
+
+int main(int argc, char** argv) {
+  const service::Description description{"pose", "Delivers the hand poses of the tracker.", service::names_of(pose::pose_backends())};
+  return service::run(description, argc, argv, run_pose);
+}

@@ -1,0 +1,49 @@
+#include <algorithm>
+
+#include "services/pose/pose_source.hpp"
+#include "services/timing/loop.hpp"
+#include "services/twin/recording.hpp"
+
+namespace handcast::pose {
+namespace {
+
+/// A recording played at the pace it was taken. A sample is handed over at its own time: it has no age.
+class ReplayPose final : public PoseSource {
+ public:
+  ReplayPose(twin::Recording recording, timing::Loop loop) : recording_(std::move(recording)), loop_(std::move(loop)) {}
+
+  Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
+    const auto item = loop_.at_or_after(std::max(now_ns(), last_ns_ + 1));
+    if (!item || item->due_ns > deadline.time_ns()) {
+      sleep_until_ns(deadline.time_ns());
+      return fail(Errc::timeout, item ? "pose 'replay': no sample before the deadline" : "pose 'replay': the recording is over");
+    }
+    sleep_until_ns(item->due_ns);
+    last_ns_ = item->due_ns;
+    poses = {};
+    poses.header.frame_id = item->number;
+    poses.header.origin_ns = item->due_ns;
+    for (const auto& hand : recording_.hands)
+      if (!hand.empty()) poses.hands[poses.count++] = hand[item->index];
+    return {};
+  }
+
+ private:
+  twin::Recording recording_;
+  timing::Loop loop_;
+  std::int64_t last_ns_ = 0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const calib::Calibration&, const std::int64_t& epoch_ns) {
+  const auto& settings = rig.pose.replay;
+  if (settings.directory.empty()) return fail(Errc::bad_config, "pose 'replay': pose.replay.directory names no folder");
+  auto recording = twin::read_recording(settings.directory);
+  if (!recording) return fail_in("pose 'replay'", recording.error());
+  auto loop = timing::Loop::make(recording->time_ns, epoch_ns, settings.loop, ms_to_ns(10));
+  if (!loop) return fail_in("pose 'replay': timestamps.npy", loop.error());
+  return std::make_unique<ReplayPose>(std::move(*recording), std::move(*loop));
+}
+
+}  // namespace handcast::pose

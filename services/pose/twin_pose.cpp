@@ -1,0 +1,45 @@
+#include "services/pose/pose_source.hpp"
+#include "services/timing/first_at.hpp"
+#include "services/twin/twin.hpp"
+
+namespace handcast::pose {
+namespace {
+
+/// A sample later than this is skipped: a tracker that was stopped goes on with the present.
+constexpr std::int64_t kLatest_ns = 50'000'000;
+
+/// The twin's tracker in real time: each sample is handed over when it arrives, as old as the rig says.
+class TwinPose final : public PoseSource {
+ public:
+  TwinPose(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns) : twin_(std::move(twin)), epoch_ns_(epoch_ns) {}
+
+  Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
+    const auto arrival_ns = [&](std::uint64_t k) { return epoch_ns_ + twin_->tracker_sample(k).arrival_ns; };
+    next_ = timing::first_at(next_, now_ns() - kLatest_ns, arrival_ns);
+    const auto sample = twin_->tracker_sample(next_);
+    if (epoch_ns_ + sample.arrival_ns > deadline.time_ns()) {
+      sleep_until_ns(deadline.time_ns());
+      return fail(Errc::timeout, "pose 'twin': no sample before the deadline");
+    }
+    sleep_until_ns(epoch_ns_ + sample.arrival_ns);
+    poses = sample.poses;
+    poses.header.origin_ns += epoch_ns_;
+    ++next_;
+    return {};
+  }
+
+ private:
+  std::unique_ptr<twin::Twin> twin_;
+  std::int64_t epoch_ns_;
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig& rig, const calib::Calibration& calibration, const std::int64_t& epoch_ns) {
+  auto twin = twin::Twin::create(rig, calibration);
+  if (!twin) return fail_in("pose 'twin'", twin.error());
+  return std::make_unique<TwinPose>(std::move(*twin), epoch_ns);
+}
+
+}  // namespace handcast::pose

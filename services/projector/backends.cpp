@@ -1,0 +1,21 @@
+#include <array>
+
+#include "services/projector/projector.hpp"
+
+namespace handcast::projector {
+
+Result<std::unique_ptr<Projector>> open_twin(const config::Rig&);
+Result<std::unique_ptr<Projector>> open_file(const config::Rig&);
+
+static constexpr std::array kBackends{
+    ProjectorBackend{"twin", open_twin},
+    ProjectorBackend{"file", open_file},
+};
+
+std::span<const ProjectorBackend> projector_backends() { return kBackends; }
+
+Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig) {
+  return service::open_backend("projector", rig.projector.backend, projector_backends(), rig);
+}
+
+}  // namespace handcast::projector

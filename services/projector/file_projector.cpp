@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "ipc/base/log.hpp"
+#include "services/projector/light_clock.hpp"
+
+namespace handcast::projector {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::int64_t kEvery = 100;  ///< one frame in so many is written
+constexpr std::int64_t kKept = 100;   ///< files; then the oldest is written over
+
+/// Light as pictures, for a look without hardware: PNG files in light/ of the folder HANDCAST_OUT names (else the working folder).
+class FileProjector final : public Projector {
+ public:
+  FileProjector(const config::Projector& settings, fs::path folder) : clock_(settings), folder_(std::move(folder)) {}
+
+  Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id, Deadline deadline) override {
+    const auto times = clock_.take(deadline);
+    if (!times || frame_id % kEvery != 0) return times;
+    const fs::path file = folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept);
+    if (!write(frame, file)) return fail(Errc::bad_data, fmt::format("projector 'file': '{}' cannot be written", file.string()));
+    return times;
+  }
+
+ private:
+  /// The whole projector image, dark outside the frame's region and where alpha is 0.
+  bool write(const renderer::Frame& frame, const fs::path& file) {
+    cv::Mat image = cv::Mat::zeros(frame.colour.height, frame.colour.width, CV_8UC3);
+    const auto& region = frame.region;
+    for (int y = region.y0; y < region.y1; ++y) {
+      for (int x = region.x0; x < region.x1; ++x) {
+        const std::uint32_t rgba = frame.colour.at(x, y);
+        if (rgba >> 24 == 0) continue;
+        image.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>(rgba >> 16), static_cast<std::uint8_t>(rgba >> 8),
+                                     static_cast<std::uint8_t>(rgba)};
+      }
+    }
+    try {
+      return cv::imwrite(file.string(), image);
+    } catch (const cv::Exception&) {
+      return false;
+    }
+  }
+
+  LightClock clock_;
+  fs::path folder_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig) {
+  const char* out = std::getenv("HANDCAST_OUT");
+  const fs::path folder = fs::path(out != nullptr ? out : ".") / "light";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return fail(Errc::bad_config, fmt::format("projector 'file': '{}' cannot be made: {}", folder.string(), error.message()));
+  log::info("every {}th frame is written to '{}'", kEvery, folder.string());
+  return std::make_unique<FileProjector>(rig.projector, folder);
+}
+
+}  // namespace handcast::projector

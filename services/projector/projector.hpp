@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "config/rig.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/result.hpp"
+#include "renderer/pipeline.hpp"
+#include "services/runtime/backends.hpp"
+
+namespace handcast::projector {
+
+struct PresentTimes {
+  std::int64_t handed_ns = 0;  ///< when the projector took the frame
+  std::int64_t lit_ns = 0;     ///< the middle of the time it is lit
+};
+
+/// Turns frames into light. One thread.
+class Projector {
+ public:
+  virtual ~Projector() = default;
+
+  /// Hands a frame over; waits until the deadline where frames come faster than the projector takes them. The frame may be
+  /// reused when the call returns. Errors: timeout (this frame is not shown), disconnected.
+  virtual Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id, Deadline deadline) = 0;
+};
+
+using ProjectorBackend = service::Backend<Projector, config::Rig>;
+
+std::span<const ProjectorBackend> projector_backends();
+
+/// Opens the back end that rig.projector.backend names.
+Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig);
+
+}  // namespace handcast::projector

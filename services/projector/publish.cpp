@@ -1,0 +1,22 @@
+#include "services/projector/publish.hpp"
+
+#include "renderer/projection.hpp"
+
+namespace handcast::projector {
+
+void write_projection(const renderer::Frame& frame, const msg::Header& image, const PresentTimes& times, msg::Projection& projection,
+                      std::size_t tail_bytes) {
+  renderer::write_projection(frame, projection, tail_bytes);
+  projection.header = image;
+  projection.lit_ns = times.lit_ns;
+}
+
+void publish_projection(const renderer::Frame& frame, const msg::Header& image, const PresentTimes& times,
+                        ipc::Writer<msg::Projection>& projections) {
+  auto slot = projections.loan();
+  if (!slot) return;
+  write_projection(frame, image, times, *slot, slot.tail_bytes());
+  projections.publish(std::move(slot));
+}
+
+}  // namespace handcast::projector

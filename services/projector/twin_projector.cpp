@@ -1,0 +1,20 @@
+#include "services/projector/light_clock.hpp"
+
+namespace handcast::projector {
+namespace {
+
+/// The twin's projector: its light is the message that observers read; here it only takes its time.
+class TwinProjector final : public Projector {
+ public:
+  explicit TwinProjector(const config::Projector& settings) : clock_(settings) {}
+  Result<PresentTimes> present(const renderer::Frame&, std::int64_t, Deadline deadline) override { return clock_.take(deadline); }
+
+ private:
+  LightClock clock_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Projector>> open_twin(const config::Rig& rig) { return std::make_unique<TwinProjector>(rig.projector); }
+
+}  // namespace handcast::projector

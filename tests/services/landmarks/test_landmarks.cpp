@@ -1,0 +1,162 @@
+// The contract of every detector back end, and what is special to one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "services/landmarks/detector.hpp"
+#include "services/twin/recording.hpp"
+#include "tests/services/scratch.hpp"
+
+namespace handcast::landmarks {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
+
+/// `count` detections of a left hand 10 ms apart; every coordinate of detection i is 100 + i.
+void write_detections(const std::filesystem::path& folder, std::size_t count) {
+  std::vector<float> values;
+  std::vector<std::int64_t> times_us;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.insert(values.end(), 42, static_cast<float>(100 + i));
+    times_us.push_back(static_cast<std::int64_t>(i) * 10'000);
+  }
+  ASSERT_TRUE(twin::write_npy_f32(folder / "landmarks_left.npy", {count, 21, 2}, values));
+  ASSERT_TRUE(twin::write_npy_i64(folder / "landmarks_timestamps.npy", times_us));
+}
+
+msg::CameraFrame frame_of(std::uint64_t id, std::int64_t origin_ns) {
+  msg::CameraFrame frame;
+  frame.header = {id, origin_ns, origin_ns};
+  return frame;
+}
+
+class DetectorContract : public testing::TestWithParam<std::string_view> {
+ protected:
+  void SetUp() override {
+    rig_.landmarks.backend = GetParam();
+    rig_.landmarks.replay.directory = scratch_.path();
+    write_detections(scratch_.path(), 4);
+    auto opened = open_detector(rig_, calib::reference_rig(), epoch_ns_);
+    ASSERT_TRUE(opened) << opened.error().what;
+    detector_ = std::move(*opened);
+  }
+
+  test::Scratch scratch_;
+  config::Rig rig_;
+  std::int64_t epoch_ns_ = now_ns();
+  std::unique_ptr<Detector> detector_;
+};
+
+TEST_P(DetectorContract, LandmarksCarryTheIdAndOriginOfTheirFrame) {
+  for (std::uint64_t id = 1; id < 4; ++id) {
+    const std::int64_t origin_ns = now_ns();
+    const auto found = detector_->detect(frame_of(id, origin_ns), Deadline::in(5s));
+    ASSERT_TRUE(found) << found.error().what;
+    EXPECT_EQ(found->header.frame_id, id);
+    EXPECT_EQ(found->header.origin_ns, origin_ns);
+    ASSERT_EQ(found->count, 1u);
+    EXPECT_EQ(found->hands[0].side, msg::Side::left);
+    EXPECT_GT(found->hands[0].points[0].confidence, 0);
+  }
+}
+
+TEST_P(DetectorContract, ADetectionNotDoneInTimeIsATimeoutAndGoesOn) {
+  const std::int64_t origin_ns = now_ns();
+  auto found = detector_->detect(frame_of(1, origin_ns), Deadline::now());
+  if (found) return;  // a back end that is always done at once
+  EXPECT_EQ(found.error().code, Errc::timeout);
+  found = detector_->detect(frame_of(2, now_ns()), Deadline::in(5s));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->header.frame_id, 1u) << "the detection under way is that of the first frame";
+  EXPECT_EQ(found->header.origin_ns, origin_ns);
+}
+
+std::vector<std::string_view> all() { return service::names_of(detector_backends()); }
+INSTANTIATE_TEST_SUITE_P(Backends, DetectorContract, testing::ValuesIn(all()), [](const auto& named) { return std::string(named.param); });
+
+TEST(TwinDetector, TakesAsLongAsTheRigSays) {
+  config::Rig rig;
+  rig.twin.detector.age_ms = 25;
+  rig.twin.detector.age_sd_ms = 0;
+  const auto detector = open_detector(rig, calib::reference_rig(), now_ns());
+  ASSERT_TRUE(detector) << detector.error().what;
+  const std::int64_t origin_ns = now_ns();
+  ASSERT_TRUE((*detector)->detect(frame_of(0, origin_ns), Deadline::in(5s)));
+  EXPECT_GE(now_ns() - origin_ns, to_ns(25ms) - to_ns(1us));
+}
+
+TEST(TwinDetector, AnOldFrameTakesNoLessWorkThanAFreshOne) {
+  config::Rig rig;
+  rig.twin.detector.age_ms = 25;
+  rig.twin.detector.age_sd_ms = 0;
+  const auto detector = open_detector(rig, calib::reference_rig(), now_ns() - to_ns(2s));
+  ASSERT_TRUE(detector) << detector.error().what;
+  const std::int64_t begin_ns = now_ns();
+  ASSERT_TRUE((*detector)->detect(frame_of(0, begin_ns - to_ns(1s)), Deadline::in(5s)));
+  EXPECT_GE(now_ns() - begin_ns, to_ns(20ms)) << "25 ms less what a frame is old at most when it is taken";
+}
+
+class ReplayDetector : public testing::Test {
+ protected:
+  ReplayDetector() {
+    rig_.landmarks.backend = "replay";
+    rig_.landmarks.replay.directory = scratch_.path();
+  }
+  Result<std::unique_ptr<Detector>> open() { return open_detector(rig_, calib::reference_rig(), kEpoch_ns); }
+  void expect_refused(const std::string& part) {
+    const auto opened = open();
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().code, Errc::bad_config);
+    EXPECT_THAT(opened.error().what, testing::HasSubstr(part));
+  }
+
+  static constexpr std::int64_t kEpoch_ns = 1'000'000'000;
+  test::Scratch scratch_;
+  config::Rig rig_;
+};
+
+TEST_F(ReplayDetector, GivesTheDetectionNearestInTime) {
+  write_detections(scratch_.path(), 4);  // a lap takes 40 ms
+  const auto detector = open();
+  ASSERT_TRUE(detector) << detector.error().what;
+  const auto x_at = [&](std::int64_t since_epoch_ns) {
+    return (*detector)->detect(frame_of(0, kEpoch_ns + since_epoch_ns), Deadline::now())->hands[0].points[20].x_px;
+  };
+  EXPECT_EQ(x_at(to_ns(14ms)), 101);
+  EXPECT_EQ(x_at(to_ns(16ms)), 102);
+  EXPECT_EQ(x_at(to_ns(54ms)), 101);
+  EXPECT_EQ(x_at(to_ns(39ms)), 100);
+}
+
+TEST_F(ReplayDetector, APointThatIsNotANumberWasNotSeen) {
+  std::vector<float> values(2 * 42, 7);
+  values[42] = kUnseen;                      // detection 1: its first point
+  std::fill_n(values.begin(), 42, kUnseen);  // detection 0: the whole hand
+  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_right.npy", {2, 21, 2}, values));
+  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  const auto detector = open();
+  ASSERT_TRUE(detector) << detector.error().what;
+  EXPECT_EQ((*detector)->detect(frame_of(0, kEpoch_ns), Deadline::now())->count, 0u);
+  const auto found = (*detector)->detect(frame_of(0, kEpoch_ns + to_ns(10ms)), Deadline::now());
+  ASSERT_EQ(found->count, 1u);
+  EXPECT_EQ(found->hands[0].side, msg::Side::right);
+  EXPECT_EQ(found->hands[0].points[0].confidence, 0);
+  EXPECT_EQ(found->hands[0].points[1].confidence, 1);
+}
+
+TEST_F(ReplayDetector, SaysWhatItMisses) {
+  expect_refused("landmarks_timestamps.npy");
+  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  expect_refused("neither");
+}
+
+TEST_F(ReplayDetector, SaysWhenTimesAndLandmarksDoNotPair) {
+  write_detections(scratch_.path(), 4);
+  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  expect_refused("(4, 21, 2); expected (2, 21, 2)");
+}
+
+}  // namespace
+}  // namespace handcast::landmarks
