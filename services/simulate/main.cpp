@@ -1,0 +1,25 @@
+#include <fmt/format.h>
+
+#include "services/simulate/run.hpp"
+
+int main(int argc, char** argv) {
+  using namespace handcast;
+  const auto options = simulate::parse_options(argc, argv);
+  if (!options) {
+    fmt::print(stderr, "handcast simulate: {}\n", options.error().what);
+    return 2;
+  }
+  if (options->help) {
+    fmt::print("{}", simulate::kHelp);
+    return 0;
+  }
+  if (options->version) {
+    fmt::print("handcast simulate {}\n", HANDCAST_VERSION);
+    return 0;
+  }
+  if (const auto done = simulate::run(*options); !done) {
+    fmt::print(stderr, "handcast simulate: {}\n", done.error().what);
+    return done.error().code == Errc::bad_config ? 100 : 111;
+  }
+  return 0;
+}

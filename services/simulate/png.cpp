@@ -1,0 +1,34 @@
+#include "services/simulate/png.hpp"
+
+#include <fmt/format.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace handcast::simulate {
+namespace {
+
+Result<void> write(const std::filesystem::path& file, const cv::Mat& image) {
+  try {
+    if (cv::imwrite(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, 1})) return {};
+  } catch (const cv::Exception&) {
+  }
+  return fail(Errc::bad_config, fmt::format("{}: the picture cannot be written", file.string()));
+}
+
+}  // namespace
+
+Result<void> write_png(const std::filesystem::path& file, renderer::View<const std::uint8_t> grey) {
+  return write(file,
+               cv::Mat(grey.height, grey.width, CV_8UC1, const_cast<std::uint8_t*>(grey.data), static_cast<std::size_t>(grey.stride)));
+}
+
+Result<void> write_png(const std::filesystem::path& file, renderer::View<const std::uint32_t> colour) {
+  const cv::Mat rgba(colour.height, colour.width, CV_8UC4, const_cast<std::uint32_t*>(colour.data),
+                     static_cast<std::size_t>(colour.stride) * 4);
+  cv::Mat bgr;
+  cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
+  return write(file, bgr);
+}
+
+}  // namespace handcast::simulate

@@ -1,0 +1,71 @@
+#include "services/simulate/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include "services/simulate/png.hpp"
+
+namespace handcast::simulate {
+namespace {
+
+constexpr const char* kSides[] = {"left", "right"};
+
+}  // namespace
+
+RecordingFeed::RecordingFeed(std::unique_ptr<SensorFeed> source, std::filesystem::path folder)
+    : source_(std::move(source)), folder_(std::move(folder)) {
+  std::error_code ignored;
+  std::filesystem::create_directories(folder_ / "camera", ignored);
+}
+
+std::vector<SensorEvent> RecordingFeed::until(std::int64_t now_ns) {
+  auto events = source_->until(now_ns);
+  for (const auto& event : events) std::visit([this](const auto& message) { keep(message); }, event.message);
+  return events;
+}
+
+void RecordingFeed::keep(const msg::HandPoses& poses) { poses_.push_back(poses); }
+
+void RecordingFeed::image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) {
+  source_->image(exposure, pixels);
+  (void)write_png(folder_ / "camera" / fmt::format("{:06}.png", image_times_us_.size()), pixels);
+  image_times_us_.push_back(exposure.origin_ns / 1000);
+}
+
+Result<void> RecordingFeed::save() const {
+  twin::Recording recording;
+  for (const auto& poses : poses_) {
+    // A recording holds the same hands in every sample: those without all of them are left out.
+    if (poses.count != poses_.front().count) continue;
+    recording.time_ns.push_back(poses.header.origin_ns);
+    for (std::uint32_t i = 0; i < poses.count; ++i)
+      recording.hands[static_cast<std::size_t>(poses.hands[i].side)].push_back(poses.hands[i]);
+  }
+  if (recording.time_ns.empty()) return fail(Errc::bad_data, fmt::format("{}: no hand was seen, nothing to record", folder_.string()));
+  if (auto saved = twin::write_recording(folder_, recording); !saved) return saved;
+  if (auto saved = twin::write_npy_i64(folder_ / "camera_timestamps.npy", image_times_us_); !saved) return saved;
+  return save_landmarks();
+}
+
+Result<void> RecordingFeed::save_landmarks() const {
+  std::vector<std::int64_t> times_us;
+  std::array<std::vector<float>, 2> points;
+  for (const auto& seen : landmarks_) {
+    if (seen.landmarks.count == 0 || seen.landmarks.count != landmarks_.front().landmarks.count) continue;
+    times_us.push_back(seen.origin_ns / 1000);
+    for (std::uint32_t i = 0; i < seen.landmarks.count; ++i)
+      for (const auto& point : seen.landmarks.hands[i].points) {
+        auto& side = points[static_cast<std::size_t>(seen.landmarks.hands[i].side)];
+        side.push_back(point.x_px);
+        side.push_back(point.y_px);
+      }
+  }
+  for (std::size_t side = 0; side < points.size(); ++side) {
+    if (points[side].empty()) continue;
+    const auto file = folder_ / fmt::format("landmarks_{}.npy", kSides[side]);
+    if (auto saved = twin::write_npy_f32(file, {points[side].size() / (2 * msg::kLandmarks), msg::kLandmarks, 2}, points[side]); !saved)
+      return saved;
+  }
+  return twin::write_npy_i64(folder_ / "landmarks_timestamps.npy", times_us);
+}
+
+}  // namespace handcast::simulate

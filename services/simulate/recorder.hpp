@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "calib/calibration.hpp"
+#include "ipc/base/result.hpp"
+#include "renderer/image.hpp"
+#include "services/simulate/sensor_feed.hpp"
+#include "services/twin/recording.hpp"
+
+namespace handcast::simulate {
+
+/// A feed that passes another's messages on and keeps them, to be written as a recording: what the replay back ends play.
+/// Folder: timestamps.npy, joints_SIDE.npy, bones_SIDE.npy (Leap's layout); landmarks_timestamps.npy, landmarks_SIDE.npy (n,21,2);
+/// camera/NNNNNN.png with camera_timestamps.npy. Times in microseconds since the start.
+class RecordingFeed : public SensorFeed {
+ public:
+  RecordingFeed(std::unique_ptr<SensorFeed> source, std::filesystem::path folder);
+
+  std::vector<SensorEvent> until(std::int64_t now_ns) override;
+  std::optional<Exposure> newest_exposure(std::int64_t now_ns) override { return source_->newest_exposure(now_ns); }
+  void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override;
+
+  /// Writes what was kept.
+  Result<void> save() const;
+
+ private:
+  struct SeenLandmarks {
+    std::int64_t origin_ns;
+    msg::Landmarks landmarks;
+  };
+  void keep(const msg::HandPoses& poses);
+  void keep(const msg::Landmarks& landmarks) { landmarks_.push_back({landmarks.header.origin_ns, landmarks}); }
+  Result<void> save_landmarks() const;
+
+  std::unique_ptr<SensorFeed> source_;
+  std::filesystem::path folder_;
+  std::vector<msg::HandPoses> poses_;
+  std::vector<SeenLandmarks> landmarks_;
+  std::vector<std::int64_t> image_times_us_;
+};
+
+}  // namespace handcast::simulate

@@ -1,0 +1,41 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "config/rig.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "renderer/image.hpp"
+#include "services/twin/twin.hpp"
+
+namespace handcast::simulate {
+
+/// A message and the moment it reaches the projector.
+struct SensorEvent {
+  std::int64_t arrival_ns = 0;
+  std::variant<msg::HandPoses, msg::Landmarks> message;
+};
+
+struct Exposure {
+  std::uint64_t frame_id = 0;
+  std::int64_t origin_ns = 0;
+};
+
+/// What reaches the cascade, and when: all that it may know of the world. Virtual time, asked for in ascending order.
+class SensorFeed {
+ public:
+  virtual ~SensorFeed() = default;
+  /// The messages that arrived up to `now_ns` and were not given yet, in the order of their arrival.
+  virtual std::vector<SensorEvent> until(std::int64_t now_ns) = 0;
+  /// The newest camera frame in memory at `now_ns`.
+  virtual std::optional<Exposure> newest_exposure(std::int64_t now_ns) = 0;
+  virtual void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) = 0;
+};
+
+/// The twin's tracker, camera and back-to-back detector, run in virtual time.
+std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin);
+
+}  // namespace handcast::simulate
