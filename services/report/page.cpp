@@ -1,0 +1,114 @@
+#include "services/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <thread>
+
+#include "services/report/html.hpp"
+#include "services/report/tables.hpp"
+#include "services/report/time_sheet.hpp"
+
+namespace handcast::report {
+
+const char* const kSkeleton = R"html(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{{title}}</title>
+<style>{{style}}</style>
+</head>
+<body>
+<main>
+<header>
+<h1>{{title}}</h1>
+<dl>{{facts}}</dl>
+</header>
+<section id="headline">
+{{headline}}</section>
+<section id="film">
+<h2>The true hand and the light on it</h2>
+<p>The same hand in the same moments. Drawn is what a bystander at the projector sees: the hand as it really is, and where the light falls.</p>
+{{film}}</section>
+<section id="accuracy">
+<h2>Where the light lands</h2>
+<p>Simulated against the digital twin's truth: the three see the same sensors, with the same delays and errors. The best of a row is bold.</p>
+{{accuracy}}</section>
+<section id="speed">
+<h2>By speed of the hand</h2>
+<p>Interior error, 95th percentile in mm, by the mean speed of the skin.</p>
+{{speed}}</section>
+<section id="live">
+<h2>The live rig</h2>
+{{live}}</section>
+<section id="times">
+<h2>Where the time goes</h2>
+{{times}}</section>
+</main>
+</body>
+</html>
+)html";
+
+static std::string first_line_after(const char* file, std::string_view key, char separator) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.rfind(key, 0) != 0) continue;
+    line.erase(0, line.find(separator) + 1);
+    line.erase(0, line.find_first_not_of(" \t\""));
+    line.erase(line.find_last_not_of(" \t\"") + 1);
+    return line;
+  }
+  return "";
+}
+
+std::string this_machine() {
+  std::string machine = first_line_after("/proc/cpuinfo", "model name", ':');
+  if (machine.empty()) machine = "unnamed processor";
+  const unsigned cores = std::thread::hardware_concurrency();
+  machine += fmt::format(", {} core{}", cores, cores == 1 ? "" : "s");
+  const std::string system = first_line_after("/etc/os-release", "PRETTY_NAME", '=');
+  return system.empty() ? machine : machine + ", " + system;
+}
+
+static std::string fact(std::string_view name, std::string_view value) {
+  return value.empty() ? "" : fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(name), escape(value));
+}
+
+/// A setting as the first run that has it states it.
+static std::string stated(const Inputs& inputs, const char* key) {
+  for (const auto& run : inputs.runs) {
+    if (!run.metrics.content || !run.metrics.content->contains(key)) continue;
+    const auto& value = run.metrics.content->at(key);
+    return value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  return "";
+}
+
+static std::string rigs(const Inputs& inputs) {
+  std::string names;
+  for (const auto& run : inputs.runs) {
+    if (!run.metrics.content || !run.metrics.content->contains("rig") || !run.metrics.content->at("rig").is_string()) continue;
+    if (!names.empty()) names += ", ";
+    names += run.metrics.content->at("rig").get<std::string>();
+  }
+  return names;
+}
+
+std::string make_page(const Inputs& inputs, const Film& film, const Imprint& imprint) {
+  const std::string seconds = stated(inputs, "seconds");
+  const std::string facts = fact("rigs", rigs(inputs)) + fact("motion", stated(inputs, "motion")) +
+                            fact("scored", seconds.empty() ? "" : seconds + " s of it") + fact("seed", stated(inputs, "seed")) +
+                            fact("machine", imprint.machine) + fact("made", imprint.date);
+  return fill(kSkeleton, {{"title", escape(imprint.title)},
+                          {"style", kStyle},
+                          {"facts", facts},
+                          {"headline", headline(inputs)},
+                          {"film", film_section(film)},
+                          {"accuracy", accuracy_table(inputs)},
+                          {"speed", speed_table(inputs)},
+                          {"live", live_table(inputs)},
+                          {"times", time_sheet(inputs)}});
+}
+
+}  // namespace handcast::report

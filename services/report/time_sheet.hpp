@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "services/report/inputs.hpp"
+
+namespace handcast::report {
+
+/// What each stage took, live and simulated: median and 99th percentile, as bars and figures.
+std::string time_sheet(const Inputs& inputs);
+
+}  // namespace handcast::report
