@@ -1,0 +1,61 @@
+// The verbs that talk to a rig that is up.
+#include <fmt/format.h>
+
+#include "supervisor/control_client.hpp"
+#include "supervisor/exit.hpp"
+#include "supervisor/options.hpp"
+#include "supervisor/status.hpp"
+#include "supervisor/verbs.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+struct Talk {
+  int exit_code = 0;
+  nlohmann::json answer;
+};
+
+/// Finds the rig, asks it, complains about what goes wrong.
+Talk talk(const std::string& rig_name, const Request& request) {
+  const auto rig = choose_rig(rig_name);
+  if (!rig) return {complain(kExitNotRunning, rig.error().what), {}};
+  auto answer = ask(*rig, request);
+  if (answer) return {0, std::move(*answer)};
+  const bool refused = answer.error().code == Errc::bad_data;
+  return {complain(refused ? kExitConfig : kExitNotRunning, answer.error().what), {}};
+}
+
+/// Asks for what the words say; `done` tells the person that it is done, {0} and {1} being the service and the back end.
+int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words, Request request, const char* done) {
+  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}, .least_words = words, .most_words = words});
+  if (!options) return complain(kExitUsage, fmt::format("{0}: {1}; `handcast help {0}`", verb, options.error().what));
+  if (words > 0) request.service = options->words[0];
+  if (words > 1) request.backend = options->words[1];
+  const int exit_code = talk(options->value("--rig"), request).exit_code;
+  if (exit_code == 0) fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, request.backend));
+  return exit_code;
+}
+
+}  // namespace
+
+int run_down(const Arguments& arguments) {
+  return ask_with_words("down", arguments, 0, {.verb = Verb::down, .service = {}, .backend = {}}, "the rig has stopped");
+}
+int run_restart(const Arguments& arguments) {
+  return ask_with_words("restart", arguments, 1, {.verb = Verb::restart, .service = {}, .backend = {}}, "{0} is ready again");
+}
+int run_swap(const Arguments& arguments) {
+  return ask_with_words("swap", arguments, 2, {.verb = Verb::swap, .service = {}, .backend = {}}, "{0} is ready with '{1}'");
+}
+
+int run_status(const Arguments& arguments) {
+  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {"--json"}});
+  if (!options) return complain(kExitUsage, "status: " + options.error().what + "; `handcast help status`");
+  auto [exit_code, answer] = talk(options->value("--rig"), {.verb = Verb::status, .service = {}, .backend = {}});
+  if (exit_code != 0) return exit_code;
+  const auto& status = answer["status"];
+  fmt::print("{}", options->has("--json") ? status.dump(2) + "\n" : print_status(status));
+  return 0;
+}
+
+}  // namespace handcast::supervisor

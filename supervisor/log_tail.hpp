@@ -1,0 +1,30 @@
+#pragma once
+#include <deque>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace handcast::supervisor {
+
+/// The last lines a service wrote. Bytes go in as they arrive, whole lines come out.
+class LogTail {
+ public:
+  static constexpr std::size_t kLines = 200;
+  static constexpr std::size_t kLongestLine = 4096;  ///< bytes; what is longer is cut into lines
+
+  /// `on_line` is called for each line that `bytes` completes.
+  void append(std::string_view bytes, const std::function<void(std::string_view)>& on_line);
+  /// The newest `count` lines, oldest first.
+  std::vector<std::string> last(std::size_t count) const;
+  /// What the newest line says, without the time, program and level that handcast's log puts in front. "" if there is none.
+  std::string last_sentence() const;
+
+ private:
+  void finish_line(const std::function<void(std::string_view)>& on_line);
+
+  std::deque<std::string> lines_;
+  std::string unfinished_;
+};
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,71 @@
+// The `handcast` command: like git, it runs what it knows and hands every other verb to a program beside itself.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "config/join.hpp"
+#include "supervisor/exit.hpp"
+#include "supervisor/verbs.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+void print_overview() {
+  fmt::print("handcast {} — light that stays on moving hands\n\nusage: handcast VERB ...\n\n", HANDCAST_VERSION);
+  for (const auto& verb : verbs()) fmt::print("  {:<10} {}\n", verb.name, verb.sentence);
+  fmt::print("\n`handcast help VERB` says how a verb is used.\n");
+}
+
+/// Becomes handcast-VERB. Returns only where there is no such program.
+int become_program(const std::string& verb, const Arguments& arguments) {
+  const bool plain = verb.find('/') == std::string::npos;
+  const auto program = (program_folder() / ("handcast-" + verb)).string();
+  if (plain && access(program.c_str(), X_OK) == 0) {
+    std::vector<char*> pointers{const_cast<char*>(program.c_str())};
+    for (const auto& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
+    pointers.push_back(nullptr);
+    execv(program.c_str(), pointers.data());
+  }
+  return complain(kExitUsage, fmt::format("there is no verb '{}'; there are: {}", verb, config::join(verb_names(), ", ")));
+}
+
+const VerbEntry* find_verb(const std::string& name) {
+  const auto found = std::ranges::find(verbs(), name, &VerbEntry::name);
+  return found == verbs().end() ? nullptr : &*found;
+}
+
+int help(const Arguments& arguments) {
+  if (arguments.empty()) {
+    print_overview();
+    return 0;
+  }
+  const auto verb = find_verb(arguments.front());
+  if (!verb || !verb->run) return become_program(arguments.front(), {"--help"});
+  fmt::print("usage: handcast {}\n\n{}\n", verb->usage, verb->sentence);
+  return 0;
+}
+
+int dispatch(const std::string& name, const Arguments& arguments) {
+  if (name == "help" || name == "--help" || name == "-h") return help(arguments);
+  if (name == "--version") {
+    fmt::print("handcast {}\n", HANDCAST_VERSION);
+    return 0;
+  }
+  const auto verb = find_verb(name);
+  if (!verb || !verb->run) return become_program(name, arguments);
+  if (std::ranges::find(arguments, "--help") != arguments.end()) return help({name});
+  return verb->run(arguments);
+}
+
+}  // namespace
+}  // namespace handcast::supervisor
+
+int main(int argc, char** argv) {
+  using namespace handcast::supervisor;
+  if (argc < 2) {
+    print_overview();
+    return kExitUsage;
+  }
+  return dispatch(argv[1], Arguments(argv + 2, argv + argc));
+}

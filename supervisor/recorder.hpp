@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ipc/msg/stage_mark.hpp"
+#include "ipc/ring/reader.hpp"
+#include "supervisor/ledger.hpp"
+
+namespace handcast::supervisor {
+
+/// Reads the services' stage marks into a ledger: from the supervisor's event loop, a few dozen times a second.
+class Recorder {
+ public:
+  /// Follows "marks.<service>", behind the descriptor (which stays the caller's).
+  Result<void> follow(std::string service, int ring_fd);
+  void poll();
+  const Ledger& ledger() const { return ledger_; }
+  /// Since the service's last sign of life, frame or heart-beat; empty if there was none.
+  std::optional<double> silence_ms(std::string_view service, std::int64_t now_ns) const;
+
+ private:
+  struct Source {
+    std::string service;
+    ipc::Reader<msg::StageMarks> marks;
+    std::uint64_t skipped = 0;  ///< as of the last message
+    std::int64_t last_sign_ns = 0;
+  };
+  std::vector<Source> sources_;
+  Ledger ledger_;
+};
+
+}  // namespace handcast::supervisor

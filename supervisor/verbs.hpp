@@ -1,0 +1,39 @@
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ipc/base/result.hpp"
+
+namespace handcast::supervisor {
+
+using Arguments = std::vector<std::string>;  ///< what stands behind the verb
+
+struct VerbEntry {
+  std::string_view name;
+  std::string_view usage;  ///< what stands behind "handcast "
+  std::string_view sentence;
+  int (*run)(const Arguments&);  ///< null: a program of its own, handcast-NAME
+};
+
+/// Every verb of this installation.
+std::span<const VerbEntry> verbs();
+
+/// The folder of this program: where its daemons and other verbs are.
+std::filesystem::path program_folder();
+std::vector<std::string> verb_names();
+
+int run_up(const Arguments& arguments);
+int run_config(const Arguments& arguments);
+int run_down(const Arguments& arguments);
+int run_status(const Arguments& arguments);
+int run_restart(const Arguments& arguments);
+int run_swap(const Arguments& arguments);
+
+/// Prints "handcast: sentence" and gives back the exit code.
+int complain(int exit_code, std::string_view sentence);
+int complain(const Error& error);
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,102 @@
+// What goes wrong, and what is changed, while the light must go on.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include "ipc/base/clock.hpp"
+#include "services/twin/recording.hpp"
+#include "services/twin/twin.hpp"
+#include "tests/system/running_rig.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+using testing::HasSubstr;
+
+class Faults : public SystemTest {
+ protected:
+  void expect_restarts(const std::map<std::string, int>& restarts) const {
+    const auto now = status();
+    for (const auto& name : kServices)
+      EXPECT_EQ(now["services"][name]["restarts"], restarts.contains(name) ? restarts.at(name) : 0) << name;
+  }
+};
+
+/// Half a second of the twin's left hand.
+void record_a_hand(const std::filesystem::path& folder) {
+  const auto twin = twin::Twin::create({}, calib::reference_rig());
+  ASSERT_TRUE(twin) << twin.error().what;
+  twin::Recording recording;
+  for (std::uint64_t k = 0; k < 50; ++k) {
+    recording.time_ns.push_back(static_cast<std::int64_t>(k) * ms_to_ns(10));
+    recording.hands[0].push_back((*twin)->tracker_sample(k).poses.hands[0]);
+  }
+  ASSERT_TRUE(twin::write_recording(folder, recording));
+}
+
+TEST_F(Faults, EachServiceMayBeKilledAndTheLightGoesOn) {
+  const auto rig = up();
+  wait_until_light();
+  std::map<std::string, int> restarts;
+  for (const auto& name : kServices) {
+    const auto victim = service(name)["pid"].get<pid_t>();
+    const auto killed_ns = now_ns();
+    ASSERT_EQ(kill(victim, SIGKILL), 0);
+    expect_more_light();
+    ASSERT_TRUE(eventually([&] {
+      const auto now = service(name);
+      return now["pid"] != victim && now["state"] == "ready";
+    })) << name;
+    std::printf("%s was ready again %.0f ms after it was killed\n", name.c_str(), ns_to_ms(now_ns() - killed_ns));
+    expect_more_light();
+    restarts[name] = 1;
+    expect_restarts(restarts);  // it came back, and nobody else had to
+    EXPECT_EQ(service(name)["last_exit"], "signal 9 (Killed)");
+  }
+  rig->signal(SIGINT);
+  EXPECT_EQ(rig->wait(), 0);
+}
+
+TEST_F(Faults, AServiceThatHangsIsReplaced) {
+  const auto rig = up();
+  wait_until_light();
+  const auto victim = service("landmarks")["pid"].get<pid_t>();
+  kill(victim, SIGSTOP);
+  EXPECT_TRUE(eventually([&] { return !is_alive(victim); }));
+  EXPECT_TRUE(eventually([&] { return service("landmarks")["state"] == "ready"; }));
+  expect_restarts({{"landmarks", 1}});
+}
+
+TEST_F(Faults, APoseSourceIsSwappedForARecordingWhileTheOthersRunOn) {
+  const auto folder = scratch_.path() / "recording";
+  record_a_hand(folder);
+  const auto rig = up({"--set", "pose.replay.directory=" + folder.string()});
+  wait_until_light();
+  const auto swapped = handcast({"swap", "pose", "replay"});
+  EXPECT_EQ(swapped.exit_code, 0) << swapped.log;
+  EXPECT_EQ(service("pose")["backend"], "replay");
+  expect_restarts({{"pose", 1}});
+  const auto poses = [this] { return status()["rings"]["pose.hands"]["count"].get<int>(); };
+  const auto before = poses();
+  EXPECT_TRUE(eventually([&] { return poses() > before; }));
+  expect_more_light();
+}
+
+TEST_F(Faults, ASwapThatCannotWorkChangesNothing) {
+  const auto rig = up();
+  wait_until_light();
+  const auto unknown = handcast({"swap", "pose", "crystal_ball"});
+  EXPECT_EQ(unknown.exit_code, 100);
+  EXPECT_THAT(unknown.log, HasSubstr("no back end 'crystal_ball'; it has: twin, replay"));
+  expect_restarts({});
+
+  const auto without_folder = handcast({"swap", "pose", "replay"});
+  EXPECT_EQ(without_folder.exit_code, 100);
+  EXPECT_THAT(without_folder.log, HasSubstr("pose.replay.directory"));
+  EXPECT_EQ(service("pose")["backend"], "twin");
+  EXPECT_EQ(service("pose")["state"], "ready");
+  EXPECT_THAT(handcast({"swap", "moon", "twin"}).log, HasSubstr("no service 'moon'"));
+  expect_more_light();
+}
+
+}  // namespace
+}  // namespace handcast::system_test

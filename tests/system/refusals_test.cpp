@@ -1,0 +1,80 @@
+// What cannot work ends at once, in a sentence.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <fstream>
+
+#include "tests/system/running_rig.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Refusals : public SystemTest {
+ protected:
+  std::string rig_file(const std::string& text) const {
+    const auto file = scratch_.path() / "rig.toml";
+    std::ofstream(file) << text;
+    return file;
+  }
+};
+
+TEST_F(Refusals, ABrokenRigFileIsNamedWithItsLine) {
+  const auto outcome = handcast({"up", rig_file("name = \"desk\"\n[camera]\nrate_hz = 0\n")});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, AllOf(HasSubstr("rig.toml:3"), HasSubstr("camera.rate_hz")));
+  EXPECT_EQ(handcast({"config", "--check", (scratch_.path() / "rig.toml").string()}).exit_code, 100);
+}
+
+TEST_F(Refusals, AMissingRigFileIsNamed) {
+  const auto outcome = handcast({"up", "/nowhere/rig.toml"});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, HasSubstr("/nowhere/rig.toml"));
+}
+
+TEST_F(Refusals, AMissingRecordingIsNamedAndNothingKeepsRunning) {
+  const auto rig = up({"--set", "pose.backend=replay", "--set", "pose.replay.directory=/nowhere/recording"});
+  EXPECT_EQ(rig->wait(), 100);
+  EXPECT_THAT(rig->log(), HasSubstr("handcast: pose cannot start: "));
+  EXPECT_THAT(rig->log(), HasSubstr("/nowhere/recording"));
+  EXPECT_THAT(traces(), IsEmpty());
+}
+
+TEST_F(Refusals, AnUnknownBackEndIsNamedBesideTheKnownOnes) {
+  const auto rig = up({"--set", "camera.backend=polaroid"});
+  EXPECT_EQ(rig->wait(), 100);
+  EXPECT_THAT(rig->log(), AllOf(HasSubstr("handcast: camera cannot start: "), HasSubstr("'polaroid'"), HasSubstr("twin, replay")));
+}
+
+TEST_F(Refusals, ASecondRigOfTheSameNameIsRefusedAndTheFirstGoesOn) {
+  const auto first = up();
+  wait_until_light();
+  const auto second = up();
+  EXPECT_EQ(second->wait(), 111);
+  EXPECT_THAT(second->log(), HasSubstr("a rig named 'twin' is up already"));
+  EXPECT_TRUE(first->running());
+  expect_more_light();
+}
+
+TEST_F(Refusals, AnUnknownVerbIsAnsweredWithTheKnownOnes) {
+  const auto outcome = handcast({"levitate"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.log, AllOf(HasSubstr("'levitate'"), HasSubstr("up, down, status")));
+  EXPECT_EQ(handcast({"up"}).exit_code, 2);
+  EXPECT_EQ(handcast({"up", "rig.toml", "--seconds", "soon"}).exit_code, 2);
+}
+
+TEST_F(Refusals, WhatConfigPrintsConfigAccepts) {
+  const auto printed = handcast({"config", "--print", "config/rigs/twin.toml", "--set", "camera.rate_hz=77"});
+  ASSERT_EQ(printed.exit_code, 0) << printed.log;
+  EXPECT_THAT(printed.output, HasSubstr("rate_hz = 77"));
+  EXPECT_EQ(handcast({"config", "--check", rig_file(printed.output)}).exit_code, 0);
+  EXPECT_THAT(handcast({"--version"}).output, StartsWith("handcast "));
+}
+
+}  // namespace
+}  // namespace handcast::system_test

@@ -1,0 +1,46 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/services/scratch.hpp"
+#include "tests/system/command.hpp"
+
+namespace handcast::system_test {
+
+/// A folder in which rigs can run that no other test sees.
+class SystemTest : public testing::Test {
+ protected:
+  void SetUp() override;
+
+  /// `handcast ARGUMENTS...`, to its end.
+  struct Outcome {
+    int exit_code = 0;
+    std::string output, log;
+  };
+  Outcome handcast(const Arguments& arguments) const;
+
+  /// `handcast up` of the twin at rates that leave the machine some air, with `more` behind it.
+  std::unique_ptr<Command> up(const Arguments& more = {}) const;
+  /// Waits until every service is ready and light flows.
+  void wait_until_light() const;
+
+  nlohmann::json status() const;  ///< of the only rig; null if none answers
+  nlohmann::json service(const std::string& name) const { return status()["services"][name]; }
+  std::uint64_t light() const;  ///< frames projected so far
+  void expect_more_light() const;
+  std::vector<pid_t> pids() const;
+  /// Names of everything that could be left behind outside the processes.
+  std::vector<std::string> traces() const;
+
+  test::Scratch scratch_;
+};
+
+inline const std::vector<std::string> kServices{"camera", "pose", "landmarks", "projector", "observer"};
+
+/// The text of the file's last line.
+std::string last_line(const std::string& text);
+
+}  // namespace handcast::system_test
