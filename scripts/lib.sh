@@ -1,0 +1,30 @@
+# Shared by the scripts beside it; sourced, not run.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cores=$(nproc)
+
+say() {
+  if [ -t 1 ]; then printf '\033[1m==> %s\033[0m\n' "$*"; else printf '==> %s\n' "$*"; fi
+}
+
+die() {
+  printf '%s: %s\n' "${0##*/}" "$*" >&2
+  exit 2
+}
+
+# help_if_asked "$@": prints the comment at the top of the calling script and ends it.
+help_if_asked() {
+  local word
+  for word in "$@"; do
+    case $word in
+      -h | --help)
+        awk 'NR > 1 && /^#/ { sub(/^# ?/, ""); print; next } NR > 1 { exit }' "$0"
+        exit 0
+        ;;
+      --) return 0 ;;
+    esac
+  done
+}
+
+# need_value "$@": the option in front has a value.
+need_value() { [ $# -ge 2 ] || die "$1 needs a value; see --help"; }
