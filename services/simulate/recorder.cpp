@@ -2,12 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "services/simulate/png.hpp"
 
 namespace handcast::simulate {
 namespace {
 
 constexpr const char* kSides[] = {"left", "right"};
+
+/// The most hands that any of the messages saw.
+template <class Kept, class CountOf>
+std::uint32_t most_hands(const std::vector<Kept>& kept, const CountOf& count_of) {
+  std::uint32_t most = 0;
+  for (const auto& each : kept) most = std::max<std::uint32_t>(most, count_of(each));
+  return most;
+}
 
 }  // namespace
 
@@ -27,15 +37,18 @@ void RecordingFeed::keep(const msg::HandPoses& poses) { poses_.push_back(poses);
 
 void RecordingFeed::image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) {
   source_->image(exposure, pixels);
-  (void)write_png(folder_ / "camera" / fmt::format("{:06}.png", image_times_us_.size()), pixels);
+  const auto file = folder_ / "camera" / fmt::format("{:06}.png", image_times_us_.size());
+  if (auto written = write_png(file, pixels); !written && pictures_) pictures_ = std::move(written);
   image_times_us_.push_back(exposure.origin_ns / 1000);
 }
 
 Result<void> RecordingFeed::save() const {
+  if (!pictures_) return pictures_;
   twin::Recording recording;
+  const auto hands = most_hands(poses_, [](const auto& poses) { return poses.count; });
   for (const auto& poses : poses_) {
     // A recording holds the same hands in every sample: those without all of them are left out.
-    if (poses.count != poses_.front().count) continue;
+    if (poses.count == 0 || poses.count != hands) continue;
     recording.time_ns.push_back(poses.header.origin_ns);
     for (std::uint32_t i = 0; i < poses.count; ++i)
       recording.hands[static_cast<std::size_t>(poses.hands[i].side)].push_back(poses.hands[i]);
@@ -49,8 +62,9 @@ Result<void> RecordingFeed::save() const {
 Result<void> RecordingFeed::save_landmarks() const {
   std::vector<std::int64_t> times_us;
   std::array<std::vector<float>, 2> points;
+  const auto hands = most_hands(landmarks_, [](const auto& seen) { return seen.landmarks.count; });
   for (const auto& seen : landmarks_) {
-    if (seen.landmarks.count == 0 || seen.landmarks.count != landmarks_.front().landmarks.count) continue;
+    if (seen.landmarks.count == 0 || seen.landmarks.count != hands) continue;
     times_us.push_back(seen.origin_ns / 1000);
     for (std::uint32_t i = 0; i < seen.landmarks.count; ++i)
       for (const auto& point : seen.landmarks.hands[i].points) {

@@ -22,7 +22,7 @@ class RecordingFeed : public SensorFeed {
   std::optional<Exposure> newest_exposure(std::int64_t now_ns) override { return source_->newest_exposure(now_ns); }
   void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override;
 
-  /// Writes what was kept.
+  /// Writes what was kept. Errors: bad_config (a picture or file cannot be written), bad_data (no hand was seen).
   Result<void> save() const;
 
  private:
@@ -39,6 +39,7 @@ class RecordingFeed : public SensorFeed {
   std::vector<msg::HandPoses> poses_;
   std::vector<SeenLandmarks> landmarks_;
   std::vector<std::int64_t> image_times_us_;
+  Result<void> pictures_;  ///< the first that could not be written
 };
 
 }  // namespace handcast::simulate

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "ipc/base/clock.hpp"
+#include "services/twin/recording.hpp"
 #include "tests/services/simulate/run_rig.hpp"
 
 namespace handcast::simulate {
@@ -139,6 +140,38 @@ TEST(TwinFeed, MessagesArriveInOrderAndAtTheirAge) {
   EXPECT_NEAR(pose_age_ms / poses, 9.1, 0.2);
   EXPECT_NEAR(landmark_age_ms / landmarks, 16.2, 0.6);
   EXPECT_NEAR(landmarks, 2000 / 14.0, 8);  // back to back: a frame is about 2.2 ms old when it is taken
+}
+
+TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
+  const ScratchFolder folder;
+  Options options;
+  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
+  options.settings = {"twin.detector.dropout=0.6"};
+  options.seconds = 0.5;
+  options.quiet = true;
+  options.draw_every = 64;
+  options.record_directory = folder.path().string();
+  for (int seed = 1; seed <= 3; ++seed) {  // whichever detection is the first to find nothing
+    options.settings.push_back("twin.seed=" + std::to_string(seed));
+    const auto done = run(options);
+    ASSERT_TRUE(done) << done.error().what;
+    const auto landmarks = twin::read_npy(folder.path() / "landmarks_left.npy");
+    ASSERT_TRUE(landmarks) << landmarks.error().what;
+    EXPECT_GT(landmarks->shape[0], 10u);
+  }
+}
+
+TEST(Recording, APictureThatCannotBeWrittenIsSaid) {
+  const ScratchFolder folder;
+  std::ofstream(folder.path() / "camera") << "in the way of the pictures' folder";
+  Options options;
+  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
+  options.seconds = 0.1;
+  options.quiet = true;
+  options.record_directory = folder.path().string();
+  const auto done = run(options);
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error().what, testing::HasSubstr("cannot be written"));
 }
 
 TEST(Simulation, ABrokenRecordingIsOneSentence) {
