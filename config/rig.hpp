@@ -45,7 +45,8 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("supervisor", rig.supervisor, "Starting, watching, stopping.");
 }
 
-/// Reads a rig file and applies `settings` ("path=value") on top. Paths in it become absolute.
+/// Reads a rig file and applies `settings` ("path=value") on top. Paths become absolute: those of the file from its
+/// folder, those of `settings` from the current one.
 /// Every fault of the file is in the one error (bad_config), a line each: "FILE:LINE: camera.rate_hz: 0 is outside 1..2000 Hz".
 Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
 

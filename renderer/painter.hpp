@@ -39,7 +39,8 @@ class Painter {
  public:
   virtual ~Painter() = default;
 
-  /// Clears `region` and draws the hands into it with a depth test: texture coordinates, surface ids and colour.
+  /// Clears `region` and draws the hands into it with a depth test: texture coordinates, surface ids and colour. The far
+  /// side of a closed surface may be left out; at equal depth the later triangle wins.
   virtual void draw(std::span<const DrawnHand> hands, Rect region) = 0;
 
   /// Moves what was drawn by a warp grid (the paper's correction): the drawing in `from` appears warped in `region`.

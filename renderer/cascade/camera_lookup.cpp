@@ -134,9 +134,4 @@ Rect CameraLookup::to_projector(Rect camera_region) const {
                    [&](glm::dvec2 image_px) { return calibration_.to_projector(calibration_.camera.undistort(image_px)); });
 }
 
-Rect CameraLookup::to_camera(Rect projector_region) const {
-  if (projector_region.empty()) return {};
-  return bounds_of(projector_region, 1e5, [&](glm::dvec2 px) { return calibration_.camera.distort(calibration_.to_camera(px)); });
-}
-
 }  // namespace handcast::renderer

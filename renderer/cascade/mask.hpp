@@ -56,9 +56,8 @@ class CameraLookup {
   /// `out(x, y) = mask(then_from_now(camera pixel of projector pixel (x, y)))` for the pixels of `region`; 0 where the camera sees
   /// nothing. `then_from_now` takes a camera pixel back to where the hand's same spot was when the image was exposed.
   void resample(View<const std::uint8_t> mask, Rect region, View<std::uint8_t> out, const Similarity& then_from_now = {}) const;
-  /// A bounding rectangle of `camera_region` (image px) in projector px, and the inverse.
+  /// A bounding rectangle of `camera_region` (image px) in projector px.
   Rect to_projector(Rect camera_region) const;
-  Rect to_camera(Rect projector_region) const;
 
  private:
   /// Eight by eight projector pixels and where their corners are seen (the right and lower ones a pixel beyond), camera px * 64.

@@ -1,5 +1,7 @@
 #include "services/simulate/jitter.hpp"
 
+#include <algorithm>
+
 namespace handcast::simulate {
 
 void JitterMeter::add(const renderer::FrameHand& hand, const std::array<glm::vec2, msg::kLandmarks>& truth, std::int64_t tick,
