@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "ipc/msg/header.hpp"
+#include "ipc/msg/tail.hpp"
 
 namespace handcast::msg {
 
@@ -17,7 +18,9 @@ struct CameraFrame {
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;
 
-  static constexpr std::size_t bytes(std::size_t width, std::size_t height) { return sizeof(CameraFrame) + width * height; }
+  static constexpr std::size_t bytes(std::size_t width, std::size_t height) {
+    return bytes_with_tail(sizeof(CameraFrame), width, height, 1);
+  }
 
   std::uint8_t* pixels() { return reinterpret_cast<std::uint8_t*>(this + 1); }
   const std::uint8_t* pixels() const { return reinterpret_cast<const std::uint8_t*>(this + 1); }

@@ -5,6 +5,7 @@
 
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/header.hpp"
+#include "ipc/msg/tail.hpp"
 
 namespace handcast::msg {
 
@@ -41,7 +42,9 @@ struct Projection {
   std::uint32_t foldovers = 0;  ///< drawn triangles or grid cells that the correction turned over
   std::array<ProjectedHand, kMaxHands> hands{};
 
-  static constexpr std::size_t bytes(std::size_t width, std::size_t height) { return sizeof(Projection) + width * height * 4; }
+  static constexpr std::size_t bytes(std::size_t width, std::size_t height) {
+    return bytes_with_tail(sizeof(Projection), width, height, 4);
+  }
 
   std::uint32_t* pixels() { return reinterpret_cast<std::uint32_t*>(this + 1); }
   const std::uint32_t* pixels() const { return reinterpret_cast<const std::uint32_t*>(this + 1); }

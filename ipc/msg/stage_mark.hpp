@@ -22,11 +22,12 @@ enum class Stage : std::uint32_t {
   compose,  // inside one projector frame
   frame,
   present,  // the whole frame in software; handing it to the projector
+  light,    // from there to the middle of the time it is lit
   count
 };
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::count)> kStageNames{
-    "capture", "sample", "detect", "predict", "skin", "correct", "mask", "draw", "warp", "fill", "compose", "frame", "present"};
+    "capture", "sample", "detect", "predict", "skin", "correct", "mask", "draw", "warp", "fill", "compose", "frame", "present", "light"};
 
 struct StageMark {
   Stage stage = Stage::frame;
@@ -38,7 +39,7 @@ struct StageMark {
 /// The stages one service spent on one frame.
 /// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's recorder, the observer.
 struct StageMarks {
-  static constexpr std::string_view layout = "StageMarks/1";
+  static constexpr std::string_view layout = "StageMarks/2";
 
   Header header;
   std::uint32_t count = 0;

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -9,23 +10,43 @@
 
 namespace handcast::ipc {
 
-/// Buffers of one size, handed out as shared pointers and used again when the last pointer is gone: no allocation per
-/// message once as many exist as are held at a time.
+/// Private memory for one message.
+class Buffer {
+ public:
+  std::byte* data() const { return data_.get(); }
+  void give_back() { in_use_.store(false, std::memory_order_release); }  ///< from any thread; what was read before, was read before
+
+ private:
+  friend class BufferPool;
+  struct Free {
+    void operator()(std::byte* data) const { ::operator delete (data, std::align_val_t{kLineBytes}); }
+  };
+  explicit Buffer(std::byte* data) : data_(data) {}
+
+  std::unique_ptr<std::byte, Free> data_;
+  std::atomic<bool> in_use_{true};
+};
+
+/// Buffers of one size, handed out again and again: no allocation per message once as many exist as are held at a time.
 class BufferPool {
  public:
   explicit BufferPool(std::size_t bytes) : bytes_(round_up(bytes, kLineBytes)) {}
 
-  std::shared_ptr<std::byte> take() {
-    const auto unused = std::find_if(buffers_.begin(), buffers_.end(), [](const auto& buffer) { return buffer.use_count() == 1; });
-    if (unused != buffers_.end()) return *unused;
-    const auto give_back = [](std::byte* data) { ::operator delete (data, std::align_val_t{kLineBytes}); };
-    auto* data = static_cast<std::byte*>(::operator new (bytes_, std::align_val_t{kLineBytes}));
-    return buffers_.emplace_back(data, give_back);
+  /// Null where there is no memory. One thread.
+  Buffer* take() {
+    for (const auto& buffer : buffers_)
+      if (!buffer->in_use_.load(std::memory_order_acquire)) {
+        buffer->in_use_.store(true, std::memory_order_relaxed);
+        return buffer.get();
+      }
+    auto* data = static_cast<std::byte*>(::operator new (bytes_, std::align_val_t{kLineBytes}, std::nothrow));
+    if (!data) return nullptr;
+    return buffers_.emplace_back(new Buffer(data)).get();
   }
 
  private:
   std::size_t bytes_;
-  std::vector<std::shared_ptr<std::byte>> buffers_;
+  std::vector<std::unique_ptr<Buffer>> buffers_;
 };
 
 }  // namespace handcast::ipc

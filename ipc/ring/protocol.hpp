@@ -9,13 +9,14 @@
 /// The protocol of a ring, and nothing else: which word is read and written when, in which memory order. It knows no system
 /// call and no message; the payload is touched through the caller's functions. README.md argues each order.
 ///
-/// `Atomics` is RealAtomics in production; an explorer puts its own in. Nothing here needs a destructor.
+/// `Atomics` is RealAtomics in production; the explorer (tests/ipc/explorer) puts its own in. Nothing here needs a destructor, and
+/// no function of it depends on anything but the values its operations gave back.
 namespace handcast::ipc {
 
 inline constexpr int kNoSlot = -1;
 
-/// The writer's half. One thread of one process at a time, by the writer lock.
-template <class Atomics>
+/// The writer's half. One thread of one process at a time, by the writer lock. `Capacity`: the most slots it can serve.
+template <class Atomics, int Capacity = kMaxSlots>
 class WriterCore {
  public:
   explicit WriterCore(const ControlWords<Atomics>& words) : words_(words) {}
@@ -25,38 +26,32 @@ class WriterCore {
     const auto head = Atomics::load(words_.head(), std::memory_order_acquire);
     auto newest = sequence_of(head);
     newest_ = newest != 0 && slot_of_head(head) < words_.slots() ? slot_of_head(head) : kNoSlot;
-    auto last_epoch = Atomics::load(words_.epoch(), std::memory_order_acquire) & kEpochMask;
     for (int slot = 0; slot < words_.slots(); ++slot) {
       const auto state = mine_[slot] = Atomics::load(words_.state(slot), std::memory_order_acquire);
-      if (epoch_of(state) > last_epoch) last_epoch = epoch_of(state);
-      if (!holds_message(state) || sequence_of(state) <= newest) continue;
+      if (!holds_message(state) || !is_later(sequence_of(state), newest)) continue;
       newest = sequence_of(state);
       newest_ = slot;
     }
-    if (newest > sequence_of(head)) Atomics::store(words_.head(), head_word(newest_, newest), std::memory_order_release);
-    epoch_ = (last_epoch + 1) & kEpochMask;
-    Atomics::store(words_.epoch(), epoch_, std::memory_order_release);
+    if (newest != sequence_of(head)) Atomics::store(words_.head(), head_word(newest_, newest), std::memory_order_release);
+    epoch_ = following_epoch(Atomics::load(words_.epoch(), std::memory_order_acquire));
+    Atomics::store(words_.epoch(), epoch_, std::memory_order_release);  // before any state of this epoch
     next_ = following(newest);
     Atomics::wake(words_.head());  // always: the predecessor may have died between its message and its wake-up
   }
 
   /// A slot to write in; kNoSlot where all are leased, on loan or the newest. Wait-free.
   int loan() {
-    auto busy = on_loan_ | leased_slots(std::memory_order_relaxed);  // a hint that spares marking in vain
-    if (newest_ != kNoSlot) busy.set(newest_);                       // readers always find one message
-    for (int slot = pick(busy); slot != kNoSlot; slot = pick(busy)) {
-      const auto before = mine_[slot];
-      Atomics::store(words_.state(slot), before | kWriting, std::memory_order_relaxed);
+    auto taken = on_loan_;
+    if (newest_ != kNoSlot) taken[index(newest_)] = true;  // readers always find one message
+    auto busy = taken | leased_;                           // those that were leased last time probably still are
+    for (int slot = pick(busy); slot != kNoSlot; slot = pick(busy |= leased_)) {
+      mark(slot);
       Atomics::fence(std::memory_order_seq_cst);  // mark before scan (against a reader's lease), mark before payload
-      if (!leased_slots(std::memory_order_acquire).test(slot)) {
-        mine_[slot] = before | kWriting;
-        on_loan_.set(slot);
-        return slot;
-      }
-      Atomics::store(words_.state(slot), before, std::memory_order_release);  // untouched: the old message is valid again
-      busy.set(slot);
+      leased_ = scan_leases();
+      if (!leased_[index(slot)]) return keep(slot);
+      restore(slot);
     }
-    return kNoSlot;
+    return leased_.none() ? kNoSlot : loan_after_marking_all(taken);
   }
 
   /// Makes the message in a loaned slot visible and wakes who waits.
@@ -82,33 +77,63 @@ class WriterCore {
   std::uint64_t next_sequence() const { return next_; }
 
  private:
-  using SlotSet = std::bitset<kMaxSlots>;
+  using SlotSet = std::bitset<Capacity>;
+  static constexpr std::size_t index(int slot) { return static_cast<std::size_t>(slot); }
 
-  /// The most recently freed slot, which the caches still hold; the oldest where history is kept.
-  int pick(const SlotSet& busy) const {
+  /// Readers that go from slot to slot may each time be met in the one that was just marked. So all are marked before one scan: of
+  /// n leases it sees at most n slots, so that one of n + 1 candidates is free, however the readers move.
+  int loan_after_marking_all(const SlotSet& taken) {
+    for (int slot = 0; slot < words_.slots(); ++slot)
+      if (!taken[index(slot)]) mark(slot);
+    Atomics::fence(std::memory_order_seq_cst);  // as in loan()
+    leased_ = scan_leases();
+    const int free = pick(taken | leased_);
+    for (int slot = 0; slot < words_.slots(); ++slot)
+      if (!taken[index(slot)] && slot != free) restore(slot);
+    return free == kNoSlot ? kNoSlot : keep(free);
+  }
+
+  void mark(int slot) { Atomics::store(words_.state(slot), mine_[slot] | kWriting, std::memory_order_relaxed); }
+  /// The payload is untouched: the old message is valid again.
+  void restore(int slot) { Atomics::store(words_.state(slot), mine_[slot], std::memory_order_release); }
+  int keep(int marked) {
+    mine_[marked] |= kWriting;
+    on_loan_[index(marked)] = true;
+    return marked;
+  }
+
+  /// Where history is kept the slots go round; else the most recently freed one, which the caches still hold.
+  int pick(const SlotSet& busy) const { return words_.keep_history() ? pick_next(busy) : pick_warmest(busy); }
+
+  int pick_next(const SlotSet& busy) const {
+    for (int step = 1; step <= words_.slots(); ++step)
+      if (const int slot = (newest_ + step) % words_.slots(); !busy[index(slot)]) return slot;
+    return kNoSlot;
+  }
+
+  int pick_warmest(const SlotSet& busy) const {
     int best = kNoSlot;
-    for (int slot = 0; slot < words_.slots(); ++slot) {
-      if (busy.test(slot)) continue;
-      const bool older = best != kNoSlot && sequence_of(mine_[slot]) < sequence_of(mine_[best]);
-      const bool newer = best != kNoSlot && sequence_of(mine_[slot]) > sequence_of(mine_[best]);
-      if (best == kNoSlot || (words_.keep_history() ? older : newer)) best = slot;
-    }
+    for (int slot = 0; slot < words_.slots(); ++slot)
+      if (!busy[index(slot)] && (best == kNoSlot || is_later(sequence_of(mine_[slot]), sequence_of(mine_[best])))) best = slot;
     return best;
   }
 
-  SlotSet leased_slots(std::memory_order order) const {
+  /// Acquires what the end of each lease released: the reader's last look at the payload.
+  SlotSet scan_leases() const {
     SlotSet leased;
-    for (int row = 0; row < words_.rows(); ++row)
-      for (int index = 0; index < kLeasesPerRow; ++index) {
-        const int slot = slot_of_lease(Atomics::load(words_.lease(row, index), order));
-        if (slot >= 0 && slot < words_.slots()) leased.set(slot);
+    const auto words = words_;  // kept in registers, which a member is not across an acquire
+    for (int row = 0; row < words.rows(); ++row)
+      for (int which = 0; which < kLeasesPerRow; ++which) {
+        const auto lease = Atomics::load(words.lease(row, which), std::memory_order_acquire);
+        if (is_leased(lease) && slot_of_lease(lease) < words.slots()) leased[index(slot_of_lease(lease))] = true;
       }
     return leased;
   }
 
   bool anyone_waits() const {
-    for (int row = 0; row < words_.rows(); ++row)
-      if (Atomics::load(words_.wait(row), std::memory_order_relaxed) & kWaiting) return true;
+    const auto words = words_;
+    for (int row = 0; row < words.rows(); ++row)
+      if (Atomics::load(words.wait(row), std::memory_order_relaxed) & kWaiting) return true;
     return false;
   }
 
@@ -117,13 +142,14 @@ class WriterCore {
   std::uint64_t next_ = 1;
   int newest_ = kNoSlot;
   SlotSet on_loan_;
-  std::array<std::uint64_t, kMaxSlots> mine_{};  ///< the state words as this writer left them: nobody else writes them
+  SlotSet leased_;                              ///< as of the last scan: a hint
+  std::array<std::uint64_t, Capacity> mine_{};  ///< the state words as this writer left them: nobody else writes them
 };
 
 enum class Outcome {
   taken,      ///< a message was copied whole
   nothing,    ///< there is none (newer than the last one seen)
-  contended,  ///< the writer overwrote each one while it was copied: try again
+  contended,  ///< the writer overwrote each one while it was being taken: try again
   corrupt,    ///< the words make no sense: something else writes to this memory
 };
 
@@ -133,8 +159,17 @@ struct Taken {
   std::uint64_t epoch = 0;
 };
 
-/// A reader's half: one thread, one row. `Copy` is called as copy(slot) and must read the payload with relaxed atomic
-/// loads; what it has read is worth something only after Outcome::taken.
+/// A message that is read where it lies. Its slot is not written until it is released.
+struct Lease {
+  int index = 0;  ///< which of the row's lease words
+  int slot = kNoSlot;
+  std::uint64_t word = 0;  ///< what the lease word was set to
+};
+
+/// A reader's half: one thread, one row (release() alone may be called from any thread). The verbs find a message; what
+/// happens to it is the caller's `take`, one of
+///   copying(copy)    copy(slot) reads the payload with relaxed atomic loads; worth something only after Outcome::taken
+///   leasing(lease)   leaves the payload where it is; `lease.index` says with which word, which must be free
 template <class Atomics>
 class ReaderCore {
  public:
@@ -145,7 +180,7 @@ class ReaderCore {
     auto first = sequence_of(Atomics::load(words_.head(), std::memory_order_acquire));
     for (int slot = 0; slot < words_.slots() && words_.keep_history(); ++slot) {
       const auto state = Atomics::load(words_.state(slot), std::memory_order_acquire);
-      if (holds_message(state) && sequence_of(state) < first) first = sequence_of(state);
+      if (holds_message(state) && is_later(first, sequence_of(state))) first = sequence_of(state);
     }
     seen_ = first == 0 ? 0 : first - 1;
   }
@@ -153,20 +188,28 @@ class ReaderCore {
   bool something_new() const { return sequence_of(Atomics::load(words_.head(), std::memory_order_relaxed)) != seen_; }
 
   template <class Copy>
-  Outcome latest(Copy&& copy, Taken& taken) {
+  auto copying(Copy& copy) const {
+    return [this, &copy](int slot, std::uint64_t sequence, Taken& taken) { return copy_checked(slot, sequence, copy, taken); };
+  }
+  auto leasing(Lease& lease) const {
+    return [this, &lease](int slot, std::uint64_t sequence, Taken& taken) { return lease_checked(slot, sequence, lease, taken); };
+  }
+
+  template <class Take>
+  Outcome latest(const Take& take, Taken& taken) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const auto head = Atomics::load(words_.head(), std::memory_order_acquire);
       if (const auto outcome = judge(head); outcome != Outcome::taken) return outcome;
       if (slot_of_head(head) >= words_.slots()) return Outcome::corrupt;
-      if (copy_checked(slot_of_head(head), sequence_of(head), copy, taken)) return advance(taken);
+      if (take(slot_of_head(head), sequence_of(head), taken)) return advance(taken);
     }
     return Outcome::contended;
   }
 
   /// The message after the last one seen; where that is gone, the oldest one after it that is still there.
-  template <class Copy>
-  Outcome next(Copy&& copy, Taken& taken) {
-    auto wanted = seen_ + 1;
+  template <class Take>
+  Outcome next(const Take& take, Taken& taken) {
+    auto wanted = following(seen_);
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const auto head = Atomics::load(words_.head(), std::memory_order_acquire);
       if (const auto outcome = judge(head); outcome != Outcome::taken) return outcome;
@@ -174,8 +217,8 @@ class ReaderCore {
       for (int slot = 0; slot < words_.slots(); ++slot) {
         const auto state = Atomics::load(words_.state(slot), std::memory_order_acquire);
         if (!holds_message(state)) continue;
-        if (sequence_of(state) == wanted && copy_checked(slot, wanted, copy, taken)) return advance(taken);
-        if (sequence_of(state) > wanted && sequence_of(state) < oldest) oldest = sequence_of(state);
+        if (sequence_of(state) == wanted && take(slot, wanted, taken)) return advance(taken);
+        if (is_later(sequence_of(state), wanted) && is_later(oldest, sequence_of(state))) oldest = sequence_of(state);
       }
       wanted = oldest;
     }
@@ -183,8 +226,8 @@ class ReaderCore {
   }
 
   /// The message whose origin, read by origin_of(slot) with a relaxed atomic load, is nearest to `wanted_ns`.
-  template <class Origin, class Copy>
-  Outcome nearest(std::int64_t wanted_ns, Origin&& origin_of, Copy&& copy, Taken& taken) {
+  template <class Origin, class Take>
+  Outcome nearest(std::int64_t wanted_ns, const Origin& origin_of, const Take& take, Taken& taken) const {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       if (sequence_of(Atomics::load(words_.head(), std::memory_order_acquire)) == 0) return Outcome::nothing;
       int best = kNoSlot;
@@ -195,13 +238,27 @@ class ReaderCore {
         const auto distance_ns = distance(origin_of(slot), wanted_ns);
         if (!unchanged(slot, state)) continue;
         if (best != kNoSlot && distance_ns > best_distance_ns) continue;
-        if (best != kNoSlot && distance_ns == best_distance_ns && sequence_of(state) < best_sequence) continue;
+        if (best != kNoSlot && distance_ns == best_distance_ns && is_later(best_sequence, sequence_of(state))) continue;
         best = slot, best_sequence = sequence_of(state), best_distance_ns = distance_ns;
       }
-      if (best != kNoSlot && copy_checked(best, best_sequence, copy, taken)) return Outcome::taken;
+      if (best != kNoSlot && take(best, best_sequence, taken)) return Outcome::taken;
     }
     return Outcome::contended;
   }
+
+  /// False where the lease was taken away, which only happens to a process that was taken for dead: what was read is worth nothing.
+  bool release(const Lease& lease) const {
+    return Atomics::compare_exchange(words_.lease(row_, lease.index), lease.word, free_word(generation_), std::memory_order_release);
+  }
+  /// A lease word that is free; -1 where all are in use.
+  int free_lease() const {
+    for (int index = 0; index < kLeasesPerRow; ++index)
+      if (Atomics::load(words_.lease(row_, index), std::memory_order_relaxed) == free_word(generation_)) return index;
+    return -1;
+  }
+
+  /// Counts everything up to now as seen.
+  void catch_up() { seen_ = sequence_of(Atomics::load(words_.head(), std::memory_order_acquire)); }
 
   /// Sleeps until something new is there or `until_ns` is reached; may return early. The writer is asked to wake us.
   void wait(std::int64_t until_ns) {
@@ -220,6 +277,7 @@ class ReaderCore {
   }
 
   std::uint64_t skipped() const { return skipped_; }
+  std::uint64_t seen() const { return seen_; }
 
  private:
   static constexpr int kAttempts = 8;
@@ -232,7 +290,7 @@ class ReaderCore {
   /// Outcome::taken: there is something to take. A head that went back is reported once, then followed.
   Outcome judge(std::uint64_t head) {
     if (sequence_of(head) == seen_) return Outcome::nothing;
-    if (sequence_of(head) > seen_) return Outcome::taken;
+    if (is_later(sequence_of(head), seen_)) return Outcome::taken;
     seen_ = sequence_of(head);
     return Outcome::corrupt;
   }
@@ -247,6 +305,21 @@ class ReaderCore {
     return true;
   }
 
+  bool lease_checked(int slot, std::uint64_t sequence, Lease& lease, Taken& taken) const {
+    auto& word = words_.lease(row_, lease.index);
+    lease.slot = slot;
+    lease.word = lease_word(generation_, slot, sequence);
+    if (!Atomics::compare_exchange(word, free_word(generation_), lease.word, std::memory_order_relaxed)) return false;
+    Atomics::fence(std::memory_order_seq_cst);  // lease before state, against loan()'s mark before scan
+    const auto state = Atomics::load(words_.state(slot), std::memory_order_acquire);
+    if (holds_message(state) && sequence_of(state) == sequence) {
+      taken = {sequence, epoch_of(state)};
+      return true;
+    }
+    release(lease);
+    return false;
+  }
+
   /// Whether what was read from the slot since its state was read belongs to that state: else it may be torn.
   bool unchanged(int slot, std::uint64_t state) const {
     Atomics::fence(std::memory_order_acquire);  // payload before the second look at the state
@@ -254,7 +327,7 @@ class ReaderCore {
   }
 
   Outcome advance(const Taken& taken) {
-    skipped_ += taken.sequence - seen_ - 1;
+    skipped_ += given_between(seen_, taken.sequence) - 1;
     seen_ = taken.sequence;
     return Outcome::taken;
   }
@@ -266,15 +339,19 @@ class ReaderCore {
   std::uint64_t skipped_ = 0;
 };
 
-/// Takes a row whose owner word was seen to be `before` (free, or of a process that is gone) for the process in `after`, and
-/// clears what the predecessor left. False: somebody else was faster.
+/// Gives a row whose owner word was seen to be `before` (free, or of a process that is gone) to `after`, of a later generation:
+/// a process that takes it, or free_word() where a dead one's leases are only to be cleared. False: somebody else was faster.
+///
+/// A word is cleared only while it is of an earlier generation, so a recoverer that stops half way is made good by the next
+/// one, and one that is slow cannot touch what the row's next owner has begun.
 template <class Atomics>
 bool claim_row(const ControlWords<Atomics>& words, int row, std::uint64_t before, std::uint64_t after) {
   if (!Atomics::compare_exchange(words.owner(row), before, after, std::memory_order_acq_rel)) return false;
+  const auto generation = generation_of(after);
   const auto clear = [&](typename Atomics::Word& word) {
-    const auto free = free_word(generation_of(after));
-    for (auto left = Atomics::load(word, std::memory_order_relaxed); left != free; left = Atomics::load(word, std::memory_order_relaxed))
-      if (Atomics::compare_exchange(word, left, free, std::memory_order_acq_rel)) break;
+    for (auto left = Atomics::load(word, std::memory_order_relaxed); is_older(left, generation);
+         left = Atomics::load(word, std::memory_order_relaxed))
+      if (Atomics::compare_exchange(word, left, free_word(generation), std::memory_order_acq_rel)) break;
   };
   clear(words.wait(row));
   for (int index = 0; index < kLeasesPerRow; ++index) clear(words.lease(row, index));

@@ -10,30 +10,26 @@
 
 namespace handcast::ipc {
 
-/// One message as a reader holds it. Today a private copy, later a lease on the slot: either way valid and unchanging as
-/// long as the Sample lives. Keep few of them at a time.
+/// One message as a reader holds it, valid and unchanging as long as the Sample lives, also after its Reader. A message with a
+/// tail (an image) is leased: read where it lies, while the writer uses other slots; keep at most two of them at a time, more
+/// are copied. A small message is copied. A sample may die on another thread than its reader's.
+///
+/// Its size was checked when it was taken. A leased one still lies in shared memory: no reader or writer that goes through this
+/// library can change it meanwhile, but who does not trust the writer's process asks for Hold::copy.
 template <class T>
 class Sample {
  public:
-  const T& operator*() const { return *message_; }
-  const T* operator->() const { return message_; }
-  std::uint64_t sequence() const { return sequence_; }
-  std::uint64_t epoch() const { return epoch_; }  ///< goes up by one each time the writer was replaced
-
-  Sample(Sample&&) noexcept = default;
-  Sample& operator=(Sample&&) noexcept = default;
+  const T& operator*() const { return *reinterpret_cast<const T*>(held_.bytes()); }
+  const T* operator->() const { return &**this; }
+  std::uint64_t sequence() const { return held_.taken().sequence; }
+  std::uint64_t epoch() const { return held_.taken().epoch; }  ///< another one each time the writer was replaced
+  bool leased() const { return held_.leased(); }
 
  private:
   template <class>
   friend class Reader;
-  explicit Sample(RingReader::Message&& message)
-      : memory_(std::move(message.memory)),
-        message_(reinterpret_cast<const T*>(memory_.get())),
-        sequence_(message.sequence),
-        epoch_(message.epoch) {}
-  std::shared_ptr<std::byte> memory_;  ///< goes back to the reader's pool
-  const T* message_ = nullptr;
-  std::uint64_t sequence_ = 0, epoch_ = 0;
+  explicit Sample(Held&& held) : held_(std::move(held)) {}
+  Held held_;
 };
 
 /// A reader of a ring, in its own process; it cannot slow the writer down. One thread. The first message it gets is the
@@ -41,9 +37,12 @@ class Sample {
 template <class T>
 class Reader {
  public:
-  /// Errors: bad_data (the ring is of another type), unavailable (all reader rows are taken).
-  static Result<Reader> attach(Segment segment, Wait wait = Wait::futex) {
-    auto ring = RingReader::attach(std::move(segment), shape_of<T>(), wait);
+  static constexpr Hold kHold = HasTail<T> ? Hold::lease : Hold::copy;
+
+  /// The messages become read-only in this mapping. Errors: bad_data (the ring is of another type), unavailable (all reader
+  /// rows are taken, no descriptor, no thread).
+  static Result<Reader> attach(Segment segment, Wait wait = Wait::futex, Hold hold = kHold) {
+    auto ring = RingReader::attach(std::move(segment), shape_of<T>(), wait, hold);
     if (!ring) return tl::make_unexpected(std::move(ring.error()));
     return Reader(std::move(*ring));
   }
@@ -57,14 +56,20 @@ class Reader {
   /// has been seen. Errors: timeout (the ring is empty), bad_data.
   Result<Sample<T>> at(std::int64_t origin_ns) { return sample(ring_->at(origin_ns)); }
 
+  /// With Wait::eventfd: readable when there may be something new; next() and latest() make it unreadable again when they find
+  /// nothing. Put it into epoll, then call next(Deadline::now()) until it times out. Else -1.
+  int event_fd() const { return ring_->event_fd(); }
+
   std::uint64_t received() const { return ring_->received(); }
   std::uint64_t skipped() const { return ring_->skipped(); }  ///< never seen by next()/latest(): overwritten or passed over
+  std::uint64_t copied() const { return ring_->copied(); }    ///< with Hold::lease: for want of a lease
+  std::uint64_t revoked() const { return ring_->revoked(); }  ///< leases taken away because this process was taken for dead
 
  private:
   explicit Reader(std::unique_ptr<RingReader> ring) : ring_(std::move(ring)) {}
-  static Result<Sample<T>> sample(Result<RingReader::Message>&& message) {
-    if (!message) return tl::make_unexpected(std::move(message.error()));
-    return Sample<T>(std::move(*message));
+  static Result<Sample<T>> sample(Result<Held>&& held) {
+    if (!held) return tl::make_unexpected(std::move(held.error()));
+    return Sample<T>(std::move(*held));
   }
   std::unique_ptr<RingReader> ring_;
 };

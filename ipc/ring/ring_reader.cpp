@@ -1,13 +1,12 @@
 #include "ipc/ring/ring_reader.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "ipc/ring/control_words.hpp"
 #include "ipc/ring/copy.hpp"
-#include "ipc/ring/row_owner.hpp"
 
 namespace handcast::ipc {
 namespace {
@@ -23,126 +22,168 @@ void pause() {
 #endif
 }
 
-struct Row {
-  int number = kNoSlot;
-  std::uint64_t owner = 0;
-};
-
-/// A row for this process: a free one, or one whose owner died without giving it back.
-Row claim_any_row(const ControlWords<RealAtomics>& words) {
-  for (int row = 0; row < words.rows(); ++row) {
-    const auto before = RealAtomics::load(words.owner(row), std::memory_order_acquire);
-    if (!owner_is_gone(before)) continue;
-    const auto after = owner_word_of_this_process(generation_of(before) + 1);
-    if (claim_row(words, row, before, after)) return {row, after};
-  }
-  return {};
+/// What a bridge's thread does over and over: the futex wait, with a place of its own in the stream.
+std::function<bool()> wait_for_news(const std::shared_ptr<Seat>& seat) {
+  return [core = seat->another_core()]() mutable {
+    core.wait(now_ns() + kSlice_ns);
+    if (!core.something_new()) return false;
+    core.catch_up();  // before the descriptor is made readable: what comes after this is told of next time
+    return true;
+  };
 }
+
+void wait_readable(int fd, std::int64_t until_ns) {
+  const auto left_ns = std::max<std::int64_t>(until_ns - now_ns(), 0);
+  const timespec left{left_ns / 1'000'000'000, left_ns % 1'000'000'000};
+  pollfd wanted{fd, POLLIN, 0};
+  ::ppoll(&wanted, 1, &left, nullptr);
+}
+
+/// `now_ns` - `origin_ns` of a message that may say anything.
+std::int64_t age(std::int64_t origin_ns, std::int64_t time_ns) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(origin_ns));
+}
+
+const msg::Header& header_of(const Held& held) { return *reinterpret_cast<const msg::Header*>(held.bytes()); }
 
 }  // namespace
 
-RingReader::RingReader(Segment segment, const MessageShape& shape, Wait wait, int row, std::uint64_t owner)
-    : segment_(std::move(segment)),
-      shape_(shape),
-      wait_(wait),
-      row_(row),
-      owner_(owner),
-      core_(control_words_of(segment_), row, generation_of(owner)),
-      pool_(segment_.payload_bytes()) {
-  core_.start();
-}
+RingReader::RingReader(std::shared_ptr<Seat> seat, const MessageShape& shape, Wait wait, Hold hold)
+    : seat_(std::move(seat)), shape_(shape), wait_(wait), hold_(hold) {}
 
-Result<std::unique_ptr<RingReader>> RingReader::attach(Segment segment, const MessageShape& shape, Wait wait) {
+Result<std::unique_ptr<RingReader>> RingReader::attach(Segment segment, const MessageShape& shape, Wait wait, Hold hold) {
   if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits) return tl::make_unexpected(fits.error());
-  const auto row = claim_any_row(control_words_of(segment));
-  if (row.number == kNoSlot)
-    return fail(Errc::unavailable, fmt::format("ring '{}': all of its {} reader rows are taken", segment.stream(), kReaderRows));
-  return std::unique_ptr<RingReader>(new RingReader(std::move(segment), shape, wait, row.number, row.owner));
+  auto seat = Seat::take(std::move(segment));
+  if (!seat) return tl::make_unexpected(seat.error());
+  std::unique_ptr<RingReader> reader(new RingReader(std::move(*seat), shape, wait, hold));
+  if (wait != Wait::eventfd) return reader;
+  auto bridge = WakeBridge::start(wait_for_news(reader->seat_));
+  if (!bridge) return fail_in(fmt::format("ring '{}'", reader->seat_->segment().stream()), std::move(bridge.error()));
+  reader->bridge_ = std::move(*bridge);
+  return reader;
 }
 
-RingReader::~RingReader() { release_row(control_words_of(segment_), row_, owner_); }
-
-template <class Take>
-Result<RingReader::Message> RingReader::take_until(Deadline deadline, Take take) {
-  auto memory = pool_.take();
-  std::size_t claimed_bytes = 0;
-  const auto copy = [&](int slot) { claimed_bytes = copy_out(slot, memory.get()); };
-  for (Taken taken;;) {
-    const auto outcome = take(copy, taken);
-    if (outcome == Outcome::corrupt) return fail_here(Errc::bad_data, "its words make no sense: something else writes to its memory");
-    if (outcome == Outcome::taken) {
-      auto message = checked(std::move(memory), taken, claimed_bytes);
-      ++(message ? received_ : unusable_);
-      if (message) rhythm_.heard(taken.sequence, reinterpret_cast<const msg::Header*>(message->memory.get())->published_ns);
-      return message;
-    }
-    if (deadline.passed()) return fail_here(Errc::timeout, "nothing new before the deadline");
-    if (outcome == Outcome::nothing) wait(deadline);
-  }
+Result<Held> RingReader::next(Deadline deadline) {
+  return take_until(deadline, [this](const auto& take, Taken& taken) { return seat_->core().next(take, taken); });
 }
 
-Result<RingReader::Message> RingReader::next(Deadline deadline) {
-  return take_until(deadline, [this](const auto& copy, Taken& taken) { return core_.next(copy, taken); });
+Result<Held> RingReader::latest(Deadline deadline) {
+  return take_until(deadline, [this](const auto& take, Taken& taken) { return seat_->core().latest(take, taken); });
 }
 
-Result<RingReader::Message> RingReader::latest(Deadline deadline) {
-  return take_until(deadline, [this](const auto& copy, Taken& taken) { return core_.latest(copy, taken); });
-}
-
-Result<RingReader::Message> RingReader::at(std::int64_t origin_ns) {
-  auto memory = pool_.take();
-  std::size_t claimed_bytes = 0;
-  Taken taken;
-  const auto copy = [&](int slot) { claimed_bytes = copy_out(slot, memory.get()); };
+Result<Held> RingReader::at(std::int64_t origin_ns) {
   const auto origin_of = [this](int slot) {
-    return __atomic_load_n(&reinterpret_cast<const msg::Header*>(segment_.slot_at(slot))->origin_ns, __ATOMIC_RELAXED);
+    return __atomic_load_n(&reinterpret_cast<const msg::Header*>(seat_->segment().slot_at(slot))->origin_ns, __ATOMIC_RELAXED);
   };
-  switch (core_.nearest(origin_ns, origin_of, copy, taken)) {
-    case Outcome::taken:
-      return checked(std::move(memory), taken, claimed_bytes);
-    case Outcome::nothing:
-      return fail_here(Errc::timeout, "it is empty");
-    default:
-      return fail_here(Errc::timeout, "its messages change faster than they can be read");
+  const auto nearest = [&](const auto& take, Taken& taken) { return seat_->core().nearest(origin_ns, origin_of, take, taken); };
+  Held held;
+  const auto outcome = attempt(nearest, held);
+  if (!outcome) return tl::make_unexpected(outcome.error());
+  if (*outcome == Outcome::taken) return checked(std::move(held));
+  return fail_here(Errc::timeout, *outcome == Outcome::nothing ? "it is empty" : "its messages change faster than they can be read");
+}
+
+template <class Verb>
+Result<Held> RingReader::take_until(Deadline deadline, const Verb& verb) {
+  for (Held held;;) {
+    const auto outcome = look(verb, held);
+    if (!outcome) return tl::make_unexpected(outcome.error());
+    if (*outcome == Outcome::taken) return counted(std::move(held));
+    if (*outcome == Outcome::corrupt) return fail_here(Errc::bad_data, "its words make no sense: something else writes to its memory");
+    if (deadline.passed()) return fail_here(Errc::timeout, "nothing new before the deadline");
+    if (*outcome == Outcome::nothing) wait(deadline);
   }
 }
 
-/// Copies what the message says it uses, and never more than the slot has. Returns what it says.
-std::size_t RingReader::copy_out(int slot, std::byte* to) const {
-  const auto* from = segment_.slot_at(slot);
+/// With a bridge, what has just been read may have been told of, or not: the descriptor is cleared before the look that
+/// finds nothing.
+template <class Verb>
+Result<Outcome> RingReader::look(const Verb& verb, Held& held) {
+  auto outcome = attempt(verb, held);
+  if (!bridge_ || !outcome || *outcome != Outcome::nothing) return outcome;
+  bridge_->clear();
+  return attempt(verb, held);
+}
+
+template <class Verb>
+Result<Outcome> RingReader::attempt(const Verb& verb, Held& held) {
+  Lease lease{hold_ == Hold::lease ? seat_->core().free_lease() : -1};
+  if (lease.index < 0) return attempt_copy(verb, held);
+  Taken taken;
+  const auto outcome = verb(seat_->core().leasing(lease), taken);
+  if (outcome == Outcome::taken) held = Held(seat_, lease, taken);
+  return outcome;
+}
+
+template <class Verb>
+Result<Outcome> RingReader::attempt_copy(const Verb& verb, Held& held) {
+  auto* buffer = seat_->buffers().take();
+  if (!buffer) return fail_here(Errc::unavailable, "no memory for a copy of its message");
+  Taken taken;
+  const auto copy = [&](int slot) { copy_out(slot, buffer->data()); };
+  const auto outcome = verb(seat_->core().copying(copy), taken);
+  if (outcome != Outcome::taken) {
+    buffer->give_back();
+    return outcome;
+  }
+  if (hold_ == Hold::lease) seat_->tally().copied.store(++copied_, std::memory_order_relaxed);
+  held = Held(seat_, *buffer, taken);
+  return outcome;
+}
+
+/// Copies what the message says it uses, and never more than the slot has.
+void RingReader::copy_out(int slot, std::byte* to) const {
+  const auto* from = seat_->segment().slot_at(slot);
   const auto fixed = round_up(shape_.bytes, sizeof(PayloadWord));
   copy_from_slot(to, from, fixed);
-  const auto claimed = shape_.used_bytes(to);
-  const auto used = std::min(claimed, segment_.payload_bytes());
+  const auto used = std::min(shape_.used_bytes(to), seat_->segment().payload_bytes());
   if (used > fixed) copy_from_slot(to + fixed, from + fixed, used - fixed);
-  return claimed;
 }
 
-Result<RingReader::Message> RingReader::checked(std::shared_ptr<std::byte> memory, const Taken& taken, std::size_t claimed_bytes) const {
-  const bool possible = claimed_bytes >= shape_.bytes && claimed_bytes <= segment_.payload_bytes();
-  if (possible) return Message{std::move(memory), taken.sequence, taken.epoch};
-  return fail_here(Errc::bad_data, fmt::format("message {} says it has {} bytes, its slot has {}", taken.sequence, claimed_bytes,
-                                               segment_.payload_bytes()));
+Result<Held> RingReader::checked(Held&& held) const {
+  const auto claimed = shape_.used_bytes(held.bytes());
+  const auto room = seat_->segment().payload_bytes();
+  if (claimed >= shape_.bytes && claimed <= room) return std::move(held);
+  return fail_here(Errc::bad_data, fmt::format("message {} says it has {} bytes, its slot has {}", held.taken().sequence, claimed, room));
+}
+
+Result<Held> RingReader::counted(Held&& held) {
+  const auto taken = held.taken();
+  auto message = checked(std::move(held));
+  auto& tally = seat_->tally();
+  tally.skipped.store(seat_->core().skipped(), std::memory_order_relaxed);
+  tally.seen.store(taken.sequence, std::memory_order_relaxed);
+  if (!message) {
+    tally.unusable.store(++unusable_, std::memory_order_relaxed);
+    return message;
+  }
+  const auto& header = header_of(*message);
+  tally.received.store(++received_, std::memory_order_relaxed);
+  tally.age_ns.store(age(header.origin_ns, now_ns()), std::memory_order_relaxed);
+  rhythm_.heard(taken.sequence, header.published_ns);
+  return message;
 }
 
 void RingReader::wait(Deadline deadline) {
   if (wait_ == Wait::spin) return spin(deadline.time_ns());
+  const auto slice_end_ns = std::min(deadline.time_ns(), now_ns() + kSlice_ns);
+  if (bridge_) return wait_readable(bridge_->fd(), slice_end_ns);
   const auto window = wait_ == Wait::predictive ? rhythm_.window() : std::nullopt;
   if (window && now_ns() < window->until_ns) {
-    const auto from_ns = std::min({window->from_ns, deadline.time_ns(), now_ns() + kSlice_ns});
-    while (!core_.something_new() && now_ns() < from_ns) core_.doze(from_ns);
+    const auto from_ns = std::min(window->from_ns, slice_end_ns);
+    while (!seat_->core().something_new() && now_ns() < from_ns) seat_->core().doze(from_ns);
     if (from_ns == window->from_ns) spin(std::min(window->until_ns, deadline.time_ns()));
     return;
   }
-  core_.wait(std::min(deadline.time_ns(), now_ns() + kSlice_ns));
+  seat_->core().wait(slice_end_ns);
 }
 
 void RingReader::spin(std::int64_t until_ns) const {
-  while (!core_.something_new() && now_ns() < until_ns) pause();
+  while (!seat_->core().something_new() && now_ns() < until_ns) pause();
 }
 
 tl::unexpected<Error> RingReader::fail_here(Errc code, std::string_view what) const {
-  return fail(code, fmt::format("ring '{}': {}", segment_.stream(), what));
+  return fail(code, fmt::format("ring '{}': {}", seat_->segment().stream(), what));
 }
 
 }  // namespace handcast::ipc

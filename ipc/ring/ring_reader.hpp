@@ -5,63 +5,65 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
-#include "ipc/ring/buffer_pool.hpp"
+#include "ipc/ring/held.hpp"
 #include "ipc/ring/message.hpp"
-#include "ipc/ring/protocol.hpp"
-#include "ipc/ring/real_atomics.hpp"
 #include "ipc/ring/rhythm.hpp"
+#include "ipc/ring/seat.hpp"
+#include "ipc/ring/wait.hpp"
+#include "ipc/ring/wake_bridge.hpp"
 #include "ipc/shm/segment.hpp"
 
 namespace handcast::ipc {
 
-/// How a reader waits for the next message.
-enum class Wait {
-  spin,        ///< seen within 1 us, for a whole core
-  predictive,  ///< sleeps until shortly before a regular stream's next message is due: nearly as fast, for some 5 % of a core
-  futex,       ///< is woken: 30-60 us
+/// What a sample is.
+enum class Hold {
+  copy,   ///< a private copy: right for small messages
+  lease,  ///< the message where it lies, which the writer leaves alone meanwhile; a copy where all leases of the row are out
 };
 
 /// What every Reader<T> is made of: the protocol on a mapped segment, messages as bytes.
 class RingReader {
  public:
-  static Result<std::unique_ptr<RingReader>> attach(Segment segment, const MessageShape& shape, Wait wait);
-  ~RingReader();
-  RingReader(const RingReader&) = delete;
-  RingReader& operator=(const RingReader&) = delete;
+  static Result<std::unique_ptr<RingReader>> attach(Segment segment, const MessageShape& shape, Wait wait, Hold hold);
 
-  struct Message {
-    std::shared_ptr<std::byte> memory;
-    std::uint64_t sequence = 0;
-    std::uint64_t epoch = 0;
-  };
-  Result<Message> next(Deadline deadline);
-  Result<Message> latest(Deadline deadline);
-  Result<Message> at(std::int64_t origin_ns);
+  Result<Held> next(Deadline deadline);
+  Result<Held> latest(Deadline deadline);
+  Result<Held> at(std::int64_t origin_ns);
+
+  int event_fd() const { return bridge_ ? bridge_->fd() : -1; }
 
   std::uint64_t received() const { return received_; }
-  std::uint64_t skipped() const { return core_.skipped() + unusable_; }
+  std::uint64_t skipped() const { return seat_->core().skipped() + unusable_; }
+  std::uint64_t copied() const { return copied_; }
+  std::uint64_t revoked() const { return seat_->revoked(); }
 
  private:
-  RingReader(Segment segment, const MessageShape& shape, Wait wait, int row, std::uint64_t owner);
+  RingReader(std::shared_ptr<Seat> seat, const MessageShape& shape, Wait wait, Hold hold);
 
-  template <class Take>
-  Result<Message> take_until(Deadline deadline, Take take);
-  std::size_t copy_out(int slot, std::byte* to) const;
-  Result<Message> checked(std::shared_ptr<std::byte> memory, const Taken& taken, std::size_t claimed_bytes) const;
+  template <class Verb>
+  Result<Held> take_until(Deadline deadline, const Verb& verb);
+  template <class Verb>
+  Result<Outcome> look(const Verb& verb, Held& held);
+  template <class Verb>
+  Result<Outcome> attempt(const Verb& verb, Held& held);
+  template <class Verb>
+  Result<Outcome> attempt_copy(const Verb& verb, Held& held);
+  void copy_out(int slot, std::byte* to) const;
+  Result<Held> checked(Held&& held) const;
+  Result<Held> counted(Held&& held);
   void wait(Deadline deadline);
   void spin(std::int64_t until_ns) const;
   tl::unexpected<Error> fail_here(Errc code, std::string_view what) const;
 
-  Segment segment_;
+  std::shared_ptr<Seat> seat_;
   MessageShape shape_;
   Wait wait_;
-  int row_;
-  std::uint64_t owner_;
-  ReaderCore<RealAtomics> core_;
-  BufferPool pool_;
+  Hold hold_;
   Rhythm rhythm_;
   std::uint64_t received_ = 0;
   std::uint64_t unusable_ = 0;
+  std::uint64_t copied_ = 0;
+  std::unique_ptr<WakeBridge> bridge_;  ///< with Wait::eventfd. Its thread uses the seat, so it ends first
 };
 
 }  // namespace handcast::ipc

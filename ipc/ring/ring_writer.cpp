@@ -10,9 +10,13 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/ring/control_words.hpp"
 #include "ipc/ring/copy.hpp"
+#include "ipc/ring/row_owner.hpp"
 
 namespace handcast::ipc {
 namespace {
+
+/// Asking the kernel about the readers takes some 10 us each: too long for every message of a ring whose readers hold on.
+constexpr std::int64_t kBetweenSweeps_ns = 100'000'000;
 
 /// OFD locks belong to an open file description, and an inherited descriptor shares its description with every other
 /// process: so the file is opened anew. The kernel releases the lock when the process is gone, however it died.
@@ -37,41 +41,51 @@ void stamp(std::byte* message, std::int64_t published_ns) {
 }  // namespace
 
 RingWriter::RingWriter(Segment segment, UniqueFd lock)
-    : segment_(std::move(segment)), lock_(std::move(lock)), core_(control_words_of(segment_)) {
+    : segment_(std::move(segment)),
+      lock_(std::move(lock)),
+      core_(control_words_of(segment_)),
+      slots_(segment_.slot_at(0)),
+      stride_bytes_(static_cast<std::size_t>(segment_.slot_at(1) - segment_.slot_at(0))),
+      tally_(writer_tally(segment_)),
+      published_before_(tally_.published.load(std::memory_order_relaxed)),
+      dropped_before_(tally_.dropped.load(std::memory_order_relaxed)) {
   core_.attach();
 }
 
 Result<std::unique_ptr<RingWriter>> RingWriter::attach(Segment segment, const MessageShape& shape) {
   if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits) return tl::make_unexpected(fits.error());
+  if (auto restricted = segment.restrict_to(Access::write); !restricted) return tl::make_unexpected(restricted.error());
   auto lock = lock_for_writing(segment);
   if (!lock) return tl::make_unexpected(lock.error());
   return std::unique_ptr<RingWriter>(new RingWriter(std::move(segment), std::move(*lock)));
 }
 
-std::byte* RingWriter::loan() {
+int RingWriter::loan() {
   const int slot = core_.loan();
-  if (slot == kNoSlot) ++dropped_;
-  return slot == kNoSlot ? nullptr : segment_.slot_at(slot);
+  return slot != kNoSlot ? slot : loan_after_sweep();
 }
 
-void RingWriter::publish(std::byte* loaned) {
-  stamp(loaned, now_ns());
-  core_.publish(slot_of(loaned));
-  ++published_;
+int RingWriter::loan_after_sweep() {
+  int slot = kNoSlot;
+  if (const auto time_ns = now_ns(); time_ns >= next_sweep_ns_) {
+    next_sweep_ns_ = time_ns + kBetweenSweeps_ns;
+    if (sweep_dead_rows(segment_) > 0) slot = core_.loan();
+  }
+  if (slot == kNoSlot) tally_.dropped.store(dropped_before_ + ++dropped_, std::memory_order_relaxed);
+  return slot;
 }
 
-void RingWriter::abandon(std::byte* loaned) { core_.abandon(slot_of(loaned)); }
+void RingWriter::publish(int slot) {
+  stamp(bytes_of(slot), now_ns());
+  core_.publish(slot);
+  tally_.published.store(published_before_ + ++published_, std::memory_order_relaxed);
+}
 
 void RingWriter::publish_copy(const std::byte* message, std::size_t bytes) {
-  auto* loaned = loan();
-  if (!loaned) return;
-  copy_to_slot(loaned, message, bytes);
-  publish(loaned);
-}
-
-int RingWriter::slot_of(const std::byte* loaned) const {
-  const auto stride = segment_.slot_at(1) - segment_.slot_at(0);
-  return static_cast<int>((loaned - segment_.slot_at(0)) / stride);
+  const int slot = loan();
+  if (slot == kNoSlot) return;
+  copy_to_slot(bytes_of(slot), message, bytes);
+  publish(slot);
 }
 
 }  // namespace handcast::ipc

@@ -12,7 +12,8 @@
 #include <string>
 
 #include "ipc/base/unique_fd.hpp"
-#include "ipc/ring/words.hpp"
+#include "ipc/ring/control_words.hpp"
+#include "ipc/ring/protocol.hpp"
 
 namespace handcast::ipc {
 namespace {
@@ -39,12 +40,23 @@ std::optional<ProcessStatus> status_of(std::uint64_t pid) {
   return status;
 }
 
+/// Whether a free row was freed by somebody who died before he had cleared it.
+bool left_uncleared(const ControlWords<RealAtomics>& words, int row, std::uint64_t owner) {
+  const auto stale = [&](const RealAtomics::Word& word) {
+    return is_older(RealAtomics::load(word, std::memory_order_relaxed), generation_of(owner));
+  };
+  bool any = stale(words.wait(row));
+  for (int index = 0; index < kLeasesPerRow; ++index) any = any || stale(words.lease(row, index));
+  return any;
+}
+
 }  // namespace
 
-std::uint64_t owner_word_of_this_process(std::uint64_t generation) {
+std::optional<std::uint64_t> owner_word_of_this_process(std::uint64_t generation) {
   const auto pid = static_cast<std::uint64_t>(::getpid());
   const auto status = status_of(pid);
-  return owner_word(generation, status ? status->start : 0, pid);
+  if (!status) return std::nullopt;
+  return owner_word(generation, status->start, pid);
 }
 
 bool owner_is_gone(std::uint64_t owner) {
@@ -53,6 +65,17 @@ bool owner_is_gone(std::uint64_t owner) {
   if (::kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) return true;
   const auto status = status_of(pid);
   return status && (status->state == 'Z' || status->start != start_of_owner(owner));
+}
+
+int sweep_dead_rows(const Segment& segment) {
+  const auto words = control_words_of(segment);
+  int freed = 0;
+  for (int row = 0; row < words.rows(); ++row) {
+    const auto owner = RealAtomics::load(words.owner(row), std::memory_order_acquire);
+    const bool dead = pid_of_owner(owner) == 0 ? left_uncleared(words, row, owner) : owner_is_gone(owner);
+    if (dead && claim_row(words, row, owner, free_word(generation_of(owner) + 1))) ++freed;
+  }
+  return freed;
 }
 
 }  // namespace handcast::ipc

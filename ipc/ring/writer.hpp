@@ -21,14 +21,14 @@ class Loan {
   T* operator->() const { return message_; }
   explicit operator bool() const { return message_ != nullptr; }
   /// Bytes after T for messages with a tail.
-  std::size_t tail_bytes() const { return tail_bytes_; }
+  std::size_t tail_bytes() const { return ring_->payload_bytes() - sizeof(T); }
 
   Loan(Loan&& other) noexcept
-      : ring_(std::exchange(other.ring_, nullptr)), message_(std::exchange(other.message_, nullptr)), tail_bytes_(other.tail_bytes_) {}
+      : ring_(other.ring_), slot_(std::exchange(other.slot_, kNoSlot)), message_(std::exchange(other.message_, nullptr)) {}
   Loan& operator=(Loan&& other) noexcept {
     std::swap(ring_, other.ring_);
+    std::swap(slot_, other.slot_);
     std::swap(message_, other.message_);
-    std::swap(tail_bytes_, other.tail_bytes_);
     other.abandon();
     return *this;
   }
@@ -37,15 +37,18 @@ class Loan {
  private:
   template <class>
   friend class Writer;
-  Loan(RingWriter* ring, T* message, std::size_t tail_bytes) : ring_(ring), message_(message), tail_bytes_(tail_bytes) {}
-  std::byte* take() { return reinterpret_cast<std::byte*>(std::exchange(message_, nullptr)); }
+  Loan(RingWriter* ring, int slot) : ring_(ring), slot_(slot), message_(slot == kNoSlot ? nullptr : new (ring->bytes_of(slot)) T{}) {}
+  int take() {
+    message_ = nullptr;
+    return std::exchange(slot_, kNoSlot);
+  }
   void abandon() {
     if (message_) ring_->abandon(take());
   }
 
-  RingWriter* ring_ = nullptr;
-  T* message_ = nullptr;
-  std::size_t tail_bytes_ = 0;
+  RingWriter* ring_;
+  int slot_;
+  T* message_;
 };
 
 /// The one writer of a ring. Never blocks, never waits for a reader. One thread.
@@ -61,10 +64,7 @@ class Writer {
   }
 
   /// A slot with a default T in it. Empty (tests false) where every slot is leased: drop the own message.
-  Loan<T> loan() {
-    auto* bytes = ring_->loan();
-    return {ring_.get(), bytes ? new (bytes) T{} : nullptr, ring_->payload_bytes() - sizeof(T)};
-  }
+  Loan<T> loan() { return {ring_.get(), ring_->loan()}; }
   /// Stamps header.published_ns and makes the message visible. An empty loan is nothing to publish.
   void publish(Loan<T>&& loan) {
     if (!loan) return;

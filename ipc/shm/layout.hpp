@@ -7,14 +7,14 @@
 /// How a ring lies in its segment, in bytes from the start:
 ///
 ///   0              SegmentHeader, written once by the segment's maker
-///   4096           control words, one u64 per line of 128 bytes: head, epoch, state per slot, rows of the readers
+///   4096           lines of 128 bytes: head, epoch, a state per slot, a row per reader; then the tallies: the writer's, one per reader
 ///   slots_offset   the slots, `slot_stride` apart: one message each, tail included
 ///
 /// Nothing in a segment is a pointer.
 namespace handcast::ipc {
 
 inline constexpr std::uint64_t kSegmentMagic = 0x676e'6972'7473'6163;  ///< "castring"
-inline constexpr std::uint32_t kLayoutVersion = 1;                     ///< raise it when anything in this file changes
+inline constexpr std::uint32_t kLayoutVersion = 2;                     ///< raise it when anything in this file changes
 
 inline constexpr std::size_t kPageBytes = 4096;
 /// Two cache lines: processors fetch lines in pairs, so a neighbour's word must be two lines away.
@@ -48,17 +48,17 @@ static_assert(std::is_trivially_copyable_v<SegmentHeader> && sizeof(SegmentHeade
 
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
-/// Two words for the ring, one per slot; per reader an owner word, a wait word and its leases.
-constexpr std::size_t control_lines(int slots, int rows) {
-  return 2 + static_cast<std::size_t>(slots) + static_cast<std::size_t>(rows) * (2 + kLeasesPerRow);
-}
+/// Two for the ring, one per slot, one per reader.
+constexpr std::size_t control_lines(int slots, int rows) { return 2 + static_cast<std::size_t>(slots) + static_cast<std::size_t>(rows); }
+/// One for the writer, one per reader.
+constexpr std::size_t tally_lines(int rows) { return 1 + static_cast<std::size_t>(rows); }
 
 inline constexpr std::size_t kControlOffset = kPageBytes;
+constexpr std::size_t tally_offset(int slots) { return kControlOffset + control_lines(slots, kReaderRows) * kLineBytes; }
 
 /// Fills in the sizes that follow from slot_count and payload_bytes.
 constexpr SegmentHeader with_sizes(SegmentHeader header) {
-  const auto control = control_lines(static_cast<int>(header.slot_count), kReaderRows) * kLineBytes;
-  header.slots_offset = round_up(kControlOffset + control, kPageBytes);
+  header.slots_offset = round_up(tally_offset(static_cast<int>(header.slot_count)) + tally_lines(kReaderRows) * kLineBytes, kPageBytes);
   header.slot_stride = round_up(header.payload_bytes, kLineBytes);
   header.segment_bytes = round_up(header.slots_offset + header.slot_count * header.slot_stride, kPageBytes);
   return header;

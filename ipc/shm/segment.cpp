@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -48,11 +49,14 @@ std::optional<std::string> size_problem(std::uint64_t slots, std::uint64_t paylo
   return std::nullopt;
 }
 
-/// The seals make a mapping safe: nobody can cut the file under it, so no access can end in SIGBUS.
+/// The seals make a mapping safe: nobody can cut the file under it, so no access can end in SIGBUS. The superuser's memory is
+/// as good as our own: he can do to us what he likes anyway.
 std::optional<std::string> file_problem(int fd, const struct stat& status) {
   const int seals = ::fcntl(fd, F_GET_SEALS);
   if (seals < 0) return "it is not a memory file";
   if ((seals & kSeals) != kSeals) return "its size is not sealed, so it could shrink under its readers";
+  if (status.st_uid != ::geteuid() && status.st_uid != 0)
+    return fmt::format("it belongs to user {}, and this process is user {}'s", status.st_uid, ::geteuid());
   if (static_cast<std::uint64_t>(status.st_size) < kControlOffset) return fmt::format("it has only {} bytes", status.st_size);
   return std::nullopt;
 }
@@ -73,9 +77,19 @@ std::optional<std::string> header_problem(const SegmentHeader& header, std::uint
   return std::nullopt;
 }
 
-std::byte* map(int fd, std::size_t bytes) {
-  void* data = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, fd, 0);
+std::byte* map(int fd, std::size_t bytes, Access rights) {
+  const int protection = rights == Access::look ? PROT_READ : PROT_READ | PROT_WRITE;
+  void* data = ::mmap(nullptr, bytes, protection, MAP_SHARED | MAP_POPULATE, fd, 0);
   return data == MAP_FAILED ? nullptr : static_cast<std::byte*>(data);
+}
+
+/// Allocates every page now, so that none is missing later.
+bool allocate(int fd, off_t bytes) {
+  if (::ftruncate(fd, bytes) != 0) return false;
+  int result = 0;
+  do result = ::fallocate(fd, 0, 0, bytes);
+  while (result != 0 && errno == EINTR);
+  return result == 0;
 }
 
 SegmentHeader header_for(const RingSpec& spec) {
@@ -92,11 +106,15 @@ SegmentHeader header_for(const RingSpec& spec) {
 
 }  // namespace
 
-Segment::Segment(UniqueFd fd, std::byte* data, const SegmentHeader& header)
-    : fd_(std::move(fd)), data_(data), size_(header.segment_bytes), header_(header) {}
+Segment::Segment(UniqueFd fd, std::byte* data, const SegmentHeader& header, Access rights)
+    : fd_(std::move(fd)), data_(data), size_(header.segment_bytes), rights_(rights), header_(header) {}
 
 Segment::Segment(Segment&& other) noexcept
-    : fd_(std::move(other.fd_)), data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)), header_(other.header_) {}
+    : fd_(std::move(other.fd_)),
+      data_(std::exchange(other.data_, nullptr)),
+      size_(std::exchange(other.size_, 0)),
+      rights_(other.rights_),
+      header_(other.header_) {}
 
 Segment& Segment::operator=(Segment&& other) noexcept {
   if (this == &other) return *this;
@@ -104,6 +122,7 @@ Segment& Segment::operator=(Segment&& other) noexcept {
   fd_ = std::move(other.fd_);
   data_ = std::exchange(other.data_, nullptr);
   size_ = std::exchange(other.size_, 0);
+  rights_ = other.rights_;
   header_ = other.header_;
   return *this;
 }
@@ -125,15 +144,14 @@ Result<Segment> Segment::create(const RingSpec& spec) {
   UniqueFd fd(::memfd_create(spec.stream.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!fd) return fail(Errc::unavailable, fmt::format("{}: no memory file: {}", ring, reason()));
   const auto bytes = static_cast<off_t>(header.segment_bytes);
-  if (::ftruncate(fd.get(), bytes) != 0 || ::fallocate(fd.get(), 0, 0, bytes) != 0)  // allocated now: no page is missing later
-    return fail(Errc::unavailable, fmt::format("{}: no memory for {} bytes: {}", ring, bytes, reason()));
+  if (!allocate(fd.get(), bytes)) return fail(Errc::unavailable, fmt::format("{}: no memory for {} bytes: {}", ring, bytes, reason()));
   // Not F_SEAL_FUTURE_WRITE: a writer that is started again must be able to map the ring for writing.
   if (::fcntl(fd.get(), F_ADD_SEALS, kSeals | F_SEAL_SEAL) != 0)
     return fail(Errc::unavailable, fmt::format("{}: its size cannot be sealed: {}", ring, reason()));
-  auto* data = map(fd.get(), header.segment_bytes);
+  auto* data = map(fd.get(), header.segment_bytes, Access::write);
   if (!data) return fail(Errc::unavailable, fmt::format("{}: {} bytes cannot be mapped: {}", ring, bytes, reason()));
   new (data) SegmentHeader(header);  // the control words are right as they are: zero
-  return Segment(std::move(fd), data, header);
+  return Segment(std::move(fd), data, header, Access::write);
 }
 
 Result<Segment> Segment::open(UniqueFd fd) {
@@ -146,11 +164,23 @@ Result<Segment> Segment::open(UniqueFd fd) {
   SegmentHeader header;
   if (::pread(fd.get(), &header, sizeof header, 0) != static_cast<ssize_t>(sizeof header)) return not_a_ring("its header cannot be read");
   if (const auto problem = header_problem(header, static_cast<std::uint64_t>(status.st_size))) return not_a_ring(*problem);
-  auto* data = map(fd.get(), header.segment_bytes);
+  const auto rights = (::fcntl(fd.get(), F_GETFL) & O_ACCMODE) == O_RDONLY ? Access::look : Access::write;
+  auto* data = map(fd.get(), header.segment_bytes, rights);
   if (!data)
     return fail(Errc::unavailable,
                 fmt::format("ring '{}': {} bytes cannot be mapped: {}", text_of(header.stream), header.segment_bytes, reason()));
-  return Segment(std::move(fd), data, header);
+  return Segment(std::move(fd), data, header, rights);
+}
+
+Result<void> Segment::restrict_to(Access access) {
+  if (access < rights_) return fail(Errc::unavailable, fmt::format("ring '{}': this mapping of it has fewer rights already", stream()));
+  const auto forbid = [&](std::size_t from, std::size_t to) { return ::mprotect(data_ + from, to - from, PROT_READ) == 0; };
+  const bool done = access == Access::write  ? forbid(0, kControlOffset)
+                    : access == Access::read ? forbid(0, kControlOffset) && forbid(header_.slots_offset, size_)
+                                             : forbid(0, size_);
+  if (!done) return fail(Errc::unavailable, fmt::format("ring '{}': its memory cannot be protected: {}", stream(), reason()));
+  rights_ = access;
+  return {};
 }
 
 std::string Segment::stream() const { return text_of(header_.stream); }

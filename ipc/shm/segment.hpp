@@ -25,6 +25,13 @@ struct RingSpec {
   }
 };
 
+/// What a mapping allows. Against accidents only: a process of the same user can map anew.
+enum class Access {
+  write,  ///< all but the header may be written
+  read,   ///< the control words and tallies may be written, the messages not: a reader's
+  look,   ///< nothing may be written
+};
+
 /// The shared memory of one ring: a sealed memfd (SHRINK | GROW), without a name anywhere. Made by the supervisor,
 /// inherited by the services (its descriptor is close-on-exec: whoever spawns a service passes it on by hand); mapped as
 /// long as the object lives.
@@ -33,8 +40,12 @@ class Segment {
   /// Makes, sizes, seals and formats the memory of a ring. Errors: unavailable (memory, descriptors), bad_config (sizes).
   static Result<Segment> create(const RingSpec& spec);
   /// Maps the ring behind a descriptor (which is taken over). Errors: bad_data with a sentence that says what differs:
-  /// not a ring, other layout version, other boot, impossible sizes, unsealed; unavailable (no memory to map it in).
+  /// not a ring, another user's, other layout version, other boot, impossible sizes, unsealed; unavailable (no memory to map it in).
+  /// A descriptor that is only for reading gives a mapping to look at, no more.
   static Result<Segment> open(UniqueFd fd);
+
+  /// Takes rights from this mapping, never gives any. Errors: unavailable (it has fewer already, or the kernel cannot).
+  Result<void> restrict_to(Access access);
 
   Segment(Segment&&) noexcept;
   Segment& operator=(Segment&&) noexcept;
@@ -56,12 +67,13 @@ class Segment {
   Result<void> require(std::string_view layout, std::uint64_t type_hash, std::size_t bytes) const;
 
  private:
-  Segment(UniqueFd fd, std::byte* data, const SegmentHeader& header);
+  Segment(UniqueFd fd, std::byte* data, const SegmentHeader& header, Access rights);
   void unmap();
 
   UniqueFd fd_;
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
+  Access rights_ = Access::write;
   SegmentHeader header_;  ///< as it was validated: what others do to the shared one changes no bound of ours
 };
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "ipc/ring/row_owner.hpp"
 #include "tests/ipc/ring_testing.hpp"
 
 namespace handcast::ipc {
@@ -24,8 +25,7 @@ class Child {
     ::_exit(0);
   }
   ~Child() { kill(); }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
+  Child(Child&& other) noexcept : pid_(std::exchange(other.pid_, -1)) {}
 
   void kill() {
     if (pid_ > 0) ::kill(pid_, SIGKILL);
@@ -177,22 +177,96 @@ TEST(Processes, RowsOfDeadReadersAreTakenOver) {
   EXPECT_EQ(RealAtomics::load(words.owner(0), std::memory_order_relaxed), kept);
 }
 
-TEST(Processes, WhatADeadReaderLeftInItsRowIsCleared) {
-  const auto segment = make_ring<Note>(2);
+/// A reader's process that has both leases out and waits for more, until it is killed.
+Child reader_with_hands_full(const Segment& segment) {
   const auto words = control_words_of(segment);
-  Child child([&] {
-    auto reader = Reader<Note>::attach(again(segment));
-    RealAtomics::store(words.lease(0, 0), lease_word(1, 0, 1), std::memory_order_seq_cst);
-    RealAtomics::store(words.lease(0, 1), lease_word(1, 1, 1), std::memory_order_seq_cst);
-    RealAtomics::store(words.wait(0), free_word(1) | kWaiting, std::memory_order_seq_cst);
-    ::_exit(0);
+  auto child = Child([&] {
+    auto reader = Reader<Page>::attach(again(segment), Wait::futex, Hold::lease);
+    if (!reader) ::_exit(1);
+    const auto first = reader->at(1), second = reader->at(2);
+    [[maybe_unused]] const auto nothing = reader->next(Deadline::in(60s)), still_nothing = reader->next(Deadline::in(60s));
   });
-  child.join();
-  auto writer = must(Writer<Note>::attach(again(segment)));
-  EXPECT_FALSE(writer.loan());
-  auto reader = must(Reader<Note>::attach(again(segment)));
-  EXPECT_TRUE(writer.loan());
-  EXPECT_EQ(RealAtomics::load(words.wait(0), std::memory_order_relaxed) & kWaiting, 0u);
+  const auto leased = [&](int row) {
+    return is_leased(RealAtomics::load(words.lease(row, 0), std::memory_order_relaxed)) &&
+           is_leased(RealAtomics::load(words.lease(row, 1), std::memory_order_relaxed));
+  };
+  const auto give_up = Deadline::in(20s);
+  while (!leased(0) && !give_up.passed()) ::usleep(100);
+  return child;
+}
+
+struct FullRing {
+  FullRing() : segment(make_ring<Page>(3)), writer(must(Writer<Page>::attach(again(segment)))) {
+    for (std::uint64_t i = 1; i <= 2; ++i) {
+      auto loan = writer.loan();
+      loan->fill(i);
+      writer.publish(std::move(loan));
+    }
+  }
+  Segment segment;
+  Writer<Page> writer;
+};
+
+bool row_is_clean(const Segment& segment, int row) {
+  const auto words = control_words_of(segment);
+  const auto idle = free_word(generation_of(RealAtomics::load(words.owner(row), std::memory_order_seq_cst)));
+  for (const auto* word : {&words.owner(row), &words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
+    if (RealAtomics::load(*word, std::memory_order_seq_cst) != idle) return false;
+  return true;
+}
+
+TEST(Processes, ASweepFreesTheRowsOfDeadReadersAndNoOthers) {
+  FullRing ring;
+  auto child = reader_with_hands_full(ring.segment);
+  auto living = must(Reader<Page>::attach(again(ring.segment), Wait::futex, Hold::lease));
+  const auto sample = must(living.latest(kNow));
+  EXPECT_EQ(sweep_dead_rows(ring.segment), 0);
+  child.kill();
+  EXPECT_FALSE(row_is_clean(ring.segment, 0));
+  EXPECT_EQ(sweep_dead_rows(ring.segment), 1);
+  EXPECT_TRUE(row_is_clean(ring.segment, 0));
+  EXPECT_EQ(sweep_dead_rows(ring.segment), 0);
+  EXPECT_TRUE(is_leased(RealAtomics::load(control_words_of(ring.segment).lease(1, 0), std::memory_order_seq_cst)));
+  EXPECT_TRUE(sample->whole());
+}
+
+TEST(Processes, ASweepMakesGoodASweeperThatDiedHalfWay) {
+  const auto segment = make_ring<Note>(3);
+  const auto words = control_words_of(segment);
+  RealAtomics::store(words.owner(4), free_word(8), std::memory_order_seq_cst);  // freed by somebody who got no further
+  RealAtomics::store(words.wait(4), free_word(7) | kWaiting, std::memory_order_seq_cst);
+  RealAtomics::store(words.lease(4, 0), lease_word(7, 1, 1), std::memory_order_seq_cst);
+  RealAtomics::store(words.lease(4, 1), free_word(7), std::memory_order_seq_cst);
+  EXPECT_EQ(sweep_dead_rows(segment), 1);
+  EXPECT_TRUE(row_is_clean(segment, 4));
+  EXPECT_EQ(sweep_dead_rows(segment), 0);
+}
+
+TEST(Processes, AWriterWithoutAFreeSlotFreesThoseOfDeadReadersItself) {
+  FullRing ring;  // three slots: one leased, the newest leased, one on loan
+  auto child = reader_with_hands_full(ring.segment);
+  const auto last = ring.writer.loan();
+  ASSERT_TRUE(last);
+  EXPECT_FALSE(ring.writer.loan());
+  EXPECT_EQ(ring.writer.dropped(), 1u);
+  child.kill();
+  const auto give_up = Deadline::in(20s);
+  while (!ring.writer.loan() && !give_up.passed()) ::usleep(1000);  // it asks at most every 100 ms
+  EXPECT_FALSE(give_up.passed());
+  EXPECT_TRUE(row_is_clean(ring.segment, 0));
+}
+
+TEST(Processes, AReaderThatComesTakesTheRowOfADeadOneWithoutWhatItLeft) {
+  FullRing ring;
+  auto child = reader_with_hands_full(ring.segment);
+  child.kill();
+  auto reader = must(Reader<Page>::attach(again(ring.segment), Wait::futex, Hold::lease));
+  const auto words = control_words_of(ring.segment);
+  EXPECT_EQ(generation_of(RealAtomics::load(words.owner(0), std::memory_order_seq_cst)), 2u);
+  for (const auto* word : {&words.wait(0), &words.lease(0, 0), &words.lease(0, 1)})
+    EXPECT_EQ(RealAtomics::load(*word, std::memory_order_seq_cst), free_word(2));
+  const auto first = must(reader.at(1)), second = must(reader.at(2));
+  EXPECT_TRUE(first.leased() && second.leased() && first->whole() && second->whole());
 }
 
 }  // namespace

@@ -1,9 +1,15 @@
 // Memory that somebody else writes nonsense to: every call comes back, with a message that keeps to its bounds or an error.
+#include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <random>
 #include <thread>
 
+#include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/projection.hpp"
 #include "ipc/ring/copy.hpp"
+#include "ipc/ring/ring_view.hpp"
+#include "ipc/ring/row_owner.hpp"
 #include "tests/ipc/ring_testing.hpp"
 
 namespace handcast::ipc {
@@ -35,57 +41,140 @@ std::uint64_t nonsense(std::mt19937_64& random) {
   }
 }
 
-void scribble(const Segment& segment, std::mt19937_64& random, int one_word_in) {
-  const auto end = segment.data() + segment.size();
-  for (auto* at = segment.data() + kControlOffset; at + sizeof(std::uint64_t) <= end; at += sizeof(std::uint64_t))
+void scribble_between(std::byte* from, std::byte* to, std::mt19937_64& random, int one_word_in) {
+  for (auto* at = from; at + sizeof(std::uint64_t) <= to; at += sizeof(std::uint64_t))
     if (random() % static_cast<unsigned>(one_word_in) == 0) store_relaxed(*reinterpret_cast<PayloadWord*>(at), nonsense(random));
 }
 
-void use(Reader<Strip>& reader, Writer<Strip>& writer, std::mt19937_64& random) {
-  const auto check = [](const Result<Sample<Strip>>& sample) {
-    if (!sample) return;
-    EXPECT_LE((*sample)->tail_length, kTail);
-    std::uint64_t sum = 0;  // a sanitizer would see a read beyond the copy
-    for (std::size_t i = 0; i < (*sample)->tail_length && i < kTail; ++i) sum += (*sample)->tail()[i];
-    EXPECT_LE(sum, 255 * kTail);
-  };
+/// Every word there is but the header: head, epoch, states, rows, tallies, messages.
+void scribble(const Segment& segment, std::mt19937_64& random, int one_word_in) {
+  scribble_between(segment.data() + kControlOffset, segment.data() + segment.size(), random, one_word_in);
+}
+
+std::uint64_t sum_of_tail(const Strip& strip) {  // a sanitizer would see a read beyond a copy
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < strip.tail_length && i < kTail; ++i) sum += strip.tail()[i];
+  return sum;
+}
+
+/// What a copy says was checked and stays so; what lies in shared memory may change while it is held.
+void check(const Result<Sample<Strip>>& sample) {
+  if (!sample) return;
+  EXPECT_TRUE(sample->leased() || (*sample)->tail_length <= kTail);
+  EXPECT_LE(sum_of_tail(**sample), 255 * kTail);
+}
+
+void use(Reader<Strip>& reader, std::mt19937_64& random) {
   const auto deadline = [&] { return random() % 16 ? Deadline::now() : Deadline::in(200us); };
-  check(reader.next(deadline()));
+  const auto first = reader.next(deadline());
+  check(first);
   check(reader.latest(deadline()));
   check(reader.at(static_cast<std::int64_t>(nonsense(random))));
+}
+
+void use(Writer<Strip>& writer, std::mt19937_64& random) {
   if (auto loan = writer.loan()) {
     loan->tail_length = random() % (kTail + 1);
     if (random() % 4) writer.publish(std::move(loan));
   }
 }
 
-TEST(Hostile, RandomWordsNeitherCrashNorHangAReaderOrAWriter) {
-  const auto segment = make_ring<Strip>(5, false, sizeof(Strip) + kTail);
-  std::mt19937_64 random(3);
-  for (int round = 0; round < 400; ++round) {
-    scribble(segment, random, 1 + static_cast<int>(random() % 20));
-    auto writer = must(Writer<Strip>::attach(again(segment)));
-    auto reader = Reader<Strip>::attach(again(segment), static_cast<Wait>(random() % 3));
-    if (!reader) continue;  // every row may look taken
-    for (int turn = 0; turn < 10; ++turn) {
-      use(*reader, writer, random);
-      scribble(segment, random, 50);
-    }
+void look(const RingView& view) {
+  const auto ring = view.look();
+  EXPECT_LE(ring.readers.size(), static_cast<std::size_t>(kReaderRows));
+  for (const auto& reader : ring.readers) {
+    EXPECT_GE(*std::min_element(reader.lease_ages_ns.begin(), reader.lease_ages_ns.end()), -1);
+    EXPECT_LE(reader.lag, kSequenceMask);
   }
+  EXPECT_LE(view.sequence(), kSequenceMask);
+  EXPECT_LE(view.epoch(), kEpochMask);
 }
 
-TEST(Hostile, WordsThatChangeAllTheTimeNeitherCrashNorHangAReaderOrAWriter) {
+RingView view_of(const Segment& segment) { return must(RingView::open(duplicate(segment.fd()))); }
+
+Hold any_hold(std::mt19937_64& random) { return random() % 2 ? Hold::lease : Hold::copy; }
+
+TEST(Hostile, RandomWordsNeitherCrashNorHangAReaderAWriterAViewOrASweep) {
+  const auto segment = make_ring<Strip>(5, false, sizeof(Strip) + kTail);
+  const auto header = *reinterpret_cast<const SegmentHeader*>(segment.data());
+  const auto view = view_of(segment);
+  std::mt19937_64 random(3);
+  int readers = 0;
+  for (int round = 0; round < 1200; ++round) {
+    scribble(segment, random, 1 + static_cast<int>(random() % 20));
+    auto writer = must(Writer<Strip>::attach(again(segment)));
+    look(view);
+    sweep_dead_rows(segment);
+    auto reader = Reader<Strip>::attach(again(segment), static_cast<Wait>(random() % 3), any_hold(random));  // or every row looks taken
+    for (int turn = 0; turn < 10; ++turn) {
+      if (turn == 5) scribble_between(segment.data(), segment.data() + kControlOffset, random, 3);  // nobody reads the header again
+      use(writer, random);
+      if (reader) use(*reader, random);
+      look(view);
+      scribble(segment, random, 50);
+    }
+    sweep_dead_rows(segment);
+    readers += reader.has_value();
+    std::memcpy(segment.data(), &header, sizeof header);
+  }
+  EXPECT_GT(readers, 300);
+}
+
+TEST(Hostile, WordsThatChangeAllTheTimeNeitherCrashNorHangAReaderAWriterAViewOrASweep) {
   const auto segment = make_ring<Strip>(3, true, sizeof(Strip) + kTail);
   auto writer = must(Writer<Strip>::attach(again(segment)));
-  auto reader = must(Reader<Strip>::attach(again(segment)));
+  auto leasing = must(Reader<Strip>::attach(again(segment), Wait::futex, Hold::lease));
+  auto copying = must(Reader<Strip>::attach(again(segment), Wait::predictive, Hold::copy));
+  auto bridged = must(Reader<Strip>::attach(again(segment), Wait::eventfd, Hold::lease));
+  const auto view = view_of(segment);
   std::atomic<bool> stop{false};
   std::jthread enemy([&, mapped = again(segment)] {
     std::mt19937_64 random(5);
     while (!stop) scribble(mapped, random, 10);
   });
   std::mt19937_64 random(7);
-  for (int turn = 0; turn < 5000; ++turn) use(reader, writer, random);
+  for (int turn = 0; turn < 8000; ++turn) {
+    use(writer, random);
+    for (auto* reader : {&leasing, &copying, &bridged}) use(*reader, random);
+    look(view);
+    if (turn % 16 == 0) sweep_dead_rows(segment);
+  }
   stop = true;
+}
+
+template <class Message>
+void expect_no_size_to_wrap(std::uint32_t Message::*width, std::uint32_t Message::*height) {
+  auto message = std::make_unique<Message>();
+  for (const std::uint32_t w : {0u, 1u, 3u, 1u << 16, 1u << 30, 1u << 31, ~0u})
+    for (const std::uint32_t h : {0u, 1u, 3u, 1u << 16, 1u << 30, 1u << 31, ~0u}) {
+      (*message).*width = w;
+      (*message).*height = h;
+      const auto exact = static_cast<long double>(sizeof(Message)) + static_cast<long double>(w) * h;  // at one byte a pixel
+      EXPECT_GE(static_cast<long double>(message->used_bytes()), std::min(exact, static_cast<long double>(~std::size_t{0})))
+          << w << " x " << h;
+    }
+}
+
+TEST(Hostile, NoSizeOfAPictureWrapsAround) {
+  expect_no_size_to_wrap(&msg::CameraFrame::width_px, &msg::CameraFrame::height_px);
+  expect_no_size_to_wrap(&msg::Projection::region_width_px, &msg::Projection::region_height_px);
+  EXPECT_EQ(msg::Projection::bytes(1u << 31, 1u << 31), ~std::size_t{0});
+  EXPECT_EQ(msg::CameraFrame::bytes(~std::size_t{0}, 2), ~std::size_t{0});
+  EXPECT_EQ(msg::Projection::bytes(3, 5), sizeof(msg::Projection) + 60);
+}
+
+TEST(Hostile, APictureLargerThanItsSlotIsBadDataHoweverLarge) {
+  const auto segment = must(Segment::create(RingSpec::of<msg::Projection>("test.ring", 3, false, msg::Projection::bytes(4, 4))));
+  auto writer = must(Writer<msg::Projection>::attach(again(segment)));
+  auto reader = must(Reader<msg::Projection>::attach(again(segment)));
+  for (const auto& [width, height] :
+       {std::pair{4u, 5u}, std::pair{1u << 31, 1u << 31}, std::pair{1u << 31, 1u << 30}, std::pair{~0u, ~0u}}) {
+    auto loan = writer.loan();
+    loan->region_width_px = width;
+    loan->region_height_px = height;
+    writer.publish(std::move(loan));
+    EXPECT_EQ(reader.next(kNow).error().code, Errc::bad_data) << width << " x " << height;
+  }
 }
 
 TEST(Hostile, AHeadBeyondTheSlotsIsBadData) {

@@ -56,7 +56,7 @@ TEST(Ring, AMessageWhoseWriterDiedBeforeAnnouncingItIsAnnouncedByTheNextWriter) 
 
 TEST(Ring, AnEmptyRingIsATimeoutNotAHang) {
   const auto segment = make_ring<Note>(4);
-  for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex}) {
+  for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex, Wait::eventfd}) {
     auto reader = must(Reader<Note>::attach(again(segment), wait));
     for (const auto deadline : {Deadline::now(), Deadline::at_ns(-5), Deadline::at_ns(1), Deadline::in(-1s), Deadline::in(3ms)}) {
       EXPECT_EQ(reader.next(deadline).error().code, Errc::timeout);
@@ -70,7 +70,7 @@ TEST(Ring, AnEmptyRingIsATimeoutNotAHang) {
 
 TEST(Ring, EveryWayOfWaitingSeesMessagesThatComeRegularlyThenLateThenNoMore) {
   const auto segment = make_ring<Note>(8, true);
-  for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex}) {
+  for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex, Wait::eventfd}) {
     auto reader = must(Reader<Note>::attach(again(segment), wait));
     while (reader.next(kNow)) continue;
     std::jthread thread([&] {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <sys/mman.h>
 
+#include "ipc/ring/tally.hpp"
 #include "tests/ipc/ring_testing.hpp"
 
 namespace handcast::ipc {
@@ -34,18 +35,24 @@ TEST(Segment, IsOpenedWithWhatItWasMadeFor) {
   EXPECT_NE(opened.data(), made.data());
 }
 
-TEST(Segment, EveryWordAndEverySlotHasItsOwnLinesWithinTheMemory) {
+TEST(Segment, EveryWriterHasLinesOfItsOwnAndAllLieWithinTheMemory) {
   const auto segment = make_ring<Note>(kMaxSlots);
   const auto words = control_words_of(segment);
-  const auto offset = [&](const auto& word) { return reinterpret_cast<const std::byte*>(&word) - segment.data(); };
-  std::vector<std::ptrdiff_t> offsets{offset(words.head()), offset(words.epoch())};
-  for (int slot = 0; slot < words.slots(); ++slot) offsets.push_back(offset(words.state(slot)));
-  for (int row = 0; row < kReaderRows; ++row)
-    for (const auto* word : {&words.owner(row), &words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
-      offsets.push_back(offset(*word));
-  for (std::size_t i = 0; i < offsets.size(); ++i)
-    EXPECT_EQ(offsets[i], static_cast<std::ptrdiff_t>(kControlOffset + i * kLineBytes)) << "word " << i;
-  EXPECT_GE(segment.slot_at(0) - segment.data(), offsets.back() + static_cast<std::ptrdiff_t>(kLineBytes));
+  const auto offset = [&](const auto& word) {
+    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&word) - segment.data());
+  };
+  std::vector<std::size_t> lines{offset(words.head()), offset(words.epoch())};
+  for (int slot = 0; slot < words.slots(); ++slot) lines.push_back(offset(words.state(slot)));
+  for (int row = 0; row < kReaderRows; ++row) {
+    lines.push_back(offset(words.owner(row)));
+    for (const auto* word : {&words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
+      EXPECT_EQ(offset(*word) / kLineBytes, lines.back() / kLineBytes) << "a row's words are one reader's";
+    EXPECT_NE(&words.lease(row, 0), &words.lease(row, 1));
+  }
+  lines.push_back(offset(writer_tally(segment)));
+  for (int row = 0; row < kReaderRows; ++row) lines.push_back(offset(reader_tally(segment, row)));
+  for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_EQ(lines[i], kControlOffset + i * kLineBytes) << "line " << i;
+  EXPECT_GE(offset(*segment.slot_at(0)), lines.back() + kLineBytes);
   EXPECT_LE(segment.slot_at(kMaxSlots - 1) + sizeof(Note), segment.data() + segment.size());
   EXPECT_GE(static_cast<std::size_t>(segment.slot_at(1) - segment.slot_at(0)), sizeof(Note));
 }
@@ -120,12 +127,59 @@ TEST(Segment, AHeaderChangedAfterOpeningChangesNoBound) {
   EXPECT_EQ(opened.payload_bytes(), sizeof(Note));
 }
 
-TEST(Segment, AReadOnlyDescriptorIsAnErrorNotACrash) {
+UniqueFd read_only(const Segment& segment) {
+  return UniqueFd(::open(("/proc/self/fd/" + std::to_string(segment.fd())).c_str(), O_RDONLY | O_CLOEXEC));
+}
+
+TEST(Segment, ADescriptorForReadingGivesAMappingToLookAtAndNoReaderOrWriter) {
   const auto segment = make_ring<Note>(3);
-  UniqueFd read_only(::open(("/proc/self/fd/" + std::to_string(segment.fd())).c_str(), O_RDONLY | O_CLOEXEC));
-  const auto opened = Segment::open(std::move(read_only));
-  ASSERT_FALSE(opened);
-  EXPECT_THAT(opened.error().what, HasSubstr("cannot be mapped"));
+  const auto opened = must(Segment::open(read_only(segment)));
+  EXPECT_EQ(opened.stream(), segment.stream());
+  EXPECT_DEATH(*opened.data() = std::byte{1}, "");
+  for (const auto& error : {Reader<Note>::attach(must(Segment::open(read_only(segment)))).error(),
+                            Writer<Note>::attach(must(Segment::open(read_only(segment)))).error()}) {
+    EXPECT_EQ(error.code, Errc::unavailable);
+    EXPECT_THAT(error.what, HasSubstr("fewer rights"));
+  }
+}
+
+void touch(std::byte* byte) { *const_cast<volatile std::byte*>(byte) = std::byte{0}; }
+
+TEST(Segment, AMappingWithoutARightDiesWhenItIsUsed) {
+  const auto made = make_ring<Note>(3);
+  const auto restricted = [&](Access access) {
+    auto segment = again(made);
+    EXPECT_TRUE(segment.restrict_to(access));
+    return segment;
+  };
+  const auto control = [](const Segment& segment) { return segment.data() + kControlOffset; };
+  const auto to_write = restricted(Access::write), to_read = restricted(Access::read), to_look = restricted(Access::look);
+  EXPECT_DEATH(touch(to_write.data()), "");
+  touch(control(to_write));
+  touch(to_write.slot_at(0));
+  EXPECT_DEATH(touch(to_read.data()), "");
+  EXPECT_DEATH(touch(to_read.slot_at(0)), "");
+  EXPECT_DEATH(touch(to_read.slot_at(2)), "");
+  touch(control(to_read));
+  EXPECT_DEATH(touch(to_look.data()), "");
+  EXPECT_DEATH(touch(control(to_look)), "");
+  EXPECT_DEATH(touch(to_look.slot_at(0)), "");
+}
+
+TEST(Segment, ARightThatWasTakenIsNotGivenBack) {
+  auto segment = make_ring<Note>(3);
+  EXPECT_TRUE(segment.restrict_to(Access::write));
+  EXPECT_TRUE(segment.restrict_to(Access::look));
+  auto moved = std::move(segment);
+  EXPECT_FALSE(moved.restrict_to(Access::read));
+  EXPECT_EQ(moved.restrict_to(Access::write).error().code, Errc::unavailable);
+}
+
+TEST(Segment, MemoryOfAnotherUserIsRefused) {
+  const auto segment = make_ring<Note>(3);
+  if (::geteuid() != 0) GTEST_SKIP() << "only the superuser can give memory away";
+  ASSERT_EQ(::fchown(segment.fd(), 12345, 12345), 0);
+  EXPECT_THAT(refusal(segment.fd()), HasSubstr("it belongs to user 12345"));
 }
 
 TEST(Segment, ARingOfAnotherTypeIsRefusedByReadersAndWriters) {

@@ -4,39 +4,18 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <thread>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/ring/copy.hpp"
-#include "ipc/ring/protocol.hpp"
-#include "ipc/ring/real_atomics.hpp"
+#include "tests/ipc/small_ring.hpp"
 
 namespace handcast::ipc {
 namespace {
 
-constexpr std::size_t kWords = 512;
-constexpr std::size_t kHalf = kWords / 2 * sizeof(PayloadWord);
-constexpr int kRows = 3;
+using testing::SmallRing;
 
-/// A ring in private memory: the production protocol, messages of equal words.
-class SmallRing {
- public:
-  using Payload = std::array<PayloadWord, kWords>;
-
-  SmallRing(int slots, bool keep_history)
-      : lines_(std::make_unique<ControlWords<RealAtomics>::Line[]>(control_lines(slots, kRows))),
-        payloads_(std::make_unique<Payload[]>(static_cast<std::size_t>(slots))),
-        words_(lines_.get(), slots, keep_history, kRows) {}
-
-  const ControlWords<RealAtomics>& words() const { return words_; }
-  std::byte* slot(int number) { return reinterpret_cast<std::byte*>(payloads_[static_cast<std::size_t>(number)].data()); }
-
- private:
-  std::unique_ptr<ControlWords<RealAtomics>::Line[]> lines_;
-  std::unique_ptr<Payload[]> payloads_;
-  ControlWords<RealAtomics> words_;
-};
+constexpr std::size_t kHalf = SmallRing::kWords / 2 * sizeof(PayloadWord);
+constexpr int kRows = SmallRing::kRows;
 
 struct Tally {
   std::uint64_t taken = 0, torn = 0, backwards = 0, overwritten = 0;
@@ -77,9 +56,10 @@ Tally read_some(SmallRing& ring, int row, Verb verb) {
   Tally tally;
   while (tally.taken < 20000) {
     Taken taken;
-    const auto outcome = verb == Verb::next     ? reader.next(copy, taken)
-                         : verb == Verb::latest ? reader.latest(copy, taken)
-                                                : reader.nearest(static_cast<std::int64_t>(last) + 5, first_word, copy, taken);
+    const auto outcome = verb == Verb::next ? reader.next(reader.copying(copy), taken)
+                         : verb == Verb::latest
+                             ? reader.latest(reader.copying(copy), taken)
+                             : reader.nearest(static_cast<std::int64_t>(last) + 5, first_word, reader.copying(copy), taken);
     if (outcome == Outcome::nothing) reader.wait(now_ns() + 1'000'000);
     if (outcome != Outcome::taken) continue;
     ++tally.taken;

@@ -1,0 +1,28 @@
+#pragma once
+#include "ipc/ring/protocol.hpp"
+#include "tests/ipc/explorer/machine.hpp"
+
+namespace handcast::explorer {
+
+/// The machine whose threads are running: the protocol's operations have no other way to find it.
+inline Machine* machine = nullptr;
+
+/// Puts the machine under the protocol, in RealAtomics' place.
+struct ModelAtomics {
+  struct Word {
+    std::uint8_t location = 0;
+  };
+
+  static std::uint64_t load(const Word& word, std::memory_order order) { return machine->load(word.location, order); }
+  static void store(Word& word, std::uint64_t value, std::memory_order order) { machine->store(word.location, value, order); }
+  static bool compare_exchange(Word& word, std::uint64_t expected, std::uint64_t desired, std::memory_order order) {
+    return machine->exchange(word.location, expected, desired, order);
+  }
+  static void fence(std::memory_order order) { machine->fence(order); }
+  static void wait(Word& word, std::uint64_t seen, std::int64_t) { machine->futex_wait(word.location, seen); }
+  static void wake(Word& word) { machine->futex_wake(word.location); }
+};
+
+using Words = ipc::ControlWords<ModelAtomics>;
+
+}  // namespace handcast::explorer

@@ -1,0 +1,97 @@
+// What the kernel may refuse, each in a process of its own that may then have no more of it.
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+
+#include "tests/ipc/ring_testing.hpp"
+
+namespace handcast::ipc {
+namespace {
+
+using namespace handcast::ipc::testing;
+
+/// Prints what is not so and ends the child with 1.
+void insist(bool so, const char* what, const std::string& said) {
+  if (so) return;
+  std::fprintf(stderr, "not so: %s; the error says: %s\n", what, said.c_str());
+  ::_exit(1);
+}
+
+template <class T>
+void expect_refusal(const Result<T>& result, const char* what, std::string_view hint = "") {
+  insist(!result, what, "nothing");
+  insist(result.error().code == Errc::unavailable && result.error().what.find(hint) != std::string::npos, what, result.error().what);
+}
+
+/// Runs `body` under a limit; it ends well unless it insists on something that is not so, or crashes.
+void with_limit(int resource, rlim_t limit, const std::function<void()>& body) {
+  const auto pid = ::fork();
+  if (pid == 0) {
+    const rlimit both{limit, limit};
+    if (::setrlimit(static_cast<__rlimit_resource>(resource), &both) != 0) ::_exit(2);
+    body();
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(pid, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status)) << "killed by signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+rlim_t descriptors_in_use() { return static_cast<rlim_t>(duplicate(STDERR_FILENO).get()); }
+
+rlim_t address_space_in_use() {
+  rlim_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * kPageBytes;
+}
+
+TEST(Limits, WithoutDescriptorsNothingIsMadeAndNobodyIsTakenForDead) {
+  const auto segment = make_ring<Note>(4);
+  auto for_reader = again(segment), for_writer = again(segment);
+  with_limit(RLIMIT_NOFILE, descriptors_in_use(), [&] {
+    expect_refusal(Segment::create(RingSpec::of<Note>("test.ring", 4, false)), "a segment needs a descriptor", "no memory file");
+    expect_refusal(Reader<Note>::attach(std::move(for_reader)), "a reader must know when its process began", "when this process began");
+    const auto owner = RealAtomics::load(control_words_of(segment).owner(0), std::memory_order_seq_cst);
+    insist(owner == 0, "no row was taken with a wrong start time", "");
+  });
+  with_limit(RLIMIT_NOFILE, descriptors_in_use(), [&] {
+    expect_refusal(Writer<Note>::attach(std::move(for_writer)), "a writer needs a descriptor for its lock", "cannot be opened for writing");
+  });
+  with_limit(RLIMIT_NOFILE, descriptors_in_use(),
+             [] { expect_refusal(WakeBridge::start([] { return false; }), "a bridge needs a descriptor", "no descriptor"); });
+}
+
+TEST(Limits, AFileLargerThanAllowedIsAnErrorValue) {
+  with_limit(RLIMIT_FSIZE, 1 << 20, [] {
+    std::signal(SIGXFSZ, SIG_IGN);
+    expect_refusal(Segment::create({"test.ring", 1, 1 << 20, 4, false}), "a segment needs room", "no memory for");
+  });
+}
+
+TEST(Limits, WithoutAddressSpaceARingIsNeitherMadeNorOpenedNorLookedAt) {
+#ifdef HANDCAST_WITH_SANITIZER
+  GTEST_SKIP() << "a sanitizer has more address space than this allows";
+#endif
+  const RingSpec spec{"test.ring", 1, 4 << 20, 4, false};
+  const auto segment = must(Segment::create(spec));
+  auto once = duplicate(segment.fd());
+  with_limit(RLIMIT_AS, address_space_in_use() + (8 << 20), [&] {
+    expect_refusal(Segment::open(std::move(once)), "a mapping needs room", "cannot be mapped");
+    expect_refusal(Segment::create(spec), "a mapping needs room", "cannot be mapped");
+  });
+}
+
+TEST(Limits, WithoutMemoryABufferIsNone) {
+#ifdef HANDCAST_WITH_SANITIZER
+  GTEST_SKIP() << "a sanitizer ends a program that asks for so much";
+#endif
+  BufferPool pool(std::size_t{1} << 60);
+  EXPECT_EQ(pool.take(), nullptr);
+}
+
+}  // namespace
+}  // namespace handcast::ipc
