@@ -38,6 +38,15 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
 
 }  // namespace
 
+Process process_of(const Rig& rig, std::string_view service) {
+  if (service == "camera") return rig.camera.process;
+  if (service == "pose") return rig.pose.process;
+  if (service == "landmarks") return rig.landmarks.process;
+  if (service == "projector") return rig.projector.process;
+  if (service == "observer") return rig.observer.process;
+  return {};
+}
+
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file, const std::vector<std::string>& settings) {
   const auto document = parse_document(toml, file.string());
   if (!document) return tl::make_unexpected(document.error());

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/sections/cascade.hpp"
@@ -44,6 +45,9 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("observer", rig.observer, "The judge.");
   visitor.section("supervisor", rig.supervisor, "Starting, watching, stopping.");
 }
+
+/// How the service of this name ("camera") runs: its [NAME.process]. One that no rig file knows: the defaults.
+Process process_of(const Rig& rig, std::string_view service);
 
 /// Reads a rig file and applies `settings` ("path=value") on top. Paths become absolute: those of the file from its
 /// folder, those of `settings` from the current one.

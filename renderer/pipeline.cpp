@@ -31,14 +31,20 @@ Rect moved_back(const Rect& region, const Similarity& move) {
           static_cast<int>(std::ceil(high.y))};
 }
 
+LandmarkOracle of_side(const Pipeline::Oracle& oracle, Side side) {
+  if (!oracle) return {};
+  return [oracle, side](std::int64_t time_ns) { return oracle(side, time_ns); };
+}
+
 class Cascade final : public Pipeline {
  public:
   Cascade(const config::Cascade& settings, const config::Content& content, const calib::Calibration& calibration, HandSurface left,
-          HandSurface right)
+          HandSurface right, const Oracle& oracle)
       : settings_(settings),
         shading_(static_cast<float>(content.shading)),
         calibration_(calibration),
-        tracks_{HandTrack(settings, calibration), HandTrack(settings, calibration)},
+        tracks_{HandTrack(settings, calibration, of_side(oracle, Side::left)),
+                HandTrack(settings, calibration, of_side(oracle, Side::right))},
         surfaces_{std::move(left), std::move(right)},
         mask_finder_(settings.mask),
         lookup_(calibration),
@@ -76,6 +82,7 @@ class Cascade final : public Pipeline {
     Rect region = landing_bounds();
     if (masked) {
       region = find_mask(camera, camera_ns);
+      learn_widths(target_ns);
       stages_.mark(Stage::mask);
     }
     const FillCounts counts = paint(region, masked);
@@ -185,6 +192,12 @@ class Cascade final : public Pipeline {
     return advance_mask();
   }
 
+  void learn_widths(std::int64_t target_ns) {
+    if (!settings_.skin.fit || !settings_.skin.widths) return;
+    for (const FrameHand& hand : frame_hands_)
+      if (hand.has_landmarks) surface_of(hand).learn_widths(target_ns, to_projector(hand.corrected), projector_mask_.view());
+  }
+
   /// How the hand has moved in the image, undone: from where it will be at the target time to where it was at the exposure.
   Similarity since_exposure(const msg::HandPose& then, const HandTrack::Tracked& now) const {
     const auto tracker_then = project_landmarks(calibration_, then);
@@ -258,12 +271,14 @@ class Cascade final : public Pipeline {
 }  // namespace
 
 Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascade, const config::Content& content, const config::Hand& hand,
-                                                   const calib::Calibration& calibration) {
+                                                   const calib::Calibration& calibration, const Oracle& oracle) {
+  if (cascade.filter.method == "ideal" && !oracle)
+    return fail(Errc::bad_config, "cascade.filter.method = \"ideal\" needs the truth, which only `handcast simulate` knows");
   auto left = HandSurface::load(Side::left, hand.left, content.left, cascade.mask.forearm_mm);
   if (!left) return fail_in("left hand", left.error());
   auto right = HandSurface::load(Side::right, hand.right, content.right, cascade.mask.forearm_mm);
   if (!right) return fail_in("right hand", right.error());
-  return std::make_unique<Cascade>(cascade, content, calibration, std::move(*left), std::move(*right));
+  return std::make_unique<Cascade>(cascade, content, calibration, std::move(*left), std::move(*right), oracle);
 }
 
 }  // namespace handcast::renderer

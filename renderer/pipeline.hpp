@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,9 +41,12 @@ struct Frame {
 /// same times give bit-identical light. The projector daemon and the simulator both call it. One thread.
 class Pipeline {
  public:
-  /// Errors: bad_config (hand file, content).
+  /// Where the landmarks of a hand truly are (undistorted camera px): for the filter "ideal", in a simulator.
+  using Oracle = std::function<std::optional<LandmarkPoints>(Side side, std::int64_t time_ns)>;
+
+  /// Errors: bad_config (hand file, content, "ideal" without an oracle).
   static Result<std::unique_ptr<Pipeline>> create(const config::Cascade& cascade, const config::Content& content, const config::Hand& hand,
-                                                  const calib::Calibration& calibration);
+                                                  const calib::Calibration& calibration, const Oracle& oracle = {});
   virtual ~Pipeline() = default;
 
   /// A message arrived at `now_ns`.

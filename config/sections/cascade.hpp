@@ -26,6 +26,7 @@ void describe(Visitor& visitor, Predict& predict) {
 
 struct Skin {
   bool fit = true;
+  bool widths = true;
 };
 
 template <class Visitor>
@@ -33,12 +34,16 @@ void describe(Visitor& visitor, Skin& skin) {
   visitor.field(
       "fit", skin.fit,
       "Aim and stretch every bone of the drawn hand to reach the tracker's next joint. false: move it stiffly with its own joint.");
+  visitor.field("widths", skin.widths, "With fit: learn how wide the person's fingers are from the camera's mask.");
 }
 
 struct Filter {
   std::string method = "offset_kalman";
   double process = 3e3;
+  double motion_process = 3e6;
   double noise_px = 1.14;
+  double one_euro_cutoff_hz = 3;
+  double one_euro_beta = 0.05;
   double blend_ms = 6;
   double blend_px = 8;
   bool hindsight = true;
@@ -48,11 +53,17 @@ struct Filter {
 template <class Visitor>
 void describe(Visitor& visitor, Filter& filter) {
   visitor.field(
-      "method", filter.method, Choices{"none", "naive", "paper", "offset_kalman"},
-      "How old landmarks Q become landmarks now. none: not at all. naive: as they were seen. paper: Q + P_now - P_then per joint. "
-      "offset_kalman: a constant-velocity Kalman filter on the offset Q - P.");
+      "method", filter.method, Choices{"none", "naive", "kalman", "paper", "one_euro", "offset_kalman", "ideal"},
+      "How old landmarks Q become landmarks now. none: not at all. naive: as they were seen. kalman: a constant-velocity Kalman filter on "
+      "Q, "
+      "without the tracker. paper: Q + P_now - P_then per joint. one_euro: a one-euro filter on the offset Q - P. offset_kalman: a "
+      "constant-velocity Kalman filter on that offset. ideal: where they truly are, which only the simulator knows.");
   visitor.field("process", filter.process, between(0, 1e9, "px^2/s^3"), "offset_kalman: how fast the offset may change.");
-  visitor.field("noise_px", filter.noise_px, between(0.01, 50, "px"), "offset_kalman: standard deviation of a landmark.");
+  visitor.field("motion_process", filter.motion_process, between(0, 1e12, "px^2/s^3"), "kalman: how fast a landmark's speed may change.");
+  visitor.field("noise_px", filter.noise_px, between(0.01, 50, "px"), "kalman, offset_kalman: standard deviation of a landmark.");
+  visitor.field("one_euro_cutoff_hz", filter.one_euro_cutoff_hz, between(0.01, 100, "Hz"), "one_euro: cutoff for an offset that rests.");
+  visitor.field("one_euro_beta", filter.one_euro_beta, between(0, 10, "1/px"),
+                "one_euro: how much the cutoff rises with the offset's speed.");
   visitor.field("blend_ms", filter.blend_ms, between(0, 50, "ms"),
                 "The jump each new sample makes is blended in over this time: larger is stiller, smaller is quicker. 0: not at all.");
   visitor.field("blend_px", filter.blend_px, between(0, 100, "px"),

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "config/field.hpp"
+#include "config/sections/process.hpp"
 
 namespace handcast::config {
 
@@ -11,6 +12,7 @@ struct Projector {
   double latency_ms = 3.0;
   double software_ms = 1.2;
   double frame_wait_ms = 0;
+  Process process;
 };
 
 template <class Visitor>
@@ -23,6 +25,7 @@ void describe(Visitor& visitor, Projector& projector) {
                 "live frames (later ones use the measured time).");
   visitor.field("frame_wait_ms", projector.frame_wait_ms, between(0, 100, "ms"),
                 "How long a projector frame may wait for a newer camera image. 0: not at all.");
+  visitor.section("process", projector.process, "How the service runs.");
 }
 
 struct Content {

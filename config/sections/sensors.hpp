@@ -2,6 +2,7 @@
 #include <string>
 
 #include "config/field.hpp"
+#include "config/sections/process.hpp"
 
 namespace handcast::config {
 
@@ -21,6 +22,7 @@ struct Camera {
   double rate_hz = 525;
   double exposure_ms = 1.85;
   Replay replay;
+  Process process;
 };
 
 template <class Visitor>
@@ -30,11 +32,13 @@ void describe(Visitor& visitor, Camera& camera) {
   visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"), "Time the shutter is open.");
   visitor.section("replay", camera.replay,
                   "For backend = \"replay\": grey PNG pictures in camera/ with their times in camera_timestamps.npy.");
+  visitor.section("process", camera.process, "How the service runs.");
 }
 
 struct Pose {
   std::string backend = "twin";
   Replay replay;
+  Process process;
 };
 
 template <class Visitor>
@@ -42,11 +46,13 @@ void describe(Visitor& visitor, Pose& pose) {
   visitor.field("backend", pose.backend, Choices{}, "Where hand poses come from; `handcast-pose --backends` lists what this build has.");
   visitor.section("replay", pose.replay,
                   "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and bones_{left,right}.npy.");
+  visitor.section("process", pose.process, "How the service runs.");
 }
 
 struct Landmarks {
   std::string backend = "twin";
   Replay replay;
+  Process process;
 };
 
 template <class Visitor>
@@ -54,6 +60,7 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
   visitor.field("backend", landmarks.backend, Choices{},
                 "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has.");
   visitor.section("replay", landmarks.replay, "For backend = \"replay\": landmarks_{left,right}.npy with landmarks_timestamps.npy.");
+  visitor.section("process", landmarks.process, "How the service runs.");
 }
 
 }  // namespace handcast::config

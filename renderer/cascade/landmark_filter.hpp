@@ -17,6 +17,9 @@ using LandmarkPoints = std::array<glm::vec2, kLandmarks>;  ///< undistorted came
 /// Where the tracker says the 21 landmarks are (P) at a time, with what is known by now.
 using TrackerAt = std::function<std::optional<LandmarkPoints>(std::int64_t time_ns)>;
 
+/// Where the 21 landmarks of one hand truly are: what only a simulator can say.
+using LandmarkOracle = std::function<std::optional<LandmarkPoints>(std::int64_t time_ns)>;
+
 /// Carries old landmarks Q of one hand to the present (paper section "Temporal filtering"; METHOD section 2).
 class LandmarkFilter {
  public:
@@ -32,6 +35,7 @@ class LandmarkFilter {
   virtual std::optional<LandmarkPoints> at(std::int64_t now_ns, std::int64_t target_ns, const LandmarkPoints& tracker) = 0;
 };
 
-std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& settings);
+/// `oracle` is asked by method "ideal" alone, which corrects nothing where there is none.
+std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& settings, LandmarkOracle oracle = {});
 
 }  // namespace handcast::renderer

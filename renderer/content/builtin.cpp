@@ -10,7 +10,7 @@
 #include <string>
 
 #include "renderer/content/chart_map.hpp"
-#include "renderer/content/opencv_picture.hpp"
+#include "renderer/content/lettering.hpp"
 
 namespace handcast::renderer {
 namespace {

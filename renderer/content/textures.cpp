@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "renderer/content/builtin.hpp"
-#include "renderer/content/opencv_picture.hpp"
+#include "renderer/content/picture.hpp"
 
 namespace handcast::renderer {
 

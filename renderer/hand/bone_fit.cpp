@@ -118,9 +118,10 @@ void BoneFit::learn(std::int64_t origin_ns, const JointFrames& posed) {
 JointFrames BoneFit::operator()(const JointFrames& posed) const {
   const Person seen = person_in(posed);
   const Person& person = learned_ > 0 ? person_ : seen;
+  const float width = person.size * width_;
   JointFrames fitted = posed;
   const auto reach = [&](int joint, const Span& to) {
-    fitted[joint] = onto(span(rest_, joint, joint + 1), to, turn_of(rest_, posed, joint), person.size) * rest_[joint];
+    fitted[joint] = onto(span(rest_, joint, joint + 1), to, turn_of(rest_, posed, joint), width) * rest_[joint];
   };
   for (int joint = kWrist + 1; joint < kJoints; ++joint)
     if (far_joint(joint) > 0) reach(joint, span(posed, joint, joint + 1));
@@ -132,7 +133,7 @@ JointFrames BoneFit::operator()(const JointFrames& posed) const {
   // Wrist and forearm turn with the knuckles, but are not stretched: they end nowhere.
   const glm::mat3 turn = turn_between(person.knuckle, seen.knuckle);
   for (const int joint : {kPalm, kWrist}) {
-    const glm::mat3 whole = glm::mat3(posed[kWrist]) * turn * glm::transpose(glm::mat3(rest_[kWrist])) * person.size;
+    const glm::mat3 whole = glm::mat3(posed[kWrist]) * turn * glm::transpose(glm::mat3(rest_[kWrist])) * width;
     glm::mat4 posed_from_rest(whole);
     posed_from_rest[3] = glm::vec4(origin(posed[kWrist]) - whole * origin(rest_[kWrist]), 1);
     fitted[joint] = posed_from_rest * rest_[joint];

@@ -21,6 +21,9 @@ class BoneFit {
   /// A tracker sample; one that is not finite is ignored. The person is learned afresh after the hand was gone for a second.
   void learn(std::int64_t origin_ns, const JointFrames& posed);
 
+  /// Draws every width times `factor` from now on.
+  void widen(float factor) { width_ = factor; }
+
   /// The frames to skin with.
   JointFrames operator()(const JointFrames& posed) const;
 
@@ -34,6 +37,7 @@ class BoneFit {
 
   JointFrames rest_;
   Person person_;
+  float width_ = 1;
   int learned_ = 0;  ///< samples in the mean
   std::int64_t last_ns_ = 0;
 };

@@ -68,6 +68,7 @@ Result<HandSurface> HandSurface::load(Side side, const std::filesystem::path& ha
   surface.texture_ = std::move(*texture);
   cut_forearm(surface.mesh_, forearm_mm);
   surface.bone_fit_.emplace(surface.mesh_);
+  surface.width_meter_.emplace(surface.mesh_);
   surface.untangler_.emplace(surface.mesh_);
   surface.drawn_vertices_ = vertices_of(surface.mesh_);
   const std::size_t count = surface.mesh_.vertex_count();
@@ -93,6 +94,11 @@ void HandSurface::pose(const msg::HandPose& pose, const config::Skin& settings, 
   project_all(&positions_m_[0].x, count, &projector_from_space[0][0], kNearest_m, &seen_px_[0].x, depth_m_.data());
   if (shaded_) shade_all(&normals_[0].x, count, shading, light_.data());
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());
+}
+
+void HandSurface::learn_widths(std::int64_t time_ns, const LandmarkPoints& landmarks_px, GreyView mask) {
+  width_meter_->measure(time_ns, landings_px_, landmarks_px, mask);
+  bone_fit_->widen(width_meter_->factor());
 }
 
 DrawnHand HandSurface::drawn(std::span<const glm::vec2> position_px) const {

@@ -11,6 +11,7 @@
 #include "renderer/cascade/untangle.hpp"
 #include "renderer/hand/bone_fit.hpp"
 #include "renderer/painter.hpp"
+#include "renderer/pipeline/width_meter.hpp"
 
 namespace handcast::renderer {
 
@@ -25,6 +26,9 @@ class HandSurface {
 
   /// Skins the mesh and sees it through the camera and the projector. `shading` 0..1; light comes from the camera's side.
   void pose(const msg::HandPose& pose, const config::Skin& settings, const calib::Calibration& calibration, float shading);
+
+  /// The mask of this hand (projector px) at the time its landings are for, to know the person's widths by.
+  void learn_widths(std::int64_t time_ns, const LandmarkPoints& landmarks_px, GreyView mask);
 
   const HandMesh& mesh() const { return mesh_; }
   std::span<const glm::vec2> seen_px() const { return seen_px_; }  ///< projector px, as the tracker has it
@@ -42,6 +46,7 @@ class HandSurface {
   HandMesh mesh_;
   Texture texture_;
   std::optional<BoneFit> bone_fit_;
+  std::optional<WidthMeter> width_meter_;
   std::optional<Untangler> untangler_;
   std::vector<std::uint16_t> drawn_vertices_;
   std::vector<glm::vec3> positions_m_, normals_;

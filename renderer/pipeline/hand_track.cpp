@@ -18,8 +18,8 @@ std::optional<LandmarkPoints> project_landmarks(const calib::Calibration& calibr
   return points;
 }
 
-HandTrack::HandTrack(const config::Cascade& settings, const calib::Calibration& calibration)
-    : calibration_(calibration), history_(settings.predict), filter_(make_landmark_filter(settings.filter)) {}
+HandTrack::HandTrack(const config::Cascade& settings, const calib::Calibration& calibration, LandmarkOracle oracle)
+    : calibration_(calibration), history_(settings.predict), filter_(make_landmark_filter(settings.filter, std::move(oracle))) {}
 
 void HandTrack::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
   history_.push(origin_ns, pose);

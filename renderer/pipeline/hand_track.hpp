@@ -18,7 +18,7 @@ std::optional<LandmarkPoints> project_landmarks(const calib::Calibration& calibr
 /// The first steps of the cascade for one hand: its pose and its landmarks at the time of the photons.
 class HandTrack {
  public:
-  HandTrack(const config::Cascade& settings, const calib::Calibration& calibration);
+  HandTrack(const config::Cascade& settings, const calib::Calibration& calibration, LandmarkOracle oracle = {});
 
   void push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose);
   void push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandLandmarks& seen);

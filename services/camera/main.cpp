@@ -7,7 +7,9 @@ using service::must;
 
 /// Frames from the camera into shared memory: camera.frames.
 static void run_camera(service::Context& context) {
+  if (service::is_exclusive(context.rig().camera.backend, camera::camera_backends())) context.stand_by({"camera.frames"});
   const auto source = must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns()));
+  context.stand_by({"camera.frames"});
   auto frames = must(context.writer<msg::CameraFrame>("camera.frames"));
 
   context.ready();

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
+
+#include "renderer/content/picture.hpp"
 
 namespace handcast::camera {
 namespace fs = std::filesystem;
@@ -22,23 +23,13 @@ Result<std::vector<fs::path>> list_pictures(const fs::path& folder) {
   return files;
 }
 
-cv::Mat decode(const fs::path& file) {
-  try {
-    return cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
-  } catch (const cv::Exception&) {
-    return {};
-  }
-}
-
 Result<renderer::Image<std::uint8_t>> read_picture(const fs::path& file, int width_px, int height_px) {
-  const cv::Mat grey = decode(file);
-  if (grey.empty()) return fail(Errc::bad_config, fmt::format("'{}' is not a picture that can be read", file.string()));
-  if (grey.cols != width_px || grey.rows != height_px)
+  auto grey = renderer::read_grey_png(file);
+  if (!grey) return fail(Errc::bad_config, fmt::format("'{}' is not a picture that can be read", file.string()));
+  if (grey->width() != width_px || grey->height() != height_px)
     return fail(Errc::bad_config, fmt::format("'{}' is {} x {} px, but the calibration is for a camera of {} x {} px", file.string(),
-                                              grey.cols, grey.rows, width_px, height_px));
-  renderer::Image<std::uint8_t> image(width_px, height_px);
-  for (int y = 0; y < height_px; ++y) std::copy_n(grey.ptr<std::uint8_t>(y), width_px, image.row(y));
-  return image;
+                                              grey->width(), grey->height(), width_px, height_px));
+  return grey;
 }
 
 }  // namespace

@@ -7,7 +7,10 @@ using service::must;
 
 /// Landmarks of the newest camera frame, back to back: landmarks.hands. Frames that came meanwhile are passed over.
 static void run_landmarks(service::Context& context) {
+  if (service::is_exclusive(context.rig().landmarks.backend, landmarks::detector_backends()))
+    context.stand_by({"camera.frames", "landmarks.hands"});
   const auto detector = must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns()));
+  context.stand_by({"camera.frames", "landmarks.hands"});
   auto frames = must(context.reader<msg::CameraFrame>("camera.frames"));
   auto hands = must(context.writer<msg::Landmarks>("landmarks.hands"));
 

@@ -37,6 +37,7 @@ static void tell(const observer::LiveScore& scores) {
 static void run_observer(service::Context& context) {
   if (::nice(10) == -1) log::debug("stays at the others' priority");
   auto judge = must(observer::LiveJudge::create(context.rig(), context.calibration(), context.epoch_ns()));
+  context.stand_by({"projection.frames"});
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
   if (!has_truth(context.rig())) log::warning("the sensors are not the twin's: there is no truth to score against, nothing is scored");
 

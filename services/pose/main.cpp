@@ -7,7 +7,9 @@ using service::must;
 
 /// Samples of the hand tracker: pose.hands. One without a hand is published too, so that readers know it looked.
 static void run_pose(service::Context& context) {
+  if (service::is_exclusive(context.rig().pose.backend, pose::pose_backends())) context.stand_by({"pose.hands"});
   const auto source = must(pose::open_pose_source(context.rig(), context.calibration(), context.epoch_ns()));
+  context.stand_by({"pose.hands"});
   auto hands = must(context.writer<msg::HandPoses>("pose.hands"));
 
   context.ready();

@@ -2,9 +2,9 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 
 #include "ipc/base/log.hpp"
+#include "renderer/content/picture.hpp"
 #include "services/projector/light_clock.hpp"
 
 namespace handcast::projector {
@@ -23,28 +23,19 @@ class FileProjector final : public Projector {
     const auto times = clock_.take(deadline);
     if (!times || frame_id % kEvery != 0) return times;
     const fs::path file = folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept);
-    if (!write(frame, file)) return fail(Errc::bad_data, fmt::format("projector 'file': '{}' cannot be written", file.string()));
+    if (const auto written = write(frame, file); !written) return fail(Errc::bad_data, "projector 'file': " + written.error().what);
     return times;
   }
 
  private:
   /// The whole projector image, dark outside the frame's region and where alpha is 0.
-  bool write(const renderer::Frame& frame, const fs::path& file) {
-    cv::Mat image = cv::Mat::zeros(frame.colour.height, frame.colour.width, CV_8UC3);
+  static Result<void> write(const renderer::Frame& frame, const fs::path& file) {
+    renderer::Texture image(frame.colour.width, frame.colour.height);
     const auto& region = frame.region;
-    for (int y = region.y0; y < region.y1; ++y) {
-      for (int x = region.x0; x < region.x1; ++x) {
-        const std::uint32_t rgba = frame.colour.at(x, y);
-        if (rgba >> 24 == 0) continue;
-        image.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>(rgba >> 16), static_cast<std::uint8_t>(rgba >> 8),
-                                     static_cast<std::uint8_t>(rgba)};
-      }
-    }
-    try {
-      return cv::imwrite(file.string(), image);
-    } catch (const cv::Exception&) {
-      return false;
-    }
+    for (int y = region.y0; y < region.y1; ++y)
+      for (int x = region.x0; x < region.x1; ++x)
+        if (const std::uint32_t rgba = frame.colour.at(x, y); rgba >> 24 != 0) image.at(x, y) = rgba;
+    return renderer::write_png(file, image.view());
   }
 
   LightClock clock_;

@@ -9,12 +9,13 @@ using service::must;
 
 /// The stages of a frame as the cascade measured them, then the whole of it, then its presentation.
 static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std::int64_t begin_ns, std::int64_t drawn_ns,
-                                              std::int64_t handed_ns) {
+                                              const projector::PresentTimes& times) {
   std::vector<msg::StageMark> marks;
   for (const auto& mark : frame.stages)
     if (mark.stage < msg::Stage::frame) marks.push_back(mark);
   marks.push_back({msg::Stage::frame, 0, begin_ns, drawn_ns});
-  marks.push_back({msg::Stage::present, 0, drawn_ns, handed_ns});
+  marks.push_back({msg::Stage::present, 0, drawn_ns, times.handed_ns});
+  if (times.lit_ns > times.handed_ns) marks.push_back({msg::Stage::light, 0, times.handed_ns, times.lit_ns});
   return marks;
 }
 
@@ -22,7 +23,10 @@ static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std:
 static void run_projector(service::Context& context) {
   const auto& rig = context.rig();
   const auto pipeline = must(renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, context.calibration()));
+  const auto stand_by = [&] { context.stand_by({"projection.frames", "camera.frames", "pose.hands", "landmarks.hands"}); };
+  if (service::is_exclusive(rig.projector.backend, projector::projector_backends())) stand_by();
   const auto projector = must(projector::open_projector(rig));
+  stand_by();
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")), must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")));
@@ -46,7 +50,7 @@ static void run_projector(service::Context& context) {
     }
     horizon.learn(times->handed_ns - begin_ns);
     projector::publish_projection(frame, image, *times, projections);
-    context.mark(image, time_sheet(frame, begin_ns, drawn_ns, times->handed_ns));
+    context.mark(image, time_sheet(frame, begin_ns, drawn_ns, *times));
   }
 }
 

@@ -23,8 +23,8 @@ struct Group {
 };
 
 constexpr Group kGroups[] = {
-    {"One projector frame", "Steps in the order they run, then the whole frame and its handing over.", msg::Stage::predict,
-     msg::Stage::present},
+    {"One projector frame", "Steps in the order they run, then the whole frame, its handing over and the way to its light.",
+     msg::Stage::predict, msg::Stage::light},
     {"Sensors", "capture and sample: the age of an image or pose when it is handed over; detect: the time a detection takes.",
      msg::Stage::capture, msg::Stage::detect},
 };

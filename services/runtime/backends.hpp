@@ -18,6 +18,7 @@ template <class Interface, class... Args>
 struct Backend {
   std::string_view name;
   Result<std::unique_ptr<Interface>> (*open)(const Args&...);
+  bool exclusive = false;  ///< only one process at a time may have it open (a device): a spare opens it in its turn
 };
 
 template <class Entry>
@@ -34,6 +35,14 @@ Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::stri
   for (const auto& entry : table)
     if (entry.name == name) return entry.open(args...);
   return fail(Errc::bad_config, fmt::format("{}: no back end '{}'; this build has: {}", what, name, config::join(names_of(table), ", ")));
+}
+
+/// Whether a spare must not open this back end before its turn.
+template <class Interface, class... Args>
+bool is_exclusive(std::string_view name, std::span<const Backend<Interface, Args...>> table) {
+  for (const auto& entry : table)
+    if (entry.name == name) return entry.exclusive;
+  return false;
 }
 
 }  // namespace handcast::service

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +27,9 @@
 ///          HANDCAST_READY_FD=7       gets one newline when the daemon is ready
 ///          HANDCAST_EPOCH_NS=...     monotonic time of the rig's start: the twin's time zero, the same for every daemon
 ///          HANDCAST_OUT=DIR          where to leave what is to be kept (scores, pictures); absent: nowhere
+///          HANDCAST_STANDBY_FD=8     this is a spare: it prepares everything, then waits until a byte comes here (its turn) or the other
+///                                    end closes (then it ends, exit 0). While it waits it writes an 's' to the ready descriptor every
+///                                    half second, the first one at once
 ///   exit   0 stopped as asked, 100 a person must change something (do not restart), 111 restart may help
 ///   SIGTERM, SIGINT: stop
 namespace handcast::service {
@@ -47,19 +52,26 @@ class Context {
   const calib::Calibration& calibration() const { return calibration_; }
   std::int64_t epoch_ns() const { return epoch_ns_; }
 
+  /// A spare gets it in its turn: see stand_by().
   template <class T>
   Result<ipc::Writer<T>> writer(std::string_view stream) {
+    stand_by();
     auto segment = take_segment(stream);
     if (!segment) return tl::make_unexpected(segment.error());
     return ipc::Writer<T>::attach(std::move(*segment));
   }
+  /// Without a `wait`: as the service's [NAME.process] says.
   template <class T>
-  Result<ipc::Reader<T>> reader(std::string_view stream, ipc::Wait wait = ipc::Wait::futex) {
+  Result<ipc::Reader<T>> reader(std::string_view stream, std::optional<ipc::Wait> wait = std::nullopt) {
     auto segment = take_segment(stream);
     if (!segment) return tl::make_unexpected(segment.error());
-    return ipc::Reader<T>::attach(std::move(*segment), wait);
+    return ipc::Reader<T>::attach(std::move(*segment), wait.value_or(wait_));
   }
 
+  /// A spare waits here for its turn, everybody else passes. Call it after all preparation that a second process may do at the
+  /// same time (models, pictures, memory), before what only one may have: writers, devices. The memory of `streams`, which it will
+  /// need, is made ready before the wait. A daemon that never calls it waits at its first writer, or in ready().
+  void stand_by(std::initializer_list<std::string_view> streams = {});
   /// Tells the supervisor that the daemon works: call it once, after everything that can fail at start-up.
   void ready();
   /// False after SIGTERM or SIGINT. Beats the heart: call it at least every 100 ms.
@@ -74,14 +86,20 @@ class Context {
 
  private:
   Result<ipc::Segment> take_segment(std::string_view stream);
+  Result<ipc::Segment> open_segment(std::string_view stream) const;
+  void wait_for_turn() const;
+  void open_marks();
 
   std::string name_;
   config::Rig rig_;
   calib::Calibration calibration_;
   std::int64_t epoch_ns_ = 0;
+  ipc::Wait wait_ = ipc::Wait::futex;
   std::map<std::string, int, std::less<>> ring_fds_;
+  std::map<std::string, ipc::Segment, std::less<>> mapped_;  ///< a spare's, not asked for yet
   std::unique_ptr<ipc::Writer<msg::StageMarks>> marks_;
   int ready_fd_ = -1;
+  int standby_fd_ = -1;  ///< of a spare whose turn has not come
   std::int64_t last_beat_ns_ = 0;
   std::int64_t last_complaint_ns_ = 0;
   std::uint64_t complaints_ = 0;

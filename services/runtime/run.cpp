@@ -2,6 +2,7 @@
 
 #include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/scheduling.hpp"
 #include "services/runtime/stop_signal.hpp"
 
 namespace handcast::service {
@@ -22,6 +23,7 @@ void print_help(const Description& description) {
 int serve(const Description& description, const CommandLine& line, const std::function<void(Context&)>& body) {
   install_stop_signals();
   auto rig = must(config::load_rig(line.config_file, line.settings));
+  for (const auto& note : must(apply_scheduling(config::process_of(rig, description.name), description.name))) log::warning("{}", note);
   auto calibration = must(calib::load_calibration(rig.calibration));
   Context context(std::string(description.name), std::move(rig), std::move(calibration));
   body(context);

@@ -19,6 +19,7 @@ const char* const kHelp =
   --seconds S                time that is scored (default 5)
   --warm-up S                time before it that is not (default 0.5)
   --draw-every N             draws and scores every N-th projector frame (default 8); the others are only tracked
+  --joints-only              draws nothing: scores the 21 landmarks alone, some hundred times as fast
   --json FILE                the metrics
   --frames DIR               pictures of the true hand with the light on it, of every --picture-every N drawn frames (default 4)
   --trace FILE.csv           per projector frame and landmark: time, truth, tracker P and corrected Q in camera pixels
@@ -73,7 +74,7 @@ std::map<std::string_view, Setter> setters(Options& options) {
       {"--set", setting(options, "")},
       {"--seconds", number_into(options.seconds, "--seconds", 0.01, 86400)},
       {"--warm-up", number_into(options.warm_up_s, "--warm-up", 0, 3600)},
-      {"--draw-every", number_into(options.draw_every, "--draw-every", 1, 100000)},
+      {"--draw-every", number_into(options.draw_every, "--draw-every", 0, 100000)},
       {"--picture-every", number_into(options.picture_every, "--picture-every", 1, 100000)},
       {"--json", text_into(options.json_file)},
       {"--frames", text_into(options.frames_directory)},
@@ -93,6 +94,8 @@ Result<Options> parse_options(int argc, const char* const* argv) {
       options.help = true;
     } else if (word == "--version") {
       options.version = true;
+    } else if (word == "--joints-only") {
+      options.draw_every = 0;
     } else if (word == "--quiet") {
       options.quiet = true;
     } else if (const auto setter = with_value.find(word); setter != with_value.end()) {

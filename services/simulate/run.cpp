@@ -71,6 +71,7 @@ class Products {
       const auto truth = twin_.landmarks(hand.side, tick.lit_ns);
       if (!truth) continue;
       jitter_.add(hand, *truth, tick.index, metrics_);
+      add_landmarks(hand, *truth, tick.lit_ns);
       if (trace_) trace_->add(tick.lit_ns, hand, *truth);
     }
     if (!tick.projection) return {};
@@ -101,6 +102,11 @@ class Products {
       return json.contains(group) && json[group].contains(key) && json[group][key].is_number() ? json[group][key].get<double>() : 0.0;
     };
     const auto plain = [&](const char* key) { return json.contains(key) && json[key].is_number() ? json[key].get<double>() : 0.0; };
+    if (options_.draw_every == 0) {
+      fmt::print("{} on {}: landmark error mean {:.2f} mm, p95 {:.2f} mm; jitter {:.3f} px\n", rig.name, rig.twin.motion,
+                 number("landmark_mm", "mean"), number("landmark_mm", "p95"), plain("jitter_px"));
+      return;
+    }
     fmt::print(
         "{} on {}: interior error mean {:.2f} mm, p95 {:.2f} mm; coverage {:.4f}, spill {:.4f}; jitter {:.3f} px; {} frames, {:.0f} us "
         "each (p50)\n",
@@ -110,7 +116,18 @@ class Products {
 
  private:
   Products(const Options& options, const config::Rig& rig, const calib::Calibration& calibration, const twin::Twin& twin)
-      : options_(options), twin_(twin), judge_(twin::Judge::create(twin, calibration, rig.observer.step_px)) {}
+      : options_(options), calibration_(calibration), twin_(twin), judge_(twin::Judge::create(twin, calibration, rig.observer.step_px)) {}
+
+  /// Camera px become mm at the distance of the joint.
+  void add_landmarks(const renderer::FrameHand& hand, const renderer::LandmarkPoints& truth, std::int64_t lit_ns) {
+    const auto joints = twin_.joints(hand.side, lit_ns);
+    for (std::size_t i = 0; joints && i < truth.size(); ++i) {
+      const glm::dvec4 joint_m = (*joints)[msg::kJointOfLandmark[i]][3];
+      const double distance_m = (calibration_.camera_from_tracker * joint_m).z;
+      const double error_px = glm::length(hand.corrected[i] - truth[i]);
+      metrics_.add_landmark(error_px, 1e3 * error_px * distance_m / calibration_.camera.fx_px);
+    }
+  }
 
   Result<void> picture(const Tick& tick) {
     if (!photographer_ || drawn_++ % options_.picture_every != 0) return {};
@@ -119,6 +136,7 @@ class Products {
   }
 
   const Options& options_;
+  const calib::Calibration& calibration_;
   const twin::Twin& twin_;
   std::unique_ptr<twin::Judge> judge_;
   twin::Metrics metrics_;
@@ -151,7 +169,8 @@ Result<void> run(const Options& options) {
   if (!calibration) return tl::make_unexpected(calibration.error());
   const auto twin = twin::Twin::create(*rig, *calibration);
   if (!twin) return tl::make_unexpected(twin.error());
-  auto pipeline = renderer::Pipeline::create(rig->cascade, rig->content, rig->hand, *calibration);
+  const auto truth = [&world = **twin](renderer::Side side, std::int64_t time_ns) { return world.landmarks(side, time_ns); };
+  auto pipeline = renderer::Pipeline::create(rig->cascade, rig->content, rig->hand, *calibration, truth);
   if (!pipeline) return tl::make_unexpected(pipeline.error());
   auto products = Products::create(options, *rig, *calibration, **twin);
   if (!products) return tl::make_unexpected(products.error());

@@ -27,7 +27,7 @@ void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
   deliver(now_ns);
 
   Tick tick{next_tick_, lit_ns, {}, nullptr, nullptr};
-  if (next_tick_ % draw_every_ == 0) {
+  if (draw_every_ > 0 && next_tick_ % draw_every_ == 0) {
     const auto frame = draw(now_ns, lit_ns);
     tick.hands = frame.hands;
     tick.frame = &frame;

@@ -24,7 +24,7 @@ struct Tick {
 
 /// The cascade in virtual time: at each projector frame, what has arrived goes in; what is drawn is lit `software_ms` and the
 /// projector's latency later. Every `draw_every`-th frame is drawn, the others only tracked, which leaves the cascade's
-/// memory as if all were.
+/// memory as if all were; with 0 none is drawn.
 class Simulation {
  public:
   Simulation(const config::Rig& rig, const calib::Calibration& calibration, renderer::Pipeline& pipeline, SensorFeed& feed, int draw_every);

@@ -87,6 +87,11 @@ void Metrics::add_jitter(double square_px, int samples) {
   jitter_samples_ += samples;
 }
 
+void Metrics::add_landmark(double error_px, double error_mm) {
+  landmark_px_.add(static_cast<float>(error_px));
+  landmark_mm_.add(static_cast<float>(error_mm));
+}
+
 nlohmann::json Metrics::to_json() const {
   nlohmann::json json;
   all_.write(json);
@@ -94,6 +99,8 @@ nlohmann::json Metrics::to_json() const {
   json["jitter_px"] =
       jitter_samples_ > 0 ? nlohmann::json(std::sqrt(jitter_square_ / static_cast<double>(jitter_samples_))) : nlohmann::json();
   json["foldovers"] = foldovers_;
+  write_spread(json["landmark_px"], landmark_px_, true);
+  write_spread(json["landmark_mm"], landmark_mm_, true);
 
   const auto frame = stage_us_.find(msg::Stage::frame);
   write_spread(json["frame_us"], frame == stage_us_.end() ? Samples() : frame->second, false);

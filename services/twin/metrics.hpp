@@ -20,9 +20,12 @@ class Metrics {
   void add_foldovers(int count);
   /// Landings of a fixed set of surface points in successive frames; jitter is the RMS of what remains after the truth's own motion.
   void add_jitter(double square_px, int samples);
+  /// Distance of one corrected landmark from the true one at photon time: undistorted camera px, and mm at its distance.
+  void add_landmark(double error_px, double error_mm);
 
   /// What was never measured is null; every bin and both hands are always there.
   /// {"frames","interior_mm":{mean,p95,p99},"interior_px":{...},"coverage","spill","iou","seam_px","jitter_px","foldovers",
+  ///  "landmark_px":{mean,p95,p99},"landmark_mm":{...},
   ///  "equivalent_latency_ms","frame_us":{p50,p99},"stage_us":{stage:{p50,p99}},"bins":{...},"hands":{"left":{...}}}
   nlohmann::json to_json() const;
 
@@ -55,6 +58,7 @@ class Metrics {
   std::array<Bin, 5> by_speed_;
   std::array<Bin, 2> by_side_;
   std::map<msg::Stage, Samples> stage_us_;
+  Samples landmark_px_, landmark_mm_;
   std::int64_t foldovers_ = 0, frames_ = 0;
   double jitter_square_ = 0;
   std::int64_t jitter_samples_ = 0;

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "tests/config/every_setting.hpp"
 
 namespace handcast::config {
@@ -159,6 +161,20 @@ TEST(Print, SaysOfEverySettingWhatItIsAndMayBe) {
   EXPECT_THAT(text, HasSubstr("[camera]\n# Where frames come from"));
   EXPECT_THAT(text, HasSubstr("# Frames a second asked of the camera. (1..2000 Hz)\nrate_hz = 525\n"));
   EXPECT_THAT(text, HasSubstr("(one of: hold, velocity, acceleration)\nmethod = \"acceleration\"\n"));
+}
+
+TEST(Rig, EveryServiceRunsAsItsOwnSectionSays) {
+  auto rig = parse_rig("", "rig.toml").value();
+  const std::map<std::string, Process*> sections{{"camera", &rig.camera.process},
+                                                 {"pose", &rig.pose.process},
+                                                 {"landmarks", &rig.landmarks.process},
+                                                 {"projector", &rig.projector.process},
+                                                 {"observer", &rig.observer.process}};
+  int priority = 10;
+  for (const auto& [name, process] : sections) process->priority = ++priority;
+  priority = 10;
+  for (const auto& [name, process] : sections) EXPECT_EQ(process_of(rig, name).priority, ++priority) << name;
+  EXPECT_EQ(process_of(rig, "moon").priority, 0);
 }
 
 }  // namespace

@@ -20,7 +20,9 @@ class CarryFilter : public LandmarkFilter {
 
 std::unique_ptr<CarryFilter> make_naive_filter();
 std::unique_ptr<CarryFilter> make_paper_filter(const config::Filter& settings);
+std::unique_ptr<CarryFilter> make_kalman_filter(const config::Filter& settings);
 std::unique_ptr<CarryFilter> make_offset_kalman(const config::Filter& settings);
+std::unique_ptr<CarryFilter> make_one_euro_filter(const config::Filter& settings);
 
 /// Around another filter: fades it out when detections stay away, and blends the jumps of its output in.
 std::unique_ptr<LandmarkFilter> make_settled_filter(const config::Filter& settings, std::unique_ptr<CarryFilter> inner);
@@ -45,6 +47,9 @@ std::optional<LandmarkPoints> tracker_then(const TrackerAt& tracker, const Track
 
 /// Offsets of points that were never seen: the mean of the others'.
 void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets, const std::array<bool, kLandmarks>& known);
+/// P moved by these offsets, those that are not known lent; nothing where none is.
+std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker, std::array<glm::vec2, kLandmarks> offsets,
+                                       const std::array<bool, kLandmarks>& known);
 
 inline glm::vec2 position_px(const msg::Landmark& point) { return {point.x_px, point.y_px}; }
 bool was_seen(const msg::Landmark& point);  ///< confidence above 0 and finite

@@ -12,18 +12,14 @@ class NaiveFilter final : public CarryFilter {
     for (int i = 0; i < kLandmarks; ++i) {
       if (!was_seen(seen.points[i])) continue;
       seen_px_[i] = position_px(seen.points[i]);
-      known_[i] = any_ = true;
+      known_[i] = true;
     }
   }
 
   std::optional<LandmarkPoints> at(std::int64_t, std::int64_t, const LandmarkPoints& tracker) override {
-    if (!any_) return std::nullopt;
     std::array<glm::vec2, kLandmarks> offsets{};
     for (int i = 0; i < kLandmarks; ++i) offsets[i] = seen_px_[i] - tracker[i];
-    lend_offsets(offsets, known_);
-    LandmarkPoints points;
-    for (int i = 0; i < kLandmarks; ++i) points[i] = tracker[i] + offsets[i];
-    return points;
+    return moved_by(tracker, offsets, known_);
   }
 
   void forget() override { *this = NaiveFilter(); }
@@ -31,7 +27,6 @@ class NaiveFilter final : public CarryFilter {
  private:
   LandmarkPoints seen_px_{};
   std::array<bool, kLandmarks> known_{};
-  bool any_ = false;
   std::int64_t origin_ns_ = 0;
 };
 

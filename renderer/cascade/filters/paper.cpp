@@ -16,30 +16,22 @@ class PaperFilter final : public CarryFilter {
     for (int i = 0; i < kLandmarks; ++i) {
       if (!was_seen(seen.points[i])) continue;
       offsets_[i] = position_px(seen.points[i]) - (*then)[i];
-      known_[i] = any_ = true;
+      known_[i] = true;
     }
-    if (any_) lend_offsets(offsets_, known_);
   }
 
   std::optional<LandmarkPoints> at(std::int64_t, std::int64_t target_ns, const LandmarkPoints& tracker) override {
     memory_.remember(target_ns, tracker);
-    if (!any_) return std::nullopt;
-    LandmarkPoints points;
-    for (int i = 0; i < kLandmarks; ++i) points[i] = tracker[i] + offsets_[i];
-    return points;
+    return moved_by(tracker, offsets_, known_);
   }
 
-  void forget() override {
-    known_ = {};
-    any_ = false;
-  }
+  void forget() override { known_ = {}; }
 
  private:
   bool hindsight_;
   TrackerMemory memory_;
   std::array<glm::vec2, kLandmarks> offsets_{};
   std::array<bool, kLandmarks> known_{};
-  bool any_ = false;
   std::int64_t origin_ns_ = 0;
 };
 

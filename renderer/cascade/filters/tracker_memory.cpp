@@ -49,6 +49,15 @@ void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets, const std::array<b
     if (!known[i]) offsets[i] = sum / static_cast<float>(count);
 }
 
+std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker, std::array<glm::vec2, kLandmarks> offsets,
+                                       const std::array<bool, kLandmarks>& known) {
+  if (std::ranges::find(known, true) == known.end()) return std::nullopt;
+  lend_offsets(offsets, known);
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i) points[i] = tracker[i] + offsets[i];
+  return points;
+}
+
 bool was_seen(const msg::Landmark& point) { return point.confidence > 0 && std::isfinite(point.x_px) && std::isfinite(point.y_px); }
 
 }  // namespace handcast::renderer

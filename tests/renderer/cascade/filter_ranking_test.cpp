@@ -109,16 +109,19 @@ config::Filter method(const char* name, double blend_ms, bool hindsight) {
   return settings;
 }
 
-TEST(FilterRanking, TheOffsetKalmanBeatsThePaperBeatsTheTrackerAlone) {
+TEST(FilterRanking, FiltersOnTheOffsetBeatThePaperAndThePaperBeatsWhatUsesOneSensorOnly) {
   const World world;
-  std::map<std::string, Score> scores{{"baseline", simulate(world, method("none", 0, true))},
-                                      {"naive", simulate(world, method("naive", 0, true))},
-                                      {"paper", simulate(world, method("paper", 0, false))},
-                                      {"offset_kalman", simulate(world, method("offset_kalman", 0, true))},
-                                      {"blended", simulate(world, method("offset_kalman", 6, true))}};
+  std::map<std::string, Score> scores{
+      {"baseline", simulate(world, method("none", 0, true))},        {"naive", simulate(world, method("naive", 0, true))},
+      {"kalman", simulate(world, method("kalman", 0, true))},        {"paper", simulate(world, method("paper", 0, false))},
+      {"one_euro", simulate(world, method("one_euro", 0, true))},    {"offset_kalman", simulate(world, method("offset_kalman", 0, true))},
+      {"blended", simulate(world, method("offset_kalman", 6, true))}};
   for (const auto& [name, score] : scores) printf("  %-14s mean %.2f px, jitter %.2f px\n", name.c_str(), score.mean_px, score.jitter_px);
   EXPECT_LT(scores["paper"].mean_px, 0.5 * scores["baseline"].mean_px);
   EXPECT_LT(scores["paper"].mean_px, scores["naive"].mean_px);
+  EXPECT_LT(scores["kalman"].mean_px, scores["naive"].mean_px);
+  EXPECT_LT(scores["paper"].mean_px, scores["kalman"].mean_px);
+  EXPECT_LT(scores["one_euro"].mean_px, scores["paper"].mean_px);
   EXPECT_LT(scores["offset_kalman"].mean_px, 0.85 * scores["paper"].mean_px);
   EXPECT_LT(scores["blended"].mean_px, 0.95 * scores["paper"].mean_px);
   EXPECT_LT(scores["blended"].jitter_px, 0.4 * scores["offset_kalman"].jitter_px);

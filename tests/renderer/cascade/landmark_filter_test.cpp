@@ -55,7 +55,7 @@ glm::vec2 offset_at(LandmarkFilter& filter, const Line& line, std::int64_t now_n
 }
 
 class EveryFilter : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Filters, EveryFilter, ::testing::Values("naive", "paper", "offset_kalman"),
+INSTANTIATE_TEST_SUITE_P(Filters, EveryFilter, ::testing::Values("naive", "kalman", "paper", "one_euro", "offset_kalman"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST_P(EveryFilter, SaysNothingBeforeTheFirstDetection) {
@@ -135,7 +135,7 @@ TEST_P(EveryFilter, BlendsItsFirstCorrectionIn) {
 }
 
 class OffsetFilter : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Filters, OffsetFilter, ::testing::Values("paper", "offset_kalman"),
+INSTANTIATE_TEST_SUITE_P(Filters, OffsetFilter, ::testing::Values("paper", "one_euro", "offset_kalman"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST_P(OffsetFilter, DelayedDetectionsOfAMovingHandAreCarriedToTheLight) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "renderer/content/picture.hpp"
 #include "renderer/content/textures.hpp"
 
 namespace handcast::renderer {
@@ -91,14 +92,34 @@ TEST(Content, AMissingFileAndAFileThatIsNoPictureAreToldApart) {
 
 TEST(Content, APictureIsReadWithRedInTheLowestByteAndTheTopRowFirst) {
   using namespace std::string_view_literals;
-  // Binary PPM, which the same reader takes: red, green / blue, white.
-  const TemporaryFile picture("handcast_content_test.ppm", "P6 2 2 255\n\xff\0\0\0\xff\0\0\0\xff\xff\xff\xff"sv);
+  // A PNG of 2 x 2 px: red, green / blue, white.
+  const TemporaryFile picture(
+      "handcast_content_test.png",
+      "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x02\x00\x00\x00\x02\x08\x02\x00\x00"
+      "\x00\xfd\xd4\x9a\x73\x00\x00\x00\x12\x49\x44\x41\x54\x78\xda\x63\xf8\xcf\xc0\xc0\x00\xc2\x0c\xff\x81\x00\x00\x1f"
+      "\xee\x05\xfb\xf1\xab\xba\x77\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42\x60\x82"sv);
   const auto texture = load_content(picture.path(), two_sheets());
   ASSERT_TRUE(texture) << texture.error().what;
   EXPECT_EQ(texture->at(0, 0), 0xff0000ffu);
   EXPECT_EQ(texture->at(1, 0), 0xff00ff00u);
   EXPECT_EQ(texture->at(0, 1), 0xffff0000u);
   EXPECT_EQ(texture->at(1, 1), 0xffffffffu);
+}
+
+TEST(Content, WhatIsWrittenIsReadBackAndBrokenFilesAreNotPictures) {
+  Texture picture(3, 2);
+  for (int i = 0; i < 6; ++i) picture.pixels()[static_cast<std::size_t>(i)] = 0xff000000u | static_cast<std::uint32_t>(i * 0x0a0b0c);
+  const TemporaryFile file("handcast_content_test.png", "");
+  ASSERT_TRUE(write_png(file.path(), picture.view()));
+  const auto back = read_picture(file.path());
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_EQ(back->pixels(), picture.pixels());
+
+  const TemporaryFile cut("handcast_content_cut.png", "\x89PNG\r\n\x1a\n and no more");
+  EXPECT_EQ(read_picture(cut.path()).error().code, Errc::bad_config);
+  const TemporaryFile jpeg("handcast_content_cut.jpg", "\xff\xd8\xff\xe0 and no more");
+  EXPECT_EQ(read_picture(jpeg.path()).error().code, Errc::bad_config);
+  EXPECT_FALSE(write_png("/nowhere/picture.png", picture.view()));
 }
 
 }  // namespace

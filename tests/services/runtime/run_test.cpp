@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <optional>
+#include <thread>
 
 #include "ipc/msg/hand_poses.hpp"
 #include "services/runtime/context.hpp"
@@ -26,7 +28,7 @@ class Run : public testing::Test {
     folder_ = name;
     rig_ = (folder_ / "rig.toml").string();
     write_rig("name = \"desk\"\n");
-    for (const auto* variable : {"HANDCAST_RINGS", "HANDCAST_READY_FD", "HANDCAST_EPOCH_NS"}) unsetenv(variable);
+    for (const auto* variable : {"HANDCAST_RINGS", "HANDCAST_READY_FD", "HANDCAST_EPOCH_NS", "HANDCAST_STANDBY_FD"}) unsetenv(variable);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -178,6 +180,95 @@ TEST_F(Run, TheListOfBackEndsIsOneNameALine) {
   testing::internal::CaptureStdout();
   EXPECT_EQ(daemon(do_nothing, {"--backends"}), 0);
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "twin\nreplay\n");
+}
+
+/// A daemon that is started as a spare, and the supervisor's ends of its pipes.
+class Spare : public Run {
+ protected:
+  void SetUp() override {
+    Run::SetUp();
+    ASSERT_EQ(pipe(ready_), 0);
+    ASSERT_EQ(pipe(turn_), 0);
+    setenv("HANDCAST_READY_FD", std::to_string(ready_[1]).c_str(), 1);
+    setenv("HANDCAST_STANDBY_FD", std::to_string(turn_[0]).c_str(), 1);
+  }
+  int ready_[2], turn_[2];
+};
+
+TEST_F(Spare, PreparesItselfAndTakesWhatOnlyOneMayHaveInItsTurn) {
+  give_rings(poses_, marks_);
+  const auto again = [](const ipc::Segment& ring) { return ipc::Segment::open(UniqueFd(dup(ring.fd()))).value(); };
+  std::optional worker_poses(ipc::Writer<msg::HandPoses>::attach(again(poses_)).value());
+  std::optional worker_marks(ipc::Writer<msg::StageMarks>::attach(again(marks_)).value());
+  auto marks = ipc::Reader<msg::StageMarks>::attach(again(marks_)).value();
+
+  std::thread spare([&] {
+    daemon([](Context& context) {
+      context.stand_by({"pose.hands"});
+      must(context.writer<msg::HandPoses>("pose.hands")).publish({});
+      context.ready();
+      context.mark({.origin_ns = 7}, {});
+    });
+  });
+  char byte = 0;
+  EXPECT_EQ(read(ready_[0], &byte, 1), 1);
+  EXPECT_EQ(byte, 's');
+  worker_poses.reset();  // the worker dies
+  worker_marks.reset();
+  EXPECT_EQ(write(turn_[1], "1", 1), 1);
+  while (byte == 's') ASSERT_EQ(read(ready_[0], &byte, 1), 1);
+  EXPECT_EQ(byte, '\n');
+  spare.join();
+  const auto mark = marks.next(Deadline::now());
+  ASSERT_TRUE(mark) << "its marks go into the ring that was the worker's";
+  EXPECT_EQ((*mark)->header.origin_ns, 7);
+}
+
+TEST_F(Spare, SaysAgainAndAgainThatItIsThere) {
+  std::thread spare([&] { daemon([](Context& context) { context.stand_by(); }); });
+  char bytes[3];
+  for (char& byte : bytes) EXPECT_EQ(read(ready_[0], &byte, 1), 1);
+  EXPECT_EQ(std::string(bytes, 3), "sss");
+  EXPECT_EQ(write(turn_[1], "1", 1), 1);
+  spare.join();
+}
+
+TEST_F(Spare, ThatNeverStandsByWaitsAtItsFirstWriterOrWhenItIsReady) {
+  close(turn_[1]);  // nobody will ever give it its turn
+  give_rings(poses_, marks_);
+  EXPECT_EXIT(
+      {
+        daemon([](Context& context) { must(context.writer<msg::HandPoses>("pose.hands")); });
+        _exit(5);
+      },
+      ExitedWithCode(0), "");
+  EXPECT_EXIT(
+      {
+        daemon([](Context& context) { context.ready(); });
+        _exit(5);
+      },
+      ExitedWithCode(0), "");
+}
+
+TEST_F(Spare, ThatIsToldToStopWhileItWaitsEndsWithZero) {
+  const auto told = [](Context& context) {
+    raise(SIGTERM);
+    context.stand_by();
+    _exit(5);
+  };
+  EXPECT_EXIT(daemon(told), ExitedWithCode(0), "");
+  const auto told_later = [](Context& context) {
+    alarm(1);
+    signal(SIGALRM, [](int) { raise(SIGTERM); });
+    context.stand_by();
+    _exit(5);
+  };
+  EXPECT_EXIT(daemon(told_later), ExitedWithCode(0), "");
+}
+
+TEST_F(Run, ACoreThatIsNotThereIsExitHundred) {
+  write_rig("[pose.process]\ncores = [1000]\n");
+  EXPECT_EXIT(_exit(daemon(do_nothing)), ExitedWithCode(kExitConfig), "pose.process.cores: there is no core 1000");
 }
 
 }  // namespace

@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ipc/base/clock.hpp"
+#include "renderer/cascade/filters/filters.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+constexpr float kSpeedCutoff_hz = 1;  ///< of the low-pass on the offset's speed
+
+/// One landmark's offset through a low-pass whose cutoff rises with the offset's speed.
+class OneEuroTrack {
+ public:
+  bool known() const { return known_; }
+  void forget() { known_ = false; }
+  glm::vec2 offset_px() const { return offset_px_; }
+
+  void update(std::int64_t time_ns, glm::vec2 measured_px, float least_hz, float per_speed) {
+    if (known_ && time_ns <= time_ns_) return;  // late: the newer one is in already
+    if (!known_) {
+      *this = OneEuroTrack();
+      offset_px_ = measured_px;
+    } else {
+      const auto step_s = static_cast<float>(ns_to_seconds(time_ns - time_ns_));
+      speed_px_s_ += share(kSpeedCutoff_hz, step_s) * ((measured_px - offset_px_) / step_s - speed_px_s_);
+      offset_px_ += share(least_hz + per_speed * glm::length(speed_px_s_), step_s) * (measured_px - offset_px_);
+    }
+    known_ = true;
+    time_ns_ = time_ns;
+  }
+
+ private:
+  /// Of the way to a new value that a first-order low-pass goes in one step.
+  static float share(float cutoff_hz, float step_s) {
+    const float turn = 2 * std::numbers::pi_v<float> * cutoff_hz * step_s;
+    return turn / (1 + turn);
+  }
+
+  bool known_ = false;
+  std::int64_t time_ns_ = 0;
+  glm::vec2 offset_px_{0}, speed_px_s_{0};
+};
+
+/// The one-euro filter (Casiez, Roussel, Vogel 2012) on Q - P at the detection's own time.
+class OneEuro final : public CarryFilter {
+ public:
+  explicit OneEuro(const config::Filter& settings) : settings_(settings) {}
+
+  void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& seen, const TrackerAt& tracker) override {
+    const auto then = tracker_then(tracker, settings_.hindsight ? nullptr : &memory_, origin_ns);
+    if (!then) return;
+    const auto least_hz = static_cast<float>(settings_.one_euro_cutoff_hz), per_speed = static_cast<float>(settings_.one_euro_beta);
+    for (int i = 0; i < kLandmarks; ++i)
+      if (was_seen(seen.points[i])) tracks_[i].update(origin_ns, position_px(seen.points[i]) - (*then)[i], least_hz, per_speed);
+  }
+
+  std::optional<LandmarkPoints> at(std::int64_t, std::int64_t target_ns, const LandmarkPoints& tracker) override {
+    if (!settings_.hindsight) memory_.remember(target_ns, tracker);
+    std::array<glm::vec2, kLandmarks> offsets{};
+    std::array<bool, kLandmarks> known{};
+    for (int i = 0; i < kLandmarks; ++i) {
+      known[i] = tracks_[i].known();
+      if (known[i]) offsets[i] = tracks_[i].offset_px();
+    }
+    return moved_by(tracker, offsets, known);
+  }
+
+  void forget() override {
+    for (OneEuroTrack& track : tracks_) track.forget();
+  }
+
+ private:
+  config::Filter settings_;
+  TrackerMemory memory_;
+  std::array<OneEuroTrack, kLandmarks> tracks_{};
+};
+
+}  // namespace
+
+std::unique_ptr<CarryFilter> make_one_euro_filter(const config::Filter& settings) { return std::make_unique<OneEuro>(settings); }
+
+}  // namespace handcast::renderer

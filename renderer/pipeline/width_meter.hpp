@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "renderer/cascade/landmark_filter.hpp"
+#include "renderer/hand/hand_mesh.hpp"
+#include "renderer/image.hpp"
+
+namespace handcast::renderer {
+
+/// How much wider a person's fingers are than the drawn ones, learned from the camera's mask: across the middle of every finger bone
+/// that is seen from the side, the mask is as wide as the finger. (The shape of the hand is the paper's stated limitation.)
+/// The factor is the median over the last seconds, so a bone that another one touches now and then does no harm; it is held while the
+/// hand is in sight and learned afresh after it was gone for a second.
+class WidthMeter {
+ public:
+  explicit WidthMeter(const HandMesh& mesh);
+
+  /// One frame as drawn with factor(): where the vertices and the landmarks land after every correction, and the mask of the hand at
+  /// the same time, all in projector px.
+  void measure(std::int64_t time_ns, std::span<const glm::vec2> landings_px, const LandmarkPoints& landmarks_px, GreyView mask);
+
+  /// For the widths of the next frame; 1 until enough was seen, never beyond 0.75..1.35.
+  float factor() const { return factor_; }
+
+ private:
+  /// A finger bone from one landmark to the next, and the vertices around its middle.
+  struct Bone {
+    int landmark = 0;  ///< it ends at the following one
+    std::vector<std::uint16_t> middle;
+  };
+  /// How wide the mask is at a bone against how wide the bone is drawn; nothing where that cannot be seen.
+  std::optional<float> ratio_at(const Bone& bone, std::span<const glm::vec2> landings_px, const LandmarkPoints& landmarks_px,
+                                GreyView mask) const;
+  void forget();
+  void note(float factor);
+  float median() const;
+
+  static constexpr int kBins = 256;
+  std::vector<Bone> bones_;
+  std::array<int, kBins> seen_{};  ///< histogram of the factors seen; halved when it is full, so that old ones fade
+  int count_ = 0;
+  float factor_ = 1;
+  std::int64_t last_ns_ = 0;
+  LandmarkPoints last_px_{};
+};
+
+}  // namespace handcast::renderer
