@@ -33,7 +33,15 @@ Result<EventLoop> EventLoop::open() {
 void EventLoop::watch(int fd, std::function<void()> on_readable) {
   epoll_event event{.events = EPOLLIN, .data = {.fd = fd}};
   epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event);
-  handlers_[fd] = std::move(on_readable);
+  handlers_[fd] = {std::move(on_readable), {}};
+}
+
+void EventLoop::watch_writing(int fd, std::function<void()> on_writable) {
+  const auto found = handlers_.find(fd);
+  if (found == handlers_.end()) return;
+  epoll_event event{.events = on_writable ? EPOLLIN | EPOLLOUT : EPOLLIN, .data = {.fd = fd}};
+  epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, fd, &event);
+  found->second.writable = std::move(on_writable);
 }
 
 void EventLoop::forget(int fd) {
@@ -44,11 +52,17 @@ void EventLoop::turn() {
   std::array<epoll_event, 32> events;
   const int count = epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), -1);
   for (int i = 0; i < count; ++i) {
-    const auto found = handlers_.find(events[i].data.fd);
-    if (found == handlers_.end()) continue;
-    const auto handler = found->second;  // a copy: it may forget itself
-    handler();
+    const auto& event = events[static_cast<std::size_t>(i)];
+    if (event.events & ~static_cast<std::uint32_t>(EPOLLOUT)) call(event.data.fd, &Handlers::readable);
+    if (event.events & EPOLLOUT) call(event.data.fd, &Handlers::writable);
   }
+}
+
+void EventLoop::call(int fd, std::function<void()> Handlers::*which) {
+  const auto found = handlers_.find(fd);
+  if (found == handlers_.end()) return;
+  const auto handler = found->second.*which;  // a copy: it may forget itself
+  if (handler) handler();
 }
 
 Result<UniqueFd> open_timer(std::int64_t period_ns) {

@@ -15,6 +15,8 @@ class EventLoop {
   static Result<EventLoop> open();
 
   void watch(int fd, std::function<void()> on_readable);
+  /// Calls back also while `fd`, which is watched, can be written to. An empty function: no more.
+  void watch_writing(int fd, std::function<void()> on_writable);
   void forget(int fd);
   /// Waits for events and handles them.
   void turn();
@@ -22,7 +24,11 @@ class EventLoop {
  private:
   explicit EventLoop(UniqueFd epoll) : epoll_(std::move(epoll)) {}
   UniqueFd epoll_;
-  std::map<int, std::function<void()>> handlers_;
+  struct Handlers {
+    std::function<void()> readable, writable;
+  };
+  void call(int fd, std::function<void()> Handlers::*which);
+  std::map<int, Handlers> handlers_;
 };
 
 /// A descriptor that is readable every `period_ns`. Read it to wait for the next time.

@@ -15,11 +15,15 @@ inline constexpr int kExitFailure = 111;   ///< something is missing now; trying
 /// How a process ended.
 struct Exit {
   bool signalled = false;
-  int code = 0;  ///< the exit code, or the signal
+  int code = 0;          ///< the exit code, or the signal
+  bool unknown = false;  ///< nobody could tell: it was not a child and had no keeper
 
-  bool is_success() const { return !signalled && code == 0; }
-  bool asks_for_a_person() const { return !signalled && code == kExitConfig; }
-  std::string describe() const { return signalled ? fmt::format("signal {} ({})", code, strsignal(code)) : fmt::format("exit {}", code); }
+  bool is_success() const { return !signalled && !unknown && code == 0; }
+  bool asks_for_a_person() const { return !signalled && !unknown && code == kExitConfig; }
+  std::string describe() const {
+    if (unknown) return "end unknown";
+    return signalled ? fmt::format("signal {} ({})", code, strsignal(code)) : fmt::format("exit {}", code);
+  }
 };
 
 }  // namespace handcast::supervisor

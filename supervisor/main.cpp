@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "config/join.hpp"
 #include "supervisor/exit.hpp"
@@ -11,9 +13,17 @@
 namespace handcast::supervisor {
 namespace {
 
+constexpr std::array kGroups{std::pair{VerbGroup::run, "run a rig"}, std::pair{VerbGroup::look, "look at one that is up"},
+                             std::pair{VerbGroup::change, "change one that is up"}, std::pair{VerbGroup::set_up, "set one up"},
+                             std::pair{VerbGroup::score, "score one"}};
+
 void print_overview() {
-  fmt::print("handcast {} — light that stays on moving hands\n\nusage: handcast VERB ...\n\n", HANDCAST_VERSION);
-  for (const auto& verb : verbs()) fmt::print("  {:<10} {}\n", verb.name, verb.sentence);
+  fmt::print("handcast {} — light that stays on moving hands\n\nusage: handcast VERB ...\n", HANDCAST_VERSION);
+  for (const auto& [group, title] : kGroups) {
+    fmt::print("\n{}\n", title);
+    for (const auto& verb : verbs())
+      if (verb.group == group) fmt::print("  {:<14} {}\n", verb.name, verb.sentence);
+  }
   fmt::print("\n`handcast help VERB` says how a verb is used.\n");
 }
 

@@ -9,17 +9,29 @@
 namespace handcast::supervisor {
 namespace {
 
+using Group = VerbGroup;
+
 constexpr std::array kVerbs{
-    VerbEntry{"up", "up RIG.toml [--set path=value]... [--seconds N] [--out DIR]",
-              "Runs a rig until Ctrl-C, `handcast down` or N seconds; DIR gets live.json.", run_up},
-    VerbEntry{"down", "down [--rig NAME]", "Stops a rig and waits until it has stopped.", run_down},
-    VerbEntry{"status", "status [--json] [--rig NAME]", "Shows a rig's services, rates and times.", run_status},
-    VerbEntry{"restart", "restart SERVICE [--rig NAME]", "Starts one service of a rig again.", run_restart},
-    VerbEntry{"swap", "swap SERVICE BACKEND [--rig NAME]", "Gives one service another back end while the rest goes on.", run_swap},
+    VerbEntry{"up", "up RIG.toml [--set path=value]... [--seconds N] [--out DIR] [--no-keeper]",
+              "Runs a rig until Ctrl-C, `handcast down` or N seconds; DIR gets live.json. --no-keeper: for systemd.", run_up, Group::run},
+    VerbEntry{"down", "down [--rig NAME]", "Stops a rig and waits until it has stopped.", run_down, Group::run},
+    VerbEntry{"status", "status [--json] [--rig NAME]", "Shows a rig's services, rates and times.", run_status, Group::look},
+    VerbEntry{"restart", "restart SERVICE [--rig NAME]", "Starts one service of a rig again.", run_restart, Group::change},
+    VerbEntry{"swap", "swap SERVICE BACKEND [--rig NAME]", "Gives one service another back end while the rest goes on.", run_swap,
+              Group::change},
+    VerbEntry{"reload", "reload [--rig NAME]", "Applies a changed rig file: restarts only the services whose settings changed.", run_reload,
+              Group::change},
+    VerbEntry{"top", "top [--rig NAME] [--once] [--json]", "Watches rings and services in the terminal.", run_top, Group::look},
+    VerbEntry{"latency", "latency [--seconds N] [--json] [--rig NAME]", "Shows where the time went, from exposure to light.", run_latency,
+              Group::look},
+    VerbEntry{"trace", "trace [--seconds N] -o FILE [--rig NAME]", "Writes the last N seconds as a Perfetto trace.", run_trace,
+              Group::look},
+    VerbEntry{"install-units", "install-units RIG.toml [--set path=value]... [--system] [--print]", "Lets systemd run the rig.",
+              run_install_units},
     VerbEntry{"config", "config --print [FILE] | --check FILE | --reference [--set path=value]...",
               "Prints a whole rig file, checks one, or explains every setting.", run_config},
-    VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.", nullptr},
-    VerbEntry{"report", "report ...", "Turns the results of runs into a report.", nullptr},
+    VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.", nullptr, Group::score},
+    VerbEntry{"report", "report ...", "Turns the results of runs into a report.", nullptr, Group::score},
 };
 
 }  // namespace

@@ -11,11 +11,15 @@ namespace handcast::supervisor {
 
 using Arguments = std::vector<std::string>;  ///< what stands behind the verb
 
+/// What a verb is for: `handcast help` lists them so.
+enum class VerbGroup { run, look, change, set_up, score };
+
 struct VerbEntry {
   std::string_view name;
   std::string_view usage;  ///< what stands behind "handcast "
   std::string_view sentence;
   int (*run)(const Arguments&);  ///< null: a program of its own, handcast-NAME
+  VerbGroup group = VerbGroup::set_up;
 };
 
 /// Every verb of this installation.
@@ -31,6 +35,11 @@ int run_down(const Arguments& arguments);
 int run_status(const Arguments& arguments);
 int run_restart(const Arguments& arguments);
 int run_swap(const Arguments& arguments);
+int run_reload(const Arguments& arguments);
+int run_trace(const Arguments& arguments);
+int run_latency(const Arguments& arguments);
+int run_top(const Arguments& arguments);
+int run_install_units(const Arguments& arguments);
 
 /// Prints "handcast: sentence" and gives back the exit code.
 int complain(int exit_code, std::string_view sentence);

@@ -54,6 +54,14 @@ void Command::signal(int number) const {
   if (!reaped_) kill(pid_, number);
 }
 
+pid_t Command::supervisor() const {
+  const auto number = std::to_string(pid_);
+  std::ifstream children("/proc/" + number + "/task/" + number + "/children");
+  for (pid_t child = 0; children >> child;)
+    if (text_of("/proc/" + std::to_string(child) + "/cmdline").find("--kept") != std::string::npos) return child;
+  return -1;
+}
+
 bool Command::running() { return !reaped_ && is_alive(pid_); }
 
 int Command::wait() {
@@ -78,6 +86,20 @@ bool eventually(const std::function<bool()>& done) {
 bool is_alive(pid_t pid) {
   const auto stat = text_of("/proc/" + std::to_string(pid) + "/stat");
   return !stat.empty() && stat.find(") Z ") == std::string::npos;
+}
+
+void kill_all_of(const std::filesystem::path& folder) {
+  const auto mark = "XDG_RUNTIME_DIR=" + folder.string() + '\0';
+  for (bool found = true; found;) {  // again, since a keeper may have started another one
+    found = false;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      const pid_t pid = std::atoi(entry.path().filename().c_str());
+      if (pid <= 0 || pid == getpid() || !is_alive(pid)) continue;
+      if (('\0' + text_of(entry.path() / "environ")).find('\0' + mark) == std::string::npos) continue;
+      found = kill(pid, SIGKILL) == 0 || found;
+    }
+    usleep(10'000);
+  }
 }
 
 std::filesystem::path program_folder() {

@@ -10,7 +10,8 @@ namespace handcast::system_test {
 
 using Arguments = std::vector<std::string>;
 
-/// A `handcast` command as a process of its own. What it writes goes to files. Killed with the object.
+/// A `handcast` command as a process of its own. What it writes goes to files. Killed with the object; a
+/// rig's supervisor and services outlive that: kill_all_of().
 class Command {
  public:
   /// `folder` gets the output files and is the command's XDG_RUNTIME_DIR: rigs of other folders are not seen.
@@ -18,7 +19,8 @@ class Command {
   ~Command();
   Command(const Command&) = delete;
 
-  pid_t pid() const { return pid_; }
+  pid_t pid() const { return pid_; }  ///< of `handcast up`: its keeper
+  pid_t supervisor() const;           ///< of `handcast up`: the process that the keeper keeps; -1 while there is none
   void signal(int number) const;
   bool running();
   int wait();                  ///< the exit code, or 128 + the signal
@@ -37,6 +39,9 @@ bool eventually(const std::function<bool()>& done);
 
 /// Whether the process exists and is not only waiting for its exit status to be taken.
 bool is_alive(pid_t pid);
+
+/// Kills every process that was started with this runtime folder, however it got away.
+void kill_all_of(const std::filesystem::path& folder);
 
 /// Where handcast and its daemons were built.
 std::filesystem::path program_folder();

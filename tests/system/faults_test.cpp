@@ -1,6 +1,11 @@
 // What goes wrong, and what is changed, while the light must go on.
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
 
 #include "ipc/base/clock.hpp"
 #include "services/twin/recording.hpp"
@@ -19,6 +24,26 @@ class Faults : public SystemTest {
     for (const auto& name : kServices)
       EXPECT_EQ(now["services"][name]["restarts"], restarts.contains(name) ? restarts.at(name) : 0) << name;
   }
+};
+
+/// A variable of the environment, as long as the object lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() {
+    if (before_)
+      setenv(name_, before_->c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+  Variable(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
 };
 
 /// Half a second of the twin's left hand.
@@ -64,6 +89,72 @@ TEST_F(Faults, AServiceThatHangsIsReplaced) {
   EXPECT_TRUE(eventually([&] { return !is_alive(victim); }));
   EXPECT_TRUE(eventually([&] { return service("landmarks")["state"] == "ready"; }));
   expect_restarts({{"landmarks", 1}});
+}
+
+TEST_F(Faults, AServiceInAnEndlessLoopIsReplaced) {
+  const auto programs = scratch_.path() / "bin";
+  std::filesystem::create_directory(programs);
+  std::filesystem::copy_file(program_folder() / "handcast", programs / "handcast");
+  for (const auto* name : {"camera", "pose", "landmarks", "projector"})
+    std::filesystem::create_symlink(std::filesystem::absolute(program_folder()) / ("handcast-" + std::string(name)),
+                                    programs / ("handcast-" + std::string(name)));
+  std::filesystem::create_symlink(std::filesystem::absolute(program_folder()) / "handcast_looping_observer",
+                                  programs / "handcast-observer");
+  const auto loop = scratch_.path() / "loop";
+  const Variable there("HANDCAST_BIN", programs.string()), told("HANDCAST_LOOP", loop.string());
+
+  const auto rig = up();
+  wait_until_light();
+  const auto victim = service("observer")["pid"].get<pid_t>();
+  std::ofstream(loop) << "now";
+  EXPECT_TRUE(eventually([&] { return !is_alive(victim); }));
+  EXPECT_TRUE(eventually([&] { return service("observer")["state"] == "ready"; }));
+  expect_restarts({{"observer", 1}});
+  EXPECT_THAT(rig->log(), HasSubstr("observer has given no sign of life"));
+  expect_more_light();
+}
+
+TEST_F(Faults, AMachineThatStoodStillKillsNobody) {
+  const auto rig = up();
+  wait_until_light();
+  auto everybody = pids();
+  everybody.insert(everybody.begin(), rig->supervisor());
+  for (const auto pid : everybody) kill(pid, SIGSTOP);
+  sleep(4);  // twice what a service may be silent
+  for (const auto pid : everybody) kill(pid, SIGCONT);
+  expect_more_light();
+  EXPECT_TRUE(eventually([&] { return rig->log().find("stood still") != std::string::npos; }));
+  expect_restarts({});
+}
+
+TEST_F(Faults, ASpareProjectorTakesOverAndTheLightGoesOn) {
+  const auto rig = up({"--set", "projector.process.standby=true"});
+  wait_until_light();
+  ASSERT_TRUE(eventually([&] { return service("projector")["standby"].is_number(); }));
+  const auto before = service("projector");
+  ASSERT_EQ(kill(before["pid"].get<pid_t>(), SIGKILL), 0);
+  expect_more_light();
+  EXPECT_TRUE(eventually([&] { return service("projector")["state"] == "ready"; }));
+  EXPECT_EQ(service("projector")["pid"], before["standby"]);
+  expect_restarts({{"projector", 1}});
+  EXPECT_TRUE(eventually([&] { return service("projector")["standby"].is_number(); })) << "there is a new spare";
+  const auto both = service("projector");
+  rig->signal(SIGINT);
+  EXPECT_EQ(rig->wait(), 0);
+  EXPECT_FALSE(is_alive(both["pid"].get<pid_t>()));
+  EXPECT_FALSE(is_alive(both["standby"].get<pid_t>()));
+}
+
+TEST_F(Faults, ServicesStartInTheOrderOfTheirNeeds) {
+  const auto rig = up();
+  wait_until_light();
+  const auto log = rig->log();
+  const auto ready = [&](const std::string& name) { return log.find(" " + name + std::string(11 - name.size(), ' ') + "info    ready"); };
+  for (const auto& name : kServices) ASSERT_NE(ready(name), std::string::npos) << name << "\n" << log;
+  EXPECT_LT(ready("camera"), ready("landmarks"));
+  EXPECT_LT(ready("landmarks"), ready("projector"));
+  EXPECT_LT(ready("pose"), ready("projector"));
+  EXPECT_LT(ready("projector"), ready("observer"));
 }
 
 TEST_F(Faults, APoseSourceIsSwappedForARecordingWhileTheOthersRunOn) {

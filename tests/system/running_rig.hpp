@@ -14,6 +14,7 @@ namespace handcast::system_test {
 class SystemTest : public testing::Test {
  protected:
   void SetUp() override;
+  void TearDown() override { kill_all_of(scratch_.path()); }
 
   /// `handcast ARGUMENTS...`, to its end.
   struct Outcome {

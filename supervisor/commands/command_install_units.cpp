@@ -1,0 +1,75 @@
+// Lets systemd run a rig: `handcast install-units RIG.toml`.
+#include <fmt/format.h>
+#include <pwd.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "config/rig.hpp"
+#include "supervisor/exit.hpp"
+#include "supervisor/options.hpp"
+#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/succession/service_unit.hpp"
+#include "supervisor/verbs.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+/// Whose rig it is: with sudo, of the person in front of it.
+std::string user_name() {
+  const char* before_sudo = std::getenv("SUDO_USER");
+  const auto* entry = getpwuid(getuid());
+  return before_sudo && *before_sudo ? before_sudo : entry ? entry->pw_name : std::to_string(getuid());
+}
+
+Result<void> write_unit(const std::filesystem::path& file, const std::string& text) {
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  std::ofstream out(file, std::ios::trunc);
+  out << text;
+  out.close();
+  if (!out) return fail(Errc::unavailable, fmt::format("{} cannot be written{}", file.string(), getuid() == 0 ? "" : "; `sudo` may help"));
+  return {};
+}
+
+void print_next_steps(const UnitSpec& spec) {
+  const auto* systemctl = spec.system ? "sudo systemctl" : "systemctl --user";
+  fmt::print("  {} daemon-reload\n", systemctl);
+  fmt::print("  {} enable --now {}\n", systemctl, unit_name(spec));
+  if (spec.system)
+    fmt::print("`handcast status` and the like find it with XDG_RUNTIME_DIR=/run/handcast, as user {}.\n", spec.user);
+  else
+    fmt::print("  loginctl enable-linger    # to run also while nobody is logged in\n");
+}
+
+}  // namespace
+
+int run_install_units(const Arguments& arguments) {
+  const auto options =
+      sort_options(arguments, {.with_value = {"--set"}, .flags = {"--system", "--print"}, .least_words = 1, .most_words = 1});
+  if (!options) return complain(kExitUsage, "install-units: " + options.error().what + "; `handcast help install-units`");
+  const auto rig_file = std::filesystem::absolute(options->words.front());
+  const auto rig = config::load_rig(rig_file, options->all("--set"));
+  if (!rig) return complain(rig.error());
+  if (const auto named = socket_of(rig->name); !named) return complain(named.error());
+
+  const UnitSpec spec{.rig = rig->name,
+                      .program = program_folder() / "handcast",
+                      .rig_file = rig_file,
+                      .settings = options->all("--set"),
+                      .system = options->has("--system"),
+                      .user = user_name()};
+  const auto text = unit_text(spec);
+  if (options->has("--print")) {
+    fmt::print("{}", text);
+    return 0;
+  }
+  const auto file = unit_folder(spec) / unit_name(spec);
+  if (const auto written = write_unit(file, text); !written) return complain(written.error());
+  fmt::print("wrote {}; what is left to do:\n", file.string());
+  print_next_steps(spec);
+  return 0;
+}
+
+}  // namespace handcast::supervisor

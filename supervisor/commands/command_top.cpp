@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <deque>
+
+#include "ipc/base/clock.hpp"
+#include "supervisor/control/control_client.hpp"
+#include "supervisor/exit.hpp"
+#include "supervisor/options.hpp"
+#include "supervisor/top/top_layout.hpp"
+#include "supervisor/top/top_look.hpp"
+#include "supervisor/top/top_terminal.hpp"
+#include "supervisor/verbs.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::int64_t kRefresh_ns = 500'000'000;
+constexpr std::size_t kLooksBack = 4;  ///< rates are over the last two seconds
+constexpr std::int64_t kOnce_ns = 1'000'000'000;
+constexpr std::size_t kPlainColumns = 160;
+
+int show_once(const std::string& rig, bool as_json) {
+  RigWatcher watcher(rig);
+  const auto before = watcher.look();
+  if (before.missing.empty()) sleep_until_ns(before.taken_ns + kOnce_ns);
+  const auto now = watcher.look();
+  if (now.status.is_null()) return complain(kExitNotRunning, now.missing);
+
+  const auto model = compare(before, now);
+  if (as_json) {
+    fmt::print("{}\n", json_of(model).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    return 0;
+  }
+  for (const auto& line : lay_out(model, {.columns = kPlainColumns})) fmt::print("{}\n", print(line, false));
+  return 0;
+}
+
+/// What is seen, and how far it is scrolled.
+class Screen {
+ public:
+  void show(const TopModel& model) {
+    const auto [columns, rows] = terminal_.size();
+    std::vector<std::string> texts;
+    for (const auto& line : fit(lay_out(model, {columns, with_marks_}), columns, rows, first_)) texts.push_back(print(line, true));
+    terminal_.show(texts);
+  }
+
+  /// Lets `model` be looked at until it is time for the next look; false: the person has seen enough.
+  bool watch(const TopModel& model, std::int64_t until_ns) {
+    for (;;) {
+      show(model);
+      const auto keys = terminal_.wait(until_ns);
+      if (!keys) return true;
+      for (const auto key : *keys)
+        if (!obey(key)) return false;
+    }
+  }
+
+ private:
+  bool obey(Key key) {
+    const auto page = terminal_.size().rows / 2;
+    switch (key) {
+      case Key::quit:
+        return false;
+      case Key::up:
+        first_ -= std::min<std::size_t>(first_, 1);
+        break;
+      case Key::down:
+        ++first_;
+        break;
+      case Key::page_up:
+        first_ -= std::min(first_, page);
+        break;
+      case Key::page_down:
+        first_ += page;
+        break;
+      case Key::marks:
+        with_marks_ = !with_marks_;
+        break;
+    }
+    return true;
+  }
+
+  Terminal terminal_;
+  bool with_marks_ = false;
+  std::size_t first_ = 0;
+};
+
+int show_until_quit(const std::string& rig) {
+  RigWatcher watcher(rig);
+  Screen screen;
+  std::deque<RigLook> looks{watcher.look()};
+  auto next_ns = now_ns();
+  for (;;) {
+    next_ns = std::max(next_ns + kRefresh_ns, now_ns());  // a machine that was asleep does not catch up
+    if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return 0;
+    looks.push_back(watcher.look());
+    if (looks.size() > kLooksBack + 1) looks.pop_front();
+  }
+}
+
+}  // namespace
+
+int run_top(const Arguments& arguments) {
+  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {"--once", "--json"}});
+  if (!options) return complain(kExitUsage, "top: " + options.error().what + "; `handcast help top`");
+  const auto rig = choose_rig(options->value("--rig"));
+  if (!rig) return complain(kExitNotRunning, rig.error().what);
+  const bool once = options->has("--once") || options->has("--json") || !Terminal::present();
+  return once ? show_once(*rig, options->has("--json")) : show_until_quit(*rig);
+}
+
+}  // namespace handcast::supervisor

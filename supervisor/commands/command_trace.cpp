@@ -1,0 +1,40 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "supervisor/control/control_client.hpp"
+#include "supervisor/exit.hpp"
+#include "supervisor/trace/history_request.hpp"
+#include "supervisor/options.hpp"
+#include "supervisor/trace/perfetto.hpp"
+#include "supervisor/verbs.hpp"
+
+namespace handcast::supervisor {
+
+int run_trace(const Arguments& given) {
+  auto arguments = given;
+  std::ranges::replace(arguments, "-o", "--out");
+  const auto options = sort_options(arguments, {.with_value = {"--seconds", "--out", "--rig"}, .flags = {}});
+  if (!options) return complain(kExitUsage, "trace: " + options.error().what + "; `handcast help trace`");
+  if (!options->has("--out")) return complain(kExitUsage, "trace: -o FILE is needed; `handcast help trace`");
+  const auto seconds = parse_seconds(options->has("--seconds") ? options->value("--seconds") : "10");
+  if (!seconds) return complain(kExitUsage, "trace: " + seconds.error().what);
+
+  const auto rig = choose_rig(options->value("--rig"));
+  if (!rig) return complain(kExitNotRunning, rig.error().what);
+  const auto history = ask_for_history(*rig, *seconds);
+  if (!history) return complain(history.error());
+
+  const auto path = options->value("--out");
+  const auto trace = perfetto_trace(*history, *rig, ClockReadings::now());
+  std::ofstream file(path, std::ios::binary);
+  file.write(trace.data(), static_cast<std::streamsize>(trace.size()));
+  file.close();
+  if (!file) return complain(kExitFailure, fmt::format("{} cannot be written", path));
+  fmt::print("{}: {} frames of {} services, {:.1f} MB; open it in https://ui.perfetto.dev\n", path, history->frames.size(),
+             history->services.size(), static_cast<double>(trace.size()) * 1e-6);
+  return 0;
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,160 @@
+#include "supervisor/control/control_server.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "supervisor/control/runtime_folder.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::size_t kLongestRequest = 1 << 16;
+constexpr std::size_t kMostUnsent = 1 << 22;
+constexpr std::size_t kMostClients = 64;
+
+/// Under a lock on the folder, so that of two rigs that start at once only one finds the name free.
+Result<UniqueFd> bind_to(const std::filesystem::path& path, const std::string& rig) {
+  const UniqueFd lock(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  flock(lock.get(), LOCK_EX);
+  const auto other = connect_to(path);
+  if (!other && other.error().code == Errc::bad_config) return tl::make_unexpected(other.error());
+  if (other || other.error().code == Errc::timeout)
+    return fail(Errc::unavailable, fmt::format("a rig named '{}' is up already; `handcast down --rig {}` stops it", rig, rig));
+  unlink(path.c_str());  // left by a supervisor that was killed
+
+  UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const auto address = address_of(path);
+  // The mode of the file that bind makes. Its folder keeps others out already.
+  if (!listener || fchmod(listener.get(), 0600) != 0 ||
+      bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || ::listen(listener.get(), 16) != 0)
+    return fail(Errc::unavailable, fmt::format("control socket {}: {}", path.string(), std::strerror(errno)));
+  return listener;
+}
+
+std::vector<std::string> take_lines(std::string& text) {
+  std::vector<std::string> lines;
+  for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
+    lines.push_back(text.substr(0, end));
+    text.erase(0, end + 1);
+  }
+  return lines;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ControlServer>> ControlServer::listen(const std::string& rig, EventLoop& loop, OnRequest on_request) {
+  const auto path = socket_of(rig);
+  if (!path) return tl::make_unexpected(path.error());
+  auto listener = bind_to(*path, rig);
+  if (!listener) return tl::make_unexpected(listener.error());
+  return std::unique_ptr<ControlServer>(new ControlServer(std::move(*listener), *path, loop, std::move(on_request)));
+}
+
+ControlServer::ControlServer(UniqueFd listener, std::filesystem::path path, EventLoop& loop, OnRequest on_request)
+    : listener_(std::move(listener)), path_(std::move(path)), loop_(loop), on_request_(std::move(on_request)) {
+  loop_.watch(listener_.get(), [this] { accept(); });
+}
+
+void ControlServer::close_door() {
+  if (!listener_) return;
+  unlink(path_.c_str());
+  loop_.forget(listener_.get());
+  listener_.reset();
+}
+
+ControlServer::~ControlServer() {
+  close_door();
+  for (const auto& [id, client] : clients_) loop_.forget(client.socket.get());
+}
+
+void ControlServer::accept() {
+  UniqueFd socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+  if (!socket || !is_of_this_user(socket.get()) || clients_.size() >= kMostClients) return;
+  const auto id = next_id_++;
+  loop_.watch(socket.get(), [this, id] { read(id); });
+  clients_.emplace(id, Client{std::move(socket), {}, {}});
+}
+
+void ControlServer::read(std::uint64_t id) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return;
+  auto& client = found->second;
+  std::array<char, 4096> bytes;
+  const auto count = ::read(client.socket.get(), bytes.data(), bytes.size());
+  if (count < 0 && errno == EAGAIN) return;
+  if (count > 0) client.unread.append(bytes.data(), static_cast<std::size_t>(count));
+  if (count <= 0 || client.unread.size() > kLongestRequest) return drop(id);
+
+  for (const auto& line : take_lines(client.unread))
+    if (clients_.contains(id)) answer_line(id, line);  // it may be dropped after the first
+}
+
+void ControlServer::answer_line(std::uint64_t id, const std::string& line) {
+  const auto request = parse_request(line);
+  if (!request) return send(id, failure(request.error().what));
+  on_request_(*request,
+              Reply([this, id](const nlohmann::json& answer, const std::vector<int>& descriptors) { send(id, answer, descriptors); }));
+}
+
+// Not a larger socket buffer in place of `unsent`: the kernel's limit for those (net.core.wmem_max) is below what a status with
+// every service's last lines can take. Descriptors go with a first byte that is sent now, so that none is kept for a slow client.
+void ControlServer::send(std::uint64_t id, const nlohmann::json& answer, const std::vector<int>& descriptors) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return;
+  auto& client = found->second;
+  const bool is_slow = !client.unsent.empty();
+  if (is_slow && !descriptors.empty()) return drop(id);
+  client.unsent += to_line(answer) + "\n";
+  if (!is_slow && !send_some(client, descriptors)) return drop(id);
+  if (client.unsent.size() > kMostUnsent) return drop(id);
+  if (!is_slow && !client.unsent.empty()) loop_.watch_writing(client.socket.get(), [this, id] { send_rest(id); });
+}
+
+/// As much as fits into the socket's buffer. False: the client can get nothing any more, or not these descriptors.
+bool ControlServer::send_some(Client& client, const std::vector<int>& descriptors) {
+  if (descriptors.size() > kMostDescriptors) return false;
+  iovec text{.iov_base = client.unsent.data(), .iov_len = client.unsent.size()};
+  msghdr message{};
+  message.msg_iov = &text;
+  message.msg_iovlen = 1;
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(kMostDescriptors * sizeof(int))> room{};
+  if (!descriptors.empty()) {
+    const auto size = descriptors.size() * sizeof(int);
+    message.msg_control = room.data();
+    message.msg_controllen = CMSG_SPACE(size);
+    auto* part = CMSG_FIRSTHDR(&message);
+    part->cmsg_level = SOL_SOCKET;
+    part->cmsg_type = SCM_RIGHTS;
+    part->cmsg_len = CMSG_LEN(size);
+    std::memcpy(CMSG_DATA(part), descriptors.data(), size);
+  }
+  const auto sent = sendmsg(client.socket.get(), &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent < 0) return errno == EAGAIN && descriptors.empty();
+  client.unsent.erase(0, static_cast<std::size_t>(sent));
+  return true;
+}
+
+void ControlServer::send_rest(std::uint64_t id) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return;
+  if (!send_some(found->second, {})) return drop(id);
+  if (found->second.unsent.empty()) loop_.watch_writing(found->second.socket.get(), {});
+}
+
+void ControlServer::drop(std::uint64_t id) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return;
+  loop_.forget(found->second.socket.get());
+  clients_.erase(found);
+}
+
+}  // namespace handcast::supervisor

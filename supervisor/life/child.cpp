@@ -1,0 +1,244 @@
+#include "supervisor/life/child.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::int64_t kReportWait_ns = 300'000'000;
+
+/// Of the supervisor's own contracts, with its daemons (each gets its own), with its keeper and with systemd.
+constexpr std::array<std::string_view, 8> kNotInherited{
+    "HANDCAST_RINGS=", "HANDCAST_READY_FD=", "HANDCAST_EPOCH_NS=", "HANDCAST_STANDBY_FD=", "HANDCAST_KEEPER_FD=", "NOTIFY_SOCKET=",
+    "LISTEN_",         "WATCHDOG_"};
+
+struct Pipe {
+  UniqueFd read, write;
+};
+
+/// Everything the new process needs.
+struct Plan {
+  std::vector<std::string> arguments, environment;
+  std::vector<int> inherited;  ///< descriptors that exec does not close
+  Pipe log, ready;
+  Pipe turn;  ///< of a spare
+};
+
+tl::unexpected<Error> cannot(std::string_view what) { return fail(Errc::unavailable, fmt::format("{}: {}", what, std::strerror(errno))); }
+
+enum class ReadBy { supervisor, service };
+
+Result<Pipe> open_pipe(ReadBy reader) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) return cannot("a pipe to a service");
+  if (reader == ReadBy::supervisor) fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  return Pipe{UniqueFd(ends[0]), UniqueFd(ends[1])};
+}
+
+std::vector<std::string> inherited_environment() {
+  std::vector<std::string> environment;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string_view text = *entry;
+    const bool ours = std::ranges::any_of(kNotInherited, [&](std::string_view name) { return text.starts_with(name); });
+    if (!ours) environment.emplace_back(text);
+  }
+  return environment;
+}
+
+Result<Plan> make_plan(const ChildSpec& spec) {
+  Plan plan;
+  plan.arguments.push_back(spec.program.string());
+  plan.arguments.insert(plan.arguments.end(), spec.arguments.begin(), spec.arguments.end());
+
+  auto log = open_pipe(ReadBy::supervisor);
+  auto ready = open_pipe(ReadBy::supervisor);
+  if (!log || !ready) return tl::make_unexpected(log ? ready.error() : log.error());
+  fcntl(log->write.get(), F_SETFL, O_NONBLOCK);  // a service never waits for its supervisor to read
+  plan.log = std::move(*log);
+  plan.ready = std::move(*ready);
+
+  std::string rings;
+  for (const auto& [stream, fd] : spec.rings) {
+    rings += fmt::format("{}{}={}", rings.empty() ? "" : ",", stream, fd);
+    plan.inherited.push_back(fd);
+  }
+  plan.inherited.push_back(plan.ready.write.get());
+  plan.environment = inherited_environment();
+  plan.environment.push_back("HANDCAST_RINGS=" + rings);
+  plan.environment.push_back(fmt::format("HANDCAST_READY_FD={}", plan.ready.write.get()));
+  plan.environment.push_back(fmt::format("HANDCAST_EPOCH_NS={}", spec.epoch_ns));
+  if (!spec.spare) return plan;
+
+  auto turn = open_pipe(ReadBy::service);
+  if (!turn) return tl::make_unexpected(turn.error());
+  plan.turn = std::move(*turn);
+  plan.inherited.push_back(plan.turn.read.get());
+  plan.environment.push_back(fmt::format("HANDCAST_STANDBY_FD={}", plan.turn.read.get()));
+  return plan;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (auto& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+/// posix_spawn's lists of what to do in the new process before it becomes the daemon.
+class SpawnActions {
+ public:
+  explicit SpawnActions(const Plan& plan) {
+    posix_spawn_file_actions_init(&files_);
+    posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    for (const int output : {STDOUT_FILENO, STDERR_FILENO}) posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), output);
+    for (const int fd : plan.inherited) posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: exec does not close it
+
+    sigset_t none, stops;
+    sigemptyset(&none);
+    sigemptyset(&stops);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&stops, number);
+    posix_spawnattr_init(&attributes_);
+    posix_spawnattr_setsigmask(&attributes_, &none);
+    posix_spawnattr_setsigdefault(&attributes_, &stops);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  ~SpawnActions() {
+    posix_spawn_file_actions_destroy(&files_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnActions(const SpawnActions&) = delete;
+
+  const posix_spawn_file_actions_t* files() const { return &files_; }
+  const posix_spawnattr_t* attributes() const { return &attributes_; }
+
+ private:
+  posix_spawn_file_actions_t files_;
+  posix_spawnattr_t attributes_;
+};
+
+bool is_a_persons_fault(int error) { return error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR; }
+
+/// The new process borrows the supervisor's memory until it is the daemon (vfork): the rings' mappings are not copied, which is
+/// most of what a fork would cost.
+Result<pid_t> start(Plan& plan) {
+  const SpawnActions actions(plan);
+  const auto arguments = pointers_to(plan.arguments);
+  const auto environment = pointers_to(plan.environment);
+  pid_t pid = -1;
+  const int error = posix_spawn(&pid, arguments[0], actions.files(), actions.attributes(), arguments.data(), environment.data());
+  if (error == 0) return pid;
+  return fail(is_a_persons_fault(error) ? Errc::bad_config : Errc::unavailable,
+              fmt::format("the program {} cannot be started: {}", plan.arguments[0], std::strerror(error)));
+}
+
+}  // namespace
+
+Result<Child> Child::spawn(const ChildSpec& spec) {
+  auto plan = make_plan(spec);
+  if (!plan) return tl::make_unexpected(plan.error());
+  const auto pid = start(*plan);
+  if (!pid) return tl::make_unexpected(pid.error());
+
+  Child child;
+  child.pid_ = *pid;
+  child.pidfd_ = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, child.pid_, 0)));
+  if (!child.pidfd_) return cannot("watching " + spec.program.string());
+  child.log_ = std::move(plan->log.read);
+  child.ready_ = std::move(plan->ready.read);
+  child.turn_ = std::move(plan->turn.write);
+  return child;
+}
+
+Child Child::adopt(AdoptedProcess process, ExitReports& reports) {
+  Child child;
+  child.pid_ = process.saved.pid;
+  child.reports_ = &reports;
+  child.pidfd_ = std::move(process.pidfd);
+  child.log_ = std::move(process.log);
+  return child;
+}
+
+Child::~Child() {
+  if (pid_ <= 0 || reaped_) return;
+  if (!pidfd_) ::kill(pid_, SIGKILL);
+  signal(SIGKILL);
+  if (!reports_) {
+    waitpid(pid_, nullptr, 0);
+    return;
+  }
+  pollfd ended{.fd = pidfd_.get(), .events = POLLIN, .revents = 0};
+  poll(&ended, 1, -1);
+}
+
+// By the pidfd, never by the number: that of an adopted process may belong to another by now.
+void Child::signal(int number) {
+  if (!reaped_ && pidfd_) syscall(SYS_pidfd_send_signal, pidfd_.get(), number, nullptr, 0);
+}
+
+void Child::give_turn() {
+  if (turn_ && ::write(turn_.get(), "1", 1) == 1) turn_.reset();
+}
+
+bool Child::has_ended() const {
+  pollfd ended{.fd = pidfd_.get(), .events = POLLIN, .revents = 0};
+  return poll(&ended, 1, 0) == 1;
+}
+
+std::optional<Exit> Child::try_reap() {
+  if (reaped_) return std::nullopt;
+  if (reports_) return try_reap_adopted();
+  siginfo_t info{};
+  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == 0) return std::nullopt;
+  kill(-pid_, SIGKILL);  // before the status is taken: until then nobody else can have this number
+  waitpid(pid_, nullptr, 0);
+  reaped_ = true;
+  return Exit{.signalled = info.si_code != CLD_EXITED, .code = info.si_status};
+}
+
+std::optional<Exit> Child::try_reap_adopted() {
+  if (ended_ns_ == 0) {
+    if (!has_ended()) return std::nullopt;
+    ended_ns_ = now_ns();
+    kill(-pid_, SIGKILL);  // its number was free for an instant at most
+  }
+  reports_->read();
+  auto exit = reports_->take(pid_);
+  if (!exit) exit = exit_told_by_kernel(pidfd_.get());
+  const bool hopeless = now_ns() - ended_ns_ > kReportWait_ns;
+  if (!exit && !hopeless) return std::nullopt;
+  reaped_ = true;
+  return exit.value_or(Exit{.unknown = true});
+}
+
+Result<std::string> output_of(const std::filesystem::path& program, const std::vector<std::string>& arguments, int limit_ms) {
+  auto child = Child::spawn({.program = program, .arguments = arguments});
+  if (!child) return tl::make_unexpected(child.error());
+
+  const auto deadline = Deadline::in(std::chrono::milliseconds(limit_ms));
+  std::string output;
+  std::array<char, 4096> bytes;
+  while (!deadline.passed()) {
+    pollfd readable{.fd = child->log_fd(), .events = POLLIN};
+    poll(&readable, 1, limit_ms);
+    const auto count = read(child->log_fd(), bytes.data(), bytes.size());
+    if (count == 0) return output;
+    if (count > 0) output.append(bytes.data(), static_cast<std::size_t>(count));
+  }
+  return fail(Errc::unavailable, fmt::format("{} did not answer within {} ms", program.string(), limit_ms));
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,49 @@
+#include "supervisor/life/log_tail.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::array<std::string_view, 4> kLevels{"debug", "info", "warning", "error"};
+
+std::string_view take_word(std::string_view& text) {
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  const auto word = text.substr(0, text.find(' '));
+  text.remove_prefix(word.size());
+  return word;
+}
+
+}  // namespace
+
+void LogTail::append(std::string_view bytes, const std::function<void(std::string_view)>& on_line) {
+  for (const char byte : bytes) {
+    if (byte != '\n') unfinished_ += byte;
+    if (byte == '\n' || unfinished_.size() == kLongestLine) finish_line(on_line);
+  }
+}
+
+void LogTail::finish_line(const std::function<void(std::string_view)>& on_line) {
+  on_line(unfinished_);
+  lines_.push_back(std::move(unfinished_));
+  unfinished_.clear();
+  if (lines_.size() > kLines) lines_.pop_front();
+}
+
+std::vector<std::string> LogTail::last(std::size_t count) const {
+  const auto from = lines_.size() - std::min(count, lines_.size());
+  return {lines_.begin() + static_cast<std::ptrdiff_t>(from), lines_.end()};
+}
+
+std::string LogTail::last_sentence() const {
+  if (lines_.empty()) return {};
+  std::string_view rest = lines_.back();
+  take_word(rest);  // time
+  take_word(rest);  // program
+  if (std::ranges::find(kLevels, take_word(rest)) == kLevels.end()) return lines_.back();
+  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+  return std::string(rest);
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,206 @@
+#include "supervisor/metrics/metrics.hpp"
+
+#include <fmt/format.h>
+#include <prometheus/collectable.h>
+#include <prometheus/exposer.h>
+#include <prometheus/metric_family.h>
+#include <prometheus/text_serializer.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <mutex>
+
+#include "ipc/base/clock.hpp"
+#include "supervisor/top/top_model.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using prometheus::ClientMetric;
+using prometheus::MetricFamily;
+using prometheus::MetricType;
+using Labels = std::vector<ClientMetric::Label>;
+
+constexpr std::array<std::string_view, 6> kStates{"stopped", "starting", "ready", "stopping", "degraded", "failed"};
+
+/// One figure of many things.
+struct Family {
+  MetricFamily family;
+
+  static Family counter(std::string name, std::string help) { return {{std::move(name), std::move(help), MetricType::Counter, {}}}; }
+  static Family gauge(std::string name, std::string help) { return {{std::move(name), std::move(help), MetricType::Gauge, {}}}; }
+
+  template <class Number>
+  void add(Labels labels, Number number) {
+    ClientMetric metric;
+    metric.label = std::move(labels);
+    const auto value = static_cast<double>(number);
+    (family.type == MetricType::Counter ? metric.counter.value : metric.gauge.value) = value;
+    family.metric.push_back(std::move(metric));
+  }
+};
+
+/// `value` gives the figure of one row, or nothing.
+template <class Row, class Label, class Value>
+MetricFamily over(const std::vector<Row>& rows, Family family, Label labels_of, Value value) {
+  for (const auto& row : rows)
+    if (const std::optional<double> number = value(row)) family.add(labels_of(row), *number);
+  return std::move(family.family);
+}
+
+void append(std::vector<MetricFamily>& families, std::vector<MetricFamily> more) { std::ranges::move(more, std::back_inserter(families)); }
+
+std::vector<MetricFamily> families_of_rig(const TopModel& model) {
+  auto info = Family::gauge("handcast_rig_info", "The rig these figures are of; always 1.");
+  auto up = Family::gauge("handcast_supervisor_up", "1 while the rig's supervisor answers.");
+  auto uptime = Family::gauge("handcast_supervisor_uptime_seconds", "Since the supervisor's start.");
+  info.add({{"rig", model.rig}}, 1);
+  up.add({}, model.missing.empty() ? 1 : 0);
+  uptime.add({}, model.uptime_s);
+  return {info.family, up.family, uptime.family};
+}
+
+MetricFamily states_of(const std::vector<ServiceRow>& services) {
+  auto states = Family::gauge("handcast_service_state", "1 for the state a service is in, 0 for all others.");
+  for (const auto& service : services)
+    for (const auto state : kStates) states.add({{"service", service.name}, {"state", std::string(state)}}, service.state == state);
+  return states.family;
+}
+
+std::vector<MetricFamily> families_of(const std::vector<ServiceRow>& services) {
+  const auto labels = [](const ServiceRow& service) { return Labels{{"service", service.name}}; };
+  const auto usage = [](auto figure) {
+    return [figure](const ServiceRow& service) -> std::optional<double> {
+      return service.usage ? std::optional(static_cast<double>(figure(*service.usage))) : std::nullopt;
+    };
+  };
+  return {
+      over(services, Family::gauge("handcast_service_up", "1 while a service is ready."), labels,
+           [](const auto& service) { return service.state == "ready" ? 1.0 : 0.0; }),
+      states_of(services),
+      over(services, Family::counter("handcast_service_restarts_total", "How often a service was started again."), labels,
+           [](const auto& service) { return service.restarts; }),
+      over(services, Family::gauge("handcast_service_uptime_seconds", "Since the start of a service's process."), labels,
+           [](const auto& service) { return service.uptime_s; }),
+      over(services, Family::counter("handcast_service_cpu_seconds_total", "Processor time of a service's process."), labels,
+           usage([](const ProcessUsage& process) { return ns_to_seconds(process.cpu_ns); })),
+      over(services, Family::gauge("handcast_service_resident_bytes", "Memory of a service's process, shared rings included."), labels,
+           usage([](const ProcessUsage& process) { return process.resident_bytes; })),
+      over(services, Family::gauge("handcast_service_threads", "Threads of a service's process."), labels,
+           usage([](const ProcessUsage& process) { return process.threads; })),
+      over(services, Family::gauge("handcast_service_open_descriptors", "Open file descriptors of a service's process."), labels,
+           usage([](const ProcessUsage& process) { return process.descriptors; })),
+  };
+}
+
+std::vector<MetricFamily> families_of(const std::vector<RingRow>& rings) {
+  const auto labels = [](const RingRow& ring) { return Labels{{"ring", ring.now.stream}}; };
+  const auto seconds = [](const std::optional<std::int64_t>& span_ns) {
+    return span_ns ? std::optional(ns_to_seconds(*span_ns)) : std::nullopt;
+  };
+  return {
+      over(rings, Family::counter("handcast_ring_messages_total", "Messages published in a ring, by all its writers."), labels,
+           [](const auto& ring) { return ring.now.published; }),
+      over(rings, Family::counter("handcast_ring_dropped_total", "Messages a writer had to drop: every slot was leased."), labels,
+           [](const auto& ring) { return ring.now.dropped; }),
+      over(rings, Family::gauge("handcast_ring_newest_age_seconds", "Since the newest message of a ring was published."), labels,
+           [&](const auto& ring) { return seconds(ring.newest_age_ns); }),
+      over(rings, Family::gauge("handcast_ring_latency_seconds", "From the origin of a ring's newest message to its publication."), labels,
+           [&](const auto& ring) { return seconds(ring.latency_ns); }),
+      over(rings, Family::gauge("handcast_ring_epoch", "Number of a ring's last writer: 1 was the first."), labels,
+           [](const auto& ring) { return ring.now.epoch; }),
+  };
+}
+
+/// A reader of one ring; a service may read a ring more than once, hence the row.
+struct RingReader {
+  Labels labels;
+  const ReaderRow& row;
+};
+
+std::vector<MetricFamily> families_of_readers(const std::vector<RingRow>& rings) {
+  std::vector<RingReader> readers;
+  for (const auto& ring : rings)
+    for (const auto& reader : ring.readers)
+      readers.push_back({{{"ring", ring.now.stream}, {"reader", reader.who}, {"row", std::to_string(reader.now.row)}}, reader});
+  const auto labels = [](const RingReader& reader) { return reader.labels; };
+  const auto oldest_lease = [](const RingReader& reader) {
+    return ns_to_seconds(std::max<std::int64_t>(0, std::ranges::max(reader.row.now.lease_ages_ns)));
+  };
+  return {
+      over(readers, Family::counter("handcast_reader_received_total", "Messages a reader has taken."), labels,
+           [](const auto& reader) { return reader.row.now.received; }),
+      over(readers, Family::counter("handcast_reader_skipped_total", "Messages that passed a reader unread."), labels,
+           [](const auto& reader) { return reader.row.now.skipped; }),
+      over(readers, Family::counter("handcast_reader_unusable_total", "Messages that made no sense to a reader."), labels,
+           [](const auto& reader) { return reader.row.now.unusable; }),
+      over(readers, Family::gauge("handcast_reader_lag_messages", "Messages between a ring's newest and a reader's last."), labels,
+           [](const auto& reader) { return reader.row.now.lag; }),
+      over(readers, Family::gauge("handcast_reader_age_seconds", "Age of a reader's last message when it was taken."), labels,
+           [](const auto& reader) { return ns_to_seconds(reader.row.now.age_ns); }),
+      over(readers, Family::gauge("handcast_reader_lease_seconds", "Age of the oldest message a reader holds in place; 0: none."), labels,
+           oldest_lease),
+  };
+}
+
+MetricFamily stages_of(const nlohmann::json& status) {
+  auto stages = Family::gauge("handcast_stage_seconds", "What a stage took in the last ten seconds, by quantile.");
+  if (!status.contains("stage_us")) return stages.family;
+  for (const auto& [stage, times] : status["stage_us"].items())
+    for (const auto& [key, quantile] : {std::pair{"p50", "0.5"}, std::pair{"p99", "0.99"}})
+      if (times.contains(key) && times[key].is_number())
+        stages.add({{"stage", stage}, {"quantile", quantile}}, times[key].template get<double>() * 1e-6);
+  return stages.family;
+}
+
+std::vector<MetricFamily> metrics_of(const RigLook& look) {
+  const auto model = compare(look, look);
+  auto families = families_of_rig(model);
+  append(families, families_of(model.services));
+  append(families, families_of(model.rings));
+  append(families, families_of_readers(model.rings));
+  families.push_back(stages_of(look.status));
+  std::erase_if(families, [](const auto& family) { return family.metric.empty(); });
+  return families;
+}
+
+/// What the library asks at each scrape.
+class Collector : public prometheus::Collectable {
+ public:
+  explicit Collector(std::function<RigLook()> look) : look_(std::move(look)) {}
+  std::vector<MetricFamily> Collect() const override {
+    const std::scoped_lock lock(one_at_a_time_);
+    return metrics_of(look_());
+  }
+
+ private:
+  mutable std::mutex one_at_a_time_;
+  std::function<RigLook()> look_;
+};
+
+}  // namespace
+
+std::string metrics_text(const RigLook& look) { return prometheus::TextSerializer().Serialize(metrics_of(look)); }
+
+struct MetricsServer::Parts {
+  std::shared_ptr<Collector> collector;
+  prometheus::Exposer exposer;
+};
+
+Result<MetricsServer> MetricsServer::listen(int port, std::function<RigLook()> look) try {
+  auto parts = std::unique_ptr<Parts>(
+      new Parts{std::make_shared<Collector>(std::move(look)), prometheus::Exposer(fmt::format("127.0.0.1:{}", port), 1)});
+  parts->exposer.RegisterCollectable(parts->collector);
+  return MetricsServer(std::move(parts));
+} catch (const std::exception&) {
+  return fail(
+      Errc::bad_config,
+      fmt::format("port {} of 127.0.0.1 cannot be listened at (is it taken?); set supervisor.metrics_port to another, or to 0", port));
+}
+
+MetricsServer::MetricsServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+MetricsServer::MetricsServer(MetricsServer&&) noexcept = default;
+MetricsServer::~MetricsServer() = default;
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,295 @@
+#include "supervisor/rig/rig_runner.hpp"
+
+#include <fmt/format.h>
+#include <sys/signalfd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <ranges>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/ring/row_owner.hpp"
+#include "supervisor/rig/applied_rig.hpp"
+#include "supervisor/console.hpp"
+#include "supervisor/life/streams.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::int64_t kTick_ns = 50'000'000;
+constexpr std::int64_t kStoodStill_ns = 1'000'000'000;  ///< a tick this late: the supervisor, or the machine, was stopped
+
+std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
+
+Result<void> write_report(const std::filesystem::path& folder, const nlohmann::json& report) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  const auto file = folder / "live.json";
+  std::ofstream out(file);
+  out << report.dump(2) << "\n";
+  out.close();
+  if (!out) return fail(Errc::unavailable, fmt::format("{} cannot be written", file.string()));
+  return {};
+}
+
+}  // namespace
+
+RigRunner::RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop)
+    : name_(rig.name),
+      rig_(rig),
+      options_(std::move(options)),
+      loop_(std::move(loop)),
+      recorder_(rig.supervisor.history_s),
+      started_ns_(now_ns()) {
+  launch_.program_folder = options_.program_folder;
+  launch_.epoch_ns = started_ns_;
+  launch_.ready_s = rig.supervisor.ready_s;
+  launch_.stop_s = rig.supervisor.stop_s;
+  launch_.silent_s = rig.supervisor.silent_s;
+  launch_.reports = &reports_;
+}
+
+Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOptions options) {
+  auto loop = EventLoop::open();
+  if (!loop) return tl::make_unexpected(loop.error());
+  std::unique_ptr<RigRunner> runner(new RigRunner(rig, std::move(options), std::move(*loop)));
+
+  auto control = ControlServer::listen(
+      rig.name, runner->loop_,
+      [runner = runner.get()](const Request& request, ControlServer::Reply reply) { runner->on_request(request, std::move(reply)); });
+  if (!control) return tl::make_unexpected(control.error());
+  runner->control_ = std::move(*control);
+  if (const auto opened = runner->open_descriptors(); !opened) return tl::make_unexpected(opened.error());
+  auto applied = write_applied(rig);
+  if (!applied) return tl::make_unexpected(applied.error());
+  runner->launch_.rig_file = std::move(*applied);
+  if (const auto made = runner->inherit_or_make(rig); !made) return tl::make_unexpected(made.error());
+  store_with_systemd(runner->launch_.rings);
+  return runner;
+}
+
+Result<void> RigRunner::open_descriptors() {
+  std::signal(SIGPIPE, SIG_IGN);
+  auto signals = open_stop_signals();
+  if (!signals) return tl::make_unexpected(signals.error());
+  auto timer = open_timer(kTick_ns);
+  if (!timer) return tl::make_unexpected(timer.error());
+  signals_ = std::move(*signals);
+  timer_ = std::move(*timer);
+
+  if (reports_.fd() >= 0) {
+    loop_.watch(reports_.fd(), [this] {
+      reports_.read();
+      if (reports_.fd() >= 0) tick();
+    });
+  }
+  loop_.watch(timer_.get(), [this] {
+    drain(timer_.get());
+    tick();
+  });
+  loop_.watch(signals_.get(), [this] {
+    drain(signals_.get());
+    if (phase_ != Phase::stopping) return begin_stop(0);
+    for (const auto& service : services_) service->kill();  // asked twice: in a hurry
+  });
+  return {};
+}
+
+Result<void> RigRunner::make_rings(const config::Rig& rig) {
+  const auto specs = services_of(rig);
+  if (auto added = add_rings(specs); !added) return added;
+  for (const auto& spec : specs) add_service(spec, services_.size());
+  return {};
+}
+
+int RigRunner::run() {
+  for (const auto& service : services_)
+    if (!service->first_start_ns()) service->hold();
+  last_tick_ns_ = now_ns();
+  follow_up();
+  if (inherited_) reload(ControlServer::Reply([](const auto&, const auto&) {}));  // the file may have changed meanwhile
+  while (phase_ != Phase::done) {
+    loop_.turn();
+    follow_up();
+  }
+  return exit_code_;
+}
+
+void RigRunner::tick() {
+  const auto now = now_ns();
+  watchdog_.tick(now);
+  forgive_a_standstill(now);
+  recorder_.poll();
+  for (const auto& service : services_) service->tick(now, needs_are_ready(*service));
+  if (phase_ == Phase::stopping || phase_ == Phase::done) return;
+  if (options_.seconds && now - started_ns_ >= seconds_to_ns(*options_.seconds)) return begin_stop(0);
+  replace_the_silent(now);
+  continue_reload(now);
+  progress(now);
+}
+
+/// After each turn of the event loop: what can wait until those who died have successors.
+void RigRunner::follow_up() {
+  if (phase_ == Phase::starting || phase_ == Phase::up) start_those_held();
+  std::uint64_t revision = 0;
+  for (const auto& service : services_) revision += service->revision();
+  if (revision == std::exchange(revision_, revision) || phase_ == Phase::done) return;
+  for (const auto& ring : rings_) ipc::sweep_dead_rows(ring);
+  save();
+}
+
+bool RigRunner::needs_are_ready(const Service& service) const {
+  return std::ranges::all_of(service.spec().needs, [this](const auto& name) {
+    const auto* need = find(name);
+    return !need || need->state() == State::ready;
+  });
+}
+
+/// Whether nothing is to be waited for: each need is ready, has given up, or has had its time.
+bool RigRunner::may_begin(const Service& service, std::int64_t now) const {
+  return std::ranges::all_of(service.spec().needs, [&](const auto& name) {
+    const auto* need = find(name);
+    if (!need) return true;
+    const auto state = need->state();
+    if (state != State::starting && state != State::stopping) return true;
+    return need->first_start_ns() && now - *need->first_start_ns() > seconds_to_ns(launch_.ready_s);
+  });
+}
+
+void RigRunner::start_those_held() {
+  const auto now = now_ns();
+  for (std::size_t i = 0; i < services_.size(); ++i) {
+    const bool held = services_[i]->state() == State::starting && !services_[i]->first_start_ns();
+    if (held && may_begin(*services_[i], now)) services_[i]->start();
+    if (phase_ != Phase::starting && phase_ != Phase::up) return;  // one that cannot start stops the rig
+  }
+}
+
+void RigRunner::forgive_a_standstill(std::int64_t now) {
+  const auto late_ns = now - std::exchange(last_tick_ns_, now) - kTick_ns;
+  if (late_ns < kStoodStill_ns) return;
+  log::warning("everything stood still for {:.1f} s; nobody is late for it", ns_to_seconds(late_ns));
+  forgiven_ns_ = now;
+  for (const auto& service : services_) service->forgive(late_ns);
+}
+
+void RigRunner::replace_the_silent(std::int64_t now) {
+  for (const auto& service : services_) {
+    if (service->state() != State::ready) continue;
+    const auto silence_ms = recorder_.silence_ms(service->spec().name, now);
+    const auto heard_ns = silence_ms ? now - ms_to_ns(*silence_ms) : 0;
+    const auto silent_s = ns_to_seconds(now - std::max({heard_ns, *service->ready_ns(), forgiven_ns_}));
+    if (silent_s < launch_.silent_s) continue;
+    log::warning("{} has given no sign of life for {:.1f} s; killed", service->spec().name, silent_s);
+    service->kill();
+  }
+}
+
+void RigRunner::progress(std::int64_t now) {
+  if (now < next_progress_ns_ || phase_ != Phase::up) return;
+  if (next_progress_ns_ > 0) show_progress(progress_line(view()));
+  next_progress_ns_ = now + progress_period_ns();
+}
+
+void RigRunner::on_event(Service& service, Service::Event event) {
+  if (phase_ == Phase::stopping) {
+    if (event != Service::Event::ready) stop_next();
+    return;
+  }
+  switch (event) {
+    case Service::Event::ready:
+      return on_ready(service);
+    case Service::Event::failed:
+      return on_failed(service);
+    case Service::Event::stopped:
+      if (const auto pending = pending_.extract(service.spec().name))
+        pending.mapped().reply(failure(service.spec().name + " ended by itself"));
+  }
+}
+
+void RigRunner::on_ready(Service& service) {
+  if (const auto pending = pending_.extract(service.spec().name)) {
+    const auto& [reply, wanted, before, reason] = pending.mapped();
+    reply(reason.empty()
+              ? success()
+              : failure(fmt::format("{} did not start with '{}', '{}' goes on: {}", service.spec().name, wanted, before, reason)));
+  }
+  const auto ever_ready = [](const auto& each) { return each->ever_ready(); };
+  if (phase_ != Phase::starting || !std::ranges::all_of(services_, ever_ready)) return;
+  phase_ = Phase::up;
+  log::info("rig '{}' is up", name_);
+  notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", name_));
+}
+
+void RigRunner::on_failed(Service& service) {
+  const auto& name = service.spec().name;
+  const auto sentence = service.log().last_sentence();
+  const auto pending = pending_.find(name);
+  if (pending != pending_.end() && !pending->second.wanted.empty() && pending->second.reason.empty()) {
+    pending->second.reason = sentence;
+    return give_backend(service, pending->second.before, false);
+  }
+  if (pending != pending_.end()) pending_.extract(pending).mapped().reply(failure(fmt::format("{} failed: {}", name, sentence)));
+  if (phase_ != Phase::starting || service.ever_ready()) return;
+  print_line(fmt::format("handcast: {} cannot start: {}", name, sentence));
+  begin_stop(kExitConfig);
+}
+
+void RigRunner::begin_stop(int exit_code) {
+  exit_code_ = exit_code;
+  phase_ = Phase::stopping;
+  notify_systemd("STOPPING=1");
+  for (const auto& [name, pending] : std::exchange(pending_, {})) pending.reply(failure("the rig stops"));
+  if (const auto reload = std::exchange(reload_, {})) reload->reply(failure("the rig stops"));
+  for (const auto& service : services_)
+    if (!service->is_running()) service->stop();  // takes back a start that was due
+  stop_next();
+}
+
+void RigRunner::stop_next() {
+  for (const auto& service : services_ | std::views::reverse)
+    if (service->is_running()) return service->stop();
+  finish();
+}
+
+void RigRunner::finish() {
+  if (phase_ == Phase::done) return;
+  phase_ = Phase::done;
+  recorder_.poll();
+  if (options_.out && exit_code_ == 0) {
+    if (const auto written = write_report(*options_.out, live_report(view())); !written) {
+      log::error("{}", written.error().what);
+      exit_code_ = kExitFailure;
+    }
+  }
+  forget_saved(name_);
+  forget_applied(name_);
+  log::info("rig '{}' has stopped", name_);
+  control_->close_door();
+  for (const auto& reply : waiting_for_stop_) reply(success());
+}
+
+void RigRunner::save() const {
+  SavedRig saved{.name = name_,
+                 .rig_file = options_.rig_file,
+                 .settings = options_.settings,
+                 .end_ns = {},
+                 .out = options_.out ? options_.out->string() : "",
+                 .epoch_ns = launch_.epoch_ns,
+                 .rings = {},
+                 .services = {}};
+  if (options_.seconds) saved.end_ns = started_ns_ + seconds_to_ns(*options_.seconds);
+  for (const auto& ring : rings_) {
+    struct stat status {};
+    if (fstat(ring.fd(), &status) == 0) saved.rings.push_back({ring.stream(), status.st_ino, ring.fd()});
+  }
+  for (const auto& service : services_) saved.services.push_back(service->saved());
+  const auto written = supervisor::save(saved);
+  if (!written && !std::exchange(save_failed_, true)) log::warning("no successor could take over: {}", written.error().what);
+}
+
+}  // namespace handcast::supervisor

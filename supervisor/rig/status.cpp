@@ -1,0 +1,145 @@
+#include "supervisor/rig/status.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLastWords = 5;
+
+double rounded(double value) { return std::round(value * 100) / 100; }
+json or_null(std::optional<double> value) { return value ? json(rounded(*value)) : json(); }
+
+json asked(const ServiceSpec& spec) {
+  const bool known = spec.asked_hz > 0 && (spec.asked_of.empty() || spec.asked_of == spec.backend);
+  return known ? json(spec.asked_hz) : json();
+}
+
+bool is_well(const Service& service) { return service.state() == State::ready || service.state() == State::stopped; }
+
+/// Why a service is not well; null if it is.
+json reason_of(const Service& service) {
+  switch (service.state()) {
+    case State::degraded:
+      return fmt::format("died {} times within {:g} s", service.recent_deaths(), ns_to_seconds(kStormWindow_ns));
+    case State::failed:
+      return service.log().last_sentence().empty() ? "cannot start" : service.log().last_sentence();
+    default:
+      return {};
+  }
+}
+
+json service_status(const Service& service, const RigView& rig) {
+  const auto& exit = service.last_exit();
+  json status{{"state", name_of(service.state())},
+              {"pid", service.pid()},
+              {"standby", service.spare_pid() != 0 ? json(service.spare_pid()) : json()},
+              {"backend", service.spec().backend},
+              {"uptime_s", rounded(service.uptime_s(rig.now_ns))},
+              {"restarts", service.restarts()},
+              {"last_exit", exit ? json(exit->describe()) : json()},
+              {"reason", reason_of(service)},
+              {"retry_s", or_null(service.retry_s(rig.now_ns))},
+              {"silent_ms", or_null(rig.recorder.silence_ms(service.spec().name, rig.now_ns))}};
+  if (!is_well(service)) status["log"] = service.log().last(kLastWords);
+  return status;
+}
+
+// Every service marks each message it publishes, so the marks give the rates of the rings without touching their payloads.
+json ring_status(const Service& service, const RigView& rig) {
+  const auto& frames = rig.recorder.ledger().frames(service.spec().name);
+  return {{"asked_hz", asked(service.spec())},
+          {"held_hz", rounded(frames.recent_hz(rig.now_ns))},
+          {"count", frames.total()},
+          {"newest_age_ms", or_null(frames.newest_age_ms(rig.now_ns))}};
+}
+
+json summary_of(const Histogram& times) {
+  return {{"p50", rounded(times.percentile_ns(0.50) * 1e-3)}, {"p99", rounded(times.percentile_ns(0.99) * 1e-3)}, {"count", times.count()}};
+}
+
+int restarts_of(const Services& services) {
+  int sum = 0;
+  for (const auto& service : services) sum += service->restarts();
+  return sum;
+}
+
+std::string text_of(const json& value, std::string_view unit = "") {
+  if (value.is_null()) return "-";
+  if (value.is_string()) return value.get<std::string>();
+  return fmt::format("{:.6g}{}", value.get<double>(), unit);
+}
+
+/// "died 10 times within 60 s; tried again in 4.2 s".
+std::string print_trouble(const json& service) {
+  std::string text = service.contains("reason") && !service["reason"].is_null() ? text_of(service["reason"]) : "";
+  if (!service.contains("retry_s") || service["retry_s"].is_null()) return text;
+  return text + fmt::format("{}tried again in {}", text.empty() ? "" : "; ", text_of(service["retry_s"], " s"));
+}
+
+}  // namespace
+
+json status_of(const RigView& rig) {
+  json status{{"rig", rig.name}, {"uptime_s", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))}};
+  for (const auto& service : rig.services) {
+    status["services"][service->spec().name] = service_status(*service, rig);
+    if (!service->spec().stream.empty()) status["rings"][service->spec().stream] = ring_status(*service, rig);
+  }
+  status["stage_us"] = json::object();
+  for (const auto& [stage, times] : rig.recorder.ledger().stages()) status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
+  return status;
+}
+
+std::string print_status(const json& status) {
+  auto text = fmt::format("rig {}, up {}\n\n", text_of(status["rig"]), text_of(status["uptime_s"], " s"));
+  text +=
+      fmt::format("{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n", "service", "state", "pid", "back end", "up", "restarts", "last exit");
+  for (const auto& [name, service] : status["services"].items()) {
+    text += fmt::format("{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n", name, text_of(service["state"]), text_of(service["pid"]),
+                        text_of(service["backend"]), text_of(service["uptime_s"], " s"), text_of(service["restarts"]),
+                        text_of(service["last_exit"]));
+    if (const auto trouble = print_trouble(service); !trouble.empty()) text += fmt::format("  {}\n", trouble);
+    if (!service.contains("log")) continue;
+    for (const auto& line : service["log"]) text += fmt::format("    {}\n", text_of(line));
+  }
+  text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>10}\n", "ring", "asked", "held", "newest age", "messages");
+  for (const auto& [name, ring] : status["rings"].items())
+    text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>10}\n", name, text_of(ring["asked_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
+                        text_of(ring["newest_age_ms"], " ms"), text_of(ring["count"]));
+  text += fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
+  for (const auto& [stage, times] : status["stage_us"].items())
+    text += fmt::format("{:<12} {:>12} {:>12} {:>10}\n", stage, text_of(times["p50"], " us"), text_of(times["p99"], " us"),
+                        text_of(times["count"]));
+  return text;
+}
+
+std::string progress_line(const RigView& rig) {
+  auto line = fmt::format("up {:.0f} s", ns_to_seconds(rig.now_ns - rig.started_ns));
+  for (const auto& service : rig.services) {
+    if (service->spec().stream.empty()) continue;
+    line += fmt::format("  {} {:.0f} Hz", service->spec().name, rig.recorder.ledger().frames(service->spec().name).recent_hz(rig.now_ns));
+  }
+  return line + fmt::format("  restarts {}", restarts_of(rig.services));
+}
+
+json live_report(const RigView& rig) {
+  json report{{"rig", rig.name}, {"seconds", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))}};
+  for (const auto& service : rig.services) {
+    const auto& spec = service->spec();
+    report["services"][spec.name] = {{"restarts", service->restarts()}, {"backend", spec.backend}};
+    if (spec.stream.empty()) continue;
+    const auto held_hz = rig.recorder.ledger().frames(spec.name).held_hz(rig.now_ns);
+    report["rates"][spec.name] = {{"asked_hz", asked(spec)}, {"held_hz", rounded(held_hz)}};
+  }
+  report["stage_us"] = json::object();
+  for (const auto& [stage, times] : rig.recorder.ledger().stages()) report["stage_us"][stage] = summary_of(times.whole_run());
+  return report;
+}
+
+}  // namespace handcast::supervisor

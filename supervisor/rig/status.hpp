@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "supervisor/record/recorder.hpp"
+#include "supervisor/life/service.hpp"
+
+namespace handcast::supervisor {
+
+using Services = std::vector<std::unique_ptr<Service>>;
+
+/// A rig at one moment: what its parts know of themselves.
+struct RigView {
+  const std::string& name;
+  const Services& services;
+  const Recorder& recorder;
+  std::int64_t started_ns = 0;
+  std::int64_t now_ns = 0;
+};
+
+/// What `handcast status --json` prints.
+nlohmann::json status_of(const RigView& rig);
+/// The same for a person to read.
+std::string print_status(const nlohmann::json& status);
+/// "up 12 s  camera 240 Hz  pose 110 Hz  …  restarts 0".
+std::string progress_line(const RigView& rig);
+/// What is kept of a whole run (live.json).
+nlohmann::json live_report(const RigView& rig);
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,77 @@
+#include "supervisor/succession/service_unit.hpp"
+
+#include <fmt/format.h>
+#include <pwd.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <map>
+#include <sstream>
+
+#include "supervisor/succession/units/template.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::string_view kForSystem = "#system#", kForUser = "#user#";
+
+/// One word of a command line: systemd expands %x and $X, and takes quotes and backslashes as a shell does.
+std::string word(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char character : text) {
+    if (character == '"' || character == '\\') quoted += '\\';
+    if (character == '%' || character == '$') quoted += character;
+    quoted += character;
+  }
+  return quoted + '"';
+}
+
+std::string command_of(const UnitSpec& spec) {
+  auto command = fmt::format("{} up --no-keeper {}", word(spec.program), word(spec.rig_file));
+  for (const auto& setting : spec.settings) command += " --set " + word(setting);
+  return command;
+}
+
+std::string replaced(std::string line, const std::map<std::string, std::string>& values) {
+  for (const auto& [mark, value] : values)
+    for (auto at = line.find(mark); at != std::string::npos; at = line.find(mark, at + value.size())) line.replace(at, mark.size(), value);
+  return line;
+}
+
+/// The line without the mark in front, where it has that mark.
+bool take_mark(std::string& line, std::string_view mark) {
+  if (!line.starts_with(mark)) return false;
+  line.erase(0, line.size() > mark.size() ? mark.size() + 1 : mark.size());
+  return true;
+}
+
+std::string home() {
+  if (const char* folder = std::getenv("HOME"); folder && *folder) return folder;
+  const auto* entry = getpwuid(getuid());
+  return entry ? entry->pw_dir : "/";
+}
+
+}  // namespace
+
+std::string unit_name(const UnitSpec& spec) { return fmt::format("handcast-{}.service", spec.rig); }
+
+std::string unit_text(const UnitSpec& spec) {
+  const std::map<std::string, std::string> values{
+      {"@NAME@", spec.rig}, {"@PROGRAM@", word(spec.program)}, {"@COMMAND@", command_of(spec)}, {"@USER@", spec.user}};
+  std::istringstream lines{std::string(kServiceTemplate)};
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    if (take_mark(line, kForSystem) && !spec.system) continue;
+    if (take_mark(line, kForUser) && spec.system) continue;
+    text += replaced(line, values) + "\n";
+  }
+  return text;
+}
+
+std::filesystem::path unit_folder(const UnitSpec& spec) {
+  if (spec.system) return "/etc/systemd/system";
+  const char* config = std::getenv("XDG_CONFIG_HOME");
+  return std::filesystem::path(config && *config ? config : home() + "/.config") / "systemd/user";
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,223 @@
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include "tests/supervisor/control/control_fixture.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+void refuse(const Request&, const ControlServer::Reply& reply) { reply(failure("no")); }
+
+TEST(ControlMessage, ARequestComesBackAsItWasSent) {
+  const auto request = parse_request(print_request({Verb::swap, "pose", "replay"}));
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->verb, Verb::swap);
+  EXPECT_EQ(request->service, "pose");
+  EXPECT_EQ(request->backend, "replay");
+}
+
+TEST(ControlMessage, NonsenseIsRefusedWithASentence) {
+  for (const auto* line :
+       {"", "[]", "{", "42", R"({"verb":7})", R"({"verb":"fly"})", R"({"verb":"swap","service":"pose"})", R"({"verb":"restart"})"}) {
+    const auto request = parse_request(line);
+    ASSERT_FALSE(request) << line;
+    EXPECT_EQ(request.error().code, Errc::bad_data);
+    EXPECT_FALSE(request.error().what.empty());
+  }
+}
+
+TEST(ControlMessage, ARequestForThePastSaysHowMuchOfIt) {
+  EXPECT_EQ(parse_request(print_request({.verb = Verb::history, .service = {}, .backend = {}, .seconds = 2.5}))->seconds, 2.5);
+  for (const auto* line : {R"({"verb":"history"})", R"({"verb":"history","seconds":0})", R"({"verb":"history","seconds":-1})",
+                           R"({"verb":"history","seconds":"10"})", R"({"verb":"history","seconds":null})"}) {
+    const auto request = parse_request(line);
+    ASSERT_FALSE(request) << line;
+    EXPECT_THAT(request.error().what, HasSubstr("a number above 0"));
+  }
+}
+
+TEST(ControlMessage, EveryVerbHasItsName) {
+  for (const auto verb : {Verb::status, Verb::down, Verb::reload, Verb::rings})
+    EXPECT_EQ(parse_request(print_request({.verb = verb}))->verb, verb);
+}
+
+TEST(ControlMessage, WhatAPersonTypedMayBeAnyBytes) { EXPECT_TRUE(parse_request(print_request({Verb::restart, "pose\xff", ""}))); }
+
+TEST_F(Control, AClientGetsTheAnswerToItsRequest) {
+  serve([](const Request& request, const ControlServer::Reply& reply) {
+    auto answer = success();
+    answer["echo"] = request.service;
+    reply(answer);
+  });
+  const auto answer = while_it_turns([] { return ask("desk", {Verb::restart, "pose", ""}); });
+  ASSERT_TRUE(answer);
+  EXPECT_EQ((*answer)["echo"], "pose");
+}
+
+TEST_F(Control, ARefusalIsTheServersSentence) {
+  serve(refuse);
+  const auto answer = while_it_turns([] { return ask("desk", {}); });
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().what, "no");
+}
+
+TEST_F(Control, AnAnswerLargerThanTheSocketsBufferArrivesWhole) {
+  const std::string text(3'000'000, 'x');
+  serve([&](const Request&, const ControlServer::Reply& reply) {
+    auto answer = success();
+    answer["text"] = text;
+    reply(answer);
+  });
+  const auto answer = while_it_turns([] { return ask("desk", {}); });
+  ASSERT_TRUE(answer) << answer.error().what;
+  EXPECT_EQ((*answer)["text"], text);
+}
+
+TEST_F(Control, AClientThatDoesNotReadIsDroppedAndTheOthersAreServed) {
+  int answers = 0;
+  serve([&](const Request&, const ControlServer::Reply& reply) {
+    ++answers;
+    auto answer = success();
+    answer["text"] = std::string(1'000'000, 'x');
+    reply(answer);
+  });
+  const auto lazy = connect_to(socket_of("desk").value()).value();
+  const std::string requests = to_line({{"verb", "status"}}) + "\n";
+  for (int i = 0; i < 8; ++i) ASSERT_EQ(send(lazy.get(), requests.data(), requests.size(), MSG_NOSIGNAL), requests.size());
+  EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
+  EXPECT_LT(answers, 9);  // after what it was sent and what was kept for it
+  pollfd hung_up{.fd = lazy.get(), .events = 0, .revents = 0};
+  EXPECT_EQ(poll(&hung_up, 1, 0), 1);
+  EXPECT_TRUE(hung_up.revents & POLLHUP);
+}
+
+/// A memory file with something in it.
+UniqueFd memory_with(char content) {
+  UniqueFd file(memfd_create("test", MFD_CLOEXEC));
+  EXPECT_EQ(pwrite(file.get(), &content, 1, 0), 1);
+  return file;
+}
+
+char content_of(const UniqueFd& file) {
+  char content = 0;
+  EXPECT_EQ(pread(file.get(), &content, 1, 0), 1);
+  return content;
+}
+
+TEST_F(Control, DescriptorsComeWithTheAnswerInTheirOrderAndAreNotInherited) {
+  const auto left = memory_with('l'), right = memory_with('r');
+  serve([&](const Request&, const ControlServer::Reply& reply) {
+    auto answer = success();
+    answer["rings"] = {"left", "right"};
+    reply(answer, {left.get(), right.get()});
+  });
+  const auto answer = while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
+  ASSERT_TRUE(answer) << answer.error().what;
+  ASSERT_EQ(answer->descriptors.size(), 2);
+  EXPECT_EQ(content_of(answer->descriptors[0]), 'l');
+  EXPECT_EQ(content_of(answer->descriptors[1]), 'r');
+  for (const auto& fd : answer->descriptors) EXPECT_TRUE(fcntl(fd.get(), F_GETFD) & FD_CLOEXEC);
+}
+
+TEST_F(Control, AsManyDescriptorsAsTheKernelAllowsArriveAndMoreAreNotSent) {
+  const auto file = memory_with('x');
+  std::size_t count = kMostDescriptors;
+  serve([&](const Request&, const ControlServer::Reply& reply) {
+    auto answer = success();
+    answer["rings"] = std::vector<std::string>(count, "ring");
+    answer["text"] = std::string(1'000'000, 'x');  // descriptors also come with an answer that does not fit at once
+    reply(answer, std::vector<int>(count, file.get()));
+  });
+  const auto all = while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
+  ASSERT_TRUE(all) << all.error().what;
+  EXPECT_EQ(all->descriptors.size(), kMostDescriptors);
+  ++count;
+  const auto too_many = while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
+  ASSERT_FALSE(too_many);
+  EXPECT_THAT(too_many.error().what, HasSubstr("went away"));
+}
+
+TEST_F(Control, DescriptorsThatNobodyAskedForAreClosed) {
+  const auto file = memory_with('x');
+  serve([&](const Request&, const ControlServer::Reply& reply) { reply(success(), {file.get(), file.get()}); });
+  const auto before = count_descriptors();
+  const auto answer =
+      while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::history, .service = {}, .backend = {}, .seconds = 1}); });
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->descriptors.size(), 1);
+  EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
+  EXPECT_LE(count_descriptors(), before + 1);
+}
+
+TEST_F(Control, ASupervisorThatHangsIsTold) {
+  serve(refuse);  // and the loop does not turn
+  for (const auto verb : {Verb::status, Verb::down}) {
+    const auto answer = ask_with_descriptors("desk", {.verb = verb}, 50ms);
+    ASSERT_FALSE(answer);
+    EXPECT_THAT(answer.error().what, HasSubstr("its supervisor hangs"));
+  }
+}
+
+TEST_F(Control, WhatTakesLongIsWaitedForWhileTheSupervisorIsAwake) {
+  ControlServer::Reply later;
+  int asked_meanwhile = 0;
+  serve([&](const Request& request, const ControlServer::Reply& reply) {
+    if (request.verb == Verb::down) later = reply;
+    if (request.verb == Verb::status) reply(success());
+    if (request.verb == Verb::status && ++asked_meanwhile == 3) later(success());
+  });
+  EXPECT_TRUE(while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::down}, 50ms); }));
+  EXPECT_EQ(asked_meanwhile, 3);
+}
+
+TEST_F(Control, ALivingRigKeepsItsNameAndADeadOneDoesNot) {
+  auto first = ControlServer::listen("desk", loop_, refuse);
+  ASSERT_TRUE(first);
+  const auto second = ControlServer::listen("desk", loop_, refuse);
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().what, HasSubstr("'desk' is up already"));
+
+  const auto path = socket_of("desk").value();
+  const auto kept = scratch_.path() / "kept";
+  std::filesystem::rename(path, kept);  // what a supervisor that was killed leaves: a socket file nobody listens at
+  first->reset();
+  std::filesystem::rename(kept, path);
+  EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse));
+}
+
+TEST_F(Control, TheSocketFileGoesWithTheServer) {
+  EXPECT_THAT(living_rigs().value(), IsEmpty());
+  {
+    const auto server = ControlServer::listen("desk", loop_, refuse);
+    EXPECT_THAT(living_rigs().value(), ElementsAre("desk"));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(runtime_folder().value()));
+}
+
+TEST_F(Control, WithoutARigTheSentenceSaysHowToStartOne) {
+  const auto rig = choose_rig("");
+  ASSERT_FALSE(rig);
+  EXPECT_THAT(rig.error().what, HasSubstr("handcast up"));
+}
+
+TEST_F(Control, TheOnlyRigNeedsNoNameAndOneOfSeveralDoes) {
+  const auto desk = ControlServer::listen("desk", loop_, refuse);
+  EXPECT_EQ(choose_rig("").value(), "desk");
+  const auto wall = ControlServer::listen("wall", loop_, refuse);
+  const auto unnamed = choose_rig("");
+  ASSERT_FALSE(unnamed);
+  EXPECT_THAT(unnamed.error().what, HasSubstr("desk, wall"));
+  EXPECT_EQ(choose_rig("wall").value(), "wall");
+  EXPECT_FALSE(choose_rig("floor"));
+}
+
+}  // namespace
+}  // namespace handcast::supervisor

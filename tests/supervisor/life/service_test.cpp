@@ -1,0 +1,304 @@
+#include "supervisor/life/service.hpp"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/ring/writer.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using testing::ElementsAre;
+
+/// A service whose program is a shell script of the test.
+class ServiceTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    char name[] = "/tmp/handcast-service-XXXXXX";
+    ASSERT_NE(mkdtemp(name), nullptr);
+    launch_.program_folder = name;
+    launch_.rig_file = "rig.toml";
+    launch_.stop_s = 0.2;
+    launch_.ready_s = 20;
+    timer_ = open_timer(5'000'000).value();
+    loop_.watch(timer_.get(), [this] {
+      drain(timer_.get());
+      for (const auto& service : services_) service->tick(now_ns(), needs_are_ready_);
+      ++ticks_;
+    });
+  }
+  void TearDown() override {
+    services_.clear();
+    std::filesystem::remove_all(launch_.program_folder);
+  }
+
+  Service& service(const std::string& script) {
+    const auto program = launch_.program_folder / "handcast-pose";
+    std::ofstream(program) << "#!/bin/bash\n" << script << "\n";
+    chmod(program.c_str(), 0755);
+    services_.push_back(
+        std::make_unique<Service>(ServiceSpec{.name = "pose", .stream = "pose.hands", .backend = "twin", .process = process_}, launch_,
+                                  loop_, [this](Service&, Service::Event event) { events_.push_back(event); }));
+    return *services_.back();
+  }
+  void run_until(const std::function<bool()>& done) {
+    const auto limit = Deadline::in(std::chrono::seconds(30));
+    while (!done() && !limit.passed()) loop_.turn();
+    ASSERT_TRUE(done());
+  }
+
+  EventLoop loop_ = EventLoop::open().value();
+  UniqueFd timer_;
+  Launch launch_;
+  config::Process process_;
+  std::vector<std::unique_ptr<Service>> services_;
+  std::vector<Service::Event> events_;
+  bool needs_are_ready_ = true;
+  int ticks_ = 0;
+};
+
+constexpr auto kWorks = "echo >&$HANDCAST_READY_FD; exec sleep 1000";
+
+TEST_F(ServiceTest, IsReadyWhenItSaysSoAndStopsWhenAsked) {
+  auto& pose = service(kWorks);
+  pose.start();
+  EXPECT_EQ(pose.state(), State::starting);
+  run_until([&] { return pose.state() == State::ready; });
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_THAT(events_, ElementsAre(Service::Event::ready, Service::Event::stopped));
+  EXPECT_EQ(pose.restarts(), 0);
+  EXPECT_EQ(pose.pid(), 0);
+}
+
+TEST_F(ServiceTest, AKilledServiceComesBackAsAnotherProcess) {
+  auto& pose = service(kWorks);
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  const auto first = pose.pid();
+  ::kill(first, SIGKILL);
+  run_until([&] { return pose.pid() != first && pose.state() == State::ready; });
+  EXPECT_EQ(pose.restarts(), 1);
+  EXPECT_EQ(pose.last_exit()->describe(), "signal 9 (Killed)");
+}
+
+TEST_F(ServiceTest, OneThatNeverGetsReadyIsReplaced) {
+  launch_.ready_s = 0.1;
+  auto& pose = service("exec sleep 1000");
+  pose.start();
+  run_until([&] { return pose.restarts() > 0; });
+}
+
+TEST_F(ServiceTest, OneThatDoesNotListenIsKilled) {
+  auto& pose = service("trap '' TERM; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_EQ(pose.last_exit()->code, SIGKILL);
+}
+
+TEST_F(ServiceTest, ExitHundredIsFinalAndItsLastWordsAreKept) {
+  auto& pose = service("echo '1.0 pose error the folder is empty' >&2; exit 100");
+  pose.start();
+  run_until([&] { return pose.state() == State::failed; });
+  EXPECT_EQ(pose.log().last_sentence(), "the folder is empty");
+  EXPECT_EQ(pose.restarts(), 0);
+  EXPECT_THAT(events_, ElementsAre(Service::Event::failed));
+}
+
+TEST_F(ServiceTest, ABackEndOnTrialThatDiesIsNotTriedAgainAndTheOldOneWorksOn) {
+  auto& pose = service("case \"$*\" in *pose.backend=broken*) exit 111;; esac\n" + std::string(kWorks));
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  pose.use_backend("broken", true);
+  run_until([&] { return pose.state() == State::failed; });
+  pose.use_backend("twin", false);
+  run_until([&] { return pose.state() == State::ready; });
+  EXPECT_EQ(pose.spec().backend, "twin");
+}
+
+TEST_F(ServiceTest, AMissingProgramFailsAtOnce) {
+  auto& pose = service(kWorks);
+  std::filesystem::remove(launch_.program_folder / "handcast-pose");
+  pose.start();
+  EXPECT_EQ(pose.state(), State::failed);
+}
+
+TEST_F(ServiceTest, AStandstillOfTheSupervisorIsHeldAgainstNobody) {
+  auto& pose = service("exec sleep 1000");
+  pose.start();
+  pose.forgive(seconds_to_ns(30));
+  pose.tick(now_ns() + seconds_to_ns(45));
+  EXPECT_FALSE(pose.last_exit());
+  pose.tick(now_ns() + seconds_to_ns(55));
+  run_until([&] { return pose.restarts() > 0; });
+}
+
+TEST_F(ServiceTest, WhatASuccessorNeedsToKnowIsSaved) {
+  auto& pose = service(kWorks);
+  const auto before = pose.revision();
+  EXPECT_EQ(pose.saved().pid, 0);
+  pose.start();
+  EXPECT_GT(pose.revision(), before);
+  run_until([&] { return pose.state() == State::ready; });
+  const auto saved = pose.saved();
+  EXPECT_EQ(saved.name, "pose");
+  EXPECT_EQ(saved.pid, pose.pid());
+  EXPECT_EQ(saved.started_ticks, start_ticks_of(pose.pid()).value());
+  EXPECT_TRUE(saved.ready);
+  EXPECT_EQ(saved.backend, "twin");
+}
+
+TEST_F(ServiceTest, AnAdoptedServiceGoesOnAsItWasAndIsReplacedWhenItDies) {
+  auto& first = service(kWorks);
+  first.start();
+  run_until([&] { return first.state() == State::ready; });
+  auto reports = ExitReports::from_environment();
+  launch_.reports = &reports;
+  AdoptedProcess process{.saved = first.saved(), .pidfd = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, first.pid(), 0))), .log = {}};
+  process.saved.restarts = 3;
+  auto& second = service(kWorks);
+  second.adopt(std::move(process));
+  EXPECT_EQ(second.state(), State::ready);
+  EXPECT_EQ(second.pid(), first.pid());
+  EXPECT_EQ(second.restarts(), 3);
+  const auto adopted = second.pid();
+  ::kill(adopted, SIGKILL);
+  run_until([&] { return second.state() == State::ready && second.pid() != adopted; });
+  EXPECT_EQ(second.restarts(), 4);
+  services_.pop_back();  // before `reports`
+}
+
+/// A service with the ring it publishes. The test publishes in its place.
+class PublishingService : public ServiceTest {
+ protected:
+  void SetUp() override {
+    ServiceTest::SetUp();
+    launch_.rings = {{"pose.hands", ring_.fd()}};
+  }
+  /// As a writer that comes anew.
+  void publish() {
+    auto again = ipc::Segment::open(UniqueFd(dup(ring_.fd()))).value();
+    ipc::Writer<msg::HandPoses>::attach(std::move(again)).value().publish({});
+  }
+  void run_until_said(const Service& service) {
+    run_until([&] { return service.log().last_sentence() == "said"; });
+    const auto then = ticks_;
+    run_until([&] { return ticks_ > then + 1; });
+  }
+
+  ipc::Segment ring_ = ipc::Segment::create(ipc::RingSpec::of<msg::HandPoses>("pose.hands", 8, true)).value();
+  static constexpr auto kSays = "echo >&$HANDCAST_READY_FD; echo said; exec sleep 1000";
+};
+
+TEST_F(PublishingService, IsReadyWithItsFirstMessageAndNotBefore) {
+  publish();  // of an earlier life
+  auto& pose = service(kSays);
+  pose.start();
+  run_until_said(pose);
+  EXPECT_EQ(pose.state(), State::starting);
+  publish();
+  run_until([&] { return pose.state() == State::ready; });
+}
+
+TEST_F(PublishingService, IsReplacedWhenNoMessageComes) {
+  launch_.ready_s = 0.2;
+  auto& pose = service(kSays);
+  pose.start();
+  run_until([&] { return pose.restarts() > 0; });
+  EXPECT_EQ(pose.last_exit()->code, SIGKILL);
+}
+
+TEST_F(PublishingService, MayBeSilentAsLongAsItsNeedsAreNotReady) {
+  needs_are_ready_ = false;
+  auto& pose = service(kSays);
+  pose.start();
+  run_until_said(pose);
+  launch_.ready_s = 0.05;
+  const auto then = ticks_;
+  run_until([&] { return ticks_ > then + 40; });
+  EXPECT_EQ(pose.restarts(), 0);
+  needs_are_ready_ = true;
+  run_until([&] { return pose.restarts() > 0; });
+}
+
+/// A service with a spare. Each process that has prepared itself leaves its number in a file of its own.
+class ServiceWithSpare : public ServiceTest {
+ protected:
+  void SetUp() override {
+    ServiceTest::SetUp();
+    process_.standby = true;
+    launch_.silent_s = 20;
+  }
+  Service& ready_service() {
+    auto& pose = service(kSpares);
+    pose.start();
+    run_until([&] { return pose.state() == State::ready && pose.spare_pid() != 0; });
+    return pose;
+  }
+  static constexpr auto kSpares =
+      "if [ -n \"$HANDCAST_STANDBY_FD\" ]; then\n"
+      "  printf s >&$HANDCAST_READY_FD\n"
+      "  read -n 1 -u $HANDCAST_STANDBY_FD || exit 0\n"
+      "fi\n"
+      "echo >&$HANDCAST_READY_FD; exec sleep 1000";
+};
+
+TEST_F(ServiceWithSpare, TheSpareTakesOverWhenTheWorkerDies) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  ::kill(worker, SIGKILL);
+  run_until([&] { return pose.pid() != worker && pose.state() == State::ready; });
+  EXPECT_EQ(pose.pid(), spare);
+  EXPECT_EQ(pose.restarts(), 1);
+  run_until([&] { return pose.spare_pid() != 0; });
+  EXPECT_NE(pose.spare_pid(), spare) << "there is a new one";
+}
+
+TEST_F(ServiceWithSpare, ASpareThatDiesIsReplacedAndDoesNotCount) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  ::kill(spare, SIGKILL);
+  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  EXPECT_EQ(pose.pid(), worker);
+  EXPECT_EQ(pose.restarts(), 0);
+  EXPECT_EQ(pose.state(), State::ready);
+}
+
+TEST_F(ServiceWithSpare, ASpareThatHangsIsReplaced) {
+  launch_.silent_s = 0.2;
+  auto& pose = ready_service();
+  const auto spare = pose.spare_pid();  // the script says one 's' and then nothing, as if it were stopped
+  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  EXPECT_EQ(pose.restarts(), 0);
+}
+
+TEST_F(ServiceWithSpare, StopEndsBoth) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_NE(::kill(worker, 0), 0);
+  EXPECT_NE(::kill(spare, 0), 0);
+  EXPECT_FALSE(pose.is_running());
+}
+
+TEST_F(ServiceWithSpare, RestartReplacesBoth) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  pose.restart();
+  run_until([&] { return pose.state() == State::ready && pose.pid() != worker && pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  EXPECT_NE(pose.pid(), spare) << "a spare of the old settings does not take over";
+}
+
+}  // namespace
+}  // namespace handcast::supervisor

@@ -1,0 +1,102 @@
+#include "supervisor/record/ledger.hpp"
+
+#include <gtest/gtest.h>
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kMs_ns = 1'000'000;
+
+msg::StageMarks frame_at(std::int64_t time_ns, std::int64_t span_ns = kMs_ns) {
+  msg::StageMarks marks;
+  marks.header = {.frame_id = 1, .origin_ns = time_ns - 5 * kMs_ns, .published_ns = time_ns};
+  marks.count = 1;
+  marks.marks[0] = {.stage = msg::Stage::draw, .reserved = 0, .begin_ns = time_ns - span_ns, .end_ns = time_ns};
+  return marks;
+}
+
+TEST(Histogram, PercentilesAreWithinAFewPercentOfTheSortedTruth) {
+  Histogram times;
+  for (int us = 1; us <= 1000; ++us) times.add(us * 1000);
+  EXPECT_NEAR(times.percentile_ns(0.50), 500e3, 500e3 * 0.045);
+  EXPECT_NEAR(times.percentile_ns(0.99), 990e3, 990e3 * 0.045);
+  EXPECT_NEAR(times.percentile_ns(1.00), 1000e3, 1000e3 * 0.045);
+}
+
+TEST(Histogram, NothingAddedIsZeroAndNonsenseIsKeptInBounds) {
+  Histogram times;
+  EXPECT_EQ(times.percentile_ns(0.5), 0);
+  times.add(-5);
+  times.add(std::int64_t{1} << 62);
+  EXPECT_EQ(times.count(), 2u);
+  EXPECT_GT(times.percentile_ns(1), 1e11);
+}
+
+TEST(Ledger, AHeartBeatIsNotAFrame) {
+  Ledger ledger;
+  auto beat = frame_at(kSecond_ns);
+  beat.count = 0;
+  ledger.note("camera", beat);
+  EXPECT_EQ(ledger.frames("camera").total(), 0u);
+  EXPECT_TRUE(ledger.stages().empty());
+}
+
+TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
+  Ledger ledger;
+  const auto start = 100 * kSecond_ns;
+  for (int i = 0; i < 400; ++i) ledger.note("camera", frame_at(start + i * 10 * kMs_ns));  // 100 Hz for 4 s
+  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 4 * kSecond_ns), 100, 1);
+  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 5 * kSecond_ns), 50, 1) << "nothing came for a second";
+  EXPECT_EQ(ledger.frames("camera").recent_hz(start + 9 * kSecond_ns), 0);
+  EXPECT_EQ(ledger.frames("nobody").recent_hz(start), 0);
+}
+
+TEST(Ledger, TheHeldRateLeavesOutTheFirstSecondAndCountsInterruptions) {
+  Ledger ledger;
+  const auto start = 100 * kSecond_ns;
+  ledger.note("camera", frame_at(start));                                                               // a slow first second: one frame
+  for (int i = 0; i < 200; ++i) ledger.note("camera", frame_at(start + kSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
+  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 3 * kSecond_ns), 100, 0.5);
+  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 5 * kSecond_ns), 50, 0.5) << "silent for the last two of four seconds";
+}
+
+TEST(Ledger, FramesWhoseMarksWereOverwrittenAreCounted) {
+  Ledger ledger;
+  const auto start = 100 * kSecond_ns;
+  for (int i = 0; i <= 40; ++i) ledger.note("projector", frame_at(start + i * 100 * kMs_ns), i > 0 ? 89 : 0);  // 900 Hz, one in 90 seen
+  EXPECT_EQ(ledger.frames("projector").total(), 40u * 90 + 1);
+  EXPECT_NEAR(ledger.frames("projector").recent_hz(start + 4 * kSecond_ns), 900, 10);
+  EXPECT_NEAR(ledger.frames("projector").held_hz(start + 4 * kSecond_ns), 900, 35) << "to within one read";
+}
+
+TEST(Ledger, TheNewestAgeIsThatOfTheLastFramesOrigin) {
+  Ledger ledger;
+  ledger.note("pose", frame_at(kSecond_ns));
+  EXPECT_DOUBLE_EQ(ledger.frames("pose").newest_age_ms(kSecond_ns + 3 * kMs_ns).value(), 8.0);
+  EXPECT_FALSE(ledger.frames("camera").newest_age_ms(kSecond_ns).has_value());
+}
+
+TEST(Ledger, StageTimesForgetWhatIsOlderThanTenSecondsButTheWholeRunDoesNot) {
+  Ledger ledger;
+  for (int second = 0; second < 30; ++second)
+    ledger.note("projector", frame_at((100 + second) * kSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
+  const auto& draw = ledger.stages().at("draw");
+  EXPECT_EQ(draw.whole_run().count(), 30u);
+  EXPECT_EQ(draw.recent(129 * kSecond_ns).count(), 10u);
+  EXPECT_LT(draw.recent(129 * kSecond_ns).percentile_ns(0.99), 2e6);
+  EXPECT_GT(draw.whole_run().percentile_ns(0.99), 7e6);
+  EXPECT_EQ(draw.recent(150 * kSecond_ns).count(), 0u);
+}
+
+TEST(Ledger, ImpossibleMarksFromSharedMemoryAreLeftOut) {
+  Ledger ledger;
+  auto marks = frame_at(kSecond_ns);
+  marks.count = 4'000'000'000u;
+  marks.marks.fill({.stage = static_cast<msg::Stage>(77), .reserved = 0, .begin_ns = 0, .end_ns = 0});
+  ledger.note("camera", marks);
+  EXPECT_TRUE(ledger.stages().empty());
+}
+
+}  // namespace
+}  // namespace handcast::supervisor

@@ -1,0 +1,238 @@
+#include "supervisor/succession/adoption.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/msg/stage_mark.hpp"
+#include "ipc/ring/reader.hpp"
+#include "ipc/ring/ring_view.hpp"
+#include "ipc/ring/writer.hpp"
+#include "supervisor/life/child.hpp"
+#include "supervisor/event_loop.hpp"
+#include "supervisor/control/runtime_folder.hpp"
+#include "tests/supervisor/runtime_scratch.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr int kRingFd = 200;  ///< its number in the services; free in this process
+
+std::uint64_t inode_of(int fd) {
+  struct stat status {};
+  return fstat(fd, &status) == 0 ? status.st_ino : 0;
+}
+
+/// A ring and a service that was given it, as a supervisor leaves them when it dies.
+class AdoptionTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = ipc::Segment::create(ipc::RingSpec::of<msg::StageMarks>("marks.pose", 8, true));
+    ASSERT_TRUE(made);
+    inode_ = inode_of(made->fd());
+    auto writer = ipc::Writer<msg::StageMarks>::attach(std::move(*made));
+    ASSERT_TRUE(writer);
+    msg::StageMarks marks;
+    marks.header.frame_id = 7;
+    writer->publish(marks);
+    writer_.emplace(std::move(*writer));
+    saved_.name = "desk";
+    saved_.epoch_ns = 42;
+    saved_.rings = {{"marks.pose", inode_, kRingFd}};
+    leave_ring();
+  }
+  void TearDown() override { close(kRingFd); }
+
+  /// The ring under its number; the supervisor's death closes it: close(kRingFd).
+  void leave_ring() {
+    const auto folder = std::filesystem::directory_iterator("/proc/self/fd");
+    for (const auto& entry : folder)
+      if (inode_of(std::stoi(entry.path().filename())) == inode_) {
+        dup2(std::stoi(entry.path().filename()), kRingFd);
+        return;
+      }
+    FAIL() << "the ring is not open";
+  }
+
+  Child& service(const std::string& name, const std::string& script, bool ready = true) {
+    auto child = Child::spawn({.program = "/bin/bash", .arguments = {"-c", script}, .rings = {{"marks.pose", kRingFd}}});
+    EXPECT_TRUE(child);
+    children_.push_back(std::make_unique<Child>(std::move(*child)));
+    const auto pid = children_.back()->pid();
+    saved_.services.push_back({name, pid, start_ticks_of(pid).value_or(0), ready, "twin", "f", 2});
+    return *children_.back();
+  }
+
+  Result<std::optional<AdoptedRig>> adopt_after_death() {
+    EXPECT_TRUE(save(saved_));
+    close(kRingFd);
+    return adopt("desk");
+  }
+
+  RuntimeScratch scratch_;
+  std::uint64_t inode_ = 0;
+  std::optional<ipc::Writer<msg::StageMarks>> writer_;
+  SavedRig saved_;
+  std::vector<std::unique_ptr<Child>> children_;
+};
+
+TEST_F(AdoptionTest, ALivingServiceAndItsRingAreTakenOver) {
+  const auto& pose = service("pose", "exec sleep 1000");
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted) << adopted.error().what;
+  ASSERT_TRUE(*adopted);
+  const auto& rig = **adopted;
+  EXPECT_EQ(rig.saved.epoch_ns, 42);
+  ASSERT_THAT(rig.services, SizeIs(1));
+  EXPECT_EQ(rig.services[0].saved.pid, pose.pid());
+  EXPECT_EQ(rig.services[0].saved.restarts, 2);
+  ASSERT_THAT(rig.rings, SizeIs(1));
+  EXPECT_EQ(rig.rings[0].fd(), kRingFd);
+  EXPECT_EQ(inode_of(rig.rings[0].fd()), inode_);
+  EXPECT_EQ(fcntl(kRingFd, F_GETFD), FD_CLOEXEC);
+  EXPECT_NE(fcntl(kRingFd, F_GETFL) & O_RDWR, 0);
+
+  auto reader = ipc::Reader<msg::StageMarks>::attach(ipc::Segment::open(UniqueFd(dup(kRingFd))).value());
+  ASSERT_TRUE(reader);
+  EXPECT_EQ((*reader->latest(Deadline::now()))->header.frame_id, 7u);
+}
+
+TEST_F(AdoptionTest, WhatTheServiceSaysIsHeardAgain) {
+  const auto& pose = service("pose", "trap 'echo hello' USR1; echo up; while :; do sleep 0.02; done");
+  pollfd up{.fd = pose.log_fd(), .events = POLLIN, .revents = 0};
+  ASSERT_EQ(poll(&up, 1, 20000), 1);
+  drain(pose.log_fd());
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted && *adopted);
+  const auto& log = (*adopted)->services.at(0).log;
+  char text[64] = {};
+  EXPECT_LT(read(log.get(), text, sizeof text), 0);  // does not block
+  kill(pose.pid(), SIGUSR1);
+  pollfd heard{.fd = log.get(), .events = POLLIN, .revents = 0};
+  ASSERT_EQ(poll(&heard, 1, 20000), 1);
+  ASSERT_GT(read(log.get(), text, sizeof text - 1), 0);
+  EXPECT_THAT(text, HasSubstr("hello"));
+}
+
+TEST_F(AdoptionTest, WhoDiedMeanwhileIsLeftToBeStarted) {
+  service("pose", "exec sleep 1000");
+  auto& camera = service("camera", "exec sleep 1000");
+  camera.signal(SIGKILL);
+  pollfd ended{.fd = camera.pidfd(), .events = POLLIN, .revents = 0};
+  ASSERT_EQ(poll(&ended, 1, 20000), 1);  // a zombie, which still has its number
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted && *adopted);
+  ASSERT_THAT((*adopted)->services, SizeIs(1));
+  EXPECT_EQ((*adopted)->services[0].saved.name, "pose");
+}
+
+TEST_F(AdoptionTest, AProcessThatHasTheNumberByNowIsNotTouched) {
+  auto& stranger = service("pose", "exec sleep 1000");
+  saved_.services[0].started_ticks -= 1;
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted);
+  EXPECT_EQ(*adopted, std::nullopt);
+  EXPECT_EQ(stop_orphans("desk", 1), 0);
+  usleep(50'000);
+  EXPECT_EQ(stranger.try_reap(), std::nullopt);
+}
+
+TEST_F(AdoptionTest, AnotherFileUnderTheRingsNumberIsNotTakenForTheRing) {
+  service("pose", "exec sleep 1000");
+  saved_.rings[0].inode += 1;
+  const auto adopted = adopt_after_death();
+  ASSERT_FALSE(adopted);
+  EXPECT_EQ(adopted.error().code, Errc::unavailable);
+  EXPECT_THAT(adopted.error().what, HasSubstr("ring 'marks.pose'"));
+  EXPECT_THAT(adopted.error().what, HasSubstr("another file"));
+  EXPECT_THAT(adopted.error().what, HasSubstr("`handcast down --rig desk`"));
+}
+
+TEST_F(AdoptionTest, ANumberThatIsTakenHereIsAnErrorAndTheTakerKeepsIt) {
+  service("pose", "exec sleep 1000");
+  ASSERT_TRUE(save(saved_));
+  const UniqueFd other(memfd_create("other", MFD_CLOEXEC));
+  dup2(other.get(), kRingFd);
+  const auto adopted = adopt("desk");
+  ASSERT_FALSE(adopted);
+  EXPECT_THAT(adopted.error().what, HasSubstr("descriptor 200"));
+  EXPECT_EQ(inode_of(kRingFd), inode_of(other.get()));
+}
+
+TEST_F(AdoptionTest, OneThatWasJustStartingIsEndedToBeStartedAnew) {
+  service("pose", "exec sleep 1000");
+  auto& camera = service("camera", "exec sleep 1000", false);
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted && *adopted);
+  ASSERT_THAT((*adopted)->services, SizeIs(1));
+  EXPECT_EQ((*adopted)->services[0].saved.name, "pose");
+  EXPECT_TRUE(camera.try_reap());
+}
+
+TEST_F(AdoptionTest, ReadersThatDiedGiveTheirRowsBack) {
+  service("pose", "exec sleep 1000");
+  const pid_t reader = fork();
+  if (reader == 0) {
+    const auto attached = ipc::Reader<msg::StageMarks>::attach(ipc::Segment::open(UniqueFd(dup(kRingFd))).value());
+    _exit(attached ? 0 : 1);  // without a word of farewell
+  }
+  int status = -1;
+  waitpid(reader, &status, 0);
+  ASSERT_EQ(status, 0);
+  ASSERT_THAT(ipc::RingView::open(UniqueFd(dup(kRingFd))).value().look().readers, SizeIs(1));
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted && *adopted);
+  EXPECT_THAT(ipc::RingView::open(UniqueFd(dup(kRingFd))).value().look().readers, IsEmpty());
+}
+
+TEST_F(AdoptionTest, WhereNothingLivesNothingIsAdopted) {
+  EXPECT_EQ(adopt("desk").value(), std::nullopt);
+  EXPECT_EQ(adopt_after_death().value(), std::nullopt);
+  EXPECT_THAT(orphaned_rigs(), IsEmpty());
+}
+
+TEST_F(AdoptionTest, OrphansAreListedAskedAndThenKilled) {
+  auto& polite = service("pose", "exec sleep 1000");
+  auto& deaf = service("camera", "trap '' TERM; while :; do sleep 0.02; done");
+  ASSERT_TRUE(save(saved_));
+  usleep(100'000);  // until it is deaf
+  EXPECT_THAT(orphaned_rigs(), ElementsAre("desk"));
+  EXPECT_EQ(stop_orphans("desk", 0.3), 2);
+  EXPECT_EQ(polite.try_reap()->code, SIGTERM);
+  EXPECT_EQ(deaf.try_reap()->code, SIGKILL);
+  EXPECT_THAT(orphaned_rigs(), IsEmpty());
+  EXPECT_EQ(load_saved("desk"), std::nullopt);
+}
+
+// In a process of its own: what systemd passes begins at descriptor 3.
+TEST_F(AdoptionTest, RingsThatSystemdKeptComeBackWhenNoServiceLives) {
+  ASSERT_TRUE(save(saved_));
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(kRingFd, 3);
+    close(kRingFd);
+    setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
+    setenv("LISTEN_FDS", "1", 1);
+    setenv("LISTEN_FDNAMES", "marks.pose", 1);
+    const auto adopted = adopt("desk");
+    const bool right = adopted && *adopted && (*adopted)->services.empty() && (*adopted)->rings.size() == 1 &&
+                       (*adopted)->rings[0].fd() == kRingFd && inode_of(kRingFd) == inode_;
+    _exit(right ? 0 : 1);
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
+}  // namespace
+}  // namespace handcast::supervisor

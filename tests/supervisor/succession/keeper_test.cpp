@@ -1,0 +1,167 @@
+#include "supervisor/succession/keeper.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "ipc/base/clock.hpp"
+#include "supervisor/exit.hpp"
+#include "supervisor/succession/saved_rig.hpp"
+#include "tests/services/scratch.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+bool eventually(const std::function<bool()>& done) {
+  for (const auto limit = Deadline::in(std::chrono::seconds(30)); !limit.passed(); usleep(5000))
+    if (done()) return true;
+  return done();
+}
+
+/// A keeper as a process of its own, whose supervisor is a script of the test. What the script appends to $NOTES is read here.
+class KeeperTest : public testing::Test {
+ protected:
+  void TearDown() override {
+    for (const pid_t pid : {keeper_, pid_in("supervisor")})
+      if (pid > 0) kill(pid, SIGKILL);
+    if (keeper_ > 0) waitpid(keeper_, nullptr, 0);
+  }
+
+  void keep_script(const std::string& script, const std::string& program = "/bin/bash") {
+    setenv("FOLDER", scratch_.path().c_str(), 1);
+    setenv("NOTES", notes_file().c_str(), 1);
+    keeper_ = fork();
+    if (keeper_ != 0) return;
+    freopen((scratch_.path() / "log").c_str(), "w", stderr);
+    const auto option = program == "/bin/bash" ? "-c" : "-e";
+    _exit(keep({program, option, script}));
+  }
+  int wait() {
+    int status = 0;
+    if (!eventually([&] { return waitpid(keeper_, &status, WNOHANG) == keeper_; })) return -1;
+    keeper_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+  std::filesystem::path notes_file() const { return scratch_.path() / "notes"; }
+  std::vector<std::string> notes() const {
+    std::vector<std::string> lines;
+    std::ifstream file(notes_file());
+    for (std::string line; std::getline(file, line);) lines.push_back(line);
+    return lines;
+  }
+  std::string log() const {
+    std::ostringstream text;
+    text << std::ifstream(scratch_.path() / "log").rdbuf();
+    return text.str();
+  }
+  pid_t pid_in(const std::string& file) const {
+    pid_t pid = -1;
+    std::ifstream(scratch_.path() / file) >> pid;
+    return pid;
+  }
+
+  test::Scratch scratch_;
+  pid_t keeper_ = -1;
+};
+
+TEST_F(KeeperTest, ItsSupervisorsExitCodeIsItsOwn) {
+  keep_script("echo once >> $NOTES; exit 100");
+  EXPECT_EQ(wait(), 100);
+  EXPECT_THAT(notes(), ElementsAre("once"));
+}
+
+TEST_F(KeeperTest, AProgramThatIsNotThereIsASentence) {
+  keep_script("", "/nowhere/handcast");
+  EXPECT_EQ(wait(), kExitFailure);
+  EXPECT_THAT(log(), HasSubstr("/nowhere/handcast"));
+}
+
+TEST_F(KeeperTest, ASupervisorThatIsKilledIsStartedAgainAndToldThatItIsASuccessor) {
+  keep_script("echo life $HANDCAST_SUCCESSOR >> $NOTES; [ $(wc -l < $NOTES) -ge 3 ] && exit 7; kill -9 $$");
+  EXPECT_EQ(wait(), 7);
+  EXPECT_THAT(notes(), ElementsAre("life", "life 1", "life 1"));
+  EXPECT_THAT(log(), HasSubstr("signal 9"));
+}
+
+TEST_F(KeeperTest, OneThatDiesAgainAndAgainIsGivenUpWithASentence) {
+  keep_script("echo life >> $NOTES; kill -ABRT $$");
+  EXPECT_EQ(wait(), kExitFailure);
+  EXPECT_THAT(notes(), SizeIs(10));
+  EXPECT_THAT(log(), HasSubstr("`handcast down` ends them"));
+}
+
+TEST_F(KeeperTest, TheSupervisorRunsInAProcessGroupOfItsOwn) {
+  keep_script("ps -o pgid= -p $$ | tr -d ' ' >> $NOTES; echo $$ >> $NOTES");
+  EXPECT_EQ(wait(), 0);
+  ASSERT_THAT(notes(), SizeIs(2));
+  EXPECT_EQ(notes()[0], notes()[1]);
+}
+
+constexpr auto kListens =
+    "use POSIX; alarm 60; my $n; $SIG{TERM} = sub { $n .= 'T' }; $SIG{INT} = sub { $n .= 'I' }; $SIG{HUP} = sub { $n .= 'H' };"
+    "sub note { open(my $f, '>>', $ENV{NOTES}); print $f \"$_[0]\\n\"; }"
+    "note($$); sigprocmask(SIG_UNBLOCK, POSIX::SigSet->new(SIGTERM, SIGINT, SIGHUP));"
+    "for (;;) { select(undef, undef, undef, 0.02); if ($n) { note($n); exit 5 if $n =~ /T/; $n = ''; } }";
+
+TEST_F(KeeperTest, StopSignalsAreHandedOnOnceEach) {
+  keep_script(kListens, "/usr/bin/perl");
+  for (const auto& [number, name] : {std::pair{SIGINT, "I"}, {SIGHUP, "H"}, {SIGTERM, "T"}}) {
+    const auto before = notes().size();
+    ASSERT_TRUE(eventually([&] { return before > 0 || !notes().empty(); }));
+    const auto lines = notes().size();
+    kill(keeper_, number);
+    ASSERT_TRUE(eventually([&] { return notes().size() > lines; })) << name;
+    EXPECT_EQ(notes().back(), name);
+  }
+  EXPECT_EQ(wait(), 5);
+}
+
+TEST_F(KeeperTest, AStopSignalReachesTheSuccessorOfASupervisorThatDiedOverIt) {
+  keep_script(std::string("if (!$ENV{HANDCAST_SUCCESSOR}) { note('first'); select(undef, undef, undef, 0.5); kill 9, $$; }") + kListens,
+              "/usr/bin/perl");
+  ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
+  kill(keeper_, SIGTERM);
+  EXPECT_EQ(wait(), 5);
+  EXPECT_EQ(notes().back(), "T");
+}
+
+// Its services' children, too, come to the keeper when the supervisor dies; their ends are told to the next supervisor.
+TEST_F(KeeperTest, OrphansAreReapedAndTheirEndsToldToTheNextSupervisorEvenThoseThatDiedBetweenTwo) {
+  keep_script(
+      "if (!$ENV{HANDCAST_SUCCESSOR}) {"
+      "  for my $what ('exit 42', 'kill 9, $$') { my $pid = fork(); if (!$pid) { select(undef, undef, undef, 0.1); eval $what; } "
+      "    open(my $f, '>>', $ENV{NOTES}); print $f \"$pid\\n\"; }"
+      "  kill 9, $$; }"
+      "alarm 20; use Socket; open(my $s, '<&=', $ENV{HANDCAST_KEEPER_FD}) or die;"
+      "for (1..2) { recv($s, my $report, 64, 0); open(my $f, '>>', $ENV{NOTES}); print $f join(' ', unpack('i3', $report)), \"\\n\"; }",
+      "/usr/bin/perl");
+  EXPECT_EQ(wait(), 0);
+  const auto lines = notes();
+  ASSERT_THAT(lines, SizeIs(4));
+  const auto exited = fmt::format("{} {} 42", lines[0], CLD_EXITED), killed = fmt::format("{} {} 9", lines[1], CLD_KILLED);
+  EXPECT_THAT((std::vector{lines[2], lines[3]}), testing::UnorderedElementsAre(exited, killed));
+}
+
+TEST_F(KeeperTest, TheSupervisorGoesOnWhenTheKeeperDies) {
+  keep_script("echo $$ > $FOLDER/supervisor; exec sleep 1000");
+  ASSERT_TRUE(eventually([&] { return pid_in("supervisor") > 0; }));
+  kill(keeper_, SIGKILL);
+  wait();
+  usleep(50'000);
+  EXPECT_TRUE(start_ticks_of(pid_in("supervisor")));
+}
+
+}  // namespace
+}  // namespace handcast::supervisor

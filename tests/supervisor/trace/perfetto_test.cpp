@@ -1,0 +1,190 @@
+#include "supervisor/trace/perfetto.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/supervisor/record/marked_frames.hpp"
+#include "tests/supervisor/trace/trace_decoder.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using msg::Stage;
+using test::everything_in, test::frame, test::mark, test::kMs_ns, test::kStart_ns;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr ClockReadings kClocks{1'000, 2'000, 3'000};
+
+test::SeenTrace trace_of(const History& history) { return test::decode_trace(perfetto_trace(everything_in(history), "desk", kClocks)); }
+
+/// A frame of the projector that shows the image with this id and origin.
+msg::StageMarks projector_frame(std::uint64_t image, double origin_ms, double at_ms) {
+  return frame(image, origin_ms,
+               {mark(Stage::predict, at_ms, at_ms + 0.1), mark(Stage::draw, at_ms + 0.1, at_ms + 0.6),
+                mark(Stage::frame, at_ms, at_ms + 0.7), mark(Stage::present, at_ms + 0.7, at_ms + 0.8)});
+}
+
+/// Two images, one detected, one tracker sample, four frames.
+History small_rig() {
+  History history(60);
+  history.note("camera", frame(1, 0, {mark(Stage::capture, 0, 1)}), 0);
+  history.note("camera", frame(2, 2, {mark(Stage::capture, 2, 3)}), 0);
+  history.note("pose", frame(40, 0.5, {mark(Stage::sample, 0.5, 3.2)}), 0);
+  history.note("landmarks", frame(1, 0, {mark(Stage::detect, 1.1, 4.5)}), 0);
+  history.note("projector", projector_frame(1, 0, 1.2), 0);
+  history.note("projector", projector_frame(1, 0, 2.2), 0);
+  history.note("projector", projector_frame(2, 2, 3.3), 0);
+  history.note("projector", projector_frame(2, 2, 4.6), 0);
+  return history;
+}
+
+std::vector<std::string> names_of(const std::vector<test::SeenSlice>& slices) {
+  std::vector<std::string> names;
+  for (const auto& slice : slices) names.push_back(slice.name);
+  return names;
+}
+
+TEST(Perfetto, ATraceHasAProcessATrackPerServiceAndItsClock) {
+  const auto trace = trace_of(small_rig());
+  ASSERT_EQ(trace.fault, "");
+  EXPECT_EQ(trace.process, "handcast desk");
+  EXPECT_EQ(trace.pid, static_cast<std::uint64_t>(getpid()));
+  std::vector<std::string> tracks;
+  for (const auto& [id, name] : trace.tracks) tracks.push_back(name);
+  EXPECT_THAT(tracks, ElementsAre("age of the image in the light", "camera", "pose", "landmarks", "projector"));
+  constexpr int kRealtime = 1, kMonotonic = 3, kBoottime = 6;
+  EXPECT_EQ(trace.primary_clock, kMonotonic);
+  EXPECT_THAT(trace.clocks, ElementsAre(std::pair(kRealtime, 3'000), std::pair(kMonotonic, 1'000), std::pair(kBoottime, 2'000)));
+}
+
+TEST(Perfetto, EverySliceIsWhereItsMarkSays) {
+  const auto trace = trace_of(small_rig());
+  const auto captures = trace.named("capture");
+  ASSERT_THAT(captures, SizeIs(2));
+  EXPECT_EQ(captures[1].track, "camera");
+  EXPECT_EQ(captures[1].begin_ns, kStart_ns + 2 * kMs_ns);
+  EXPECT_EQ(captures[1].end_ns, kStart_ns + 3 * kMs_ns);
+  EXPECT_EQ(captures[1].annotations.at("frame_id"), 2);
+  EXPECT_DOUBLE_EQ(captures[1].annotations.at("age_ms"), 1);
+  EXPECT_THAT(trace.slices, SizeIs(2 + 1 + 1 + 4 * 4));
+}
+
+TEST(Perfetto, StagesOfAFrameLieInsideItAndItsPresentationBehindIt) {
+  const auto trace = trace_of(small_rig());
+  const auto draws = trace.named("draw");
+  ASSERT_THAT(draws, SizeIs(4));
+  for (const auto& draw : draws) {
+    ASSERT_GE(draw.parent, 0);
+    EXPECT_EQ(trace.slices[static_cast<std::size_t>(draw.parent)].name, "frame");
+  }
+  for (const auto& present : trace.named("present")) EXPECT_EQ(present.parent, -1);
+}
+
+TEST(Perfetto, AnImageFlowsIntoEveryFrameThatShowedIt) {
+  const auto trace = trace_of(small_rig());
+  const auto second = trace.named("capture")[1];
+  ASSERT_THAT(second.flows, SizeIs(1)) << "it was not detected";
+  const auto way = trace.along(second.flows[0]);
+  EXPECT_THAT(names_of(way), ElementsAre("capture", "frame", "present", "frame", "present"));
+  for (const auto& slice : way) EXPECT_EQ(slice.annotations.at("frame_id"), 2);
+}
+
+TEST(Perfetto, ADetectionFlowsFromItsImageIntoTheFirstFrameThatKnewIt) {
+  const auto trace = trace_of(small_rig());
+  const auto detect = trace.named("detect")[0];
+  ASSERT_THAT(detect.flows, SizeIs(1));
+  EXPECT_THAT(trace.named("capture")[0].flows, Contains(detect.flows[0]));
+  const auto way = trace.along(detect.flows[0]);
+  EXPECT_THAT(names_of(way), ElementsAre("capture", "detect", "frame", "present"));
+  EXPECT_EQ(way[2].begin_ns, kStart_ns + 4'600'000);
+}
+
+TEST(Perfetto, OnlyTheFirstOfTheFramesThatKnewADetectionIsOnItsWay) {
+  auto history = small_rig();
+  history.note("projector", projector_frame(2, 2, 5.6), 0);
+  const auto trace = trace_of(history);
+  const auto way = trace.along(trace.named("detect")[0].flows[0]);
+  EXPECT_THAT(names_of(way), ElementsAre("capture", "detect", "frame", "present"));
+  EXPECT_EQ(way[2].begin_ns, kStart_ns + 4'600'000);
+}
+
+TEST(Perfetto, AnImageOfTheSameTimeButAnotherNumberIsAnother) {
+  History history(60);
+  history.note("camera", frame(2, 0, {mark(Stage::capture, 0, 1)}), 0);
+  history.note("projector", projector_frame(1, 0, 1.2), 0);
+  EXPECT_THAT(trace_of(history).named("capture")[0].flows, IsEmpty());
+}
+
+TEST(Perfetto, AFrameInsideTheTimeOfAnotherIsNotDrawnAsItsPart) {
+  History history(60);
+  history.note("pose", frame(1, 0, {mark(Stage::sample, 0, 9)}), 0);
+  history.note("pose", frame(2, 3, {mark(Stage::sample, 3, 8)}), 0);
+  for (const auto& sample : trace_of(history).named("sample")) EXPECT_EQ(sample.parent, -1);
+}
+
+TEST(Perfetto, ASampleOfTheTrackerFlowsIntoTheFirstFrameThatKnewIt) {
+  const auto trace = trace_of(small_rig());
+  const auto sample = trace.named("sample")[0];
+  ASSERT_THAT(sample.flows, SizeIs(1));
+  const auto way = trace.along(sample.flows[0]);
+  EXPECT_THAT(names_of(way), ElementsAre("sample", "frame", "present"));
+  EXPECT_EQ(way[1].begin_ns, kStart_ns + 3'300'000);
+}
+
+TEST(Perfetto, AServiceWhoseFramesOverlapGetsAsManyLanesAsItNeeds) {
+  History history(60);
+  for (int i = 0; i < 20; ++i) history.note("pose", frame(i, i * 2.0, {mark(Stage::sample, i * 2.0, i * 2.0 + 5)}), 0);
+  const auto trace = trace_of(history);
+  ASSERT_EQ(trace.fault, "");
+  std::map<std::uint64_t, int> slices_of_lane;
+  for (const auto& slice : trace.named("sample")) {
+    EXPECT_EQ(slice.track, "pose");
+    EXPECT_EQ(slice.end_ns - slice.begin_ns, 5 * kMs_ns);
+    EXPECT_EQ(slice.parent, -1);
+    ++slices_of_lane[slice.track_id];
+  }
+  EXPECT_THAT(slices_of_lane, SizeIs(3));
+}
+
+TEST(Perfetto, TheAgeOfTheImageInTheLightIsACounter) {
+  const auto trace = trace_of(small_rig());
+  ASSERT_THAT(trace.ages_ms, SizeIs(4));
+  EXPECT_NEAR(trace.ages_ms[0], 2.0, 1e-5);  // shown from 1.2 to 2.0
+  EXPECT_NEAR(trace.ages_ms[3], 3.4, 1e-5);
+}
+
+TEST(Perfetto, FramesWithoutAnOriginAndOfNoImageAreShownWithoutFlowOrAge) {
+  History history(60);
+  auto blind = projector_frame(0, 0, 1);
+  blind.header.origin_ns = 0;
+  history.note("projector", blind, 0);
+  history.note("projector", projector_frame(99, -5, 3), 2);
+  const auto trace = trace_of(history);
+  ASSERT_EQ(trace.fault, "");
+  EXPECT_THAT(trace.ages_ms, SizeIs(1));
+  for (const auto& slice : trace.slices) EXPECT_THAT(slice.flows, IsEmpty());
+  EXPECT_EQ(trace.named("frame")[1].annotations.at("marks_lost"), 2);
+}
+
+TEST(Perfetto, ZeroLengthsAndWildMarksStillMakeATrace) {
+  History history(60);
+  history.note("projector", frame(1, 0, {mark(Stage::draw, 1, 1), mark(Stage::warp, 1, 1), mark(Stage::frame, 1, 1)}), 0);
+  auto wild = frame(2, 0, {mark(Stage::draw, 1, 2), mark(Stage::warp, 1.5, 9), mark(Stage::frame, 0.5, 3)});
+  wild.marks[0].begin_ns = 0;
+  wild.header.origin_ns = std::numeric_limits<std::int64_t>::min();
+  history.note("projector", wild, 0);
+  const auto trace = trace_of(history);
+  EXPECT_EQ(trace.fault, "");
+  EXPECT_THAT(trace.slices, SizeIs(6));
+}
+
+TEST(Perfetto, NothingToTellIsATraceToo) {
+  const auto trace = trace_of(History(60));
+  EXPECT_EQ(trace.fault, "");
+  EXPECT_THAT(trace.slices, IsEmpty());
+}
+
+}  // namespace
+}  // namespace handcast::supervisor

@@ -1,0 +1,191 @@
+// The supervisor itself may die: services and picture go on, and the next supervisor takes them over.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <fstream>
+
+#include "ipc/ring/ring_view.hpp"
+#include "tests/system/running_rig.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+using testing::AllOf;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class Adoption : public SystemTest {
+ protected:
+  std::filesystem::path state_file() const { return scratch_.path() / ("handcast-" + std::to_string(getuid())) / "twin.state"; }
+  nlohmann::json state() const { return nlohmann::json::parse(std::ifstream(state_file())); }
+
+  /// The ring as an outsider sees it, through the descriptor of a service: it needs no supervisor.
+  ipc::RingView view(const std::string& stream) const {
+    const auto saved = state();
+    const auto ring = std::ranges::find_if(saved["rings"], [&](const auto& each) { return each["stream"] == stream; });
+    const auto fd = std::to_string((*ring)["fd"].get<int>());
+    const auto pid = std::to_string(saved["services"][0]["pid"].get<pid_t>());
+    return ipc::RingView::open(UniqueFd(open(("/proc/" + pid + "/fd/" + fd).c_str(), O_RDWR | O_CLOEXEC))).value();
+  }
+
+  /// Kills the supervisor and waits for another one to answer, which a keeper sees to.
+  void replace_supervisor(const Command& rig) const {
+    const auto before = rig.supervisor();
+    ASSERT_GT(before, 0);
+    ASSERT_EQ(kill(before, SIGKILL), 0);
+    ASSERT_TRUE(eventually([&] { return rig.supervisor() > 0 && rig.supervisor() != before && !status().is_null(); }));
+  }
+  void kill_keeper_and_supervisor(Command& rig) const {
+    const auto supervisor = rig.supervisor();
+    rig.signal(SIGKILL);
+    rig.wait();
+    ASSERT_EQ(kill(supervisor, SIGKILL), 0);
+    ASSERT_TRUE(eventually([&] { return !is_alive(supervisor); }));
+  }
+  void expect_all_alive(const std::vector<pid_t>& services) const {
+    for (const auto pid : services) EXPECT_TRUE(is_alive(pid));
+  }
+};
+
+TEST_F(Adoption, AKilledSupervisorIsReplacedWhileServicesAndLightGoOn) {
+  const auto rig = up();
+  wait_until_light();
+  const auto services = pids();
+  const auto light = view("projection.frames"), frames = view("camera.frames");
+  const auto before = light.look();
+  const auto camera_epoch = frames.epoch();
+
+  std::uint64_t quiet = 0, disturbed = 0;
+  for (int round = 0; round < 3; ++round) {
+    const auto start = light.sequence();
+    usleep(1'500'000);
+    const auto middle = light.sequence();
+    ASSERT_EQ(kill(rig->supervisor(), SIGKILL), 0);
+    usleep(1'500'000);
+    quiet += middle - start;
+    disturbed += light.sequence() - middle;
+  }
+  std::printf("frames in 4.5 s: %lu left alone, %lu while the supervisor was killed three times\n", quiet, disturbed);
+  EXPECT_GT(quiet, 0u);
+  EXPECT_GE(disturbed, quiet * 9 / 10);
+
+  ASSERT_TRUE(eventually([&] { return !status().is_null(); }));
+  EXPECT_EQ(pids(), services);
+  EXPECT_EQ(light.epoch(), before.epoch);  // no writer was replaced
+  EXPECT_EQ(frames.epoch(), camera_epoch);
+  for (const auto& name : kServices) EXPECT_EQ(service(name)["state"], "ready") << name;
+  expect_more_light();
+  EXPECT_GE(status()["uptime_s"], 9);  // the rig's, not the supervisor's
+
+  rig->signal(SIGTERM);
+  EXPECT_EQ(rig->wait(), 0) << rig->log();
+  for (const auto pid : services) EXPECT_FALSE(is_alive(pid));
+  EXPECT_THAT(traces(), IsEmpty());
+}
+
+TEST_F(Adoption, AnAdoptedServiceThatDiesIsReplacedAndItsEndIsKnown) {
+  const auto rig = up();
+  wait_until_light();
+  const auto light = view("projection.frames");
+  replace_supervisor(*rig);
+  const auto sequence = light.sequence(), epoch = light.epoch();
+  const auto victim = service("projector")["pid"].get<pid_t>();
+  ASSERT_EQ(kill(victim, SIGKILL), 0);
+  ASSERT_TRUE(eventually([&] {
+    const auto now = service("projector");
+    return now["pid"] != victim && now["state"] == "ready";
+  }));
+  EXPECT_EQ(service("projector")["last_exit"], "signal 9 (Killed)");
+  EXPECT_EQ(service("projector")["restarts"], 1);
+  EXPECT_TRUE(eventually([&] { return light.epoch() == epoch + 1; }));
+  EXPECT_GT(light.sequence(), sequence);  // the ring goes on where it was
+}
+
+TEST_F(Adoption, AServiceThatDiesWhileThereIsNoSupervisorIsStartedByTheNext) {
+  const auto rig = up();
+  wait_until_light();
+  const auto supervisor = rig->supervisor();
+  const auto before = pids();
+  const auto victim = service("landmarks")["pid"].get<pid_t>();
+  rig->signal(SIGSTOP);  // so that it starts nobody yet
+  ASSERT_EQ(kill(supervisor, SIGKILL), 0);
+  ASSERT_TRUE(eventually([&] { return !is_alive(supervisor); }));
+  ASSERT_EQ(kill(victim, SIGKILL), 0);
+  ASSERT_TRUE(eventually([&] { return !is_alive(victim); }));
+  rig->signal(SIGCONT);
+
+  wait_until_light();
+  EXPECT_NE(service("landmarks")["pid"], victim);
+  EXPECT_THAT(rig->log(),
+              HasSubstr("landmarks (pid " + std::to_string(victim) + ") died while there was no supervisor (signal 9 (Killed))"));
+  for (const auto pid : before) EXPECT_EQ(is_alive(pid), pid != victim) << pid;
+}
+
+TEST_F(Adoption, WithoutKeeperAndSupervisorTheLightGoesOnAndTheNextUpTakesOver) {
+  auto rig = up();
+  wait_until_light();
+  const auto services = pids();
+  const auto light = view("projection.frames");
+  kill_keeper_and_supervisor(*rig);
+  const auto sequence = light.sequence();
+  EXPECT_TRUE(eventually([&] { return light.sequence() > sequence + 30; }));
+
+  rig = up({"--set", "observer.rate_hz=3"});
+  wait_until_light();
+  ASSERT_TRUE(eventually([&] { return service("observer")["pid"] != services.back() && service("observer")["state"] == "ready"; }));
+  auto now = pids();
+  EXPECT_NE(now.back(), services.back());  // its settings are others by now
+  now.back() = services.back();
+  EXPECT_EQ(now, services);
+
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_EQ(rig->wait(), 0);
+  for (const auto pid : services) EXPECT_FALSE(is_alive(pid));
+  EXPECT_THAT(traces(), IsEmpty());
+}
+
+TEST_F(Adoption, DownEndsServicesThatHaveNoSupervisor) {
+  const auto rig = up();
+  wait_until_light();
+  const auto services = pids();
+  kill_keeper_and_supervisor(*rig);
+  expect_all_alive(services);
+  const auto down = handcast({"down"});
+  EXPECT_EQ(down.exit_code, 0) << down.log;
+  EXPECT_THAT(down.output, HasSubstr("rig 'twin' had no supervisor; services stopped: 5"));
+  for (const auto pid : services) EXPECT_FALSE(is_alive(pid));
+  EXPECT_EQ(handcast({"down"}).exit_code, 3);
+}
+
+TEST_F(Adoption, ServicesThatCannotBeTakenOverAreNamedAndLeftAlone) {
+  const auto rig = up();
+  wait_until_light();
+  const auto services = pids();
+  kill_keeper_and_supervisor(*rig);
+  auto other = state();
+  for (auto& ring : other["rings"]) ring["inode"] = 1;
+  std::ofstream(state_file(), std::ios::trunc) << other;
+
+  const auto refused = up();
+  EXPECT_EQ(refused->wait(), 111);
+  EXPECT_THAT(refused->log(), AllOf(HasSubstr("camera (pid " + std::to_string(services[0]) + ")"), HasSubstr("cannot be taken over"),
+                                    HasSubstr("`handcast down --rig twin` ends them")));
+  expect_all_alive(services);
+  EXPECT_EQ(handcast({"down", "--rig", "twin"}).exit_code, 0);
+}
+
+TEST_F(Adoption, TheTimeOfARunGoesOnUnderTheNextSupervisor) {
+  const auto out = scratch_.path() / "out";
+  const auto rig = up({"--seconds", "8", "--out", out.string(), "--set", "observer.enabled=false"});
+  ASSERT_TRUE(eventually([&] { return service("projector")["state"] == "ready"; }));
+  replace_supervisor(*rig);
+  EXPECT_EQ(rig->wait(), 0) << rig->log();
+  const auto report = nlohmann::json::parse(std::ifstream(out / "live.json"), nullptr, false);
+  EXPECT_GE(report["seconds"], 8);
+  EXPECT_EQ(report["services"]["projector"]["restarts"], 0);
+}
+
+}  // namespace
+}  // namespace handcast::system_test

@@ -1,0 +1,171 @@
+// `handcast reload`: a changed rig file restarts what it changes and nothing else.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <map>
+
+#include "tests/system/running_rig.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::UnorderedElementsAre;
+
+class Reload : public SystemTest {
+ protected:
+  void write_rig(const std::string& more) const { std::ofstream(file_) << "name = \"desk\"\n" << more; }
+  /// A rig file of the test's own, at rates that leave the machine some air.
+  void write_rig_with(const std::string& camera, const std::string& more = "") const {
+    write_rig("[camera]\n" + camera + "\n[projector]\nrate_hz = 60\n[supervisor]\nready_s = 60\n" + more);
+  }
+  std::unique_ptr<Command> up_with_the_file() {
+    auto rig = std::make_unique<Command>(scratch_.path(), Arguments{"up", file_.string()});
+    EXPECT_TRUE(eventually([this] {
+      const auto now = status();
+      if (now.is_null()) return false;
+      for (const auto& [name, service] : now["services"].items())
+        if (service["state"] != "ready") return false;
+      return now["rings"]["projection.frames"]["count"] > 0;
+    })) << rig->log();
+    return rig;
+  }
+  std::map<std::string, pid_t> processes() const {
+    std::map<std::string, pid_t> processes;
+    const auto now = status();
+    for (const auto& [name, service] : now["services"].items()) processes[name] = service["pid"].get<pid_t>();
+    return processes;
+  }
+  /// The services that have another process than `before`, or appeared or went.
+  std::vector<std::string> changed_since(const std::map<std::string, pid_t>& before) const {
+    std::vector<std::string> names;
+    auto now = processes();
+    for (const auto& [name, pid] : before)
+      if (!now.contains(name) || now[name] != pid) names.push_back(name);
+    for (const auto& [name, pid] : now)
+      if (!before.contains(name)) names.push_back(name);
+    return names;
+  }
+
+  const std::filesystem::path file_ = scratch_.path() / "desk.toml";
+};
+
+constexpr auto kCalm = "rate_hz = 60";
+constexpr auto kNoObserver = "[observer]\nenabled = false\n", kObserver = "[observer]\nrate_hz = 2\n";
+
+TEST_F(Reload, RestartsTheServicesThatReadWhatChangedAndTheLightGoesOn) {
+  write_rig_with(kCalm, kObserver);
+  const auto rig = up_with_the_file();
+  const auto before = processes();
+  write_rig_with("rate_hz = 50", kObserver);
+  const auto outcome = handcast({"reload"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.log;
+  EXPECT_EQ(outcome.output, "reloaded: camera, landmarks restarted; pose, projector, observer untouched\n");
+  EXPECT_THAT(changed_since(before), UnorderedElementsAre("camera", "landmarks"));
+  EXPECT_EQ(status()["rings"]["camera.frames"]["asked_hz"], 50);
+  EXPECT_EQ(service("camera")["state"], "ready");
+  expect_more_light();
+}
+
+TEST_F(Reload, AFileThatSaysTheSameChangesNothing) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto before = processes();
+  write_rig_with(std::string(kCalm) + "  # as before", kNoObserver);
+  EXPECT_EQ(handcast({"reload"}).output, "nothing changed\n");
+  EXPECT_TRUE(changed_since(before).empty());
+}
+
+TEST_F(Reload, ABrokenFileChangesNothingAndNamesAllItsProblemsWithTheirLines) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto before = processes();
+  write_rig_with("rate_hz = 0\nexposure = 2", kNoObserver);
+  const auto outcome = handcast({"reload"});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, AllOf(HasSubstr("desk.toml:3: camera.rate_hz"), HasSubstr("desk.toml:4: camera.exposure")));
+  EXPECT_TRUE(changed_since(before).empty());
+  expect_more_light();
+}
+
+TEST_F(Reload, WhatCannotChangeWhileARigIsUpIsRefusedWithTheWayToDoIt) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto before = processes();
+  std::ofstream(file_) << "name = \"wall\"\n[camera]\nrate_hz = 50\n";
+  auto outcome = handcast({"reload"});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, AllOf(HasSubstr("'desk' to 'wall'"), HasSubstr("handcast down")));
+
+  write_rig_with("rate_hz = 50\nbackend = \"polaroid\"", kNoObserver);
+  outcome = handcast({"reload"});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, HasSubstr("no back end 'polaroid'"));
+  EXPECT_TRUE(changed_since(before).empty());
+}
+
+TEST_F(Reload, AServiceThatAppearsIsStartedAndOneThatGoesIsStopped) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto before = processes();
+  write_rig_with(kCalm, kObserver);
+  EXPECT_THAT(handcast({"reload"}).output, HasSubstr("observer started"));
+  EXPECT_THAT(changed_since(before), ElementsAre("observer"));
+  EXPECT_EQ(service("observer")["state"], "ready");
+  const auto observer = service("observer")["pid"].get<pid_t>();
+
+  write_rig_with(kCalm, kNoObserver);
+  EXPECT_THAT(handcast({"reload"}).output, HasSubstr("observer stopped"));
+  EXPECT_FALSE(is_alive(observer));
+  EXPECT_FALSE(status()["services"].contains("observer"));
+
+  write_rig_with(kCalm, kObserver);  // and once more: its rings are there already
+  EXPECT_THAT(handcast({"reload"}).output, HasSubstr("observer started"));
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_EQ(rig->wait(), 0);
+}
+
+TEST_F(Reload, TheSupervisorsOwnSettingsRestartNobody) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto before = processes();
+  write_rig_with(kCalm, "stop_s = 2\nhistory_s = 5\n" + std::string(kNoObserver));
+  EXPECT_EQ(handcast({"reload"}).output, "reloaded: camera, pose, landmarks, projector untouched\n");
+  EXPECT_TRUE(changed_since(before).empty());
+}
+
+TEST_F(Reload, ASwappedBackEndStaysUntilTheFileNamesAnother) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  ASSERT_EQ(handcast({"swap", "projector", "file"}).exit_code, 0);
+  EXPECT_EQ(handcast({"reload"}).output, "nothing changed\n");
+  write_rig_with("rate_hz = 50", kNoObserver);
+  const auto before = processes();
+  EXPECT_EQ(handcast({"reload"}).exit_code, 0);
+  EXPECT_EQ(service("projector")["backend"], "file");
+  EXPECT_THAT(changed_since(before), UnorderedElementsAre("camera", "landmarks"));
+}
+
+TEST_F(Reload, AServiceThatFailsIsNamedAndComesBackWhenTheCauseIsMended) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto missing = "[content]\nleft = \"nowhere.png\"\n" + std::string(kNoObserver);
+  write_rig_with(kCalm, missing);
+  const auto failed = handcast({"reload"});
+  EXPECT_EQ(failed.exit_code, 100);
+  EXPECT_THAT(failed.log, AllOf(HasSubstr("projector is failed"), HasSubstr("nowhere.png")));
+  EXPECT_EQ(service("projector")["state"], "failed");
+  EXPECT_THAT(service("projector")["reason"].get<std::string>(), HasSubstr("nowhere.png"));
+  EXPECT_THAT(handcast({"status"}).output, HasSubstr("nowhere.png"));
+
+  write_rig_with(kCalm, kNoObserver);
+  EXPECT_EQ(handcast({"reload"}).exit_code, 0);
+  EXPECT_EQ(service("projector")["state"], "ready");
+  expect_more_light();
+}
+
+}  // namespace
+}  // namespace handcast::system_test
