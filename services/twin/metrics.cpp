@@ -7,7 +7,7 @@
 namespace handcast::twin {
 namespace {
 
-constexpr std::size_t kMostKept = 1 << 20;
+constexpr std::size_t kMostKept = 1 << 17;
 constexpr std::array<double, 4> kSpeedSteps_m_s{0.1, 0.3, 0.6, 1.0};
 constexpr std::array<const char*, 5> kSpeedNames{"0-0.1", "0.1-0.3", "0.3-0.6", "0.6-1.0", ">1.0"};
 constexpr std::array<const char*, 2> kSideNames{"left", "right"};

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include "config/join.hpp"
-#include "supervisor/succession/adoption.hpp"
 #include "supervisor/control/control_client.hpp"
 #include "supervisor/exit.hpp"
 #include "supervisor/options.hpp"
 #include "supervisor/rig/status.hpp"
+#include "supervisor/succession/adoption.hpp"
 #include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {

@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "config/rig.hpp"
+#include "supervisor/control/runtime_folder.hpp"
 #include "supervisor/exit.hpp"
 #include "supervisor/options.hpp"
-#include "supervisor/control/runtime_folder.hpp"
 #include "supervisor/succession/service_unit.hpp"
 #include "supervisor/verbs.hpp"
 

@@ -2,9 +2,9 @@
 
 #include "supervisor/control/control_client.hpp"
 #include "supervisor/exit.hpp"
+#include "supervisor/options.hpp"
 #include "supervisor/trace/history_request.hpp"
 #include "supervisor/trace/latency_table.hpp"
-#include "supervisor/options.hpp"
 #include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {

@@ -5,8 +5,8 @@
 
 #include "supervisor/control/control_client.hpp"
 #include "supervisor/exit.hpp"
-#include "supervisor/trace/history_request.hpp"
 #include "supervisor/options.hpp"
+#include "supervisor/trace/history_request.hpp"
 #include "supervisor/trace/perfetto.hpp"
 #include "supervisor/verbs.hpp"
 

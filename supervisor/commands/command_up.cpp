@@ -4,9 +4,9 @@
 #include <cstdlib>
 
 #include "ipc/base/log.hpp"
-#include "supervisor/succession/keeper.hpp"
 #include "supervisor/options.hpp"
 #include "supervisor/rig/rig_runner.hpp"
+#include "supervisor/succession/keeper.hpp"
 #include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {

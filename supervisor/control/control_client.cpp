@@ -12,6 +12,7 @@
 #include "config/join.hpp"
 #include "ipc/base/clock.hpp"
 #include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -116,10 +117,18 @@ Result<Answer> read_answer(const std::string& rig, Verb verb, Received received)
 
 }  // namespace
 
+/// Services may live without their supervisor.
+static std::string nobody_is_up() {
+  const auto orphaned = orphaned_rigs();
+  if (orphaned.empty()) return "no rig is up; `handcast up RIG.toml` starts one";
+  return fmt::format("no supervisor is up, but services of {} live; `handcast up RIG.toml` takes them over, `handcast down` ends them",
+                     config::join(orphaned, ", "));
+}
+
 Result<std::string> choose_rig(const std::string& name) {
   const auto rigs = living_rigs();
   if (!rigs) return tl::make_unexpected(rigs.error());
-  if (rigs->empty()) return fail(Errc::unavailable, "no rig is up; `handcast up RIG.toml` starts one");
+  if (rigs->empty()) return fail(Errc::unavailable, nobody_is_up());
   if (name.empty() && rigs->size() == 1) return rigs->front();
   if (name.empty())
     return fail(Errc::unavailable, fmt::format("several rigs are up, choose one with --rig: {}", config::join(*rigs, ", ")));

@@ -10,8 +10,8 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/succession/adoption.hpp"
 #include "supervisor/exit.hpp"
+#include "supervisor/succession/adoption.hpp"
 #include "supervisor/succession/exit_reports.hpp"
 
 namespace handcast::supervisor {

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -103,6 +104,7 @@ void Service::take(Child child) {
 void Service::adopt(AdoptedProcess process) {
   const auto saved = process.saved;
   begin_life();
+  started_ns_ = static_cast<std::int64_t>(saved.started_ticks) * (1'000'000'000 / sysconf(_SC_CLK_TCK));
   adopted_ = true;
   restarts_ = saved.restarts;
   if (saved.backend != spec_.backend) spec_.backend = backend_override_ = saved.backend;

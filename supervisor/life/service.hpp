@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "ipc/ring/ring_view.hpp"
-#include "supervisor/succession/adoption.hpp"
-#include "supervisor/life/child.hpp"
 #include "supervisor/event_loop.hpp"
+#include "supervisor/life/child.hpp"
 #include "supervisor/life/log_tail.hpp"
 #include "supervisor/life/restart_policy.hpp"
 #include "supervisor/life/standby.hpp"
 #include "supervisor/life/streams.hpp"
+#include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "supervisor/life/child.hpp"
 #include "supervisor/event_loop.hpp"
+#include "supervisor/life/child.hpp"
 #include "supervisor/life/log_tail.hpp"
 #include "supervisor/life/restart_policy.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "supervisor/rig/rig_runner.hpp"
 #include "supervisor/life/streams.hpp"
+#include "supervisor/rig/rig_runner.hpp"
 
 namespace handcast::supervisor {
 namespace {

@@ -6,10 +6,10 @@
 #include "config/join.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "supervisor/life/streams.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/fingerprint.hpp"
 #include "supervisor/rig/rig_runner.hpp"
-#include "supervisor/life/streams.hpp"
 
 namespace handcast::supervisor {
 namespace {

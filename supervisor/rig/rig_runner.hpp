@@ -10,10 +10,10 @@
 #include "ipc/shm/segment.hpp"
 #include "supervisor/control/control_server.hpp"
 #include "supervisor/event_loop.hpp"
-#include "supervisor/succession/notify.hpp"
-#include "supervisor/record/recorder.hpp"
 #include "supervisor/life/service.hpp"
+#include "supervisor/record/recorder.hpp"
 #include "supervisor/rig/status.hpp"
+#include "supervisor/succession/notify.hpp"
 
 namespace handcast::supervisor {
 

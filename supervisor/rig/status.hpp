@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "supervisor/record/recorder.hpp"
 #include "supervisor/life/service.hpp"
+#include "supervisor/record/recorder.hpp"
 
 namespace handcast::supervisor {
 

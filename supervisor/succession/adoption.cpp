@@ -16,8 +16,8 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
-#include "supervisor/succession/notify.hpp"
 #include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/succession/notify.hpp"
 
 namespace handcast::supervisor {
 namespace {

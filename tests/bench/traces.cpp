@@ -18,9 +18,9 @@
 #include "renderer/pipeline/stage_clock.hpp"
 #include "services/runtime/context.hpp"
 #include "supervisor/record/history.hpp"
+#include "supervisor/record/recorder.hpp"
 #include "supervisor/trace/latency_table.hpp"
 #include "supervisor/trace/perfetto.hpp"
-#include "supervisor/record/recorder.hpp"
 
 namespace handcast::bench {
 namespace {
