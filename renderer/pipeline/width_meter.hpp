@@ -13,8 +13,8 @@ namespace handcast::renderer {
 
 /// How much wider a person's fingers are than the drawn ones, learned from the camera's mask: across the middle of every finger bone
 /// that is seen from the side, the mask is as wide as the finger. (The shape of the hand is the paper's stated limitation.)
-/// The factor is the median over the last seconds, so a bone that another one touches now and then does no harm; it is held while the
-/// hand is in sight and learned afresh after it was gone for a second.
+/// The factor is the lower third of the bones' medians over the last seconds: neither a bone that another one touches now and then
+/// nor two that touch for long do harm. It is held while the hand is in sight and learned afresh after it was gone for a second.
 class WidthMeter {
  public:
   explicit WidthMeter(const HandMesh& mesh);
@@ -27,22 +27,23 @@ class WidthMeter {
   float factor() const { return factor_; }
 
  private:
-  /// A finger bone from one landmark to the next, and the vertices around its middle.
+  /// A finger bone from one landmark to the next, and the edges of the mesh around it that may cross its middle.
   struct Bone {
     int landmark = 0;  ///< it ends at the following one
-    std::vector<std::uint16_t> middle;
+    std::vector<std::array<std::uint16_t, 2>> edges;
+    std::array<int, 256> seen{};  ///< histogram of the factors seen; halved when it is full, so that old ones fade
+    int count = 0;
+
+    void note(float factor);
+    float median() const;
   };
   /// How wide the mask is at a bone against how wide the bone is drawn; nothing where that cannot be seen.
   std::optional<float> ratio_at(const Bone& bone, std::span<const glm::vec2> landings_px, const LandmarkPoints& landmarks_px,
                                 GreyView mask) const;
   void forget();
-  void note(float factor);
-  float median() const;
+  std::optional<float> typical() const;
 
-  static constexpr int kBins = 256;
   std::vector<Bone> bones_;
-  std::array<int, kBins> seen_{};  ///< histogram of the factors seen; halved when it is full, so that old ones fade
-  int count_ = 0;
   float factor_ = 1;
   std::int64_t last_ns_ = 0;
   LandmarkPoints last_px_{};
