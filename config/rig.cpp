@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "config/load.hpp"
 #include "config/settings.hpp"
 
@@ -37,6 +39,8 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
 }
 
 }  // namespace
+
+bool names_a_file(std::string_view setting) { return std::ranges::find(kPaths, setting) != std::end(kPaths); }
 
 Process process_of(const Rig& rig, std::string_view service) {
   if (service == "camera") return rig.camera.process;

@@ -60,6 +60,9 @@ Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file
 /// The whole rig as commented TOML: what load_rig reads back to the same rig.
 std::string print_rig(const Rig& rig);
 
+/// The setting names a file or folder ("twin.motion"): what load_rig makes absolute.
+bool names_a_file(std::string_view setting);
+
 /// The settings reference (config/REFERENCE.md), from the declarations alone.
 std::string print_reference();
 

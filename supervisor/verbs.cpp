@@ -31,6 +31,7 @@ constexpr std::array kVerbs{
     VerbEntry{"config", "config --print [FILE] | --check FILE | --reference [--set path=value]...",
               "Prints a whole rig file, checks one, or explains every setting.", run_config},
     VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.", nullptr, Group::score},
+    VerbEntry{"sweep", "sweep ...", "Scores a rig under every combination of settings, on all cores.", nullptr, Group::score},
     VerbEntry{"report", "report ...", "Turns the results of runs into a report.", nullptr, Group::score},
 };
 

@@ -1,11 +1,27 @@
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "config/field.hpp"
 
 /// The digital twin: a true hand and the errors of the sensors that watch it. Defaults: METHOD's figures, the same for every rig that is
 /// compared.
 namespace handcast::config {
+
+/// Something goes wrong at one time, for a while: a pure function of the time since the epoch.
+struct Fault {
+  double at_s = 0;
+  double lasting_s = 0;  ///< 0: it never happens
+
+  constexpr bool holds(double seconds) const { return seconds >= at_s && seconds < at_s + lasting_s; }
+};
+
+/// The two settings of a fault, and the sentence that says what it does.
+template <class Visitor>
+void describe_fault(Visitor& visitor, Fault& fault, std::string_view at_name, std::string_view lasting_name, std::string_view sentence) {
+  visitor.field(at_name, fault.at_s, between(0, 1e6, "s"), "When that begins, since the epoch.");
+  visitor.field(lasting_name, fault.lasting_s, between(0, 1e6, "s"), sentence);
+}
 
 struct TwinTracker {
   double rate_hz = 110.6;
@@ -17,6 +33,8 @@ struct TwinTracker {
   double drift_px = 3;
   double noise_mm = 0.1;
   double dropout = 0;
+  double clock_skew_ms = 0;
+  Fault frozen, lost, wrong_finger, swapped;
 };
 
 template <class Visitor>
@@ -32,6 +50,14 @@ void describe(Visitor& visitor, TwinTracker& tracker) {
                 "Slow drift of every joint at 0.2-1.5 Hz: RMS per axis, in camera pixels at the hand's distance.");
   visitor.field("noise_mm", tracker.noise_mm, between(0, 50, "mm"), "White noise per joint and axis.");
   visitor.field("dropout", tracker.dropout, between(0, 1), "Share of samples that are lost.");
+  visitor.field("clock_skew_ms", tracker.clock_skew_ms, between(-200, 200, "ms"),
+                "How far off the time stamps are; positive: samples seem younger than they are.");
+  describe_fault(visitor, tracker.frozen, "frozen_at_s", "frozen_s", "For so long it repeats its last pose with new time stamps.");
+  describe_fault(visitor, tracker.lost, "lost_at_s", "lost_s", "For so long it gives no samples.");
+  describe_fault(visitor, tracker.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
+                 "For so long it takes the index finger for the middle one and the other way round.");
+  describe_fault(visitor, tracker.swapped, "swapped_at_s", "swapped_s",
+                 "For so long it takes left hands for right ones and right for left.");
 }
 
 struct TwinDetector {
@@ -39,6 +65,9 @@ struct TwinDetector {
   double age_sd_ms = 1.9;
   double noise_px = 1;
   double dropout = 0;
+  double outliers = 0;
+  double clock_skew_ms = 0;
+  Fault lost, wrong_finger;
 };
 
 template <class Visitor>
@@ -48,6 +77,12 @@ void describe(Visitor& visitor, TwinDetector& detector) {
   visitor.field("age_sd_ms", detector.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that time.");
   visitor.field("noise_px", detector.noise_px, between(0, 50, "px"), "White noise per landmark and axis.");
   visitor.field("dropout", detector.dropout, between(0, 1), "Share of detections that find nothing.");
+  visitor.field("outliers", detector.outliers, between(0, 1), "Share of landmarks that are thrown 40-200 px off.");
+  visitor.field("clock_skew_ms", detector.clock_skew_ms, between(-200, 200, "ms"),
+                "How far off the time stamps are; positive: detections seem younger than they are.");
+  describe_fault(visitor, detector.lost, "lost_at_s", "lost_s", "For so long it finds nothing.");
+  describe_fault(visitor, detector.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
+                 "For so long it takes the index finger for the middle one and the other way round.");
 }
 
 struct TwinImage {
@@ -57,6 +92,12 @@ struct TwinImage {
   double sleeve_mm = 110;
   int blur_samples = 2;
   double delivery_ms = 0.3;
+  double dark = 1;
+  double saturated = 1;
+  double holes = 0;
+  double covered = 0;
+  bool face = false;
+  Fault fault{0, 1e6};  ///< when dark, saturated, holes, covered and face hold
 };
 
 template <class Visitor>
@@ -67,6 +108,13 @@ void describe(Visitor& visitor, TwinImage& image) {
   visitor.field("sleeve_mm", image.sleeve_mm, between(0, 400, "mm"), "Where the bright sleeve begins, from the wrist towards the elbow.");
   visitor.field("blur_samples", image.blur_samples, between(1, 16), "Instants of the exposure that are averaged.");
   visitor.field("delivery_ms", image.delivery_ms, between(0, 50, "ms"), "From the end of the exposure to the frame in memory.");
+  visitor.field("dark", image.dark, between(0, 1), "Fault: too little light. Grey values times this; 1 is none.");
+  visitor.field("saturated", image.saturated, between(1, 100), "Fault: too much light. Grey values times this, up to white; 1 is none.");
+  visitor.field("holes", image.holes, between(0, 0.9), "Fault: share of each hand's surface under dark blobs that move with it.");
+  visitor.field("covered", image.covered, between(0, 1),
+                "Fault: share of the image, from its left edge, behind something dark; 0.5 hides half of a hand in the middle.");
+  visitor.field("face", image.face, "Fault: a face looks on from behind the hands.");
+  describe_fault(visitor, image.fault, "fault_at_s", "fault_s", "For so long the image has the faults above; all the time unless set.");
 }
 
 struct TwinShape {
@@ -95,7 +143,8 @@ struct Twin {
 template <class Visitor>
 void describe(Visitor& visitor, Twin& twin) {
   visitor.field("motion", twin.motion, Choices{},
-                "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, still; or a folder with a recording.");
+                "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, still, crossing, flip, fist, point_at_camera, "
+                "enter_leave, reverse; or a folder with a recording.");
   visitor.field("hands", twin.hands, Choices{"both", "left", "right"}, "Which of the motion's hands are there.");
   visitor.field("speed", twin.speed, between(0.01, 20), "Plays the motion faster or slower.");
   visitor.field("seed", twin.seed, between(0, 1e9), "Everything random is drawn from this number.");

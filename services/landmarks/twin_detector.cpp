@@ -29,7 +29,7 @@ class TwinDetector final : public Detector {
     const auto detection = twin_->detect(runs_++, seen.frame_id, seen.origin_ns - epoch_ns_);
     done_ns_ = std::max(seen.origin_ns + detection.age_ns, now_ns() + detection.age_ns - oldest_ns(seen.frame_id));
     under_way_ = detection.landmarks;
-    under_way_->header = {seen.frame_id, seen.origin_ns, 0};
+    under_way_->header = {seen.frame_id, detection.landmarks.header.origin_ns + epoch_ns_, 0};
   }
 
   /// How old the newest frame can be where the camera holds its rate. One that is older does not make the work shorter.

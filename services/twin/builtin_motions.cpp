@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -21,12 +22,22 @@ struct Posture {
   double sway = 0;  ///< of the whole forearm about the elbow, in the image's plane, clockwise
   double turn = 0;  ///< about the forearm
   double nod = 0;   ///< of the wrist, fingers away from the camera
+  double over = 0;  ///< share of the way to the other hand's place, the left hand nearer to the camera than the right
+  bool gone = false;
   Bend bend;
 };
 
 double wave_at(double hz, double t, double phase = 0) { return std::sin(kTurn * (hz * t + phase)); }
 /// 0..1..0, starting at 0.
 double pulse_at(double hz, double t) { return 0.5 - 0.5 * std::cos(kTurn * hz * t); }
+
+/// From 0 to 1 between two times, as hands go: with the least jerk (Flash and Hogan 1985).
+double step_at(double begin_s, double end_s, double t) {
+  const double x = std::clamp((t - begin_s) / (end_s - begin_s), 0.0, 1.0);
+  return x * x * x * (10 + x * (6 * x - 15));
+}
+/// The time within the round of `period_s` that is under way.
+double within(double period_s, double t) { return t - period_s * std::floor(t / period_s); }
 
 /// Nobody holds a hand quite still while it does something.
 void breathe(Posture& posture, double t) {
@@ -109,20 +120,104 @@ Posture still(double t) {
   return posture;
 }
 
+/// Two hands pass before one another and swap places, there and back.
+Posture crossing(double t) {
+  Posture posture;
+  posture.over = pulse_at(0.4, t);
+  posture.shift = {0.004 * wave_at(0.5, t), 0.006 * wave_at(0.37, t), 0};
+  for (int f = 1; f < 5; ++f) curl(posture.bend, f, 0.12 + 0.08 * wave_at(0.45, t, 0.1 * f));
+  return posture;
+}
+
+/// The hand is turned over in 0.4 s, and back.
+Posture flip(double t) {
+  Posture posture;
+  const double round = within(2, t);
+  posture.turn = std::numbers::pi * (step_at(0.5, 0.9, round) - step_at(1.4, 1.8, round));
+  for (int f = 1; f < 5; ++f) posture.bend.flexion[f] = {0.08, 0.1, 0.05};
+  breathe(posture, t);
+  return posture;
+}
+
+/// Shut in 0.25 s, held, opened.
+Posture fist(double t) {
+  Posture posture;
+  const auto shut_at = [&](double later_s) {
+    const double round = within(2, t - later_s);
+    return step_at(0.4, 0.65, round) - step_at(1.3, 1.6, round);
+  };
+  for (int f = 1; f < 5; ++f) {
+    curl(posture.bend, f, 1.05 * shut_at(0.012 * (f - 1)));
+    posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - shut_at(0));
+  }
+  const double thumb = shut_at(0.08);
+  posture.bend.flexion[0] = {0.6 * thumb, 0.9 * thumb, 0};
+  posture.bend.thumb_flexion = 0.25 * thumb;
+  posture.bend.thumb_opposition = -0.2 * thumb;
+  breathe(posture, t);
+  return posture;
+}
+
+/// The palm to the camera, the fingers bend at their roots until they point into the lens.
+Posture point_at_camera(double t) {
+  Posture posture;
+  const double round = within(2.4, t);
+  const double pointing = step_at(0.4, 0.9, round) - step_at(1.5, 2, round);
+  posture.turn = std::numbers::pi;
+  for (int f = 1; f < 5; ++f) {
+    posture.bend.flexion[f] = {1.4 * pointing, 0.06 * pointing, 0.04};
+    posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - pointing);
+  }
+  breathe(posture, t);
+  return posture;
+}
+
+/// Down out of the image, away for a while, and back.
+Posture enter_leave(double t) {
+  Posture posture;
+  const double round = within(3, t);
+  const double out = step_at(1, 1.5, round) - step_at(2.1, 2.6, round);
+  posture.shift.y = 0.31 * out;
+  posture.gone = round > 1.5 && round < 2.1;
+  for (int f = 1; f < 5; ++f) posture.bend.flexion[f] = {0.1, 0.12, 0.06};
+  breathe(posture, t);
+  return posture;
+}
+
+/// To and fro with hardly a warning: an even speed (up to 2 m/s, swelling) and short turns.
+Posture reverse(double t) {
+  Posture posture;
+  constexpr double kHz = 3.6, kSharpness = 0.9;  // 0: a sine; 1: straight lines and corners
+  const auto zigzag = [&](double phase) { return std::asin(kSharpness * wave_at(kHz, t, phase)) / std::asin(kSharpness); };
+  const double burst = 0.3 + 0.7 * pulse_at(0.25, t);
+  posture.shift = burst * glm::dvec3(0.1 * zigzag(0), 0.012 * wave_at(2.3, t), 0);
+  posture.sway = 0.03 * burst * wave_at(kHz, t, -0.08);
+  for (int f = 1; f < 5; ++f) posture.bend.flexion[f] = {0.1 + 0.05 * burst * wave_at(kHz, t, -0.15), 0.15, 0.08};
+  breathe(posture, t);
+  return posture;
+}
+
 struct Choreography {
   std::string_view name;
   Posture (*at)(double seconds);
   bool both_hands = false;
+  double right_ahead_s = 0;  ///< the right hand is this far ahead of the left
 };
 
-constexpr std::array<Choreography, 7> kChoreographies{{
+constexpr std::array<Choreography, 13> kChoreographies{{
     {"open_close", open_close},
     {"wave", wave},
     {"rotate", rotate},
     {"pinch", pinch},
     {"shake", shake},
-    {"two_hands", two_hands, true},
+    {"two_hands", two_hands, true, 1.3},
     {"still", still},
+    {"crossing", crossing, true},
+    {"flip", flip},
+    {"fist", fist},
+    {"point_at_camera", point_at_camera},
+    {"enter_leave", enter_leave},
+    {"reverse", reverse},
 }};
 
 class BuiltinMotion final : public Motion {
@@ -138,8 +233,8 @@ class BuiltinMotion final : public Motion {
   std::optional<JointFrames> at(Side side, double seconds) const override {
     const bool right = side == Side::right;
     if (right && !choreography_.both_hands) return std::nullopt;
-    constexpr double kOutOfStep_s = 1.3;
-    const Posture posture = choreography_.at(seconds * speed_ + (right ? kOutOfStep_s : 0));
+    const Posture posture = choreography_.at(seconds * speed_ + (right ? choreography_.right_ahead_s : 0));
+    if (posture.gone) return std::nullopt;
     return articulation_.frames(side, tracker_from_camera_ * camera_from_wrist(side, posture), posture.bend);
   }
 
@@ -155,9 +250,18 @@ class BuiltinMotion final : public Motion {
     return {(px.x - camera_.cx_px) / camera_.fx_px * z, (px.y - camera_.cy_px) / camera_.fy_px * z, z};
   }
 
+  /// Where the wrist is on its way from its own place to the other hand's.
+  glm::dvec3 way(Side side, double over) const {
+    if (over == 0) return home(side);
+    constexpr double kApart_m = 0.1;  // at the meeting, along the camera's axis
+    const Side other = side == Side::left ? Side::right : Side::left;
+    const double aside_m = 4 * over * (1 - over) * kApart_m / 2 * (side == Side::left ? -1 : 1);
+    return glm::mix(home(side), home(other), over) + glm::dvec3(0, 0, aside_m);
+  }
+
   glm::dmat4 camera_from_wrist(Side side, const Posture& posture) const {
     const double mirror = side == Side::left ? 1 : -1;
-    glm::dmat4 m = glm::translate(glm::dmat4(1), home(side) + posture.shift);
+    glm::dmat4 m = glm::translate(glm::dmat4(1), way(side, posture.over) + posture.shift);
     m = glm::translate(m, {0, kForearm_m, 0});
     m = glm::rotate(m, posture.sway, {0, 0, 1});
     m = glm::translate(m, {0, -kForearm_m, 0});

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "ipc/base/clock.hpp"
 #include "renderer/clones.hpp"
 
 namespace handcast::twin {
@@ -39,6 +40,7 @@ void round_row(const float* sum, float scale, std::uint8_t* out, int count) {
 
 CameraScene::CameraScene(const config::TwinImage& settings, int seed, const calib::Calibration& calibration)
     : settings_(settings),
+      seed_(seed),
       camera_(calibration.camera),
       camera_from_tracker_(calibration.camera_from_tracker),
       image_noise_(seed, Stream::image_noise),
@@ -50,7 +52,10 @@ CameraScene::CameraScene(const config::TwinImage& settings, int seed, const cali
     for (int x = 0; x < camera_.width_px; ++x)
       empty_scene_.at(x, y) = static_cast<std::uint8_t>(std::lround(settings_.background * vignette(float(x), float(y))));
   make_noise(seed);
+  if (settings_.face) face_ = make_face(camera_);
 }
+
+bool CameraScene::faulty(std::int64_t time_ns) const { return settings_.fault.holds(ns_to_seconds(time_ns)); }
 
 void CameraScene::make_noise(int seed) {
   const Random random(seed, Stream::image_noise);
@@ -62,7 +67,9 @@ void CameraScene::make_noise(int seed) {
 }
 
 void CameraScene::set_hand(Side side, const renderer::HandMesh& mesh) {
-  hands_[static_cast<std::size_t>(side)] = {&mesh, make_forearm(mesh, static_cast<float>(settings_.sleeve_mm * 1e-3))};
+  auto& hand = hands_[static_cast<std::size_t>(side)];
+  hand = {&mesh, make_forearm(mesh, static_cast<float>(settings_.sleeve_mm * 1e-3)), {}};
+  if (settings_.holes > 0) hand.holes = draw_holes(mesh, settings_.holes, Random(seed_, Stream::image_holes));
 }
 
 float CameraScene::vignette(float x_px, float y_px) const {
@@ -89,13 +96,23 @@ void CameraScene::shoot(Shot& shot, std::span<const glm::vec3> positions, std::s
   }
 }
 
+CameraScene::Shot& CameraScene::next_shot(std::size_t& count) {
+  if (shots_.size() == count) shots_.emplace_back();
+  return shots_[count++];
+}
+
+renderer::Rect CameraScene::shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count) {
+  if (!faulty(time_ns) || face_.positions.empty()) return {};
+  positions_ = face_.positions;
+  for (auto& position : positions_) position += face_sway_m(time_ns);
+  Shot& face = next_shot(count);
+  shoot(face, positions_, face_.normals, within_pixel);
+  face.triangles = &face_.triangles;
+  return face.screen.bounds().within(camera_.width_px, camera_.height_px);
+}
+
 renderer::Rect CameraScene::shoot_hands(std::int64_t time_ns, const TruthAt& truth, glm::vec2 within_pixel, std::size_t& count) {
   renderer::Rect bounds;
-  count = 0;
-  const auto next_shot = [&]() -> Shot& {
-    if (shots_.size() == count) shots_.emplace_back();
-    return shots_[count++];
-  };
   for (const Side side : {Side::left, Side::right}) {
     const Hand& hand = hands_[static_cast<std::size_t>(side)];
     auto joints = hand.mesh ? truth(side, time_ns) : std::nullopt;
@@ -105,8 +122,10 @@ renderer::Rect CameraScene::shoot_hands(std::int64_t time_ns, const TruthAt& tru
     positions_.resize(hand.mesh->vertex_count());
     normals_.resize(hand.mesh->vertex_count());
     renderer::skin(*hand.mesh, *joints, positions_, normals_);
-    Shot& skin = next_shot();
+    Shot& skin = next_shot(count);
     shoot(skin, positions_, normals_, within_pixel);
+    if (!hand.holes.empty() && faulty(time_ns))
+      for (std::size_t v = 0; v < skin.grey.size(); ++v) skin.grey[v] *= hand.holes[v];
     skin.triangles = &hand.mesh->triangles;
     bounds = bounds.joined(skin.screen.bounds());
 
@@ -118,7 +137,7 @@ renderer::Rect CameraScene::shoot_hands(std::int64_t time_ns, const TruthAt& tru
       positions_[v] = glm::vec3(wrist * glm::vec4(arm.positions[v], 1));
       normals_[v] = glm::mat3(wrist) * arm.normals[v];
     }
-    Shot& forearm = next_shot();
+    Shot& forearm = next_shot(count);
     shoot(forearm, positions_, normals_, within_pixel);
     for (std::size_t v = 0; v < forearm.grey.size(); ++v) forearm.grey[v] *= arm.brightness[v];
     forearm.triangles = &arm.triangles;
@@ -147,7 +166,8 @@ void CameraScene::expose(std::size_t shots, const renderer::Rect& region) {
   for (int y = region.y0; y < region.y1; ++y) add_row(instant_.row(y) + region.x0, sum_.row(y) + region.x0, region.width());
 }
 
-void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int instants, renderer::View<std::uint8_t> image) const {
+void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int instants, bool spoilt,
+                          renderer::View<std::uint8_t> image) const {
   const int width = std::min(image.width, camera_.width_px);
   std::vector<std::uint8_t> row(static_cast<std::size_t>(camera_.width_px));
   for (int y = 0; y < std::min(image.height, camera_.height_px); ++y) {
@@ -155,6 +175,7 @@ void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int ins
     std::memcpy(row.data(), empty_scene_.row(y), row.size());
     if (y >= region.y0 && y < region.y1)
       round_row(sum_.row(y) + region.x0, 1 / static_cast<float>(instants), row.data() + region.x0, region.width());
+    if (spoilt) spoil_row(settings_, row);
     add_noise(row.data(), noise, image.row(y), width);
   }
 }
@@ -181,11 +202,12 @@ void CameraScene::draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exp
     std::size_t shots = 0;
     const auto time_ns = origin_ns + static_cast<std::int64_t>(at * static_cast<double>(exposure_ns));
     region = shoot_hands(time_ns, truth, {at, -at}, shots).joined(region);
+    region = shoot_face(time_ns, {at, -at}, shots).joined(region);
     start_sum(region, done, i);
     done = region;
     expose(shots, region);
   }
-  develop(k, region, instants, image);
+  develop(k, region, instants, faulty(origin_ns), image);
 }
 
 }  // namespace handcast::twin

@@ -9,6 +9,7 @@
 #include "config/sections/twin.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/image.hpp"
+#include "services/twin/image_faults.hpp"
 #include "services/twin/random.hpp"
 #include "services/twin/surface.hpp"
 
@@ -36,6 +37,7 @@ class CameraScene {
   struct Hand {
     const renderer::HandMesh* mesh = nullptr;
     Forearm forearm;
+    std::vector<float> holes;  ///< brightness of its vertices; empty: there are none
   };
   /// One lit surface on the screen of one instant.
   struct Shot {
@@ -44,20 +46,25 @@ class CameraScene {
     std::vector<float> grey;
   };
 
+  bool faulty(std::int64_t time_ns) const;
+  Shot& next_shot(std::size_t& count);
   void shoot(Shot& shot, std::span<const glm::vec3> positions, std::span<const glm::vec3> normals, glm::vec2 within_pixel);
   /// The instant's shots into shots_[0 .. count); their joint bounds.
   renderer::Rect shoot_hands(std::int64_t time_ns, const TruthAt& truth, glm::vec2 within_pixel, std::size_t& count);
+  renderer::Rect shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count);
   void start_sum(const renderer::Rect& region, const renderer::Rect& done, int instants);
   void expose(std::size_t shots, const renderer::Rect& region);
-  void develop(std::uint64_t k, const renderer::Rect& region, int instants, renderer::View<std::uint8_t> image) const;
+  void develop(std::uint64_t k, const renderer::Rect& region, int instants, bool spoilt, renderer::View<std::uint8_t> image) const;
   float vignette(float x_px, float y_px) const;
   void make_noise(int seed);
 
   config::TwinImage settings_;
+  int seed_;
   calib::CameraModel camera_;
   glm::mat4 camera_from_tracker_;
   Random image_noise_;
   std::array<Hand, 2> hands_;
+  Face face_;  ///< empty: there is none
 
   renderer::Image<std::uint8_t> empty_scene_;
   std::vector<std::int8_t> noise_;  ///< kNoiseSize values, read from anywhere

@@ -20,6 +20,8 @@ enum class Stream : std::uint64_t {
   detector_loss,
   detector_noise,
   image_noise,
+  detector_outlier,
+  image_holes,
 };
 
 /// The finaliser of splitmix64 (Steele, Lea, Flood 2014).

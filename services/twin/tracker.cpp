@@ -10,7 +10,7 @@
 namespace handcast::twin {
 namespace {
 
-constexpr int kWrist = 1;
+constexpr int kWrist = 1, kIndexMetacarpal = 6, kMiddleMetacarpal = 11;
 constexpr double kDepthShare = 0.3;  ///< offset and drift along the camera's axis, beside those across it
 constexpr double kMinDrift_hz = 0.2, kMaxDrift_hz = 1.5;
 
@@ -63,7 +63,20 @@ std::int64_t TrackerModel::arrival_ns(std::uint64_t k) const {
   return sample_ns(k) + ms_to_ns(std::max(age_ms, std::min(1.0, settings_.age_ms)));
 }
 
-bool TrackerModel::lost(std::uint64_t k) const { return Random(seed_, Stream::tracker_loss).uniform(k) < settings_.dropout; }
+std::int64_t TrackerModel::stamp_ns(std::uint64_t k) const { return sample_ns(k) + ms_to_ns(settings_.clock_skew_ms); }
+
+bool TrackerModel::lost(std::uint64_t k) const {
+  return settings_.lost.holds(ns_to_seconds(sample_ns(k))) || Random(seed_, Stream::tracker_loss).uniform(k) < settings_.dropout;
+}
+
+std::uint64_t TrackerModel::shown_sample(std::uint64_t k) const {
+  if (!settings_.frozen.holds(ns_to_seconds(sample_ns(k)))) return k;
+  auto last = std::min(k, static_cast<std::uint64_t>(settings_.frozen.at_s * settings_.rate_hz) + 1);  // not before the last one
+  while (last > 0 && settings_.frozen.holds(ns_to_seconds(sample_ns(last)))) --last;
+  return last;
+}
+
+bool TrackerModel::knows_sides(std::uint64_t k) const { return !settings_.swapped.holds(ns_to_seconds(sample_ns(k))); }
 
 /// A sum of sines of amplitude sqrt(2/n) has an RMS of 1 whatever its frequencies.
 glm::dvec3 TrackerModel::drift_m(Side side, int joint, double seconds, double distance_m) const {
@@ -100,6 +113,8 @@ msg::HandPose TrackerModel::report(std::uint64_t k, Side side, const JointFrames
     pose.joints[j].orientation_xyzw = {float(axes.x), float(axes.y), float(axes.z), float(axes.w)};
     pose.joints[j].radius_m = radius_m_[j];
   }
+  if (settings_.wrong_finger.holds(seconds))
+    std::swap_ranges(&pose.joints[kIndexMetacarpal], &pose.joints[kMiddleMetacarpal], &pose.joints[kMiddleMetacarpal]);
   return pose;
 }
 

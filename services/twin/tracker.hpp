@@ -22,7 +22,12 @@ class TrackerModel {
 
   std::int64_t sample_ns(std::uint64_t k) const;  ///< origin of sample k: regular, but for a jitter of 3 % of a period
   std::int64_t arrival_ns(std::uint64_t k) const;
+  std::int64_t stamp_ns(std::uint64_t k) const;  ///< what the tracker's clock says of it
   bool lost(std::uint64_t k) const;
+  /// The sample whose pose sample k repeats: itself, but while the tracker is frozen.
+  std::uint64_t shown_sample(std::uint64_t k) const;
+  /// What a person would call the hands of sample k is what the tracker calls them.
+  bool knows_sides(std::uint64_t k) const;
   /// What sample k reports of a hand whose true joints (tracker space) were `truth`.
   msg::HandPose report(std::uint64_t k, Side side, const JointFrames& truth) const;
 

@@ -107,11 +107,15 @@ class RigTwin final : public Twin {
   TrackerSample tracker_sample(std::uint64_t k) const override {
     TrackerSample sample;
     sample.arrival_ns = tracker_.arrival_ns(k);
-    sample.poses.header = {k, tracker_.sample_ns(k), sample.arrival_ns};
+    sample.poses.header = {k, tracker_.stamp_ns(k), sample.arrival_ns};
     if (tracker_.lost(k)) return sample;
+    const std::uint64_t shown = tracker_.shown_sample(k);
     for (const Side side : kSides)
-      if (const auto truth = joints(side, sample.poses.header.origin_ns))
-        sample.poses.hands[sample.poses.count++] = tracker_.report(k, side, *truth);
+      if (const auto truth = joints(side, tracker_.sample_ns(shown))) {
+        auto& hand = sample.poses.hands[sample.poses.count++];
+        hand = tracker_.report(shown, side, *truth);
+        if (!tracker_.knows_sides(k)) hand.side = side == Side::left ? Side::right : Side::left;
+      }
     return sample;
   }
 
@@ -129,11 +133,11 @@ class RigTwin final : public Twin {
   Detection detect(std::uint64_t n, std::uint64_t frame_id, std::int64_t origin_ns) const override {
     Detection detection;
     detection.age_ns = detector_.age_ns(n);
-    detection.landmarks.header = {frame_id, origin_ns, origin_ns + detection.age_ns};
-    if (detector_.lost(n)) return detection;
+    detection.landmarks.header = {frame_id, detector_.stamp_ns(origin_ns), origin_ns + detection.age_ns};
+    if (detector_.lost(n, origin_ns)) return detection;
     for (const Side side : kSides) {
       const auto truth = landmarks(side, origin_ns);
-      if (truth) detection.landmarks.hands[detection.landmarks.count++] = detector_.report(n, side, *truth);
+      if (truth) detection.landmarks.hands[detection.landmarks.count++] = detector_.report(n, side, *truth, origin_ns);
     }
     return detection;
   }

@@ -33,11 +33,11 @@ class Twin {
 
   // --- the tracker: sample k, and when it arrives ---
   struct TrackerSample {
-    msg::HandPoses poses;  ///< header.origin_ns, header.frame_id = k; count 0 where the sample is lost
+    msg::HandPoses poses;  ///< header.origin_ns by the tracker's own clock, header.frame_id = k; count 0 where the sample is lost
     std::int64_t arrival_ns = 0;
   };
   virtual TrackerSample tracker_sample(std::uint64_t k) const = 0;
-  virtual std::int64_t tracker_time_ns(std::uint64_t k) const = 0;  ///< origin of sample k
+  virtual std::int64_t tracker_time_ns(std::uint64_t k) const = 0;  ///< true origin of sample k
 
   // --- the camera: frame k ---
   virtual std::int64_t camera_origin_ns(std::uint64_t k) const = 0;   ///< middle of its exposure

@@ -12,7 +12,8 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<std::string> kBuiltin{"open_close", "wave", "rotate", "pinch", "shake", "two_hands", "still"};
+const std::vector<std::string> kBuiltin{"open_close", "wave", "rotate", "pinch",           "shake",       "two_hands", "still",
+                                        "crossing",   "flip", "fist",   "point_at_camera", "enter_leave", "reverse"};
 
 std::unique_ptr<Motion> motion_of(const config::Twin& settings) {
   auto motion = open_motion(settings, calib::reference_rig());
@@ -36,7 +37,10 @@ template <class Check>
 void walk(const Motion& motion, double seconds, double step_s, Check&& check) {
   for (const Side side : {Side::left, Side::right}) {
     if (!motion.at(side, 0)) continue;
-    for (double t = 0; t < seconds; t += step_s) check(t, *motion.at(side, t - 1e-3), *motion.at(side, t), *motion.at(side, t + 1e-3));
+    for (double t = 0; t < seconds; t += step_s) {
+      const auto before = motion.at(side, t - 1e-3), now = motion.at(side, t), after = motion.at(side, t + 1e-3);
+      if (before && now && after) check(t, *before, *now, *after);
+    }
   }
 }
 
@@ -52,8 +56,8 @@ TEST(Motion, IsTheSameWhateverOrderItIsAskedIn) {
   for (const auto& name : all_motions()) {
     const auto one = motion_of(name), other = motion_of(name);
     std::vector<JointFrames> forward;
-    for (int i = 0; i < 20; ++i) forward.push_back(*one->at(Side::left, 0.37 * i));
-    for (int i = 19; i >= 0; --i) EXPECT_EQ(forward[i], *other->at(Side::left, 0.37 * i)) << name;
+    for (int i = 0; i < 20; ++i) forward.push_back(one->at(Side::left, 0.37 * i).value_or(JointFrames{}));
+    for (int i = 19; i >= 0; --i) EXPECT_EQ(forward[i], other->at(Side::left, 0.37 * i).value_or(JointFrames{})) << name;
   }
 }
 
@@ -89,6 +93,7 @@ TEST(BuiltinMotion, IsWhollyInView) {
   constexpr double kFlesh_px = 16;  // from a joint to the hand's outline
   for (const auto& name : kBuiltin)
     for (const int seed : {1, 2, 3, 4}) {
+      if (name == "enter_leave") continue;
       config::Twin settings;
       settings.motion = "builtin:" + name;
       settings.seed = seed;
