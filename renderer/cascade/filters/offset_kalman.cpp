@@ -1,4 +1,4 @@
-#include "renderer/cascade/filters/filters.hpp"
+#include "renderer/cascade/filters/offset_filter.hpp"
 #include "renderer/cascade/filters/point_track.hpp"
 
 namespace handcast::renderer {
@@ -6,38 +6,16 @@ namespace {
 
 constexpr double kStartSpeed2 = 100;  ///< an offset hardly moves: (px/s)^2
 
-/// A constant-velocity Kalman filter on Q - P at the detection's own time (METHOD section 2). A missing point's variance grows.
-class OffsetKalman final : public CarryFilter {
+/// A constant-velocity Kalman filter on Q - P (METHOD section 2). A missing point's variance grows.
+class OffsetKalman final : public OffsetFilter<PointTrack> {
  public:
-  explicit OffsetKalman(const config::Filter& settings) : settings_(settings) {}
-
-  void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& seen, const TrackerAt& tracker) override {
-    const auto then = tracker_then(tracker, settings_.hindsight ? nullptr : &memory_, origin_ns);
-    if (!then) return;
-    const PointTrack::Model model{settings_.process, settings_.noise_px, kStartSpeed2};
-    for (int i = 0; i < kLandmarks; ++i)
-      if (was_seen(seen.points[i])) tracks_[i].update(origin_ns, position_px(seen.points[i]) - (*then)[i], model);
-  }
-
-  std::optional<LandmarkPoints> at(std::int64_t, std::int64_t target_ns, const LandmarkPoints& tracker) override {
-    if (!settings_.hindsight) memory_.remember(target_ns, tracker);
-    std::array<glm::vec2, kLandmarks> offsets{};
-    std::array<bool, kLandmarks> known{};
-    for (int i = 0; i < kLandmarks; ++i) {
-      known[i] = tracks_[i].known();
-      if (known[i]) offsets[i] = tracks_[i].at(target_ns);
-    }
-    return moved_by(tracker, offsets, known);
-  }
-
-  void forget() override {
-    for (PointTrack& track : tracks_) track.forget();
-  }
+  using OffsetFilter::OffsetFilter;
 
  private:
-  config::Filter settings_;
-  TrackerMemory memory_;
-  std::array<PointTrack, kLandmarks> tracks_{};
+  void update(PointTrack& track, std::int64_t time_ns, glm::vec2 offset_px) const override {
+    track.update(time_ns, offset_px, {settings().process, settings().noise_px, kStartSpeed2});
+  }
+  glm::vec2 offset_at(const PointTrack& track, std::int64_t time_ns) const override { return track.at(time_ns); }
 };
 
 }  // namespace

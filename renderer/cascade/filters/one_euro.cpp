@@ -1,9 +1,8 @@
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "ipc/base/clock.hpp"
-#include "renderer/cascade/filters/filters.hpp"
+#include "renderer/cascade/filters/offset_filter.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -43,38 +42,16 @@ class OneEuroTrack {
   glm::vec2 offset_px_{0}, speed_px_s_{0};
 };
 
-/// The one-euro filter (Casiez, Roussel, Vogel 2012) on Q - P at the detection's own time.
-class OneEuro final : public CarryFilter {
+/// The one-euro filter (Casiez, Roussel, Vogel 2012) on Q - P.
+class OneEuro final : public OffsetFilter<OneEuroTrack> {
  public:
-  explicit OneEuro(const config::Filter& settings) : settings_(settings) {}
-
-  void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& seen, const TrackerAt& tracker) override {
-    const auto then = tracker_then(tracker, settings_.hindsight ? nullptr : &memory_, origin_ns);
-    if (!then) return;
-    const auto least_hz = static_cast<float>(settings_.one_euro_cutoff_hz), per_speed = static_cast<float>(settings_.one_euro_beta);
-    for (int i = 0; i < kLandmarks; ++i)
-      if (was_seen(seen.points[i])) tracks_[i].update(origin_ns, position_px(seen.points[i]) - (*then)[i], least_hz, per_speed);
-  }
-
-  std::optional<LandmarkPoints> at(std::int64_t, std::int64_t target_ns, const LandmarkPoints& tracker) override {
-    if (!settings_.hindsight) memory_.remember(target_ns, tracker);
-    std::array<glm::vec2, kLandmarks> offsets{};
-    std::array<bool, kLandmarks> known{};
-    for (int i = 0; i < kLandmarks; ++i) {
-      known[i] = tracks_[i].known();
-      if (known[i]) offsets[i] = tracks_[i].offset_px();
-    }
-    return moved_by(tracker, offsets, known);
-  }
-
-  void forget() override {
-    for (OneEuroTrack& track : tracks_) track.forget();
-  }
+  using OffsetFilter::OffsetFilter;
 
  private:
-  config::Filter settings_;
-  TrackerMemory memory_;
-  std::array<OneEuroTrack, kLandmarks> tracks_{};
+  void update(OneEuroTrack& track, std::int64_t time_ns, glm::vec2 offset_px) const override {
+    track.update(time_ns, offset_px, static_cast<float>(settings().one_euro_cutoff_hz), static_cast<float>(settings().one_euro_beta));
+  }
+  glm::vec2 offset_at(const OneEuroTrack& track, std::int64_t) const override { return track.offset_px(); }
 };
 
 }  // namespace
