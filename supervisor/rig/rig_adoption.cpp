@@ -82,7 +82,10 @@ Result<void> RigRunner::take_over(AdoptedRig adopted, const config::Rig& rig) {
     log::info("{} (pid {}) lives and is taken over", process.saved.name, process.saved.pid);
     if (!find(process.saved.name)) add_service({.name = process.saved.name}, services_.size());  // not in the rig any more: reload stops it
   }
-  for (auto& process : adopted.services) find(process.saved.name)->adopt(std::move(process));
+  for (auto& process : adopted.services) {
+    const auto service = find(process.saved.name);
+    service->adopt(std::move(process));
+  }
   inherited_ = true;
   return {};
 }

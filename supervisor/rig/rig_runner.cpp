@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
-#include <ranges>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -251,8 +250,8 @@ void RigRunner::begin_stop(int exit_code) {
 }
 
 void RigRunner::stop_next() {
-  for (const auto& service : services_ | std::views::reverse)
-    if (service->is_running()) return service->stop();
+  const auto last = std::find_if(services_.rbegin(), services_.rend(), [](const auto& service) { return service->is_running(); });
+  if (last != services_.rend()) return (*last)->stop();
   finish();
 }
 

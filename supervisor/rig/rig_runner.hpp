@@ -26,6 +26,16 @@ struct RunOptions {
   bool is_successor = false;                 ///< of a supervisor that died under the same keeper: --seconds goes on
 };
 
+/// A reload that is answered when everything it touched has settled (rig_reload.cpp).
+struct Reload {
+  ControlServer::Reply reply;
+  bool changed = false;                                    ///< the file says something else than before
+  std::vector<std::string> restarted, started, stopped;    ///< services, as the person is told
+  std::vector<std::string> waiting;                        ///< of these: not begun, because what they need has not settled
+  std::map<std::string, std::int64_t, std::less<>> begun;  ///< of these: until when they must have settled
+  std::vector<std::string> failures;                       ///< a sentence each
+};
+
 /// One rig from start to stop: its rings, its services, its control socket, its recorder. One thread, one event loop.
 class RigRunner {
  public:
@@ -42,16 +52,6 @@ class RigRunner {
     ControlServer::Reply reply;
     std::string wanted, before;  ///< back ends; empty for a plain restart
     std::string reason;          ///< why `wanted` did not start; empty while it is tried
-  };
-
-  /// A reload that is answered when everything it touched has settled (rig_reload.cpp).
-  struct Reload {
-    ControlServer::Reply reply;
-    bool changed = false;                                    ///< the file says something else than before
-    std::vector<std::string> restarted, started, stopped;    ///< services, as the person is told
-    std::vector<std::string> waiting;                        ///< of these: not begun, because what they need has not settled
-    std::map<std::string, std::int64_t, std::less<>> begun;  ///< of these: until when they must have settled
-    std::vector<std::string> failures;                       ///< a sentence each
   };
 
   RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop);

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <ranges>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -162,7 +161,7 @@ int stop_orphans(const std::string& name, double stop_s) {
   const auto saved = load_saved(name);
   if (!saved || !*saved) return 0;
   const auto living = living_of(**saved);
-  for (const auto& process : living | std::views::reverse) send_signal(process, SIGTERM);
+  std::for_each(living.rbegin(), living.rend(), [](const auto& process) { send_signal(process, SIGTERM); });
   const auto deadline = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(stop_s)));
   for (const auto& process : living) {
     if (ends_before(process, deadline)) continue;
