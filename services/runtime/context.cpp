@@ -32,7 +32,7 @@ void give_up(const Error& error) {
 }
 
 Context::Context(std::string name, config::Rig rig, calib::Calibration calibration)
-    : name_(std::move(name)), rig_(std::move(rig)), calibration_(std::move(calibration)) {
+    : name_(std::move(name)), rig_(std::move(rig)), calibration_(calibration) {
   if (const char* rings = std::getenv("HANDCAST_RINGS")) ring_fds_ = parse_rings(rings);
   ready_fd_ = static_cast<int>(number_from_environment("HANDCAST_READY_FD").value_or(-1));
   epoch_ns_ = number_from_environment("HANDCAST_EPOCH_NS").value_or(now_ns());

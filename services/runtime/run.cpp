@@ -25,7 +25,7 @@ int serve(const Description& description, const CommandLine& line, const std::fu
   auto rig = must(config::load_rig(line.config_file, line.settings));
   for (const auto& note : must(apply_scheduling(config::process_of(rig, description.name), description.name))) log::warning("{}", note);
   auto calibration = must(calib::load_calibration(rig.calibration));
-  Context context(std::string(description.name), std::move(rig), std::move(calibration));
+  Context context(std::string(description.name), std::move(rig), calibration);
   body(context);
   log::info("stopped");
   return 0;
