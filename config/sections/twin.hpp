@@ -19,7 +19,7 @@ struct Fault {
 /// The two settings of a fault, and the sentence that says what it does.
 template <class Visitor>
 void describe_fault(Visitor& visitor, Fault& fault, std::string_view at_name, std::string_view lasting_name, std::string_view sentence) {
-  visitor.field(at_name, fault.at_s, between(0, 1e6, "s"), "When that begins, since the epoch.");
+  visitor.field(at_name, fault.at_s, between(0, 1e6, "s"), "When the fault of the next setting begins, since the epoch.");
   visitor.field(lasting_name, fault.lasting_s, between(0, 1e6, "s"), sentence);
 }
 
@@ -52,12 +52,12 @@ void describe(Visitor& visitor, TwinTracker& tracker) {
   visitor.field("dropout", tracker.dropout, between(0, 1), "Share of samples that are lost.");
   visitor.field("clock_skew_ms", tracker.clock_skew_ms, between(-200, 200, "ms"),
                 "How far off the time stamps are; positive: samples seem younger than they are.");
-  describe_fault(visitor, tracker.frozen, "frozen_at_s", "frozen_s", "For so long it repeats its last pose with new time stamps.");
-  describe_fault(visitor, tracker.lost, "lost_at_s", "lost_s", "For so long it gives no samples.");
+  describe_fault(visitor, tracker.frozen, "frozen_at_s", "frozen_s", "Fault: how long it repeats its last pose with new time stamps.");
+  describe_fault(visitor, tracker.lost, "lost_at_s", "lost_s", "Fault: how long it gives no samples.");
   describe_fault(visitor, tracker.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
-                 "For so long it takes the index finger for the middle one and the other way round.");
+                 "Fault: how long it takes the index finger for the middle one and the other way round.");
   describe_fault(visitor, tracker.swapped, "swapped_at_s", "swapped_s",
-                 "For so long it takes left hands for right ones and right for left.");
+                 "Fault: how long it takes left hands for right ones and right for left.");
 }
 
 struct TwinDetector {
@@ -80,9 +80,9 @@ void describe(Visitor& visitor, TwinDetector& detector) {
   visitor.field("outliers", detector.outliers, between(0, 1), "Share of landmarks that are thrown 40-200 px off.");
   visitor.field("clock_skew_ms", detector.clock_skew_ms, between(-200, 200, "ms"),
                 "How far off the time stamps are; positive: detections seem younger than they are.");
-  describe_fault(visitor, detector.lost, "lost_at_s", "lost_s", "For so long it finds nothing.");
+  describe_fault(visitor, detector.lost, "lost_at_s", "lost_s", "Fault: how long it finds nothing.");
   describe_fault(visitor, detector.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
-                 "For so long it takes the index finger for the middle one and the other way round.");
+                 "Fault: how long it takes the index finger for the middle one and the other way round.");
 }
 
 struct TwinImage {
@@ -114,7 +114,7 @@ void describe(Visitor& visitor, TwinImage& image) {
   visitor.field("covered", image.covered, between(0, 1),
                 "Fault: share of the image, from its left edge, behind something dark; 0.5 hides half of a hand in the middle.");
   visitor.field("face", image.face, "Fault: a face looks on from behind the hands.");
-  describe_fault(visitor, image.fault, "fault_at_s", "fault_s", "For so long the image has the faults above; all the time unless set.");
+  describe_fault(visitor, image.fault, "fault_at_s", "fault_s", "How long the image has the faults above; all the time unless set.");
 }
 
 struct TwinShape {
@@ -144,7 +144,7 @@ template <class Visitor>
 void describe(Visitor& visitor, Twin& twin) {
   visitor.field("motion", twin.motion, Choices{},
                 "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, still, crossing, flip, fist, point_at_camera, "
-                "enter_leave, reverse; or a folder with a recording.");
+                "enter_leave, reverse, cross_fingers; or a folder with a recording.");
   visitor.field("hands", twin.hands, Choices{"both", "left", "right"}, "Which of the motion's hands are there.");
   visitor.field("speed", twin.speed, between(0.01, 20), "Plays the motion faster or slower.");
   visitor.field("seed", twin.seed, between(0, 1e9), "Everything random is drawn from this number.");

@@ -172,6 +172,22 @@ Posture point_at_camera(double t) {
   return posture;
 }
 
+/// The middle finger over the index finger's back and beyond.
+Posture cross_fingers(double t) {
+  Posture posture;
+  const double round = within(2.4, t);
+  const double crossed = step_at(0.4, 0.8, round) - step_at(1.5, 1.9, round);
+  // First out of each other's way in depth, then across; and back in the other order.
+  const double apart = step_at(0.3, 0.6, round) - step_at(1.7, 2.1, round);
+  posture.bend.flexion[1] = {0.08 + 0.5 * apart, 0.1, 0.05};
+  posture.bend.flexion[2] = {0.08 - 0.1 * apart, 0.1, 0.05};
+  posture.bend.flexion[3] = posture.bend.flexion[4] = {0.15, 0.2, 0.1};
+  posture.bend.splay[1] = 0.08 - 0.36 * crossed;
+  posture.bend.splay[2] = 0.3 * crossed;
+  breathe(posture, t);
+  return posture;
+}
+
 /// Down out of the image, away for a while, and back.
 Posture enter_leave(double t) {
   Posture posture;
@@ -204,7 +220,7 @@ struct Choreography {
   double right_ahead_s = 0;  ///< the right hand is this far ahead of the left
 };
 
-constexpr std::array<Choreography, 13> kChoreographies{{
+constexpr std::array<Choreography, 14> kChoreographies{{
     {"open_close", open_close},
     {"wave", wave},
     {"rotate", rotate},
@@ -218,6 +234,7 @@ constexpr std::array<Choreography, 13> kChoreographies{{
     {"point_at_camera", point_at_camera},
     {"enter_leave", enter_leave},
     {"reverse", reverse},
+    {"cross_fingers", cross_fingers},
 }};
 
 class BuiltinMotion final : public Motion {

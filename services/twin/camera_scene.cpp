@@ -55,8 +55,6 @@ CameraScene::CameraScene(const config::TwinImage& settings, int seed, const cali
   if (settings_.face) face_ = make_face(camera_);
 }
 
-bool CameraScene::faulty(std::int64_t time_ns) const { return settings_.fault.holds(ns_to_seconds(time_ns)); }
-
 void CameraScene::make_noise(int seed) {
   const Random random(seed, Stream::image_noise);
   noise_.resize(kNoiseSize + static_cast<std::size_t>(camera_.width_px));
@@ -102,7 +100,7 @@ CameraScene::Shot& CameraScene::next_shot(std::size_t& count) {
 }
 
 renderer::Rect CameraScene::shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count) {
-  if (!faulty(time_ns) || face_.positions.empty()) return {};
+  if (!faulty_ || face_.positions.empty()) return {};
   positions_ = face_.positions;
   for (auto& position : positions_) position += face_sway_m(time_ns);
   Shot& face = next_shot(count);
@@ -124,7 +122,7 @@ renderer::Rect CameraScene::shoot_hands(std::int64_t time_ns, const TruthAt& tru
     renderer::skin(*hand.mesh, *joints, positions_, normals_);
     Shot& skin = next_shot(count);
     shoot(skin, positions_, normals_, within_pixel);
-    if (!hand.holes.empty() && faulty(time_ns))
+    if (faulty_ && !hand.holes.empty())
       for (std::size_t v = 0; v < skin.grey.size(); ++v) skin.grey[v] *= hand.holes[v];
     skin.triangles = &hand.mesh->triangles;
     bounds = bounds.joined(skin.screen.bounds());
@@ -166,8 +164,7 @@ void CameraScene::expose(std::size_t shots, const renderer::Rect& region) {
   for (int y = region.y0; y < region.y1; ++y) add_row(instant_.row(y) + region.x0, sum_.row(y) + region.x0, region.width());
 }
 
-void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int instants, bool spoilt,
-                          renderer::View<std::uint8_t> image) const {
+void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int instants, renderer::View<std::uint8_t> image) const {
   const int width = std::min(image.width, camera_.width_px);
   std::vector<std::uint8_t> row(static_cast<std::size_t>(camera_.width_px));
   for (int y = 0; y < std::min(image.height, camera_.height_px); ++y) {
@@ -175,7 +172,7 @@ void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int ins
     std::memcpy(row.data(), empty_scene_.row(y), row.size());
     if (y >= region.y0 && y < region.y1)
       round_row(sum_.row(y) + region.x0, 1 / static_cast<float>(instants), row.data() + region.x0, region.width());
-    if (spoilt) spoil_row(settings_, row);
+    if (faulty_) spoil_row(settings_, row);
     add_noise(row.data(), noise, image.row(y), width);
   }
 }
@@ -194,6 +191,7 @@ void CameraScene::start_sum(const renderer::Rect& region, const renderer::Rect& 
 
 void CameraScene::draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exposure_ns, const TruthAt& truth,
                        renderer::View<std::uint8_t> image) {
+  faulty_ = settings_.fault.holds(ns_to_seconds(origin_ns));
   const int instants = settings_.blur_samples;
   renderer::Rect region, done;
   for (int i = 0; i < instants; ++i) {
@@ -207,7 +205,7 @@ void CameraScene::draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exp
     done = region;
     expose(shots, region);
   }
-  develop(k, region, instants, faulty(origin_ns), image);
+  develop(k, region, instants, image);
 }
 
 }  // namespace handcast::twin

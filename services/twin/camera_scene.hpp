@@ -46,7 +46,6 @@ class CameraScene {
     std::vector<float> grey;
   };
 
-  bool faulty(std::int64_t time_ns) const;
   Shot& next_shot(std::size_t& count);
   void shoot(Shot& shot, std::span<const glm::vec3> positions, std::span<const glm::vec3> normals, glm::vec2 within_pixel);
   /// The instant's shots into shots_[0 .. count); their joint bounds.
@@ -54,7 +53,7 @@ class CameraScene {
   renderer::Rect shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count);
   void start_sum(const renderer::Rect& region, const renderer::Rect& done, int instants);
   void expose(std::size_t shots, const renderer::Rect& region);
-  void develop(std::uint64_t k, const renderer::Rect& region, int instants, bool spoilt, renderer::View<std::uint8_t> image) const;
+  void develop(std::uint64_t k, const renderer::Rect& region, int instants, renderer::View<std::uint8_t> image) const;
   float vignette(float x_px, float y_px) const;
   void make_noise(int seed);
 
@@ -64,7 +63,8 @@ class CameraScene {
   glm::mat4 camera_from_tracker_;
   Random image_noise_;
   std::array<Hand, 2> hands_;
-  Face face_;  ///< empty: there is none
+  Face face_;            ///< empty: there is none
+  bool faulty_ = false;  ///< the frame that is drawn
 
   renderer::Image<std::uint8_t> empty_scene_;
   std::vector<std::int8_t> noise_;  ///< kNoiseSize values, read from anywhere

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <ranges>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"

@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 const std::vector<std::string> kBuiltin{"open_close", "wave", "rotate", "pinch",           "shake",       "two_hands", "still",
-                                        "crossing",   "flip", "fist",   "point_at_camera", "enter_leave", "reverse"};
+                                        "crossing",   "flip", "fist",   "point_at_camera", "enter_leave", "reverse",   "cross_fingers"};
 
 std::unique_ptr<Motion> motion_of(const config::Twin& settings) {
   auto motion = open_motion(settings, calib::reference_rig());
@@ -177,6 +177,86 @@ TEST(BuiltinMotion, TwoHandsMirrorEachOtherOutOfStep) {
   const auto right = *motion->at(Side::right, 0);
   EXPECT_GT(seen_at_px(right[21]).x, seen_at_px(right[6]).x) << "the right hand's little finger is on the right, seen from its back";
   EXPECT_FALSE(motion_of("builtin:wave")->at(Side::right, 0));
+}
+
+double mean_x_px(const JointFrames& hand) {
+  double sum = 0;
+  for (const auto& joint : hand) sum += seen_at_px(joint).x;
+  return sum / static_cast<double>(hand.size());
+}
+
+TEST(BuiltinMotion, CrossingHandsSwapPlacesAndPassBeforeOneAnother) {
+  const auto motion = motion_of("builtin:crossing");
+  const glm::dmat4 camera_from_tracker(calib::reference_rig().camera_from_tracker);
+  const auto depth_m = [&](Side side, double t) { return (camera_from_tracker * glm::dvec4(place((*motion->at(side, t))[11]), 1)).z; };
+  EXPECT_LT(mean_x_px(*motion->at(Side::left, 0)), mean_x_px(*motion->at(Side::right, 0)) - 250);
+  EXPECT_GT(mean_x_px(*motion->at(Side::left, 1.25)), mean_x_px(*motion->at(Side::right, 1.25)) + 250);
+  EXPECT_GT(depth_m(Side::right, 0.625) - depth_m(Side::left, 0.625), 0.08) << "thicker than two hands";
+}
+
+TEST(BuiltinMotion, FlipShowsThePalmWithinHalfASecond) {
+  const auto motion = motion_of("builtin:flip");
+  const glm::dmat3 camera_from_tracker(calib::reference_rig().camera_from_tracker);
+  const auto back_z = [&](double t) { return (camera_from_tracker * glm::dvec3((*motion->at(Side::left, t))[1][1])).z; };
+  EXPECT_LT(back_z(0.5), -0.8);
+  EXPECT_GT(back_z(0.9), 0.8);
+  EXPECT_LT(back_z(1.8), -0.8);
+}
+
+double reach_m(const JointFrames& hand, int tip) { return glm::distance(place(hand[tip]), place(hand[1])); }
+
+TEST(BuiltinMotion, FistBringsEveryFingerTipToThePalm) {
+  const auto motion = motion_of("builtin:fist");
+  for (const int tip : {10, 15, 20, 25}) {
+    EXPECT_GT(reach_m(*motion->at(Side::left, 0), tip), 0.13);
+    EXPECT_LT(reach_m(*motion->at(Side::left, 1), tip), 0.09);
+  }
+}
+
+TEST(BuiltinMotion, FingersPointIntoTheCamera) {
+  const auto motion = motion_of("builtin:point_at_camera");
+  const auto seen_px = [&](double t, int knuckle, int tip) {
+    const auto hand = *motion->at(Side::left, t);
+    return glm::distance(seen_at_px(hand[tip]), seen_at_px(hand[knuckle]));
+  };
+  for (const auto& [knuckle, tip] : {std::pair(7, 10), std::pair(12, 15), std::pair(17, 20)}) {
+    EXPECT_GT(seen_px(0, knuckle, tip), 100);
+    EXPECT_LT(seen_px(1.2, knuckle, tip), 40) << "foreshortened";
+  }
+}
+
+TEST(BuiltinMotion, CrossedFingersSwapPlacesWithoutTouching) {
+  const auto motion = motion_of("builtin:cross_fingers");
+  const auto apart = *motion->at(Side::left, 0), crossed = *motion->at(Side::left, 1.2);
+  EXPECT_GT(seen_at_px(apart[10]).x, seen_at_px(apart[15]).x + 20) << "tips of index and middle finger";
+  EXPECT_LT(seen_at_px(crossed[10]).x, seen_at_px(crossed[15]).x - 10);
+  double nearest_mm = 1e9;
+  for (double t = 0; t < 2.4; t += 0.02) {
+    const auto hand = *motion->at(Side::left, t);
+    for (float a = 0; a <= 1; a += 0.05f)
+      for (float b = 0; b <= 1; b += 0.05f)
+        nearest_mm = std::min(
+            nearest_mm, 1e3 * glm::distance(glm::mix(place(hand[8]), place(hand[10]), a), glm::mix(place(hand[13]), place(hand[15]), b)));
+  }
+  std::printf("[ fingers  ] axes come as near as %.1f mm\n", nearest_mm);
+  EXPECT_GT(nearest_mm, 11);
+}
+
+TEST(BuiltinMotion, AHandThatLeavesIsOutOfTheImageBeforeItIsGone) {
+  const auto motion = motion_of("builtin:enter_leave");
+  EXPECT_TRUE(motion->at(Side::left, 0));
+  EXPECT_FALSE(motion->at(Side::left, 1.8));
+  EXPECT_TRUE(motion->at(Side::left, 2.8));
+  for (const double t : {1.499, 2.101}) {
+    const auto hand = *motion->at(Side::left, t);
+    for (const auto& joint : hand) EXPECT_GT(seen_at_px(joint).y, 541);
+  }
+}
+
+TEST(BuiltinMotion, ReverseIsAsFastAsTwoMetresASecond) {
+  const double peak = peak_speed_m_s(*motion_of("builtin:reverse"), 0);
+  EXPECT_GT(peak, 1.8);
+  EXPECT_LT(peak, 2.1);
 }
 
 TEST(Motion, SpeedScalesTime) {
