@@ -23,7 +23,7 @@ class Reload : public SystemTest {
     write_rig("[camera]\n" + camera + "\n[projector]\nrate_hz = 60\n[supervisor]\nready_s = 60\n" + more);
   }
   std::unique_ptr<Command> up_with_the_file() {
-    auto rig = std::make_unique<Command>(scratch_.path(), Arguments{"up", file_.string()});
+    auto rig = std::make_unique<Command>(scratch_.path(), Arguments{"up", file_.string(), "--out", scratch_.path().string()});
     EXPECT_TRUE(eventually([this] {
       const auto now = status();
       if (now.is_null()) return false;
