@@ -25,10 +25,13 @@ constexpr std::int64_t kForget_ns = 1'000'000'000;
 /// How far the mask reaches from `start` in direction `way` (unit); nothing where it does not end within `most_px`.
 std::optional<float> reach_px(GreyView mask, glm::vec2 start, glm::vec2 way, float most_px) {
   constexpr float kStride_px = 0.5f;
-  for (float far_px = 0; far_px < most_px; far_px += kStride_px) {
-    const glm::ivec2 at(glm::round(start + way * far_px));
-    if (at.x < 0 || at.y < 0 || at.x >= mask.width || at.y >= mask.height) return std::nullopt;
-    if (mask.at(at.x, at.y) == 0) return far_px - kStride_px / 2;
+  for (int step = 0; static_cast<float>(step) * kStride_px < most_px; ++step) {
+    const glm::vec2 place = start + way * (static_cast<float>(step) * kStride_px);
+    const bool seen =
+        place.x > 0 && place.y > 0 && place.x < static_cast<float>(mask.width - 1) && place.y < static_cast<float>(mask.height - 1);
+    if (!seen) return std::nullopt;
+    const glm::ivec2 at(glm::round(place));
+    if (mask.at(at.x, at.y) == 0) return (static_cast<float>(step) - 0.5f) * kStride_px;
   }
   return std::nullopt;
 }
@@ -125,7 +128,7 @@ std::optional<float> WidthMeter::typical() const {
 
 void WidthMeter::Bone::note(float factor) {
   const float place = (std::clamp(factor, kLeast, kMost) - kLeast) / (kMost - kLeast);
-  ++seen[static_cast<std::size_t>(place * static_cast<float>(seen.size() - 1) + 0.5f)];
+  ++seen[static_cast<std::size_t>(std::lround(place * static_cast<float>(seen.size() - 1)))];
   if (++count < kMemory) return;
   count = 0;
   for (int& bin : seen) count += bin /= 2;

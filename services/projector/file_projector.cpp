@@ -20,7 +20,7 @@ class FileProjector final : public Projector {
   FileProjector(const config::Projector& settings, fs::path folder) : clock_(settings), folder_(std::move(folder)) {}
 
   Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id, Deadline deadline) override {
-    const auto times = clock_.take(deadline);
+    auto times = clock_.take(deadline);
     if (!times || frame_id % kEvery != 0) return times;
     const fs::path file = folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept);
     if (const auto written = write(frame, file); !written) return fail(Errc::bad_data, "projector 'file': " + written.error().what);

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <ranges>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -83,8 +82,8 @@ Result<UniqueFd> place(UniqueFd fd, int number) {
 }
 
 Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved, const std::vector<AdoptedProcess>& living, const Stored& stored) {
-  const auto numbers = saved.rings | std::views::transform(&SavedRing::fd);
-  const int above_all = saved.rings.empty() ? 3 : std::ranges::max(numbers) + 1;  // out of each other's way until each has its place
+  int above_all = 3;  // out of each other's way until each has its place
+  for (const auto& ring : saved.rings) above_all = std::max(above_all, ring.fd + 1);
 
   std::vector<UniqueFd> memories;
   for (const auto& ring : saved.rings) {
