@@ -117,12 +117,13 @@ void WidthMeter::forget() {
 /// The lower third of the bones that were seen often enough, since what spoils a measurement (a neighbour, a tilt) makes it larger;
 /// nothing where they are too few to outvote a wrong one.
 std::optional<float> WidthMeter::typical() const {
-  std::vector<float> medians;
+  std::array<float, kBones.size()> medians;
+  std::size_t count = 0;
   for (const Bone& bone : bones_)
-    if (bone.count >= kEnough) medians.push_back(bone.median());
-  if (medians.size() < kFewestBones) return std::nullopt;
-  const auto lower = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 3);
-  std::nth_element(medians.begin(), lower, medians.end());
+    if (bone.count >= kEnough) medians[count++] = bone.median();
+  if (count < kFewestBones) return std::nullopt;
+  const auto lower = medians.begin() + count / 3;
+  std::nth_element(medians.begin(), lower, medians.begin() + count);
   return *lower;
 }
 

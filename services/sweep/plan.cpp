@@ -77,7 +77,7 @@ Value nested(std::string_view path, Value value) {
 /// The values of a section by their whole paths: "a.b" = 1, a.b = 1 and [a] b = 1 are the same.
 void flatten(const config::Table& table, const std::string& outer, config::Table& flat) {
   for (const auto& [name, value] : table) {
-    const auto path = outer.empty() ? name : outer + "." + name;
+    const auto path = outer.empty() ? name : fmt::format("{}.{}", outer, name);
     if (const auto* members = std::get_if<config::Table>(&value.data)) {
       flatten(*members, path, flat);
     } else {

@@ -61,6 +61,7 @@ class Workers {
   Result<void> run(int jobs, Outcome& outcome) {
     {
       std::vector<std::jthread> threads;
+      threads.reserve(static_cast<std::size_t>(jobs));
       for (int i = 0; i < jobs; ++i) threads.emplace_back([this] { work(); });
     }
     outcome.failed = failed_;

@@ -48,16 +48,20 @@ void breathe(Posture& posture, double t) {
 
 void curl(Bend& bend, int finger, double amount) { bend.flexion[finger] = {1.25 * amount, 1.65 * amount, 0.95 * amount}; }
 
+/// Lays the thumb over the fingers: 0 open, 1 shut.
+void close_thumb(Bend& bend, double shut) {
+  bend.flexion[0] = {0.6 * shut, 0.9 * shut, 0};
+  bend.thumb_flexion = 0.25 * shut;
+  bend.thumb_opposition = -0.2 * shut;
+}
+
 Posture open_close(double t) {
   Posture posture;
   for (int f = 1; f < 5; ++f) {
     curl(posture.bend, f, pulse_at(0.45, t - 0.05 * (f - 1)));
     posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - pulse_at(0.45, t));
   }
-  const double thumb = pulse_at(0.45, t - 0.12);
-  posture.bend.flexion[0] = {0.6 * thumb, 0.9 * thumb, 0};
-  posture.bend.thumb_flexion = 0.25 * thumb;
-  posture.bend.thumb_opposition = -0.2 * thumb;
+  close_thumb(posture.bend, pulse_at(0.45, t - 0.12));
   breathe(posture, t);
   return posture;
 }
@@ -150,10 +154,7 @@ Posture fist(double t) {
     curl(posture.bend, f, 1.05 * shut_at(0.012 * (f - 1)));
     posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - shut_at(0));
   }
-  const double thumb = shut_at(0.08);
-  posture.bend.flexion[0] = {0.6 * thumb, 0.9 * thumb, 0};
-  posture.bend.thumb_flexion = 0.25 * thumb;
-  posture.bend.thumb_opposition = -0.2 * thumb;
+  close_thumb(posture.bend, shut_at(0.08));
   breathe(posture, t);
   return posture;
 }

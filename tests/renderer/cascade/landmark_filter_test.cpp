@@ -153,6 +153,18 @@ TEST(NaiveFilter, TrailsAMovingHandByTheAgeOfItsLandmarks) {
   EXPECT_NEAR(offset_at(*filter, fast, now_ns).x, -20, 0.5);  // 16 ms old and drawn 4 ms ahead
 }
 
+TEST(IdealFilter, SaysWhatTheOracleSaysAtTheTimeOfTheLight) {
+  const Line truth{{700, 0}};
+  const auto filter = make_landmark_filter(settings("ideal"), [&](std::int64_t time_ns) { return std::optional(truth.at(time_ns)); });
+  const auto points = filter->at(100 * kMs, 104 * kMs, Line{}.at(0));
+  ASSERT_TRUE(points);
+  EXPECT_EQ(*points, truth.at(104 * kMs));
+}
+
+TEST(IdealFilter, CorrectsNothingWithoutAnOracle) {
+  EXPECT_FALSE(make_landmark_filter(settings("ideal"))->at(100 * kMs, 104 * kMs, Line{}.at(0)));
+}
+
 TEST(NoFilter, NeverCorrects) {
   const auto filter = make_landmark_filter(settings("none"));
   run(*filter, Line{}, {10, 10}, 0, 100);

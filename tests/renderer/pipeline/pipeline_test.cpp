@@ -91,6 +91,16 @@ TEST(Pipeline, AMissingHandFileIsAConfigurationError) {
   EXPECT_THAT(pipeline.error().what, ::testing::HasSubstr("/nowhere/hand.glb"));
 }
 
+TEST(Pipeline, TheIdealFilterNeedsATruthThatOnlyASimulatorHas) {
+  config::Cascade ideal;
+  ideal.filter.method = "ideal";
+  const auto alone = Pipeline::create(ideal, {}, {}, rig_above_hand());
+  ASSERT_FALSE(alone);
+  EXPECT_EQ(alone.error().code, Errc::bad_config);
+  const auto knows_nothing = [](Side, std::int64_t) { return std::optional<LandmarkPoints>(); };
+  EXPECT_TRUE(Pipeline::create(ideal, {}, {}, rig_above_hand(), knows_nothing));
+}
+
 class EverySide : public ::testing::TestWithParam<Side> {};
 INSTANTIATE_TEST_SUITE_P(Sides, EverySide, ::testing::Values(Side::left, Side::right),
                          [](const auto& each) { return each.param == Side::left ? "Left" : "Right"; });
