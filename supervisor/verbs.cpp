@@ -32,6 +32,9 @@ constexpr std::array kVerbs{
               "Prints a whole rig file, checks one, or explains every setting.", run_config},
     VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.", nullptr, Group::score},
     VerbEntry{"sweep", "sweep ...", "Scores a rig under every combination of settings, on all cores.", nullptr, Group::score},
+    VerbEntry{"detect", "detect ...", "Finds the landmarks of the hands in pictures.", nullptr, Group::look},
+    VerbEntry{"chart", "chart RESULTS.csv... [--out DIR]", "Draws what sweeps found: speed against accuracy, and where methods fail.",
+              nullptr, Group::score},
     VerbEntry{"report", "report ...", "Turns the results of runs into a report.", nullptr, Group::score},
 };
 

@@ -111,6 +111,37 @@ void describe(Visitor& visitor, Mask& mask) {
   visitor.field("advance", mask.advance, "Move the mask on with the hand, from the image's exposure to the time of the photons.");
 }
 
+struct Registration {
+  std::string method = "mask";
+  double limit_px = 24;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Registration& registration) {
+  visitor.field(
+      "method", registration.method, Choices{"none", "mask"},
+      "Late registration: none: not at all. mask: the outline of the hand at the tracker's newest time is found again in the newest "
+      "image, and what it moved beyond the tracker's motion moves the landmarks.");
+  visitor.field("limit_px", registration.limit_px, between(1, 200, "px"), "An outline that moved further than this is not believed.");
+}
+
+struct Ladder {
+  std::string rung = "auto";
+  double margin_percent = 5;
+  double dwell_ms = 50;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Ladder& ladder) {
+  visitor.field(
+      "rung", ladder.rung, Choices{"auto", "hold", "predict", "shift", "similarity", "fingers", "landmarks", "register"},
+      "How much of the cascade a frame is given. auto: the cheapest rung whose expected error is near the best. Others hold it there.");
+  visitor.field("margin_percent", ladder.margin_percent, between(0, 100, "%"),
+                "auto: the cheapest rung is taken whose expected error is at most this much above the best.");
+  visitor.field("dwell_ms", ladder.dwell_ms, between(0, 10000, "ms"),
+                "auto: a cheaper rung must have been enough for this long before it is taken.");
+}
+
 struct Fill {
   std::string method = "reflect";
   int reach_px = 32;
@@ -136,7 +167,9 @@ struct Cascade {
   Filter filter;
   Correct correct;
   Mask mask;
+  Registration registration;
   Fill fill;
+  Ladder ladder;
 };
 
 template <class Visitor>
@@ -146,7 +179,9 @@ void describe(Visitor& visitor, Cascade& cascade) {
   visitor.section("filter", cascade.filter, "Where are the landmarks now?");
   visitor.section("correct", cascade.correct, "Move the drawing onto the landmarks.");
   visitor.section("mask", cascade.mask, "What of the camera image is hand?");
+  visitor.section("register", cascade.registration, "Where does the newest image show the hand?");
   visitor.section("fill", cascade.fill, "No light beside the hand, no hand without light.");
+  visitor.section("ladder", cascade.ladder, "No more of all this than the scene needs.");
 }
 
 }  // namespace handcast::config

@@ -51,14 +51,28 @@ void describe(Visitor& visitor, Pose& pose) {
 
 struct Landmarks {
   std::string backend = "twin";
+  std::string models;
+  int hands = 2;
+  std::string definition = "tracker";
   Replay replay;
   Process process;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Landmarks& landmarks) {
-  visitor.field("backend", landmarks.backend, Choices{},
-                "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has.");
+  visitor.field(
+      "backend", landmarks.backend, Choices{},
+      "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has. onednn, opencv: MediaPipe Hands on the "
+      "camera's images, run by oneDNN or by OpenCV. twin: the twin's model of a detector. replay: recorded ones.");
+  visitor.field(
+      "models", landmarks.models, Choices{},
+      "onednn, opencv: folder of the networks' files, which scripts/get-models fetches; relative to the rig file. Empty: the folder "
+      "HANDCAST_MODELS names, else share/handcast/models of the installation, else ~/.local/share/handcast/models.");
+  visitor.field("hands", landmarks.hands, between(1, 2), "onednn, opencv: how many hands are looked for.");
+  visitor.field(
+      "definition", landmarks.definition, Choices{"tracker", "network"},
+      "onednn, opencv: network: points as the network defines them. tracker: wrist and knuckles moved to where the tracker's joints "
+      "are defined, which is what the cascade compares them with.");
   visitor.section("replay", landmarks.replay, "For backend = \"replay\": landmarks_{left,right}.npy with landmarks_timestamps.npy.");
   visitor.section("process", landmarks.process, "How the service runs.");
 }

@@ -73,7 +73,8 @@ struct TwinDetector {
 template <class Visitor>
 void describe(Visitor& visitor, TwinDetector& detector) {
   visitor.field("age_ms", detector.age_ms, between(0, 500, "ms"),
-                "Mean time from the middle of an exposure to its landmarks; it runs back to back.");
+                "Mean time from the middle of an exposure to its landmarks; it runs back to back. In the simulator it holds for every "
+                "landmarks.backend, as do age_sd_ms and clock_skew_ms; the other settings are the model's alone.");
   visitor.field("age_sd_ms", detector.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that time.");
   visitor.field("noise_px", detector.noise_px, between(0, 50, "px"), "White noise per landmark and axis.");
   visitor.field("dropout", detector.dropout, between(0, 1), "Share of detections that find nothing.");

@@ -13,9 +13,11 @@ enum class Stage : std::uint32_t {
   sample,
   detect,  // one per sensor daemon
   predict,
+  mask,
+  registration,
+  advance,
   skin,
   correct,
-  mask,
   draw,
   warp,
   fill,
@@ -27,11 +29,12 @@ enum class Stage : std::uint32_t {
 };
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::count)> kStageNames{
-    "capture", "sample", "detect", "predict", "skin", "correct", "mask", "draw", "warp", "fill", "compose", "frame", "present", "light"};
+    "capture", "sample", "detect", "predict", "mask",    "register", "advance", "skin",
+    "correct", "draw",   "warp",   "fill",    "compose", "frame",    "present", "light"};
 
 struct StageMark {
   Stage stage = Stage::frame;
-  std::uint32_t reserved = 0;
+  std::uint32_t detail = 0;  ///< of `correct`: the rung of each hand (rung.hpp); of others 0
   std::int64_t begin_ns = 0;
   std::int64_t end_ns = 0;
 };
@@ -39,7 +42,7 @@ struct StageMark {
 /// The stages one service spent on one frame.
 /// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's recorder, the observer.
 struct StageMarks {
-  static constexpr std::string_view layout = "StageMarks/2";
+  static constexpr std::string_view layout = "StageMarks/3";
 
   Header header;
   std::uint32_t count = 0;

@@ -154,6 +154,14 @@ MetricFamily stages_of(const nlohmann::json& status) {
   return stages.family;
 }
 
+MetricFamily rungs_of(const nlohmann::json& status) {
+  auto rungs = Family::counter("handcast_rung_hands_total", "Hands of drawn frames that were given each rung of the ladder.");
+  if (!status.contains("rungs")) return rungs.family;
+  for (const auto& [rung, hands] : status["rungs"].items())
+    if (hands.is_number()) rungs.add({{"rung", rung}}, hands.template get<double>());
+  return rungs.family;
+}
+
 std::vector<MetricFamily> metrics_of(const RigLook& look) {
   const auto model = compare(look, look);
   auto families = families_of_rig(model);
@@ -161,6 +169,7 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   append(families, families_of(model.rings));
   append(families, families_of_readers(model.rings));
   families.push_back(stages_of(look.status));
+  families.push_back(rungs_of(look.status));
   std::erase_if(families, [](const auto& family) { return family.metric.empty(); });
   return families;
 }

@@ -67,6 +67,9 @@ void Ledger::note(std::string_view service, const msg::StageMarks& marks, std::u
     const auto stage = static_cast<std::size_t>(mark.stage);
     if (stage >= msg::kStageNames.size()) continue;  // shared memory: nothing read from it is trusted
     stages_[std::string(msg::kStageNames[stage])].add(mark.end_ns, mark.end_ns - mark.begin_ns);
+    if (mark.stage != msg::Stage::correct) continue;
+    for (const auto side : {msg::Side::left, msg::Side::right})
+      if (const auto rung = msg::rung_in(mark.detail, side)) ++rungs_[static_cast<std::size_t>(*rung)];
   }
 }
 

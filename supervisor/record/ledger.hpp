@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "supervisor/record/histogram.hpp"
 
@@ -64,10 +65,13 @@ class Ledger {
 
   const FrameCount& frames(std::string_view service) const;
   const std::map<std::string, StageTimes, std::less<>>& stages() const { return stages_; }
+  /// Hands of drawn frames that were given each rung of the ladder.
+  const std::array<std::uint64_t, msg::kRungs>& rungs() const { return rungs_; }
 
  private:
   std::map<std::string, FrameCount, std::less<>> frames_;
   std::map<std::string, StageTimes, std::less<>> stages_;
+  std::array<std::uint64_t, msg::kRungs> rungs_{};
 };
 
 }  // namespace handcast::supervisor

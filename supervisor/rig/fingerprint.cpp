@@ -38,6 +38,8 @@ const std::vector<Reads>& table() {
       {"pose", "twin", {"twin.tracker"}},
       {"landmarks", "", {"landmarks.backend", "landmarks.process"}},
       {"landmarks", "replay", {"landmarks.replay"}},
+      {"landmarks", "onednn", {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
+      {"landmarks", "opencv", {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
       {"landmarks", "twin", kTruth},
       {"landmarks", "twin", {"twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}},
       {"projector", "", {"projector", "content", "hand", "cascade"}},

@@ -93,6 +93,7 @@ json status_of(const RigView& rig) {
   }
   status["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages()) status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
+  for (std::size_t r = 0; r < msg::kRungs; ++r) status["rungs"][std::string(msg::kRungNames[r])] = rig.recorder.ledger().rungs()[r];
   return status;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/msg/rung.hpp"
 #include "supervisor/trace/made_frames.hpp"
 #include "supervisor/trace/perfetto_fields.hpp"
 #include "supervisor/trace/protobuf.hpp"
@@ -20,8 +21,8 @@ namespace {
 using namespace perfetto;
 
 constexpr std::uint64_t kSequence = 1, kProcessTrack = 1, kAgeTrack = 2, kFirstServiceTrack = 3;
-constexpr std::array<std::string_view, 3> kAnnotations{"frame_id", "age_ms", "marks_lost"};
-enum Annotation { frame_id, age_ms, marks_lost };
+constexpr std::array<std::string_view, 5> kAnnotations{"frame_id", "age_ms", "marks_lost", "left_hand", "right_hand"};
+enum Annotation { frame_id, age_ms, marks_lost, left_hand, right_hand };
 
 constexpr std::uint64_t name_id(msg::Stage stage) { return static_cast<std::uint64_t>(stage) + 1; }  // 0 is no name
 
@@ -134,14 +135,19 @@ class TraceWriter {
   Protobuf slice_begin(std::uint64_t track, const Slice& slice) const {
     Protobuf begin;
     begin.number(event::type, event::slice_begin).number(event::track, track).number(event::name_id, name_id(slice.mark.stage));
-    if (!is_leading(slice.mark.stage)) return begin;
-    const auto& frame = history_.frames[slice.frame];
-    for (const auto flow : flows_[slice.frame]) begin.fixed64(event::flow, flow);
     const auto annotate = [&](Annotation name, auto put) {
       Protobuf annotation;
       put(annotation.number(event::annotation_name_id, name + 1u));
       begin.message(event::annotation, annotation);
     };
+    if (slice.mark.stage == msg::Stage::correct)
+      for (const auto side : {msg::Side::left, msg::Side::right})
+        if (const auto rung = msg::rung_in(slice.mark.detail, side))
+          annotate(side == msg::Side::left ? left_hand : right_hand,
+                   [&](Protobuf& value) { value.text(event::annotation_text, msg::name_of(*rung)); });
+    if (!is_leading(slice.mark.stage)) return begin;
+    const auto& frame = history_.frames[slice.frame];
+    for (const auto flow : flows_[slice.frame]) begin.fixed64(event::flow, flow);
     annotate(frame_id, [&](Protobuf& value) { value.number(event::annotation_number, frame.header.frame_id); });
     if (const auto age_ns = age_of(frame, slice.mark))
       annotate(age_ms, [&](Protobuf& value) { value.real(event::annotation_real, ns_to_ms(*age_ns)); });

@@ -13,8 +13,8 @@ struct ClockReadings {
 };
 
 /// The history as a trace for ui.perfetto.dev: the bytes of a perfetto.protos.Trace of TrackEvents. A track per service, slices for its
-/// stages, flows from the sensors to the light (trace_flows.hpp), a counter for the age of the image in the light. Times are
-/// CLOCK_MONOTONIC's, as in every log and message of the house.
+/// stages (`correct` with the rung each hand was given), flows from the sensors to the light (trace_flows.hpp), a counter for the age of
+/// the image in the light. Times are CLOCK_MONOTONIC's, as in every log and message of the house.
 std::string perfetto_trace(const HistorySnapshot& history, std::string_view rig, const ClockReadings& clocks);
 
 }  // namespace handcast::supervisor

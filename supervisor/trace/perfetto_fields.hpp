@@ -29,7 +29,7 @@ inline constexpr int by_rank = 3;  // ordering
 namespace event {
 inline constexpr int annotation = 4, type = 9, name_id = 10, track = 11, value = 44, flow = 47;
 inline constexpr int slice_begin = 1, slice_end = 2, counter = 4;  // types
-inline constexpr int annotation_name_id = 1, annotation_number = 3, annotation_real = 5;
+inline constexpr int annotation_name_id = 1, annotation_number = 3, annotation_real = 5, annotation_text = 6;
 }  // namespace event
 
 }  // namespace handcast::supervisor::perfetto

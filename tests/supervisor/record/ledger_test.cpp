@@ -12,7 +12,7 @@ msg::StageMarks frame_at(std::int64_t time_ns, std::int64_t span_ns = kMs_ns) {
   msg::StageMarks marks;
   marks.header = {.frame_id = 1, .origin_ns = time_ns - 5 * kMs_ns, .published_ns = time_ns};
   marks.count = 1;
-  marks.marks[0] = {.stage = msg::Stage::draw, .reserved = 0, .begin_ns = time_ns - span_ns, .end_ns = time_ns};
+  marks.marks[0] = {.stage = msg::Stage::draw, .detail = 0, .begin_ns = time_ns - span_ns, .end_ns = time_ns};
   return marks;
 }
 
@@ -40,6 +40,17 @@ TEST(Ledger, AHeartBeatIsNotAFrame) {
   ledger.note("camera", beat);
   EXPECT_EQ(ledger.frames("camera").total(), 0u);
   EXPECT_TRUE(ledger.stages().empty());
+}
+
+TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
+  Ledger ledger;
+  auto marks = frame_at(kSecond_ns);
+  marks.marks[0].stage = msg::Stage::correct;
+  marks.marks[0].detail = msg::with_rung(msg::with_rung(0, msg::Side::left, msg::Rung::hold), msg::Side::right, msg::Rung::registered);
+  ledger.note("projector", marks);
+  marks.marks[0].detail = 0xffff;  // no rungs
+  ledger.note("projector", marks);
+  EXPECT_EQ(ledger.rungs(), (std::array<std::uint64_t, msg::kRungs>{1, 0, 0, 0, 0, 0, 1}));
 }
 
 TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
@@ -93,7 +104,7 @@ TEST(Ledger, ImpossibleMarksFromSharedMemoryAreLeftOut) {
   Ledger ledger;
   auto marks = frame_at(kSecond_ns);
   marks.count = 4'000'000'000u;
-  marks.marks.fill({.stage = static_cast<msg::Stage>(77), .reserved = 0, .begin_ns = 0, .end_ns = 0});
+  marks.marks.fill({.stage = static_cast<msg::Stage>(77), .detail = 0, .begin_ns = 0, .end_ns = 0});
   ledger.note("camera", marks);
   EXPECT_TRUE(ledger.stages().empty());
 }

@@ -62,6 +62,12 @@ config::Rig replay() {
   return rig;
 }
 
+config::Rig networks() {
+  config::Rig rig;
+  rig.landmarks.backend = "onednn";
+  return rig;
+}
+
 void expect_reads(const std::string& service, const config::Rig& rig, const std::vector<std::string>& names, const Paths& not_these = {}) {
   auto all = names;
   all.insert(all.end(), {"calibration"});
@@ -79,15 +85,20 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
   const config::Rig rig;
   expect_reads("camera", rig, truth_and({"camera", "twin.image"}), settings_in({"camera.replay", "camera.process.standby"}));
   expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}), settings_in({"pose.replay", "pose.process.standby"}));
-  expect_reads("landmarks", rig,
-               truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}),
-               settings_in({"landmarks.replay", "landmarks.process.standby"}));
+  expect_reads(
+      "landmarks", rig, truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}),
+      settings_in({"landmarks.replay", "landmarks.models", "landmarks.hands", "landmarks.definition", "landmarks.process.standby"}));
+}
+
+TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
+  expect_reads("landmarks", networks(), {"landmarks"}, settings_in({"landmarks.replay", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
   expect_reads("camera", replay(), {"camera"}, {"camera.process.standby"});
   expect_reads("pose", replay(), {"pose"}, {"pose.process.standby"});
-  expect_reads("landmarks", replay(), {"landmarks"}, {"landmarks.process.standby"});
+  expect_reads("landmarks", replay(), {"landmarks"},
+               settings_in({"landmarks.models", "landmarks.hands", "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
@@ -113,6 +124,7 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
   for (const auto& service : kServices) {
     read.merge(read_by(service, {}));
     read.merge(read_by(service, replay()));
+    read.merge(read_by(service, networks()));
   }
   config::Rig rig;
   for (const auto& section : config::list_settings(rig)) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "ipc/msg/rung.hpp"
 #include "tests/supervisor/record/marked_frames.hpp"
 #include "tests/supervisor/trace/trace_decoder.hpp"
 
@@ -69,6 +70,16 @@ TEST(Perfetto, EverySliceIsWhereItsMarkSays) {
   EXPECT_EQ(captures[1].annotations.at("frame_id"), 2);
   EXPECT_DOUBLE_EQ(captures[1].annotations.at("age_ms"), 1);
   EXPECT_THAT(trace.slices, SizeIs(2 + 1 + 1 + 4 * 4));
+}
+
+TEST(Perfetto, TheCorrectionTellsTheRungOfEachHand) {
+  History history(60);
+  auto corrected = mark(msg::Stage::correct, 1, 2);
+  corrected.detail = msg::with_rung(0, msg::Side::right, msg::Rung::similarity);
+  history.note("projector", frame(1, 0, {corrected, mark(msg::Stage::frame, 0, 3)}), 0);
+  const auto corrections = trace_of(history).named("correct");
+  ASSERT_THAT(corrections, SizeIs(1));
+  EXPECT_THAT(corrections[0].texts, ElementsAre(std::pair("right_hand", "similarity")));
 }
 
 TEST(Perfetto, StagesOfAFrameLieInsideItAndItsPresentationBehindIt) {

@@ -162,6 +162,10 @@ class Reader {
     for (auto each = begin; each != end; ++each) {
       const auto annotation = parse(each->second.bytes);
       if (!annotations_.contains(number(annotation, 1))) reject("an annotation's name that was not declared");
+      if (const auto* text = find(annotation, 6)) {
+        slice.texts[annotations_[number(annotation, 1)]] = text->bytes;
+        continue;
+      }
       const auto* real = find(annotation, 5);
       slice.annotations[annotations_[number(annotation, 1)]] =
           real ? std::bit_cast<double>(real->number) : static_cast<double>(number(annotation, 3));

@@ -15,6 +15,7 @@ struct SeenSlice {
   int parent = -1;  ///< index of the slice around it; -1: none
   std::vector<std::uint64_t> flows;
   std::map<std::string, double> annotations;
+  std::map<std::string, std::string> texts;  ///< annotations that are words
 };
 
 struct SeenTrace {
