@@ -1,14 +1,14 @@
 #include "renderer/pipeline.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <optional>
 
-#include "renderer/cascade/mask.hpp"
+#include "renderer/pipeline/hand_ladder.hpp"
+#include "renderer/pipeline/hand_mask.hpp"
+#include "renderer/pipeline/hand_sides.hpp"
 #include "renderer/pipeline/hand_surface.hpp"
 #include "renderer/pipeline/hand_track.hpp"
-#include "renderer/pipeline/hint.hpp"
+#include "renderer/pipeline/late_registration.hpp"
 #include "renderer/pipeline/stage_clock.hpp"
 
 namespace handcast::renderer {
@@ -16,24 +16,23 @@ namespace {
 
 using msg::Stage;
 
-/// Bounds of what a similarity takes into `region`.
-Rect moved_back(const Rect& region, const Similarity& move) {
-  const glm::mat2 turn(glm::vec2(move.cosine, move.sine), glm::vec2(-move.sine, move.cosine));
-  const glm::mat2 back = glm::inverse(turn);
-  glm::vec2 low(1e6f), high(-1e6f);
-  for (const glm::vec2 corner : {glm::vec2(region.x0, region.y0), glm::vec2(region.x1, region.y0), glm::vec2(region.x0, region.y1),
-                                 glm::vec2(region.x1, region.y1)}) {
-    const glm::vec2 there = back * (corner - move.shift);
-    low = glm::min(low, there);
-    high = glm::max(high, there);
-  }
-  return {static_cast<int>(std::floor(low.x)), static_cast<int>(std::floor(low.y)), static_cast<int>(std::ceil(high.x)),
-          static_cast<int>(std::ceil(high.y))};
-}
-
 LandmarkOracle of_side(const Pipeline::Oracle& oracle, Side side) {
   if (!oracle) return {};
   return [oracle, side](std::int64_t time_ns) { return oracle(side, time_ns); };
+}
+
+/// None where a lower rung is set, or where the landmarks do not move with the tracker, whose prediction registration corrects.
+config::Registration registration_of(const config::Cascade& settings) {
+  config::Registration registration = settings.registration;
+  if (!moves_with_tracker(settings.filter)) registration.method = "none";
+  if (settings.ladder.rung != "auto" && settings.ladder.rung != "register") registration.method = "none";
+  return registration;
+}
+
+/// With late registration jumps are blended in after it.
+config::Cascade of_tracks(config::Cascade settings) {
+  if (registration_of(settings).method != "none") settings.filter.blend_ms = 0;
+  return settings;
 }
 
 class Cascade final : public Pipeline {
@@ -43,48 +42,79 @@ class Cascade final : public Pipeline {
       : settings_(settings),
         shading_(static_cast<float>(content.shading)),
         calibration_(calibration),
-        tracks_{HandTrack(settings, calibration, of_side(oracle, Side::left)),
-                HandTrack(settings, calibration, of_side(oracle, Side::right))},
+        tracks_{HandTrack(of_tracks(settings), calibration, of_side(oracle, Side::left)),
+                HandTrack(of_tracks(settings), calibration, of_side(oracle, Side::right))},
+        ladders_{HandLadder(settings, calibration), HandLadder(settings, calibration)},
         surfaces_{std::move(left), std::move(right)},
-        mask_finder_(settings.mask),
-        lookup_(calibration),
-        projector_mask_(calibration.projector_width_px, calibration.projector_height_px),
+        movers_{RungMover(surfaces_[0].mesh()), RungMover(surfaces_[1].mesh())},
+        mask_(settings.mask, calibration),
+        late_(registration_of(settings), settings.filter, calibration),
         painter_(make_cpu_painter(calibration.projector_width_px, calibration.projector_height_px)) {}
 
-  void push(std::int64_t now_ns, const msg::HandPoses& poses) override {
+  void push(std::int64_t now_ns, const msg::HandPoses& reported) override {
+    const std::int64_t origin_ns = reported.header.origin_ns;
+    const auto poses = sides_.named(reported, {tracks_[0].recent_pose(origin_ns), tracks_[1].recent_pose(origin_ns)});
     for (const Side side : {Side::left, Side::right})
       if (const msg::HandPose* pose = poses.find(side)) {
-        track_of(side).push(now_ns, poses.header.origin_ns, *pose);
-        surfaces_[static_cast<std::size_t>(side)].learn(poses.header.origin_ns, *pose);
+        track_of(side).push(now_ns, origin_ns, *pose);
+        surfaces_[static_cast<std::size_t>(side)].learn(origin_ns, *pose);
       }
   }
 
-  void push(std::int64_t now_ns, const msg::Landmarks& landmarks) override {
+  void push(std::int64_t now_ns, const msg::Landmarks& reported) override {
+    const std::int64_t origin_ns = reported.header.origin_ns;
+    const auto landmarks = sides_.named(reported, {tracks_[0].landmarks_at(origin_ns), tracks_[1].landmarks_at(origin_ns)});
     for (const Side side : {Side::left, Side::right})
-      if (const msg::HandLandmarks* seen = landmarks.find(side)) track_of(side).push(now_ns, landmarks.header.origin_ns, *seen);
+      if (const msg::HandLandmarks* seen = landmarks.find(side)) {
+        if (!track_of(side).alone()) ladder_of(side).detection(track_of(side), origin_ns, *seen);
+        track_of(side).push(now_ns, origin_ns, *seen);
+      }
   }
+
+  bool looks() const override { return late_.on(); }
 
   std::span<const FrameHand> track(std::int64_t now_ns, std::int64_t target_ns) override {
     predict(now_ns, target_ns);
+    if (image_age_ns_) dim(target_ns);
+    correct_motion(target_ns);
     return frame_hands_;
+  }
+
+  void look(GreyView camera, std::int64_t camera_ns) override {
+    if (!late_.on() || camera.data == nullptr || !late_.is_new(camera_ns)) return;
+    expect(camera_ns);
+    find_masks(camera);
+    register_late(camera, camera_ns);
   }
 
   Frame render(std::int64_t now_ns, std::int64_t target_ns, GreyView camera, std::int64_t camera_ns) override {
     stages_.start();
+    const bool masked = settings_.fill.method != "none" && camera.data != nullptr;
+    image_age_ns_ = masked ? std::optional(target_ns - camera_ns) : std::nullopt;
     predict(now_ns, target_ns);
     stages_.mark(Stage::predict);
+
+    Rect region;
+    if (masked) {
+      expect(camera_ns);
+      find_masks(camera);
+      dim(target_ns);
+      stages_.mark(Stage::mask);
+      register_late(camera, camera_ns);
+    }
+    correct_motion(target_ns);
+    if (late_.on()) stages_.mark(Stage::registration);
+    if (masked) {
+      region = mask_.advance(expected_);
+      stages_.mark(Stage::advance);
+    }
     skin_hands();
     stages_.mark(Stage::skin);
     const int foldovers = correct();
-    stages_.mark(Stage::correct);
+    stages_.mark(Stage::correct, rungs());
+    if (masked) learn_widths(target_ns);
+    if (!masked) region = landing_bounds();
 
-    const bool masked = settings_.fill.method != "none" && camera.data != nullptr;
-    Rect region = landing_bounds();
-    if (masked) {
-      region = find_mask(camera, camera_ns);
-      learn_widths(target_ns);
-      stages_.mark(Stage::mask);
-    }
     const FillCounts counts = paint(region, masked);
     stages_.finish();
     return {target_ns, region.empty() ? Rect{} : region, painter_->colour(), frame_hands_, foldovers, counts, stages_.marks()};
@@ -92,24 +122,51 @@ class Cascade final : public Pipeline {
 
  private:
   HandTrack& track_of(Side side) { return tracks_[static_cast<std::size_t>(side)]; }
+  HandLadder& ladder_of(Side side) { return ladders_[static_cast<std::size_t>(side)]; }
+  Sight& sight_of(Side side) { return sights_[static_cast<std::size_t>(side)]; }
   HandSurface& surface_of(const FrameHand& hand) { return surfaces_[static_cast<std::size_t>(hand.side)]; }
   Rect on_screen(const Rect& region) const { return region.within(calibration_.projector_width_px, calibration_.projector_height_px); }
 
   void predict(std::int64_t now_ns, std::int64_t target_ns) {
     frame_hands_.clear();
     tracked_.clear();
+    steps_.clear();
     for (const Side side : {Side::left, Side::right}) {
-      const auto tracked = track_of(side).at(now_ns, target_ns);
-      if (!tracked) continue;
+      auto tracked = track_of(side).at(now_ns, target_ns);
+      if (!tracked) {
+        sight_of(side).gone(target_ns);
+        continue;
+      }
+      if (tracked->alone) ladder_of(side) = HandLadder(settings_, calibration_);  // what it has learned was of another tracker
+      steps_.push_back(tracked->alone ? HandLadder::Step{Rung::landmarks, Rung::landmarks, 0}
+                                      : ladder_of(side).take(track_of(side), target_ns, image_of(target_ns), *tracked));
       tracked_.push_back(*tracked);
-      frame_hands_.push_back({side, tracked->tracker, tracked->corrected, tracked->has_landmarks, {}});
+      frame_hands_.push_back({side, tracked->tracker, tracked->corrected, tracked->has_landmarks, {}, steps_.back().rung});
     }
+  }
+
+  void find_masks(GreyView camera) {
+    mask_.find(camera, expected_);
+    for (std::size_t h = 0; h < frame_hands_.size(); ++h) in_sight_[static_cast<std::size_t>(frame_hands_[h].side)] = mask_.shows(h);
+  }
+
+  /// Takes the light from hands that the newest image does not show, little by little.
+  void dim(std::int64_t target_ns) {
+    for (std::size_t h = 0; h < frame_hands_.size(); ++h) {
+      const Side side = frame_hands_[h].side;
+      tracked_[h].presence = std::min(tracked_[h].presence, sight_of(side).at(target_ns, in_sight_[static_cast<std::size_t>(side)]));
+    }
+  }
+
+  /// When the image was taken that a frame for `target_ns` shows, as old as the last one's was; nothing where none is registered to.
+  std::optional<std::int64_t> image_of(std::int64_t target_ns) const {
+    return image_age_ns_ && late_.on() ? std::optional(target_ns - *image_age_ns_) : std::nullopt;
   }
 
   void skin_hands() {
     for (std::size_t h = 0; h < frame_hands_.size(); ++h) {
       HandSurface& surface = surface_of(frame_hands_[h]);
-      surface.pose(tracked_[h].pose, settings_.skin, calibration_, shading_);
+      surface.pose(tracked_[h].pose, settings_.skin, calibration_, shading_, tracked_[h].presence);
       frame_hands_[h].landings = surface.landings_px();
     }
   }
@@ -122,6 +179,12 @@ class Cascade final : public Pipeline {
     return 0;
   }
 
+  std::uint32_t rungs() const {
+    std::uint32_t detail = 0;
+    for (const FrameHand& hand : frame_hands_) detail = msg::with_rung(detail, hand.side, hand.rung);
+    return detail;
+  }
+
   LandmarkPoints to_projector(const LandmarkPoints& camera_px) const {
     LandmarkPoints points;
     for (int i = 0; i < kLandmarks; ++i) points[i] = calibration_.to_projector(camera_px[i]);
@@ -130,11 +193,17 @@ class Cascade final : public Pipeline {
 
   int correct_by_vertices() {
     int foldovers = 0;
-    for (const FrameHand& hand : frame_hands_) {
+    for (std::size_t h = 0; h < frame_hands_.size(); ++h) {
+      const FrameHand& hand = frame_hands_[h];
       if (!hand.has_landmarks) continue;
       HandSurface& surface = surface_of(hand);
-      correct_vertices(settings_.correct, surface.mesh(), to_projector(hand.tracker), to_projector(hand.corrected), surface.landings_px());
-      foldovers += surface.untangle();
+      const LandmarkPoints from = to_projector(hand.tracker), to = to_projector(hand.corrected);
+      if (steps_[h].moves < Rung::landmarks) {
+        movers_[static_cast<std::size_t>(hand.side)].move(fit_rung(steps_[h].moves, from, to), surface.landings_px());
+      } else {
+        correct_vertices(settings_.correct, surface.mesh(), from, to, surface.landings_px());
+      }
+      if (steps_[h].moves >= Rung::fingers) foldovers += surface.untangle();
     }
     return foldovers;
   }
@@ -164,71 +233,62 @@ class Cascade final : public Pipeline {
     return on_screen(bounds);
   }
 
-  /// The hands in the camera image, as the projector would see them. Returns the part of the projector's image that has any.
-  Rect find_mask(GreyView camera, std::int64_t camera_ns) {
-    if (camera_mask_.width() != camera.width || camera_mask_.height() != camera.height) {
-      camera_mask_ = Image<std::uint8_t>(camera.width, camera.height);
-      written_ = {};
-    }
-    for (int y = written_.y0; y < written_.y1; ++y)
-      std::memset(camera_mask_.row(y) + written_.x0, 0, static_cast<std::size_t>(written_.width()));
+  /// The hands as the mask is to look for them in an image exposed around `camera_ns`.
+  void expect(std::int64_t camera_ns) {
+    expected_.clear();
+    for (std::size_t h = 0; h < frame_hands_.size(); ++h)
+      expected_.push_back({frame_hands_[h].side, track_of(frame_hands_[h].side).pose_at(camera_ns), &tracked_[h]});
+  }
 
-    owned_hints_.clear();
-    hints_.clear();
-    moves_.clear();
+  /// Takes in a new image, whose mask was found.
+  void register_late(GreyView camera, std::int64_t camera_ns) {
+    if (!late_.on()) return;
+    late_hands_.clear();
+    for (std::size_t h = 0; h < frame_hands_.size(); ++h)
+      if (tracked_[h].has_landmarks && steps_[h].registered > 0) late_hands_.push_back(late_hand(h));
+    late_.look(mask_.silhouette(camera), camera_ns, late_hands_);
+  }
+
+  LateRegistration::Hand late_hand(std::size_t h) {
+    LateRegistration::Hand hand{frame_hands_[h].side, &track_of(frame_hands_[h].side), tracked_[h].tracker, {}};
+    for (int i = 0; i < kLandmarks; ++i) hand.offset_px[i] = tracked_[h].corrected[i] - tracked_[h].tracker[i];
+    return hand;
+  }
+
+  /// Moves the landmarks by what the newest images know of the motion and the tracker does not.
+  void correct_motion(std::int64_t target_ns) {
+    if (!late_.on()) return;
     for (std::size_t h = 0; h < frame_hands_.size(); ++h) {
-      const auto then = track_of(frame_hands_[h].side).pose_at(camera_ns);
-      if (!then) continue;
-      auto hint = make_hint(calibration_, settings_.mask, *then, tracked_[h]);
-      if (!hint) continue;
-      moves_.push_back(since_exposure(*then, tracked_[h]));
-      owned_hints_.push_back(std::move(*hint));
+      if (!tracked_[h].has_landmarks) continue;
+      if (tracked_[h].alone) {
+        frame_hands_[h].corrected = late_.follow(late_hand(h), target_ns, tracked_[h].news);
+        continue;
+      }
+      const auto late = late_.correct(late_hand(h), target_ns, steps_[h].registered);
+      frame_hands_[h].corrected = late.points;
+      if (steps_[h].registered == 1) ladder_of(frame_hands_[h].side).registered(target_ns, late.moved_target);
+      if (h >= expected_.size()) continue;
+      expected_[h].moved_then = late.moved_then;
+      expected_[h].moved_now = late.moved_target;
     }
-    for (const OwnedHint& owned : owned_hints_) {
-      hints_.push_back(owned.hint);
-      hints_.back().inside_px = owned.seeds_px;
-    }
-    written_ = mask_finder_.find(camera, hints_, camera_mask_.view());
-    return advance_mask();
   }
 
   void learn_widths(std::int64_t target_ns) {
     if (!settings_.skin.fit || !settings_.skin.widths) return;
-    for (const FrameHand& hand : frame_hands_)
-      if (hand.has_landmarks) surface_of(hand).learn_widths(target_ns, to_projector(hand.corrected), projector_mask_.view());
-  }
-
-  /// How the hand has moved in the image, undone: from where it will be at the target time to where it was at the exposure.
-  Similarity since_exposure(const msg::HandPose& then, const HandTrack::Tracked& now) const {
-    const auto tracker_then = project_landmarks(calibration_, then);
-    if (!settings_.mask.advance || !tracker_then) return {};
-    return fit_similarity(now.tracker, *tracker_then);
-  }
-
-  /// The camera's mask in the projector's pixels, each hand moved on to where it will be. Where the bounds of two hands overlap, both
-  /// move as the second does. Returns the part that has any mask.
-  Rect advance_mask() {
-    constexpr int kMargin_px = 2;
-    Rect all;
-    std::vector<Rect> regions;
-    for (std::size_t h = 0; h < hints_.size(); ++h) {
-      const Rect hand = mask_finder_.hand_bounds(h);
-      const Rect moved = hand.empty() ? Rect{} : moved_back(hand, moves_[h]).grown(kMargin_px);
-      regions.push_back(on_screen(lookup_.to_projector(moved)));
-      all = all.joined(regions.back());
+    for (std::size_t h = 0; h < frame_hands_.size(); ++h) {
+      const FrameHand& hand = frame_hands_[h];
+      if (hand.has_landmarks && mask_.shows(h))
+        surface_of(hand).learn_widths(target_ns, to_projector(hand.corrected), mask_.in_projector());
     }
-    if (regions.size() > 1)
-      for (int y = all.y0; y < all.y1; ++y) std::memset(projector_mask_.row(y) + all.x0, 0, static_cast<std::size_t>(all.width()));
-    for (std::size_t h = 0; h < regions.size(); ++h) lookup_.resample(camera_mask_.view(), regions[h], projector_mask_.view(), moves_[h]);
-    return all;
   }
 
   FillCounts paint(const Rect& region, bool masked) {
     if (region.empty()) return {};
     drawn_.clear();
     Rect source;
-    for (const FrameHand& hand : frame_hands_) {
-      const HandSurface& surface = surface_of(hand);
+    for (std::size_t h = 0; h < frame_hands_.size(); ++h) {
+      if (tracked_[h].presence <= 0) continue;
+      const HandSurface& surface = surface_of(frame_hands_[h]);
       drawn_.push_back(surface.drawn(grid_ ? surface.seen_px() : surface.landings_px()));
       source = source.joined(surface.bounds(surface.seen_px()));
     }
@@ -241,7 +301,7 @@ class Cascade final : public Pipeline {
       stages_.mark(Stage::warp);
     }
     if (!masked) return {};
-    const FillCounts counts = painter_->fill(projector_mask_.view(), settings_.fill, region);
+    const FillCounts counts = painter_->fill(mask_.in_projector(), settings_.fill, region);
     stages_.mark(Stage::fill);
     return counts;
   }
@@ -249,21 +309,25 @@ class Cascade final : public Pipeline {
   config::Cascade settings_;
   float shading_;
   calib::Calibration calibration_;
+  HandSides sides_;
   std::array<HandTrack, 2> tracks_;      ///< by side
+  std::array<HandLadder, 2> ladders_;    ///< by side
   std::array<HandSurface, 2> surfaces_;  ///< by side
-  MaskFinder mask_finder_;
-  CameraLookup lookup_;
-  Image<std::uint8_t> camera_mask_, projector_mask_;
-  Rect written_;  ///< of the camera mask; the rest is 0
+  std::array<RungMover, 2> movers_;      ///< by side
+  std::array<Sight, 2> sights_;          ///< by side
+  std::array<bool, 2> in_sight_{};       ///< by side: the newest image shows it
+  HandMask mask_;
+  LateRegistration late_;
   std::unique_ptr<Painter> painter_;
   StageClock stages_;
+  std::optional<std::int64_t> image_age_ns_;  ///< of the last frame's image at the time of its light
 
   // One frame's.
   std::vector<HandTrack::Tracked> tracked_;  ///< beside frame_hands_
   std::vector<FrameHand> frame_hands_;
-  std::vector<OwnedHint> owned_hints_;
-  std::vector<HandHint> hints_;
-  std::vector<Similarity> moves_;  ///< beside hints_: camera px at the target time to camera px at the exposure
+  std::vector<HandLadder::Step> steps_;       ///< likewise
+  std::vector<HandMask::Expected> expected_;  ///< likewise
+  std::vector<LateRegistration::Hand> late_hands_;
   std::vector<DrawnHand> drawn_;
   std::optional<WarpGrid> grid_;
 };

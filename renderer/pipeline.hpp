@@ -12,6 +12,7 @@
 #include "config/sections/projector.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "renderer/painter.hpp"
 
@@ -24,6 +25,7 @@ struct FrameHand {
   LandmarkPoints corrected{};           ///< Q̂ (P where nothing corrects)
   bool has_landmarks = false;           ///< corrected differs from the tracker by what the filter knows
   std::span<const glm::vec2> landings;  ///< per vertex: where its light lands, projector px
+  msg::Rung rung = msg::Rung::landmarks;
 };
 
 /// One finished frame. Everything it points to is valid until the next render().
@@ -56,6 +58,11 @@ class Pipeline {
   /// The first half of render(): where the hands and their landmarks will be at `target_ns`, without drawing. A caller that skips
   /// frames calls it for those, so that filters with a memory of their output see every frame. Landings are empty.
   virtual std::span<const FrameHand> track(std::int64_t now_ns, std::int64_t target_ns) = 0;
+
+  /// A new image, exposed around `camera_ns`, of a frame that is not drawn: what moves between the images is followed in all of them.
+  /// Before that frame's track(). render() looks at its own. Not needed where looks() is false: nothing would come of it.
+  virtual void look(GreyView /*camera*/, std::int64_t /*camera_ns*/) {}
+  virtual bool looks() const { return false; }
 
   /// Draws the frame whose light will be seen at `target_ns`. `camera` is the newest image (image px; data may be null: no camera yet),
   /// exposed around `camera_ns`. No hand in sight gives a dark frame with an empty region.

@@ -26,6 +26,10 @@ class IdealFilter final : public LandmarkFilter {
 
 }  // namespace
 
+bool moves_with_tracker(const config::Filter& settings) {
+  return settings.method == "paper" || settings.method == "one_euro" || settings.method == "offset_kalman";
+}
+
 std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& settings, LandmarkOracle oracle) {
   if (settings.method == "naive") return make_settled_filter(settings, make_naive_filter());
   if (settings.method == "paper") return make_settled_filter(settings, make_paper_filter(settings));

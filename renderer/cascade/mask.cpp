@@ -10,10 +10,12 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kLeastThreshold = 20, kMostThreshold = 200, kStartThreshold = 40;
-constexpr double kThresholdShare = 0.2;  ///< of a new threshold that is taken at once: it must not flicker with the image's noise
-constexpr int kLeastArea_px = 150;       ///< smaller things are no hand, unless a seed is on them
-constexpr float kFingerReach_px = 16;    ///< a finger's skin is at most this far from its joints
+constexpr double kLeastThreshold = 6, kMostThreshold = 200, kStartThreshold = 40;
+constexpr double kThresholdShare = 0.2;        ///< of a new threshold that is taken at once: it must not flicker with the image's noise
+constexpr double kJump = 5, kJumpShare = 0.2;  ///< a new threshold farther off than this means other light, and is taken whole
+constexpr int kLeastArea_px = 150;             ///< smaller things are no hand, unless a seed is on them
+constexpr int kHole_px = 400;                  ///< a larger hole is some other thing before the hand
+constexpr float kFingerReach_px = 16;          ///< a finger's skin is at most this far from its joints
 constexpr float kArmMargin_px = 12;
 
 HANDCAST_CLONES void brighter_than(const std::uint8_t* image, int count, std::uint8_t threshold, std::uint8_t* mask) {
@@ -48,6 +50,7 @@ class Forearm {
 
   /// False where nothing of the run is left.
   bool cut(View<std::uint8_t> mask, const RunMap::Run& run) const {
+    if (beyond({run.x0, run.y}) <= 0 && beyond({run.x1, run.y}) <= 0) return true;
     const glm::vec2 row_start{0, run.y};
     Span span = positive({run.x0, run.x1}, beyond(row_start), out_.x);
     span = positive(span, half_width_ - across(row_start), out_.y);
@@ -95,8 +98,14 @@ Rect MaskFinder::find(GreyView image, std::span<const HandHint> hints, View<std:
   if (region.empty()) return {};
 
   choose(image, region);
-  for (int y = region.y0; y < region.y1; ++y)
-    brighter_than(image.row(y) + region.x0, region.width(), static_cast<std::uint8_t>(threshold_), mask.row(y) + region.x0);
+  bound(hints, region);
+  for (int y = region.y0; y < region.y1; ++y) {
+    const auto [x0, x1] = reach_.row(y);
+    clear(mask, y, region.x0, x0);
+    brighter_than(image.row(y) + x0, x1 - x0, static_cast<std::uint8_t>(threshold_), mask.row(y) + x0);
+    clear(mask, y, x1, region.x1);
+  }
+  reach_.confine(mask);
   runs_.build(mask, region);
 
   const int count = static_cast<int>(std::min(kMostHints, hints.size()));
@@ -114,7 +123,32 @@ Rect MaskFinder::find(GreyView image, std::span<const HandHint> hints, View<std:
     for (int h = 0; left && h < count; ++h)
       if (owners >> h & 1) hand_bounds_[h] = hand_bounds_[h].joined({run.x0, run.y, run.x1, run.y + 1});
   }
+  close_holes(mask);
   return region;
+}
+
+/// Dark spots where the hand surely is, where what is around them was taken for hand.
+void MaskFinder::close_holes(View<std::uint8_t> mask) {
+  constexpr int kOpen = 0;
+  rest_.build_rest(runs_);
+  rest_.own_edges(kOpen);
+  for (const RunMap::Run& run : rest_.runs())
+    if (!rest_.owners(run) && !reach_.surely_holds(run)) rest_.add_owner(rest_.part_of(run), kOpen);
+  for (const RunMap::Run& run : rest_.runs())
+    if (!rest_.owners(run) && rest_.area(run) <= kHole_px && mask.at(run.x0 - 1, run.y))
+      std::memset(mask.row(run.y) + run.x0, 255, static_cast<std::size_t>(run.x1 - run.x0));
+}
+
+void MaskFinder::bound(std::span<const HandHint> hints, Rect region) {
+  std::size_t most = 0;
+  for (const HandHint& hint : hints) most += std::max<std::size_t>(1, hint.flesh.size());
+  reach_.reset(region, most);
+  for (const HandHint& hint : hints)
+    if (hint.flesh.empty())
+      reach_.add(hint.region);
+    else
+      reach_.add(hint.flesh, hint.sure_px, hint.most_px, {hint.wrist_px, hint.to_elbow});
+  reach_.settle();
 }
 
 void MaskFinder::choose(GreyView image, Rect region) {
@@ -124,7 +158,9 @@ void MaskFinder::choose(GreyView image, Rect region) {
   }
   if (const int chosen = choose_threshold(image, region)) {
     const double bounded = std::clamp<double>(chosen, kLeastThreshold, kMostThreshold);
-    smooth_threshold_ = smooth_threshold_ > 0 ? smooth_threshold_ + kThresholdShare * (bounded - smooth_threshold_) : bounded;
+    const double change = bounded - smooth_threshold_;
+    const bool jumps = std::abs(change) > std::max(kJump, kJumpShare * smooth_threshold_);
+    smooth_threshold_ += jumps ? change : kThresholdShare * change;
   }
   threshold_ = static_cast<int>(std::lround(smooth_threshold_ > 0 ? smooth_threshold_ : kStartThreshold));
 }

@@ -8,6 +8,7 @@
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
+#include "renderer/cascade/reach.hpp"
 #include "renderer/cascade/run_map.hpp"
 #include "renderer/cascade/similarity.hpp"
 #include "renderer/image.hpp"
@@ -20,6 +21,8 @@ struct HandHint {
   glm::vec2 wrist_px;                    ///< where the hand ends on the forearm (already moved by Mask::forearm_mm)
   glm::vec2 to_elbow;                    ///< unit, from there along the forearm
   std::span<const glm::vec2> inside_px;  ///< points that are on the hand (joints): seeds of its component
+  std::span<const Flesh> flesh{};        ///< all that is hand lies in it; empty: the hand may fill its region
+  float sure_px = 0, most_px = 0;        ///< what the flesh is usually off by, and at most
 };
 
 /// The hand in the camera image: 255 hand, 0 not. Threshold (fixed, or chosen from the image by Otsu on the region's
@@ -41,11 +44,14 @@ class MaskFinder {
   static constexpr std::size_t kMostHints = 8;  ///< more are ignored
 
   void choose(GreyView image, Rect region);
+  void bound(std::span<const HandHint> hints, Rect region);
+  void close_holes(View<std::uint8_t> mask);
 
   config::Mask settings_;
   int threshold_ = 0;
   double smooth_threshold_ = 0;  ///< 0: none chosen yet
-  RunMap runs_;
+  Reach reach_;
+  RunMap runs_, rest_;  ///< what is bright, and what is not
   std::array<Rect, kMostHints> hand_bounds_{};
 };
 

@@ -130,19 +130,37 @@ std::array<glm::vec3, msg::kJoints> accelerations(const msg::HandPose& a, const 
 
 PoseHistory::PoseHistory(const config::Predict& settings, std::int64_t span_ns) : settings_(settings), span_ns_(span_ns) {}
 
-void PoseHistory::push(std::int64_t origin_ns, const msg::HandPose& pose) {
-  if (!is_finite(pose)) return;
+PoseHistory::Pushed PoseHistory::push(std::int64_t origin_ns, const msg::HandPose& pose) {
+  if (!is_finite(pose) || origin_ns < begins_ns_) return Pushed::not_measured;
+  if (!samples_.empty() && origin_ns > newest_ns()) {
+    if (Continuity::frozen(earlier_than(samples_.back()), samples_.back(), pose)) return Pushed::not_measured;
+    if (breaks({origin_ns, pose})) return Pushed::begins_anew;
+  }
   const auto after = std::upper_bound(samples_.begin(), samples_.end(), origin_ns,
                                       [](std::int64_t time_ns, const Sample& sample) { return time_ns < sample.origin_ns; });
   if (after != samples_.begin() && std::prev(after)->origin_ns == origin_ns) {
     std::prev(after)->pose = pose;
   } else {
     samples_.insert(after, Sample{origin_ns, pose});
+    since_jump_ = std::min(since_jump_ + 1, kSettled);
   }
   while (samples_.front().origin_ns < newest_ns() - span_ns_) samples_.pop_front();
+  return Pushed::goes_on;
 }
 
-void PoseHistory::clear() { samples_.clear(); }
+bool PoseHistory::breaks(const Sample& sample) {
+  if (!continuity_.broken(earlier_than(samples_.back()), samples_.back(), sample)) return false;
+  samples_.assign(1, sample);
+  begins_ns_ = sample.origin_ns;
+  since_jump_ = 1;
+  return true;
+}
+
+void PoseHistory::clear() {
+  samples_.clear();
+  begins_ns_ = std::numeric_limits<std::int64_t>::min();
+  since_jump_ = kSettled;
+}
 
 std::int64_t PoseHistory::newest_ns() const { return samples_.empty() ? 0 : samples_.back().origin_ns; }
 

@@ -2,9 +2,11 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 
 #include "config/sections/cascade.hpp"
+#include "renderer/cascade/continuity.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 
 namespace handcast::renderer {
@@ -16,12 +18,21 @@ class PoseHistory {
   /// `span_ns`: how far back samples are kept.
   explicit PoseHistory(const config::Predict& settings, std::int64_t span_ns = 250'000'000);
 
-  /// A sample with the time of an older one replaces it; one with a number that is not finite is dropped.
-  void push(std::int64_t origin_ns, const msg::HandPose& pose);
+  /// What a sample was.
+  enum class Pushed {
+    goes_on,       ///< the hand moved
+    begins_anew,   ///< the tracker jumped, or came back: what was before is forgotten, and no velocity reaches across
+    not_measured,  ///< nothing is new: a number that is not finite, a frozen pose, older than where the history begins
+  };
+  /// A sample with the time of an older one replaces it.
+  Pushed push(std::int64_t origin_ns, const msg::HandPose& pose);
   void clear();
 
   bool empty() const { return samples_.empty(); }
-  std::int64_t newest_ns() const;  ///< 0 where empty
+  std::int64_t newest_ns() const;                                         ///< 0 where empty
+  std::int64_t begins_ns() const { return begins_ns_; }                   ///< of what is known nothing is older
+  bool settled() const { return since_jump_ >= kSettled; }                ///< its velocity is known again after a jump
+  std::int64_t patience_ns() const { return continuity_.patience_ns(); }  ///< after this long without a sample the tracker is silent
 
   /// The hand at `time_ns`; nothing where the history is empty, or ends more than `lost_ns` before `time_ns`.
   /// Before the oldest sample: the oldest. Beyond the newest: by config::Predict::method, joint by joint. "velocity" goes on as
@@ -32,10 +43,10 @@ class PoseHistory {
   std::optional<msg::HandPose> at(std::int64_t time_ns, std::int64_t lost_ns = 200'000'000) const;
 
  private:
-  struct Sample {
-    std::int64_t origin_ns;
-    msg::HandPose pose;
-  };
+  using Sample = Continuity::Sample;
+  static constexpr int kSettled = 3;
+
+  bool breaks(const Sample& sample);
   msg::HandPose predicted(std::int64_t time_ns) const;
   const Sample* earlier_than(const Sample& sample) const;  ///< the newest that is far enough before it to tell a velocity
   std::array<glm::vec3, msg::kJoints> bends_m(const Sample& newest, const Sample& base, std::int64_t ahead_ns) const;
@@ -43,6 +54,9 @@ class PoseHistory {
   config::Predict settings_;
   std::int64_t span_ns_;
   std::deque<Sample> samples_;
+  Continuity continuity_;
+  std::int64_t begins_ns_ = std::numeric_limits<std::int64_t>::min();
+  int since_jump_ = kSettled;  ///< samples, up to kSettled
 };
 
 }  // namespace handcast::renderer

@@ -24,19 +24,54 @@ int skip(const std::uint8_t* row, int x, int end, std::uint8_t value) {
 }  // namespace
 
 void RunMap::build(View<const std::uint8_t> image, Rect region) {
+  begin(region);
+  for (int y = region.y0; y < region.y1; ++y) {
+    read(image.row(y), y, region.x0, region.x1);
+    end_row(y);
+  }
+}
+
+void RunMap::begin(Rect region) {
   region_ = region;
   runs_.clear();
   row_first_.assign(1, 0);
-  for (int y = region.y0; y < region.y1; ++y) {
-    const std::uint8_t* row = image.row(y);
-    for (int x = skip(row, region.x0, region.x1, 0); x < region.x1;) {
-      const int end = skip(row, x, region.x1, 255);
-      const int index = static_cast<int>(runs_.size());
-      runs_.push_back({y, x, end, index, end - x, 0});
-      x = skip(row, end, region.x1, 0);
+}
+
+void RunMap::push(int y, int x0, int x1) {
+  const int index = static_cast<int>(runs_.size());
+  runs_.push_back({y, x0, x1, index, x1 - x0, 0});
+}
+
+void RunMap::read(const std::uint8_t* row, int y, int x0, int x1) {
+  for (int x = skip(row, x0, x1, 0); x < x1;) {
+    const int end = skip(row, x, x1, 255);
+    push(y, x, end);
+    x = skip(row, end, x1, 0);
+  }
+}
+
+void RunMap::end_row(int y) {
+  if (y > region_.y0) join_with_row_above(row_first_[y - region_.y0 - 1], row_first_[y - region_.y0]);
+  row_first_.push_back(static_cast<int>(runs_.size()));
+}
+
+void RunMap::build_rest(const RunMap& other) {
+  begin(other.region_);
+  for (int y = region_.y0; y < region_.y1; ++y) {
+    int x = region_.x0;
+    for (int run = other.row_first_[y - region_.y0]; run < other.row_first_[y - region_.y0 + 1]; ++run) {
+      if (other.runs_[run].x0 > x) push(y, x, other.runs_[run].x0);
+      x = other.runs_[run].x1;
     }
-    if (y > region.y0) join_with_row_above(row_first_[y - region.y0 - 1], row_first_[y - region.y0]);
-    row_first_.push_back(static_cast<int>(runs_.size()));
+    if (x < region_.x1) push(y, x, region_.x1);
+    end_row(y);
+  }
+}
+
+void RunMap::own_edges(int owner) {
+  for (int run = 0; run < static_cast<int>(runs_.size()); ++run) {
+    const Run& r = runs_[run];
+    if (r.y == region_.y0 || r.y == region_.y1 - 1 || r.x0 == region_.x0 || r.x1 == region_.x1) add_owner(root(run), owner);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "renderer/cascade/threshold.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,14 +10,15 @@ namespace {
 
 constexpr double kRimShare = 0.25;     ///< of the way from the dark mean to the bright one: skin that turns away from the lamp is hand too
 constexpr double kLeastContrast = 10;  ///< grey values between the means of the parts
-constexpr double kLeastSeparation = 0.7;  ///< share of the variance between the parts: one bell of noise has 0.64
+constexpr double kLeastSeparation = 0.7;     ///< share of the variance between the parts: one bell of noise has 0.64
+constexpr int kLeastNoise = 2, kNoises = 4;  ///< nothing is hand that is not this many standard deviations of the ground above it
 
 using Histogram = std::array<std::uint32_t, 256>;
 
 /// Two histograms in turn, so that equal neighbours do not wait for each other's count.
 Histogram histogram_of(GreyView image, Rect region) {
   Histogram even{}, odd{};
-  for (int y = region.y0; y < region.y1; y += 2) {
+  for (int y = region.y0; y < region.y1; y += 4) {
     const std::uint8_t* row = image.row(y);
     int x = region.x0;
     for (; x + 2 < region.x1; x += 4) {
@@ -27,6 +29,13 @@ Histogram histogram_of(GreyView image, Rect region) {
   }
   for (int grey = 0; grey < 256; ++grey) even[grey] += odd[grey];
   return even;
+}
+
+/// Where the histogram's lower `share` ends.
+int percentile(const Histogram& histogram, double count, double share) {
+  int grey = 0;
+  for (double below = histogram[0]; below < share * count && grey < 255; below += histogram[grey]) ++grey;
+  return grey;
 }
 
 }  // namespace
@@ -43,7 +52,7 @@ int choose_threshold(GreyView image, Rect region) {
   if (count == 0) return 0;
   const double variance = squares / count - (sum / count) * (sum / count);
 
-  double dark_count = 0, dark_sum = 0, best = 0, dark_mean = 0, bright_mean = 0;
+  double dark_count = 0, dark_sum = 0, best = 0, dark_share = 0, dark_mean = 0, bright_mean = 0;
   for (int grey = 0; grey < 255; ++grey) {
     dark_count += histogram[grey];
     dark_sum += static_cast<double>(histogram[grey]) * grey;
@@ -53,11 +62,15 @@ int choose_threshold(GreyView image, Rect region) {
     const double between = dark_count * bright_count / (count * count) * (bright - dark) * (bright - dark);
     if (between <= best) continue;
     best = between;
+    dark_share = dark_count;
     dark_mean = dark;
     bright_mean = bright;
   }
   if (bright_mean - dark_mean < kLeastContrast || best < kLeastSeparation * variance) return 0;
-  return static_cast<int>(std::lround(dark_mean + kRimShare * (bright_mean - dark_mean)));
+  const int ground = percentile(histogram, dark_share, 0.5);
+  const int noise = std::max(kLeastNoise, ground - percentile(histogram, dark_share, 0.16));
+  const double clear_of_noise = std::min<double>(ground + kNoises * noise, 0.5 * (dark_mean + bright_mean));
+  return static_cast<int>(std::lround(std::max(clear_of_noise, dark_mean + kRimShare * (bright_mean - dark_mean))));
 }
 
 }  // namespace handcast::renderer

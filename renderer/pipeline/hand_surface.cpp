@@ -48,10 +48,10 @@ HANDCAST_CLONES void project_all(const float* position, int count, const float* 
 }
 
 /// Lambert's law for light that comes along the camera's axis: space is z forward, so a surface that faces the camera has normal z -1.
-HANDCAST_CLONES void shade_all(const float* normal, int count, float shading, float* light) {
+HANDCAST_CLONES void shade_all(const float* normal, int count, float shading, float presence, float* light) {
   for (int v = 0; v < count; ++v) {
     const float lambert = normal[3 * v + 2] < 0 ? -normal[3 * v + 2] : 0.0f;
-    light[v] = 1 - shading + shading * lambert;
+    light[v] = presence * (1 - shading + shading * lambert);
   }
 }
 
@@ -81,18 +81,21 @@ Result<HandSurface> HandSurface::load(Side side, const std::filesystem::path& ha
   return surface;
 }
 
-void HandSurface::pose(const msg::HandPose& pose, const config::Skin& settings, const calib::Calibration& calibration, float shading) {
+void HandSurface::pose(const msg::HandPose& pose, const config::Skin& settings, const calib::Calibration& calibration, float shading,
+                       float presence) {
   JointFrames frames = settings.fit ? (*bone_fit_)(frames_of(pose)) : frames_of(pose);
   const glm::mat4 camera_from_tracker(calibration.camera_from_tracker);
   for (glm::mat4& frame : frames) frame = camera_from_tracker * frame;
-  shaded_ = shading > 0;
-  skin(mesh_, frames, positions_m_, shaded_ ? std::span(normals_) : std::span<glm::vec3>());
+  const bool shaded = shading > 0;
+  lit_evenly_ = !shaded && presence >= 1;
+  skin(mesh_, frames, positions_m_, shaded ? std::span(normals_) : std::span<glm::vec3>());
 
   const glm::mat3 projector_from_space(calibration.projector_from_camera * calibration.camera.matrix());
   facing_sign_ = glm::determinant(projector_from_space) > 0 ? -1.0f : 1.0f;
   const int count = static_cast<int>(mesh_.vertex_count());
   project_all(&positions_m_[0].x, count, &projector_from_space[0][0], kNearest_m, &seen_px_[0].x, depth_m_.data());
-  if (shaded_) shade_all(&normals_[0].x, count, shading, light_.data());
+  if (shaded) shade_all(&normals_[0].x, count, shading, presence, light_.data());
+  if (!shaded) std::fill(light_.begin(), light_.end(), presence);
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());
 }
 
@@ -102,7 +105,7 @@ void HandSurface::learn_widths(std::int64_t time_ns, const LandmarkPoints& landm
 }
 
 DrawnHand HandSurface::drawn(std::span<const glm::vec2> position_px) const {
-  return {&mesh_, &texture_, position_px, depth_m_, shaded_ ? std::span(light_) : std::span<const float>()};
+  return {&mesh_, &texture_, position_px, depth_m_, lit_evenly_ ? std::span<const float>() : std::span(light_)};
 }
 
 Rect HandSurface::bounds(std::span<const glm::vec2> position_px) const {

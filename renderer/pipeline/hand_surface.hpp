@@ -24,8 +24,10 @@ class HandSurface {
   /// A tracker sample, to know the person by.
   void learn(std::int64_t origin_ns, const msg::HandPose& pose) { bone_fit_->learn(origin_ns, frames_of(pose)); }
 
-  /// Skins the mesh and sees it through the camera and the projector. `shading` 0..1; light comes from the camera's side.
-  void pose(const msg::HandPose& pose, const config::Skin& settings, const calib::Calibration& calibration, float shading);
+  /// Skins the mesh and sees it through the camera and the projector. `shading` 0..1; light comes from the camera's side. All light is
+  /// multiplied by `presence` 0..1.
+  void pose(const msg::HandPose& pose, const config::Skin& settings, const calib::Calibration& calibration, float shading,
+            float presence = 1);
 
   /// The mask of this hand (projector px) at the time its landings are for, to know the person's widths by.
   void learn_widths(std::int64_t time_ns, const LandmarkPoints& landmarks_px, GreyView mask);
@@ -52,7 +54,7 @@ class HandSurface {
   std::vector<glm::vec3> positions_m_, normals_;
   std::vector<glm::vec2> seen_px_, landings_px_;
   std::vector<float> depth_m_, light_;
-  bool shaded_ = false;
+  bool lit_evenly_ = true;  ///< and fully: light_ is not used
   float facing_sign_ = -1;  ///< of the projected area of a triangle that faces the camera
 };
 

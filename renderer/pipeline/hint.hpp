@@ -8,10 +8,11 @@
 
 namespace handcast::renderer {
 
-/// What the mask finder is told of one hand; owns the seeds that the hint points to.
+/// What the mask finder is told of one hand; owns the seeds and the flesh that the hint points to.
 struct OwnedHint {
   HandHint hint;
   std::vector<glm::vec2> seeds_px;
+  std::vector<Flesh> flesh;
 };
 
 /// Where a hand is expected in an image: its pose when the image was taken, moved by what the landmarks know (Q̂ - P of `tracked`).

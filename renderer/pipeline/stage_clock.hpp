@@ -13,9 +13,9 @@ class StageClock {
     marks_.clear();
     start_ns_ = last_ns_ = now_ns();
   }
-  void mark(msg::Stage stage) {
+  void mark(msg::Stage stage, std::uint32_t detail = 0) {
     const std::int64_t end_ns = now_ns();
-    marks_.push_back({stage, 0, last_ns_, end_ns});
+    marks_.push_back({stage, detail, last_ns_, end_ns});
     last_ns_ = end_ns;
   }
   /// The whole frame, from start() to here.

@@ -7,7 +7,8 @@
 
 #include "renderer/cascade/landmark_filter.hpp"
 
-/// The filters behind make_landmark_filter, one file each. Only landmark_filter.cpp and their tests include this.
+/// The filters behind make_landmark_filter, one file each. Only landmark_filter.cpp, their tests and who needs a TrackerMemory include
+/// this.
 namespace handcast::renderer {
 
 /// A filter that can start afresh.
@@ -50,6 +51,14 @@ void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets, const std::array<b
 /// P moved by these offsets, those that are not known lent; nothing where none is.
 std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker, std::array<glm::vec2, kLandmarks> offsets,
                                        const std::array<bool, kLandmarks>& known);
+
+/// Where landmarks should be.
+struct ExpectedPoints {
+  std::array<glm::vec2, kLandmarks> px{};
+  std::array<bool, kLandmarks> known{};
+};
+/// How far all together were seen from there: the length of the median. 0 where nothing can be compared.
+float common_error_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected);
 
 inline glm::vec2 position_px(const msg::Landmark& point) { return {point.x_px, point.y_px}; }
 bool was_seen(const msg::Landmark& point);  ///< confidence above 0 and finite

@@ -51,6 +51,10 @@ class OneEuro final : public OffsetFilter<OneEuroTrack> {
   void update(OneEuroTrack& track, std::int64_t time_ns, glm::vec2 offset_px) const override {
     track.update(time_ns, offset_px, static_cast<float>(settings().one_euro_cutoff_hz), static_cast<float>(settings().one_euro_beta));
   }
+  void begin(OneEuroTrack& track, std::int64_t time_ns, glm::vec2 offset_px) const override {
+    track.forget();
+    update(track, time_ns, offset_px);
+  }
   glm::vec2 offset_at(const OneEuroTrack& track, std::int64_t) const override { return track.offset_px(); }
 };
 

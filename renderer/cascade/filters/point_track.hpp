@@ -17,12 +17,13 @@ class PointTrack {
     double process = 0, noise_px = 1, start_speed2 = 0;
   };
   void update(std::int64_t time_ns, glm::vec2 measured_px, const Model& model);
+  /// Begins anew at a position known to `sigma_px`.
+  void start(std::int64_t time_ns, glm::vec2 position_px, double sigma_px, const Model& model);
 
   /// Extrapolated no further than 60 ms.
   glm::vec2 at(std::int64_t time_ns) const;
 
  private:
-  void start(std::int64_t time_ns, glm::vec2 measured_px, const Model& model);
   void advance(std::int64_t time_ns, double process);
 
   bool known_ = false;

@@ -58,6 +58,21 @@ std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker, std::array
   return points;
 }
 
+float common_error_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected) {
+  std::array<float, kLandmarks> x, y;
+  int count = 0;
+  for (int i = 0; i < kLandmarks; ++i) {
+    if (!was_seen(seen.points[i]) || !expected.known[i]) continue;
+    const glm::vec2 error = position_px(seen.points[i]) - expected.px[i];
+    x[count] = error.x;
+    y[count++] = error.y;
+  }
+  if (count == 0) return 0;
+  std::nth_element(x.begin(), x.begin() + count / 2, x.begin() + count);
+  std::nth_element(y.begin(), y.begin() + count / 2, y.begin() + count);
+  return glm::length(glm::vec2(x[count / 2], y[count / 2]));
+}
+
 bool was_seen(const msg::Landmark& point) { return point.confidence > 0 && std::isfinite(point.x_px) && std::isfinite(point.y_px); }
 
 }  // namespace handcast::renderer

@@ -283,5 +283,49 @@ TEST(Blending, AHandThatComesBackIsNotDraggedFromWhereItLeft) {
   EXPECT_NEAR((*filter->at(480 * kMs, 484 * kMs, elsewhere))[3].x - elsewhere[3].x, 10, 0.5);
 }
 
+TEST_P(OffsetFilter, AFingerTakenForAnotherIsPutRightButBelievedInTheEnd) {
+  if (std::string(GetParam()) == "paper") GTEST_SKIP() << "the paper's filter takes detections as they come";
+  const auto filter = make_landmark_filter(settings(GetParam()));
+  Line still;
+  const auto apart = [&] {  // fingers 60 px from each other
+    auto hand = seen(still.at(0), {3, 0});
+    for (int i = 1; i < kLandmarks; ++i) hand.points[i].x_px += 60.0f * static_cast<float>((i - 1) / 4);
+    return hand;
+  };
+  auto wrong = apart();
+  std::swap_ranges(&wrong.points[5], &wrong.points[9], &wrong.points[9]);
+  for (int ms = 0; ms <= 320; ms += 16) filter->detection(ms * kMs, (ms - 16) * kMs, apart(), still.function());
+  const float right = offset_at(*filter, still, 320 * kMs, 6).x;
+  for (int ms = 336; ms < 800; ms += 16) {
+    filter->detection(ms * kMs, (ms - 16) * kMs, wrong, still.function());
+    ASSERT_NEAR(offset_at(*filter, still, ms * kMs, 6).x, right, 0.5) << ms;
+  }
+  for (int ms = 800; ms < 2000; ms += 16) filter->detection(ms * kMs, (ms - 16) * kMs, wrong, still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 2000 * kMs, 6).x, right + 72, 3);
+}
+
+TEST(OffsetKalman, WhenTheTrackerMovesItsHandUnnoticedTheNextDetectionIsBelieved) {
+  const auto filter = make_landmark_filter(settings("offset_kalman"));
+  const Line still;
+  run(*filter, still, {3, 0}, 0, 320);
+  const TrackerAt moved = [&](std::int64_t) {
+    auto points = still.at(0);
+    for (auto& point : points) point.x += 50;
+    return std::optional(points);
+  };
+  for (int ms = 336; ms < 700; ms += 2) {
+    if (ms % 16 == 0) filter->detection(ms * kMs, (ms - 16) * kMs, seen(still.at(0), {3, 0}), moved);
+    ASSERT_NEAR((*filter->at(ms * kMs, (ms + 4) * kMs, *moved(0)))[7].x - still.at(0)[7].x, 3, 0.5) << ms;
+  }
+}
+
+TEST(OffsetKalman, ADetectionThatIsElsewhereAltogetherIsNotBelievedAtOnce) {
+  const auto filter = make_landmark_filter(settings("offset_kalman"));
+  const Line still;
+  run(*filter, still, {3, 0}, 0, 320);
+  filter->detection(336 * kMs, 320 * kMs, seen(still.at(0), {150, 40}), still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 336 * kMs).x, 3, 0.5);
+}
+
 }  // namespace
 }  // namespace handcast::renderer

@@ -266,6 +266,97 @@ TEST(MaskFinder, TheThresholdDoesNotFlickerWithNoise) {
   EXPECT_LE(most - least, 2);
 }
 
+TEST(MaskFinder, WhenTheLightFallsSuddenlyTheHandIsFoundInTheNextImage) {
+  MaskFinder finder({});
+  Scene bright, dim;
+  bright.hand({360, 400}, 200);
+  dim.hand({360, 400}, 30);
+  std::fill(dim.image.pixels().begin(), dim.image.pixels().begin() + kWidth, 0);
+  bright.find(finder);
+  dim.find(finder);
+  EXPECT_NEAR(dim.area(), bright.area(), 0.01 * bright.area());
+}
+
+TEST(MaskFinder, WhenTheLightRisesSuddenlyTheGroundIsNoHandInTheNextImage) {
+  MaskFinder finder({});
+  Scene dim, bright;
+  dim.hand({360, 400}, 60);
+  std::fill(bright.image.pixels().begin(), bright.image.pixels().end(), 70);
+  bright.hand({360, 400}, 255);
+  dim.find(finder);
+  bright.find(finder);
+  EXPECT_NEAR(bright.area(), dim.area(), 0.01 * dim.area());
+}
+
+TEST(MaskFinder, ASmallDarkSpotOnTheHandIsHandAndALargeOneIsNot) {
+  Scene scene;
+  scene.hand({360, 400});
+  for (int y = 340; y < 352; ++y)
+    for (int x = 340; x < 352; ++x) scene.image.at(x, y) = 8;
+  for (int y = 340; y < 365; ++y)
+    for (int x = 360; x < 385; ++x) scene.image.at(x, y) = 8;
+  MaskFinder finder({});
+  scene.find(finder);
+  EXPECT_TRUE(scene.lit(346, 346));
+  EXPECT_FALSE(scene.lit(372, 352));
+}
+
+/// The flesh of a scene's hand: its fingers and its palm.
+std::vector<Flesh> flesh_of_hand(glm::vec2 wrist) {
+  std::vector<Flesh> flesh;
+  for (int finger = 0; finger < 4; ++finger) {
+    const glm::vec2 knuckle = wrist + glm::vec2(-30 + 20 * finger, -75);
+    flesh.push_back({knuckle, knuckle - glm::vec2(0, 70), 8, 8});
+  }
+  flesh.push_back({wrist, wrist - glm::vec2(0, 50), 30, 36});
+  return flesh;
+}
+
+TEST(MaskFinder, ABrightThingBehindTheHandIsNotHand) {
+  Scene scene;
+  scene.hand({360, 400});
+  MaskFinder finder({});
+  scene.find(finder);
+  const int clean = scene.area();
+  scene.capsule({300, 220}, {420, 220}, 60, 120);
+  const auto flesh = flesh_of_hand({360, 400});
+  scene.hints[0].flesh = flesh;
+  scene.hints[0].sure_px = 1;
+  scene.hints[0].most_px = 14;
+  scene.find(finder);
+  EXPECT_TRUE(scene.lit(330, 270));
+  EXPECT_FALSE(scene.lit(330, 225));
+  EXPECT_FALSE(scene.lit(340, 270));  // between two fingers
+  EXPECT_NEAR(scene.area(), clean, 0.1 * clean);
+}
+
+TEST(MaskFinder, AHandThatIsSomewhatOffItsBonesIsWhollyFound) {
+  Scene scene;
+  scene.hand({360, 400});
+  MaskFinder finder({});
+  scene.find(finder);
+  const int clean = scene.area();
+  const auto flesh = flesh_of_hand({366, 396});
+  scene.hints[0].flesh = flesh;
+  scene.hints[0].sure_px = 1;
+  scene.hints[0].most_px = 14;
+  scene.find(finder);
+  EXPECT_NEAR(scene.area(), clean, 0.005 * clean);
+}
+
+TEST(MaskFinder, BonesThatAreFarOffDoNotCutTheHandToTheirShape) {
+  Scene scene;
+  scene.hand({360, 400});
+  const auto flesh = flesh_of_hand({380, 370});
+  scene.hints[0].flesh = flesh;
+  scene.hints[0].sure_px = 1;
+  scene.hints[0].most_px = 14;
+  MaskFinder finder({});
+  scene.find(finder);
+  EXPECT_TRUE(scene.lit(334, 270));   // a finger beside the bones,
+  EXPECT_FALSE(scene.lit(324, 270));  // and what of it is beyond all they may be off by
+}
+
 TEST(MaskFinder, WhenTheHandGoesDarkTheThresholdIsHeld) {
   MaskFinder finder({});
   Scene lit;

@@ -175,5 +175,56 @@ TEST(PoseHistory, OldSamplesAreForgotten) {
   EXPECT_NEAR(x_of(history.at(0)), 0.045f, 1e-6f);
 }
 
+TEST(PoseHistory, ATrackerThatJumpsIsNotTakenForAFastHand) {
+  PoseHistory history = moving(0.5f);
+  EXPECT_EQ(history.push(99 * kMs, pose_at({0.0495f + 0.1f, 0, 0})), PoseHistory::Pushed::begins_anew);
+  EXPECT_EQ(history.begins_ns(), 99 * kMs);
+  EXPECT_FALSE(history.settled());
+  EXPECT_NEAR(x_of(history.at(110 * kMs)), 0.1495f, 1e-5f);  // no velocity across it,
+  EXPECT_NEAR(x_of(history.at(95 * kMs)), 0.1495f, 1e-5f);   // and nothing in between
+  EXPECT_EQ(history.push(108 * kMs, pose_at({0.154f, 0, 0})), PoseHistory::Pushed::goes_on);
+  EXPECT_EQ(history.push(117 * kMs, pose_at({0.1585f, 0, 0})), PoseHistory::Pushed::goes_on);
+  EXPECT_TRUE(history.settled());
+  EXPECT_NEAR(x_of(history.at(126 * kMs)), 0.163f, 1e-4f);
+}
+
+TEST(PoseHistory, AFingerThatJumpsIsAJumpAndAJointIsNot) {
+  for (const int joints : {1, 5}) {
+    PoseHistory history = moving(0.5f);
+    auto pose = pose_at({0.0495f, 0, 0});
+    for (int j = 6; j < 6 + joints; ++j) pose.joints[j].position_m[1] += 0.03f;
+    EXPECT_EQ(history.push(99 * kMs, pose) == PoseHistory::Pushed::begins_anew, joints == 5);
+  }
+}
+
+TEST(PoseHistory, NothingOlderThanAJumpComesIn) {
+  PoseHistory history = moving(0.5f);
+  history.push(99 * kMs, pose_at({0.2f, 0, 0}));
+  EXPECT_EQ(history.push(95 * kMs, pose_at({0.0475f, 0, 0})), PoseHistory::Pushed::not_measured);
+  EXPECT_NEAR(x_of(history.at(100 * kMs)), 0.2f, 1e-6f);
+}
+
+TEST(PoseHistory, AHandThatComesBackBeginsAnew) {
+  PoseHistory history = moving(0.5f);
+  EXPECT_EQ(history.push(190 * kMs, pose_at({0.1f, 0, 0})), PoseHistory::Pushed::begins_anew);
+}
+
+TEST(PoseHistory, AMovingHandThatIsSuddenlyTheSameToTheLastBitIsNotMeasured) {
+  PoseHistory history = moving(0.5f);
+  EXPECT_EQ(history.push(99 * kMs, *history.at(90 * kMs)), PoseHistory::Pushed::not_measured);
+  EXPECT_EQ(history.newest_ns(), 90 * kMs);
+  PoseHistory still = moving(0);
+  EXPECT_EQ(still.push(99 * kMs, *still.at(90 * kMs)), PoseHistory::Pushed::goes_on);
+}
+
+TEST(PoseHistory, AHandThatWasShakenHardMayBeShakenOn) {
+  const auto shaken = [](double s) { return static_cast<float>(0.06 * std::sin(2 * 3.14159265 * 9 * s)); };  // 3.4 m/s, 190 m/s^2
+  PoseHistory history(by_velocity());
+  for (int i = 0; i < 400; ++i) {
+    const double s = i * 9e-3, swell = std::min(1.0, s / 0.5);
+    ASSERT_EQ(history.push(i * 9 * kMs, pose_at({static_cast<float>(swell) * shaken(s), 0, 0})), PoseHistory::Pushed::goes_on) << i;
+  }
+}
+
 }  // namespace
 }  // namespace handcast::renderer

@@ -101,6 +101,20 @@ TEST(Pipeline, TheIdealFilterNeedsATruthThatOnlyASimulatorHas) {
   EXPECT_TRUE(Pipeline::create(ideal, {}, {}, rig_above_hand(), knows_nothing));
 }
 
+TEST(Pipeline, ImagesOfFramesThatAreNotDrawnAreAskedForOnlyWhereTheyAreRegistered) {
+  EXPECT_TRUE(make_pipeline()->looks());
+  config::Cascade settings;
+  settings.ladder.rung = "landmarks";
+  EXPECT_FALSE(make_pipeline(settings)->looks());
+  settings.ladder.rung = "register";
+  EXPECT_TRUE(make_pipeline(settings)->looks());
+  settings.filter.method = "kalman";
+  EXPECT_FALSE(make_pipeline(settings)->looks());
+  settings = {};
+  settings.registration.method = "none";
+  EXPECT_FALSE(make_pipeline(settings)->looks());
+}
+
 class EverySide : public ::testing::TestWithParam<Side> {};
 INSTANTIATE_TEST_SUITE_P(Sides, EverySide, ::testing::Values(Side::left, Side::right),
                          [](const auto& each) { return each.param == Side::left ? "Left" : "Right"; });
@@ -368,8 +382,8 @@ TEST(Pipeline, EveryStageIsMarkedInOrder) {
     stages.push_back(mark.stage);
     EXPECT_LE(mark.begin_ns, mark.end_ns);
   }
-  EXPECT_THAT(stages,
-              ElementsAre(Stage::predict, Stage::skin, Stage::correct, Stage::mask, Stage::draw, Stage::warp, Stage::fill, Stage::frame));
+  EXPECT_THAT(stages, ElementsAre(Stage::predict, Stage::mask, Stage::registration, Stage::advance, Stage::skin, Stage::correct,
+                                  Stage::draw, Stage::warp, Stage::fill, Stage::frame));
   EXPECT_EQ(frame.stages.back().begin_ns, frame.stages.front().begin_ns);
 }
 

@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "renderer/image.hpp"
+
+namespace handcast::renderer {
+
+/// A mask and the image it was made from. Its edge is where the grey value falls through the threshold; where the mask ends for
+/// another reason (the cut through the forearm, the image's border) it has none.
+struct Silhouette {
+  GreyView image;
+  GreyView mask;  ///< of the image's size; 255 hand
+  Rect region;    ///< holds all of the mask
+  int threshold = 0;
+
+  bool lit(glm::vec2 at) const;
+  float grey(glm::vec2 at) const;  ///< bilinear; the border goes on beyond the image
+};
+
+/// Points of a silhouette's edge to a fraction of a pixel, evenly along it, in no order. Image px.
+struct Contour {
+  static constexpr int kMostPoints = 640;
+
+  int count = 0;
+  std::array<glm::vec2, kMostPoints> points_px;
+  std::array<glm::vec2, kMostPoints> normals;  ///< unit, away from the hand
+};
+
+void find_contour(const Silhouette& silhouette, Contour& contour);
+
+/// How far along `direction` (unit) from a point the hand ends; negative: the point is outside. Nothing within `reach_px`: no edge.
+std::optional<float> edge_along(const Silhouette& silhouette, glm::vec2 from, glm::vec2 direction, float reach_px);
+
+}  // namespace handcast::renderer
