@@ -27,7 +27,12 @@ const char* const kHelp =
   --quiet                    no progress line
   --help, --version
 
-The same seed gives the same figures; only the times in frame_us and stage_us are this machine's.
+Landmarks come from the twin's model of a detector, or from a detector itself that looks at the twin's images:
+  --set landmarks.backend=onednn|opencv
+Its points are its own; how old they are when they arrive is set: twin.detector.age_ms and age_sd_ms, for every back end alike, so
+that a slow machine simulates a fast one. "detector" in --json says what it took here (ms_p50) and what it missed.
+
+The same seed gives the same figures; only the times in frame_us, stage_us and detector.ms_p50 are this machine's.
 )";
 
 namespace {

@@ -52,6 +52,17 @@ Result<void> write_json(const nlohmann::json& json, const std::string& json_file
   return {};
 }
 
+/// Where a detector looked at images: how it fared.
+void print_detector(const nlohmann::json& detector) {
+  if (!detector["ms_p50"].is_number()) return;
+  const auto error_px = detector["error_px"]["p50"];
+  fmt::print(
+      "{}: {} runs of {:.1f} ms (p50, this machine), taken to be done at an age of {:.1f} ms; {} of {} hands missed; error {} (p50)\n",
+      detector["backend"].get<std::string>(), detector["runs"].get<long>(), detector["ms_p50"].get<double>(),
+      detector["age_ms"].get<double>(), detector["missed"].get<long>(), detector["hands"].get<long>(),
+      error_px.is_number() ? fmt::format("{:.1f} px", error_px.get<double>()) : "unknown");
+}
+
 void print_summary(const nlohmann::json& json, const config::Rig& rig, const Options& options) {
   const auto number = [&](const char* group, const char* key) {
     return json.contains(group) && json[group].contains(key) && json[group][key].is_number() ? json[group][key].get<double>() : 0.0;
@@ -81,6 +92,7 @@ Result<void> run(const Options& options) {
   if (!json) return tl::make_unexpected(json.error());
   if (auto written = write_json(*json, options.json_file); !written) return written;
   print_summary(*json, *rig, options);
+  print_detector((*json)["detector"]);
   return {};
 }
 

@@ -1,14 +1,16 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
 
-#include "config/rig.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "renderer/image.hpp"
+#include "services/simulate/exposure.hpp"
+#include "services/simulate/frame_detector.hpp"
 #include "services/twin/twin.hpp"
 
 namespace handcast::simulate {
@@ -17,11 +19,6 @@ namespace handcast::simulate {
 struct SensorEvent {
   std::int64_t arrival_ns = 0;
   std::variant<msg::HandPoses, msg::Landmarks> message;
-};
-
-struct Exposure {
-  std::uint64_t frame_id = 0;
-  std::int64_t origin_ns = 0;
 };
 
 /// What reaches the cascade, and when: all that it may know of the world. Virtual time, asked for in ascending order.
@@ -35,7 +32,12 @@ class SensorFeed {
   virtual void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) = 0;
 };
 
-/// The twin's tracker, camera and back-to-back detector, run in virtual time.
+/// Called with every frame a detector was shown.
+using OnDetection = std::function<void(const Exposure&, const Detection&)>;
+
+/// The twin's tracker and camera, and a detector back to back, run in virtual time.
+std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector, OnDetection on_detection = {});
+/// With the twin's model of a detector.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin);
 
 }  // namespace handcast::simulate

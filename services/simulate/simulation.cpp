@@ -14,6 +14,7 @@ Simulation::Simulation(const config::Rig& rig, const calib::Calibration& calibra
       pipeline_(pipeline),
       feed_(feed),
       draw_every_(draw_every),
+      looks_(draw_every > 0 && pipeline.looks()),
       image_(calibration.camera.width_px, calibration.camera.height_px),
       projection_(msg::Projection::bytes(calibration.projector_width_px, calibration.projector_height_px)) {}
 
@@ -34,6 +35,10 @@ void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
     tick.projection = &*projection_;
     on_tick(tick);
   } else {
+    if (looks_) {
+      const auto camera = newest_image(now_ns);
+      pipeline_.look(camera, shown_ ? shown_->origin_ns : 0);
+    }
     tick.hands = pipeline_.track(now_ns, lit_ns);
     on_tick(tick);
   }
@@ -45,16 +50,20 @@ void Simulation::deliver(std::int64_t now_ns) {
     std::visit([&](const auto& message) { pipeline_.push(event.arrival_ns, message); }, event.message);
 }
 
-renderer::Frame Simulation::draw(std::int64_t now_ns, std::int64_t lit_ns) {
+renderer::GreyView Simulation::newest_image(std::int64_t now_ns) {
   const auto newest = feed_.newest_exposure(now_ns);
   if (newest && (!shown_ || shown_->frame_id != newest->frame_id)) feed_.image(*newest, image_.view());
   shown_ = newest;
+  return newest ? renderer::GreyView(image_.view()) : renderer::GreyView{};
+}
 
-  const auto camera = newest ? renderer::GreyView(image_.view()) : renderer::GreyView{};
-  auto frame = pipeline_.render(now_ns, lit_ns, camera, newest ? newest->origin_ns : 0);
+renderer::Frame Simulation::draw(std::int64_t now_ns, std::int64_t lit_ns) {
+  const auto camera = newest_image(now_ns);
+  const std::int64_t camera_ns = shown_ ? shown_->origin_ns : 0;
+  auto frame = pipeline_.render(now_ns, lit_ns, camera, camera_ns);
   renderer::write_projection(frame, *projection_, projection_.tail_bytes());
   projection_->header.frame_id = static_cast<std::uint64_t>(next_tick_);
-  projection_->header.origin_ns = newest ? newest->origin_ns : 0;
+  projection_->header.origin_ns = camera_ns;
   projection_->lit_ns = lit_ns;
   return frame;
 }

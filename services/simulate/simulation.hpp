@@ -37,6 +37,7 @@ class Simulation {
  private:
   std::int64_t tick_time_ns(std::int64_t tick) const;
   void deliver(std::int64_t now_ns);
+  renderer::GreyView newest_image(std::int64_t now_ns);
   renderer::Frame draw(std::int64_t now_ns, std::int64_t lit_ns);
 
   double rate_hz_;
@@ -44,6 +45,7 @@ class Simulation {
   renderer::Pipeline& pipeline_;
   SensorFeed& feed_;
   int draw_every_;
+  bool looks_;  ///< at every image, of frames that are not drawn too
   std::int64_t next_tick_ = 0;
   std::optional<Exposure> shown_;
   renderer::Image<std::uint8_t> image_;

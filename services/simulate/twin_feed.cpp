@@ -1,51 +1,22 @@
 #include <algorithm>
 
+#include "services/simulate/back_to_back.hpp"
 #include "services/simulate/sensor_feed.hpp"
 
 namespace handcast::simulate {
 namespace {
 
-/// The detector takes the newest frame whenever it is free, and sleeps until there is a newer one.
-class BackToBackDetector {
- public:
-  explicit BackToBackDetector(const twin::Twin& twin) : twin_(twin) {}
-
-  /// Runs that are done by `now_ns`.
-  void until(std::int64_t now_ns, std::vector<SensorEvent>& events) {
-    while (true) {
-      const auto frame = next_frame();
-      const auto detection = twin_.detect(runs_, frame, twin_.camera_origin_ns(frame));
-      const auto done_ns = std::max(twin_.camera_origin_ns(frame) + detection.age_ns, twin_.camera_arrival_ns(frame));
-      if (done_ns > now_ns) return;
-      events.push_back({done_ns, detection.landmarks});
-      last_frame_ = static_cast<std::int64_t>(frame);
-      free_ns_ = done_ns;
-      ++runs_;
-    }
-  }
-
- private:
-  std::uint64_t next_frame() const {
-    auto frame = static_cast<std::uint64_t>(last_frame_ + 1);
-    while (twin_.camera_arrival_ns(frame + 1) <= free_ns_) ++frame;
-    return frame;
-  }
-
-  const twin::Twin& twin_;
-  std::uint64_t runs_ = 0;
-  std::int64_t last_frame_ = -1;
-  std::int64_t free_ns_ = 0;
-};
-
 class TwinFeed : public SensorFeed {
  public:
-  explicit TwinFeed(const twin::Twin& twin) : twin_(twin), detector_(twin) {}
+  TwinFeed(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector, OnDetection on_detection)
+      : twin_(twin), detector_(twin, std::move(detector), std::move(on_detection)) {}
 
   std::vector<SensorEvent> until(std::int64_t now_ns) override {
     std::vector<SensorEvent> events;
     take_tracker_samples(now_ns, events);
+    std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
     detector_.until(now_ns, events);
-    std::stable_sort(events.begin(), events.end(), [](const auto& a, const auto& b) { return a.arrival_ns < b.arrival_ns; });
+    std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
     return events;
   }
 
@@ -69,7 +40,7 @@ class TwinFeed : public SensorFeed {
   }
 
   const twin::Twin& twin_;
-  BackToBackDetector detector_;
+  BackToBack detector_;
   std::vector<twin::Twin::TrackerSample> pending_;
   std::uint64_t next_sample_ = 0;
   std::uint64_t next_frame_ = 0;
@@ -77,6 +48,10 @@ class TwinFeed : public SensorFeed {
 
 }  // namespace
 
-std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin) { return std::make_unique<TwinFeed>(twin); }
+std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector, OnDetection on_detection) {
+  return std::make_unique<TwinFeed>(twin, std::move(detector), std::move(on_detection));
+}
+
+std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin) { return make_twin_feed(twin, make_twin_detector(twin)); }
 
 }  // namespace handcast::simulate

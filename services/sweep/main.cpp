@@ -25,7 +25,7 @@ const char* const kFooter = R"(A plan is a TOML file, every path in it relative 
   rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24    joints_only = false
   [settings]    of every run, e.g. twin.tracker.age_ms = 15
   [[variant]]   name, its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"
-  [grid]        every combination, e.g. twin.speed = [1, 2, 3]
+  [grid]        every combination, e.g. twin.speed = [1, 2, 3]; several, each a [[grid]], are run one after the other
 Settings are those of config/REFERENCE.md; config/sweeps holds plans.
 
 The same command goes on where a sweep was cut off, and tries again what failed. On many machines: one `--shard I/N` each, then --merge.

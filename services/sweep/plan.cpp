@@ -35,7 +35,7 @@ void describe(Visitor& visitor, Head& head) {
   visitor.field("joints_only", head.joints_only, "Draws nothing and scores the landmarks alone.");
   visitor.section("settings", head.settings, "Settings of every run.");
   visitor.section("variant", head.variant, "Rungs.");
-  visitor.section("grid", head.grid, "Lists of values: every combination is run.");
+  visitor.section("grid", head.grid, "Lists of values: every combination is run. Several as [[grid]].");
 }
 
 /// The single settings of a [[variant]].
@@ -98,7 +98,7 @@ class Reader {
     config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
 
     Plan plan{file_.stem().string(),      file_, head.seconds, head.warm_up_s, head.joints_only ? 0 : head.draw_every,
-              fixed(section("settings")), {},    grid()};
+              fixed(section("settings")), {},    grids()};
     variants(head, plan);
     check_fixed_once(plan);
     if (!faults_.empty()) return tl::make_unexpected(faults_.to_error());
@@ -148,9 +148,18 @@ class Reader {
     return axes;
   }
 
-  std::vector<Axis> grid() {
-    std::vector<Axis> axes;
-    for (const auto& [path, value] : members(section("grid"), "grid")) {
+  std::vector<Grid> grids() {
+    const auto* listed = section("grid");
+    const auto* array = listed ? std::get_if<config::Array>(&listed->data) : nullptr;
+    if (!array) return {grid(listed)};
+    std::vector<Grid> read;
+    for (const auto& element : *array) read.push_back(grid(&element));
+    return read;
+  }
+
+  Grid grid(const Value* section) {
+    Grid axes;
+    for (const auto& [path, value] : members(section, "grid")) {
       const auto* values = std::get_if<config::Array>(&value.data);
       if (!values || values->empty()) {
         complain(value.line, path, "must be a list of the values to try");
@@ -210,9 +219,10 @@ class Reader {
   void check_fixed_once(const Plan& plan) {
     const auto check = [&](const std::vector<Axis>& settings) {
       for (const auto& setting : settings)
-        if (const auto axis = std::ranges::find(plan.grid, setting.path, &Axis::path); axis != plan.grid.end())
-          complain(setting.choices.front().line, setting.path,
-                   fmt::format("is fixed here, and in the grid too (line {})", axis->choices.front().line));
+        for (const auto& grid : plan.grids)
+          if (const auto axis = std::ranges::find(grid, setting.path, &Axis::path); axis != grid.end())
+            complain(setting.choices.front().line, setting.path,
+                     fmt::format("is fixed here, and in the grid too (line {})", axis->choices.front().line));
     };
     check(plan.settings);
     for (const auto& variant : plan.variants) check(variant.settings);
@@ -227,6 +237,14 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<std::string> Plan::axes() const {
+  std::vector<std::string> paths;
+  for (const auto& grid : grids)
+    for (const auto& axis : grid)
+      if (std::ranges::find(paths, axis.path) == paths.end()) paths.push_back(axis.path);
+  return paths;
+}
 
 Result<Plan> parse_plan(const std::string& toml, const std::filesystem::path& file) {
   const auto document = config::parse_document(toml, file.string());

@@ -20,6 +20,9 @@ struct Axis {
   std::vector<Choice> choices;
 };
 
+/// Every combination of the choices of its axes.
+using Grid = std::vector<Axis>;
+
 /// A rig with settings of its own, under a name: where one word is to change several settings at once.
 struct Variant {
   std::string name;
@@ -43,6 +46,8 @@ struct Variant {
 ///     [grid]                           # every combination
 ///     twin.motion = ["builtin:wave", "../../data/wave"]
 ///     twin.speed = [1, 2, 3]
+///
+/// Several grids, each a [[grid]], are run one after the other; what one does not name is in it as the rig has it.
 struct Plan {
   std::string name;  ///< the file's, without its ending
   std::filesystem::path file;
@@ -51,7 +56,10 @@ struct Plan {
   int draw_every = 24;  ///< 0: joints only
   std::vector<Axis> settings;
   std::vector<Variant> variants;
-  std::vector<Axis> grid;
+  std::vector<Grid> grids;  ///< at least one, and be it empty
+
+  /// Every setting that any grid turns, in the order of the file.
+  std::vector<std::string> axes() const;
 };
 
 /// Errors: bad_config; every fault of the plan at once, a line each, "PLAN:LINE: path: sentence".

@@ -40,7 +40,7 @@ std::string without_machine(config::Rig rig, const std::filesystem::path& folder
 }
 
 /// False after the last.
-bool next_choices(const std::vector<Axis>& grid, std::vector<std::size_t>& choices) {
+bool next_choices(const Grid& grid, std::vector<std::size_t>& choices) {
   for (std::size_t axis = grid.size(); axis-- > 0;) {
     if (++choices[axis] < grid[axis].choices.size()) return true;
     choices[axis] = 0;
@@ -49,21 +49,25 @@ bool next_choices(const std::vector<Axis>& grid, std::vector<std::size_t>& choic
 }
 
 Result<std::vector<Run>> all_runs(const Plan& plan) {
-  std::size_t count = plan.variants.size();
-  for (const auto& axis : plan.grid) {
-    count *= axis.choices.size();
-    if (count > kMostRuns) return fail(Errc::bad_config, fmt::format("{}: more than {} runs", plan.file.string(), kMostRuns));
-  }
   std::vector<Run> runs;
-  for (std::size_t variant = 0; variant < plan.variants.size(); ++variant) {
-    std::vector<std::size_t> choices(plan.grid.size(), 0);
-    do runs.push_back({runs.size(), variant, choices});
-    while (next_choices(plan.grid, choices));
-  }
+  for (std::size_t variant = 0; variant < plan.variants.size(); ++variant)
+    for (std::size_t grid = 0; grid < plan.grids.size(); ++grid) {
+      std::vector<std::size_t> choices(plan.grids[grid].size(), 0);
+      do {
+        if (runs.size() == kMostRuns) return fail(Errc::bad_config, fmt::format("{}: more than {} runs", plan.file.string(), kMostRuns));
+        runs.push_back({runs.size(), variant, grid, choices});
+      } while (next_choices(plan.grids[grid], choices));
+    }
   return runs;
 }
 
 }  // namespace
+
+const Choice* Run::choice(const Plan& plan, const std::string& path) const {
+  const auto& axes = plan.grids[grid];
+  const auto axis = std::ranges::find(axes, path, &Axis::path);
+  return axis == axes.end() ? nullptr : &axis->choices[choices[static_cast<std::size_t>(axis - axes.begin())]];
+}
 
 Result<config::Rig> rig_of(const Plan& plan, const Run& run) {
   const auto& variant = plan.variants[run.variant];
@@ -71,7 +75,7 @@ Result<config::Rig> rig_of(const Plan& plan, const Run& run) {
   const auto set = [&](const std::string& path, const Choice& choice) { settings.push_back(path + "=" + choice.assigned); };
   for (const auto& setting : plan.settings) set(setting.path, setting.choices.front());
   for (const auto& setting : variant.settings) set(setting.path, setting.choices.front());
-  for (std::size_t axis = 0; axis < plan.grid.size(); ++axis) set(plan.grid[axis].path, plan.grid[axis].choices[run.choices[axis]]);
+  for (const auto& axis : plan.grids[run.grid]) set(axis.path, *run.choice(plan, axis.path));
   return config::parse_rig(variant.rig_text, variant.rig_file, settings);
 }
 
@@ -99,8 +103,7 @@ Result<Expansion> expand(const Plan& plan) {
 
 std::string describe_run(const Plan& plan, const Run& run) {
   auto text = plan.variants[run.variant].name;
-  for (std::size_t axis = 0; axis < plan.grid.size(); ++axis)
-    text += fmt::format(", {}={}", plan.grid[axis].path, plan.grid[axis].choices[run.choices[axis]].shown);
+  for (const auto& axis : plan.grids[run.grid]) text += fmt::format(", {}={}", axis.path, run.choice(plan, axis.path)->shown);
   return text;
 }
 

@@ -9,11 +9,15 @@
 
 namespace handcast::sweep {
 
-/// One run of a plan. The order is fixed: variant by variant, within it the grid with its last axis turning fastest.
+/// One run of a plan. The order is fixed: variant by variant, within it grid by grid, each with its last axis turning fastest.
 struct Run {
   std::size_t index = 0;
   std::size_t variant = 0;           ///< in Plan::variants
-  std::vector<std::size_t> choices;  ///< one per axis of the grid
+  std::size_t grid = 0;              ///< in Plan::grids
+  std::vector<std::size_t> choices;  ///< one per axis of that grid
+
+  /// What a setting is in this run; null where its grid does not turn it.
+  const Choice* choice(const Plan& plan, const std::string& path) const;
 };
 
 /// Every run of the plan, and a number (hexadecimal) that two plans share only where every run of both is the same: rig files, settings

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/load.hpp"
+#include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 
 namespace handcast::sweep {
@@ -31,6 +32,11 @@ std::vector<Metric> make_metrics() {
   for (const char* plain :
        {"coverage", "spill", "iou", "seam_px", "jitter_px", "foldovers", "equivalent_latency_ms", "software_ms", "motion_to_photon_ms"})
     add(plain, fmt::format("/{}", plain).c_str());
+  for (const char* of_fault : {"usual_mm", "worst_mm", "dark_ms", "recovery_ms"})
+    add(fmt::format("fault_{}", of_fault).c_str(), fmt::format("/fault/{}", of_fault).c_str());
+  add("hand_speed_m_s_mean", "/hand_speed_m_s/mean");
+  add("hand_speed_m_s_p95", "/hand_speed_m_s/p95");
+  for (const auto rung : msg::kRungNames) add(fmt::format("rung_share_{}", rung).c_str(), fmt::format("/rungs/{}", rung).c_str());
   add("frame_us_p50", "/frame_us/p50");
   add("frame_us_p99", "/frame_us/p99");
   for (auto stage = msg::Stage::predict; stage < msg::Stage::frame; stage = static_cast<msg::Stage>(static_cast<int>(stage) + 1)) {
@@ -47,7 +53,10 @@ const std::vector<Metric>& metrics() {
 
 Row begin_row(const Plan& plan, const Run& run) {
   Row row{fmt::format("{}", run.index), plan.variants[run.variant].name};
-  for (std::size_t axis = 0; axis < plan.grid.size(); ++axis) row.push_back(plan.grid[axis].choices[run.choices[axis]].shown);
+  for (const auto& path : plan.axes()) {
+    const auto* choice = run.choice(plan, path);
+    row.push_back(choice ? choice->shown : "");
+  }
   return row;
 }
 
@@ -92,7 +101,7 @@ Heading heading_of(const Plan& plan, const Expansion& expansion, std::string_vie
   Heading heading{fmt::format("# handcast sweep version={} fingerprint={} runs={} plan={}", version, expansion.fingerprint,
                               expansion.runs.size(), plan.name),
                   {"index", "variant"}};
-  for (const auto& axis : plan.grid) heading.columns.push_back(axis.path);
+  for (const auto& path : plan.axes()) heading.columns.push_back(path);
   for (const auto& metric : metrics()) heading.columns.push_back(metric.column);
   heading.columns.push_back("error");
   return heading;

@@ -10,7 +10,8 @@
 
 namespace handcast::sweep {
 
-/// The cells of one line of the CSV: index, variant, the axes, the metrics (empty: never measured), and what went wrong.
+/// The cells of one line of the CSV: index, variant, the axes (empty: not turned in this run's grid), the metrics (empty: never measured),
+/// and what went wrong.
 using Row = std::vector<std::string>;
 
 /// What a file of results is of; two files belong together where all of it is the same.

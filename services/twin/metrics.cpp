@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 namespace handcast::twin {
 namespace {
@@ -82,6 +83,8 @@ void Metrics::add_stages(std::span<const msg::StageMark> stages) {
 
 void Metrics::add_foldovers(int count) { foldovers_ += count; }
 
+void Metrics::add_rung(msg::Rung rung) { ++rungs_[static_cast<std::size_t>(rung)]; }
+
 void Metrics::add_jitter(double square_px, int samples) {
   jitter_square_ += square_px;
   jitter_samples_ += samples;
@@ -101,6 +104,9 @@ nlohmann::json Metrics::to_json() const {
   json["foldovers"] = foldovers_;
   write_spread(json["landmark_px"], landmark_px_, true);
   write_spread(json["landmark_mm"], landmark_mm_, true);
+
+  const auto hands = std::accumulate(rungs_.begin(), rungs_.end(), std::int64_t{0});
+  for (std::size_t r = 0; r < msg::kRungs; ++r) json["rungs"][std::string(msg::kRungNames[r])] = ratio(double(rungs_[r]), double(hands));
 
   const auto frame = stage_us_.find(msg::Stage::frame);
   write_spread(json["frame_us"], frame == stage_us_.end() ? Samples() : frame->second, false);

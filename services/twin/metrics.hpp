@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "services/twin/twin.hpp"
 
@@ -18,6 +19,8 @@ class Metrics {
   void add(const FrameScore& score);
   void add_stages(std::span<const msg::StageMark> stages);
   void add_foldovers(int count);
+  /// One hand of one drawn frame.
+  void add_rung(msg::Rung rung);
   /// Landings of a fixed set of surface points in successive frames; jitter is the RMS of what remains after the truth's own motion.
   void add_jitter(double square_px, int samples);
   /// Distance of one corrected landmark from the true one at photon time: undistorted camera px, and mm at its distance.
@@ -25,7 +28,7 @@ class Metrics {
 
   /// What was never measured is null; every bin and both hands are always there.
   /// {"frames","interior_mm":{mean,p95,p99},"interior_px":{...},"coverage","spill","iou","seam_px","jitter_px","foldovers",
-  ///  "landmark_px":{mean,p95,p99},"landmark_mm":{...},
+  ///  "landmark_px":{mean,p95,p99},"landmark_mm":{...},"rungs":{rung: its share of the hands of drawn frames},
   ///  "equivalent_latency_ms","frame_us":{p50,p99},"stage_us":{stage:{p50,p99}},"bins":{...},"hands":{"left":{...}}}
   nlohmann::json to_json() const;
 
@@ -60,6 +63,7 @@ class Metrics {
   std::map<msg::Stage, Samples> stage_us_;
   Samples landmark_px_, landmark_mm_;
   std::int64_t foldovers_ = 0, frames_ = 0;
+  std::array<std::int64_t, msg::kRungs> rungs_{};  ///< hands of drawn frames
   double jitter_square_ = 0;
   std::int64_t jitter_samples_ = 0;
 };

@@ -52,5 +52,18 @@ TEST(TwoHands, AreNoMoreThanATenthWorseThanOne) {
   }
 }
 
+/// The paper's stated limitation: the drawn hand is not the person's. Bones reach the tracker's joints, widths come from the mask.
+TEST(HandShape, FittedToThePersonIsNeverWorseThanTheDefaultOne) {
+  for (const std::string person : {"1", "2", "3"})
+    for (const std::string spread : {"0", "0.1"}) {
+      const std::vector<std::string> hand{"twin.seed=" + person, "twin.shape.length_spread=" + spread, "twin.shape.width_spread=" + spread};
+      auto stiff = hand;
+      stiff.emplace_back("cascade.skin.fit=false");
+      const auto fitted_mm = run_rig("twin", "builtin:open_close", 1, hand)["interior_mm"]["p95"].get<double>();
+      const auto default_mm = run_rig("twin", "builtin:open_close", 1, stiff)["interior_mm"]["p95"].get<double>();
+      EXPECT_LT(fitted_mm, 0.75 * default_mm) << "person " << person << ", spread " << spread;
+    }
+}
+
 }  // namespace
 }  // namespace handcast::simulate

@@ -60,12 +60,31 @@ TEST(Plan, WithoutVariantsAndGridItIsOneRunOfItsRig) {
   EXPECT_EQ(describe_run(*plan, expand(*plan)->runs[0]), "twin");
 }
 
+TEST(Plan, SeveralGridsAreRunOneAfterTheOther) {
+  const auto plan = plan_of("[[grid]]\ntwin.tracker.age_ms = [5, 40]\n[[grid]]\ntwin.speed = [2]\ntwin.tracker.dropout = [0.1, 0.2]\n");
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto runs = expand(*plan)->runs;
+  ASSERT_EQ(runs.size(), 4u) << "not every combination of both";
+  EXPECT_EQ(describe_run(*plan, runs[1]), "twin, twin.tracker.age_ms=40");
+  EXPECT_EQ(describe_run(*plan, runs[3]), "twin, twin.speed=2, twin.tracker.dropout=0.2");
+  EXPECT_EQ(rig_of(*plan, runs[3])->twin.tracker.age_ms, config::Rig().twin.tracker.age_ms);
+  EXPECT_THAT(plan->axes(), ElementsAre("twin.tracker.age_ms", "twin.speed", "twin.tracker.dropout"));
+  const auto row = failed_row(*plan, runs[3], "");
+  EXPECT_THAT(Row(row.begin(), row.begin() + 5), ElementsAre("3", "twin", "", "2", "0.2")) << "empty where the rig is as it is";
+  EXPECT_EQ(row.size(), heading_of(*plan, *expand(*plan), "1").columns.size());
+}
+
+TEST(Plan, ASettingIsNotFixedWhereAnyGridTurnsIt) {
+  EXPECT_THAT(fault_of("[settings]\ntwin.speed = 2\n[[grid]]\ntwin.seed = [1]\n[[grid]]\ntwin.speed = [1, 2]\n"),
+              HasSubstr("in the grid too"));
+}
+
 TEST(Plan, FoldersAreRelativeToThePlan) {
   const auto plan = plan_of("[grid]\ntwin.motion = [\"../data/wave\", \"builtin:wave\"]\n", "/plans/deep/test.toml");
   ASSERT_TRUE(plan) << plan.error().what;
-  EXPECT_EQ(plan->grid[0].choices[0].assigned, "/plans/data/wave");
-  EXPECT_EQ(plan->grid[0].choices[0].shown, "../data/wave");
-  EXPECT_EQ(plan->grid[0].choices[1].assigned, "builtin:wave");
+  EXPECT_EQ(plan->grids[0][0].choices[0].assigned, "/plans/data/wave");
+  EXPECT_EQ(plan->grids[0][0].choices[0].shown, "../data/wave");
+  EXPECT_EQ(plan->grids[0][0].choices[1].assigned, "builtin:wave");
 }
 
 TEST(Plan, AMotionThatIsNotThereIsNoFaultOfThePlanButNamed) {

@@ -23,6 +23,17 @@ FrameScore::Hand hand_at(double speed_m_s, float error_px, Side side = Side::lef
   return hand;
 }
 
+TEST(Metrics, TheRungsAreSharesOfTheHandsThatWereDrawn) {
+  Metrics metrics;
+  for (int i = 0; i < 3; ++i) metrics.add_rung(msg::Rung::landmarks);
+  metrics.add_rung(msg::Rung::hold);
+  const auto rungs = metrics.to_json()["rungs"];
+  EXPECT_EQ(rungs.size(), msg::kRungs);
+  EXPECT_DOUBLE_EQ(rungs["landmarks"], 0.75);
+  EXPECT_DOUBLE_EQ(rungs["hold"], 0.25);
+  EXPECT_DOUBLE_EQ(rungs["register"], 0);
+}
+
 TEST(Metrics, EveryFigureComesOutUnderItsName) {
   Metrics metrics;
   FrameScore score;
