@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
 #include "services/report/tables.hpp"
 
 namespace handcast::report {
@@ -60,7 +60,7 @@ std::string metric_rows(const Inputs& inputs, const Metric& metric) {
     const auto value = run.metrics.number(metric.pointer);
     const bool is_best = best && value && *value == *best;
     const auto shown = value ? std::optional(*value * metric.factor) : std::nullopt;
-    row += fmt::format("<td{}>{}</td>", is_best ? " class=\"best\"" : "", figure(shown, metric.digits));
+    row += fmt::format("<td{}>{}</td>", is_best ? " class=\"best\"" : "", page::figure(shown, metric.digits));
   }
   return row + fmt::format("</tr>\n<tr class=\"reading\"><td colspan=\"4\">{}</td></tr>\n", metric.reading);
 }
@@ -73,7 +73,7 @@ std::string equal_legs(const Inputs& inputs) {
   return fmt::format(
       "<p>Each rig is given the time its software takes. With equal legs, {} ms for handcast as for the paper, handcast scores p95 <b>{} "
       "mm</b>, coverage <b>{} %</b> and spill <b>{} %</b>: what is left between the two is the method.</p>\n",
-      figure(equal.number("/software_ms"), 2), figure(p95, 2), figure(*coverage * 100, 2), figure(*spill * 100, 2));
+      page::figure(equal.number("/software_ms"), 2), page::figure(p95, 2), page::figure(*coverage * 100, 2), page::figure(*spill * 100, 2));
 }
 
 }  // namespace
@@ -86,8 +86,9 @@ std::string headline(const Inputs& inputs) {
         "<div class=\"card {0}\"><h3>{0}</h3><p class=\"big\">{1}<span class=\"unit\"> mm</span></p><p>{2} mm mean, {3} % of the hand "
         "lit</p>"
         "<p class=\"quiet\">{4}</p></div>\n",
-        escape(run.name), figure(run.metrics.number("/interior_mm/p95"), 2), figure(run.metrics.number("/interior_mm/mean"), 2),
-        figure(percent ? std::optional(*percent * 100) : std::nullopt, 1), escape(run.sentence));
+        page::escape(run.name), page::figure(run.metrics.number("/interior_mm/p95"), 2),
+        page::figure(run.metrics.number("/interior_mm/mean"), 2), page::figure(percent ? std::optional(*percent * 100) : std::nullopt, 1),
+        page::escape(run.sentence));
   }
   return "<div class=\"cards\">\n" + cards +
          "</div>\n<p class=\"quiet\">The large figure: 95 of 100 points of the skin get their light nearer than this.</p>\n";
@@ -95,13 +96,13 @@ std::string headline(const Inputs& inputs) {
 
 std::string accuracy_table(const Inputs& inputs) {
   std::string table = "<div class=\"wide\"><table class=\"accuracy\">\n<thead><tr><th></th>";
-  for (const auto& run : inputs.runs) table += fmt::format("<th scope=\"col\" class=\"{0}\">{0}</th>", escape(run.name));
+  for (const auto& run : inputs.runs) table += fmt::format("<th scope=\"col\" class=\"{0}\">{0}</th>", page::escape(run.name));
   table += "</tr></thead>\n<tbody>\n";
   for (const auto& metric : kMetrics) table += metric_rows(inputs, metric);
   table += "</tbody></table></div>\n";
   table += equal_legs(inputs);
   for (const auto& run : inputs.runs)
-    if (!run.metrics.content) table += missing(fmt::format("No figures for {}: {}.", run.name, run.metrics.problem));
+    if (!run.metrics.content) table += page::missing(fmt::format("No figures for {}: {}.", run.name, run.metrics.problem));
   return table;
 }
 

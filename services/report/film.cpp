@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
 
 namespace handcast::report {
 namespace fs = std::filesystem;
@@ -106,7 +106,7 @@ void add_stills(Film& film, const Run& run, std::size_t moments, const cv::Rect&
     const cv::Mat shown = panel(run.pictures[moment], frame);
     std::vector<unsigned char> jpeg;
     if (!shown.empty()) cv::imencode(".jpg", shown, jpeg, {cv::IMWRITE_JPEG_QUALITY, 85});
-    film.stills.push_back(base64(jpeg));
+    film.stills.push_back(page::base64(jpeg));
   }
 }
 
@@ -124,7 +124,7 @@ void shoot(Film& film, const std::vector<const Run*>& runs, const fs::path& vide
   if (!writer.isOpened()) film.problems.push_back("this build of OpenCV can write neither H.264 nor MPEG-4 video");
   writer.release();
   cv::imwrite(fs::path(video_file).replace_extension(".png").string(), side_by_side(runs, moments / 2, frame));
-  if (plays) film.video = base64(bytes_of(video_file));
+  if (plays) film.video = page::base64(bytes_of(video_file));
   for (const Run* run : runs) add_stills(film, *run, moments, frame);
 }
 
@@ -153,13 +153,13 @@ std::string film_section(const Film& film) {
   if (!film.video.empty())
     html += fmt::format("<video controls loop muted playsinline src=\"data:video/mp4;base64,{}\"></video>\n", film.video);
   for (std::size_t row = 0; row < film.rows.size(); ++row) {
-    html += fmt::format("<h3 class=\"{0}\">{0}</h3>\n<div class=\"strip\">", escape(film.rows[row]));
+    html += fmt::format("<h3 class=\"{0}\">{0}</h3>\n<div class=\"strip\">", page::escape(film.rows[row]));
     for (std::size_t i = 0; i < kStills; ++i)
-      html += fmt::format("<img alt=\"{}, moment {}\" src=\"data:image/jpeg;base64,{}\">", escape(film.rows[row]), i + 1,
+      html += fmt::format("<img alt=\"{}, moment {}\" src=\"data:image/jpeg;base64,{}\">", page::escape(film.rows[row]), i + 1,
                           film.stills[row * kStills + i]);
     html += "</div>\n";
   }
-  for (const auto& problem : film.problems) html += missing("Not shown: " + problem + ".");
+  for (const auto& problem : film.problems) html += page::missing("Not shown: " + problem + ".");
   return html;
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
 #include "services/report/tables.hpp"
 
 namespace handcast::report {
@@ -13,7 +13,7 @@ using nlohmann::json;
 std::string text_at(const json& object, const char* key) {
   if (!object.is_object() || !object.contains(key)) return "–";
   const auto& value = object.at(key);
-  if (value.is_string()) return value.get<std::string>().empty() ? "–" : escape(value.get<std::string>());
+  if (value.is_string()) return value.get<std::string>().empty() ? "–" : page::escape(value.get<std::string>());
   return value.is_number() ? fmt::format("{}", value.get<double>()) : "–";
 }
 
@@ -45,24 +45,24 @@ std::string services_table(const Source& live) {
       "<th>restarts</th></tr></thead>\n<tbody>\n";
   for (const auto& name : names_in_order(services)) {
     const auto& service = services.at(name);
-    table += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", escape(name),
-                         text_at(service, "backend"), figure(rate_of(live, name, "asked_hz"), 1), figure(rate_of(live, name, "held_hz"), 1),
-                         held_share(live, name), text_at(service, "restarts"));
+    table += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", page::escape(name),
+                         text_at(service, "backend"), page::figure(rate_of(live, name, "asked_hz"), 1),
+                         page::figure(rate_of(live, name, "held_hz"), 1), held_share(live, name), text_at(service, "restarts"));
   }
   return table + "</tbody></table></div>\n";
 }
 
 std::string score_sentence(const Source& observer) {
-  if (!observer.content) return missing(fmt::format("The live light was not scored: {}.", observer.problem));
+  if (!observer.content) return page::missing(fmt::format("The live light was not scored: {}.", observer.problem));
   const auto percent = [&](const char* pointer) {
     const auto share = observer.number(pointer);
-    return figure(share ? std::optional(*share * 100) : std::nullopt, 1);
+    return page::figure(share ? std::optional(*share * 100) : std::nullopt, 1);
   };
   return fmt::format(
       "<p>The observer scored {} frames of the live light against the twin's truth: interior error <b>{} mm</b> mean, <b>{} mm</b> p95; "
       "<b>{} %</b> of the hand lit, {} % spill.</p>\n",
-      figure(observer.number("/frames"), 0), figure(observer.number("/interior_mm/mean"), 2),
-      figure(observer.number("/interior_mm/p95"), 2), percent("/coverage"), percent("/spill"));
+      page::figure(observer.number("/frames"), 0), page::figure(observer.number("/interior_mm/mean"), 2),
+      page::figure(observer.number("/interior_mm/p95"), 2), percent("/coverage"), percent("/spill"));
 }
 
 }  // namespace
@@ -70,10 +70,10 @@ std::string score_sentence(const Source& observer) {
 std::string live_table(const Inputs& inputs) {
   const auto& live = inputs.live;
   if (!live.content)
-    return missing(fmt::format("There was no live run: {}.", live.problem)) +
+    return page::missing(fmt::format("There was no live run: {}.", live.problem)) +
            (inputs.observer.content ? score_sentence(inputs.observer) : "");
   return fmt::format("<p>The rig <b>{}</b> ran live for {} s, one process a service.</p>\n", text_at(*live.content, "rig"),
-                     figure(live.number("/seconds"), 1)) +
+                     page::figure(live.number("/seconds"), 1)) +
          services_table(live) + score_sentence(inputs.observer);
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <ctime>
 
+#include "services/page/machine.hpp"
 #include "services/report/report.hpp"
 
 using namespace handcast;
@@ -11,7 +12,7 @@ using namespace handcast;
 int main(int argc, char** argv) {
   CLI::App app("Makes report.html, metrics.json and preview.mp4 from what a demonstration left in a folder.", "handcast report");
   std::string folder;
-  report::Imprint imprint{"handcast: light that stays on moving hands", report::this_machine(),
+  report::Imprint imprint{"handcast: light that stays on moving hands", page::this_machine(),
                           fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
   app.add_option("--out", folder, "Folder with baseline.json, paper.json, twin.json, live.json, observer.json and frames/; gets the report")
       ->required();

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <thread>
-
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
+#include "services/page/style.hpp"
 #include "services/report/tables.hpp"
 #include "services/report/time_sheet.hpp"
 
@@ -50,29 +48,8 @@ const char* const kSkeleton = R"html(<!doctype html>
 </html>
 )html";
 
-static std::string first_line_after(const char* file, std::string_view key, char separator) {
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);) {
-    if (line.rfind(key, 0) != 0) continue;
-    line.erase(0, line.find(separator) + 1);
-    line.erase(0, line.find_first_not_of(" \t\""));
-    line.erase(line.find_last_not_of(" \t\"") + 1);
-    return line;
-  }
-  return "";
-}
-
-std::string this_machine() {
-  std::string machine = first_line_after("/proc/cpuinfo", "model name", ':');
-  if (machine.empty()) machine = "unnamed processor";
-  const unsigned cores = std::thread::hardware_concurrency();
-  machine += fmt::format(", {} core{}", cores, cores == 1 ? "" : "s");
-  const std::string system = first_line_after("/etc/os-release", "PRETTY_NAME", '=');
-  return system.empty() ? machine : machine + ", " + system;
-}
-
 static std::string fact(std::string_view name, std::string_view value) {
-  return value.empty() ? "" : fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(name), escape(value));
+  return value.empty() ? "" : fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", page::escape(name), page::escape(value));
 }
 
 /// A setting as the first run that has it states it.
@@ -100,15 +77,15 @@ std::string make_page(const Inputs& inputs, const Film& film, const Imprint& imp
   const std::string facts = fact("rigs", rigs(inputs)) + fact("motion", stated(inputs, "motion")) +
                             fact("scored", seconds.empty() ? "" : seconds + " s of it") + fact("seed", stated(inputs, "seed")) +
                             fact("machine", imprint.machine) + fact("made", imprint.date);
-  return fill(kSkeleton, {{"title", escape(imprint.title)},
-                          {"style", kStyle},
-                          {"facts", facts},
-                          {"headline", headline(inputs)},
-                          {"film", film_section(film)},
-                          {"accuracy", accuracy_table(inputs)},
-                          {"speed", speed_table(inputs)},
-                          {"live", live_table(inputs)},
-                          {"times", time_sheet(inputs)}});
+  return page::fill(kSkeleton, {{"title", page::escape(imprint.title)},
+                                {"style", std::string(page::kStyle) + kStyle},
+                                {"facts", facts},
+                                {"headline", headline(inputs)},
+                                {"film", film_section(film)},
+                                {"accuracy", accuracy_table(inputs)},
+                                {"speed", speed_table(inputs)},
+                                {"live", live_table(inputs)},
+                                {"times", time_sheet(inputs)}});
 }
 
 }  // namespace handcast::report

@@ -17,9 +17,6 @@ struct Imprint {
 std::string make_page(const Inputs& inputs, const Film& film, const Imprint& imprint);
 
 extern const char* const kSkeleton;  ///< HTML with {{places}}
-extern const char* const kStyle;     ///< CSS
-
-/// This machine: processor, cores, system.
-std::string this_machine();
+extern const char* const kStyle;     ///< CSS beyond page::kStyle
 
 }  // namespace handcast::report

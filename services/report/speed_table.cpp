@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
 #include "services/report/tables.hpp"
 
 namespace handcast::report {
@@ -43,13 +43,13 @@ std::string chart(const Inputs& inputs, const std::set<std::string>& bins) {
     for (const auto& run : inputs.runs) {
       const auto value = in_bin(run, bin, "/interior_mm/p95");
       const double height = kHeight * value.value_or(0) / highest;
-      svg += fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\" rx=\"2\"/>", escape(run.name), x,
-                         kTop + kHeight - height, kBar, height);
+      svg += fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\" rx=\"2\"/>", page::escape(run.name),
+                         x, kTop + kHeight - height, kBar, height);
       if (value) svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{:.1f}</text>", x + kBar / 2, kTop + kHeight - height - 4, *value);
       x += kBar + 3;
     }
-    svg +=
-        fmt::format("<text class=\"axis\" x=\"{:.1f}\" y=\"{}\">{} m/s</text>\n", left + 1.5 * kBar + 3, kTop + kHeight + 17, escape(bin));
+    svg += fmt::format("<text class=\"axis\" x=\"{:.1f}\" y=\"{}\">{} m/s</text>\n", left + 1.5 * kBar + 3, kTop + kHeight + 17,
+                       page::escape(bin));
     left += kGroup;
   }
   return svg + fmt::format("<line x1=\"0\" x2=\"{0}\" y1=\"{1}\" y2=\"{1}\"/></svg>\n", width, kTop + kHeight);
@@ -57,17 +57,17 @@ std::string chart(const Inputs& inputs, const std::set<std::string>& bins) {
 
 std::string legend(const Inputs& inputs) {
   std::string keys;
-  for (const auto& run : inputs.runs) keys += fmt::format("<span class=\"key {0}\">{0}</span> ", escape(run.name));
+  for (const auto& run : inputs.runs) keys += fmt::format("<span class=\"key {0}\">{0}</span> ", page::escape(run.name));
   return "<p class=\"legend\">" + keys + "</p>\n";
 }
 
 std::string rows(const Inputs& inputs, const std::set<std::string>& bins) {
   std::string text;
   for (const auto& bin : bins) {
-    text += fmt::format("<tr><th scope=\"row\">{}</th>", escape(bin));
-    for (const auto& run : inputs.runs) text += fmt::format("<td>{}</td>", figure(in_bin(run, bin, "/interior_mm/mean"), 2));
-    for (const auto& run : inputs.runs) text += fmt::format("<td>{}</td>", figure(in_bin(run, bin, "/interior_mm/p95"), 2));
-    for (const auto& run : inputs.runs) text += fmt::format("<td>{}</td>", figure(in_bin(run, bin, "/coverage"), 3));
+    text += fmt::format("<tr><th scope=\"row\">{}</th>", page::escape(bin));
+    for (const auto& run : inputs.runs) text += fmt::format("<td>{}</td>", page::figure(in_bin(run, bin, "/interior_mm/mean"), 2));
+    for (const auto& run : inputs.runs) text += fmt::format("<td>{}</td>", page::figure(in_bin(run, bin, "/interior_mm/p95"), 2));
+    for (const auto& run : inputs.runs) text += fmt::format("<td>{}</td>", page::figure(in_bin(run, bin, "/coverage"), 3));
     text += "</tr>\n";
   }
   return text;
@@ -77,10 +77,10 @@ std::string rows(const Inputs& inputs, const std::set<std::string>& bins) {
 
 std::string speed_table(const Inputs& inputs) {
   const auto bins = bins_of(inputs);
-  if (bins.empty()) return missing("None of baseline.json, paper.json and twin.json holds figures by speed.");
+  if (bins.empty()) return page::missing("None of baseline.json, paper.json and twin.json holds figures by speed.");
   std::string names;
   for (int column = 0; column < 3; ++column)
-    for (const auto& run : inputs.runs) names += fmt::format("<th scope=\"col\">{}</th>", escape(run.name));
+    for (const auto& run : inputs.runs) names += fmt::format("<th scope=\"col\">{}</th>", page::escape(run.name));
   return legend(inputs) + "<div class=\"wide\">" + chart(inputs, bins) + "</div>\n" +
          "<div class=\"wide\"><table>\n<thead><tr><th></th><th colspan=\"3\">mean, mm</th><th colspan=\"3\">p95, mm</th>"
          "<th colspan=\"3\">coverage</th></tr>\n<tr><th>m/s</th>" +

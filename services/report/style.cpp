@@ -3,33 +3,7 @@
 namespace handcast::report {
 
 const char* const kStyle = R"css(
-:root {
-  color-scheme: light dark;
-  --paper: #fbfaf8; --ink: #22252a; --quiet: #686d76; --line: #e2dfd9; --panel: #ffffff;
-  --baseline: #8d939c; --cascade: #c58a2c; --ours: #14806a;
-}
-@media (prefers-color-scheme: dark) {
-  :root {
-    --paper: #16181b; --ink: #e4e3e0; --quiet: #989da6; --line: #2e3238; --panel: #1d2024;
-    --baseline: #7d848e; --cascade: #d7a14a; --ours: #3fb899;
-  }
-}
-* { box-sizing: border-box; }
-body { margin: 0; background: var(--paper); color: var(--ink); font: 16px/1.55 system-ui, -apple-system, "Segoe UI", "Noto Sans", sans-serif; }
-main { max-width: 980px; margin: 0 auto; padding: 2.5rem 1.25rem 4rem; }
-h1 { font-size: 1.9rem; line-height: 1.2; font-weight: 650; letter-spacing: -0.01em; margin: 0 0 1rem; }
-h2 { font-size: 1.25rem; font-weight: 640; margin: 0 0 .5rem; }
-h3 { font-size: .95rem; font-weight: 620; margin: 1.4rem 0 .3rem; }
-p { margin: 0 0 .8rem; }
-section { margin-top: 3rem; }
 section#headline { margin-top: 2rem; }
-.quiet, .unit, dt { color: var(--quiet); }
-.quiet { font-size: .9rem; }
-.unit { font-weight: 400; font-size: .85em; }
-.missing { color: var(--quiet); border-left: 3px solid var(--line); padding-left: .8rem; }
-dl { display: flex; flex-wrap: wrap; gap: .4rem 2rem; margin: 0; font-size: .9rem; }
-dd { margin: 0; overflow-wrap: anywhere; }
-
 .cards { display: grid; grid-template-columns: repeat(3, 1fr); gap: 1rem; margin-bottom: .8rem; }
 .card { background: var(--panel); border: 1px solid var(--line); border-top: 3px solid var(--hue); border-radius: 6px; padding: 1rem 1.1rem .6rem; }
 .card h3 { margin: 0; }
@@ -44,15 +18,6 @@ video { display: block; width: 100%; background: #101010; border-radius: 6px; }
 .strip img { display: block; width: 100%; border-radius: 4px; }
 h3.baseline, h3.paper, h3.handcast { color: var(--hue); }
 
-.wide { overflow-x: auto; margin-bottom: 1rem; }
-table { width: 100%; border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .35rem .6rem; text-align: right; white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; padding-left: 0; }
-thead th { font-size: .85rem; font-weight: 600; color: var(--quiet); border-bottom: 1px solid var(--line); }
-thead th[colspan] { text-align: center; }
-tbody th { font-weight: 500; }
-tbody tr + tr:not(.reading) > * { border-top: 1px solid var(--line); }
-td.best { font-weight: 750; }
 .accuracy thead th[class] { color: var(--hue); }
 .accuracy .figures th { white-space: normal; }
 .reading td { padding: 0 0 .55rem; text-align: left; white-space: normal; color: var(--quiet); font-size: .86rem; }
@@ -76,10 +41,7 @@ svg line { stroke: var(--line); }
 .track .p99 { opacity: .35; }
 
 @media (max-width: 640px) {
-  main { padding: 1.5rem 1rem 3rem; }
-  h1 { font-size: 1.5rem; }
   .cards { grid-template-columns: 1fr; }
-  th, td { padding: .3rem .4rem; }
   .stage { grid-template-columns: 1fr; }
   .bar { grid-template-columns: 4.6rem 1fr 6.6rem; gap: .4rem; }
 }

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "ipc/msg/stage_mark.hpp"
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
 
 namespace handcast::report {
 namespace {
@@ -52,7 +52,7 @@ std::string bar(const Column& column, const std::string& stage, double full_us) 
   return fmt::format(
       "<div class=\"bar\"><span class=\"who\">{}</span><span class=\"track\"><i class=\"p99\" style=\"width:{:.1f}%\"></i><i class=\"p50\" "
       "style=\"width:{:.1f}%\"></i></span><span class=\"value\">{} <small>/ {}</small></span></div>\n",
-      column.name, percent(p99.value_or(*p50)), percent(*p50), figure(p50, 0), figure(p99, 0));
+      column.name, percent(p99.value_or(*p50)), percent(*p50), page::figure(p50, 0), page::figure(p99, 0));
 }
 
 std::string group_sheet(const Group& group, std::span<const Column> columns) {
@@ -76,7 +76,7 @@ std::string time_sheet(const Inputs& inputs) {
   const Column columns[] = {{"live", inputs.live}, {"simulated", inputs.runs[2].metrics}};
   std::string sheets;
   for (const auto& group : kGroups) sheets += group_sheet(group, columns);
-  if (sheets.empty()) return missing("Neither live.json nor twin.json holds the times of stages.");
+  if (sheets.empty()) return page::missing("Neither live.json nor twin.json holds the times of stages.");
   return "<p>Microseconds, median / 99th percentile.</p>\n" + sheets;
 }
 

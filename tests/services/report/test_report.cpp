@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
 #include "services/report/report.hpp"
 #include "tests/services/report/demonstration.hpp"
 #include "tests/services/scratch.hpp"
@@ -106,7 +106,7 @@ TEST_F(Report, AnEmptyFolderIsAnErrorThatSaysWhatBelongsThere) {
 
 TEST(Base64, IsPaddedToGroupsOfFour) {
   const auto encoded = [](const std::string& text) {
-    return base64(std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+    return page::base64(std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
   };
   EXPECT_EQ(encoded(""), "");
   EXPECT_EQ(encoded("f"), "Zg==");
@@ -115,7 +115,7 @@ TEST(Base64, IsPaddedToGroupsOfFour) {
   EXPECT_EQ(encoded("foob"), "Zm9vYg==");
 }
 
-TEST(Fill, LeavesOutPlacesWithoutAValue) { EXPECT_EQ(fill("a{{x}}b{{y}}c{{", {{"x", "1"}}), "a1bc{{"); }
+TEST(Fill, LeavesOutPlacesWithoutAValue) { EXPECT_EQ(page::fill("a{{x}}b{{y}}c{{", {{"x", "1"}}), "a1bc{{"); }
 
 }  // namespace
 }  // namespace handcast::report

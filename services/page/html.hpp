@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace handcast::report {
+namespace handcast::page {
 
 /// Text as it may stand in HTML, in an attribute too.
 std::string escape(std::string_view text);
@@ -21,4 +21,4 @@ std::string figure(std::optional<double> value, int digits);
 /// A paragraph that says what a section lacks.
 std::string missing(std::string_view sentence);
 
-}  // namespace handcast::report
+}  // namespace handcast::page

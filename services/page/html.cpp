@@ -1,10 +1,10 @@
-#include "services/report/html.hpp"
+#include "services/page/html.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-namespace handcast::report {
+namespace handcast::page {
 
 std::string escape(std::string_view text) {
   std::string escaped;
@@ -64,4 +64,4 @@ std::string figure(std::optional<double> value, int digits) {
 
 std::string missing(std::string_view sentence) { return fmt::format("<p class=\"missing\">{}</p>\n", escape(sentence)); }
 
-}  // namespace handcast::report
+}  // namespace handcast::page
