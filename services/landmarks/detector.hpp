@@ -9,6 +9,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "services/landmarks/hand_finder.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::landmarks {
@@ -18,10 +19,11 @@ class Detector {
  public:
   virtual ~Detector() = default;
 
-  /// The landmarks of `frame`, with its id and origin; an image without a hand gives count 0. A detection that is not done by
-  /// the deadline is a timeout and goes on: the next call waits for it, whatever frame it is given, and returns the landmarks
-  /// of the frame it was begun with. Errors: timeout, bad_data (this image cannot be used).
-  virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, Deadline deadline) = 0;
+  /// The landmarks of `frame`, with its id and origin; an image without a hand gives count 0. `hints`: what the tracker says of the
+  /// hands at that time, undistorted camera px. A detection that is not done by the deadline is a timeout and goes on: the next call
+  /// waits for it, whatever frame it is given, and returns the landmarks of the frame it was begun with. (A network at work is not cut
+  /// short: it is done a few ms after the deadline.) Errors: timeout, bad_data (this image cannot be used).
+  virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints, Deadline deadline) = 0;
 };
 
 /// Opened with the rig, its calibration and its epoch (ns).

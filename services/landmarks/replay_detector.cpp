@@ -18,7 +18,7 @@ class ReplayDetector final : public Detector {
  public:
   ReplayDetector(std::array<Track, msg::kMaxHands> hands, timing::Loop loop) : hands_(std::move(hands)), loop_(std::move(loop)) {}
 
-  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, Deadline deadline) override {
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&, Deadline deadline) override {
     const auto item = loop_.nearest(frame.header.origin_ns);
     if (!item) {
       sleep_until_ns(deadline.time_ns());

@@ -12,7 +12,7 @@ class TwinDetector final : public Detector {
  public:
   TwinDetector(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns) : twin_(std::move(twin)), epoch_ns_(epoch_ns) {}
 
-  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, Deadline deadline) override {
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&, Deadline deadline) override {
     if (!under_way_) begin(frame.header);
     if (done_ns_ > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());

@@ -1,0 +1,92 @@
+#include "services/detect/run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "renderer/content/picture.hpp"
+#include "services/detect/draw.hpp"
+#include "services/detect/picture.hpp"
+#include "services/detect/result.hpp"
+#include "services/landmarks/models.hpp"
+
+namespace handcast::detect {
+namespace {
+
+namespace fs = std::filesystem;
+using Times = landmarks::HandFinder::Times;
+
+Times median_of(std::vector<Times>& runs) {
+  Times median = runs.front();
+  for (const auto field : {&Times::all_ns, &Times::crop_ns, &Times::network_ns, &Times::palm_ns}) {
+    std::ranges::nth_element(runs, runs.begin() + static_cast<std::ptrdiff_t>(runs.size() / 2), {}, field);
+    median.*field = runs[runs.size() / 2].*field;
+  }
+  return median;
+}
+
+/// Where `image`'s drawing goes; two images of one name get different ones.
+fs::path drawing_of(const Options& options, std::size_t i) {
+  const auto stem = options.images[i].stem().string();
+  const auto same = std::ranges::count_if(options.images.begin(), options.images.begin() + static_cast<std::ptrdiff_t>(i),
+                                          [&](const fs::path& other) { return other.stem() == options.images[i].stem(); });
+  return options.output / (same == 0 ? stem + ".png" : fmt::format("{}_{}.png", stem, same + 1));
+}
+
+handcast::Result<void> save(const fs::path& file, const renderer::Texture& drawing) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error)
+    return fail(Errc::unavailable, fmt::format("the folder '{}' cannot be made: {}", file.parent_path().string(), error.message()));
+  return renderer::write_png(file, drawing.view());
+}
+
+handcast::Result<Result> look_at(landmarks::HandFinder& finder, const Options& options, std::size_t i) {
+  const auto picture = read_grey(options.images[i]);
+  if (!picture) return tl::make_unexpected(picture.error());
+  landmarks::Hints hints;
+  if (!options.joints.empty()) {
+    const auto joints = read_joints(options.joints[i], picture->width(), picture->height());
+    if (!joints) return tl::make_unexpected(joints.error());
+    hints[static_cast<std::size_t>(options.joints_side)] = *joints;
+  }
+  Result result{options.images[i], {}, {}};
+  std::vector<Times> runs;
+  for (int k = 0; k < options.repeat; ++k) {
+    finder.forget();
+    const auto found = finder.find(picture->view(), hints, 0);
+    if (!found) return tl::make_unexpected(found.error());
+    result.hands.assign(found->begin(), found->end());
+    runs.push_back(finder.times());
+  }
+  result.times = median_of(runs);
+  if (!options.output.empty())
+    if (const auto saved = save(drawing_of(options, i), draw(picture->view(), result.hands, hints)); !saved)
+      return tl::make_unexpected(saved.error());
+  return result;
+}
+
+}  // namespace
+
+handcast::Result<std::string> run(const Options& options) {
+  if (!options.joints.empty() && options.joints.size() != options.images.size())
+    return fail(Errc::bad_config, fmt::format("{} pictures, but {} files of joints; give one --joints a picture, in the same order",
+                                              options.images.size(), options.joints.size()));
+  auto finder = landmarks::HandFinder::open(options.backend, landmarks::models_folder(options.models), options.hands);
+  if (!finder) return tl::make_unexpected(finder.error());
+  const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
+  std::vector<Result> results;
+  std::string text;
+  for (std::size_t i = 0; i < options.images.size(); ++i) {
+    if (shows_progress) fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(), options.images[i].filename().string());
+    auto result = look_at(*finder, options, i);
+    if (!result) return fail_in(options.images[i].string(), result.error());
+    if (!options.json) text += print_text(*result);
+    results.push_back(std::move(*result));
+  }
+  if (shows_progress) fmt::print(stderr, "\r\033[K");
+  return options.json ? print_json(results) : text;
+}
+
+}  // namespace handcast::detect

@@ -1,0 +1,186 @@
+#include "services/landmarks/hand_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::landmarks {
+namespace {
+
+constexpr float kSameHand = 0.35f;                         ///< mean distance of the points, in palm lengths
+constexpr std::int64_t kForget_ns = 300'000'000;           ///< a hand that was last seen longer ago may be anywhere
+constexpr int kSearchEvery = 4, kSearchForMoreEvery = 60;  ///< images
+constexpr float kLeftScoreShare = 0.1f, kSureOfSide = 0.25f;
+
+msg::Side other(msg::Side side) { return side == msg::Side::left ? msg::Side::right : msg::Side::left; }
+std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
+
+bool is_usable(const std::optional<Points>& hint_px) { return hint_px && is_finite(*hint_px); }
+bool any(const Hints& hints_px) { return std::ranges::any_of(hints_px, is_usable); }
+
+bool are_one_hand(const Points& a, const Points& b) {
+  return distance_px(a, b) < kSameHand * std::max(palm_length_px(a), palm_length_px(b));
+}
+
+Points moved(Points points_px, glm::vec2 by_px) {
+  for (auto& point : points_px) point += by_px;
+  return points_px;
+}
+
+}  // namespace
+
+Result<HandFinder> HandFinder::open(const std::string& backend, const std::filesystem::path& models, int most_hands) {
+  auto hand = HandNetwork::open(backend, models);
+  if (!hand) return tl::make_unexpected(hand.error());
+  auto palm = PalmNetwork::open(backend, models);
+  if (!palm) return tl::make_unexpected(palm.error());
+  return HandFinder(std::move(*hand), std::move(*palm), most_hands);
+}
+
+Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, const Hints& hints_px, std::int64_t time_ns) {
+  times_ = {};
+  const std::int64_t begin_ns = now_ns();
+  found_.clear();
+  left_scores_.clear();
+  std::erase_if(tracks_, [&](const Track& track) { return time_ns - track.seen_ns > kForget_ns; });
+  choose_candidates(hints_px);
+  for (const auto& candidate : candidates_)
+    if (const auto looked = look(image, candidate); !looked) return tl::make_unexpected(looked.error());
+  drop_double(hints_px);
+  if (search_is_due(hints_px)) {
+    if (const auto searched = search(image); !searched) return tl::make_unexpected(searched.error());
+  }
+  settle_sides(hints_px);
+  remember(hints_px, time_ns);
+  times_.all_ns = now_ns() - begin_ns;
+  return std::span<const FoundHand>(found_);
+}
+
+void HandFinder::forget() {
+  tracks_.clear();
+  since_search_ = kLongAgo;
+}
+
+/// The followed hand that the tracker's hand of this side is: the one of the same side if it is near, else the nearest.
+std::optional<std::size_t> HandFinder::track_of(msg::Side side, const Points& hint_px) const {
+  std::optional<std::size_t> best;
+  float best_distance = 0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const Points& before_px = tracks_[i].hint_px.value_or(tracks_[i].points_px);
+    const float distance = glm::distance(centre_of(before_px), centre_of(hint_px));
+    if (distance > 0.5f * region_of_landmarks(tracks_[i].points_px).size_px) continue;
+    if (tracks_[i].side == side) return i;
+    if (!best || distance < best_distance) best = i, best_distance = distance;
+  }
+  return best;
+}
+
+bool HandFinder::is_taken(msg::Side side) const {
+  return std::ranges::any_of(candidates_, [&](const Candidate& candidate) { return candidate.side == side; });
+}
+
+void HandFinder::choose_candidates(const Hints& hints_px) {
+  candidates_.clear();
+  std::array<bool, msg::kMaxHands> followed{};
+  for (const auto side : {msg::Side::left, msg::Side::right}) {
+    const auto& hint_px = hints_px[index_of(side)];
+    if (!is_usable(hint_px)) continue;
+    const auto track = track_of(side, *hint_px);
+    if (!track || followed[*track] || tracks_[*track].lost) {
+      if (track) followed[*track] = true;
+      candidates_.push_back({side, region_of_landmarks(*hint_px), true, -1});
+      continue;
+    }
+    followed[*track] = true;
+    const Track& seen = tracks_[*track];
+    const glm::vec2 step_px = seen.hint_px ? centre_of(*hint_px) - centre_of(*seen.hint_px) : glm::vec2(0);
+    candidates_.push_back({side, region_of_landmarks(moved(seen.points_px, step_px)), true, seen.left_score});
+  }
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (followed[i]) continue;
+    const auto side = is_taken(tracks_[i].side) ? other(tracks_[i].side) : tracks_[i].side;
+    if (!is_taken(side)) candidates_.push_back({side, region_of_landmarks(tracks_[i].points_px), false, tracks_[i].left_score});
+  }
+  if (candidates_.size() > static_cast<std::size_t>(most_hands_)) candidates_.resize(most_hands_);
+}
+
+Result<void> HandFinder::look(renderer::GreyView image, const Candidate& candidate) {
+  HandNetwork::Times times;
+  const auto seen = hand_.look(image, candidate.region, times);
+  times_.crop_ns += times.crop_ns;
+  times_.network_ns += times.network_ns;
+  ++times_.looks;
+  if (!seen) return tl::make_unexpected(seen.error());
+  if (seen->presence < kLeastPresence || !is_finite(seen->points_px)) return {};
+  found_.push_back({candidate.side, seen->presence, seen->points_px, candidate.region});
+  const float before = candidate.left_score < 0 ? seen->left_score : candidate.left_score;
+  left_scores_.push_back(before + kLeftScoreShare * (seen->left_score - before));
+  return {};
+}
+
+/// Two looks that ended on one hand: the one stays that lies nearer to its own joints of the tracker, or is the surer one.
+void HandFinder::drop_double(const Hints& hints_px) {
+  if (found_.size() < 2) return;
+  if (!are_one_hand(found_[0].points_px, found_[1].points_px)) return;
+  const auto& first = hints_px[index_of(found_[0].side)];
+  const auto& second = hints_px[index_of(found_[1].side)];
+  bool keep_first = found_[0].presence >= found_[1].presence;
+  if (is_usable(first) != is_usable(second)) keep_first = is_usable(first);
+  if (is_usable(first) && is_usable(second))
+    keep_first = distance_px(*first, found_[0].points_px) <= distance_px(*second, found_[1].points_px);
+  found_.erase(found_.begin() + (keep_first ? 1 : 0));
+  left_scores_.erase(left_scores_.begin() + (keep_first ? 1 : 0));
+}
+
+/// Where no hand was found: every few images. For one more hand: seldom, and not while there is a tracker, which would know.
+bool HandFinder::search_is_due(const Hints& hints_px) {
+  ++since_search_;
+  if (found_.empty()) return since_search_ >= kSearchEvery;
+  return !any(hints_px) && found_.size() < static_cast<std::size_t>(most_hands_) && since_search_ >= kSearchForMoreEvery;
+}
+
+Result<void> HandFinder::search(renderer::GreyView image) {
+  since_search_ = 0;
+  ++times_.searches;
+  const std::int64_t begin_ns = now_ns();
+  const auto regions = palm_.search(image);
+  times_.palm_ns = now_ns() - begin_ns;
+  if (!regions) return tl::make_unexpected(regions.error());
+  for (const auto& region : *regions) {
+    if (found_.size() >= static_cast<std::size_t>(most_hands_)) break;
+    const std::size_t before = found_.size();
+    if (auto looked = look(image, {msg::Side::left, region, false, -1}); !looked) return looked;
+    if (found_.size() == before) continue;
+    found_.back().side = left_scores_.back() >= 0.5f ? msg::Side::left : msg::Side::right;
+    drop_double({});
+    if (found_.size() == 2 && found_[0].side == found_[1].side) found_[1].side = other(found_[0].side);
+  }
+  return {};
+}
+
+/// A hand that the tracker does not know changes its side where the network says so for long, and that side is free.
+void HandFinder::settle_sides(const Hints& hints_px) {
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    if (is_usable(hints_px[index_of(found_[i].side)])) continue;
+    const float score = left_scores_[i] - 0.5f;
+    const auto seen = score > 0 ? msg::Side::left : msg::Side::right;
+    if (std::abs(score) < kSureOfSide || seen == found_[i].side || is_usable(hints_px[index_of(seen)])) continue;
+    if (found_.size() == 1) found_[i].side = seen;
+  }
+}
+
+/// A hand that was not found is kept for a while: the next image may be a better one.
+void HandFinder::remember(const Hints& hints_px, std::int64_t time_ns) {
+  std::erase_if(tracks_, [&](const Track& track) {
+    return std::ranges::any_of(
+        found_, [&](const FoundHand& hand) { return hand.side == track.side || are_one_hand(hand.points_px, track.points_px); });
+  });
+  for (auto& track : tracks_) track.lost = true;
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    const auto& hint_px = hints_px[index_of(found_[i].side)];
+    tracks_.push_back({found_[i].side, found_[i].points_px, is_usable(hint_px) ? hint_px : std::nullopt, left_scores_[i], time_ns, false});
+  }
+}
+
+}  // namespace handcast::landmarks

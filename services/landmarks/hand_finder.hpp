@@ -1,0 +1,87 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "services/landmarks/hand_network.hpp"
+
+namespace handcast::landmarks {
+
+/// Where a tracker's joints lie in an image, by msg::Side; nothing where it sees no such hand.
+using Hints = std::array<std::optional<Points>, msg::kMaxHands>;
+
+struct FoundHand {
+  msg::Side side = msg::Side::left;
+  float presence = 0;  ///< 0..1
+  Points points_px{};  ///< in the image, as the network defines them
+  Region region;       ///< where it was looked for
+};
+
+/// Finds the hands of one image after another. Looks where they were in the last image, moved on with the tracker; else where the
+/// tracker has them; else, every few images, where the palm network finds one. One thread, no allocation while hands are followed.
+class HandFinder {
+ public:
+  static constexpr float kLeastPresence = 0.5f;
+
+  /// Reads both networks. `most_hands`: 1 or 2. Errors (bad_config): a model file is missing or not the right one.
+  static Result<HandFinder> open(const std::string& backend, const std::filesystem::path& models, int most_hands);
+
+  /// Hands whose presence is at least kLeastPresence, valid until the next call. A side is the tracker's where it has a hand there, else
+  /// the network's. Images must be given in the order of their times. Errors: bad_data.
+  Result<std::span<const FoundHand>> find(renderer::GreyView image, const Hints& hints_px, std::int64_t time_ns);
+
+  /// As if it had never seen an image.
+  void forget();
+
+  struct Times {
+    std::int64_t crop_ns = 0, network_ns = 0, palm_ns = 0, all_ns = 0;
+    int looks = 0, searches = 0;  ///< how often each network ran
+  };
+  const Times& times() const { return times_; }  ///< of the last find()
+
+ private:
+  /// A hand that is being followed.
+  struct Track {
+    msg::Side side;
+    Points points_px;
+    std::optional<Points> hint_px;  ///< the tracker's at that time
+    float left_score;               ///< its running mean
+    std::int64_t seen_ns;
+    bool lost;  ///< not found in the last image
+  };
+  struct Candidate {
+    msg::Side side;
+    Region region;
+    bool hinted;
+    float left_score;  ///< before this image; negative: not known
+  };
+  HandFinder(HandNetwork hand, PalmNetwork palm, int most_hands)
+      : hand_(std::move(hand)), palm_(std::move(palm)), most_hands_(most_hands) {}
+
+  void choose_candidates(const Hints& hints_px);
+  std::optional<std::size_t> track_of(msg::Side side, const Points& hint_px) const;
+  bool is_taken(msg::Side side) const;
+  Result<void> look(renderer::GreyView image, const Candidate& candidate);
+  bool search_is_due(const Hints& hints_px);
+  Result<void> search(renderer::GreyView image);
+  void drop_double(const Hints& hints_px);
+  void settle_sides(const Hints& hints_px);
+  void remember(const Hints& hints_px, std::int64_t time_ns);
+
+  static constexpr int kLongAgo = 1'000'000;
+
+  HandNetwork hand_;
+  PalmNetwork palm_;
+  int most_hands_;
+  std::vector<Track> tracks_;
+  std::vector<Candidate> candidates_;
+  std::vector<FoundHand> found_;
+  std::vector<float> left_scores_;  ///< beside found_
+  int since_search_ = kLongAgo;
+  Times times_;
+};
+
+}  // namespace handcast::landmarks

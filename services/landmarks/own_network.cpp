@@ -1,0 +1,167 @@
+#include "services/landmarks/own_network.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "renderer/hand/hand_mesh.hpp"
+
+namespace handcast::landmarks::own {
+namespace {
+
+constexpr float kRoom = 1.3f;         ///< the region's side over the landmarks' larger extent
+constexpr float kLeastPalms = 1.45f;  ///< and at least so many palm lengths
+constexpr float kLeastBright = 12;    ///< darker crops are not brightened further
+constexpr float kMapSigma = 1.2f;     ///< of a tracker map's Gaussian, in cells
+constexpr std::size_t kHeatSize = kHeatCells * kHeatCells;
+
+glm::vec2 turned(glm::vec2 v, float angle_rad) {
+  const float c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return {c * v.x - s * v.y, s * v.x + c * v.y};
+}
+
+glm::vec2 mirrored(glm::vec2 place) { return {1 - place.x, place.y}; }
+
+using Bell = std::array<float, kMapCells>;
+
+/// A Gaussian over the cells of one axis.
+Bell bell_at(float place) {
+  Bell bell;
+  for (int i = 0; i < kMapCells; ++i) {
+    const float cells = (static_cast<float>(i) + 0.5f - place * kMapCells) / kMapSigma;
+    bell[i] = std::exp(-0.5f * cells * cells);
+  }
+  return bell;
+}
+
+/// Softmax; the sum of the weights is 1.
+void weigh(std::span<const float> scores, std::span<float> weights) {
+  const float most = *std::ranges::max_element(scores);
+  float sum = 0;
+  for (std::size_t i = 0; i < scores.size(); ++i) sum += weights[i] = std::exp(scores[i] - most);
+  for (float& weight : weights) weight /= sum;
+}
+
+}  // namespace
+
+Region region_around(const Points& points_px) {
+  const glm::vec2 up = points_px[9] - points_px[0];
+  const float angle_rad = std::atan2(up.x, -up.y);
+  glm::vec2 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+  for (const glm::vec2 point : points_px) {
+    const glm::vec2 upright = turned(point, -angle_rad);
+    low = glm::min(low, upright);
+    high = glm::max(high, upright);
+  }
+  const glm::vec2 extent = high - low;
+  const float size_px = std::max(kRoom * std::max(extent.x, extent.y), kLeastPalms * glm::length(up));
+  return {turned(0.5f * (low + high), angle_rad), size_px, angle_rad};
+}
+
+Places to_places(const Region& region, msg::Side side, const Points& points_px) {
+  Places places;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    places[i] = region.to_place(points_px[i]) + 0.5f;
+    if (side == msg::Side::left) places[i] = mirrored(places[i]);
+  }
+  return places;
+}
+
+Points to_image(const Region& region, msg::Side side, const Places& places) {
+  Points points_px;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    points_px[i] = region.to_image((side == msg::Side::left ? mirrored(places[i]) : places[i]) - 0.5f);
+  return points_px;
+}
+
+std::array<float, 256> shown_values(std::span<const std::uint8_t> pixels) {
+  std::array<std::size_t, 256> histogram{};
+  for (const std::uint8_t pixel : pixels) ++histogram[pixel];
+  std::size_t above = 0;
+  int bright = 255;
+  while (bright > 0 && (above += histogram[bright]) * 50 < pixels.size()) --bright;
+  const float scale = 1 / std::max(static_cast<float>(bright), kLeastBright);
+  std::array<float, 256> shown;
+  for (int i = 0; i < 256; ++i) shown[i] = std::min(static_cast<float>(i) * scale, kMostShown) - kShownShift;
+  return shown;
+}
+
+void write_image(std::span<const std::uint8_t> pixels, msg::Side side, std::span<float> input) {
+  const auto shown = shown_values(pixels);
+  for (int y = 0; y < kSide_px; ++y) {
+    const std::uint8_t* from = pixels.data() + y * kSide_px;
+    float* to = input.data() + y * kSide_px;
+    if (side == msg::Side::left)
+      for (int x = 0; x < kSide_px; ++x) to[x] = shown[from[kSide_px - 1 - x]];
+    else
+      for (int x = 0; x < kSide_px; ++x) to[x] = shown[from[x]];
+  }
+}
+
+void write_tracker(const std::optional<Places>& tracker, std::span<float> input) {
+  if (!tracker) {
+    std::ranges::fill(input, 0.0f);
+    return;
+  }
+  float* to = input.data();
+  for (const glm::vec2 place : *tracker) {
+    const Bell across = bell_at(place.x), down = bell_at(place.y);
+    for (const float row : down)
+      for (const float column : across) *to++ = row * column;
+  }
+}
+
+Answer read_answer(std::span<const float> output) {
+  const auto map = [&](std::size_t i) { return output.subspan(i * kHeatSize, kHeatSize); };
+  Answer answer;
+  std::array<float, kHeatSize> weights;
+  for (std::size_t i = 0; i < answer.places.size(); ++i) {
+    weigh(map(i), weights);
+    const auto log_sigmas = map(msg::kLandmarks + i);
+    glm::vec2 cell(0);
+    float log_sigma = 0;
+    for (int row = 0, c = 0; row < kHeatCells; ++row)
+      for (int column = 0; column < kHeatCells; ++column, ++c) {
+        cell += weights[c] * glm::vec2(column, row);
+        log_sigma += weights[c] * log_sigmas[c];
+      }
+    answer.places[i] = (cell + 0.5f) / static_cast<float>(kHeatCells);
+    answer.sigma[i] = std::exp(std::clamp(log_sigma, -12.0f, 3.0f));
+  }
+  float logit = 0;
+  for (const float value : map(2 * msg::kLandmarks)) logit += value / static_cast<float>(kHeatSize);
+  answer.presence = 1 / (1 + std::exp(-logit));
+  return answer;
+}
+
+Result<OwnNetwork> OwnNetwork::open(const std::string& backend, const std::filesystem::path& file) {
+  auto network = open_network(backend, file);
+  if (!network) return tl::make_unexpected(network.error());
+  const std::array<std::vector<int>, 2> inputs{{{1, 1, kSide_px, kSide_px}, {1, msg::kLandmarks, kMapCells, kMapCells}}};
+  const std::vector<int> output{1, 2 * msg::kLandmarks + 1, kHeatCells, kHeatCells};
+  const auto ins = (*network)->inputs(), outs = (*network)->outputs();
+  if (ins.size() != 2 || outs.size() != 1 || ins[0].shape != inputs[0] || ins[1].shape != inputs[1] || outs[0].shape != output)
+    return fail(Errc::bad_config, fmt::format("'{}' is not handcast's landmark network", file.string()));
+  return OwnNetwork(std::move(*network));
+}
+
+Result<OwnNetwork::Seen> OwnNetwork::look(renderer::GreyView image, const Region& region, msg::Side side,
+                                          const std::optional<Points>& tracker_px) {
+  crop_.cut(image, region);
+  write_image(crop_.pixels(), side, network_->input(0));
+  write_tracker(tracker_px ? std::optional(to_places(region, side, *tracker_px)) : std::nullopt, network_->input(1));
+  if (const auto done = network_->run(); !done) return tl::make_unexpected(done.error());
+  const Answer answer = read_answer(network_->output(0));
+  Seen seen{to_image(region, side, answer.places), {}, answer.presence};
+  for (std::size_t i = 0; i < seen.sigma_px.size(); ++i) seen.sigma_px[i] = std::numbers::sqrt2_v<float> * answer.sigma[i] * region.size_px;
+  return seen;
+}
+
+std::filesystem::path default_network_file() {
+  return renderer::default_hand_file(msg::Side::left).parent_path() / "landmarks" / "handcast.onnx";
+}
+
+}  // namespace handcast::landmarks::own
