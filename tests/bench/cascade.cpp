@@ -1,0 +1,228 @@
+// Speed against accuracy: every rung of the ladder on the twin, and the goals of the cascade.
+//   bench_cascade [--goals FILE]
+// Accuracy: twin.toml at the defaults of METHOD section 4, 3 s of each motion; two runs side by side. Speed: render() of a swaying hand
+// on one core, alone, the rungs in turns.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <map>
+
+#include "cascade_runs.hpp"
+#include "frame_pipeline.hpp"
+#include "goals.hpp"
+#include "ipc/msg/rung.hpp"
+#include "percentiles.hpp"
+
+namespace handcast::bench {
+namespace {
+
+constexpr double kSeconds = 3;
+const std::vector<double> kSpeeds{1, 3};
+const std::string kStill = "builtin:still";
+
+/// Motions of our own, and the recordings that are there.
+std::vector<std::string> find_motions() {
+  std::vector<std::string> motions{"builtin:wave", "builtin:open_close", "builtin:rotate", "builtin:pinch"};
+  const char* data = std::getenv("HANDCAST_DATA");
+  for (const char* name : {"deformation", "translation"}) {
+    const auto recording = std::filesystem::path(data ? data : "../shared/data") / "lmc" / name;
+    if (std::filesystem::exists(recording)) {
+      motions.push_back(recording.string());
+    } else {
+      fmt::print("not measured: the recording {} is not here (set HANDCAST_DATA)\n", recording.string());
+    }
+  }
+  return motions;
+}
+const std::vector<std::string> kMotions = find_motions();
+
+std::string short_name(const std::string& motion) {
+  return motion.starts_with("builtin:") ? motion.substr(8) : std::filesystem::path(motion).filename().string();
+}
+
+std::vector<std::string> rung_names() {
+  std::vector<std::string> names(msg::kRungNames.begin(), msg::kRungNames.end());
+  names.push_back("auto");
+  return names;
+}
+
+double number(const nlohmann::json& metrics, const char* place) {
+  const nlohmann::json::json_pointer at(place);
+  return metrics.contains(at) && metrics[at].is_number() ? metrics[at].get<double>() : std::nan("");
+}
+
+std::vector<SimulatedRun> ladder_runs() {
+  std::vector<SimulatedRun> runs;
+  for (const auto& rung : rung_names()) {
+    for (const auto& motion : kMotions)
+      for (const double speed : kSpeeds) runs.push_back({rung, motion, speed, {"cascade.ladder.rung=" + rung}, 24, {}});
+    runs.push_back({rung, kStill, 1, {"cascade.ladder.rung=" + rung}, 24, {}});
+  }
+  return runs;
+}
+
+/// The filters alone, as METHOD section 2 compares them (S1: a fixed bias and no drift).
+std::vector<SimulatedRun> filter_runs() {
+  const std::vector<std::string> common{"cascade.ladder.rung=landmarks", "twin.tracker.drift_px=0"};
+  std::vector<SimulatedRun> runs;
+  for (const auto& motion : kMotions) {
+    auto ours = common, paper = common;
+    paper.insert(paper.end(), {"cascade.filter.method=paper", "cascade.filter.hindsight=false", "cascade.filter.blend_ms=0"});
+    runs.push_back({"ours", motion, 1, ours, 0, {}});
+    runs.push_back({"paper", motion, 1, paper, 0, {}});
+  }
+  return runs;
+}
+
+/// A detector that finds nothing for 0.3 s.
+std::vector<SimulatedRun> lost_detector_runs() {
+  std::vector<SimulatedRun> runs;
+  for (const auto& motion : kMotions)
+    runs.push_back({"lost", motion, 1, {"twin.detector.lost_at_s=1.7", "twin.detector.lost_s=0.3"}, 0, {}});
+  return runs;
+}
+
+using Runs = std::vector<SimulatedRun>;
+
+/// Of the runs that `wanted` names, the mean of a figure.
+double mean_of(const Runs& runs, const char* place, const std::function<bool(const SimulatedRun&)>& wanted) {
+  double sum = 0;
+  int count = 0;
+  for (const auto& run : runs)
+    if (wanted(run)) sum += number(run.metrics, place), ++count;
+  return count > 0 ? sum / count : std::nan("");
+}
+
+const SimulatedRun& find(const Runs& runs, const std::string& label, const std::string& motion, double speed) {
+  return *std::ranges::find_if(runs, [&](const auto& run) { return run.label == label && run.motion == motion && run.speed == speed; });
+}
+
+/// Median frame times by rung: short turns, so that whatever else the machine does meets all alike.
+std::map<std::string, double> frame_times_us() {
+  constexpr int kTurns = 4, kFrames = 150;
+  std::map<std::string, std::vector<double>> samples;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    for (const auto& rung : rung_names()) {
+      config::Cascade cascade;
+      cascade.ladder.rung = rung;
+      const FrameTimes times = time_frames(cascade, 0.9, kFrames);
+      auto& all = samples[rung];
+      all.insert(all.end(), times.frame_us.begin(), times.frame_us.end());
+    }
+    fmt::print(stderr, "speed: {} of {} turns\n", turn + 1, kTurns);
+  }
+  std::map<std::string, double> medians;
+  for (auto& [rung, all] : samples) medians[rung] = all.empty() ? std::nan("") : median(all);
+  return medians;
+}
+
+void print_table(const Runs& runs, const std::map<std::string, double>& frame_us) {
+  fmt::print("interior error, mean/p95 mm, by motion x speed; jitter px of a still hand; render() on one core, p50 µs\n{:<11}", "rung");
+  for (const auto& motion : kMotions)
+    for (const double speed : kSpeeds) fmt::print(" {:>15}", fmt::format("{} x{:g}", short_name(motion), speed));
+  fmt::print(" {:>15} {:>7} {:>7}\n", "still", "jitter", "µs");
+  const auto spread = [](const SimulatedRun& run) {
+    return fmt::format("{:.2f}/{:.2f}", number(run.metrics, "/interior_mm/mean"), number(run.metrics, "/interior_mm/p95"));
+  };
+  for (const auto& rung : rung_names()) {
+    fmt::print("{:<11}", rung);
+    for (const auto& motion : kMotions)
+      for (const double speed : kSpeeds) fmt::print(" {:>15}", spread(find(runs, rung, motion, speed)));
+    const auto& still = find(runs, rung, kStill, 1);
+    fmt::print(" {:>15} {:>7.3f} {:>7.0f}\n", spread(still), number(still.metrics, "/jitter_px"), frame_us.at(rung));
+  }
+  fmt::print("\nwhat auto took, share of hands\n");
+  for (const auto& run : runs) {
+    if (run.label != "auto") continue;
+    fmt::print("{:<20} x{:g} ", short_name(run.motion), run.speed);
+    for (const auto& rung : msg::kRungNames)
+      if (const double share = number(run.metrics, fmt::format("/rungs/{}", rung).c_str()); share > 0)
+        fmt::print(" {} {:.2f}", rung, share);
+    fmt::print("\n");
+  }
+}
+
+/// How much the ladder's choice errs more than the best rung that is held, on the worst motion.
+double worst_against_best(const Runs& runs) {
+  double worst = 0;
+  for (const auto& chosen : runs) {
+    if (chosen.label != "auto") continue;
+    double best = 1e9;
+    for (const auto& run : runs)
+      if (run.label != "auto" && run.motion == chosen.motion && run.speed == chosen.speed)
+        best = std::min(best, number(run.metrics, "/interior_mm/mean"));
+    worst = std::max(worst, number(chosen.metrics, "/interior_mm/mean") / best);
+  }
+  return worst;
+}
+
+/// A figure of the speed bins named, weighed by their frames, over all runs of `auto` but the still one.
+double in_bins(const Runs& runs, const char* figure, const std::vector<std::string>& bins) {
+  double sum = 0, frames = 0;
+  for (const auto& run : runs)
+    for (const auto& bin : bins) {
+      if (run.label != "auto" || run.motion == kStill || !run.metrics.contains("bins")) continue;
+      const auto& at = run.metrics["bins"][bin];
+      if (!at[figure].is_number()) continue;
+      sum += at[figure].get<double>() * at["frames"].get<double>();
+      frames += at["frames"].get<double>();
+    }
+  return frames > 0 ? sum / frames : std::nan("");
+}
+
+std::vector<Goal> goals_of(const Runs& runs, const Runs& filters, const Runs& lost, std::map<std::string, double> frame_us) {
+  const auto chosen = [&](double speed) {
+    return [speed](const SimulatedRun& run) { return run.label == "auto" && run.speed == speed && run.motion != kStill; };
+  };
+  const auto of = [](const char* label) { return [label](const SimulatedRun& run) { return run.label == label; }; };
+  const std::vector<std::string> slow{"0-0.1", "0.1-0.3", "0.3-0.6"};
+  return {
+      {"interior error, natural speed, mean", mean_of(runs, "/interior_mm/mean", chosen(1)), 1.35, "mm"},
+      {"interior error, natural speed, p95", mean_of(runs, "/interior_mm/p95", chosen(1)), 2.9, "mm"},
+      {"interior error, 3x speed, mean", mean_of(runs, "/interior_mm/mean", chosen(3)), 2.4, "mm"},
+      {"interior error, 3x speed, p95", mean_of(runs, "/interior_mm/p95", chosen(3)), 6.6, "mm"},
+      {"filter, landmark error against the paper's",
+       mean_of(filters, "/landmark_mm/mean", of("ours")) / mean_of(filters, "/landmark_mm/mean", of("paper")), 0.7, "times"},
+      {"filter, jitter against the paper's", mean_of(filters, "/jitter_px", of("ours")) / mean_of(filters, "/jitter_px", of("paper")), 0.25,
+       "times"},
+      {"coverage up to 0.6 m/s", in_bins(runs, "coverage", slow), 0.99, "", true},
+      {"spill up to 0.6 m/s", in_bins(runs, "spill", slow), 0.01, ""},
+      {"still-hand jitter", number(find(runs, "auto", kStill, 1).metrics, "/jitter_px"), 0.1, "px"},
+      {"fold-overs", mean_of(runs, "/foldovers", of("auto")), 0, ""},
+      {"good again after a lost detector (2 detections)", mean_of(lost, "/fault/recovery_ms", of("lost")), 2 * 16.2, "ms"},
+      {"equivalent latency above 1 m/s", in_bins(runs, "equivalent_latency_ms", {">1.0"}), 6.62, "ms"},
+      {"auto against the best rung, worst motion", worst_against_best(runs), 1.05, "times"},
+      {"whole cascade with registration, one core, p50", frame_us["register"] / 1000, 1.5, "ms"},
+      {"auto against the full ladder, time", frame_us["auto"] / frame_us["register"], 1.02, "times"},
+  };
+}
+
+}  // namespace
+}  // namespace handcast::bench
+
+int main(int argc, char** argv) {
+  using namespace handcast::bench;
+  const bool with_goals = argc == 3 && std::strcmp(argv[1], "--goals") == 0;
+  if (argc != 1 && !with_goals) {
+    fmt::print(stderr, "usage: bench_cascade [--goals FILE]\n");
+    return 2;
+  }
+  const auto frame_us = frame_times_us();
+  auto runs = ladder_runs(), filters = filter_runs(), lost = lost_detector_runs();
+  simulate_all(runs, kSeconds);
+  simulate_all(filters, kSeconds);
+  simulate_all(lost, kSeconds);
+  print_table(runs, frame_us);
+  const auto goals = goals_of(runs, filters, lost, frame_us);
+  for (const Goal& goal : goals) {
+    fmt::print("{} {}: {:.3g} {} (goal {} {:g})\n", goal.met() ? "met " : "MISS", goal.name, goal.value, goal.unit,
+               goal.at_least ? ">=" : "<=", goal.limit);
+  }
+  if (!with_goals || write_goals(argv[2], goals)) return 0;
+  fmt::print(stderr, "bench_cascade: cannot write '{}'.\n", argv[2]);
+  return 1;
+}
