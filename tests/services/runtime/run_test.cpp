@@ -145,7 +145,7 @@ TEST_F(Run, MessagesAndMarksArriveInTheRingsHandedOver) {
     msg::HandPoses message;
     message.header = {.frame_id = 7, .origin_ns = 70};
     writer.publish(message);
-    const msg::StageMark sample{.stage = msg::Stage::sample, .reserved = 0, .begin_ns = 1, .end_ns = 2};
+    const msg::StageMark sample{.stage = msg::Stage::sample, .detail = 0, .begin_ns = 1, .end_ns = 2};
     context.mark(message.header, {&sample, 1});
   });
   const auto pose = poses.next(Deadline::now());
