@@ -72,9 +72,11 @@ void draw(Script& script, const Panel& panel, const Range& y, double left_px, do
 std::string script_of(const std::vector<Panel>& panels) {
   const int rows = (static_cast<int>(panels.size()) + kColumns - 1) / kColumns;
   Script script("chart_b", static_cast<int>(kColumns * kPanelWidth_px), static_cast<int>(rows * kPanelHeight_px));
-  for (std::size_t i = 0; i < panels.size(); ++i)
-    draw(script, panels[i], harm_range(panels, panels[i]), kPanelWidth_px * static_cast<double>(i % kColumns),
-         kPanelHeight_px * static_cast<double>(i / kColumns));
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const std::size_t column = i % kColumns, row = i / kColumns;
+    draw(script, panels[i], harm_range(panels, panels[i]), kPanelWidth_px * static_cast<double>(column),
+         kPanelHeight_px * static_cast<double>(row));
+  }
   return script.finish();
 }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <ctime>
+#include <exception>
 
 #include "services/chart/write.hpp"
 #include "services/page/machine.hpp"
@@ -15,7 +17,7 @@ static const char* const kFooter =
 Each needs the results of a plan in config/sweeps: A and C of ladder.toml (times from times.toml), B of stress.toml and failures.toml.
 scripts/charts runs them all.)";
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app("Draws what sweeps found: one page that needs no network, with the charts as SVG and the numbers behind them as CSV.",
                "handcast chart");
   app.footer(kFooter);
@@ -37,4 +39,9 @@ int main(int argc, char** argv) {
   for (const auto& sentence : written->lacking) fmt::print(stderr, "handcast chart: {}\n", sentence);
   fmt::print("{}\n", written->page.string());
   return 0;
+} catch (const std::exception& problem) {
+  std::fputs("handcast chart: ", stderr);
+  std::fputs(problem.what(), stderr);
+  std::fputs("\n", stderr);
+  return 111;
 }

@@ -22,7 +22,7 @@ std::string quote(std::string_view words) {
   return quoted + '\'';
 }
 
-Script::Script(std::string name, int width_px, int height_px) : width_px_(width_px), height_px_(height_px) {
+Script::Script(const std::string& name, int width_px, int height_px) : width_px_(width_px), height_px_(height_px) {
   line("set terminal svg size {},{} font \"{},13\" noenhanced background \"{}\" name {} dynamic", width_px, height_px, kFont, kPanel.value,
        quote(name));
   line("set encoding utf8");
@@ -94,9 +94,10 @@ Point Script::place_px(const Point& of_axes) const {
 std::vector<double> nice_tics(const Range& range, int count) {
   std::vector<double> tics;
   if (range.log) {
-    for (double decade = std::pow(10, std::floor(std::log10(range.low))); decade <= range.high; decade *= 10)
+    const int first = static_cast<int>(std::floor(std::log10(range.low))), last = static_cast<int>(std::floor(std::log10(range.high)));
+    for (int power = first; power <= last; ++power)
       for (const double digit : {1, 2, 5})
-        if (decade * digit >= range.low * 0.999 && decade * digit <= range.high * 1.001) tics.push_back(decade * digit);
+        if (const double tic = digit * std::pow(10, power); tic >= range.low * 0.999 && tic <= range.high * 1.001) tics.push_back(tic);
     return tics;
   }
   const double rough = (range.high - range.low) / count, decade = std::pow(10, std::floor(std::log10(rough)));

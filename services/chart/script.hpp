@@ -38,7 +38,7 @@ struct Range {
 /// Text for gnuplot, panel by panel. Places are pixels of the picture where they are not said to be of the axes.
 class Script {
  public:
-  Script(std::string name, int width_px, int height_px);
+  Script(const std::string& name, int width_px, int height_px);
 
   template <class... Args>
   void line(fmt::format_string<Args...> format, Args&&... args) {

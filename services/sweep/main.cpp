@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cstdio>
+#include <exception>
 
 #include "services/sweep/merge.hpp"
 #include "services/sweep/runner.hpp"
@@ -100,7 +102,7 @@ int merge_files(const CommandLine& line) {
 }  // namespace
 }  // namespace handcast::sweep
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace handcast::sweep;
   CommandLine line;
   CLI::App app("Scores a rig under every combination of the settings a plan names, in virtual time, to CSV.", "handcast sweep");
@@ -118,4 +120,9 @@ int main(int argc, char** argv) {
   if (line.merge) return merge_files(line);
   if (line.files.size() > 1) return complain({handcast::Errc::bad_config, "one plan, please; for files of results say --merge"});
   return sweep(line);
+} catch (const std::exception& problem) {
+  std::fputs("handcast sweep: ", stderr);
+  std::fputs(problem.what(), stderr);
+  std::fputs("\n", stderr);
+  return 111;
 }
