@@ -63,12 +63,14 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
   visitor.field(
       "backend", landmarks.backend, Choices{},
       "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has. onednn, opencv: MediaPipe Hands on the "
-      "camera's images, run by oneDNN or by OpenCV. twin: the twin's model of a detector. replay: recorded ones.");
+      "camera's images, run by oneDNN or by OpenCV. own: handcast's own network, which also looks at the tracker's joints and needs no "
+      "file from outside. twin: the twin's model of a detector. replay: recorded ones.");
   visitor.field(
       "models", landmarks.models, Choices{},
       "onednn, opencv: folder of the networks' files, which scripts/get-models fetches; relative to the rig file. Empty: the folder "
-      "HANDCAST_MODELS names, else share/handcast/models of the installation, else ~/.local/share/handcast/models.");
-  visitor.field("hands", landmarks.hands, between(1, 2), "onednn, opencv: how many hands are looked for.");
+      "HANDCAST_MODELS names, else share/handcast/models of the installation, else ~/.local/share/handcast/models. own: the palm "
+      "network there, if any, finds hands that the tracker does not see.");
+  visitor.field("hands", landmarks.hands, between(1, 2), "onednn, opencv, own: how many hands are looked for.");
   visitor.field(
       "definition", landmarks.definition, Choices{"tracker", "network"},
       "onednn, opencv: network: points as the network defines them. tracker: wrist and knuckles moved to where the tracker's joints "

@@ -38,7 +38,9 @@ int main(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(std::map<std::string, msg::Side>{{"left", msg::Side::left}, {"right", msg::Side::right}}))
       ->default_str("left");
   app.add_option("--model", options.models, "Folder of the networks' files, see scripts/get-models");
-  app.add_option("--backend", options.backend, "onednn or opencv")->capture_default_str();
+  app.add_option("--backend", options.backend,
+                 "onednn or opencv: MediaPipe Hands; own: handcast's own network, where --joints says or the palm network finds a hand")
+      ->capture_default_str();
   app.add_option("--hands", options.hands, "How many are looked for")->check(CLI::Range(1, 2))->capture_default_str();
   app.add_option("-o,--out", options.output, "Draws each result into this folder");
   app.add_option("--repeat", options.repeat, "Looks this often and tells the median of the times")->check(CLI::Range(1, 100000));

@@ -10,6 +10,7 @@
 #include "services/detect/picture.hpp"
 #include "services/detect/result.hpp"
 #include "services/landmarks/models.hpp"
+#include "services/landmarks/own_finder.hpp"
 
 namespace handcast::detect {
 namespace {
@@ -73,7 +74,9 @@ handcast::Result<std::string> run(const Options& options) {
   if (!options.joints.empty() && options.joints.size() != options.images.size())
     return fail(Errc::bad_config, fmt::format("{} pictures, but {} files of joints; give one --joints a picture, in the same order",
                                               options.images.size(), options.joints.size()));
-  auto finder = landmarks::HandFinder::open(options.backend, landmarks::models_folder(options.models), options.hands);
+  const fs::path models = landmarks::models_folder(options.models);
+  auto finder = options.backend == "own" ? landmarks::own::open_finder(models, options.hands)
+                                         : landmarks::HandFinder::open(options.backend, models, options.hands);
   if (!finder) return tl::make_unexpected(finder.error());
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
   std::vector<Result> results;

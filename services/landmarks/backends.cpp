@@ -6,14 +6,13 @@ namespace handcast::landmarks {
 
 Result<std::unique_ptr<Detector>> open_onednn(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Detector>> open_opencv(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Detector>> open_own(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Detector>> open_twin(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Detector>> open_replay(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
-    DetectorBackend{"onednn", open_onednn},
-    DetectorBackend{"opencv", open_opencv},
-    DetectorBackend{"twin", open_twin},
-    DetectorBackend{"replay", open_replay},
+    DetectorBackend{"onednn", open_onednn}, DetectorBackend{"opencv", open_opencv}, DetectorBackend{"own", open_own},
+    DetectorBackend{"twin", open_twin},     DetectorBackend{"replay", open_replay},
 };
 
 std::span<const DetectorBackend> detector_backends() { return kBackends; }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ipc/base/clock.hpp"
 
 namespace handcast::landmarks {
 namespace {
 
+constexpr float kLeastRegion_px = 1;
 constexpr float kSameHand = 0.35f;                         ///< mean distance of the points, in palm lengths
 constexpr std::int64_t kForget_ns = 300'000'000;           ///< a hand that was last seen longer ago may be anywhere
 constexpr int kSearchEvery = 4, kSearchForMoreEvery = 60;  ///< images
@@ -28,6 +30,11 @@ Points moved(Points points_px, glm::vec2 by_px) {
   return points_px;
 }
 
+/// Mean over the landmarks, as a share of the region.
+float sigma_of(const FoundHand& hand) {
+  return std::accumulate(hand.sigma_px.begin(), hand.sigma_px.end(), 0.0f) / (hand.region.size_px * static_cast<float>(msg::kLandmarks));
+}
+
 }  // namespace
 
 Result<HandFinder> HandFinder::open(const std::string& backend, const std::filesystem::path& models, int most_hands) {
@@ -35,7 +42,7 @@ Result<HandFinder> HandFinder::open(const std::string& backend, const std::files
   if (!hand) return tl::make_unexpected(hand.error());
   auto palm = PalmNetwork::open(backend, models);
   if (!palm) return tl::make_unexpected(palm.error());
-  return HandFinder(std::move(*hand), std::move(*palm), most_hands);
+  return HandFinder(std::make_unique<HandNetwork>(std::move(*hand)), std::move(*palm), most_hands);
 }
 
 Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, const Hints& hints_px, std::int64_t time_ns) {
@@ -43,7 +50,7 @@ Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, co
   const std::int64_t begin_ns = now_ns();
   found_.clear();
   left_scores_.clear();
-  std::erase_if(tracks_, [&](const Track& track) { return time_ns - track.seen_ns > kForget_ns; });
+  if (palm_ || any(hints_px)) std::erase_if(tracks_, [&](const Track& track) { return time_ns - track.seen_ns > kForget_ns; });
   choose_candidates(hints_px);
   for (const auto& candidate : candidates_)
     if (const auto looked = look(image, candidate); !looked) return tl::make_unexpected(looked.error());
@@ -69,7 +76,7 @@ std::optional<std::size_t> HandFinder::track_of(msg::Side side, const Points& hi
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const Points& before_px = tracks_[i].hint_px.value_or(tracks_[i].points_px);
     const float distance = glm::distance(centre_of(before_px), centre_of(hint_px));
-    if (distance > 0.5f * region_of_landmarks(tracks_[i].points_px).size_px) continue;
+    if (distance > 0.5f * hand_->region_around(tracks_[i].points_px).size_px) continue;
     if (tracks_[i].side == side) return i;
     if (!best || distance < best_distance) best = i, best_distance = distance;
   }
@@ -89,31 +96,47 @@ void HandFinder::choose_candidates(const Hints& hints_px) {
     const auto track = track_of(side, *hint_px);
     if (!track || followed[*track] || tracks_[*track].lost) {
       if (track) followed[*track] = true;
-      candidates_.push_back({side, region_of_landmarks(*hint_px), true, -1});
+      candidates_.push_back({side, hand_->region_around(*hint_px), hint_px});
       continue;
     }
     followed[*track] = true;
     const Track& seen = tracks_[*track];
     const glm::vec2 step_px = seen.hint_px ? centre_of(*hint_px) - centre_of(*seen.hint_px) : glm::vec2(0);
-    candidates_.push_back({side, region_of_landmarks(moved(seen.points_px, step_px)), true, seen.left_score});
+    candidates_.push_back({side, hand_->region_around(moved(seen.points_px, step_px)), hint_px, true, seen.left_score});
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (followed[i]) continue;
-    const auto side = is_taken(tracks_[i].side) ? other(tracks_[i].side) : tracks_[i].side;
-    if (!is_taken(side)) candidates_.push_back({side, region_of_landmarks(tracks_[i].points_px), false, tracks_[i].left_score});
+    const Track& seen = tracks_[i];
+    const auto side = is_taken(seen.side) ? other(seen.side) : seen.side;
+    if (!is_taken(side)) candidates_.push_back({side, hand_->region_around(seen.points_px), std::nullopt, !seen.lost, seen.left_score});
   }
   if (candidates_.size() > static_cast<std::size_t>(most_hands_)) candidates_.resize(most_hands_);
 }
 
-Result<void> HandFinder::look(renderer::GreyView image, const Candidate& candidate) {
-  HandNetwork::Times times;
-  const auto seen = hand_.look(image, candidate.region, times);
+/// Sets `region`: where it was looked for last.
+Result<HandLooker::Seen> HandFinder::look_at(renderer::GreyView image, const Candidate& candidate, Region& region) {
+  HandLooker::Times times;
+  HandLooker::Seen seen;
+  const int looks = candidate.is_followed ? 1 : hand_->first_looks();
+  for (int i = 0; i < looks; ++i) {
+    region = i == 0 ? candidate.region : hand_->region_around(seen.points_px);
+    if (!(region.size_px >= kLeastRegion_px)) return HandLooker::Seen{};
+    auto answer = hand_->look(image, region, candidate.side, candidate.hint_px, times);
+    if (!answer) return answer;
+    seen = *answer;
+    ++times_.looks;
+  }
   times_.crop_ns += times.crop_ns;
   times_.network_ns += times.network_ns;
-  ++times_.looks;
+  return seen;
+}
+
+Result<void> HandFinder::look(renderer::GreyView image, const Candidate& candidate) {
+  Region region;
+  const auto seen = look_at(image, candidate, region);
   if (!seen) return tl::make_unexpected(seen.error());
   if (seen->presence < kLeastPresence || !is_finite(seen->points_px)) return {};
-  found_.push_back({candidate.side, seen->presence, seen->points_px, candidate.region});
+  found_.push_back({candidate.side, seen->presence, seen->points_px, region, seen->sigma_px});
   const float before = candidate.left_score < 0 ? seen->left_score : candidate.left_score;
   left_scores_.push_back(before + kLeftScoreShare * (seen->left_score - before));
   return {};
@@ -136,6 +159,7 @@ void HandFinder::drop_double(const Hints& hints_px) {
 /// Where no hand was found: every few images. For one more hand: seldom, and not while there is a tracker, which would know.
 bool HandFinder::search_is_due(const Hints& hints_px) {
   ++since_search_;
+  if (!palm_) return false;
   if (found_.empty()) return since_search_ >= kSearchEvery;
   return !any(hints_px) && found_.size() < static_cast<std::size_t>(most_hands_) && since_search_ >= kSearchForMoreEvery;
 }
@@ -144,18 +168,33 @@ Result<void> HandFinder::search(renderer::GreyView image) {
   since_search_ = 0;
   ++times_.searches;
   const std::int64_t begin_ns = now_ns();
-  const auto regions = palm_.search(image);
+  const auto regions = palm_->search(image);
   times_.palm_ns = now_ns() - begin_ns;
   if (!regions) return tl::make_unexpected(regions.error());
   for (const auto& region : *regions) {
     if (found_.size() >= static_cast<std::size_t>(most_hands_)) break;
     const std::size_t before = found_.size();
-    if (auto looked = look(image, {msg::Side::left, region, false, -1}); !looked) return looked;
+    if (auto looked = look_for_either_side(image, region); !looked) return looked;
     if (found_.size() == before) continue;
-    found_.back().side = left_scores_.back() >= 0.5f ? msg::Side::left : msg::Side::right;
     drop_double({});
     if (found_.size() == 2 && found_[0].side == found_[1].side) found_[1].side = other(found_[0].side);
   }
+  return {};
+}
+
+/// By the network's word; of one that cannot tell, by which side it is surer of.
+Result<void> HandFinder::look_for_either_side(renderer::GreyView image, const Region& region) {
+  const std::size_t before = found_.size();
+  if (auto looked = look(image, {msg::Side::left, region, std::nullopt}); !looked) return looked;
+  if (hand_->tells_sides()) {
+    if (found_.size() > before) found_.back().side = left_scores_.back() >= 0.5f ? msg::Side::left : msg::Side::right;
+    return {};
+  }
+  if (auto looked = look(image, {msg::Side::right, region, std::nullopt}); !looked) return looked;
+  if (found_.size() < before + 2) return {};
+  const bool is_left = sigma_of(found_[before]) <= sigma_of(found_[before + 1]);
+  found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(before + (is_left ? 1 : 0)));
+  left_scores_.pop_back();
   return {};
 }
 

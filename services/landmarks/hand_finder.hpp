@@ -15,18 +15,24 @@ using Hints = std::array<std::optional<Points>, msg::kMaxHands>;
 
 struct FoundHand {
   msg::Side side = msg::Side::left;
-  float presence = 0;  ///< 0..1
-  Points points_px{};  ///< in the image, as the network defines them
-  Region region;       ///< where it was looked for
+  float presence = 0;                             ///< 0..1
+  Points points_px{};                             ///< in the image, as the network defines them
+  Region region;                                  ///< where it was looked for
+  std::array<float, msg::kLandmarks> sigma_px{};  ///< standard deviation per axis; 0: not known
 };
 
 /// Finds the hands of one image after another. Looks where they were in the last image, moved on with the tracker; else where the
-/// tracker has them; else, every few images, where the palm network finds one. One thread, no allocation while hands are followed.
+/// tracker has them; else, every few images, where the palm network finds one, or without it where a hand was last.
+/// One thread, no allocation while hands are followed.
 class HandFinder {
  public:
   static constexpr float kLeastPresence = 0.5f;
 
-  /// Reads both networks. `most_hands`: 1 or 2. Errors (bad_config): a model file is missing or not the right one.
+  /// `most_hands`: 1 or 2.
+  HandFinder(std::unique_ptr<HandLooker> hand, std::optional<PalmNetwork> palm, int most_hands)
+      : hand_(std::move(hand)), palm_(std::move(palm)), most_hands_(most_hands) {}
+
+  /// MediaPipe Hands: both networks. Errors (bad_config): a model file is missing or not the right one.
   static Result<HandFinder> open(const std::string& backend, const std::filesystem::path& models, int most_hands);
 
   /// Hands whose presence is at least kLeastPresence, valid until the next call. A side is the tracker's where it has a hand there, else
@@ -55,26 +61,27 @@ class HandFinder {
   struct Candidate {
     msg::Side side;
     Region region;
-    bool hinted;
-    float left_score;  ///< before this image; negative: not known
+    std::optional<Points> hint_px;
+    bool is_followed = false;  ///< it was seen in the last image
+    float left_score = -1;     ///< before this image; negative: not known
   };
-  HandFinder(HandNetwork hand, PalmNetwork palm, int most_hands)
-      : hand_(std::move(hand)), palm_(std::move(palm)), most_hands_(most_hands) {}
 
   void choose_candidates(const Hints& hints_px);
   std::optional<std::size_t> track_of(msg::Side side, const Points& hint_px) const;
   bool is_taken(msg::Side side) const;
   Result<void> look(renderer::GreyView image, const Candidate& candidate);
+  Result<HandLooker::Seen> look_at(renderer::GreyView image, const Candidate& candidate, Region& region);
   bool search_is_due(const Hints& hints_px);
   Result<void> search(renderer::GreyView image);
+  Result<void> look_for_either_side(renderer::GreyView image, const Region& region);
   void drop_double(const Hints& hints_px);
   void settle_sides(const Hints& hints_px);
   void remember(const Hints& hints_px, std::int64_t time_ns);
 
   static constexpr int kLongAgo = 1'000'000;
 
-  HandNetwork hand_;
-  PalmNetwork palm_;
+  std::unique_ptr<HandLooker> hand_;
+  std::optional<PalmNetwork> palm_;
   int most_hands_;
   std::vector<Track> tracks_;
   std::vector<Candidate> candidates_;

@@ -5,26 +5,25 @@
 #include <vector>
 
 #include "services/landmarks/crop.hpp"
+#include "services/landmarks/hand_looker.hpp"
 #include "services/landmarks/network/network.hpp"
 #include "services/landmarks/palm.hpp"
 
 namespace handcast::landmarks {
 
 /// MediaPipe Hands' landmark network (lite): one hand in an upright region.
-class HandNetwork {
+class HandNetwork final : public HandLooker {
  public:
   /// Errors (bad_config): as of open_network, and a file that holds another network.
   static Result<HandNetwork> open(const std::string& backend, const std::filesystem::path& folder);
 
-  struct Seen {
-    Points points_px{};    ///< in the image
-    float presence = 0;    ///< 0..1: that there is a hand
-    float left_score = 0;  ///< 0..1: that it is a left one, in an image that is not mirrored
-  };
-  /// Times in ns on top of what they are. Errors: bad_data.
-  struct Times {
-    std::int64_t crop_ns = 0, network_ns = 0;
-  };
+  Region region_around(const Points& points_px) const override { return region_of_landmarks(points_px); }
+  int first_looks() const override { return 1; }
+  bool tells_sides() const override { return true; }
+  /// It knows no tracker.
+  Result<Seen> look(renderer::GreyView image, const Region& region, msg::Side, const std::optional<Points>&, Times& times) override {
+    return look(image, region, times);
+  }
   Result<Seen> look(renderer::GreyView image, const Region& region, Times& times);
 
  private:

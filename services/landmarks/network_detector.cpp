@@ -1,14 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "services/landmarks/definition.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/hints.hpp"
 #include "services/landmarks/models.hpp"
+#include "services/landmarks/own_finder.hpp"
 
 namespace handcast::landmarks {
 namespace {
 
-/// MediaPipe Hands on the images themselves.
+/// A landmark this uncertain was not seen: standard deviation per axis, as a share of the region.
+constexpr float kMostSigma = 0.1f;
+
+/// A network on the images themselves.
 class NetworkDetector final : public Detector {
  public:
   NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool as_the_tracker)
@@ -41,8 +47,13 @@ class NetworkDetector final : public Detector {
     }
     msg::HandLandmarks message{hand.side, hand.presence, {}};
     for (std::size_t i = 0; i < points_px.size(); ++i)
-      message.points[i] = {points_px[i].x, points_px[i].y, is_in_image(hand.points_px[i]) ? hand.presence : 0};
+      message.points[i] = {points_px[i].x, points_px[i].y, is_in_image(hand.points_px[i]) ? confidence_of(hand, i) : 0};
     return message;
+  }
+
+  /// The hand's presence, falling to 0 as the landmark's sigma grows to kMostSigma.
+  static float confidence_of(const FoundHand& hand, std::size_t i) {
+    return hand.presence * std::clamp(1 - hand.sigma_px[i] / (kMostSigma * hand.region.size_px), 0.0f, 1.0f);
   }
 
   bool is_in_image(glm::vec2 at_px) const {
@@ -64,6 +75,14 @@ Result<std::unique_ptr<Detector>> open_with(const char* backend, const config::R
 }
 
 }  // namespace
+
+/// Its points are the tracker's joints already.
+Result<std::unique_ptr<Detector>> open_own(const config::Rig& rig, const calib::Calibration& calibration, const std::int64_t&) {
+  const auto& settings = rig.landmarks;
+  auto finder = own::open_finder(models_folder(settings.models), settings.hands);
+  if (!finder) return fail_in("landmarks 'own'", finder.error());
+  return std::make_unique<NetworkDetector>(std::move(*finder), calibration.camera, false);
+}
 
 Result<std::unique_ptr<Detector>> open_onednn(const config::Rig& rig, const calib::Calibration& calibration, const std::int64_t&) {
   return open_with("onednn", rig, calibration);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "ipc/base/clock.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 
 namespace handcast::landmarks::own {
@@ -148,14 +149,19 @@ Result<OwnNetwork> OwnNetwork::open(const std::string& backend, const std::files
   return OwnNetwork(std::move(*network));
 }
 
-Result<OwnNetwork::Seen> OwnNetwork::look(renderer::GreyView image, const Region& region, msg::Side side,
-                                          const std::optional<Points>& tracker_px) {
+Result<HandLooker::Seen> OwnNetwork::look(renderer::GreyView image, const Region& region, msg::Side side,
+                                          const std::optional<Points>& tracker_px, Times& times) {
+  const std::int64_t begin_ns = now_ns();
   crop_.cut(image, region);
   write_image(crop_.pixels(), side, network_->input(0));
   write_tracker(tracker_px ? std::optional(to_places(region, side, *tracker_px)) : std::nullopt, network_->input(1));
-  if (const auto done = network_->run(); !done) return tl::make_unexpected(done.error());
+  const std::int64_t cut_ns = now_ns();
+  const auto done = network_->run();
+  times.crop_ns += cut_ns - begin_ns;
+  times.network_ns += now_ns() - cut_ns;
+  if (!done) return tl::make_unexpected(done.error());
   const Answer answer = read_answer(network_->output(0));
-  Seen seen{to_image(region, side, answer.places), {}, answer.presence};
+  Seen seen{.points_px = to_image(region, side, answer.places), .presence = answer.presence};
   for (std::size_t i = 0; i < seen.sigma_px.size(); ++i) seen.sigma_px[i] = std::numbers::sqrt2_v<float> * answer.sigma[i] * region.size_px;
   return seen;
 }

@@ -8,6 +8,7 @@
 
 #include "ipc/msg/hand_poses.hpp"
 #include "services/landmarks/crop.hpp"
+#include "services/landmarks/hand_looker.hpp"
 #include "services/landmarks/network/network.hpp"
 #include "services/landmarks/region.hpp"
 
@@ -45,18 +46,17 @@ struct Answer {
 Answer read_answer(std::span<const float> output);
 
 /// The network with its crop. Keeps its buffers; one thread.
-class OwnNetwork {
+class OwnNetwork final : public HandLooker {
  public:
   /// Errors (bad_config): as of open_network, and a file that holds another network.
   static Result<OwnNetwork> open(const std::string& backend, const std::filesystem::path& file);
 
-  struct Seen {
-    Points points_px{};                             ///< where the tracker's joints should be
-    std::array<float, msg::kLandmarks> sigma_px{};  ///< standard deviation per axis
-    float presence = 0;
-  };
-  /// Errors: bad_data.
-  Result<Seen> look(renderer::GreyView image, const Region& region, msg::Side side, const std::optional<Points>& tracker_px);
+  Region region_around(const Points& points_px) const override { return own::region_around(points_px); }
+  int first_looks() const override { return 2; }
+  bool tells_sides() const override { return false; }
+  /// Points where the tracker's joints should be.
+  Result<Seen> look(renderer::GreyView image, const Region& region, msg::Side side, const std::optional<Points>& tracker_px,
+                    Times& times) override;
 
  private:
   explicit OwnNetwork(std::unique_ptr<Network> network) : network_(std::move(network)) {}

@@ -28,7 +28,7 @@ const char* const kHelp =
   --help, --version
 
 Landmarks come from the twin's model of a detector, or from a detector itself that looks at the twin's images:
-  --set landmarks.backend=onednn|opencv
+  --set landmarks.backend=onednn|opencv|own
 Its points are its own; how old they are when they arrive is set: twin.detector.age_ms and age_sd_ms, for every back end alike, so
 that a slow machine simulates a fast one. "detector" in --json says what it took here (ms_p50) and what it missed.
 

@@ -40,6 +40,7 @@ const std::vector<Reads>& table() {
       {"landmarks", "replay", {"landmarks.replay"}},
       {"landmarks", "onednn", {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
       {"landmarks", "opencv", {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
+      {"landmarks", "own", {"landmarks.models", "landmarks.hands"}},
       {"landmarks", "twin", kTruth},
       {"landmarks", "twin", {"twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}},
       {"projector", "", {"projector", "content", "hand", "cascade"}},

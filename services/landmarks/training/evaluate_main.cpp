@@ -42,7 +42,8 @@ Result<Seen> look_own(own::OwnNetwork& network, renderer::GreyView image, msg::S
                       const std::optional<Points>& tracker_px, int looks) {
   Seen seen{start_px, {}, 0};
   for (int i = 0; i < looks; ++i) {
-    const auto answer = network.look(image, own::region_around(seen.points_px), side, tracker_px);
+    HandLooker::Times times;
+    const auto answer = network.look(image, own::region_around(seen.points_px), side, tracker_px, times);
     if (!answer) return tl::make_unexpected(answer.error());
     seen = {answer->points_px, answer->sigma_px, answer->presence};
   }

@@ -118,6 +118,16 @@ TEST_F(Detect, SaysWhatItCannotUse) {
   EXPECT_THAT(refused(options), HasSubstr("no back end 'abacus'; this build has: onednn, opencv"));
 }
 
+TEST_F(Detect, OurOwnNetworkNeedsNoFileFromOutsideWhereATrackerIs) {
+  options_.backend = "own";
+  options_.models = scratch_.path();
+  options_.joints = joints_;
+  const auto text = run(options_);
+  ASSERT_TRUE(text) << text.error().what;
+  EXPECT_THAT(*text, HasSubstr("1_camera.png: 1 hand, "));
+  EXPECT_THAT(*text, HasSubstr("6_camera.png: 1 hand, "));
+}
+
 TEST_F(Detect, IsAVerbWithTheHousesExitCodes) {
   const char* bin = std::getenv("HANDCAST_BIN");
   const std::string program = std::string(bin ? bin : "bin") + "/handcast-detect ";

@@ -7,6 +7,7 @@
 #include "ipc/msg/owned.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/hints.hpp"
+#include "services/landmarks/training/trial.hpp"
 #include "services/twin/recording.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 #include "tests/services/scratch.hpp"
@@ -35,7 +36,7 @@ msg::CameraFrame frame_of(std::uint64_t id, std::int64_t origin_ns) {
   return frame;
 }
 
-bool runs_networks(std::string_view backend) { return backend == "onednn" || backend == "opencv"; }
+bool runs_mediapipe(std::string_view backend) { return backend == "onednn" || backend == "opencv"; }
 
 /// A real capture as the camera's, and a calibration for it.
 struct Scene {
@@ -59,10 +60,14 @@ struct Scene {
 class DetectorContract : public testing::TestWithParam<std::string_view> {
  protected:
   void SetUp() override {
-    if (runs_networks(GetParam())) {
+    if (runs_mediapipe(GetParam())) {
       SKIP_WITHOUT_MODELS();
       SKIP_WITHOUT_CAPTURES();
       scene_.emplace(*test::capture(1));
+    }
+    if (GetParam() == "own") {
+      auto shown = training::Trials::open("builtin:open_close", 1)->make(1, 10);
+      scene_.emplace(test::Capture{std::move(shown.image), shown.tracker_px});
     }
     rig_.landmarks.backend = GetParam();
     rig_.landmarks.models = test::models();

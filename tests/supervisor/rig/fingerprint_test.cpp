@@ -92,6 +92,9 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
 
 TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
   expect_reads("landmarks", networks(), {"landmarks"}, settings_in({"landmarks.replay", "landmarks.process.standby"}));
+  config::Rig own;
+  own.landmarks.backend = "own";
+  expect_reads("landmarks", own, {"landmarks"}, settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
