@@ -1,4 +1,6 @@
 #pragma once
+#include <deque>
+
 #include "calib/calibration.hpp"
 #include "renderer/image.hpp"
 #include "services/landmarks/own_network.hpp"
@@ -43,7 +45,7 @@ class Scene {
   calib::CameraModel camera_;
   glm::mat2 fine_from_image_{1};
   glm::vec2 fine_origin_{0};
-  std::vector<Shot> shots_;
+  std::deque<Shot> shots_;  ///< a shot may point into itself: it stays where it is
   std::size_t shot_count_ = 0;
   renderer::Image<float> inverse_depth_, fine_, shadow_depth_;
   std::vector<float> grey_, cover_;
