@@ -218,10 +218,7 @@ int main(int argc, char** argv) {
   simulate_all(lost, kSeconds);
   print_table(runs, frame_us);
   const auto goals = goals_of(runs, filters, lost, frame_us);
-  for (const Goal& goal : goals) {
-    fmt::print("{} {}: {:.3g} {} (goal {} {:g})\n", goal.met() ? "met " : "MISS", goal.name, goal.value, goal.unit,
-               goal.at_least ? ">=" : "<=", goal.limit);
-  }
+  print_goals(goals);
   if (!with_goals || write_goals(argv[2], goals)) return 0;
   fmt::print(stderr, "bench_cascade: cannot write '{}'.\n", argv[2]);
   return 1;

@@ -123,10 +123,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, rest.data());
   if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 1;
   const std::vector<Goal> goals = measure_goals();
-  for (const Goal& goal : goals) {
-    fmt::print("{} {}: {:.3g} {} (goal {} {:g})\n", goal.met() ? "met " : "MISS", goal.name, goal.value, goal.unit,
-               goal.at_least ? ">=" : "<=", goal.limit);
-  }
+  print_goals(goals);
   if (!goals_file.empty() && !write_goals(goals_file, goals)) {
     fmt::print(stderr, "bench_frame: cannot write '{}'.\n", goals_file);
     return 1;

@@ -17,6 +17,12 @@ struct Goal {
   bool met() const { return at_least ? value >= limit : value <= limit; }
 };
 
+inline void print_goals(const std::vector<Goal>& goals) {
+  for (const Goal& goal : goals)
+    fmt::print("{} {}: {:.3g} {} (goal {} {:g})\n", goal.met() ? "met " : "MISS", goal.name, goal.value, goal.unit,
+               goal.at_least ? ">=" : "<=", goal.limit);
+}
+
 inline bool write_goals(const std::string& path, const std::vector<Goal>& goals) {
   std::ofstream file(path);
   file << "{\"goals\": [";

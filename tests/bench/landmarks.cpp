@@ -157,10 +157,7 @@ int main(int argc, char** argv) {
     print(result);
     for (const Goal& goal : goals_of(result)) goals.push_back(goal);
   }
-  for (const Goal& goal : goals) {
-    fmt::print("{} {}: {:.3g} {} (goal {} {:g})\n", goal.met() ? "met " : "MISS", goal.name, goal.value, goal.unit,
-               goal.at_least ? ">=" : "<=", goal.limit);
-  }
+  print_goals(goals);
   if (!options.goals_file.empty() && !write_goals(options.goals_file, goals)) {
     fmt::print(stderr, "bench_landmarks: cannot write '{}'.\n", options.goals_file);
     return 1;

@@ -192,8 +192,7 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[i], "--seconds") == 0) seconds = std::atof(argv[i + 1]);
   }
   const std::vector<Goal> goals = measure_goals(seconds);
-  for (const Goal& goal : goals)
-    fmt::print("{} {}: {:.3g} {} (goal <= {:g})\n", goal.met() ? "met " : "MISS", goal.name, goal.value, goal.unit, goal.limit);
+  print_goals(goals);
   if (goals_file.empty() || write_goals(goals_file, goals)) return 0;
   fmt::print(stderr, "bench_traces: cannot write '{}'.\n", goals_file);
   return 1;

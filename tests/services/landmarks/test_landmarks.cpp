@@ -206,28 +206,26 @@ TEST_F(NetworkDetector, AnImageOfAnotherSizeIsLeftOut) {
   EXPECT_THAT(found.error().what, testing::HasSubstr("0 x 0 px, but the calibration is for a camera of 1024 x 768 px"));
 }
 
-TEST(NetworkDetectorFiles, SaysWhatItMisses) {
-  const test::Scratch scratch;
+void expect_refused(const std::filesystem::path& models, const std::string& sentence) {
   config::Rig rig;
   rig.landmarks.backend = "opencv";
-  rig.landmarks.models = scratch.path();
+  rig.landmarks.models = models;
   const auto opened = open_detector(rig, calib::reference_rig(), 0);
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, Errc::bad_config);
-  EXPECT_THAT(opened.error().what, testing::HasSubstr("hand_landmark_lite.onnx' is missing; scripts/get-models"));
+  EXPECT_THAT(opened.error().what, testing::HasSubstr(sentence));
+}
+
+TEST(NetworkDetectorFiles, SaysWhatItMisses) {
+  const test::Scratch scratch;
+  expect_refused(scratch.path(), "hand_landmark_lite.onnx' is missing; scripts/get-models");
 }
 
 TEST(NetworkDetectorFiles, OneNetworkIsNotTakenForTheOther) {
   SKIP_WITHOUT_MODELS();
   const test::Scratch scratch;
   std::filesystem::copy(test::models() / kPalmModel, scratch.path() / kHandModel);
-  config::Rig rig;
-  rig.landmarks.backend = "opencv";
-  rig.landmarks.models = scratch.path();
-  const auto opened = open_detector(rig, calib::reference_rig(), 0);
-  ASSERT_FALSE(opened);
-  EXPECT_EQ(opened.error().code, Errc::bad_config);
-  EXPECT_THAT(opened.error().what, testing::HasSubstr("is not the hand landmark network: it takes 1x192x192x3"));
+  expect_refused(scratch.path(), "is not the hand landmark network: it takes 1x192x192x3");
 }
 
 class ReplayDetector : public testing::Test {

@@ -14,18 +14,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-config::Rig rig_with(const std::vector<std::string>& settings) {
-  auto rig = config::load_rig(source_root() / "config/rigs/twin.toml", settings);
-  EXPECT_TRUE(rig) << rig.error().what;
-  return *rig;
-}
-
-std::unique_ptr<twin::Twin> twin_of(const config::Rig& rig) {
-  auto twin = twin::Twin::create(rig, calib::reference_rig());
-  EXPECT_TRUE(twin) << twin.error().what;
-  return std::move(*twin);
-}
-
 /// The folder of MediaPipe's files; empty where they are not here.
 std::filesystem::path models() {
   const char* named = std::getenv("HANDCAST_MODELS");

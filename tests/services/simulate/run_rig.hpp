@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
 #include "services/simulate/run.hpp"
+#include "services/twin/twin.hpp"
 
 namespace handcast::simulate {
 
@@ -35,6 +38,19 @@ class ScratchFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// twin.toml with settings of a test, and its world.
+inline config::Rig rig_with(const std::vector<std::string>& settings) {
+  auto rig = config::load_rig(source_root() / "config/rigs/twin.toml", settings);
+  EXPECT_TRUE(rig) << rig.error().what;
+  return *rig;
+}
+
+inline std::unique_ptr<twin::Twin> twin_of(const config::Rig& rig) {
+  auto twin = twin::Twin::create(rig, calib::reference_rig());
+  EXPECT_TRUE(twin) << twin.error().what;
+  return std::move(*twin);
+}
 
 /// Runs one of config/rigs and returns its metrics.
 inline nlohmann::json run_rig(const std::string& rig, const std::string& motion, double seconds, std::vector<std::string> settings = {}) {

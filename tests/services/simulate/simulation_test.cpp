@@ -11,18 +11,6 @@
 namespace handcast::simulate {
 namespace {
 
-config::Rig rig_with(const std::vector<std::string>& settings) {
-  auto rig = config::load_rig(source_root() / "config/rigs/twin.toml", settings);
-  EXPECT_TRUE(rig) << rig.error().what;
-  return *rig;
-}
-
-std::unique_ptr<twin::Twin> twin_of(const config::Rig& rig) {
-  auto twin = twin::Twin::create(rig, calib::reference_rig());
-  EXPECT_TRUE(twin) << twin.error().what;
-  return std::move(*twin);
-}
-
 std::unique_ptr<renderer::Pipeline> pipeline_of(const config::Rig& rig) {
   auto pipeline = renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, calib::reference_rig());
   EXPECT_TRUE(pipeline) << pipeline.error().what;
