@@ -58,6 +58,11 @@ std::vector<Point> stair_of(const Panel& panel) {
   return stair;
 }
 
+std::string label_of(const Standing& standing) {
+  if (!standing.method.detects || !standing.landmarks_ms) return standing.method.label;
+  return fmt::format("{}, {:.0f} ms old,", standing.method.label, *standing.landmarks_ms);
+}
+
 bool is_of_rungs(const Method& method) { return method.freedoms.has_value(); }
 
 void draw(Script& script, const Panel& panel, double speed, const Area& area, const Range& x, const Range& y) {
@@ -76,8 +81,8 @@ void draw(Script& script, const Panel& panel, double speed, const Area& area, co
                                                      : is_of_rungs(method) ? 0.6
                                                                            : 0.95,
                                                      method.colour.value));
-    labels.push_back(
-        {panel.points[i], fmt::format("{}  {:.1f}", method.label, panel.points[i].y), is_of_rungs(method) ? kQuiet : kInk, ours});
+    labels.push_back({panel.points[i], fmt::format("{}  {:.1f}", label_of(panel.standings[i]), panel.points[i].y),
+                      is_of_rungs(method) ? kQuiet : kInk, ours});
   }
   label_beside(script, labels);
   script.plot();
@@ -114,6 +119,7 @@ NumberTable table_of(const Ladder& ladder, const std::vector<Panel>& panels) {
        {"coverage", "coverage", 3},
        {"spill", "spill", 3},
        {"jitter_px", "jitter, px", 2},
+       {"landmarks_age_ms", "landmarks' age, ms", 1},
        {"frame_us_p50", "frame, µs p50", 0, true},
        {"on_front", "on the front"},
        {"runs", "runs", 0}},
@@ -123,8 +129,8 @@ NumberTable table_of(const Ladder& ladder, const std::vector<Panel>& panels) {
       const auto& standing = panels[k].standings[i];
       const bool on_front = std::ranges::find(panels[k].front, i) != panels[k].front.end();
       table.rows.push_back({name_of_speed(ladder.speeds[k]), standing.method.label, "cpu", standing.photon_ms, standing.p95_mm,
-                            standing.mean_mm, standing.coverage, standing.spill, standing.jitter_px, standing.frame_us,
-                            on_front ? "yes" : "", static_cast<double>(standing.runs)});
+                            standing.mean_mm, standing.coverage, standing.spill, standing.jitter_px, standing.landmarks_ms,
+                            standing.frame_us, on_front ? "yes" : "", static_cast<double>(standing.runs)});
     }
   return table;
 }

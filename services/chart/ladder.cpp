@@ -34,13 +34,15 @@ Standing standing_of(const std::string& variant, double speed, const Runs& runs)
           mean_of(runs, "coverage"),
           mean_of(runs, "spill"),
           mean_of(runs, "jitter_px"),
+          mean_of(runs, "detector_age_ms"),
           mean_of(runs, "frame_us_p50")};
 }
 
-/// Whose frames tell how long a method's software takes; "" where its rig says so. What is not built runs as fast as what is.
-std::string timed_as(const std::string& variant) {
-  if (variant == "paper") return "";
-  return variant == "paper_at_our_speed" || variant == "ideal" ? "handcast" : variant;
+/// Whose frames tell how long a method's software takes; "" where its rig says so. What is not built runs as fast as what is; a detector
+/// does not hold up the frames.
+std::string timed_as(const Method& method) {
+  if (method.variant == "paper") return "";
+  return method.variant == "paper_at_our_speed" || method.variant == "ideal" || method.detects ? "handcast" : method.variant;
 }
 
 /// All is simulated with one software leg; a frame takes as long as it was timed.
@@ -66,7 +68,8 @@ Ladder ladder_of(const Results& results) {
       auto standing = standing_of(variant, speed, of_variant(at_speed(runs, speed), variant));
       const auto timed = at_speed(timing, speed);
       if (ladder.timed_alone) standing.frame_us = mean_of(of_variant(timed, variant), "frame_us_p50");
-      take_own_leg(standing, of_variant(at_speed(runs, speed), variant), mean_of(of_variant(timed, timed_as(variant)), "frame_us_p50"));
+      take_own_leg(standing, of_variant(at_speed(runs, speed), variant),
+                   mean_of(of_variant(timed, timed_as(standing.method)), "frame_us_p50"));
       if (standing.p95_mm) ladder.standings.push_back(standing);
     }
   return ladder;

@@ -15,7 +15,8 @@ struct Standing {
   std::size_t runs = 0;
   /// photon_ms: with the time that a frame takes, where frames were timed alone; the paper's as published.
   std::optional<double> photon_ms, mean_mm, p95_mm, coverage, spill, jitter_px;
-  std::optional<double> frame_us;  ///< median on one core; of this machine
+  std::optional<double> landmarks_ms;  ///< their age
+  std::optional<double> frame_us;      ///< median on one core; of this machine
 };
 
 struct Ladder {

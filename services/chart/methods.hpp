@@ -13,6 +13,7 @@ struct Method {
   std::string variant, label;
   Colour colour = kInk;
   std::optional<int> freedoms = {};  ///< of the correction, per hand; only rungs have a number
+  bool detects = false;              ///< handcast with a real detector on the twin's images, as old as it is
 };
 
 /// The rungs of the ladder, cheapest first.

@@ -3,31 +3,15 @@
 #include <fmt/format.h>
 
 #include "services/chart/svg.hpp"
+#include "services/page/document.hpp"
 #include "services/page/html.hpp"
-#include "services/page/style.hpp"
 
 namespace handcast::chart {
 namespace {
 
-constexpr const char* kSkeleton = R"html(<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{{title}}</title>
-<style>{{style}}</style>
-</head>
-<body>
-<main>
-<header>
-<h1>{{title}}</h1>
-<dl>{{facts}}</dl>
-<p class="quiet">Errors are simulated on the digital twin in virtual time and are the same on every machine. Times of frames, and what they enter
+constexpr const char* kHeader =
+    R"html(<p class="quiet">Errors are simulated on the digital twin in virtual time and are the same on every machine. Times of frames, and what they enter
 (columns in italic), are those of the machine that ran the sweeps.</p>
-</header>
-{{charts}}</main>
-</body>
-</html>
 )html";
 
 /// The colours of palette.hpp, light and dark.
@@ -46,14 +30,10 @@ th, td { padding: .25rem .45rem; }
 thead th { white-space: normal; vertical-align: bottom; }
 )css";
 
-std::string fact(std::string_view name, std::string_view value) {
-  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", page::escape(name), page::escape(value));
-}
-
 std::string source_fact(const Source& source) {
   auto words = fmt::format("{} of {} runs", source.scored, source.planned);
   if (source.failed > 0) words += fmt::format(", {} failed", source.failed);
-  return fact("sweep " + source.plan, words);
+  return page::fact("sweep " + source.plan, words);
 }
 
 std::string section(const Chart& chart, const std::string& drawing) {
@@ -72,11 +52,9 @@ std::string make_page(const Results& results, const std::vector<Chart>& charts, 
                       const Imprint& imprint) {
   std::string facts, sections;
   for (const auto& source : results.sources) facts += source_fact(source);
-  facts += fact("drawn on", imprint.machine) + fact("at", imprint.date);
+  facts += page::fact("drawn on", imprint.machine) + page::fact("at", imprint.date);
   for (std::size_t i = 0; i < charts.size(); ++i) sections += section(charts[i], drawings[i]);
-  return page::fill(
-      kSkeleton,
-      {{"title", page::escape(imprint.title)}, {"style", std::string(page::kStyle) + kStyle}, {"facts", facts}, {"charts", sections}});
+  return page::to_html({imprint.title, kStyle, facts, kHeader, sections});
 }
 
 }  // namespace handcast::chart

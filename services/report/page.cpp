@@ -2,28 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "services/page/document.hpp"
 #include "services/page/html.hpp"
-#include "services/page/style.hpp"
 #include "services/report/tables.hpp"
 #include "services/report/time_sheet.hpp"
 
 namespace handcast::report {
 
-const char* const kSkeleton = R"html(<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{{title}}</title>
-<style>{{style}}</style>
-</head>
-<body>
-<main>
-<header>
-<h1>{{title}}</h1>
-<dl>{{facts}}</dl>
-</header>
-<section id="headline">
+const char* const kBody = R"html(<section id="headline">
 {{headline}}</section>
 <section id="film">
 <h2>The true hand and the light on it</h2>
@@ -43,14 +29,7 @@ const char* const kSkeleton = R"html(<!doctype html>
 <section id="times">
 <h2>Where the time goes</h2>
 {{times}}</section>
-</main>
-</body>
-</html>
 )html";
-
-static std::string fact(std::string_view name, std::string_view value) {
-  return value.empty() ? "" : fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", page::escape(name), page::escape(value));
-}
 
 /// A setting as the first run that has it states it.
 static std::string stated(const Inputs& inputs, const char* key) {
@@ -74,18 +53,16 @@ static std::string rigs(const Inputs& inputs) {
 
 std::string make_page(const Inputs& inputs, const Film& film, const Imprint& imprint) {
   const std::string seconds = stated(inputs, "seconds");
-  const std::string facts = fact("rigs", rigs(inputs)) + fact("motion", stated(inputs, "motion")) +
-                            fact("scored", seconds.empty() ? "" : seconds + " s of it") + fact("seed", stated(inputs, "seed")) +
-                            fact("machine", imprint.machine) + fact("made", imprint.date);
-  return page::fill(kSkeleton, {{"title", page::escape(imprint.title)},
-                                {"style", std::string(page::kStyle) + kStyle},
-                                {"facts", facts},
-                                {"headline", headline(inputs)},
-                                {"film", film_section(film)},
-                                {"accuracy", accuracy_table(inputs)},
-                                {"speed", speed_table(inputs)},
-                                {"live", live_table(inputs)},
-                                {"times", time_sheet(inputs)}});
+  const std::string facts = page::fact("rigs", rigs(inputs)) + page::fact("motion", stated(inputs, "motion")) +
+                            page::fact("scored", seconds.empty() ? "" : seconds + " s of it") + page::fact("seed", stated(inputs, "seed")) +
+                            page::fact("machine", imprint.machine) + page::fact("made", imprint.date);
+  const std::string body = page::fill(kBody, {{"headline", headline(inputs)},
+                                              {"film", film_section(film)},
+                                              {"accuracy", accuracy_table(inputs)},
+                                              {"speed", speed_table(inputs)},
+                                              {"live", live_table(inputs)},
+                                              {"times", time_sheet(inputs)}});
+  return page::to_html({imprint.title, kStyle, facts, "", body});
 }
 
 }  // namespace handcast::report

@@ -34,6 +34,10 @@ std::vector<Metric> make_metrics() {
     add(plain, fmt::format("/{}", plain).c_str());
   for (const char* of_fault : {"usual_mm", "worst_mm", "dark_ms", "recovery_ms"})
     add(fmt::format("fault_{}", of_fault).c_str(), fmt::format("/fault/{}", of_fault).c_str());
+  for (const char* of_detector : {"age_ms", "ms_p50", "missed", "invented"})
+    add(fmt::format("detector_{}", of_detector).c_str(), fmt::format("/detector/{}", of_detector).c_str());
+  add("detector_px_mean", "/detector/error_px/mean");
+  add("detector_px_p95", "/detector/error_px/p95");
   add("hand_speed_m_s_mean", "/hand_speed_m_s/mean");
   add("hand_speed_m_s_p95", "/hand_speed_m_s/p95");
   for (const auto rung : msg::kRungNames) add(fmt::format("rung_share_{}", rung).c_str(), fmt::format("/rungs/{}", rung).c_str());

@@ -57,9 +57,9 @@ TEST_F(ChartsTest, ChartsOfThePageFollowItsColoursAndFilesKeepTheirOwn) {
 TEST_F(ChartsTest, ChartAHasAPointPerMethodAndSpeedAndSaysWhatNothingBeats) {
   ASSERT_TRUE(write_charts(order(all())));
   const auto numbers = text_of(out() / "chart_a.csv");
-  EXPECT_THAT(numbers, HasSubstr("natural speed,paper as published,cpu,8.9,4,2,,,,1900,,1\n"));
-  EXPECT_THAT(numbers, HasSubstr("natural speed,shift,cpu,6.3,5,3,,,,760,yes,1\n"));
-  EXPECT_THAT(numbers, HasSubstr("3 times as fast,handcast,cpu,6.8,6.3,1,,,,1000,yes,1\n"));
+  EXPECT_THAT(numbers, HasSubstr("natural speed,paper as published,cpu,8.9,4,2,,,,,1900,,1\n"));
+  EXPECT_THAT(numbers, HasSubstr("natural speed,shift,cpu,6.3,5,3,,,,,760,yes,1\n"));
+  EXPECT_THAT(numbers, HasSubstr("3 times as fast,handcast,cpu,6.8,6.3,1,,,,,1000,yes,1\n"));
   const auto drawing = text_of(out() / "chart_a.svg");
   EXPECT_THAT(drawing,
               AllOf(HasSubstr("natural speed"), HasSubstr("3 times as fast"), HasSubstr("paper as published  4.0"), HasSubstr("3.08")));
@@ -91,6 +91,16 @@ TEST_F(ChartsTest, AMethodStandsAtTheTimeOfItsOwnFrameAndThePaperAtItsOwnLeg) {
   EXPECT_NEAR(*standings[1].photon_ms, 8.9, 1e-9);
   EXPECT_NEAR(*standings[2].photon_ms, 6.7, 1e-9) << "what cannot be built is as fast as what is";
   EXPECT_NEAR(*standings[3].photon_ms, 6.7, 1e-9);
+}
+
+TEST_F(ChartsTest, ARealDetectorStandsWithItsAgeAtTheTimeOfOurFrames) {
+  const std::string columns = "twin.speed,interior_mm_mean,interior_mm_p95,motion_to_photon_ms,software_ms,frame_us_p50,detector_age_ms";
+  const auto ladder =
+      write_sweep(scratch_.path(), "ladder", columns, {"handcast,1,1,2,6.9,1.2,9999,16.2,", "own_network,1,2,4,6.9,1.2,9999,4.1,"});
+  const auto times = write_sweep(scratch_.path(), "times", columns, {"handcast,1,1,2,6.9,1.2,1000,16.2,"});
+  ASSERT_TRUE(write_charts(order({ladder, times})));
+  EXPECT_THAT(text_of(out() / "chart_a.csv"), HasSubstr("natural speed,our network,cpu,6.7,4,2,,,,4.1,"));
+  EXPECT_THAT(text_of(out() / "chart_a.svg"), HasSubstr("our network, 4 ms old,  4.0"));
 }
 
 TEST_F(ChartsTest, AStressIsTheMeanOverSeedsAndItsBreakdownIsMarked) {
