@@ -66,10 +66,12 @@ json json_of(const RingRow& ring) {
 }  // namespace
 
 json json_of(const TopModel& model) {
-  json services = json::array(), rings = json::array();
+  json services = json::array(), rings = json::array(), rungs = json::object();
   for (const auto& service : model.services) services.push_back(json_of(service));
   for (const auto& ring : model.rings) rings.push_back(json_of(ring));
-  return {{"rig", model.rig}, {"uptime_s", model.uptime_s}, {"missing", model.missing}, {"services", services}, {"rings", rings}};
+  for (const auto& [rung, share] : model.rungs) rungs[rung] = share;
+  return {{"rig", model.rig}, {"uptime_s", model.uptime_s}, {"missing", model.missing}, {"services", services}, {"rings", rings},
+          {"rungs", rungs}};
 }
 
 }  // namespace handcast::supervisor

@@ -185,6 +185,16 @@ Line head_line(const TopModel& model) {
   return line;
 }
 
+/// What the gate has been choosing.
+Line rung_line(const TopModel& model) {
+  Line line{{"RUNGS", Style::heading}};
+  for (const auto& [rung, share] : model.rungs) {
+    line.push_back({fmt::format("  {} ", rung)});
+    line.push_back({text_of_share(share), Style::strong});
+  }
+  return line;
+}
+
 std::string_view ansi_of(Style style) {
   switch (style) {
     case Style::plain:
@@ -212,6 +222,10 @@ void append(std::vector<Line>& lines, std::vector<Line> more) { std::ranges::mov
 std::vector<Line> lay_out(const TopModel& model, const Page& page) {
   std::vector<Line> lines{cut_to(head_line(model), page.columns), {}};
   append(lines, lay_out(service_table(model), page.columns));
+  if (!model.rungs.empty()) {
+    lines.emplace_back();
+    lines.push_back(cut_to(rung_line(model), page.columns));
+  }
   lines.emplace_back();
   append(lines, lay_out(ring_table(model, page.with_marks), page.columns));
   return lines;

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/msg/rung.hpp"
 #include "supervisor/top/units_text.hpp"
 
 namespace handcast::supervisor {
@@ -128,6 +129,24 @@ RingRow ring_row(const ipc::RingSnapshot& ring, const RigLook& before, const Rig
   return row;
 }
 
+std::vector<RungShare> rungs_of(const RigLook& before, const RigLook& now) {
+  if (!now.status.contains("rungs")) return {};
+  const auto hands_in = [](const RigLook& look, const std::string& rung) {
+    return look.status.contains("rungs") ? number_in(look.status["rungs"], rung.c_str()) : 0.0;
+  };
+  std::vector<RungShare> rungs;
+  double all = 0;
+  for (const auto rung : msg::kRungNames) {
+    const std::string name(rung);
+    const double hands = hands_in(now, name) - hands_in(before, name);
+    if (hands <= 0) continue;
+    rungs.push_back({name, hands});
+    all += hands;
+  }
+  for (auto& rung : rungs) rung.share /= all;
+  return rungs;
+}
+
 }  // namespace
 
 bool ReaderRow::holds_an_old_lease() const {
@@ -147,6 +166,7 @@ TopModel compare(const RigLook& before, const RigLook& now) {
   if (now.status.contains("services"))
     for (const auto& [name, service] : now.status["services"].items()) model.services.push_back(service_row(name, service, before, now));
   for (const auto& ring : now.rings) model.rings.push_back(ring_row(ring, before, now, names));
+  model.rungs = rungs_of(before, now);
   return model;
 }
 

@@ -50,6 +50,12 @@ struct RingRow {
   bool marks() const { return now.stream.starts_with("marks."); }
 };
 
+/// How many of the drawn hands were given a rung of the ladder.
+struct RungShare {
+  std::string rung;
+  double share = 0;
+};
+
 /// What there is to show of a rig.
 struct TopModel {
   std::string rig;
@@ -57,6 +63,7 @@ struct TopModel {
   double uptime_s = 0;
   std::vector<ServiceRow> services;
   std::vector<RingRow> rings;
+  std::vector<RungShare> rungs;  ///< of the hands drawn since the look before, cheapest first; rungs that were taken
 };
 
 /// Rates are between the two looks; there are none for what has changed hands in between.

@@ -35,6 +35,8 @@ inline RigLook look_at(double second) {
     "rings": {"camera.frames": {"asked_hz": 240}},
     "stage_us": {"draw": {"p50": 1500, "p99": 2500, "count": 100}}})json");
 
+  look.status["rungs"] = {{"hold", 7}, {"landmarks", 90 * second}, {"register", 30 * second}};
+
   const auto count = static_cast<std::uint64_t>(240 * second);
   ipc::RingSnapshot frames{.stream = "camera.frames",
                            .slots = 4,

@@ -68,6 +68,15 @@ TEST(TopModel, ThereIsNoRateAcrossAChangeOfHands) {
   EXPECT_FALSE(model.services[0].cores);
 }
 
+TEST(TopModel, TheSharesOfRungsAreOfTheHandsDrawnBetweenTheLooks) {
+  const auto rungs = two_seconds().rungs;
+  ASSERT_EQ(rungs.size(), 2u) << "those that were taken";
+  EXPECT_EQ(rungs[0].rung, "landmarks");
+  EXPECT_DOUBLE_EQ(rungs[0].share, 0.75);
+  EXPECT_EQ(rungs[1].rung, "register");
+  EXPECT_TRUE(compare(look_at(10), look_at(2)).rungs.empty()) << "counted anew: the supervisor was started again";
+}
+
 TEST(TopModel, ARingIsLateAfterThreePeriods) {
   auto now = look_at(12);
   EXPECT_FALSE(compare(look_at(10), now).rings[0].late());
@@ -117,6 +126,7 @@ TEST(TopModel, AsJsonItHasEveryServiceAndReader) {
   EXPECT_EQ(json["services"].size(), 2u);
   EXPECT_EQ(json["services"][0]["cores"], 0.25);
   EXPECT_EQ(json["services"][1]["trouble"], "died 10 times; again in 2.5 s: projector: no \x1b[31mlamp");
+  EXPECT_EQ(json["rungs"]["register"], 0.25);
   EXPECT_EQ(json["rings"][0]["readers"].size(), 3u);
   EXPECT_EQ(json["rings"][0]["readers"][0]["who"], "projector");
 }
@@ -130,6 +140,7 @@ TEST(TopLayout, ShowsWhatAPersonLooksFor) {
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("├ projector"), HasSubstr("120 Hz"), HasSubstr("+120/s"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("├ recorder?"), HasSubstr("sleeps"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("└ ?"), HasSubstr("gone"))));
+  EXPECT_THAT(lines, Contains("RUNGS  landmarks 75.0 %  register 25.0 %"));
 }
 
 TEST(TopLayout, WhatIsNotWellStandsOut) {
