@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "renderer/image.hpp"
+#include "services/landmarks/bilinear.hpp"
+#include "services/landmarks/box_filter.hpp"
 #include "services/landmarks/region.hpp"
 
 namespace handcast::landmarks {
@@ -17,7 +19,7 @@ class Crop {
   void cut(renderer::GreyView image, const Region& region);
 
   /// How bright the hand is, 0..255: the median of the brighter one of the crop's two parts (Otsu 1979).
-  float level() const { return level_; }
+  float level() const;
   std::span<const std::uint8_t> pixels() const { return pixels_; }
 
   /// Three equal channels 0..1, pixel by pixel, at a gain that brings a hand's level to kHandLevel.
@@ -25,12 +27,10 @@ class Crop {
   static constexpr float kHandLevel = 150, kMostGain = 12;
 
  private:
-  renderer::GreyView shrunk(renderer::GreyView image, const Region& region, int factor, glm::vec2& origin_px);
-
   int side_px_;
   std::vector<std::uint8_t> pixels_;
-  std::vector<std::uint8_t> small_;
-  float level_ = 0;
+  BoxFilter smaller_;
+  Bilinear samples_;
 };
 
 }  // namespace handcast::landmarks

@@ -6,9 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/clones.hpp"
 #include "renderer/hand/hand_mesh.hpp"
+#include "services/landmarks/exponential.hpp"
+#include "services/landmarks/histogram.hpp"
 
 namespace handcast::landmarks::own {
 namespace {
@@ -17,6 +21,7 @@ constexpr float kRoom = 1.3f;         ///< the region's side over the landmarks'
 constexpr float kLeastPalms = 1.45f;  ///< and at least so many palm lengths
 constexpr float kLeastBright = 12;    ///< darker crops are not brightened further
 constexpr float kMapSigma = 1.2f;     ///< of a tracker map's Gaussian, in cells
+constexpr float kLeastBell = 1e-15f;
 constexpr std::size_t kHeatSize = kHeatCells * kHeatCells;
 
 glm::vec2 turned(glm::vec2 v, float angle_rad) {
@@ -28,22 +33,71 @@ glm::vec2 mirrored(glm::vec2 place) { return {1 - place.x, place.y}; }
 
 using Bell = std::array<float, kMapCells>;
 
-/// A Gaussian over the cells of one axis.
+/// A Gaussian over the cells of one axis; its far ends are 0, for products that are too small for a normal number make processors slow.
 Bell bell_at(float place) {
   Bell bell;
   for (int i = 0; i < kMapCells; ++i) {
     const float cells = (static_cast<float>(i) + 0.5f - place * kMapCells) / kMapSigma;
-    bell[i] = std::exp(-0.5f * cells * cells);
+    const float value = exponential(-0.5f * cells * cells);
+    bell[i] = value > kLeastBell ? value : 0;
   }
   return bell;
 }
 
-/// Softmax; the sum of the weights is 1.
-void weigh(std::span<const float> scores, std::span<float> weights) {
-  const float most = *std::ranges::max_element(scores);
-  float sum = 0;
-  for (std::size_t i = 0; i < scores.size(); ++i) sum += weights[i] = std::exp(scores[i] - most);
-  for (float& weight : weights) weight /= sum;
+HANDCAST_CLONES void write_maps(const Places& tracker, float* __restrict to) {
+  for (const glm::vec2 place : tracker) {
+    const Bell across = bell_at(place.x), down = bell_at(place.y);
+    for (const float row : down)
+      for (const float column : across) *to++ = row * column;
+  }
+}
+
+/// How each grey value is shown.
+struct Shown {
+  float scale;
+
+  float operator()(std::uint8_t pixel) const { return std::min(static_cast<float>(pixel) * scale, kMostShown) - kShownShift; }
+};
+
+Shown shown_of(std::span<const std::uint8_t> pixels) {
+  const Histogram histogram = histogram_of(pixels);
+  std::size_t above = 0;
+  int bright = 255;
+  while (bright > 0 && (above += histogram[bright]) * 50 < pixels.size()) --bright;
+  return {1 / std::max(static_cast<float>(bright), kLeastBright)};
+}
+
+HANDCAST_CLONES void show_row(const std::uint8_t* __restrict from, Shown shown, bool mirror, float* __restrict to) {
+  if (mirror)
+    for (int x = 0; x < kSide_px; ++x) to[x] = shown(from[kSide_px - 1 - x]);
+  else
+    for (int x = 0; x < kSide_px; ++x) to[x] = shown(from[x]);
+}
+
+/// What a heat map says: sums over its cells, each weighted by the exponential of its score.
+struct Weighed {
+  float weight = 0, column = 0, row = 0, log_sigma = 0;
+};
+
+using Row = std::array<float, kHeatCells>;
+
+float sum_of(const Row& row) { return std::accumulate(row.begin(), row.end(), 0.0f); }
+
+HANDCAST_CLONES void weigh(const float* scores, const float* log_sigmas, Weighed& result) {
+  Row most, weight{}, by_row{}, log_sigma{};
+  std::copy_n(scores, kHeatCells, most.begin());
+  for (int row = 1; row < kHeatCells; ++row)
+    for (int x = 0; x < kHeatCells; ++x) most[x] = std::max(most[x], scores[row * kHeatCells + x]);
+  const float highest = *std::ranges::max_element(most);
+  for (int row = 0; row < kHeatCells; ++row)
+    for (int x = 0; x < kHeatCells; ++x) {
+      const float w = exponential(scores[row * kHeatCells + x] - highest);
+      weight[x] += w;
+      by_row[x] += w * static_cast<float>(row);
+      log_sigma[x] += w * log_sigmas[row * kHeatCells + x];
+    }
+  result = {sum_of(weight), 0, sum_of(by_row), sum_of(log_sigma)};
+  for (int x = 0; x < kHeatCells; ++x) result.column += weight[x] * static_cast<float>(x);
 }
 
 }  // namespace
@@ -79,61 +133,35 @@ Points to_image(const Region& region, msg::Side side, const Places& places) {
 }
 
 std::array<float, 256> shown_values(std::span<const std::uint8_t> pixels) {
-  std::array<std::size_t, 256> histogram{};
-  for (const std::uint8_t pixel : pixels) ++histogram[pixel];
-  std::size_t above = 0;
-  int bright = 255;
-  while (bright > 0 && (above += histogram[bright]) * 50 < pixels.size()) --bright;
-  const float scale = 1 / std::max(static_cast<float>(bright), kLeastBright);
-  std::array<float, 256> shown;
-  for (int i = 0; i < 256; ++i) shown[i] = std::min(static_cast<float>(i) * scale, kMostShown) - kShownShift;
-  return shown;
+  const Shown shown = shown_of(pixels);
+  std::array<float, 256> values;
+  for (int i = 0; i < 256; ++i) values[i] = shown(static_cast<std::uint8_t>(i));
+  return values;
 }
 
 void write_image(std::span<const std::uint8_t> pixels, msg::Side side, std::span<float> input) {
-  const auto shown = shown_values(pixels);
-  for (int y = 0; y < kSide_px; ++y) {
-    const std::uint8_t* from = pixels.data() + y * kSide_px;
-    float* to = input.data() + y * kSide_px;
-    if (side == msg::Side::left)
-      for (int x = 0; x < kSide_px; ++x) to[x] = shown[from[kSide_px - 1 - x]];
-    else
-      for (int x = 0; x < kSide_px; ++x) to[x] = shown[from[x]];
-  }
+  const Shown shown = shown_of(pixels);
+  for (int y = 0; y < kSide_px; ++y) show_row(pixels.data() + y * kSide_px, shown, side == msg::Side::left, input.data() + y * kSide_px);
 }
 
 void write_tracker(const std::optional<Places>& tracker, std::span<float> input) {
-  if (!tracker) {
+  if (tracker)
+    write_maps(*tracker, input.data());
+  else
     std::ranges::fill(input, 0.0f);
-    return;
-  }
-  float* to = input.data();
-  for (const glm::vec2 place : *tracker) {
-    const Bell across = bell_at(place.x), down = bell_at(place.y);
-    for (const float row : down)
-      for (const float column : across) *to++ = row * column;
-  }
 }
 
 Answer read_answer(std::span<const float> output) {
   const auto map = [&](std::size_t i) { return output.subspan(i * kHeatSize, kHeatSize); };
   Answer answer;
-  std::array<float, kHeatSize> weights;
   for (std::size_t i = 0; i < answer.places.size(); ++i) {
-    weigh(map(i), weights);
-    const auto log_sigmas = map(msg::kLandmarks + i);
-    glm::vec2 cell(0);
-    float log_sigma = 0;
-    for (int row = 0, c = 0; row < kHeatCells; ++row)
-      for (int column = 0; column < kHeatCells; ++column, ++c) {
-        cell += weights[c] * glm::vec2(column, row);
-        log_sigma += weights[c] * log_sigmas[c];
-      }
-    answer.places[i] = (cell + 0.5f) / static_cast<float>(kHeatCells);
-    answer.sigma[i] = std::exp(std::clamp(log_sigma, -12.0f, 3.0f));
+    Weighed sums;
+    weigh(map(i).data(), map(msg::kLandmarks + i).data(), sums);
+    answer.places[i] = (glm::vec2(sums.column, sums.row) / sums.weight + 0.5f) / static_cast<float>(kHeatCells);
+    answer.sigma[i] = std::exp(std::clamp(sums.log_sigma / sums.weight, -12.0f, 3.0f));
   }
-  float logit = 0;
-  for (const float value : map(2 * msg::kLandmarks)) logit += value / static_cast<float>(kHeatSize);
+  const auto logits = map(2 * msg::kLandmarks);
+  const float logit = std::accumulate(logits.begin(), logits.end(), 0.0f) / static_cast<float>(kHeatSize);
   answer.presence = 1 / (1 + std::exp(-logit));
   return answer;
 }

@@ -135,6 +135,23 @@ TEST(Networks, AMissingFileGarbageAndAnUnknownBackEndAreClear) {
   EXPECT_THAT(open_network("abacus", garbage.path()).error().what, HasSubstr("no back end 'abacus'; this build has: onednn, opencv"));
 }
 
+/// They would make each run twice as long.
+TEST(Networks, OnednnTakesNumbersTooSmallForANormalFloatAsNoneAndLeavesTheCallersArithmeticAlone) {
+  constexpr float kTooSmall = 1e-40f;
+  onnx::Model model = little_model();
+  model.constants["w"].floats.assign(model.constants["w"].floats.size(), 1e38f);
+  model.constants["b"].floats.assign(3, 0.0f);
+  const ModelFile file(model);
+  const auto network = open_network("onednn", file.path());
+  ASSERT_TRUE(network) << network.error().what;
+  std::ranges::fill((*network)->input(0), kTooSmall);
+  ASSERT_TRUE((*network)->run());
+  EXPECT_THAT((*network)->output(0), testing::Each(0.0f));
+  volatile float half = kTooSmall;
+  half = half * 0.5f;
+  EXPECT_GT(half, 0.0f);
+}
+
 TEST(Networks, AnInputThatIsNotFiniteIsAnErrorAndTheNextRunIsGood) {
   onnx::Model model = little_model();
   model.nodes.pop_back();

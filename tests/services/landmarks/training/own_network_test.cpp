@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "services/landmarks/exponential.hpp"
+
 namespace handcast::landmarks::own {
 namespace {
 
@@ -121,6 +123,66 @@ TEST(OwnNetwork, TheTrackersMapsPeakAtItsJoints) {
   EXPECT_NEAR(maps[9 * kMapCells + 6], std::exp(-0.5f / (1.2f * 1.2f)), 1e-5f);
   write_tracker(std::nullopt, maps);
   EXPECT_THAT(maps, Each(0.0f));
+}
+
+/// Processors are a hundred times slower at numbers too small for a normal float.
+TEST(OwnNetwork, TheTrackersMapsAreGaussiansWithoutDenormalNumbers) {
+  Places places;
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = {0.07f * static_cast<float>(i) - 0.2f, 1.1f - 0.05f * static_cast<float>(i)};
+  std::vector<float> maps(msg::kLandmarks * kMapCells * kMapCells);
+  write_tracker(places, maps);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const glm::dvec2 cell(i % kMapCells, i / kMapCells % kMapCells);
+    const glm::dvec2 way = (cell + 0.5 - glm::dvec2(places[i / (kMapCells * kMapCells)]) * double{kMapCells}) / 1.2;
+    ASSERT_NEAR(maps[i], std::exp(-0.5 * glm::dot(way, way)), 1e-6);
+    ASSERT_NE(std::fpclassify(maps[i]), FP_SUBNORMAL);
+  }
+}
+
+TEST(OwnNetwork, AJointThatIsNoNumberLeavesItsMapEmpty) {
+  Places places;
+  places.fill({0.5f, NAN});
+  std::vector<float> maps(msg::kLandmarks * kMapCells * kMapCells, 1.0f);
+  write_tracker(places, maps);
+  EXPECT_THAT(maps, Each(0.0f));
+}
+
+TEST(OwnNetwork, ALeftHandIsShownMirrored) {
+  std::vector<std::uint8_t> pixels(kImageSize);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * 37 % 251);
+  const auto shown = shown_values(pixels);
+  std::vector<float> left(kImageSize), right(kImageSize);
+  write_image(pixels, msg::Side::left, left);
+  write_image(pixels, msg::Side::right, right);
+  for (int i = 0; i < static_cast<int>(kImageSize); ++i) {
+    ASSERT_EQ(right[i], shown[pixels[i]]);
+    ASSERT_EQ(left[i], right[i / kSide_px * kSide_px + kSide_px - 1 - i % kSide_px]);
+  }
+}
+
+TEST(OwnNetwork, ReadsTheMeansThatItsHeatSays) {
+  constexpr int kCells = kHeatCells * kHeatCells;
+  std::vector<float> output((2 * msg::kLandmarks + 1) * kCells);
+  for (std::size_t i = 0; i < output.size(); ++i) output[i] = static_cast<float>(static_cast<int>(i * 7919 % 2003) - 1001) * 0.02f;
+  const Answer answer = read_answer(output);
+  for (int i = 0; i < msg::kLandmarks; ++i) {
+    double weight = 0, log_sigma = 0;
+    glm::dvec2 cell(0);
+    for (int c = 0; c < kCells; ++c) {
+      const double w = std::exp(static_cast<double>(output[i * kCells + c]));
+      weight += w;
+      cell += w * glm::dvec2(c % kHeatCells, c / kHeatCells);
+      log_sigma += w * output[(msg::kLandmarks + i) * kCells + c];
+    }
+    EXPECT_NEAR(answer.places[i].x, (cell.x / weight + 0.5) / kHeatCells, 1e-5);
+    EXPECT_NEAR(answer.places[i].y, (cell.y / weight + 0.5) / kHeatCells, 1e-5);
+    EXPECT_NEAR(std::log(answer.sigma[i]), std::clamp(log_sigma / weight, -12.0, 3.0), 1e-4);
+  }
+}
+
+TEST(Exponential, IsRightToAFloatsRounding) {
+  for (float x = -87; x <= 88; x += 0.01f) ASSERT_NEAR(exponential(x) / std::exp(static_cast<double>(x)), 1, 3e-7) << x;
+  for (const float x : {-88.0f, -1e30f, -INFINITY, NAN}) EXPECT_EQ(exponential(x), exponential(-87.0f)) << x;
 }
 
 TEST(OwnNetwork, ItsRegionHoldsEveryLandmarkUpright) {
