@@ -23,7 +23,7 @@ struct FrameHand {
   Side side = Side::left;
   LandmarkPoints tracker{};             ///< P at the target time, undistorted camera px
   LandmarkPoints corrected{};           ///< Q̂ (P where nothing corrects)
-  bool has_landmarks = false;           ///< corrected differs from the tracker by what the filter knows
+  bool has_landmarks = false;           ///< corrected follows what the filter knows, be it that P is best left alone
   std::span<const glm::vec2> landings;  ///< per vertex: where its light lands, projector px
   msg::Rung rung = msg::Rung::landmarks;
 };

@@ -8,7 +8,8 @@ namespace handcast::renderer {
 namespace {
 
 constexpr float kInnovationGain = 0.1f;  ///< of each detection: some tenths of a second are remembered
-constexpr float kLeastLandmark = 0.1f;   ///< no filter leaves less of a detection's noise, as a share of its square
+/// As a share of its square: so much of a detection's noise the offset filter lets through in its steady state.
+constexpr float kLeastLandmark = 0.35f;
 constexpr std::array kModelled{Rung::shift, Rung::similarity, Rung::fingers};
 
 float mean_square(const LandmarkPoints& p, const LandmarkPoints& q) { return residual_px2({}, p, q); }
@@ -89,7 +90,8 @@ HandLadder::Step HandLadder::take(const HandTrack& track, std::int64_t target_ns
   if (!automatic_ && tracked.has_landmarks) models_[static_cast<std::size_t>(rung)] = fit_rung(rung, tracked.tracker, tracked.corrected);
   blend_.turn_to(rung, target_ns, automatic_ ? settings_.filter.blend_ms : 0);
   apply(*newest_sample, tracked);
-  return {rung, blend_.is_pure(rung) ? std::min(rung, Rung::landmarks) : Rung::landmarks, blend_.share(Rung::registered)};
+  const Rung least = tracked.has_landmarks ? Rung::shift : Rung::hold;  // else what is blended in would not be drawn
+  return {rung, blend_.is_pure(rung) ? std::clamp(rung, least, Rung::landmarks) : Rung::landmarks, blend_.share(Rung::registered)};
 }
 
 Rung HandLadder::choose(const HandTrack& track, std::int64_t target_ns, std::optional<std::int64_t> camera_ns,
@@ -101,8 +103,9 @@ Rung HandLadder::choose(const HandTrack& track, std::int64_t target_ns, std::opt
     hindsight_.remember({target_ns, camera_ns.value_or(track.newest_ns()), track.newest_ns(), newest.tracker,
                          seen.value_or(tracked.tracker), tracked.tracker});
   }
-  const auto& [hold_px2, predict_px2, register_px2] = hindsight_.motion();
-  Evidence evidence{std::max(hold_px2, mean_square(newest.tracker, tracked.tracker)), predict_px2, register_px2};
+  const auto& [hold_px, predict_px, register_px] = hindsight_.motion();
+  Evidence evidence{std::max(hold_px * hold_px, mean_square(newest.tracker, tracked.tracker)), predict_px * predict_px,
+                    register_px * register_px};
   evidence.has_landmarks = tracked.has_landmarks;
   evidence.can_register = camera_ns.has_value();
   if (!tracked.has_landmarks) {
@@ -126,15 +129,17 @@ Rung HandLadder::choose(const HandTrack& track, std::int64_t target_ns, std::opt
 }
 
 void HandLadder::apply(const Newest& newest, HandTrack::Tracked& tracked) const {
+  // Where a lower rung is not set but chosen, landmarks that are known go on: the tracker's jumps are blended in with them.
+  const bool goes_on = automatic_ && tracked.has_landmarks;
   if (blend_.is_pure(Rung::hold)) {
-    tracked.pose = newest.pose;
-    tracked.tracker = tracked.corrected = newest.tracker;
-    tracked.has_landmarks = false;
+    if (!goes_on) tracked.pose = newest.pose, tracked.tracker = newest.tracker;
+    tracked.corrected = newest.tracker;
+    tracked.has_landmarks = goes_on;
     return;
   }
   if (blend_.is_pure(Rung::predict)) {
     tracked.corrected = tracked.tracker;
-    tracked.has_landmarks = false;
+    tracked.has_landmarks = goes_on;
     return;
   }
   const float held = blend_.share(Rung::hold), predicted = blend_.share(Rung::predict);

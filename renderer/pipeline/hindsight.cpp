@@ -11,15 +11,14 @@ namespace {
 
 constexpr std::int64_t kApart_ns = 3'000'000;  ///< between frames that are kept: some three for every tracker sample
 constexpr std::size_t kMostWaiting = 32;
-constexpr float kRise_s = 0.03f, kFall_s = 0.3f;  ///< over which errors that grow, and that fall, are averaged
+constexpr float kRise_s = 0.1f, kFall_s = 0.3f;  ///< over which errors that grow, and that fall, are averaged
 constexpr float kTrust_s = 1.0f;
 constexpr float kRegisterNoise_px = 0.15f;  ///< what registration alone is off by in an image
-constexpr float kLeast_px2 = 0.01f;
 
-float mean_square(const LandmarkPoints& a, const LandmarkPoints& b) {
+float rms(const LandmarkPoints& a, const LandmarkPoints& b) {
   float sum = 0;
   for (int i = 0; i < kLandmarks; ++i) sum += glm::dot(a[i] - b[i], a[i] - b[i]);
-  return sum / static_cast<float>(kLandmarks);
+  return std::sqrt(sum / static_cast<float>(kLandmarks));
 }
 
 float share_left(std::int64_t span_ns, float span_s) { return std::exp(-static_cast<float>(ns_to_seconds(span_ns)) / span_s); }
@@ -75,17 +74,17 @@ void Hindsight::compare(const Frame& frame, const LandmarkPoints& at_camera, con
     reckoned[i] = glm::mix(frame.at_target[i], seen(frame.at_target[i]), carried);
     measured[i] = frame.registered ? frame.at_target[i] + (*frame.registered)[i] : reckoned[i];
   }
-  const float noise_px2 = carried * carried * kRegisterNoise_px * kRegisterNoise_px;
-  const float reckoned_px2 = mean_square(reckoned, at_target) + noise_px2;
-  const float measured_px2 = frame.registered ? mean_square(measured, at_target) : reckoned_px2;
-  registration_ = std::lerp(std::clamp(measured_px2 / std::max(reckoned_px2, kLeast_px2), 0.1f, 10.0f), registration_, trust_left);
-
-  const auto follow = [=](float& followed, float square) {
-    followed = std::lerp(square, followed, square > followed ? rise_left : fall_left);
-  };
-  follow(motion_.hold_px2, mean_square(frame.newest, at_target));
-  follow(motion_.predict_px2, mean_square(frame.at_target, at_target));
-  follow(motion_.register_px2, frame.registered ? measured_px2 : registration_ * reckoned_px2);
+  const float noise_px = carried * kRegisterNoise_px;
+  const float reckoned_px = std::hypot(rms(reckoned, at_target), noise_px);
+  const float measured_px = rms(measured, at_target);
+  if (frame.registered) {
+    trust_.measured_px = std::lerp(measured_px, trust_.measured_px, trust_left);
+    trust_.reckoned_px = std::lerp(reckoned_px, trust_.reckoned_px, trust_left);
+  }
+  const auto follow = [=](float& followed, float now) { followed = std::lerp(now, followed, now > followed ? rise_left : fall_left); };
+  follow(motion_.hold_px, rms(frame.newest, at_target));
+  follow(motion_.predict_px, rms(frame.at_target, at_target));
+  follow(motion_.register_px, frame.registered ? measured_px : reckoned_px * trust_.measured_px / trust_.reckoned_px);
 }
 
 }  // namespace handcast::renderer

@@ -10,13 +10,14 @@ namespace handcast::renderer {
 /// for, the frame's prediction is compared with it.
 class Hindsight {
  public:
-  /// Mean squares over the landmarks, camera px^2: of some 30 ms where they grow, of some 300 ms where they fall (gestures come in bursts).
+  /// RMS over the landmarks, camera px; its mean over some 100 ms where it grows, over some 300 ms where it falls (gestures come in
+  /// bursts). Not its mean square: that is made by the few moments in which every rung is far off, and hides how they differ in the others.
   struct Motion {
-    float hold_px2 = 0;     ///< of the newest sample as it was
-    float predict_px2 = 0;  ///< of its prediction for the light
+    float hold_px = 0;     ///< of the newest sample as it was
+    float predict_px = 0;  ///< of its prediction for the light
     /// Of that prediction, registered to the newest image. Where it was, that is measured. Where it was not, it is reckoned: an image would
     /// have shown how the prediction for its own time was shifted, turned and scaled.
-    float register_px2 = 0;
+    float register_px = 0;
   };
 
   /// A frame for the light of `target_ns`, which shows an image taken at `camera_ns`.
@@ -45,7 +46,10 @@ class Hindsight {
   calib::Calibration calibration_;
   std::deque<Frame> waiting_;  ///< by target time
   std::int64_t compared_ns_ = 0;
-  float registration_ = 1;  ///< what registration left, measured, over what was reckoned: mean squares of the last second
+  struct Trust {
+    float measured_px = 0.5f, reckoned_px = 0.5f;
+  };
+  Trust trust_;  ///< what registration left, measured and as it was reckoned, means of the last second of it
   Motion motion_;
 };
 

@@ -103,8 +103,8 @@ constexpr const char* kKindNames[] = {"for a moment", "for good", "motion"};
 NumberTable table_of(const std::vector<Failure>& failures) {
   NumberTable table{
       "chart_b_faults",
-      "Worst and recovery are of the landmarks, the worst of the sweep's motions; recovery from the fault's end until the error "
-      "stays for 100 ms within 1.5 times its median before the fault or its 95th percentile there. The others are of the whole "
+      "Worst and recovery are of the landmarks, the worst of the sweep's motions; recovery from the fault's end until for 100 ms the "
+      "error is no more than half the usual one above that of the same run without the fault. The others are of the whole "
       "run, means over motions. Simulated: the same on every machine.",
       {{"failure", "failure"},
        {"kind", "kind"},

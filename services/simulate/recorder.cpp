@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "services/simulate/png.hpp"
 
@@ -10,6 +11,8 @@ namespace handcast::simulate {
 namespace {
 
 constexpr const char* kSides[] = {"left", "right"};
+constexpr std::size_t kColumns = 3;  ///< of a landmark: x, y, sigma (px)
+constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
 
 /// The most hands that any of the messages saw.
 template <class Kept, class CountOf>
@@ -69,14 +72,16 @@ Result<void> RecordingFeed::save_landmarks() const {
     for (std::uint32_t i = 0; i < seen.landmarks.count; ++i)
       for (const auto& point : seen.landmarks.hands[i].points) {
         auto& side = points[static_cast<std::size_t>(seen.landmarks.hands[i].side)];
-        side.push_back(point.x_px);
-        side.push_back(point.y_px);
+        const bool was_seen = point.confidence > 0;
+        side.insert(side.end(), {was_seen ? point.x_px : kUnseen, was_seen ? point.y_px : kUnseen, point.sigma_px});
       }
   }
   for (std::size_t side = 0; side < points.size(); ++side) {
     if (points[side].empty()) continue;
     const auto file = folder_ / fmt::format("landmarks_{}.npy", kSides[side]);
-    if (auto saved = twin::write_npy_f32(file, {points[side].size() / (2 * msg::kLandmarks), msg::kLandmarks, 2}, points[side]); !saved)
+    if (auto saved =
+            twin::write_npy_f32(file, {points[side].size() / (kColumns * msg::kLandmarks), msg::kLandmarks, kColumns}, points[side]);
+        !saved)
       return saved;
   }
   return twin::write_npy_i64(folder_ / "landmarks_timestamps.npy", times_us);

@@ -12,8 +12,9 @@
 namespace handcast::simulate {
 
 /// A feed that passes another's messages on and keeps them, to be written as a recording: what the replay back ends play.
-/// Folder: timestamps.npy, joints_SIDE.npy, bones_SIDE.npy (Leap's layout); landmarks_timestamps.npy, landmarks_SIDE.npy (n,21,2);
-/// camera/NNNNNN.png with camera_timestamps.npy. Times in microseconds since the start.
+/// Folder: timestamps.npy, joints_SIDE.npy, bones_SIDE.npy (Leap's layout); landmarks_timestamps.npy, landmarks_SIDE.npy (n,21,3: x, y
+/// and sigma in px, x and y not a number where not seen); camera/NNNNNN.png with camera_timestamps.npy. Times in microseconds since the
+/// start.
 class RecordingFeed : public SensorFeed {
  public:
   RecordingFeed(std::unique_ptr<SensorFeed> source, std::filesystem::path folder);

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "ipc/base/clock.hpp"
+#include "services/simulate/counting_feed.hpp"
 #include "services/simulate/detector_tally.hpp"
 #include "services/simulate/hand_speed.hpp"
 #include "services/simulate/jitter.hpp"
@@ -15,7 +15,6 @@
 #include "services/simulate/png.hpp"
 #include "services/simulate/recorder.hpp"
 #include "services/simulate/recovery.hpp"
-#include "services/simulate/simulation.hpp"
 #include "services/simulate/trace.hpp"
 
 namespace handcast::simulate {
@@ -41,19 +40,16 @@ class Products {
     return products;
   }
 
-  Result<void> add(const Tick& tick) {
-    LightMoment moment{ns_to_seconds(tick.lit_ns)};
+  /// `detections` of a hand had arrived before it.
+  Result<void> add(const Tick& tick, int detections) {
     for (const auto& hand : tick.hands) {
       const auto truth = twin_.landmarks(hand.side, tick.lit_ns);
       if (!truth) continue;
       jitter_.add(hand, *truth, tick.index, metrics_);
-      moment.error_mm = std::max(moment.error_mm, add_landmarks(hand, *truth, tick.lit_ns));
+      add_landmarks(hand, tick.lit_ns);
       if (trace_) trace_->add(tick.lit_ns, hand, *truth);
     }
-    if (fault_) {
-      moment.dark = has_dark_hand(tick);
-      moments_.push_back(moment);
-    }
+    if (fault_) moments_.push_back(moment_of(tick, detections, twin_, calibration_));
     if (!tick.projection) return {};
     metrics_.add(judge_->score(*tick.projection));
     metrics_.add_stages(tick.frame->stages);
@@ -66,7 +62,10 @@ class Products {
     return picture(drawn_++, *tick.projection);
   }
 
-  nlohmann::json to_json(const config::Rig& rig) const {
+  bool has_fault() const { return fault_.has_value(); }
+
+  /// `clean`: the light of the same run without the fault, where there is one.
+  nlohmann::json to_json(const config::Rig& rig, std::span<const LightMoment> clean) const {
     auto json = metrics_.to_json();
     if (drawn_ == 0) json["foldovers"] = nullptr;
     json["rig"] = rig.name;
@@ -75,7 +74,7 @@ class Products {
     json["seed"] = rig.twin.seed;
     json["seconds"] = options_.seconds;
     json["hand_speed_m_s"] = hand_speed_.to_json();
-    json["fault"] = simulate::to_json(fault_, moments_);
+    json["fault"] = simulate::to_json(fault_, moments_, clean);
     json["software_ms"] = rig.projector.software_ms;
     json["motion_to_photon_ms"] =
         with_exposure_ > 0 ? nlohmann::json(motion_to_photon_ms_ / static_cast<double>(with_exposure_)) : nlohmann::json();
@@ -90,29 +89,11 @@ class Products {
         fault_(fault_time(rig.twin)),
         judge_(options.draw_every > 0 ? twin::Judge::create(twin, calibration, rig.observer.step_px) : nullptr) {}
 
-  /// Camera px become mm at the distance of the joint. Gives the mean of the hand's landmarks, mm.
-  double add_landmarks(const renderer::FrameHand& hand, const renderer::LandmarkPoints& truth, std::int64_t lit_ns) {
-    const auto joints = twin_.joints(hand.side, lit_ns);
-    if (!joints) return 0;
-    std::array<glm::dvec3, msg::kLandmarks> places_m;
-    double sum_mm = 0;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      places_m[i] = calibration_.camera_from_tracker * (*joints)[msg::kJointOfLandmark[i]][3];
-      const double error_px = glm::length(hand.corrected[i] - truth[i]);
-      const double error_mm = 1e3 * error_px * places_m[i].z / calibration_.camera.fx_px;
-      metrics_.add_landmark(error_px, error_mm);
-      sum_mm += error_mm;
-    }
-    hand_speed_.add(hand.side, places_m, lit_ns);
-    return sum_mm / static_cast<double>(truth.size());
-  }
-
-  bool has_dark_hand(const Tick& tick) const {
-    for (const auto side : {msg::Side::left, msg::Side::right}) {
-      const bool lit = std::ranges::any_of(tick.hands, [side](const renderer::FrameHand& hand) { return hand.side == side; });
-      if (!lit && twin_.landmarks(side, tick.lit_ns)) return true;
-    }
-    return false;
+  void add_landmarks(const renderer::FrameHand& hand, std::int64_t lit_ns) {
+    const auto errors = landmark_errors(hand, lit_ns, twin_, calibration_);
+    if (!errors) return;
+    for (std::size_t i = 0; i < errors->px.size(); ++i) metrics_.add_landmark(errors->px[i], errors->mm[i]);
+    hand_speed_.add(hand.side, errors->true_places_m, lit_ns);
   }
 
   Result<void> picture(std::int64_t frame, const msg::Projection& projection) {
@@ -136,19 +117,6 @@ class Products {
   double motion_to_photon_ms_ = 0;  ///< summed over the frames that show an exposure
 };
 
-Result<void> run_ticks(const Options& options, Simulation& simulation, Products& products, const OnProgress& on_progress) {
-  const auto start_ns = seconds_to_ns(options.warm_up_s), end_ns = start_ns + seconds_to_ns(options.seconds);
-  Result<void> written;
-  while (simulation.now_ns() < end_ns && written) {
-    const bool scored = simulation.now_ns() >= start_ns;
-    simulation.step([&](const Tick& tick) {
-      if (scored) written = products.add(tick);
-    });
-    if (on_progress) on_progress(ns_to_seconds(simulation.now_ns()));
-  }
-  return written;
-}
-
 /// What is scored begins at `start_ns`.
 OnDetection from(std::int64_t start_ns, DetectorTally& tally) {
   return [start_ns, &tally](const Exposure& exposure, const Detection& detection) {
@@ -167,29 +135,30 @@ nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig) {
 
 Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration, const Options& options,
                              const OnProgress& on_progress) {
-  const auto twin = twin::Twin::create(rig, calibration);
-  if (!twin) return tl::make_unexpected(twin.error());
-  const auto truth = [&world = **twin](renderer::Side side, std::int64_t time_ns) { return world.landmarks(side, time_ns); };
-  auto pipeline = renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, calibration, truth);
-  if (!pipeline) return tl::make_unexpected(pipeline.error());
-  auto detector = open_frame_detector(rig, calibration, **twin);
-  if (!detector) return tl::make_unexpected(detector.error());
-  auto products = Products::create(options, rig, calibration, **twin);
+  auto parts = open_virtual_rig(rig, calibration);
+  if (!parts) return tl::make_unexpected(parts.error());
+  const auto& twin = *parts->twin;
+  auto products = Products::create(options, rig, calibration, twin);
   if (!products) return tl::make_unexpected(products.error());
 
-  DetectorTally tally(**twin, calibration.camera);
-  auto feed = make_twin_feed(**twin, std::move(*detector), from(seconds_to_ns(options.warm_up_s), tally));
+  DetectorTally tally(twin, calibration.camera);
+  auto feed = make_twin_feed(twin, std::move(parts->detector), from(seconds_to_ns(options.warm_up_s), tally));
   RecordingFeed* recording = nullptr;
   if (!options.record_directory.empty()) {
     auto recorder = std::make_unique<RecordingFeed>(std::move(feed), options.record_directory);
     recording = recorder.get();
     feed = std::move(recorder);
   }
-  Simulation simulation(rig, calibration, **pipeline, *feed, options.draw_every);
-  if (auto done = run_ticks(options, simulation, **products, on_progress); !done) return tl::make_unexpected(done.error());
+  CountingFeed counted(std::move(feed));
+  Simulation simulation(rig, calibration, *parts->pipeline, counted, options.draw_every);
+  const auto add = [&](const Tick& tick) { return (*products)->add(tick, counted.detections()); };
+  if (auto done = run_ticks(options, simulation, add, on_progress); !done) return tl::make_unexpected(done.error());
   if (recording)
     if (auto saved = recording->save(); !saved) return tl::make_unexpected(saved.error());
-  auto json = (*products)->to_json(rig);
+  Result<std::vector<LightMoment>> clean;
+  if ((*products)->has_fault()) clean = moments_without_fault(rig, calibration, options);
+  if (!clean) return tl::make_unexpected(clean.error());
+  auto json = (*products)->to_json(rig, *clean);
   json["detector"] = to_json(tally, rig);
   return json;
 }

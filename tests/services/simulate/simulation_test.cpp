@@ -146,6 +146,7 @@ TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
     const auto landmarks = twin::read_npy(folder.path() / "landmarks_left.npy");
     ASSERT_TRUE(landmarks) << landmarks.error().what;
     EXPECT_GT(landmarks->shape[0], 10u);
+    EXPECT_EQ(landmarks->shape[2], 3u) << "x, y and sigma";
   }
 }
 
