@@ -75,7 +75,8 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
       "definition", landmarks.definition, Choices{"tracker", "network"},
       "onednn, opencv: network: points as the network defines them. tracker: wrist and knuckles moved to where the tracker's joints "
       "are defined, which is what the cascade compares them with.");
-  visitor.section("replay", landmarks.replay, "For backend = \"replay\": landmarks_{left,right}.npy with landmarks_timestamps.npy.");
+  visitor.section("replay", landmarks.replay,
+                  "For backend = \"replay\": landmarks_{left,right}.npy, (n,21,2) or with sigmas (n,21,3), with landmarks_timestamps.npy.");
   visitor.section("process", landmarks.process, "How the service runs.");
 }
 

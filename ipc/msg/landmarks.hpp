@@ -16,6 +16,7 @@ struct Landmark {
   float x_px = 0;        ///< right from the centre of the camera's top-left pixel, lens distortion removed
   float y_px = 0;        ///< down from there
   float confidence = 0;  ///< 0..1; 0: not seen
+  float sigma_px = 0;    ///< standard deviation of x and of y each; 0: the detector does not say
 };
 
 /// The 21 landmarks of one hand as seen in one camera frame.
@@ -27,7 +28,7 @@ struct HandLandmarks {
 
 /// Published by: services/landmarks ("landmarks.hands").  Read by: services/projector.
 struct Landmarks {
-  static constexpr std::string_view layout = "Landmarks/1";
+  static constexpr std::string_view layout = "Landmarks/2";
 
   Header header;  ///< frame_id and origin of the camera frame they were seen in
   std::uint32_t count = 0;

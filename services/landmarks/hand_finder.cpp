@@ -94,7 +94,7 @@ void HandFinder::choose_candidates(const Hints& hints_px) {
     const auto& hint_px = hints_px[index_of(side)];
     if (!is_usable(hint_px)) continue;
     const auto track = track_of(side, *hint_px);
-    if (!track || followed[*track] || tracks_[*track].lost) {
+    if (!track || followed[*track] || !tracks_[*track].steady) {
       if (track) followed[*track] = true;
       candidates_.push_back({side, hand_->region_around(*hint_px), hint_px});
       continue;
@@ -102,13 +102,13 @@ void HandFinder::choose_candidates(const Hints& hints_px) {
     followed[*track] = true;
     const Track& seen = tracks_[*track];
     const glm::vec2 step_px = seen.hint_px ? centre_of(*hint_px) - centre_of(*seen.hint_px) : glm::vec2(0);
-    candidates_.push_back({side, hand_->region_around(moved(seen.points_px, step_px)), hint_px, true, seen.left_score});
+    candidates_.push_back({side, hand_->region_around(moved(seen.around_px, step_px)), hint_px, true, seen.left_score});
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (followed[i]) continue;
     const Track& seen = tracks_[i];
     const auto side = is_taken(seen.side) ? other(seen.side) : seen.side;
-    if (!is_taken(side)) candidates_.push_back({side, hand_->region_around(seen.points_px), std::nullopt, !seen.lost, seen.left_score});
+    if (!is_taken(side)) candidates_.push_back({side, hand_->region_around(seen.points_px), std::nullopt, seen.steady, seen.left_score});
   }
   if (candidates_.size() > static_cast<std::size_t>(most_hands_)) candidates_.resize(most_hands_);
 }
@@ -136,7 +136,9 @@ Result<void> HandFinder::look(renderer::GreyView image, const Candidate& candida
   const auto seen = look_at(image, candidate, region);
   if (!seen) return tl::make_unexpected(seen.error());
   if (seen->presence < kLeastPresence || !is_finite(seen->points_px)) return {};
-  found_.push_back({candidate.side, seen->presence, seen->points_px, region, seen->sigma_px});
+  const Confidences confidences = confidences_of(*seen, region, candidate.hint_px);
+  if (mean_of(confidences) < kLeastConfidence) return {};
+  found_.push_back({candidate.side, seen->presence, seen->points_px, region, seen->sigma_px, confidences});
   const float before = candidate.left_score < 0 ? seen->left_score : candidate.left_score;
   left_scores_.push_back(before + kLeftScoreShare * (seen->left_score - before));
   return {};
@@ -215,10 +217,17 @@ void HandFinder::remember(const Hints& hints_px, std::int64_t time_ns) {
     return std::ranges::any_of(
         found_, [&](const FoundHand& hand) { return hand.side == track.side || are_one_hand(hand.points_px, track.points_px); });
   });
-  for (auto& track : tracks_) track.lost = true;
+  for (auto& track : tracks_) track.steady = false;
   for (std::size_t i = 0; i < found_.size(); ++i) {
     const auto& hint_px = hints_px[index_of(found_[i].side)];
-    tracks_.push_back({found_[i].side, found_[i].points_px, is_usable(hint_px) ? hint_px : std::nullopt, left_scores_[i], time_ns, false});
+    const bool steady = mean_of(found_[i].confidences) >= kSteadyConfidence;
+    Track track{found_[i].side, found_[i].points_px, found_[i].points_px, std::nullopt, left_scores_[i], time_ns, steady};
+    if (is_usable(hint_px)) {
+      track.hint_px = hint_px;
+      for (std::size_t k = 0; k < track.around_px.size(); ++k)
+        if (found_[i].confidences[k] < kSureConfidence) track.around_px[k] = (*hint_px)[k];
+    }
+    tracks_.push_back(track);
   }
 }
 

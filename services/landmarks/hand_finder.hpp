@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "services/landmarks/confidence.hpp"
 #include "services/landmarks/hand_network.hpp"
 
 namespace handcast::landmarks {
@@ -19,14 +20,18 @@ struct FoundHand {
   Points points_px{};                             ///< in the image, as the network defines them
   Region region;                                  ///< where it was looked for
   std::array<float, msg::kLandmarks> sigma_px{};  ///< standard deviation per axis; 0: not known
+  Confidences confidences{};                      ///< 0..1
 };
 
-/// Finds the hands of one image after another. Looks where they were in the last image, moved on with the tracker; else where the
+/// Finds the hands of one image after another. Looks where they surely were in the last image, moved on with the tracker; else where the
 /// tracker has them; else, every few images, where the palm network finds one, or without it where a hand was last.
 /// One thread, no allocation while hands are followed.
 class HandFinder {
  public:
   static constexpr float kLeastPresence = 0.5f;
+  static constexpr float kLeastConfidence = 0.3f;   ///< mean of the landmarks': what is less is no hand
+  static constexpr float kSteadyConfidence = 0.6f;  ///< the same: what is less may lie beside the hand
+  static constexpr float kSureConfidence = 0.5f;    ///< of one landmark
 
   /// `most_hands`: 1 or 2.
   HandFinder(std::unique_ptr<HandLooker> hand, std::optional<PalmNetwork> palm, int most_hands)
@@ -35,8 +40,8 @@ class HandFinder {
   /// MediaPipe Hands: both networks. Errors (bad_config): a model file is missing or not the right one.
   static Result<HandFinder> open(const std::string& backend, const std::filesystem::path& models, int most_hands);
 
-  /// Hands whose presence is at least kLeastPresence, valid until the next call. A side is the tracker's where it has a hand there, else
-  /// the network's. Images must be given in the order of their times. Errors: bad_data.
+  /// Hands of at least kLeastPresence and kLeastConfidence, valid until the next call. A side is the tracker's where it has a hand
+  /// there, else the network's. Images must be given in the order of their times. Errors: bad_data.
   Result<std::span<const FoundHand>> find(renderer::GreyView image, const Hints& hints_px, std::int64_t time_ns);
 
   /// As if it had never seen an image.
@@ -53,16 +58,17 @@ class HandFinder {
   struct Track {
     msg::Side side;
     Points points_px;
+    Points around_px;               ///< where to look next: the same, but for unsure points the tracker's where there is one
     std::optional<Points> hint_px;  ///< the tracker's at that time
     float left_score;               ///< its running mean
     std::int64_t seen_ns;
-    bool lost;  ///< not found in the last image
+    bool steady;  ///< found in the last image, and surely: the next one is looked at around these points
   };
   struct Candidate {
     msg::Side side;
     Region region;
     std::optional<Points> hint_px;
-    bool is_followed = false;  ///< it was seen in the last image
+    bool is_followed = false;  ///< of a steady track
     float left_score = -1;     ///< before this image; negative: not known
   };
 

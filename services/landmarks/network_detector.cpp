@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "services/landmarks/definition.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/hints.hpp"
@@ -10,9 +8,6 @@
 
 namespace handcast::landmarks {
 namespace {
-
-/// A landmark this uncertain was not seen: standard deviation per axis, as a share of the region.
-constexpr float kMostSigma = 0.1f;
 
 /// A network on the images themselves.
 class NetworkDetector final : public Detector {
@@ -47,13 +42,8 @@ class NetworkDetector final : public Detector {
     }
     msg::HandLandmarks message{hand.side, hand.presence, {}};
     for (std::size_t i = 0; i < points_px.size(); ++i)
-      message.points[i] = {points_px[i].x, points_px[i].y, is_in_image(hand.points_px[i]) ? confidence_of(hand, i) : 0};
+      message.points[i] = {points_px[i].x, points_px[i].y, is_in_image(hand.points_px[i]) ? hand.confidences[i] : 0, hand.sigma_px[i]};
     return message;
-  }
-
-  /// The hand's presence, falling to 0 as the landmark's sigma grows to kMostSigma.
-  static float confidence_of(const FoundHand& hand, std::size_t i) {
-    return hand.presence * std::clamp(1 - hand.sigma_px[i] / (kMostSigma * hand.region.size_px), 0.0f, 1.0f);
   }
 
   bool is_in_image(glm::vec2 at_px) const {

@@ -36,14 +36,15 @@ class ReplayDetector final : public Detector {
   timing::Loop loop_;
 };
 
-/// A landmark that is not a number was not seen; a hand without any was not there.
+/// x, y and, where the recording has it, sigma. A landmark that is not a number was not seen; a hand without any was not there.
 msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side side) {
+  const std::size_t columns = array.shape[2];
   msg::HandLandmarks hand;
   hand.side = side;
   for (std::size_t i = 0; i < msg::kLandmarks; ++i) {
-    const double* point = &array.values[(index * msg::kLandmarks + i) * 2];
+    const double* point = &array.values[(index * msg::kLandmarks + i) * columns];
     if (!std::isfinite(point[0]) || !std::isfinite(point[1])) continue;
-    hand.points[i] = {static_cast<float>(point[0]), static_cast<float>(point[1]), 1};
+    hand.points[i] = {static_cast<float>(point[0]), static_cast<float>(point[1]), 1, columns == 3 ? static_cast<float>(point[2]) : 0.0f};
     hand.presence = 1;
   }
   return hand;
@@ -53,9 +54,12 @@ Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side
   if (!fs::exists(file)) return Track{};
   const auto array = twin::read_npy(file);
   if (!array) return tl::make_unexpected(array.error());
-  if (array->shape != std::vector<std::size_t>{count, msg::kLandmarks, 2})
-    return fail(Errc::bad_config, fmt::format("'{}' has the shape ({}); expected ({}, {}, 2), as many as landmarks_timestamps.npy",
-                                              file.string(), fmt::join(array->shape, ", "), count, msg::kLandmarks));
+  const auto has_columns = [&](std::size_t columns) { return array->shape == std::vector<std::size_t>{count, msg::kLandmarks, columns}; };
+  if (!has_columns(2) && !has_columns(3))
+    return fail(Errc::bad_config,
+                fmt::format("'{}' has the shape ({}); expected ({}, {}, 2) or, with sigmas, ({}, {}, 3), as many as "
+                            "landmarks_timestamps.npy",
+                            file.string(), fmt::join(array->shape, ", "), count, msg::kLandmarks, count, msg::kLandmarks));
   Track track;
   for (std::size_t i = 0; i < count; ++i) track.push_back(hand_at(*array, i, side));
   return track;

@@ -5,12 +5,12 @@
 
 #include <filesystem>
 #include <fstream>
-#include <optional>
 
 #include "ipc/base/clock.hpp"
 #include "services/twin/recording.hpp"
 #include "services/twin/twin.hpp"
 #include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::system_test {
 namespace {
@@ -24,26 +24,6 @@ class Faults : public SystemTest {
     for (const auto& name : kServices)
       EXPECT_EQ(now["services"][name]["restarts"], restarts.contains(name) ? restarts.at(name) : 0) << name;
   }
-};
-
-/// A variable of the environment, as long as the object lives.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    setenv(name, value.c_str(), 1);
-  }
-  ~Variable() {
-    if (before_)
-      setenv(name_, before_->c_str(), 1);
-    else
-      unsetenv(name_);
-  }
-  Variable(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
 };
 
 /// Half a second of the twin's left hand.

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::system_test {
 namespace {
@@ -42,6 +44,18 @@ TEST_F(Refusals, AMissingRecordingIsNamedAndNothingKeepsRunning) {
   EXPECT_THAT(rig->log(), HasSubstr("handcast: pose cannot start: "));
   EXPECT_THAT(rig->log(), HasSubstr("/nowhere/recording"));
   EXPECT_THAT(traces(), IsEmpty());
+}
+
+TEST_F(Refusals, AMissingNetworkOfOurOwnIsNamed) {
+  const auto all = program_folder().parent_path() / "share" / "handcast", most = scratch_.path() / "assets";
+  std::filesystem::create_directory(most);
+  for (const auto& entry : std::filesystem::directory_iterator(all))
+    if (entry.path().filename() != "landmarks") std::filesystem::create_symlink(entry.path(), most / entry.path().filename());
+  const Variable assets("HANDCAST_ASSETS", most);
+  const auto rig = up({"--set", "landmarks.backend=own"});
+  EXPECT_EQ(rig->wait(), 100);
+  EXPECT_THAT(rig->log(), AllOf(HasSubstr("handcast: landmarks cannot start: "), HasSubstr("assets/landmarks/handcast.onnx"),
+                                HasSubstr("which comes with handcast, is missing")));
 }
 
 TEST_F(Refusals, AnUnknownBackEndIsNamedBesideTheKnownOnes) {

@@ -2,6 +2,7 @@
 #include "renderer/cascade/filters/filters.hpp"
 #include "renderer/cascade/filters/finger_order.hpp"
 #include "renderer/cascade/filters/landmarks_alone.hpp"
+#include "renderer/cascade/filters/shared_offset.hpp"
 
 namespace handcast::renderer {
 
@@ -23,6 +24,7 @@ class OffsetFilter : public CarryFilter {
       jumped_ = true;
     }
     alone_.detection(origin_ns, seen);
+    sigmas_.detection(seen);
     if (!then || silent_ || origin_ns < doubted_until_ns_) return;
     for (int i = 0; i < kLandmarks; ++i)
       if (was_seen(seen.points[i])) update(tracks_[i], origin_ns, position_px(seen.points[i]) - (*then)[i]);
@@ -42,12 +44,14 @@ class OffsetFilter : public CarryFilter {
       known[i] = alone ? alone_.known(i) : tracks_[i].known();
       if (known[i]) offsets[i] = alone ? alone_.at(i, target_ns) - tracker[i] : offset_at(tracks_[i], target_ns);
     }
+    if (!alone) draw_together(offsets, known, sigmas_.px(), tracker);
     return moved_by(tracker, offsets, known);
   }
 
   void forget() override {
     forget_offsets();
     alone_.forget();
+    sigmas_.forget();
   }
 
  protected:
@@ -109,6 +113,7 @@ class OffsetFilter : public CarryFilter {
   TrackerMemory memory_;
   FingerOrder fingers_;
   LandmarksAlone alone_;
+  LandmarkSigmas sigmas_;
   bool silent_ = false;
   std::int64_t doubted_until_ns_ = 0;
   int compared_ = 0;        ///< detections since the offsets began

@@ -184,6 +184,10 @@ TEST_F(NetworkDetector, MovesTheThumbsKnuckleToTheTrackersJointUnlessToldNotTo) 
   EXPECT_EQ(moved_px(8), 0);
 }
 
+TEST_F(NetworkDetector, MediaPipesNetworkSaysNoSigma) {
+  for (const auto& point : detect().points) EXPECT_EQ(point.sigma_px, 0);
+}
+
 TEST_F(NetworkDetector, PointsBesideTheImageAreNotSeen) {
   const auto capture = *test::capture(6);
   test::Grey cut(700, 200);
@@ -276,6 +280,22 @@ TEST_F(ReplayDetector, APointThatIsNotANumberWasNotSeen) {
   EXPECT_EQ(found->hands[0].points[1].confidence, 1);
 }
 
+TEST_F(ReplayDetector, GivesTheSigmasOfARecordingThatHasThem) {
+  std::vector<float> values;
+  for (int i = 0; i < 2 * msg::kLandmarks; ++i) values.insert(values.end(), {100, 200, 0.5f * static_cast<float>(i)});
+  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
+  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  const auto detector = open();
+  ASSERT_TRUE(detector) << detector.error().what;
+  const auto found = (*detector)->detect(frame_of(0, kEpoch_ns + to_ns(10ms)), {}, Deadline::now());
+  ASSERT_EQ(found->count, 1u);
+  EXPECT_EQ(found->hands[0].points[4].x_px, 100);
+  EXPECT_EQ(found->hands[0].points[4].y_px, 200);
+  EXPECT_EQ(found->hands[0].points[4].sigma_px, 12.5f);
+  write_detections(scratch_.path(), 4);
+  EXPECT_EQ((*open())->detect(frame_of(0, kEpoch_ns), {}, Deadline::now())->hands[0].points[4].sigma_px, 0) << "one without";
+}
+
 TEST_F(ReplayDetector, SaysWhatItMisses) {
   expect_refused("landmarks_timestamps.npy");
   ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
@@ -285,7 +305,7 @@ TEST_F(ReplayDetector, SaysWhatItMisses) {
 TEST_F(ReplayDetector, SaysWhenTimesAndLandmarksDoNotPair) {
   write_detections(scratch_.path(), 4);
   ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
-  expect_refused("(4, 21, 2); expected (2, 21, 2)");
+  expect_refused("(4, 21, 2); expected (2, 21, 2) or, with sigmas, (2, 21, 3)");
 }
 
 }  // namespace
