@@ -32,7 +32,7 @@ class Batch:
         self.visible = torch.from_numpy(samples["visible"].astype(bool))
 
 
-def batches(program, seed, first, size, people=48):
+def batches(program, seed, first, size, people):
     """Endless batches from image number `first` on; the program runs beside, a few batches ahead."""
     command = [program, "--seed", str(seed), "--first", str(first), "--count", str(1 << 40), "--people", str(people)]
     child = subprocess.Popen(command, stdout=subprocess.PIPE)

@@ -12,12 +12,12 @@ Result<Generator> Generator::create(int people, std::uint64_t seed) {
   return Generator(std::move(*drawn), seed);
 }
 
-/// A second hand beside the first, before or behind it.
+/// A second hand beside the first or over it, before or behind.
 void Generator::add_other_hand(Dice& dice, const JointFrames& first, const Light& light) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
   JointFrames joints = moved(draw_view(dice, pose.joints), pose.joints);
-  const float angle = dice.between(0, 6.28f), away_m = dice.between(0.08f, 0.17f);
+  const float angle = dice.between(0, 6.28f), away_m = dice.between(0.03f, 0.17f);
   const glm::vec3 place = glm::vec3(first[9][3]) + glm::vec3(away_m * std::cos(angle), away_m * std::sin(angle), dice.normal(0.05f));
   scene_.add_hand(dice, person, moved(glm::translate(glm::mat4(1), place - glm::vec3(joints[9][3])), joints), light);
 }
@@ -36,7 +36,7 @@ void Generator::make_hand(Dice& dice) {
   const Light light(dice, glm::vec3(joints[9][3]));
   scene_.clear(region);
   scene_.add_hand(dice, person, joints, light);
-  if (dice.chance(0.1f)) add_other_hand(dice, joints, light);
+  if (dice.chance(0.12f)) add_other_hand(dice, joints, light);
   scene_.draw(dice, light);
   for (int i = 0; i < msg::kLandmarks; ++i) {
     const int joint = msg::kJointOfLandmark[i];

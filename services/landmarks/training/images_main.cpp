@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
   using namespace handcast::landmarks::training;
   std::uint64_t seed = 1, first = 0, count = 1000;
-  int people = 48, preview = 0;
+  int people = 160, preview = 0;
   std::string picture = "training.png";
   CLI::App app{"Synthetic infrared images of hands with their landmarks, for training: Sample structs (sample.hpp) one after another."};
   app.add_option("--seed", seed, "Everything random is drawn from this number");

@@ -48,11 +48,12 @@ class Grain {
   std::array<Wave, 4> waves_;
 };
 
-void paint_skin(Dice& dice, const Person& person, float tone, std::vector<float>& albedo) {
+/// A glove has no nails, knuckles or creases, but a weave.
+void paint_skin(Dice& dice, const Person& person, float tone, bool gloved, std::vector<float>& albedo) {
   const Grain grain(dice);
-  const float speckle = dice.between(0, 0.06f);
-  const std::array<float, 4> by_kind{1, dice.chance(0.7f) ? dice.between(0.7f, 1.4f) : 1, dice.between(0.78f, 1.05f),
-                                     dice.between(0.7f, 1.02f)};
+  const float speckle = dice.between(0, gloved ? 0.15f : 0.06f);
+  std::array<float, 4> by_kind{1, dice.chance(0.7f) ? dice.between(0.7f, 1.4f) : 1, dice.between(0.78f, 1.05f), dice.between(0.7f, 1.02f)};
+  if (gloved) by_kind.fill(1);
   albedo.resize(person.mesh.vertex_count());
   for (std::size_t v = 0; v < albedo.size(); ++v)
     albedo[v] = tone * by_kind[static_cast<std::size_t>(person.skin[v])] * grain.at(person.mesh.positions[v]) *
@@ -114,7 +115,8 @@ Scene::Shot& Scene::next_shot() {
 }
 
 void Scene::add_hand(Dice& dice, const Person& person, const JointFrames& in_camera, const Light& light) {
-  const float tone = dice.between(0.5f, 1);
+  const bool gloved = dice.chance(0.06f);
+  const float tone = gloved ? dice.between(0.05f, 1.1f) : dice.between(0.5f, 1);
   const glm::mat4 bend = glm::rotate(glm::mat4(1), dice.normal(0.3f), {1, 0, 0}) * glm::rotate(glm::mat4(1), dice.normal(0.18f), {0, 1, 0});
   const glm::mat4 camera_from_arm = in_camera[kWrist] * bend;
 
@@ -124,9 +126,9 @@ void Scene::add_hand(Dice& dice, const Person& person, const JointFrames& in_cam
   hand.surface.normals.resize(person.mesh.vertex_count());
   renderer::skin(person.mesh, in_camera, hand.surface.positions, hand.surface.normals);
   bend_wrist(person, in_camera[kWrist], camera_from_arm, hand.surface);
-  const float fatter_m = dice.normal(0.0007f);
+  const float fatter_m = dice.normal(0.0007f) + (gloved ? dice.between(0, 0.003f) : 0);
   for (std::size_t v = 0; v < hand.surface.positions.size(); ++v) hand.surface.positions[v] += fatter_m * hand.surface.normals[v];
-  paint_skin(dice, person, tone, hand.surface.albedo);
+  paint_skin(dice, person, tone, gloved, hand.surface.albedo);
   hand.triangles = &person.mesh.triangles;
   light.shade(hand.surface, hand.grey);
   if (dice.chance(0.75f)) occlude(hand.surface, balls_in(in_camera), dice.between(0.2f, 1.8f), hand.grey);

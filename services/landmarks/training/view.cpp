@@ -88,7 +88,7 @@ Points project(const calib::CameraModel& camera, const JointFrames& in_camera) {
 Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vector<Person>& people, const Person& person, const Pose& pose,
                     const JointFrames& in_camera) {
   const Person& model = dice.chance(0.65f) ? person : people[dice.pick(static_cast<int>(people.size()))];  // its idea of the person
-  const bool other_pose = dice.chance(0.13f);
+  const bool other_pose = dice.chance(0.16f);
   const Posture posture = other_pose ? draw_pose(dice, model).posture : disturbed(dice, pose.posture);
   const float turned_rad = other_pose && dice.chance(0.5f) ? dice.normal(0.5f) : dice.normal(0.12f);
   const glm::mat4 wrong = turn(turned_rad, draw_direction(dice)) * glm::scale(glm::mat4(1), glm::vec3(std::exp(dice.normal(0.05f))));
