@@ -12,7 +12,7 @@ namespace {
 /// What bystanders notice: delay with the edges of the light in sight, and with gaps filled (METHOD section 5).
 constexpr double kJndEdges_ms = 3.08, kJndFilled_ms = 6.62;
 
-constexpr int kWidth_px = 1000, kHeight_px = 440;
+constexpr int kWidth_px = 1060, kHeight_px = 440;
 constexpr double kFrom_ms = 2;  ///< sooner than any camera and projector
 
 struct Panel {
@@ -97,7 +97,7 @@ std::string script_of(const Ladder& ladder, const std::vector<Panel>& panels) {
   const auto y = range_of(ys, true);
   Script script("chart_a", kWidth_px, kHeight_px);
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const double left = 44 + 500.0 * static_cast<double>(i);
+    const double left = 44 + 530.0 * static_cast<double>(i);
     draw(script, panels[i], ladder.speeds[i], {left, 62, left + 272, kHeight_px - 52}, x, y);
   }
   return script.finish();
