@@ -13,6 +13,12 @@ namespace {
 using renderer::GreyView;
 using renderer::Rect;
 
+/// To the nearest grey level; a form that a compiler vectorises.
+inline std::uint8_t nearest_level(float level) {
+  const float above = level + 0.5f;
+  return static_cast<std::uint8_t>(static_cast<int>(above));
+}
+
 HANDCAST_CLONES void join_fours(const std::uint8_t* upper, const std::uint8_t* lower, std::uint32_t* out, int count) {
   for (int x = 0; x < count; ++x)
     out[x] = static_cast<std::uint32_t>(upper[x]) | static_cast<std::uint32_t>(upper[x + 1]) << 8 |
@@ -31,7 +37,7 @@ HANDCAST_CLONES void sample_inner(const std::uint32_t* __restrict fours, Rect in
     const auto a = static_cast<float>(four & 255), b = static_cast<float>((four >> 8) & 255);
     const auto c = static_cast<float>((four >> 16) & 255), d = static_cast<float>((four >> 24) & 255);
     const float above = a + (b - a) * fx, below = c + (d - c) * fx;
-    out[i] = static_cast<std::uint8_t>(static_cast<int>(above + (below - above) * fy + 0.5f));
+    out[i] = nearest_level(above + (below - above) * fy);
   }
 }
 
@@ -45,7 +51,7 @@ void sample_edge(GreyView image, glm::vec2 at, glm::vec2 step, int begin, int en
     const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
     const float above = pixel_or_black(image, x0, y0) * (1 - fx) + pixel_or_black(image, x0 + 1, y0) * fx;
     const float below = pixel_or_black(image, x0, y0 + 1) * (1 - fx) + pixel_or_black(image, x0 + 1, y0 + 1) * fx;
-    out[i] = static_cast<std::uint8_t>(above * (1 - fy) + below * fy + 0.5f);
+    out[i] = nearest_level(above * (1 - fy) + below * fy);
   }
 }
 

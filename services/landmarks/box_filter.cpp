@@ -18,7 +18,8 @@ HANDCAST_CLONES void sum_rows(const std::uint8_t* first, int stride, int rows, s
 
 /// Exact: a mean is at least half of 1 / area away from the next whole number, which is more than the product's rounding.
 inline std::uint8_t rounded_mean(int sum, int area, float inverse) {
-  return static_cast<std::uint8_t>(static_cast<int>((static_cast<float>(sum + area / 2) + 0.5f) * inverse));
+  const int half = area / 2;
+  return static_cast<std::uint8_t>(static_cast<int>((static_cast<float>(sum + half) + 0.5f) * inverse));
 }
 
 template <int factor>

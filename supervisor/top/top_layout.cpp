@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "ipc/base/clock.hpp"
 #include "supervisor/top/top_table.hpp"
@@ -39,7 +40,7 @@ Style style_of_state(const ServiceRow& service) {
 /// A bar that is full at one whole core.
 std::string meter(double cores) {
   static constexpr std::array<std::string_view, 8> kEighths{"", "▏", "▎", "▍", "▌", "▋", "▊", "▉"};
-  const auto eighths = static_cast<std::size_t>(std::clamp(cores, 0.0, 1.0) * 8 * kMeterCells + 0.5);
+  const auto eighths = static_cast<std::size_t>(std::lround(std::clamp(cores, 0.0, 1.0) * 8 * kMeterCells));
   std::string bar;
   for (std::size_t i = 0; i < eighths / 8; ++i) bar += "█";
   return bar.append(kEighths[eighths % 8]);

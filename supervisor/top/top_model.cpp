@@ -39,7 +39,7 @@ std::string trouble_in(const json& service) {
     trouble += fmt::format("{}again in {}", trouble.empty() ? "" : "; ", text_of_span(seconds_to_ns(wait_s)));
   const auto log = service.find("log");
   if (log == service.end() || !log->is_array() || log->empty() || !log->back().is_string()) return trouble;
-  const auto last_line = log->back().get<std::string>();
+  auto last_line = log->back().get<std::string>();
   if (trouble.empty() || last_line.ends_with(trouble)) return last_line;
   return trouble + ": " + last_line;
 }

@@ -2,11 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 
 #include "services/landmarks/training/contact_sheet.hpp"
 
 /// Writes training images to standard output until nobody reads them.
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace handcast::landmarks::training;
   std::uint64_t seed = 1, first = 0, count = 1000;
   int people = 160, preview = 0;
@@ -30,4 +31,7 @@ int main(int argc, char** argv) {
   for (std::uint64_t i = first; i < first + count; ++i)
     if (std::fwrite(&generator->make(i), sizeof(Sample), 1, stdout) != 1) return 0;
   return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "handcast-training-images: %s\n", error.what());
+  return 1;
 }

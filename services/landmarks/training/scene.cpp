@@ -1,13 +1,13 @@
 #include "services/landmarks/training/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace handcast::landmarks::training {
 namespace {
 
 using renderer::JointFrames;
-using renderer::Rect;
 
 constexpr int kFineSide = own::kSide_px * Scene::kFine;
 constexpr int kShadowSide = 96;
@@ -177,7 +177,7 @@ void Scene::cast_shadows(const Light& light, float depth) {
                           [](int, int, float, float, float) {});
     constexpr float kBias_m = 0.007f;
     for (std::size_t v = 0; v < count; ++v) {
-      const int x = static_cast<int>(shot.screen.x[v] + 0.5f), y = static_cast<int>(shot.screen.y[v] + 0.5f);
+      const auto x = static_cast<int>(std::lround(shot.screen.x[v])), y = static_cast<int>(std::lround(shot.screen.y[v]));
       if (x < 1 || y < 1 || x >= kShadowSide - 1 || y >= kShadowSide - 1) continue;
       const float limit = 1 / (1 / shot.screen.inverse_depth[v] - kBias_m);
       int behind = 0;

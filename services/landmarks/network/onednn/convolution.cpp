@@ -43,6 +43,11 @@ struct Way {
   std::string_view name = {};
 };
 
+template <class Operation>
+std::vector<Way<Operation>> only_way(const Operation& operation) {
+  return {{operation}};
+}
+
 /// oneDNN's implementation of a way that takes all of `post` along; an empty one where there is only reference code.
 template <class Choice, class Operation>
 Choice choice_of(const Builder& builder, const Way<Operation>& way, std::span<const PostOp> post) {
@@ -184,7 +189,7 @@ std::size_t emit_conv_transpose(Builder& builder, const Node& node, std::span<co
   const dnnl::deconvolution_forward::desc operation(prop_kind::forward_inference, dnnl::algorithm::deconvolution_direct, any_desc(input),
                                                     layer.weights_desc(), layer.bias_desc(), any_desc(result), window.strides,
                                                     window.gaps(), window.before, window.after);
-  return add_layer<dnnl::deconvolution_forward>(builder, node, tail, layer, result, std::vector{Way{operation}});
+  return add_layer<dnnl::deconvolution_forward>(builder, node, tail, layer, result, only_way(operation));
 }
 
 std::vector<float> scaled(std::vector<float> numbers, float factor) {
@@ -206,7 +211,7 @@ std::size_t emit_gemm(Builder& builder, const Node& node, std::span<const Node> 
   const Shape result{input[0], results};
   const dnnl::inner_product_forward::desc operation(prop_kind::forward_inference, any_desc(input), layer.weights_desc(), layer.bias_desc(),
                                                     any_desc(result));
-  return add_layer<dnnl::inner_product_forward>(builder, node, tail, layer, result, std::vector{Way{operation}});
+  return add_layer<dnnl::inner_product_forward>(builder, node, tail, layer, result, only_way(operation));
 }
 
 constexpr Operator kOperators[] = {{"Conv", emit_conv}, {"ConvTranspose", emit_conv_transpose}, {"Gemm", emit_gemm}};
