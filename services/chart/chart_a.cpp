@@ -60,7 +60,7 @@ std::vector<Point> stair_of(const Panel& panel) {
 
 std::string label_of(const Standing& standing) {
   if (!standing.method.detects || !standing.landmarks_ms) return standing.method.label;
-  return fmt::format("{}, {:.0f} ms old,", standing.method.label, *standing.landmarks_ms);
+  return fmt::format("{}, {:.0f} ms old", standing.method.label, *standing.landmarks_ms);
 }
 
 bool is_of_rungs(const Method& method) { return method.freedoms.has_value(); }
