@@ -15,21 +15,23 @@ struct Similarity {
 };
 
 /// The least-squares similarity of points `p` onto `q` (as many), its scale held between 1/2 and 2: wild points must not blow
-/// anything up. A shift where the points coincide.
-inline Similarity fit_similarity(std::span<const glm::vec2> p, std::span<const glm::vec2> q) {
+/// anything up. A shift where the points coincide. `weight` of each, with a sum above 0; without it all count alike.
+inline Similarity fit_similarity(std::span<const glm::vec2> p, std::span<const glm::vec2> q, std::span<const float> weight = {}) {
   constexpr float kLeastScale = 0.5f, kMostScale = 2.0f;
-  const auto count = static_cast<float>(p.size());
+  const auto weight_of = [&](std::size_t i) { return weight.empty() ? 1.0f : weight[i]; };
+  float total = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) total += weight_of(i);
   glm::vec2 p_mean{0}, q_mean{0};
   for (std::size_t i = 0; i < p.size(); ++i) {
-    p_mean += p[i] / count;
-    q_mean += q[i] / count;
+    p_mean += weight_of(i) * p[i] / total;
+    q_mean += weight_of(i) * q[i] / total;
   }
   float along = 0, across = 0, spread = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const glm::vec2 a = p[i] - p_mean, b = q[i] - q_mean;
+    const glm::vec2 a = p[i] - p_mean, b = weight_of(i) * (q[i] - q_mean);
     along += a.x * b.x + a.y * b.y;
     across += a.x * b.y - a.y * b.x;
-    spread += a.x * a.x + a.y * a.y;
+    spread += weight_of(i) * (a.x * a.x + a.y * a.y);
   }
   Similarity fit;
   const float turned = std::hypot(along, across);

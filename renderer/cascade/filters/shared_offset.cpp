@@ -1,8 +1,10 @@
 #include "renderer/cascade/filters/shared_offset.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "renderer/cascade/filters/filters.hpp"
+#include "renderer/cascade/similarity.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -10,7 +12,6 @@ namespace {
 constexpr float kSmoothing = 0.1f;       ///< share of a new detection's sigma
 constexpr float kLargestSigma_px = 1e3;  ///< what comes from outside may be anything
 constexpr float kLeastSpread_px = 7;     ///< of offsets about the shared ones, per axis; chosen on the twin (open_close, wave, fist)
-constexpr float kNearNothing = 1e-20f;
 constexpr float kLeastSpread_px2 = kLeastSpread_px * kLeastSpread_px;
 
 float given_sigma_px(const msg::Landmark& point) { return point.sigma_px > 0 ? std::min(point.sigma_px, kLargestSigma_px) : 0.0f; }
@@ -23,36 +24,19 @@ struct Part {
 };
 constexpr std::array<Part, 6> kParts{{{0, 1}, {1, 4}, {5, 4}, {9, 4}, {13, 4}, {17, 4}}};  // the wrist, the fingers
 
-/// The hand's own: the weighted least-squares similarity of P onto P + offset, less P.
+/// The hand's own: the weighted similarity of P onto P + offset, less P. Some offset is known.
 LandmarkPoints shared_offsets(const std::array<glm::vec2, kLandmarks>& offsets_px, const std::array<bool, kLandmarks>& known,
                               const std::array<float, kLandmarks>& sigma_px, const LandmarkPoints& tracker) {
   std::array<float, kLandmarks> weight{};
-  float total = 0;
-  glm::vec2 offset_mean{0}, p_mean{0};
+  LandmarkPoints seen = tracker;
   for (int i = 0; i < kLandmarks; ++i) {
     if (!known[i]) continue;
     weight[i] = share_of(kLeastSpread_px2, sigma_px[i]);
-    total += weight[i];
-    offset_mean += weight[i] * offsets_px[i];
-    p_mean += weight[i] * tracker[i];
+    seen[i] += offsets_px[i];
   }
-  offset_mean /= std::max(total, kNearNothing);
-  p_mean /= std::max(total, kNearNothing);
-  float along = 0, across = 0, spread = 0;
-  for (int i = 0; i < kLandmarks; ++i) {
-    if (!known[i]) continue;
-    const glm::vec2 p = tracker[i] - p_mean, offset = offsets_px[i] - offset_mean;
-    along += weight[i] * glm::dot(p, offset);
-    across += weight[i] * (p.x * offset.y - p.y * offset.x);
-    spread += weight[i] * glm::dot(p, p);
-  }
-  along /= std::max(spread, kNearNothing);
-  across /= std::max(spread, kNearNothing);
+  const Similarity hand = fit_similarity(tracker, seen, weight);
   LandmarkPoints shared;
-  for (int i = 0; i < kLandmarks; ++i) {
-    const glm::vec2 p = tracker[i] - p_mean;
-    shared[i] = offset_mean + glm::vec2(along * p.x - across * p.y, along * p.y + across * p.x);
-  }
+  for (int i = 0; i < kLandmarks; ++i) shared[i] = hand(tracker[i]) - tracker[i];
   return shared;
 }
 
@@ -69,7 +53,7 @@ void LandmarkSigmas::detection(const msg::HandLandmarks& seen) {
 
 void draw_together(std::array<glm::vec2, kLandmarks>& offsets_px, const std::array<bool, kLandmarks>& known,
                    const std::array<float, kLandmarks>& sigma_px, const LandmarkPoints& tracker) {
-  if (std::ranges::none_of(sigma_px, [](float sigma) { return sigma > 0; })) return;
+  if (std::ranges::none_of(sigma_px, [](float sigma) { return sigma > 0; }) || std::ranges::none_of(known, std::identity())) return;
   const auto shared_px = shared_offsets(offsets_px, known, sigma_px, tracker);
   for (const auto& [first, count] : kParts) {
     float spread_px2 = 0, members = 0;
