@@ -40,7 +40,7 @@ class Progress {
 };
 
 Result<nlohmann::json> score_in_sight(const config::Rig& rig, const calib::Calibration& calibration, const Options& options) {
-  Progress progress(rig.name, options.warm_up_s + options.seconds, options.quiet);
+  Progress progress(rig.name, simulated_s(rig, options), options.quiet);
   return score(rig, calibration, options, [&](double done_s) { progress.at(done_s); });
 }
 

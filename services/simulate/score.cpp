@@ -133,6 +133,10 @@ nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig) {
 
 }  // namespace
 
+double simulated_s(const config::Rig& rig, const Options& options) {
+  return (fault_time(rig.twin) ? 2 : 1) * (options.warm_up_s + options.seconds);
+}
+
 Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration, const Options& options,
                              const OnProgress& on_progress) {
   auto parts = open_virtual_rig(rig, calibration);
@@ -156,7 +160,10 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
   if (recording)
     if (auto saved = recording->save(); !saved) return tl::make_unexpected(saved.error());
   Result<std::vector<LightMoment>> clean;
-  if ((*products)->has_fault()) clean = moments_without_fault(rig, calibration, options);
+  const auto go_on = [&](double done_s) {
+    if (on_progress) on_progress(options.warm_up_s + options.seconds + done_s);
+  };
+  if ((*products)->has_fault()) clean = moments_without_fault(rig, calibration, options, go_on);
   if (!clean) return tl::make_unexpected(clean.error());
   auto json = (*products)->to_json(rig, *clean);
   json["detector"] = to_json(tally, rig);

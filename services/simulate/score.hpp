@@ -12,10 +12,13 @@ namespace handcast::simulate {
 /// "speed", "seed", "seconds", "software_ms", "motion_to_photon_ms" (from the middle of the exposure that a frame shows to the middle of
 /// its light, mean over the drawn frames; null where none was drawn), "hand_speed_m_s" (HandSpeed), "fault" (recovery.hpp) and
 /// "detector" (DetectorTally, with its back end and "age_ms" as set).
-/// A rig whose twin times a fault runs twice: the second time without it, unseen by `on_progress`.
+/// A rig whose twin times a fault runs twice, the second time without it.
 /// Of the options it reads the times, what to draw and the folders of pictures, trace and recording; the rig's own are done with.
 /// Nothing is shared between two calls: they may run side by side, and give the same figures as one after the other.
 Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration, const Options& options,
                              const OnProgress& on_progress = {});
+
+/// What `on_progress` comes to.
+double simulated_s(const config::Rig& rig, const Options& options);
 
 }  // namespace handcast::simulate

@@ -32,17 +32,19 @@ Result<void> run_ticks(const Options& options, Simulation& simulation, const std
   return done;
 }
 
-Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig, const calib::Calibration& calibration, const Options& options) {
+Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig, const calib::Calibration& calibration, const Options& options,
+                                                       const OnProgress& on_progress) {
   rig.twin = without_faults(rig.twin);
   auto parts = open_virtual_rig(rig, calibration);
   if (!parts) return tl::make_unexpected(parts.error());
   const auto feed = make_twin_feed(*parts->twin, std::move(parts->detector));
   Simulation simulation(rig, calibration, *parts->pipeline, *feed, options.draw_every);
   std::vector<LightMoment> moments;
-  const auto done = run_ticks(options, simulation, [&](const Tick& tick) -> Result<void> {
+  const auto add = [&](const Tick& tick) -> Result<void> {
     moments.push_back(moment_of(tick, 0, *parts->twin, calibration));
     return {};
-  });
+  };
+  const auto done = run_ticks(options, simulation, add, on_progress);
   if (!done) return tl::make_unexpected(done.error());
   return moments;
 }

@@ -25,6 +25,7 @@ Result<void> run_ticks(const Options& options, Simulation& simulation, const std
                        const OnProgress& on_progress = {});
 
 /// The light of the same run, were there none of the faults that the rig's twin times. Takes as long as the run itself.
-Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig, const calib::Calibration& calibration, const Options& options);
+Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig, const calib::Calibration& calibration, const Options& options,
+                                                       const OnProgress& on_progress = {});
 
 }  // namespace handcast::simulate
