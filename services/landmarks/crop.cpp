@@ -38,6 +38,15 @@ Rect bounds_of(const Region& region, GreyView image) {
       image.width, image.height);
 }
 
+/// What of the image is made smaller: the region's box with so much around it that no pixel of the crop needs what lies beyond. Where it
+/// ends with the image, whole steps end there too.
+Rect whole_steps(const Rect& box, int factor, GreyView image) {
+  Rect rect = box.grown(2 * factor).within(image.width, image.height);
+  if (rect.x1 == image.width && rect.x0 > 0) rect.x0 += rect.width() % factor;
+  if (rect.y1 == image.height && rect.y0 > 0) rect.y0 += rect.height() % factor;
+  return rect;
+}
+
 /// Otsu's: the last value of the darker one of two parts whose means are best told apart.
 int split_of(const Histogram& histogram, double count) {
   double sum = 0, dark_count = 0, dark_sum = 0, best = -1;
@@ -72,10 +81,11 @@ void Crop::cut(GreyView image, const Region& region) {
   const float pixel_px = region.size_px / static_cast<float>(side_px_);
   if (!std::isfinite(pixel_px)) return;
   const int factor = std::clamp(static_cast<int>(std::lround(pixel_px)), 1, kMostFactor);
-  const Rect rect = bounds_of(region, image);
+  const Rect box = bounds_of(region, image),
+             rect = factor > 1 ? whole_steps(box, factor, image) : box.grown(1).within(image.width, image.height);
   const GreyView source = factor > 1 ? smaller_.shrink(image, rect, factor) : image;
   if (source.width <= 0 || source.height <= 0) return;
-  samples_.prepare(source, factor > 1 ? Rect{0, 0, source.width, source.height} : rect.grown(1).within(image.width, image.height));
+  samples_.prepare(source, factor > 1 ? Rect{0, 0, source.width, source.height} : rect);
   const glm::vec2 first_px = glm::vec2(rect.x0, rect.y0) + 0.5f * static_cast<float>(factor - 1);  // the middle of the source's first pixel
   const Walk walk = walk_over(region, side_px_, factor > 1 ? first_px : glm::vec2(0), static_cast<float>(factor));
   const std::span<std::uint8_t> pixels = pixels_;

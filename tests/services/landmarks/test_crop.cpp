@@ -31,7 +31,13 @@ struct Smaller {
   }
 };
 
-/// The whole image, or the box of the region made smaller where the region is much larger than the crop.
+/// Where whole steps begin along one axis: two before the box, or as many as end with the image.
+int first_step(int low, int high, int factor, int extent) {
+  const int from = std::max(low - 2 * factor, 0), to = std::min(high + 2 * factor, extent);
+  return to == extent && from > 0 ? from + (to - from) % factor : from;
+}
+
+/// The whole image, or the surroundings of the region made smaller where the region is much larger than the crop.
 Smaller source_of(const test::Grey& image, const Region& region, int side) {
   const glm::vec2 size(image.width(), image.height());
   const int factor = std::clamp(static_cast<int>(std::lround(region.size_px / static_cast<float>(side))), 1, 64);
@@ -41,8 +47,10 @@ Smaller source_of(const test::Grey& image, const Region& region, int side) {
     low = glm::min(low, region.to_image(corner));
     high = glm::max(high, region.to_image(corner));
   }
-  const glm::ivec2 from = glm::clamp(low, glm::vec2(0), size),
-                   to = glm::min(glm::ivec2(glm::clamp(high, glm::vec2(-1), size)) + 2, glm::ivec2(size));
+  const glm::ivec2 begin = glm::clamp(low, glm::vec2(0), size),
+                   end = glm::min(glm::ivec2(glm::clamp(high, glm::vec2(-1), size)) + 2, glm::ivec2(size)),
+                   from(first_step(begin.x, end.x, factor, image.width()), first_step(begin.y, end.y, factor, image.height())),
+                   to = glm::min(end + 2 * factor, glm::ivec2(size));
   return {image, from, (to - from) / factor, factor};
 }
 
@@ -66,6 +74,23 @@ TEST(Crop, IsWhatItsDefinitionSaysWhereverTheRegionLies) {
     for (const float angle_rad : {0.f, 0.3f, 1.5707964f, -2.2f, 3.1f})
       for (const glm::vec2 centre_px : {glm::vec2{154.5f, 116}, {0, 0}, {309, 232}, {-20, 120.25f}, {300, -30}, {154, 260}, {-900, 70}})
         expect_as_defined(image, {centre_px, size_px, angle_rad}, 48);
+}
+
+TEST(Crop, OfAnEvenImageIsEvenUpToItsEdges) {
+  const test::Grey image(720, 540, 200);
+  Crop crop(96);
+  for (float size_px = 90; size_px < 500; size_px += 7)
+    for (const float angle_rad : {0.f, 0.4f, 1.5707964f, -2.2f}) {
+      crop.cut(image.view(), {{361.3f, 268.7f}, std::min(size_px, 380.f), angle_rad});
+      EXPECT_EQ(std::ranges::count(crop.pixels(), 200), 96 * 96) << size_px << " px, turned by " << angle_rad;
+    }
+}
+
+TEST(Crop, ReachesTheImagesOwnEdge) {
+  const test::Grey image(721, 541, 200);
+  Crop crop(96);
+  crop.cut(image.view(), {{720.5f - 150, 540.5f - 150}, 300, 0});
+  EXPECT_EQ(std::ranges::count(crop.pixels(), 200), 96 * 96);
 }
 
 TEST(Crop, IsWhatItsDefinitionSaysOfAPartOfALargerImage) {
