@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
+#include <utility>
 
 namespace handcast::landmarks::onednn {
 
@@ -29,6 +31,19 @@ memory::desc plain_desc(const Shape& shape) {
   check_size(shape);
   Shape strides(shape.size(), 1);
   for (std::size_t i = shape.size(); i-- > 1;) strides[i - 1] = strides[i] * shape[i];
+  return {shape, memory::data_type::f32, strides};
+}
+
+memory::desc desc_like(const memory::desc& like, const Shape& shape) {
+  const dnnl_blocking_desc_t& layout = like.data.format_desc.blocking;
+  if (like.data.format_kind != dnnl_blocked || layout.inner_nblks > 0) return plain_desc(shape);
+  check_size(shape);
+  std::vector<std::size_t> order(shape.size());
+  std::iota(order.rbegin(), order.rend(), std::size_t{0});  // of axes that lie alike, the last one innermost
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return layout.strides[a] < layout.strides[b]; });
+  Shape strides(shape.size());
+  std::int64_t stride = 1;
+  for (const std::size_t axis : order) strides[axis] = std::exchange(stride, stride * shape[axis]);
   return {shape, memory::data_type::f32, strides};
 }
 

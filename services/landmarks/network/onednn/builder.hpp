@@ -26,6 +26,8 @@ dnnl::primitive_attr own_scratchpad();
 
 /// Row-major.
 dnnl::memory::desc plain_desc(const Shape& shape);
+/// The axes in the order in which those of `like` lie; row-major where `like` lies in blocks.
+dnnl::memory::desc desc_like(const dnnl::memory::desc& like, const Shape& shape);
 /// Any layout: the primitive chooses.
 dnnl::memory::desc any_desc(const Shape& shape);
 

@@ -148,7 +148,7 @@ std::size_t emit_pad(Builder& builder, const Node& node, std::span<const Node>) 
       refuse(node, "has pads out of range");
     shape[i] += pads[i] + pads[i + from.size()];
   }
-  const dnnl::memory::desc desc = plain_desc(shape);
+  const dnnl::memory::desc desc = desc_like(input.desc, shape);
   const Value output{desc, builder.program().add_fixed_buffer(desc.get_size())};
   const Value middle{part_of(output, from, {pads.begin(), pads.begin() + static_cast<std::ptrdiff_t>(from.size())}), output.buffer};
   const dnnl::reorder::primitive_desc copy(builder.engine(), input.desc, builder.engine(), middle.desc);

@@ -246,5 +246,39 @@ TEST_P(EveryBackEnd, ASumIsNotWrittenOverWhatIsNeededLater) {
   expect_near((*network)->output(1), c.values, "what is needed later");
 }
 
+/// y = pad(c) + d(pad(c)): a row above, two columns to the right, four channels more.
+onnx::Model padded_model() {
+  onnx::Model model = little_model();
+  model.constants = {{"w", random_tensor({16, 2, 3, 3}, 1)},
+                     {"b", random_tensor({16}, 2)},
+                     {"v", random_tensor({20, 20, 1, 1}, 3)},
+                     {"a", random_tensor({20}, 4)},
+                     {"pads", {.shape = {8}, .integers = {0, 0, 1, 0, 0, 4, 0, 2}}}};
+  model.nodes = {model.nodes[0],
+                 {"Pad", {"c", "pads"}, {"p"}, {}},
+                 {"Conv", {"p", "v", "a"}, {"d"}, {{"kernel_shape", integers({1, 1})}}},
+                 {"Add", {"d", "p"}, {"y"}, {}}};
+  model.outputs = {{"y", {1, 20, 5, 6}}};
+  return model;
+}
+
+TEST_P(EveryBackEnd, PadsWithZerosEveryTime) {
+  const onnx::Model model = padded_model();
+  const auto network = open_network(GetParam().name, ModelFile(model).path());
+  ASSERT_TRUE(network) << network.error().what;
+  for (unsigned seed = 3; seed < 6; ++seed) {
+    fill((*network)->input(0), seed);
+    ASSERT_TRUE((*network)->run());
+    Image c = convolved({2, 4, 4, {(*network)->input(0).begin(), (*network)->input(0).end()}}, model.constants.at("w"),
+                        model.constants.at("b"), 1, 1, 1);
+    Image p{20, 5, 6};
+    for (int channel = 0; channel < 16; ++channel)
+      for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x) p.at(channel, y + 1, x) = c.at(channel, y, x);
+    const Image d = convolved(p, model.constants.at("v"), model.constants.at("a"), 1, 1, 0);
+    expect_near((*network)->output(0), each(d, p, std::plus<>()).values, "padded");
+  }
+}
+
 }  // namespace
 }  // namespace handcast::landmarks
