@@ -1,0 +1,139 @@
+// The way from landmarks to light, with each method that moves it.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <random>
+
+#include "driven_pipeline.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+class EveryCorrection : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, EveryCorrection, ::testing::Values("vertices", "grid"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
+  const auto calibration = rig_above_hand();
+  const auto pipeline = make_pipeline(cascade(GetParam(), "none"));
+  const auto hand = pose_of(Side::left);
+  feed_still(*pipeline, {hand});
+  const glm::vec2 before = mean_landing(pipeline->render(20 * kMs, 24 * kMs, {}, 0).hands[0]);
+  const int lit_before = lit_pixels(pipeline->render(20 * kMs, 24 * kMs, {}, 0));
+  feed_landmarks(*pipeline, calibration, hand, {12, -6});
+  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {}, 0);
+  EXPECT_TRUE(frame.hands[0].has_landmarks);
+  EXPECT_NEAR(frame.hands[0].corrected[8].x - frame.hands[0].tracker[8].x, 12, 0.2);
+
+  const glm::dvec2 at = frame.hands[0].tracker[9];
+  const glm::dvec2 moved = calibration.to_projector(at + glm::dvec2(12, -6)) - calibration.to_projector(at);
+  const glm::vec2 landed = mean_landing(frame.hands[0]) - before;
+  EXPECT_NEAR(landed.x, moved.x, 0.7);
+  EXPECT_NEAR(landed.y, moved.y, 0.7);
+  EXPECT_EQ(frame.foldovers, 0);
+
+  glm::dvec2 low{1e9}, high{-1e9};
+  for (int y = frame.region.y0; y < frame.region.y1; ++y)
+    for (int x = frame.region.x0; x < frame.region.x1; ++x)
+      if (lit(frame, x, y)) {
+        low = glm::min(low, glm::dvec2(x, y));
+        high = glm::max(high, glm::dvec2(x, y));
+      }
+  glm::vec2 tip{1e9f};
+  for (const glm::vec2& landing : frame.hands[0].landings) tip = glm::min(tip, landing);
+  EXPECT_NEAR(low.x, tip.x, 3);  // the light is where the landings say
+  EXPECT_NEAR(low.y, tip.y, 3);
+  EXPECT_NEAR(lit_pixels(frame), lit_before, 0.03 * lit_before);
+}
+
+TEST_P(EveryCorrection, AWrongTrackerIsMendedByLandmarksMaskAndFill) {
+  const auto calibration = rig_above_hand();
+  const auto pipeline = make_pipeline(cascade(GetParam(), "reflect"));
+  const auto hand = pose_of(Side::left);
+  const auto image = image_of(calibration, {hand}, {15, 10});
+  feed_still(*pipeline, {hand});
+  feed_landmarks(*pipeline, calibration, hand, {15, 10});
+  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, image.view(), 102 * kMs);
+  int hand_px = 0, dark_px = 0, spill_px = 0;
+  const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].corrected[0]));
+  for (int y = 0; y < 768; ++y)
+    for (int x = 0; x < 1024; ++x) {
+      const bool on_hand = grey_at(calibration, image, x, y) > 100;
+      spill_px += lit(frame, x, y) && beside_hand(calibration, image, x, y);
+      hand_px += on_hand && y < wrist.y;
+      dark_px += on_hand && y < wrist.y && !lit(frame, x, y);
+    }
+  EXPECT_EQ(spill_px, 0);
+  EXPECT_LT(dark_px, hand_px / 100);
+  EXPECT_GT(frame.fill.lit, 9 * frame.fill.filled);
+}
+
+TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
+  const auto calibration = rig_above_hand();
+  const auto pipeline = make_pipeline(cascade(GetParam(), "reflect"));
+  const auto left = pose_of(Side::left, {-0.085f, 0, 0}), right = pose_of(Side::right, {0.085f, 0, 0});
+  feed_still(*pipeline, {left, right});
+  for (std::int64_t t = 20 * kMs; t <= 100 * kMs; t += 2 * kMs) {
+    if (t % (16 * kMs) == 0) {
+      auto seen = landmarks_of(calibration, t - 16 * kMs, left, {8, 0});
+      seen.hands[1] = landmarks_of(calibration, t - 16 * kMs, right, {-8, 4}).hands[0];
+      seen.count = 2;
+      pipeline->push(t, seen);
+    }
+    pipeline->track(t, t + 4 * kMs);
+  }
+  const auto image = image_of(calibration, {left, right});
+  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, image.view(), 102 * kMs);
+  ASSERT_EQ(frame.hands.size(), 2u);
+  EXPECT_NEAR(frame.hands[0].corrected[8].x - frame.hands[0].tracker[8].x, 8, 0.2);
+  EXPECT_NEAR(frame.hands[1].corrected[8].x - frame.hands[1].tracker[8].x, -8, 0.2);
+  for (const FrameHand& hand : frame.hands) {
+    const glm::dvec2 knuckle = calibration.to_projector(glm::dvec2(hand.tracker[9]));
+    EXPECT_TRUE(lit(frame, static_cast<int>(knuckle.x), static_cast<int>(knuckle.y)));
+  }
+}
+
+TEST(Correction, AGridThatFoldsIsCounted) {
+  const auto calibration = rig_above_hand();
+  const auto pipeline = make_pipeline(cascade("grid", "none"));
+  const auto hand = pose_of(Side::left);
+  feed_still(*pipeline, {hand});
+  auto torn = landmarks_of(calibration, 80 * kMs, hand, {});
+  std::swap(torn.hands[0].points[8], torn.hands[0].points[20]);  // index and little tip change places
+  std::swap(torn.hands[0].points[6], torn.hands[0].points[18]);
+  pipeline->track(99 * kMs, 103 * kMs);
+  pipeline->push(100 * kMs, torn);
+  for (std::int64_t t = 100; t < 140; t += 2) pipeline->track(t * kMs, (t + 4) * kMs);
+  EXPECT_GT(pipeline->render(140 * kMs, 144 * kMs, {}, 0).foldovers, 0);
+}
+
+/// A moving hand with noisy sensors for a quarter of a second; every pixel and landing that was made.
+std::vector<std::uint32_t> everything(const config::Cascade& settings) {
+  const auto calibration = rig_above_hand();
+  const auto pipeline = make_pipeline(settings);
+  std::mt19937 random(11);
+  std::normal_distribution<float> noise(0, 1);
+  std::vector<std::uint32_t> all;
+  for (std::int64_t t = 0; t < 250 * kMs; t += 9 * kMs) {
+    const float s = static_cast<float>(t) * 1e-9f;
+    const auto hand = pose_of(Side::right, {0.05f * std::sin(9 * s) + 1e-4f * noise(random), 0, 0.03f * s});
+    pipeline->push(t, poses_of(t - 9 * kMs, {hand}));
+    if (t % 18 == 0) pipeline->push(t, landmarks_of(calibration, t - 16 * kMs, hand, {6 + noise(random), noise(random)}));
+    const auto image = image_of(calibration, {hand}, {6, 0});
+    const Frame frame = pipeline->render(t, t + 4 * kMs, image.view(), t - 2 * kMs);
+    for (int y = frame.region.y0; y < frame.region.y1; ++y)
+      for (int x = frame.region.x0; x < frame.region.x1; ++x) all.push_back(frame.colour.at(x, y));
+    for (const FrameHand& each : frame.hands)
+      for (const glm::vec2& landing : each.landings) all.push_back(std::bit_cast<std::uint32_t>(landing.x));
+  }
+  return all;
+}
+
+TEST_P(EveryCorrection, TheSameMessagesGiveTheSameLightBitByBit) {
+  const auto once = everything(cascade(GetParam(), "reflect"));
+  EXPECT_GT(once.size(), 100000u);
+  EXPECT_TRUE(once == everything(cascade(GetParam(), "reflect")));
+}
+
+}  // namespace
+}  // namespace handcast::renderer
