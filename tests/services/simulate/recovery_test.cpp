@@ -64,6 +64,15 @@ TEST(Recovery, AGoodMomentBetweenBadOnesIsNoRecovery) {
   EXPECT_NEAR(recovery_of(moments_of(error), clean(), kFault)->recovery_ms.value_or(0), 200, 1.5);
 }
 
+TEST(Recovery, OfARigIsJudgedBesideTheSameRigWithoutTheFault) {
+  const auto fault = run_rig("twin", "builtin:wave", 1.2,
+                             {"twin.speed=3", "twin.tracker.lost_at_s=1.0", "twin.tracker.lost_s=0.2", "twin.detector.lost_at_s=1.0",
+                              "twin.detector.lost_s=0.2"})["fault"];
+  EXPECT_GT(fault["worst_mm"].get<double>(), 2 * fault["usual_mm"].get<double>());
+  EXPECT_GT(fault["recovery_ms"].get<double>(), 5);
+  EXPECT_GE(fault["recovery_detections"].get<int>(), 1);
+}
+
 TEST(Recovery, WhatStaysBadIsNeverGoodAgain) {
   const auto bad = moments_of([](double t) { return bad_until(t, 9); });
   const auto recovery = recovery_of(bad, clean(), kFault);
