@@ -1,6 +1,8 @@
 #include "calib/calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "calib/rigid.hpp"
 
@@ -38,7 +40,11 @@ double distance_from_rigid(const glm::dmat4& transform) {
   const auto nearest = orthonormalised(transform);
   double distance = 0;
   for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row) distance = std::max(distance, std::abs(nearest[column][row] - transform[column][row]));
+    for (int row = 0; row < 3; ++row) {
+      const double off = std::abs(nearest[column][row] - transform[column][row]);
+      if (std::isnan(off)) return std::numeric_limits<double>::infinity();
+      distance = std::max(distance, off);
+    }
   return distance;
 }
 

@@ -20,6 +20,7 @@ struct CameraModel {
   glm::dvec2 project(const glm::dvec3& point_m) const;         ///< to undistorted px; z must be > 0
   glm::dvec2 distort(const glm::dvec2& undistorted_px) const;  ///< to where the lens puts it in the image
   glm::dvec2 undistort(const glm::dvec2& image_px) const;      ///< the inverse, by Newton iterations
+  bool folds() const;                                          ///< inside the image, where there is then no inverse
 };
 
 /// What a calibrated rig knows of itself. Transforms read right to left.

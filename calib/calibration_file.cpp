@@ -116,6 +116,8 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
     faults.add(
         fmt::format("{}: camera_from_tracker: its first three columns are not a right-handed rotation (off by {:.2g}; {} is allowed)", file,
                     off, kRigidTolerance));
+  if (calibration.camera.folds())
+    faults.add(fmt::format("{}: camera.distortion: the lens folds the image: towards its edge two directions are seen in one pixel", file));
   if (!(std::abs(glm::determinant(calibration.projector_from_camera)) > 1e-9))
     faults.add(fmt::format("{}: projector: the homography's rows x, y, w depend on each other", file));
 }

@@ -57,4 +57,21 @@ glm::dvec2 CameraModel::undistort(const glm::dvec2& image_px) const {
   return to_px(*this, ray);
 }
 
+bool CameraModel::folds() const {
+  constexpr int kSteps = 16;  // of each side of the image, and from its principal point out to there
+  constexpr double kFound_px = 0.01;
+  const glm::dvec2 last(width_px - 1, height_px - 1);
+  for (int i = 0; i <= kSteps; ++i) {
+    const double share = static_cast<double>(i) / kSteps;
+    for (const glm::dvec2 side : {glm::dvec2(share, 0), glm::dvec2(share, 1), glm::dvec2(0, share), glm::dvec2(1, share)}) {
+      const glm::dvec2 image_px = side * last, px = undistort(image_px);
+      if (!(glm::distance(distort(px), image_px) < kFound_px)) return true;
+      const auto ray = to_normalised(*this, px);
+      for (int step = 1; step <= kSteps; ++step)
+        if (!(glm::determinant(bend(*this, ray * (static_cast<double>(step) / kSteps)).slope) > 0)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace handcast::calib

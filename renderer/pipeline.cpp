@@ -34,6 +34,7 @@ class Cascade final : public Pipeline {
 
   void push(std::int64_t now_ns, const msg::HandPoses& reported) override {
     const std::int64_t origin_ns = reported.header.origin_ns;
+    if (is_early(now_ns, origin_ns)) return;
     const auto poses = sides_.named(reported, {both_[0].track().recent_pose(origin_ns), both_[1].track().recent_pose(origin_ns)});
     for (HandLight& hand : both_)
       if (const msg::HandPose* pose = poses.find(hand.side())) hand.push(now_ns, origin_ns, *pose);
@@ -41,6 +42,7 @@ class Cascade final : public Pipeline {
 
   void push(std::int64_t now_ns, const msg::Landmarks& reported) override {
     const std::int64_t origin_ns = reported.header.origin_ns;
+    if (is_early(now_ns, origin_ns)) return;
     const auto landmarks = sides_.named(reported, {both_[0].track().landmarks_at(origin_ns), both_[1].track().landmarks_at(origin_ns)});
     for (HandLight& hand : both_)
       if (const msg::HandLandmarks* seen = landmarks.find(hand.side())) hand.push(now_ns, origin_ns, *seen);
@@ -56,14 +58,14 @@ class Cascade final : public Pipeline {
   }
 
   void look(GreyView camera, std::int64_t camera_ns) override {
-    if (!late_.on() || camera.data == nullptr || !late_.is_new(camera_ns)) return;
+    if (!late_.on() || camera.data == nullptr || !late_.is_new(camera_ns) || is_early(now_ns_, camera_ns)) return;
     find_masks(camera, camera_ns);
     register_late(camera, camera_ns);
   }
 
   Frame render(std::int64_t now_ns, std::int64_t target_ns, GreyView camera, std::int64_t camera_ns) override {
     stages_.start();
-    const bool masked = settings_.fill.method != "none" && camera.data != nullptr;
+    const bool masked = settings_.fill.method != "none" && camera.data != nullptr && !is_early(now_ns, camera_ns);
     image_age_ns_ = masked ? std::optional(target_ns - camera_ns) : std::nullopt;
     predict(now_ns, target_ns);
     stages_.mark(Stage::predict);
@@ -94,9 +96,16 @@ class Cascade final : public Pipeline {
   }
 
  private:
+  /// From after it was heard of: believed, it would outdate all that comes until that time.
+  static bool is_early(std::int64_t now_ns, std::int64_t origin_ns) {
+    constexpr std::int64_t kMost_ns = 50'000'000;  // clocks are mapped to the host's, and not exactly
+    return origin_ns > now_ns + kMost_ns;
+  }
+
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
 
   void predict(std::int64_t now_ns, std::int64_t target_ns) {
+    now_ns_ = now_ns;
     // The image that the frame shows is as old as the last one's was; none where none is registered to.
     const auto camera_ns = image_age_ns_ && late_.on() ? std::optional(target_ns - *image_age_ns_) : std::nullopt;
     hands_.clear();
@@ -219,6 +228,7 @@ class Cascade final : public Pipeline {
   LateRegistration late_;
   std::unique_ptr<Painter> painter_;
   StageClock stages_;
+  std::int64_t now_ns_ = 0;                   ///< of the last frame
   std::optional<std::int64_t> image_age_ns_;  ///< of the last frame's image at the time of its light
 
   // One frame's.

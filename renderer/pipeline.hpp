@@ -51,7 +51,8 @@ class Pipeline {
                                                   const calib::Calibration& calibration, const Oracle& oracle = {});
   virtual ~Pipeline() = default;
 
-  /// A message arrived at `now_ns`.
+  /// A message arrived at `now_ns`. One whose origin is more than 50 ms after that is not taken: it would outdate all that come until
+  /// then.
   virtual void push(std::int64_t now_ns, const msg::HandPoses& poses) = 0;
   virtual void push(std::int64_t now_ns, const msg::Landmarks& landmarks) = 0;
 
@@ -61,11 +62,12 @@ class Pipeline {
 
   /// A new image, exposed around `camera_ns`, of a frame that is not drawn: what moves between the images is followed in all of them.
   /// Before that frame's track(). render() looks at its own. Not needed where looks() is false: nothing would come of it.
+  /// An image from more than 50 ms after the frame before is not looked at.
   virtual void look(GreyView /*camera*/, std::int64_t /*camera_ns*/) {}
   virtual bool looks() const { return false; }
 
   /// Draws the frame whose light will be seen at `target_ns`. `camera` is the newest image (image px; data may be null: no camera yet),
-  /// exposed around `camera_ns`. No hand in sight gives a dark frame with an empty region.
+  /// exposed around `camera_ns`; one from more than 50 ms after `now_ns` is none. No hand in sight gives a dark frame with an empty region.
   virtual Frame render(std::int64_t now_ns, std::int64_t target_ns, GreyView camera, std::int64_t camera_ns) = 0;
 };
 

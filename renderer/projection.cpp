@@ -34,6 +34,7 @@ void write_projection(const Frame& frame, msg::Projection& projection, std::size
   for (std::uint32_t i = 0; i < projection.hand_count; ++i) copy_landings(frame.hands[i], projection.hands[i]);
 
   const auto& region = frame.region;
+  projection.region_x_px = projection.region_y_px = 0;
   projection.region_width_px = projection.region_height_px = 0;
   const auto pixels = region.empty() ? 0 : static_cast<std::size_t>(region.width()) * static_cast<std::size_t>(region.height());
   if (pixels > 0 && pixels * sizeof(std::uint32_t) <= tail_bytes) copy_region(frame, projection);

@@ -12,7 +12,8 @@ import sys
 import tempfile
 import time
 
-HANDCAST = pathlib.Path(os.environ.get("HANDCAST_BIN", "build/bin")) / "handcast"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+HANDCAST = pathlib.Path(os.environ.get("HANDCAST_BIN", ROOT / "build/bin")).resolve() / "handcast"
 SAMPLE_EVERY_S = 5
 MOST_MISSED_PERCENT = 1  # more than in quiet: what a busy machine misses anyway is not the kills' doing
 MOST_RISE = 0.1
@@ -24,8 +25,8 @@ COLOURS = ("#1b6ca8", "#c1440e", "#3a7d44", "#7b4b94", "#b8860b", "#555555", "#0
 def parse_options():
     parser = argparse.ArgumentParser()
     parser.add_argument("--minutes", type=float, default=30)
-    parser.add_argument("--rig", default="config/rigs/twin.toml")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/soak"))
+    parser.add_argument("--rig", default=ROOT / "config/rigs/twin.toml")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/soak")
     parser.add_argument("--set", action="append", default=[], metavar="path=value")
     parser.add_argument("--every", type=float, default=2)
     parser.add_argument("--kill-supervisor", type=float, default=60)
@@ -59,7 +60,7 @@ class Rig:
     def supervisor(self):
         """The keeper's child that runs `handcast up` (the services are sessions of their own); without a keeper, none."""
         for pid in children_of(self.process.pid):
-            if name_of(pid).startswith("handcast") and os.getsid(pid) == os.getsid(self.process.pid):
+            if name_of(pid).startswith("handcast") and session_of(pid) == session_of(self.process.pid):
                 return pid
         return None
 
@@ -91,6 +92,14 @@ def name_of(pid):
         return pathlib.Path(f"/proc/{pid}/comm").read_text().strip()
     except OSError:
         return ""
+
+
+def session_of(pid):
+    """None for a child that has just died."""
+    try:
+        return os.getsid(pid)
+    except OSError:
+        return None
 
 
 def memory_kib(pid):

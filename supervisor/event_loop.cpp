@@ -82,12 +82,6 @@ Result<UniqueFd> open_stop_signals() {
   return fd;
 }
 
-void restore_signals() {
-  const auto signals = stop_signals();
-  sigprocmask(SIG_UNBLOCK, &signals, nullptr);
-  signal(SIGPIPE, SIG_DFL);
-}
-
 void drain(int fd) {
   std::array<char, 1024> bytes;
   while (::read(fd, bytes.data(), bytes.size()) > 0) {

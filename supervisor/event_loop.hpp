@@ -35,8 +35,6 @@ class EventLoop {
 Result<UniqueFd> open_timer(std::int64_t period_ns);
 /// Blocks the signals that stop the rig (SIGINT, SIGTERM, SIGHUP) and makes them readable.
 Result<UniqueFd> open_stop_signals();
-/// Unblocks them again: for a forked child.
-void restore_signals();
 /// Reads what is there and forgets it.
 void drain(int fd);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace handcast::supervisor {
 
@@ -26,6 +27,15 @@ Result<Options> sort_options(const std::vector<std::string>& arguments, const Op
   if (options.words.size() > table.most_words)
     return fail(Errc::bad_data, fmt::format("'{}' is one argument too many", options.words.back()));
   return options;
+}
+
+Result<double> parse_seconds(const std::string& text) {
+  constexpr double kMost_s = 1e9;
+  double seconds = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  if (whole && seconds > 0 && seconds <= kMost_s) return seconds;
+  return fail(Errc::bad_data, fmt::format("--seconds {}: expected a time above 0 and up to {:g}", text, kMost_s));
 }
 
 }  // namespace handcast::supervisor

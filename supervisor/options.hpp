@@ -34,4 +34,7 @@ struct OptionTable {
 /// Errors: bad_data, with a sentence naming the argument.
 Result<Options> sort_options(const std::vector<std::string>& arguments, const OptionTable& table);
 
+/// --seconds as a person writes it: above 0, and no more than nanoseconds can hold (30 years). Errors: bad_data.
+Result<double> parse_seconds(const std::string& text);
+
 }  // namespace handcast::supervisor

@@ -20,13 +20,12 @@ class Continuity {
   /// Whether `next` shows a hand that moved a moment ago stopped dead to the last bit: then nothing was measured.
   static bool frozen(const Sample* before, const Sample& last, const msg::HandPose& next);
 
-  std::int64_t interval_ns() const { return interval_ns_; }  ///< as samples usually follow each other
   /// After which a tracker is held for silent.
   std::int64_t patience_ns() const;
 
  private:
-  std::int64_t interval_ns_ = 9'000'000;
-  float usual_m_s2_ = 0;  ///< by how much joints usually miss an even motion
+  std::int64_t interval_ns_ = 9'000'000;  ///< as samples usually follow each other
+  float usual_m_s2_ = 0;                  ///< by how much joints usually miss an even motion
 };
 
 }  // namespace handcast::renderer

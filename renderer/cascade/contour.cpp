@@ -54,21 +54,32 @@ class ContourBuilder {
  private:
   /// The edge between two neighbouring pixels, if the grey value makes it and it runs rather across than along their line.
   void take(glm::ivec2 here, glm::ivec2 before, bool here_lit) {
-    if (contour_.count == Contour::kMostPoints) return;
     const glm::ivec2 in = here_lit ? here : before, out = here_lit ? before : here;
     const auto edge = static_cast<float>(silhouette_.threshold) + 0.5f;
     const float bright = silhouette_.image.at(in.x, in.y), dark = silhouette_.image.at(out.x, out.y);
     if (!(dark < edge && bright > edge)) return;
     const glm::vec2 normal = outward(silhouette_.image, in.x, in.y), step = out - in;
-    if (glm::dot(normal, step) < 0.70f) return;
+    if (glm::dot(normal, step) < 0.70f || seen_++ % stride_ != 0) return;
+    if (contour_.count == Contour::kMostPoints) thin_out();
     const float share = (bright - edge) / (bright - dark);
     contour_.points_px[contour_.count] = glm::vec2(in) + share * step;
     contour_.normals[contour_.count++] = normal;
   }
 
+  /// Keeps every second point, of what follows too.
+  void thin_out() {
+    contour_.count /= 2;
+    for (int i = 0; i < contour_.count; ++i) {
+      contour_.points_px[i] = contour_.points_px[2 * i];
+      contour_.normals[i] = contour_.normals[2 * i];
+    }
+    stride_ *= 2;
+  }
+
   const Silhouette& silhouette_;
   Contour& contour_;
   Rect inner_;
+  int seen_ = 0, stride_ = 1;  ///< points of the edge, of which every `stride_`th is taken
 };
 
 }  // namespace

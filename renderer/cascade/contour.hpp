@@ -20,7 +20,8 @@ struct Silhouette {
   float grey(glm::vec2 at) const;  ///< bilinear; the border goes on beyond the image
 };
 
-/// Points of a silhouette's edge to a fraction of a pixel, evenly along it, in no order. Image px.
+/// Points of a silhouette's edge to a fraction of a pixel, evenly along it, in no order. Of an edge with more, every 2nd, 4th, ... Image
+/// px.
 struct Contour {
   static constexpr int kMostPoints = 640;
 

@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/cascade/noise.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -58,11 +59,6 @@ glm::quat turned_on(const glm::quat& earlier, const glm::quat& newest, float sha
   return glm::normalize(glm::angleAxis(angle, sine_axis / sine) * newest);
 }
 
-float smoothstep(float from, float to, float x) {
-  const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
-}
-
 bool is_finite(const msg::HandPose& pose) {
   return std::all_of(pose.joints.begin(), pose.joints.end(), [](const Joint& joint) {
     float sum = 0;
@@ -72,42 +68,12 @@ bool is_finite(const msg::HandPose& pose) {
   });
 }
 
-/// What the recent samples say of one joint.
-struct Stillness {
-  float speed_m_s = 0;  ///< largest displacement from the newest sample, over the window's length
-  glm::vec3 mean_m{0};
-  glm::quat mean_turn{1, 0, 0, 0};
-};
-
-template <class Samples>
-Stillness stillness(const Samples& samples, int joint) {
-  const auto& newest = samples.back();
-  const glm::vec3 here = position(newest.pose.joints[joint]);
-  const glm::quat turn = orientation(newest.pose.joints[joint]);
-  glm::vec3 sum{0};
-  glm::quat turn_sum{0, 0, 0, 0};
-  float furthest_m = 0;
-  int count = 0;
-  for (auto sample = samples.rbegin(); sample != samples.rend() && newest.origin_ns - sample->origin_ns <= kStillWindow_ns; ++sample) {
-    const glm::vec3 there = position(sample->pose.joints[joint]);
-    const glm::quat then = orientation(sample->pose.joints[joint]);
-    furthest_m = std::max({furthest_m, glm::distance(here, there), kTurnLever_m * angle_between(turn, then)});
-    sum += there;
-    turn_sum = turn_sum + on_side_of(turn, then);
-    ++count;
-  }
-  const auto window_s = static_cast<float>(ns_to_seconds(kStillWindow_ns));
-  return {furthest_m / window_s, sum / static_cast<float>(count), glm::normalize(turn_sum)};
-}
-
 constexpr float kHandNoise_m_s2 = 10;   ///< acceleration that tracker noise alone makes: of the mean of all joints
 constexpr float kJointNoise_m_s2 = 40;  ///< of one joint against that mean
 constexpr float kMostBend_m = 0.02f;    ///< acceleration never moves a joint further
 
-/// Lets through what stands out of the noise, and of the rest little (the shrinkage of a Wiener filter).
 glm::vec3 beyond_noise(const glm::vec3& acceleration, float noise) {
-  const float square = glm::dot(acceleration, acceleration);
-  return acceleration * (square / (square + noise * noise));
+  return acceleration * share_beyond_noise(glm::dot(acceleration, acceleration), noise);
 }
 
 /// Accelerations of the joints from three samples, oldest first, `first_s` and `second_s` apart.
@@ -145,6 +111,7 @@ PoseHistory::Pushed PoseHistory::push(std::int64_t origin_ns, const msg::HandPos
     since_jump_ = std::min(since_jump_ + 1, kSettled);
   }
   while (samples_.front().origin_ns < newest_ns() - span_ns_) samples_.pop_front();
+  judge_stillness();
   return Pushed::goes_on;
 }
 
@@ -153,13 +120,32 @@ bool PoseHistory::breaks(const Sample& sample) {
   samples_.assign(1, sample);
   begins_ns_ = sample.origin_ns;
   since_jump_ = 1;
+  judge_stillness();
   return true;
 }
 
-void PoseHistory::clear() {
-  samples_.clear();
-  begins_ns_ = std::numeric_limits<std::int64_t>::min();
-  since_jump_ = kSettled;
+PoseHistory::Stillness PoseHistory::stillness(int joint) const {
+  const Sample& newest = samples_.back();
+  const glm::vec3 here = position(newest.pose.joints[joint]);
+  const glm::quat turn = orientation(newest.pose.joints[joint]);
+  glm::vec3 sum{0};
+  glm::quat turn_sum{0, 0, 0, 0};
+  float furthest_m = 0;
+  int count = 0;
+  for (auto sample = samples_.rbegin(); sample != samples_.rend() && newest.origin_ns - sample->origin_ns <= kStillWindow_ns; ++sample) {
+    const glm::vec3 there = position(sample->pose.joints[joint]);
+    const glm::quat then = orientation(sample->pose.joints[joint]);
+    furthest_m = std::max({furthest_m, glm::distance(here, there), kTurnLever_m * angle_between(turn, then)});
+    sum += there;
+    turn_sum = turn_sum + on_side_of(turn, then);
+    ++count;
+  }
+  const auto window_s = static_cast<float>(ns_to_seconds(kStillWindow_ns));
+  return {furthest_m / window_s, sum / static_cast<float>(count), glm::normalize(turn_sum)};
+}
+
+void PoseHistory::judge_stillness() {
+  for (int j = 0; j < msg::kJoints; ++j) stillness_[j] = stillness(j);
 }
 
 std::int64_t PoseHistory::newest_ns() const { return samples_.empty() ? 0 : samples_.back().origin_ns; }
@@ -211,8 +197,8 @@ msg::HandPose PoseHistory::predicted(std::int64_t time_ns) const {
   msg::HandPose pose = newest.pose;
   for (int j = 0; j < msg::kJoints; ++j) {
     const Joint &a = base->pose.joints[j], &b = newest.pose.joints[j];
-    const Stillness recent = stillness(samples_, j);
-    const float moving = still_m_s > 0 ? smoothstep(still_m_s, 2 * still_m_s, recent.speed_m_s) : 1.0f;
+    const Stillness& recent = stillness_[j];
+    const float moving = still_m_s > 0 ? glm::smoothstep(still_m_s, 2 * still_m_s, recent.speed_m_s) : 1.0f;
     const glm::vec3 moved = position(b) + share * (position(b) - position(a)) + bends[j];
     place(pose.joints[j], glm::mix(recent.mean_m, moved, moving),
           blend(recent.mean_turn, turned_on(orientation(a), orientation(b), share), moving));

@@ -2,6 +2,8 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <optional>
 
@@ -26,7 +28,6 @@ class PoseHistory {
   };
   /// A sample with the time of an older one replaces it.
   Pushed push(std::int64_t origin_ns, const msg::HandPose& pose);
-  void clear();
 
   bool empty() const { return samples_.empty(); }
   std::int64_t newest_ns() const;                                         ///< 0 where empty
@@ -44,9 +45,17 @@ class PoseHistory {
 
  private:
   using Sample = Continuity::Sample;
+  /// What the recent samples say of one joint.
+  struct Stillness {
+    float speed_m_s = 0;  ///< largest displacement from the newest sample, over the window's length
+    glm::vec3 mean_m{0};
+    glm::quat mean_turn{1, 0, 0, 0};
+  };
   static constexpr int kSettled = 3;
 
   bool breaks(const Sample& sample);
+  Stillness stillness(int joint) const;
+  void judge_stillness();
   msg::HandPose predicted(std::int64_t time_ns) const;
   const Sample* earlier_than(const Sample& sample) const;  ///< the newest that is far enough before it to tell a velocity
   std::array<glm::vec3, msg::kJoints> bends_m(const Sample& newest, const Sample& base, std::int64_t ahead_ns) const;
@@ -54,6 +63,7 @@ class PoseHistory {
   config::Predict settings_;
   std::int64_t span_ns_;
   std::deque<Sample> samples_;
+  std::array<Stillness, msg::kJoints> stillness_;  ///< as of samples_
   Continuity continuity_;
   std::int64_t begins_ns_ = std::numeric_limits<std::int64_t>::min();
   int since_jump_ = kSettled;  ///< samples, up to kSettled

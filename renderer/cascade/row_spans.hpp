@@ -19,7 +19,7 @@ struct RowSpan {
   int x0, x1;
 };
 
-/// For every row of a region the parts that a union of shapes covers. Four rows in a row share theirs.
+/// For every row of a region the parts that a union of shapes covers. Eight rows in a row share theirs.
 class RowSpans {
  public:
   /// Empties all rows; no row is given more than `most` spans.
@@ -37,7 +37,7 @@ class RowSpans {
 
   Rect region_;
   std::size_t most_ = 0;
-  std::vector<RowSpan> spans_;  ///< `most_` places for every four rows,
+  std::vector<RowSpan> spans_;  ///< `most_` places for every eight rows,
   std::vector<int> counts_;     ///< so many of them in use
 };
 

@@ -31,7 +31,7 @@ Untangler::Untangler(const HandMesh& mesh) : triangles_(mesh.triangles) {
   }
   around_.resize(at_place_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (const std::uint16_t v : triangles_[t]) around_[place_of_[v]].push_back(static_cast<std::uint16_t>(t));
+    for (const std::uint16_t v : triangles_[t]) around_[place_of_[v]].push_back(static_cast<std::uint32_t>(t));
 }
 
 bool Untangler::turned_over(std::size_t triangle, std::span<const glm::vec2> before, std::span<const glm::vec2> after,
@@ -99,7 +99,7 @@ bool Untangler::smooth(std::span<const glm::vec2> before, std::span<glm::vec2> a
 void Untangler::find_turned_over(std::span<const glm::vec2> before, std::span<const glm::vec2> after, float facing_sign) {
   waiting_.clear();
   for (std::size_t t = 0; t < triangles_.size(); ++t)
-    if (turned_over(t, before, after, facing_sign)) waiting_.push_back(static_cast<std::uint16_t>(t));
+    if (turned_over(t, before, after, facing_sign)) waiting_.push_back(static_cast<std::uint32_t>(t));
 }
 
 int Untangler::untangle(std::span<const glm::vec2> before, std::span<glm::vec2> after, float facing_sign) {

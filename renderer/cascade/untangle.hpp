@@ -41,9 +41,9 @@ class Untangler {
   std::vector<Triangle> triangles_;
   std::vector<std::uint16_t> place_of_;               ///< of each vertex
   std::vector<std::vector<std::uint16_t>> at_place_;  ///< the vertices that share it
-  std::vector<std::vector<std::uint16_t>> around_;    ///< the triangles that touch it
+  std::vector<std::vector<std::uint32_t>> around_;    ///< the triangles that touch it
   std::vector<Cluster> clusters_;                     ///< of each place
-  std::vector<std::uint16_t> waiting_;                ///< triangles to look at again
+  std::vector<std::uint32_t> waiting_;                ///< triangles to look at again
 };
 
 }  // namespace handcast::renderer

@@ -21,10 +21,11 @@ constexpr std::array<int, kJoints> kBoneOfJoint{kPalm, kPalm, 1,  2,  3,  3,  4,
                                                 10,    11,    11, 12, 13, 14, 15, 15, 16, 17, 18, 19, 19};
 constexpr std::array<int, 4> kKnuckles{5, 9, 13, 17};
 
-float smoothstep(float from, float to, float x) {
-  if (to <= from) return x >= to ? 1.0f : 0.0f;
-  const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
-  return t * t * (3 - 2 * t);
+/// A bone seen so long is trusted so much.
+float trust_in(const config::Correct& settings, float length_px) {
+  const auto from = static_cast<float>(settings.bone_short_px), to = static_cast<float>(settings.bone_long_px);
+  if (to <= from) return length_px >= to ? 1.0f : 0.0f;
+  return glm::smoothstep(from, to, length_px);
 }
 
 using Landmarks2d = std::span<const glm::vec2, kLandmarks>;
@@ -32,8 +33,7 @@ using Landmarks2d = std::span<const glm::vec2, kLandmarks>;
 BoneMove finger_bone(const config::Correct& settings, int bone, Landmarks2d p, Landmarks2d q) {
   const int end = bone + 1, start = bone % 4 == 0 ? 0 : bone;
   BoneMove move{fit_similarity(std::array{p[start], p[end]}, std::array{q[start], q[end]})};
-  move.trust =
-      smoothstep(static_cast<float>(settings.bone_short_px), static_cast<float>(settings.bone_long_px), glm::distance(p[start], p[end]));
+  move.trust = trust_in(settings, glm::distance(p[start], p[end]));
   return move;
 }
 
@@ -47,7 +47,7 @@ BoneMove palm_bone(const config::Correct& settings, Landmarks2d p, Landmarks2d q
     longest_px = std::max(longest_px, glm::distance(p[knuckle], p[0]));
   }
   BoneMove move{fit_similarity(std::array{p[0], p_knuckles}, std::array{q[0], q_knuckles})};
-  move.trust = smoothstep(static_cast<float>(settings.bone_short_px), static_cast<float>(settings.bone_long_px), longest_px);
+  move.trust = trust_in(settings, longest_px);
   return move;
 }
 
@@ -113,7 +113,7 @@ void find_left_over(const HandMesh& hand, const JointMoves& moves, std::span<con
 }  // namespace
 
 void correct_vertices(const config::Correct& settings, const HandMesh& hand, Landmarks2d p, Landmarks2d q, std::span<glm::vec2> vertices) {
-  thread_local LeftOver left;  // kept, so that a frame allocates nothing
+  thread_local LeftOver left;  // keeps its memory from frame to frame
   const JointMoves moves = joint_moves(settings, p, q);
   find_left_over(hand, moves, vertices, left);
   move_by_bones(hand, moves, vertices);

@@ -10,6 +10,8 @@
 #include <vector>
 // jpeglib.h relies on cstdio
 #include <jpeglib.h>
+// and jerror.h on jpeglib.h
+#include <jerror.h>
 
 namespace handcast::renderer {
 namespace {
@@ -52,10 +54,18 @@ Result<Image<Pixel>> read_png(const std::filesystem::path& file, std::uint32_t f
 struct JpegErrors {
   jpeg_error_mgr base;
   std::jmp_buf way_out;
+  const char* trouble = "is not a PNG or JPEG picture";
 };
 
 [[noreturn]] void leave(j_common_ptr jpeg) { std::longjmp(reinterpret_cast<JpegErrors*>(jpeg->err)->way_out, 1); }
 void say_nothing(j_common_ptr) {}
+
+/// libjpeg would go on in grey where a file ends early, and only warn.
+void heed_warning(j_common_ptr jpeg, int level) {
+  if (level >= 0 || jpeg->err->msg_code != JWRN_JPEG_EOF) return;
+  reinterpret_cast<JpegErrors*>(jpeg->err)->trouble = "ends before its picture does";
+  leave(jpeg);
+}
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -67,6 +77,10 @@ bool decode_jpeg(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::FILE* fi
   jpeg_stdio_src(&jpeg, file);
   jpeg_read_header(&jpeg, TRUE);
   if (std::max(jpeg.image_width, jpeg.image_height) > kLargestSide) return true;
+  if (jpeg.jpeg_color_space != JCS_GRAYSCALE && jpeg.jpeg_color_space != JCS_YCbCr && jpeg.jpeg_color_space != JCS_RGB) {
+    errors.trouble = "is a JPEG in CMYK or another colour space; grey, RGB and YCbCr are read";
+    return false;
+  }
   jpeg.out_color_space = JCS_EXT_RGBA;
   jpeg_start_decompress(&jpeg);
   texture = Texture(static_cast<int>(jpeg.output_width), static_cast<int>(jpeg.output_height));
@@ -85,13 +99,14 @@ Result<Texture> read_jpeg(const std::filesystem::path& path) {
   jpeg.err = jpeg_std_error(&errors.base);
   errors.base.error_exit = leave;
   errors.base.output_message = say_nothing;
+  errors.base.emit_message = heed_warning;
   Texture texture;
   jpeg_create_decompress(&jpeg);
   const bool decoded = file && decode_jpeg(jpeg, errors, file.get(), texture);
   const auto width = jpeg.image_width, height = jpeg.image_height;
   jpeg_destroy_decompress(&jpeg);
   if (decoded && std::max(width, height) > kLargestSide) return too_large(path, width, height);
-  if (!decoded) return fail(Errc::bad_config, fmt::format("'{}' is not a PNG or JPEG picture.", path.string()));
+  if (!decoded) return fail(Errc::bad_config, fmt::format("'{}' {}.", path.string(), errors.trouble));
   return texture;
 }
 

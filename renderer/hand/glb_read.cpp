@@ -120,6 +120,16 @@ bool may_be_missing(int joint) {
   return name == "palm" || name.ends_with("-tip") || name.ends_with("finger-metacarpal");
 }
 
+/// A turn and a shift. (A number that is not finite is not: every comparison with it is false.)
+bool is_rigid(const glm::mat4& transform) {
+  constexpr float kTolerance = 1e-2f;
+  const glm::mat3 axes(transform);
+  const glm::mat3 off = glm::transpose(axes) * axes - glm::mat3(1);
+  for (int k = 0; k < 9; ++k)
+    if (!(std::abs(off[k / 3][k % 3]) < kTolerance)) return false;
+  return glm::determinant(axes) > 0 && std::isfinite(glm::dot(transform[3], transform[3]));
+}
+
 /// Fills hand.rest and returns our joint for each joint of the skin; those with names we do not know count as the wrist.
 std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Model& model, const tinygltf::Skin& skin, HandMesh& hand) {
   std::vector<std::uint8_t> ours(skin.joints.size(), 1);
@@ -133,6 +143,8 @@ std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Mod
     if (known == kJointNames.end()) continue;
     const auto joint = static_cast<std::size_t>(known - kJointNames.begin());
     hand.rest[joint] = glm::inverse(glm::make_mat4(inverse.data() + k * 16));
+    if (!is_rigid(hand.rest[joint]))
+      reader.complain(fmt::format("the inverse bind matrix of its joint {} is not a turn and a shift", *known));
     ours[k] = static_cast<std::uint8_t>(joint);
     found[joint] = true;
   }

@@ -47,7 +47,6 @@ class Gate {
   explicit Gate(const config::Ladder& settings) : settings_(settings) {}
 
   Rung choose(std::int64_t target_ns, const Evidence& evidence);
-  void forget() { *this = Gate(settings_); }
 
  private:
   config::Ladder settings_;
@@ -62,7 +61,6 @@ class RungBlend {
  public:
   /// Towards `rung`; at once where `blend_ms` is 0 or nothing was lit lately.
   void turn_to(Rung rung, std::int64_t target_ns, double blend_ms);
-  void forget() { *this = {}; }
 
   float share(Rung rung) const { return shares_[static_cast<std::size_t>(rung)]; }
   bool is_pure(Rung rung) const { return share(rung) == 1; }

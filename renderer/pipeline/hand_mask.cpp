@@ -61,10 +61,7 @@ void HandMask::find(GreyView camera, std::span<const Expected> hands) {
     hint_of[h] = owned_hints_.size();
     owned_hints_.push_back(std::move(*hint));
   }
-  for (const OwnedHint& owned : owned_hints_) {
-    hints_.push_back(owned.hint);
-    hints_.back().inside_px = owned.seeds_px;
-  }
+  for (const OwnedHint& owned : owned_hints_) hints_.push_back(owned.hint);
   written_ = finder_.find(camera, hints_, camera_mask_.view());
   found_.clear();
   shown_.clear();
@@ -98,6 +95,12 @@ void HandMask::remember(const Expected& hand, const Rect& found) {
                 static_cast<std::size_t>(memory.found.width()));
   memory.landmarks = *project_landmarks(calibration_, *hand.then);
   for (int i = 0; i < kLandmarks; ++i) memory.landmarks[i] += hand.tracked->corrected[i] - hand.tracked->tracker[i];
+  memory.landmarks = in_image(memory.landmarks);
+}
+
+LandmarkPoints HandMask::in_image(LandmarkPoints undistorted_px) const {
+  for (glm::vec2& point : undistorted_px) point = calibration_.camera.distort(point);
+  return undistorted_px;
 }
 
 /// How the hand has moved in the image, undone: from where it will be at the target time to where it was at the exposure.
@@ -109,12 +112,12 @@ Similarity HandMask::since_exposure(const Expected& hand) const {
     (*then)[i] += hand.moved_then[i];
     now[i] += hand.moved_now[i];
   }
-  return fit_similarity(now, *then);
+  return fit_similarity(in_image(now), in_image(*then));
 }
 
 /// Likewise, from the target time to when it was seen last. Registration knows of no image since: the landmarks themselves are followed.
 Similarity HandMask::since_seen(const Expected& hand) const {
-  return settings_.advance ? fit_similarity(hand.tracked->corrected, memory_of(hand.side).landmarks) : Similarity{};
+  return settings_.advance ? fit_similarity(in_image(hand.tracked->corrected), memory_of(hand.side).landmarks) : Similarity{};
 }
 
 Rect HandMask::advance(std::span<const Expected> hands) {

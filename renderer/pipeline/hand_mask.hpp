@@ -32,10 +32,6 @@ class HandMask {
   /// Finds the hands in the image.
   void find(GreyView camera, std::span<const Expected> hands);
 
-  /// The mask in the image's pixels: 255 hand. As find() left it.
-  GreyView in_camera() const { return camera_mask_.view(); }
-  /// Holds all that was found of hand `h` (image px); empty where nothing was.
-  Rect found(std::size_t h) const { return found_[h]; }
   /// The image shows hand `h`: a joint of it is lit, or at least something as large as a good part of it where it is expected.
   bool shows(std::size_t h) const { return shown_[h]; }
   /// All hands' edge in `camera`, the image of the last find().
@@ -49,11 +45,12 @@ class HandMask {
  private:
   /// One hand as it was seen last.
   struct Memory {
-    Image<std::uint8_t> mask;  ///< the camera's size, 0 outside `found`
-    Rect found;                ///< empty: never seen
-    LandmarkPoints landmarks{};
+    Image<std::uint8_t> mask;    ///< the camera's size, 0 outside `found`
+    Rect found;                  ///< empty: never seen
+    LandmarkPoints landmarks{};  ///< image px
   };
 
+  LandmarkPoints in_image(LandmarkPoints undistorted_px) const;
   Similarity since_exposure(const Expected& hand) const;
   Similarity since_seen(const Expected& hand) const;
   void clear_camera_mask(int width, int height);
@@ -70,7 +67,7 @@ class HandMask {
   Rect written_;  ///< of the camera mask; the rest is 0
   std::vector<OwnedHint> owned_hints_;
   std::vector<HandHint> hints_;
-  std::vector<Rect> found_;                      ///< beside the hands of find()
+  std::vector<Rect> found_;                      ///< of the hands of find(): holds all that was found of it; empty where nothing was
   std::vector<bool> shown_;                      ///< likewise
   std::array<Memory, msg::kMaxHands> memories_;  ///< by side
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/log.hpp"
+#include "ipc/msg/projection.hpp"
 #include "renderer/clones.hpp"
 #include "renderer/content/textures.hpp"
 
@@ -62,6 +64,8 @@ Result<HandSurface> HandSurface::load(Side side, const std::filesystem::path& ha
   if (!mesh) return tl::make_unexpected(mesh.error());
   auto texture = load_content(content, *mesh);
   if (!texture) return tl::make_unexpected(texture.error());
+  if (mesh->vertex_count() > msg::kMaxVertices)
+    log::warning("the hand has {} vertices: observers are told where the first {} land", mesh->vertex_count(), msg::kMaxVertices);
 
   HandSurface surface;
   surface.mesh_ = std::move(*mesh);

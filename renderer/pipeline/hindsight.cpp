@@ -56,11 +56,6 @@ void Hindsight::look_back(const HandTrack& track) {
   }
 }
 
-void Hindsight::forget() {
-  waiting_.clear();
-  motion_ = {};
-}
-
 void Hindsight::compare(const Frame& frame, const LandmarkPoints& at_camera, const LandmarkPoints& at_target) {
   const std::int64_t since_ns = std::max<std::int64_t>(0, frame.target_ns - compared_ns_);
   compared_ns_ = frame.target_ns;

@@ -36,7 +36,6 @@ class Hindsight {
   void registered(std::int64_t target_ns, const LandmarkPoints& moved_px);
   /// Compares what can be compared by now.
   void look_back(const HandTrack& track);
-  void forget();
 
   const Motion& motion() const { return motion_; }
 

@@ -30,6 +30,12 @@ glm::dvec2 image_of(const calib::Calibration& calibration, const glm::dvec3& tra
   return calibration.camera.distort(calibration.camera.project({in_camera.x, in_camera.y, std::max(in_camera.z, 0.05)}) + offset_px);
 }
 
+/// No further than half an image outside it: beyond that the lens's polynomial may turn back into the image.
+bool is_in_reach(const calib::CameraModel& camera, const glm::dvec2& undistorted_px) {
+  const glm::dvec2 size(camera.width_px, camera.height_px), off = glm::abs(undistorted_px - 0.5 * size);
+  return off.x < size.x && off.y < size.y;
+}
+
 /// Camera px of one mm at each landmark's distance.
 std::array<float, kLandmarks> scale_of(const calib::Calibration& calibration, const msg::HandPose& pose) {
   std::array<float, kLandmarks> px_per_mm;
@@ -73,8 +79,13 @@ std::optional<OwnedHint> make_hint(const calib::Calibration& calibration, const 
   const auto points = project_landmarks(calibration, then);
   if (!points) return std::nullopt;
   OwnedHint owned;
-  for (int i = 0; i < kLandmarks; ++i)
-    owned.seeds_px.push_back(calibration.camera.distort(glm::dvec2((*points)[i]) + glm::dvec2(tracked.corrected[i] - tracked.tracker[i])));
+  bool in_reach = false;
+  for (int i = 0; i < kLandmarks; ++i) {
+    const glm::dvec2 px = glm::dvec2((*points)[i]) + glm::dvec2(tracked.corrected[i] - tracked.tracker[i]);
+    in_reach |= is_in_reach(calibration.camera, px);
+    owned.seeds_px.push_back(calibration.camera.distort(px));
+  }
+  if (!in_reach) return std::nullopt;
 
   const auto& [x, y, z] = then.joints[kWrist].position_m;
   const auto& [qx, qy, qz, qw] = then.joints[kWrist].orientation_xyzw;

@@ -16,6 +16,7 @@ struct OwnedHint {
 };
 
 /// Where a hand is expected in an image: its pose when the image was taken, moved by what the landmarks know (Q̂ - P of `tracked`).
+/// Nothing of a hand that is behind the camera or far outside the image.
 std::optional<OwnedHint> make_hint(const calib::Calibration& calibration, const config::Mask& settings, const msg::HandPose& then,
                                    const HandTrack::Tracked& tracked);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/cascade/noise.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -18,19 +19,16 @@ constexpr float kTrusted_ms = 5;                ///< a prediction's error over l
 constexpr std::array<std::array<int, 5>, 6> kParts{
     {{0, 5, 9, 13, 17}, {1, 2, 3, 4, 4}, {5, 6, 7, 8, 8}, {9, 10, 11, 12, 12}, {13, 14, 15, 16, 16}, {17, 18, 19, 20, 20}}};
 
-/// Lets through what stands out of the noise, and of the rest little (the shrinkage of a Wiener filter).
-float beyond_noise(float square_px, float noise_px) { return square_px / (square_px + noise_px * noise_px); }
-
 /// Of the hand first, whose mean is quiet, then of each of its parts against it.
 void shrink(LandmarkPoints& moved) {
   glm::vec2 mean{0};
   for (const glm::vec2& point : moved) mean += point / static_cast<float>(kLandmarks);
-  const glm::vec2 hand = mean * beyond_noise(glm::dot(mean, mean), kHandNoise_px);
+  const glm::vec2 hand = mean * share_beyond_noise(glm::dot(mean, mean), kHandNoise_px);
   std::array<float, kLandmarks> share{};
   for (const auto& part : kParts) {
     float square = 0;
     for (const int i : part) square += glm::dot(moved[i] - mean, moved[i] - mean) / static_cast<float>(part.size());
-    for (const int i : part) share[i] = beyond_noise(square, kFingerNoise_px);
+    for (const int i : part) share[i] = share_beyond_noise(square, kFingerNoise_px);
   }
   for (int i = 0; i < kLandmarks; ++i) moved[i] = hand + share[i] * (moved[i] - mean);
 }

@@ -46,7 +46,7 @@ class LateRegistration {
   /// two. `news`: of HandTrack::Tracked.
   LandmarkPoints follow(const Hand& hand, std::int64_t target_ns, bool news);
 
-  /// Of the newest image; for the trace and the gate.
+  /// What the newest image said of a hand; for tests.
   const Registered& last(msg::Side side) const { return last_[static_cast<std::size_t>(side)]; }
 
  private:

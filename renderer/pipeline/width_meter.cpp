@@ -111,7 +111,6 @@ void WidthMeter::forget() {
     bone.seen = {};
     bone.count = 0;
   }
-  factor_ = 1;
 }
 
 /// The lower third of the bones that were seen often enough, since what spoils a measurement (a neighbour, a tilt) makes it larger;

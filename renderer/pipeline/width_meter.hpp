@@ -14,7 +14,8 @@ namespace handcast::renderer {
 /// How much wider a person's fingers are than the drawn ones, learned from the camera's mask: across the middle of every finger bone
 /// that is seen from the side, the mask is as wide as the finger. (The shape of the hand is the paper's stated limitation.)
 /// The factor is the lower third of the bones' medians over the last seconds: neither a bone that another one touches now and then
-/// nor two that touch for long do harm. It is held while the hand is in sight and learned afresh after it was gone for a second.
+/// nor two that touch for long do harm. It is learned afresh after nothing was measured for a second, and held until then: the light must
+/// not jump.
 class WidthMeter {
  public:
   explicit WidthMeter(const HandMesh& mesh);

@@ -46,19 +46,19 @@ class ReplayCamera final : public Camera {
   std::int64_t last_ns_ = 0;
 };
 
-/// From camera_timestamps.npy (microseconds) where there is one, else at the rig's rate.
-Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::size_t count, double rate_hz) {
-  std::vector<std::int64_t> times_ns;
+/// From camera_timestamps.npy where there is one, else at the rig's rate from `first_ns` on.
+Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::size_t count, double rate_hz, std::int64_t first_ns) {
   const fs::path file = folder / "camera_timestamps.npy";
-  if (!fs::exists(file)) {
-    for (std::size_t i = 0; i < count; ++i) times_ns.push_back(seconds_to_ns(static_cast<double>(i) / rate_hz));
+  const auto there = twin::is_there(file);
+  if (!there) return tl::make_unexpected(there.error());
+  if (!*there) {
+    std::vector<std::int64_t> times_ns;
+    for (std::size_t i = 0; i < count; ++i) times_ns.push_back(first_ns + seconds_to_ns(static_cast<double>(i) / rate_hz));
     return times_ns;
   }
-  const auto stamps = twin::read_npy(file);
-  if (!stamps) return tl::make_unexpected(stamps.error());
-  if (stamps->values.size() != count)
-    return fail(Errc::bad_config, fmt::format("'{}' holds {} times for {} pictures", file.string(), stamps->values.size(), count));
-  for (const double time_us : stamps->values) times_ns.push_back(static_cast<std::int64_t>(time_us) * 1000);
+  auto times_ns = twin::read_stamps_ns(file);
+  if (times_ns && times_ns->size() != count)
+    return fail(Errc::bad_config, fmt::format("'{}' holds {} times for {} pictures", file.string(), times_ns->size(), count));
   return times_ns;
 }
 
@@ -68,11 +68,16 @@ Result<std::unique_ptr<Camera>> open_replay(const config::Rig& rig, const calib:
   const fs::path folder = rig.camera.replay.directory;
   if (folder.empty()) return fail(Errc::bad_config, "camera 'replay': camera.replay.directory names no folder");
   const fs::path inner = folder / "camera";
-  auto pictures = read_pictures(fs::is_directory(inner) ? inner : folder, calibration.camera.width_px, calibration.camera.height_px);
+  const auto has_inner = twin::is_there(inner);
+  if (!has_inner) return fail_in("camera 'replay'", has_inner.error());
+  auto pictures = read_pictures(*has_inner ? inner : folder, calibration.camera.width_px, calibration.camera.height_px);
   if (!pictures) return fail_in("camera 'replay'", pictures.error());
-  auto times_ns = picture_times_ns(folder, pictures->size(), rig.camera.rate_hz);
+  const auto stamps_ns = twin::read_all_stamps_ns(folder);
+  if (!stamps_ns) return fail_in("camera 'replay'", stamps_ns.error());
+  const auto lap = timing::Lap::of(*stamps_ns);
+  auto times_ns = picture_times_ns(folder, pictures->size(), rig.camera.rate_hz, lap.first_ns);
   if (!times_ns) return fail_in("camera 'replay'", times_ns.error());
-  auto loop = timing::Loop::make(std::move(*times_ns), epoch_ns, rig.camera.replay.loop, seconds_to_ns(1 / rig.camera.rate_hz));
+  auto loop = timing::Loop::make(std::move(*times_ns), lap, epoch_ns, rig.camera.replay.loop, seconds_to_ns(1 / rig.camera.rate_hz));
   if (!loop) return fail_in("camera 'replay': camera_timestamps.npy", loop.error());
   return std::make_unique<ReplayCamera>(std::move(*pictures), std::move(*loop), rig.camera);
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "services/chart/chart.hpp"
 #include "services/chart/script.hpp"
@@ -116,18 +117,31 @@ NumberTable breakdowns_of(const std::vector<Panel>& panels, const std::vector<Me
   return table;
 }
 
+const Point* point_at(const StressLine* line, double level) {
+  if (!line) return nullptr;
+  const auto found = std::ranges::find(line->levels, level);
+  return found == line->levels.end() ? nullptr : &line->points[static_cast<std::size_t>(found - line->levels.begin())];
+}
+
+/// Every level at which a method has a point, with the place of the first such method's.
+std::map<double, double> levels_of(const Panel& panel) {
+  std::map<double, double> levels;
+  for (const auto& line : panel.lines)
+    for (std::size_t i = 0; i < line.levels.size(); ++i) levels.emplace(line.levels[i], line.points[i].x);
+  return levels;
+}
+
 NumberTable numbers_of(const std::vector<Panel>& panels, const std::vector<Method>& methods) {
   NumberTable table{"chart_b",
                     "Means over motions and seeds. Simulated: the same on every machine.",
                     with_methods({{"stress", "stress"}, {"level", "level", 2}, {"unit", "unit"}, {"harm", "harm"}}, methods, 2),
                     {}};
   for (const auto& panel : panels)
-    for (std::size_t level = 0; level < panel.lines.front().points.size(); ++level) {
-      std::vector<Cell> row{std::string(panel.stress.title), panel.lines.front().points[level].x, std::string(panel.stress.unit),
-                            std::string(panel.stress.harm_title)};
+    for (const auto& [level, stress] : levels_of(panel)) {
+      std::vector<Cell> row{std::string(panel.stress.title), stress, std::string(panel.stress.unit), std::string(panel.stress.harm_title)};
       for (const auto& method : methods) {
-        const auto* line = line_of(panel, method);
-        row.push_back(line && level < line->points.size() ? std::optional(line->points[level].y) : std::nullopt);
+        const auto* point = point_at(line_of(panel, method), level);
+        row.push_back(point ? std::optional(point->y) : std::nullopt);
       }
       table.rows.push_back(std::move(row));
     }

@@ -13,7 +13,9 @@ namespace {
 
 constexpr const char* kTimesPlan = "times";
 
-bool is_setting(const std::string& column) { return column.find('.') != column.npos; }
+bool is_setting(const std::string& column) {
+  return column != "index" && column != "variant" && column != "error" && !sweep::is_metric(column);
+}
 
 bool is_of_the_ladder(const std::string& path) { return path == "twin.motion" || path == "twin.speed" || path == "twin.seed"; }
 

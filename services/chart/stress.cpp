@@ -45,9 +45,13 @@ std::vector<StressLine> lines_of(const Results& results, const Stress& stress) {
     std::map<double, Runs> by_level;
     for (const auto* run : of_variant(runs, variant))
       if (const auto level = number_of(run->setting(std::string(stress.setting)))) by_level[*level].push_back(run);
-    StressLine line{method_of(variant), {}, {}};
-    for (const auto& [level, at_level] : by_level)
-      if (const auto point = point_of(stress, level, at_level)) line.points.push_back(*point);
+    StressLine line{method_of(variant), {}, {}, {}};
+    for (const auto& [level, at_level] : by_level) {
+      const auto point = point_of(stress, level, at_level);
+      if (!point) continue;
+      line.points.push_back(*point);
+      line.levels.push_back(level);
+    }
     line.breakdown = breakdown_point(line.points);
     if (!line.points.empty()) lines.push_back(line);
   }

@@ -26,7 +26,8 @@ std::span<const Stress> stresses();
 
 struct StressLine {
   Method method;
-  std::vector<Point> points;  ///< by ascending stress, in the stress's unit
+  std::vector<Point> points;   ///< by ascending stress, in the stress's unit
+  std::vector<double> levels;  ///< what the setting is at each of them
   std::optional<Point> breakdown;
 };
 

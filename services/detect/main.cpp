@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
 
 #include "services/detect/run.hpp"
 
@@ -26,7 +28,7 @@ int detect(const Options& options) {
 }  // namespace
 }  // namespace handcast::detect
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace handcast;
   detect::Options options;
   CLI::App app("Finds the 21 landmarks of the hands in pictures.", "handcast detect");
@@ -49,4 +51,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("handcast detect ") + HANDCAST_VERSION);
   CLI11_PARSE(app, argc, argv);
   return detect::detect(options);
+} catch (const std::exception& problem) {
+  std::fputs("handcast detect: ", stderr);
+  std::fputs(problem.what(), stderr);
+  std::fputs("\n", stderr);
+  return 111;
 }

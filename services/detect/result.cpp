@@ -59,7 +59,8 @@ std::string print_json(const std::vector<Result>& results) {
                         {"palm", ns_to_ms(times.palm_ns)}}},
                       {"hands", hands}});
   }
-  return nlohmann::json{{"images", images}}.dump(1) + "\n";
+  return nlohmann::json{{"images", images}}.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) +
+         "\n";  // a path need not be UTF-8
 }
 
 }  // namespace handcast::detect

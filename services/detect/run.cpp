@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <set>
 
 #include "renderer/content/picture.hpp"
 #include "services/detect/draw.hpp"
@@ -27,12 +28,17 @@ Times median_of(std::vector<Times>& runs) {
   return median;
 }
 
-/// Where `image`'s drawing goes; two images of one name get different ones.
-fs::path drawing_of(const Options& options, std::size_t i) {
-  const auto stem = options.images[i].stem().string();
-  const auto same = std::ranges::count_if(options.images.begin(), options.images.begin() + static_cast<std::ptrdiff_t>(i),
-                                          [&](const fs::path& other) { return other.stem() == options.images[i].stem(); });
-  return options.output / (same == 0 ? stem + ".png" : fmt::format("{}_{}.png", stem, same + 1));
+/// Where each picture's drawing goes, no two to the same file.
+std::vector<fs::path> drawings_of(const Options& options) {
+  std::vector<fs::path> drawings;
+  std::set<std::string> taken;
+  for (const auto& image : options.images) {
+    const auto stem = image.stem().string();
+    auto name = stem + ".png";
+    for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}.png", stem, number);
+    drawings.push_back(options.output / name);
+  }
+  return drawings;
 }
 
 handcast::Result<void> save(const fs::path& file, const renderer::Texture& drawing) {
@@ -43,7 +49,7 @@ handcast::Result<void> save(const fs::path& file, const renderer::Texture& drawi
   return renderer::write_png(file, drawing.view());
 }
 
-handcast::Result<Result> look_at(landmarks::HandFinder& finder, const Options& options, std::size_t i) {
+handcast::Result<Result> look_at(landmarks::HandFinder& finder, const Options& options, std::size_t i, const fs::path& drawing) {
   const auto picture = read_grey(options.images[i]);
   if (!picture) return tl::make_unexpected(picture.error());
   landmarks::Hints hints;
@@ -63,8 +69,7 @@ handcast::Result<Result> look_at(landmarks::HandFinder& finder, const Options& o
   }
   result.times = median_of(runs);
   if (!options.output.empty())
-    if (const auto saved = save(drawing_of(options, i), draw(picture->view(), result.hands, hints)); !saved)
-      return tl::make_unexpected(saved.error());
+    if (const auto saved = save(drawing, draw(picture->view(), result.hands, hints)); !saved) return tl::make_unexpected(saved.error());
   return result;
 }
 
@@ -79,11 +84,12 @@ handcast::Result<std::string> run(const Options& options) {
                                          : landmarks::HandFinder::open(options.backend, models, options.hands);
   if (!finder) return tl::make_unexpected(finder.error());
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
+  const auto drawings = drawings_of(options);
   std::vector<Result> results;
   std::string text;
   for (std::size_t i = 0; i < options.images.size(); ++i) {
     if (shows_progress) fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(), options.images[i].filename().string());
-    auto result = look_at(*finder, options, i);
+    auto result = look_at(*finder, options, i, drawings[i]);
     if (!result) return fail_in(options.images[i].string(), result.error());
     if (!options.json) text += print_text(*result);
     results.push_back(std::move(*result));

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "renderer/cascade/similarity.hpp"
+
 namespace handcast::landmarks {
 namespace {
 
@@ -28,26 +30,14 @@ std::optional<HandFrame> frame_of(const Points& points_px) {
   return HandFrame{along, to_the_index ? across : -across};
 }
 
-glm::vec2 times(glm::vec2 a, glm::vec2 b) { return {a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x}; }
-
-/// Least squares of q = scale_and_turn * p + shift over the points defined alike, in complex numbers.
-struct Similarity {
-  glm::vec2 scale_and_turn, from, to;
-  glm::vec2 operator()(glm::vec2 p) const { return to + times(scale_and_turn, p - from); }
-};
-
-Similarity fit(const Points& p, const Points& q) {
-  glm::vec2 from(0), to(0), product(0);
-  for (const int i : kDefinedAlike) from += p[i], to += q[i];
-  from /= static_cast<float>(kDefinedAlike.size());
-  to /= static_cast<float>(kDefinedAlike.size());
-  float norm = 0;
-  for (const int i : kDefinedAlike) {
-    const glm::vec2 a = p[i] - from, b = q[i] - to;
-    product += times({a.x, -a.y}, b);
-    norm += glm::dot(a, a);
+/// That lays the one's points defined alike upon the other's.
+renderer::Similarity similarity_of(const Points& from_px, const Points& to_px) {
+  std::array<glm::vec2, kDefinedAlike.size()> from, to;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    from[i] = from_px[kDefinedAlike[i]];
+    to[i] = to_px[kDefinedAlike[i]];
   }
-  return {norm > 0 ? product / norm : glm::vec2(1, 0), from, to};
+  return renderer::fit_similarity(from, to);
 }
 
 }  // namespace
@@ -55,7 +45,7 @@ Similarity fit(const Points& p, const Points& q) {
 std::optional<Points> definition_residual(const Points& network_px, const Points& tracker_px) {
   const auto frame = frame_of(network_px);
   if (!frame || !is_finite(network_px) || !is_finite(tracker_px)) return std::nullopt;
-  const Similarity similarity = fit(tracker_px, network_px);
+  const renderer::Similarity similarity = similarity_of(tracker_px, network_px);
   Points residual{};
   for (const int i : kDefinedApart) residual[i] = frame->to_hand(network_px[i] - similarity(tracker_px[i]));
   return residual;
@@ -92,6 +82,7 @@ bool DefinitionOffsets::rests(std::int64_t time_ns, const Points& tracker_px) {
 
 void DefinitionOffsets::learn(std::int64_t time_ns, const Points& network_px, const Points& tracker_px) {
   const std::int64_t step_ns = std::clamp(time_ns - learnt_ns_, std::int64_t{0}, kLongestStep_ns);
+  if (time_ns - learnt_ns_ > kLongestStep_ns) rest_since_ns_ = 0;  // who knows what it did meanwhile
   learnt_ns_ = time_ns;
   if (!rests(time_ns, tracker_px)) return;
   const auto residual = definition_residual(network_px, tracker_px);

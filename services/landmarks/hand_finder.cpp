@@ -10,10 +10,12 @@ namespace handcast::landmarks {
 namespace {
 
 constexpr float kLeastRegion_px = 1;
+constexpr float kItsHint = 0.35f;                          ///< how far off a tracker's hand may be to be this one, in regions
 constexpr float kSameHand = 0.35f;                         ///< mean distance of the points, in palm lengths
 constexpr std::int64_t kForget_ns = 300'000'000;           ///< a hand that was last seen longer ago may be anywhere
 constexpr int kSearchEvery = 4, kSearchForMoreEvery = 60;  ///< images
 constexpr float kLeftScoreShare = 0.1f, kSureOfSide = 0.25f;
+constexpr int kAskSideEvery = 8;  ///< images, of a network that cannot tell it
 
 msg::Side other(msg::Side side) { return side == msg::Side::left ? msg::Side::right : msg::Side::left; }
 std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
@@ -25,15 +27,21 @@ bool are_one_hand(const Points& a, const Points& b) {
   return distance_px(a, b) < kSameHand * std::max(palm_length_px(a), palm_length_px(b));
 }
 
+/// Whether anything of it can lie in the image.
+bool touches(const Region& region, renderer::GreyView image) {
+  const glm::vec2 nearest = glm::clamp(region.centre_px, glm::vec2(0), glm::vec2(image.width - 1, image.height - 1));
+  return glm::distance(nearest, region.centre_px) < 0.71f * region.size_px;
+}
+
 Points moved(Points points_px, glm::vec2 by_px) {
   for (auto& point : points_px) point += by_px;
   return points_px;
 }
 
-/// Mean over the landmarks, as a share of the region.
-float sigma_of(const FoundHand& hand) {
-  return std::accumulate(hand.sigma_px.begin(), hand.sigma_px.end(), 0.0f) / (hand.region.size_px * static_cast<float>(msg::kLandmarks));
-}
+float sum_of(const std::array<float, msg::kLandmarks>& sigma_px) { return std::accumulate(sigma_px.begin(), sigma_px.end(), 0.0f); }
+
+/// As a share of the region.
+float sigma_of(const FoundHand& hand) { return sum_of(hand.sigma_px) / hand.region.size_px; }
 
 }  // namespace
 
@@ -52,8 +60,13 @@ Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, co
   left_scores_.clear();
   if (palm_ || any(hints_px)) std::erase_if(tracks_, [&](const Track& track) { return time_ns - track.seen_ns > kForget_ns; });
   choose_candidates(hints_px);
-  for (const auto& candidate : candidates_)
-    if (const auto looked = look(image, candidate); !looked) return tl::make_unexpected(looked.error());
+  for (auto& candidate : candidates_) {
+    if (found_.size() == static_cast<std::size_t>(most_hands_)) break;
+    if (is_found(candidate.side)) candidate.side = other(candidate.side);
+    const bool either = !candidate.hint_px && !candidate.is_followed && !hand_->tells_sides() && found_.empty();
+    const auto looked = either ? look_for_either_side(image, candidate.region) : look(image, candidate);
+    if (!looked) return tl::make_unexpected(looked.error());
+  }
   drop_double(hints_px);
   if (search_is_due(hints_px)) {
     if (const auto searched = search(image); !searched) return tl::make_unexpected(searched.error());
@@ -83,10 +96,17 @@ std::optional<std::size_t> HandFinder::track_of(msg::Side side, const Points& hi
   return best;
 }
 
-bool HandFinder::is_taken(msg::Side side) const {
-  return std::ranges::any_of(candidates_, [&](const Candidate& candidate) { return candidate.side == side; });
+std::optional<Points> HandFinder::if_near(const std::optional<Points>& hint_px, const Points& points_px) const {
+  if (!is_usable(hint_px)) return std::nullopt;
+  const float distance = glm::distance(centre_of(*hint_px), centre_of(points_px));
+  return distance < kItsHint * hand_->region_around(points_px).size_px ? hint_px : std::nullopt;
 }
 
+bool HandFinder::is_found(msg::Side side) const {
+  return std::ranges::any_of(found_, [&](const FoundHand& hand) { return hand.side == side; });
+}
+
+/// First the hands that the tracker has and that were seen there, then where it has others, then those that only the image knows.
 void HandFinder::choose_candidates(const Hints& hints_px) {
   candidates_.clear();
   std::array<bool, msg::kMaxHands> followed{};
@@ -102,15 +122,15 @@ void HandFinder::choose_candidates(const Hints& hints_px) {
     followed[*track] = true;
     const Track& seen = tracks_[*track];
     const glm::vec2 step_px = seen.hint_px ? centre_of(*hint_px) - centre_of(*seen.hint_px) : glm::vec2(0);
-    candidates_.push_back({side, hand_->region_around(moved(seen.around_px, step_px)), hint_px, true, seen.left_score});
+    const Points around_px = moved(seen.around_px, step_px);
+    candidates_.push_back({side, hand_->region_around(around_px), if_near(hint_px, around_px), true, seen.left_score});
   }
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (followed[i]) continue;
     const Track& seen = tracks_[i];
-    const auto side = is_taken(seen.side) ? other(seen.side) : seen.side;
-    if (!is_taken(side)) candidates_.push_back({side, hand_->region_around(seen.points_px), std::nullopt, seen.steady, seen.left_score});
+    candidates_.push_back({seen.side, hand_->region_around(seen.points_px), std::nullopt, seen.steady, seen.left_score});
   }
-  if (candidates_.size() > static_cast<std::size_t>(most_hands_)) candidates_.resize(most_hands_);
+  std::ranges::stable_partition(candidates_, [](const Candidate& candidate) { return candidate.is_followed && candidate.hint_px; });
 }
 
 /// Sets `region`: where it was looked for last.
@@ -120,7 +140,7 @@ Result<HandLooker::Seen> HandFinder::look_at(renderer::GreyView image, const Can
   const int looks = candidate.is_followed ? 1 : hand_->first_looks();
   for (int i = 0; i < looks; ++i) {
     region = i == 0 ? candidate.region : hand_->region_around(seen.points_px);
-    if (!(region.size_px >= kLeastRegion_px)) return HandLooker::Seen{};
+    if (!(region.size_px >= kLeastRegion_px) || !touches(region, image)) return HandLooker::Seen{};
     auto answer = hand_->look(image, region, candidate.side, candidate.hint_px, times);
     if (!answer) return answer;
     seen = *answer;
@@ -140,8 +160,25 @@ Result<void> HandFinder::look(renderer::GreyView image, const Candidate& candida
   if (mean_of(confidences) < kLeastConfidence) return {};
   found_.push_back({candidate.side, seen->presence, seen->points_px, region, seen->sigma_px, confidences});
   const float before = candidate.left_score < 0 ? seen->left_score : candidate.left_score;
-  left_scores_.push_back(before + kLeftScoreShare * (seen->left_score - before));
+  const bool asks = candidate.is_followed && !candidate.hint_px && !hand_->tells_sides();
+  const Result<float> told = asks ? left_score_of(image, candidate, found_.back()) : Result<float>(seen->left_score);
+  if (!told) return tl::make_unexpected(told.error());
+  left_scores_.push_back(before + kLeftScoreShare * (*told - before));
   return {};
+}
+
+/// Of a network that is told the side and is surer of the right one: now and then, whether it would be surer of the other.
+Result<float> HandFinder::left_score_of(renderer::GreyView image, const Candidate& candidate, const FoundHand& hand) {
+  if (++since_side_ < kAskSideEvery) return candidate.left_score;
+  since_side_ = 0;
+  HandLooker::Times times;
+  const auto mirrored = hand_->look(image, hand.region, other(hand.side), std::nullopt, times);
+  if (!mirrored) return tl::make_unexpected(mirrored.error());
+  ++times_.looks;
+  times_.crop_ns += times.crop_ns;
+  times_.network_ns += times.network_ns;
+  const bool is_so = sum_of(hand.sigma_px) <= sum_of(mirrored->sigma_px);
+  return is_so == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
 }
 
 /// Two looks that ended on one hand: the one stays that lies nearer to its own joints of the tracker, or is the surer one.
@@ -219,11 +256,10 @@ void HandFinder::remember(const Hints& hints_px, std::int64_t time_ns) {
   });
   for (auto& track : tracks_) track.steady = false;
   for (std::size_t i = 0; i < found_.size(); ++i) {
-    const auto& hint_px = hints_px[index_of(found_[i].side)];
+    const auto hint_px = if_near(hints_px[index_of(found_[i].side)], found_[i].points_px);
     const bool steady = mean_of(found_[i].confidences) >= kSteadyConfidence;
-    Track track{found_[i].side, found_[i].points_px, found_[i].points_px, std::nullopt, left_scores_[i], time_ns, steady};
-    if (is_usable(hint_px)) {
-      track.hint_px = hint_px;
+    Track track{found_[i].side, found_[i].points_px, found_[i].points_px, hint_px, left_scores_[i], time_ns, steady};
+    if (hint_px) {
       for (std::size_t k = 0; k < track.around_px.size(); ++k)
         if (found_[i].confidences[k] < kSureConfidence) track.around_px[k] = (*hint_px)[k];
     }

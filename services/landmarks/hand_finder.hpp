@@ -74,9 +74,12 @@ class HandFinder {
 
   void choose_candidates(const Hints& hints_px);
   std::optional<std::size_t> track_of(msg::Side side, const Points& hint_px) const;
-  bool is_taken(msg::Side side) const;
+  /// The hint, where it can be of the hand at these points.
+  std::optional<Points> if_near(const std::optional<Points>& hint_px, const Points& points_px) const;
+  bool is_found(msg::Side side) const;
   Result<void> look(renderer::GreyView image, const Candidate& candidate);
   Result<HandLooker::Seen> look_at(renderer::GreyView image, const Candidate& candidate, Region& region);
+  Result<float> left_score_of(renderer::GreyView image, const Candidate& candidate, const FoundHand& hand);
   bool search_is_due(const Hints& hints_px);
   Result<void> search(renderer::GreyView image);
   Result<void> look_for_either_side(renderer::GreyView image, const Region& region);
@@ -93,7 +96,7 @@ class HandFinder {
   std::vector<Candidate> candidates_;
   std::vector<FoundHand> found_;
   std::vector<float> left_scores_;  ///< beside found_
-  int since_search_ = kLongAgo;
+  int since_search_ = kLongAgo, since_side_ = 0;
   Times times_;
 };
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "services/landmarks/definition.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/hints.hpp"
@@ -37,13 +39,18 @@ class NetworkDetector final : public Detector {
     const auto side = static_cast<std::size_t>(hand.side);
     Points points_px = undistorted(camera_, hand.points_px);
     if (as_the_tracker_) {
-      if (hints[side]) definitions_[side].learn(time_ns, points_px, *hints[side]);
+      if (hints[side] && is_well_seen(hand)) definitions_[side].learn(time_ns, points_px, *hints[side]);
       points_px = definitions_[side].to_tracker(points_px);
     }
     msg::HandLandmarks message{hand.side, hand.presence, {}};
     for (std::size_t i = 0; i < points_px.size(); ++i)
       message.points[i] = {points_px[i].x, points_px[i].y, is_in_image(hand.points_px[i]) ? hand.confidences[i] : 0, hand.sigma_px[i]};
     return message;
+  }
+
+  bool is_well_seen(const FoundHand& hand) const {
+    return mean_of(hand.confidences) >= HandFinder::kSteadyConfidence &&
+           std::ranges::all_of(hand.points_px, [this](glm::vec2 point_px) { return is_in_image(point_px); });
   }
 
   bool is_in_image(glm::vec2 at_px) const {

@@ -24,11 +24,6 @@ constexpr float kMapSigma = 1.2f;     ///< of a tracker map's Gaussian, in cells
 constexpr float kLeastBell = 1e-15f;
 constexpr std::size_t kHeatSize = kHeatCells * kHeatCells;
 
-glm::vec2 turned(glm::vec2 v, float angle_rad) {
-  const float c = std::cos(angle_rad), s = std::sin(angle_rad);
-  return {c * v.x - s * v.y, s * v.x + c * v.y};
-}
-
 glm::vec2 mirrored(glm::vec2 place) { return {1 - place.x, place.y}; }
 
 using Bell = std::array<float, kMapCells>;

@@ -5,16 +5,17 @@
 #include <limits>
 
 namespace handcast::landmarks {
-namespace {
-
-constexpr std::array kPalmAndMiddleJoints{0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18};
-constexpr float kLandmarkScale = 2.0f, kLandmarkShift = -0.1f;
-constexpr float kPalmScale = 2.6f, kPalmShift = -0.5f;
 
 glm::vec2 turned(glm::vec2 v, float angle_rad) {
   const float c = std::cos(angle_rad), s = std::sin(angle_rad);
   return {c * v.x - s * v.y, s * v.x + c * v.y};
 }
+
+namespace {
+
+constexpr std::array kPalmAndMiddleJoints{0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18};
+constexpr float kLandmarkScale = 2.0f, kLandmarkShift = -0.1f;
+constexpr float kPalmScale = 2.6f, kPalmShift = -0.5f;
 
 /// The turn that makes `from` to `to` point up.
 float angle_of(glm::vec2 from, glm::vec2 to) { return std::atan2(to.x - from.x, from.y - to.y); }

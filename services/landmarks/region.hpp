@@ -9,6 +9,9 @@ namespace handcast::landmarks {
 /// 21 points in pixels, MediaPipe's order; (0,0) is the centre of the top-left pixel.
 using Points = std::array<glm::vec2, msg::kLandmarks>;
 
+/// Clockwise as seen in the image.
+glm::vec2 turned(glm::vec2 v, float angle_rad);
+
 /// A square of the image, turned so that the hand in it points up. What a network is shown.
 struct Region {
   glm::vec2 centre_px{0};

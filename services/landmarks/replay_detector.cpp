@@ -51,7 +51,9 @@ msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side 
 }
 
 Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side) {
-  if (!fs::exists(file)) return Track{};
+  const auto there = twin::is_there(file);
+  if (!there) return tl::make_unexpected(there.error());
+  if (!*there) return Track{};
   const auto array = twin::read_npy(file);
   if (!array) return tl::make_unexpected(array.error());
   const auto has_columns = [&](std::size_t columns) { return array->shape == std::vector<std::size_t>{count, msg::kLandmarks, columns}; };
@@ -68,20 +70,20 @@ Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side
 Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int64_t epoch_ns) {
   const fs::path folder = settings.directory;
   if (folder.empty()) return fail(Errc::bad_config, "landmarks.replay.directory names no folder");
-  const auto stamps_us = twin::read_npy(folder / "landmarks_timestamps.npy");
-  if (!stamps_us) return tl::make_unexpected(stamps_us.error());
-  std::vector<std::int64_t> times_ns;
-  for (const double time_us : stamps_us->values) times_ns.push_back(static_cast<std::int64_t>(time_us) * 1000);
+  auto times_ns = twin::read_stamps_ns(folder / "landmarks_timestamps.npy");
+  if (!times_ns) return tl::make_unexpected(times_ns.error());
+  const auto stamps_ns = twin::read_all_stamps_ns(folder);
+  if (!stamps_ns) return tl::make_unexpected(stamps_ns.error());
 
   std::array<Track, msg::kMaxHands> hands;
   for (const auto& [side, name] : {std::pair{msg::Side::left, "landmarks_left.npy"}, {msg::Side::right, "landmarks_right.npy"}}) {
-    auto track = read_track(folder / name, times_ns.size(), side);
+    auto track = read_track(folder / name, times_ns->size(), side);
     if (!track) return tl::make_unexpected(track.error());
     hands[static_cast<std::size_t>(side)] = std::move(*track);
   }
   if (hands[0].empty() && hands[1].empty())
     return fail(Errc::bad_config, fmt::format("'{}' holds neither landmarks_left.npy nor landmarks_right.npy", folder.string()));
-  auto loop = timing::Loop::make(std::move(times_ns), epoch_ns, settings.loop, ms_to_ns(10));
+  auto loop = timing::Loop::make(std::move(*times_ns), timing::Lap::of(*stamps_ns), epoch_ns, settings.loop, timing::kLoneStep_ns);
   if (!loop) return fail_in("landmarks_timestamps.npy", loop.error());
   return std::make_unique<ReplayDetector>(std::move(hands), std::move(*loop));
 }

@@ -1,8 +1,5 @@
 #include "services/observer/live_score.hpp"
 
-#include <fmt/format.h>
-
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace handcast::observer {
@@ -33,16 +30,5 @@ void LiveScore::add(twin::FrameScore score, int foldovers) {
 }
 
 nlohmann::json LiveScore::to_json() const { return older_.to_json(); }
-
-Result<void> write_whole(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path unfinished = file.string() + ".tmp";
-  std::ofstream stream(unfinished, std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (stream) std::filesystem::rename(unfinished, file, error);
-  if (!stream || error) return fail(Errc::unavailable, fmt::format("'{}' cannot be written", file.string()));
-  return {};
-}
 
 }  // namespace handcast::observer

@@ -1,9 +1,7 @@
 #pragma once
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 
-#include "ipc/base/result.hpp"
 #include "services/twin/metrics.hpp"
 
 namespace handcast::observer {
@@ -25,8 +23,5 @@ class LiveScore {
   std::int64_t frames_ = 0;
   twin::Metrics older_, newer_;
 };
-
-/// Writes a file so that a reader never sees half of it. Errors: unavailable.
-Result<void> write_whole(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace handcast::observer

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "config/load.hpp"
 #include "services/observer/judge.hpp"
 #include "services/observer/live_score.hpp"
 #include "services/runtime/context.hpp"
@@ -17,7 +18,7 @@ static bool has_truth(const config::Rig& rig) { return rig.camera.backend == "tw
 static void save(const observer::LiveScore& scores, service::Context& context) {
   const char* folder = std::getenv("HANDCAST_OUT");
   if (folder == nullptr || scores.empty()) return;
-  const auto written = observer::write_whole(std::filesystem::path(folder) / "observer.json", scores.to_json().dump(2) + "\n");
+  const auto written = config::write_whole(std::filesystem::path(folder) / "observer.json", scores.to_json().dump(2) + "\n");
   if (!written) context.tolerate({Errc::bad_data, "observer: " + written.error().what});
 }
 

@@ -41,7 +41,11 @@ Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const ca
   if (settings.directory.empty()) return fail(Errc::bad_config, "pose 'replay': pose.replay.directory names no folder");
   auto recording = twin::read_recording(settings.directory);
   if (!recording) return fail_in("pose 'replay'", recording.error());
-  auto loop = timing::Loop::make(recording->time_ns, epoch_ns, settings.loop, ms_to_ns(10));
+  const auto stamps_ns = twin::read_all_stamps_ns(settings.directory);
+  if (!stamps_ns) return fail_in("pose 'replay'", stamps_ns.error());
+  auto times_ns = recording->time_ns;
+  for (auto& time_ns : times_ns) time_ns += recording->first_ns;
+  auto loop = timing::Loop::make(std::move(times_ns), timing::Lap::of(*stamps_ns), epoch_ns, settings.loop, timing::kLoneStep_ns);
   if (!loop) return fail_in("pose 'replay': timestamps.npy", loop.error());
   return std::make_unique<ReplayPose>(std::move(*recording), std::move(*loop));
 }

@@ -34,8 +34,8 @@ static void run_projector(service::Context& context) {
   projector::Horizon horizon(rig.projector);
 
   context.ready();
-  for (std::int64_t frame_id = 0; context.running(); ++frame_id) {
-    sleep_until_ns(pacer.next_ns(now_ns()));
+  const auto running = [&] { return context.running(); };
+  for (std::int64_t frame_id = 0; projector::sleep_while(running, pacer.next_ns(now_ns())); ++frame_id) {
     const Deadline image_deadline = Deadline::at_ns(now_ns() + ms_to_ns(rig.projector.frame_wait_ms));
     if (const auto delivered = inputs.deliver(*pipeline, image_deadline); !delivered) context.tolerate(delivered.error());
 

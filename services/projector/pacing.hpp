@@ -29,6 +29,19 @@ class Pacer {
   std::int64_t start_ns_ = 0, ticks_ = 0, skipped_ = 0;
 };
 
+/// Sleeps until then, and asks on the way whether to go on: a daemon must say that it lives more often than a slow projector's frame
+/// comes. False: not to.
+template <class Running>
+bool sleep_while(const Running& running, std::int64_t time_ns) {
+  constexpr std::int64_t kStep_ns = 50'000'000;
+  while (running()) {
+    const std::int64_t step_ns = std::min(time_ns, now_ns() + kStep_ns);
+    sleep_until_ns(step_ns);
+    if (step_ns == time_ns) return true;
+  }
+  return false;
+}
+
 /// When the light of a frame begun now will be seen: after the software (the median of what the last frames took, so that one
 /// slow frame does not move it), the projector's latency and half of the time it is lit.
 class Horizon {

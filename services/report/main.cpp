@@ -2,14 +2,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <ctime>
+#include <exception>
 
 #include "services/page/machine.hpp"
 #include "services/report/report.hpp"
 
 using namespace handcast;
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app("Makes report.html, metrics.json and preview.mp4 from what a demonstration left in a folder.", "handcast report");
   std::string folder;
   report::Imprint imprint{"handcast: light that stays on moving hands", page::this_machine(),
@@ -26,4 +28,9 @@ int main(int argc, char** argv) {
   }
   fmt::print("{}\n", page->string());
   return 0;
+} catch (const std::exception& problem) {
+  std::fputs("handcast report: ", stderr);
+  std::fputs(problem.what(), stderr);
+  std::fputs("\n", stderr);
+  return 111;
 }

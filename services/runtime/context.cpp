@@ -28,7 +28,8 @@ bool worth_going_on(Errc code) { return code == Errc::timeout || code == Errc::b
 // Ends without destructors: a daemon has nothing to save that it would not lose to SIGKILL as well, and its threads may still run.
 void give_up(const Error& error) {
   log::error("{}", error.what);
-  std::_Exit(error.code == Errc::bad_config ? kExitConfig : kExitRestart);
+  const bool lasting = error.code == Errc::bad_config || error.code == Errc::bad_data;  // a damaged file stays damaged
+  std::_Exit(lasting ? kExitConfig : kExitRestart);
 }
 
 Context::Context(std::string name, config::Rig rig, calib::Calibration calibration)

@@ -37,7 +37,7 @@ namespace handcast::service {
 inline constexpr int kExitConfig = 100;
 inline constexpr int kExitRestart = 111;
 
-/// Ends a daemon's start-up with the error's sentence in the log and exit 100 or 111.
+/// Ends a daemon's start-up with the error's sentence in the log and exit 100 (bad_config, bad_data: restarting will not help) or 111.
 [[noreturn]] void give_up(const Error& error);
 
 template <class T>

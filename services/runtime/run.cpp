@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <exception>
 
 #include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
@@ -33,7 +34,7 @@ int serve(const Description& description, const CommandLine& line, const std::fu
 
 }  // namespace
 
-int run(const Description& description, int argc, char** argv, const std::function<void(Context&)>& body) {
+int run(const Description& description, int argc, char** argv, const std::function<void(Context&)>& body) try {
   using Task = CommandLine::Task;
   log::set_program(description.name);
   const auto line = must(parse_command_line(argc, argv));
@@ -51,6 +52,8 @@ int run(const Description& description, int argc, char** argv, const std::functi
       break;
   }
   return serve(description, line, body);
+} catch (const std::exception& problem) {
+  give_up({Errc::unavailable, problem.what()});
 }
 
 }  // namespace handcast::service

@@ -8,7 +8,7 @@
 
 namespace handcast::simulate {
 
-/// How fast the true hands are: the mean speed of a hand's 21 landmarks, over successive projector frames.
+/// How fast the true hands are: the mean speed of a hand's 21 landmarks, over successive projector frames, lit or not.
 class HandSpeed {
  public:
   void add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m, std::int64_t lit_ns);

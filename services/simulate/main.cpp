@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <exception>
+
 #include "services/simulate/run.hpp"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace handcast;
   const auto options = simulate::parse_options(argc, argv);
   if (!options) {
@@ -22,4 +25,9 @@ int main(int argc, char** argv) {
     return done.error().code == Errc::bad_config ? 100 : 111;
   }
   return 0;
+} catch (const std::exception& problem) {
+  std::fputs("handcast simulate: ", stderr);
+  std::fputs(problem.what(), stderr);
+  std::fputs("\n", stderr);
+  return 111;
 }

@@ -4,6 +4,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
 namespace handcast::simulate {
 namespace {
@@ -16,7 +18,27 @@ Result<void> write(const std::filesystem::path& file, const cv::Mat& image) {
   return fail(Errc::bad_config, fmt::format("{}: the picture cannot be written", file.string()));
 }
 
+bool is_numbered_png(const std::filesystem::path& file) {
+  const auto stem = file.stem().string();
+  return file.extension() == ".png" && stem.size() == 6 && stem.find_first_not_of("0123456789") == std::string::npos;
+}
+
 }  // namespace
+
+std::filesystem::path numbered_png(const std::filesystem::path& folder, std::size_t number) {
+  return folder / fmt::format("{:06}.png", number);
+}
+
+Result<void> remove_numbered_pngs(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed))
+    if (is_numbered_png(entry->path())) files.push_back(entry->path());
+  for (const auto& file : files)
+    if (std::filesystem::remove(file, failed); failed)
+      return fail(Errc::bad_config, fmt::format("{}: cannot be removed: {}", file.string(), failed.message()));
+  return {};
+}
 
 Result<void> write_png(const std::filesystem::path& file, renderer::View<const std::uint8_t> grey) {
   return write(file,

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <fstream>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "calib/calibration.hpp"
+#include "config/load.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/simulate/score.hpp"
 
@@ -44,12 +47,15 @@ Result<nlohmann::json> score_in_sight(const config::Rig& rig, const calib::Calib
   return score(rig, calibration, options, [&](double done_s) { progress.at(done_s); });
 }
 
-Result<void> write_json(const nlohmann::json& json, const std::string& json_file) {
-  if (json_file.empty()) return {};
-  std::ofstream file(json_file);
-  file << json.dump(2) << "\n";
-  if (!file.flush()) return fail(Errc::bad_config, fmt::format("{}: cannot be written", json_file));
-  return {};
+/// Said before the run, not after it.
+Result<void> check_writable(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown)) return fail(Errc::bad_config, fmt::format("{}: is a folder", file.string()));
+  const auto kind = std::filesystem::symlink_status(file, unknown);
+  const bool in_place = std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind);  // as write_whole does
+  const auto written_to = in_place ? file : std::filesystem::absolute(file).parent_path();
+  if (::access(written_to.c_str(), W_OK) == 0) return {};
+  return fail(Errc::bad_config, fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
 }
 
 /// Where a detector looked at images: how it fared.
@@ -83,6 +89,8 @@ void print_summary(const nlohmann::json& json, const config::Rig& rig, const Opt
 }  // namespace
 
 Result<void> run(const Options& options) {
+  if (!options.json_file.empty())
+    if (auto writable = check_writable(options.json_file); !writable) return writable;
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
   const auto calibration = calib::load_calibration(rig->calibration);
@@ -90,10 +98,11 @@ Result<void> run(const Options& options) {
 
   const auto json = score_in_sight(*rig, *calibration, options);
   if (!json) return tl::make_unexpected(json.error());
-  if (auto written = write_json(*json, options.json_file); !written) return written;
   print_summary(*json, *rig, options);
   print_detector((*json)["detector"]);
-  return {};
+  if (options.json_file.empty()) return {};
+  // A path in it need not be UTF-8.
+  return config::write_whole(options.json_file, json->dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace handcast::simulate

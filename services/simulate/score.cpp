@@ -35,6 +35,7 @@ class Products {
       std::error_code failed;
       std::filesystem::create_directories(options.frames_directory, failed);
       if (failed) return fail(Errc::bad_config, fmt::format("{}: {}", options.frames_directory, failed.message()));
+      if (auto removed = remove_numbered_pngs(options.frames_directory); !removed) return tl::make_unexpected(removed.error());
       products->photographer_.emplace(twin, calibration);
     }
     return products;
@@ -42,6 +43,7 @@ class Products {
 
   /// `detections` of a hand had arrived before it.
   Result<void> add(const Tick& tick, int detections) {
+    add_speeds(tick.lit_ns);
     for (const auto& hand : tick.hands) {
       const auto truth = twin_.landmarks(hand.side, tick.lit_ns);
       if (!truth) continue;
@@ -61,6 +63,9 @@ class Products {
     }
     return picture(drawn_++, *tick.projection);
   }
+
+  /// After the last tick.
+  Result<void> finish() { return trace_ ? trace_->close() : Result<void>(); }
 
   bool has_fault() const { return fault_.has_value(); }
 
@@ -93,13 +98,21 @@ class Products {
     const auto errors = landmark_errors(hand, lit_ns, twin_, calibration_);
     if (!errors) return;
     for (std::size_t i = 0; i < errors->px.size(); ++i) metrics_.add_landmark(errors->px[i], errors->mm[i]);
-    hand_speed_.add(hand.side, errors->true_places_m, lit_ns);
+  }
+
+  void add_speeds(std::int64_t lit_ns) {
+    for (const auto side : {msg::Side::left, msg::Side::right}) {
+      const auto joints = twin_.joints(side, lit_ns);
+      if (!joints) continue;
+      std::array<glm::dvec3, msg::kLandmarks> places_m;
+      for (std::size_t i = 0; i < places_m.size(); ++i) places_m[i] = (*joints)[msg::kJointOfLandmark[i]][3];
+      hand_speed_.add(side, places_m, lit_ns);
+    }
   }
 
   Result<void> picture(std::int64_t frame, const msg::Projection& projection) {
     if (!photographer_ || frame % options_.picture_every != 0) return {};
-    return write_png(std::filesystem::path(options_.frames_directory) / fmt::format("{:06}.png", pictures_++),
-                     photographer_->take(projection));
+    return write_png(numbered_png(options_.frames_directory, pictures_++), photographer_->take(projection));
   }
 
   const Options& options_;
@@ -113,7 +126,8 @@ class Products {
   std::vector<LightMoment> moments_;  ///< kept where there is a fault
   std::optional<Trace> trace_;
   std::optional<Photographer> photographer_;
-  std::int64_t drawn_ = 0, pictures_ = 0, with_exposure_ = 0;
+  std::int64_t drawn_ = 0, with_exposure_ = 0;
+  std::size_t pictures_ = 0;
   double motion_to_photon_ms_ = 0;  ///< summed over the frames that show an exposure
 };
 
@@ -149,7 +163,7 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
   auto feed = make_twin_feed(twin, std::move(parts->detector), from(seconds_to_ns(options.warm_up_s), tally));
   RecordingFeed* recording = nullptr;
   if (!options.record_directory.empty()) {
-    auto recorder = std::make_unique<RecordingFeed>(std::move(feed), options.record_directory);
+    auto recorder = std::make_unique<RecordingFeed>(std::move(feed), calibration.camera, options.record_directory);
     recording = recorder.get();
     feed = std::move(recorder);
   }
@@ -157,6 +171,7 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
   Simulation simulation(rig, calibration, *parts->pipeline, counted, options.draw_every);
   const auto add = [&](const Tick& tick) { return (*products)->add(tick, counted.detections()); };
   if (auto done = run_ticks(options, simulation, add, on_progress); !done) return tl::make_unexpected(done.error());
+  if (auto finished = (*products)->finish(); !finished) return tl::make_unexpected(finished.error());
   if (recording)
     if (auto saved = recording->save(); !saved) return tl::make_unexpected(saved.error());
   Result<std::vector<LightMoment>> clean;

@@ -14,10 +14,13 @@ class Trace {
  public:
   static Result<Trace> open(const std::filesystem::path& file);
   void add(std::int64_t lit_ns, const renderer::FrameHand& hand, const std::array<glm::vec2, msg::kLandmarks>& truth);
+  /// The last call. Errors: unavailable (the file lacks lines: the disk is full).
+  Result<void> close();
 
  private:
-  explicit Trace(std::ofstream file) : file_(std::move(file)) {}
-  std::ofstream file_;
+  Trace(std::filesystem::path file, std::ofstream stream) : file_(std::move(file)), stream_(std::move(stream)) {}
+  std::filesystem::path file_;
+  std::ofstream stream_;
 };
 
 }  // namespace handcast::simulate

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -22,12 +23,14 @@ simulate::Options options_of(const Plan& plan) {
   return options;
 }
 
-Result<nlohmann::json> score(const Plan& plan, const Run& run) {
+Result<nlohmann::json> score(const Plan& plan, const Run& run) try {
   const auto rig = rig_of(plan, run);
   if (!rig) return tl::make_unexpected(rig.error());
   const auto calibration = calib::load_calibration(rig->calibration);
   if (!calibration) return tl::make_unexpected(calibration.error());
   return simulate::score(*rig, *calibration, options_of(plan));
+} catch (const std::exception& problem) {
+  return fail(Errc::unavailable, problem.what());
 }
 
 /// The shard's runs that are still to do; those whose motion is absent are named, a sentence per folder.

@@ -109,7 +109,10 @@ std::string describe_run(const Plan& plan, const Run& run) {
 
 std::optional<std::string> why_absent(const config::Rig& rig) {
   const auto& motion = rig.twin.motion;
-  if (motion.starts_with("builtin:") || std::filesystem::is_directory(motion)) return std::nullopt;
+  std::error_code unknown;
+  const auto kind = std::filesystem::status(motion, unknown).type();
+  const bool hidden = kind == std::filesystem::file_type::none;  // the run itself says why
+  if (motion.starts_with("builtin:") || kind == std::filesystem::file_type::directory || hidden) return std::nullopt;
   return fmt::format("twin.motion: the folder {} is not there", motion);
 }
 

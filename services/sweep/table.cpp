@@ -125,7 +125,11 @@ Row failed_row(const Plan& plan, const Run& run, const std::string& error) {
   return row;
 }
 
-bool is_machine_time(std::string_view column) { return column.starts_with("frame_us_") || column.starts_with("stage_us_"); }
+bool is_machine_time(std::string_view column) {
+  return column.starts_with("frame_us_") || column.starts_with("stage_us_") || column == "detector_ms_p50";
+}
+
+bool is_metric(std::string_view column) { return std::ranges::find(metrics(), column, &Metric::column) != metrics().end(); }
 
 std::string print_row(const Row& row) {
   std::string line;
@@ -157,8 +161,6 @@ Row parse_row(std::string_view line) {
 std::size_t Table::index_of(const Row& row) { return std::stoul(row.front()); }
 
 Result<Table> read_table(const std::filesystem::path& file) {
-  std::error_code unknown;
-  if (std::filesystem::file_size(file, unknown) == 0) return Table();
   const auto text = config::read_text(file);
   if (!text) return tl::make_unexpected(text.error());
   Table table;

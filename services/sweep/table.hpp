@@ -35,6 +35,8 @@ Row failed_row(const Plan& plan, const Run& run, const std::string& error);
 
 /// A column of times this machine took: they differ from one run of the same to the next.
 bool is_machine_time(std::string_view column);
+/// A column of figures; those between the variant and them are settings.
+bool is_metric(std::string_view column);
 
 /// With its line end. Cells with a comma or quote are quoted; a line break becomes a blank.
 std::string print_row(const Row& row);

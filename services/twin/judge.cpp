@@ -143,8 +143,9 @@ class RigJudge final : public Judge {
     const std::size_t count = hand.mesh->vertex_count();
     for (auto* buffer : {&now_, &before_, &after_}) buffer->resize(count);
     renderer::skin(*hand.mesh, joints, now_);
-    renderer::skin(*hand.mesh, *joints_in_camera(side, time_ns - kVelocityStep_ns), before_);
-    renderer::skin(*hand.mesh, *joints_in_camera(side, time_ns + kVelocityStep_ns), after_);
+    // A hand that comes or goes just now has no velocity from there.
+    renderer::skin(*hand.mesh, joints_in_camera(side, time_ns - kVelocityStep_ns).value_or(joints), before_);
+    renderer::skin(*hand.mesh, joints_in_camera(side, time_ns + kVelocityStep_ns).value_or(joints), after_);
     project(now_, hand.screen);
 
     constexpr float kPerSecond = 1e9f / (2 * kVelocityStep_ns);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -16,7 +17,10 @@ using msg::kJoints;
 using std::filesystem::path;
 
 constexpr std::array<std::string_view, 2> kSideNames{"left", "right"};
-constexpr double kForearm_mm = 250;  ///< wrist to elbow in what is written; poses do not say
+constexpr std::array<std::string_view, 3> kStampFiles{"timestamps.npy", "camera_timestamps.npy", "landmarks_timestamps.npy"};
+constexpr double kMostStamp_us = 4e15;                   ///< so that differences in ns fit in 64 bits
+constexpr std::int64_t kMostGap_ns = 3'600'000'000'000;  ///< between the end of one sensor and the begin of another
+constexpr double kForearm_mm = 250;                      ///< wrist to elbow in what is written; poses do not say
 
 path array_file(const path& folder, std::string_view what, std::size_t side) {
   return folder / fmt::format("{}_{}.npy", what, kSideNames[side]);
@@ -39,19 +43,11 @@ Result<Npy> read_shaped(const path& file, const std::vector<std::size_t>& shape)
   return array;
 }
 
-Result<std::vector<std::int64_t>> read_times(const path& file) {
-  const auto array = read_npy(file);
-  if (!array) return tl::make_unexpected(array.error());
-  if (array->shape.size() != 1 || array->values.size() < 2)
-    return fail(Errc::bad_data, fmt::format("{}: needs one row of at least two times", file.string()));
-  std::vector<std::int64_t> time_ns;
-  for (const double time_us : array->values) {
-    const auto since_start_ns = static_cast<std::int64_t>(std::llround((time_us - array->values[0]) * 1e3));
-    if (!time_ns.empty() && since_start_ns <= time_ns.back())
-      return fail(Errc::bad_data, fmt::format("{}: time {} does not come after the one before it", file.string(), time_ns.size()));
-    time_ns.push_back(since_start_ns);
-  }
-  return time_ns;
+Result<void> remove_file(const path& file) {
+  std::error_code failed;
+  std::filesystem::remove(file, failed);
+  if (failed) return fail(Errc::unavailable, fmt::format("{}: cannot be removed: {}", file.string(), failed.message()));
+  return {};
 }
 
 /// A bone's rows are -Z, -Y and (for a left hand) -X; X follows from the other two, whichever hand it is.
@@ -143,14 +139,69 @@ void put(LeapArrays& arrays, std::size_t sample, const msg::HandPose& pose) {
 
 }  // namespace
 
+Result<bool> is_there(const path& file) {
+  std::error_code failed;
+  const bool there = std::filesystem::exists(file, failed);
+  if (failed) return fail(Errc::bad_config, fmt::format("'{}' cannot be looked for: {}", file.string(), failed.message()));
+  return there;
+}
+
+Result<std::vector<std::int64_t>> read_stamps_ns(const path& file) {
+  const auto array = read_npy(file);
+  if (!array) return tl::make_unexpected(array.error());
+  std::vector<std::int64_t> times_ns;
+  for (const double time_us : array->values) {
+    if (!(std::abs(time_us) < kMostStamp_us))
+      return fail(Errc::bad_data, fmt::format("{}: time {} is no time in microseconds", file.string(), times_ns.size()));
+    const double whole_us = std::floor(time_us);
+    const std::int64_t time_ns = static_cast<std::int64_t>(whole_us) * 1000 + std::llround((time_us - whole_us) * 1e3);
+    if (!times_ns.empty() && time_ns <= times_ns.back())
+      return fail(Errc::bad_data, fmt::format("{}: time {} does not come after the one before it", file.string(), times_ns.size()));
+    times_ns.push_back(time_ns);
+  }
+  return times_ns;
+}
+
+Result<std::vector<std::vector<std::int64_t>>> read_all_stamps_ns(const path& folder) {
+  std::vector<std::vector<std::int64_t>> all_ns;
+  for (const auto name : kStampFiles) {
+    const auto there = is_there(folder / name);
+    if (!there) return tl::make_unexpected(there.error());
+    if (!*there) continue;
+    auto times_ns = read_stamps_ns(folder / name);
+    if (!times_ns) return tl::make_unexpected(times_ns.error());
+    for (const auto& other_ns : all_ns)
+      if (!times_ns->empty() && std::max(times_ns->front() - other_ns.back(), other_ns.front() - times_ns->back()) > kMostGap_ns)
+        return fail(Errc::bad_config, fmt::format("{}: lies more than an hour from the recording's other times; all must be of one clock",
+                                                  (folder / name).string()));
+    if (!times_ns->empty()) all_ns.push_back(std::move(*times_ns));
+  }
+  return all_ns;
+}
+
+Result<void> remove_recording(const path& folder) {
+  for (const auto name : kStampFiles)
+    if (auto removed = remove_file(folder / name); !removed) return removed;
+  for (const auto what : {"joints", "bones", "landmarks"})
+    for (std::size_t side = 0; side < 2; ++side)
+      if (auto removed = remove_file(array_file(folder, what, side)); !removed) return removed;
+  return {};
+}
+
 Result<Recording> read_recording(const path& folder) {
-  auto times = read_times(folder / "timestamps.npy");
-  if (!times) return tl::make_unexpected(times.error());
+  const path stamps = folder / "timestamps.npy";
+  auto times_ns = read_stamps_ns(stamps);
+  if (!times_ns) return tl::make_unexpected(times_ns.error());
+  if (times_ns->size() < 2) return fail(Errc::bad_data, fmt::format("{}: needs one row of at least two times", stamps.string()));
   Recording recording;
-  recording.time_ns = std::move(*times);
+  recording.first_ns = times_ns->front();
+  recording.time_ns = std::move(*times_ns);
+  for (auto& time_ns : recording.time_ns) time_ns -= recording.first_ns;
   bool any = false;
   for (std::size_t side = 0; side < 2; ++side) {
-    if (!std::filesystem::exists(array_file(folder, "joints", side))) continue;
+    const auto there = is_there(array_file(folder, "joints", side));
+    if (!there) return tl::make_unexpected(there.error());
+    if (!*there) continue;
     auto hand = read_hand(folder, side, recording.time_ns.size());
     if (!hand) return tl::make_unexpected(hand.error());
     recording.hands[side] = std::move(*hand);
@@ -167,10 +218,14 @@ Result<void> write_recording(const path& folder, const Recording& recording) {
 
   const std::size_t samples = recording.time_ns.size();
   std::vector<std::int64_t> time_us;
-  for (const std::int64_t ns : recording.time_ns) time_us.push_back((ns + 500) / 1000);
+  for (const std::int64_t ns : recording.time_ns) time_us.push_back((recording.first_ns + ns + 500) / 1000);
   if (auto written = write_npy_i64(folder / "timestamps.npy", time_us); !written) return written;
   for (std::size_t side = 0; side < 2; ++side) {
-    if (recording.hands[side].empty()) continue;
+    if (recording.hands[side].empty()) {
+      for (const auto what : {"joints", "bones"})
+        if (auto removed = remove_file(array_file(folder, what, side)); !removed) return removed;
+      continue;
+    }
     if (recording.hands[side].size() != samples)
       return fail(Errc::bad_data, fmt::format("{}: {} poses for {} times", folder.string(), recording.hands[side].size(), samples));
     LeapArrays arrays(samples);

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdlib>
 
 #include "ipc/base/log.hpp"
 #include "supervisor/options.hpp"
+#include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/rig_runner.hpp"
 #include "supervisor/succession/keeper.hpp"
 #include "supervisor/verbs.hpp"
@@ -14,15 +14,6 @@ namespace {
 
 constexpr std::string_view kNoKeeper = "--no-keeper";  ///< for systemd, which is a keeper itself
 constexpr std::string_view kKept = "--kept";           ///< for the keeper, not for a person
-
-Result<std::optional<double>> parse_seconds(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  double seconds = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (error != std::errc{} || end != text.data() + text.size() || !(seconds > 0))
-    return fail(Errc::bad_data, fmt::format("--seconds {}: expected a time above 0", text));
-  return seconds;
-}
 
 bool take_successor_mark() {
   const bool is_successor = std::getenv(kSuccessorVariable) != nullptr;
@@ -44,21 +35,26 @@ int run_up(const Arguments& arguments) {
   const auto options = sort_options(
       arguments, {.with_value = {"--set", "--seconds", "--out"}, .flags = {kNoKeeper, kKept}, .least_words = 1, .most_words = 1});
   if (!options) return complain(kExitUsage, "up: " + options.error().what + "; `handcast help up`");
-  const auto seconds = parse_seconds(options->value("--seconds"));
-  if (!seconds) return complain(kExitUsage, "up: " + seconds.error().what);
+  std::optional<double> seconds;
+  if (options->has("--seconds")) {
+    const auto parsed = parse_seconds(options->value("--seconds"));
+    if (!parsed) return complain(kExitUsage, "up: " + parsed.error().what);
+    seconds = *parsed;
+  }
   if (!options->has(kKept) && !options->has(kNoKeeper)) return keep_up(arguments);
 
   RunOptions run{.rig_file = std::filesystem::absolute(options->words.front()),
                  .settings = options->all("--set"),
                  .program_folder = program_folder(),
-                 .seconds = *seconds,
+                 .seconds = seconds,
                  .out = {},
                  .is_successor = take_successor_mark()};
   if (options->has("--out")) {
     run.out = std::filesystem::absolute(options->value("--out"));
     setenv("HANDCAST_OUT", run.out->c_str(), 1);  // the services write there too: part of their contract (services/runtime/context.hpp)
   }
-  const auto rig = config::load_rig(run.rig_file, run.settings);
+  const auto applied = applied_before(run.rig_file, run.settings);
+  const auto rig = applied ? *applied : config::load_rig(run.rig_file, run.settings);
   if (!rig) return complain(rig.error());
   auto runner = RigRunner::open(*rig, std::move(run));
   if (!runner) return complain(runner.error());

@@ -36,6 +36,7 @@ struct Plan {
   std::vector<int> inherited;  ///< descriptors that exec does not close
   Pipe log, ready;
   Pipe turn;  ///< of a spare
+  bool log_errors = true;
 };
 
 tl::unexpected<Error> cannot(std::string_view what) { return fail(Errc::unavailable, fmt::format("{}: {}", what, std::strerror(errno))); }
@@ -61,6 +62,7 @@ std::vector<std::string> inherited_environment() {
 
 Result<Plan> make_plan(const ChildSpec& spec) {
   Plan plan;
+  plan.log_errors = spec.log_errors;
   plan.arguments.push_back(spec.program.string());
   plan.arguments.insert(plan.arguments.end(), spec.arguments.begin(), spec.arguments.end());
 
@@ -105,7 +107,8 @@ class SpawnActions {
   explicit SpawnActions(const Plan& plan) {
     posix_spawn_file_actions_init(&files_);
     posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    for (const int output : {STDOUT_FILENO, STDERR_FILENO}) posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), output);
+    posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDOUT_FILENO);
+    if (plan.log_errors) posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDERR_FILENO);
     for (const int fd : plan.inherited) posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: exec does not close it
 
     sigset_t none, stops;
@@ -226,7 +229,7 @@ std::optional<Exit> Child::try_reap_adopted() {
 }
 
 Result<std::string> output_of(const std::filesystem::path& program, const std::vector<std::string>& arguments, int limit_ms) {
-  auto child = Child::spawn({.program = program, .arguments = arguments});
+  auto child = Child::spawn({.program = program, .arguments = arguments, .log_errors = false});
   if (!child) return tl::make_unexpected(child.error());
 
   const auto deadline = Deadline::in(std::chrono::milliseconds(limit_ms));

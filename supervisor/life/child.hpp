@@ -22,7 +22,8 @@ struct ChildSpec {
   std::vector<std::string> arguments;
   std::vector<std::pair<std::string, int>> rings;  ///< stream and the supervisor's descriptor of its segment
   std::int64_t epoch_ns = 0;
-  bool spare = false;  ///< it prepares everything and waits for its turn
+  bool spare = false;      ///< it prepares everything and waits for its turn
+  bool log_errors = true;  ///< stderr is read with stdout; otherwise it is this process's own
 };
 
 /// One process of a daemon, leader of its own session. It outlives a supervisor that dies; destroying the object kills it and

@@ -1,5 +1,7 @@
 #include "supervisor/life/log_tail.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 
@@ -22,6 +24,16 @@ void LogTail::append(std::string_view bytes, const std::function<void(std::strin
     if (byte != '\n') unfinished_ += byte;
     if (byte == '\n' || unfinished_.size() == kLongestLine) finish_line(on_line);
   }
+}
+
+bool LogTail::read_from(int fd, const std::function<void(std::string_view)>& on_line, int most_reads) {
+  std::array<char, 4096> bytes;
+  for (int i = 0; i < most_reads; ++i) {
+    const auto count = ::read(fd, bytes.data(), bytes.size());
+    if (count <= 0) return count < 0;
+    append({bytes.data(), static_cast<std::size_t>(count)}, on_line);
+  }
+  return true;
 }
 
 void LogTail::finish_line(const std::function<void(std::string_view)>& on_line) {

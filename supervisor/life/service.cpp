@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,15 +27,18 @@ std::optional<ipc::RingView> look_at(std::string_view stream, const std::vector<
   return std::nullopt;
 }
 
+/// When a process started. Its ticks count the time that the machine was asleep, now_ns() does not.
+std::int64_t start_of(std::uint64_t ticks) {
+  timespec since_boot{};
+  clock_gettime(CLOCK_BOOTTIME, &since_boot);
+  const auto started_ns = static_cast<std::int64_t>(ticks) * (1'000'000'000 / sysconf(_SC_CLK_TCK));
+  return now_ns() - (since_boot.tv_sec * 1'000'000'000 + since_boot.tv_nsec - started_ns);
+}
+
 /// Good enough to keep services that died together apart.
 double any_jitter() { return static_cast<double>(now_ns() % 1009) / 1009; }
 
 }  // namespace
-
-std::string_view name_of(State state) {
-  constexpr std::array<std::string_view, 6> kNames{"stopped", "starting", "ready", "stopping", "degraded", "failed"};
-  return kNames[static_cast<std::size_t>(state)];
-}
 
 Service::Service(ServiceSpec spec, const Launch& launch, EventLoop& loop, OnEvent on_event)
     : spec_(std::move(spec)),
@@ -101,18 +105,24 @@ void Service::take(Child child) {
   if (child_->ready_fd() >= 0) loop_.watch(child_->ready_fd(), [this] { read_ready(); });
 }
 
+void Service::inherit(const SavedService& saved) {
+  restarts_ = saved.restarts;
+  if (!saved.swapped.empty()) spec_.backend = backend_override_ = saved.swapped;
+  spec_.fingerprint = saved.fingerprint;  // what it runs with, whatever the file says by now
+  if (saved.state != State::failed && saved.state != State::stopped) return;
+  state_ = saved.state;
+  first_start_ = now_ns();
+}
+
 void Service::adopt(AdoptedProcess process) {
   const auto saved = process.saved;
   begin_life();
-  started_ns_ = static_cast<std::int64_t>(saved.started_ticks) * (1'000'000'000 / sysconf(_SC_CLK_TCK));
+  started_ns_ = start_of(saved.started_ticks);
   adopted_ = true;
-  restarts_ = saved.restarts;
-  if (saved.backend != spec_.backend) spec_.backend = backend_override_ = saved.backend;
-  spec_.fingerprint = saved.fingerprint;  // what it runs with, whatever the file says by now
   take(Child::adopt(std::move(process), *launch_.reports));
   said_ready_ = true;  // whether it did is not known: its pipe went with the earlier supervisor
   due_ns_ = kNever;
-  if (saved.ready || !stream_) became_ready();
+  if (saved.state == State::ready || !stream_) became_ready();
 }
 
 void Service::stop() {
@@ -126,6 +136,7 @@ void Service::stop() {
 }
 
 void Service::kill() {
+  killed_ns_ = now_ns();
   if (child_) child_->signal(SIGKILL);
   if (state_ == State::stopping) standby_.kill();
 }
@@ -158,8 +169,8 @@ SavedService Service::saved() const {
   return {.name = spec_.name,
           .pid = pid(),
           .started_ticks = child_ ? start_ticks_of(child_->pid()).value_or(0) : 0,
-          .ready = state_ == State::ready,
-          .backend = spec_.backend,
+          .state = state_,
+          .swapped = backend_override_,
           .fingerprint = spec_.fingerprint,
           .restarts = restarts_};
 }
@@ -190,12 +201,8 @@ void Service::forgive(std::int64_t span_ns) {
   last_tick_ns_ += span_ns;
 }
 
-void Service::read_log(const Child& child) {
-  std::array<char, 4096> bytes;
-  ssize_t count = 0;
-  while ((count = ::read(child.log_fd(), bytes.data(), bytes.size())) > 0)
-    log_.append({bytes.data(), static_cast<std::size_t>(count)}, print_line);
-  if (count == 0) loop_.forget(child.log_fd());
+void Service::read_log(const Child& child, int most_reads) {
+  if (!log_.read_from(child.log_fd(), print_line, most_reads)) loop_.forget(child.log_fd());
 }
 
 void Service::read_ready() {
@@ -261,7 +268,7 @@ void Service::child_ended() {
   ++revision_;
   last_exit_ = exit;
   if (state_ == State::stopping) {
-    read_log(dead);
+    read_log(dead, LogTail::kAllReads);
     let_go(dead);
     if (start_when_stopped_) return start();
     return is_running() ? void() : stopped();
@@ -269,7 +276,7 @@ void Service::child_ended() {
   const auto decision = judge(*exit);
   const bool at_once = state_ == State::starting && (decision.wait_ns == 0 || standby_.is_prepared());
   if (at_once) start();
-  read_log(dead);
+  read_log(dead, LogTail::kAllReads);
   let_go(dead);
   if (at_once) return log_death(*exit, decision);
   tell(*exit, decision);

@@ -14,6 +14,7 @@
 #include "supervisor/life/log_tail.hpp"
 #include "supervisor/life/restart_policy.hpp"
 #include "supervisor/life/standby.hpp"
+#include "supervisor/life/state.hpp"
 #include "supervisor/life/streams.hpp"
 #include "supervisor/succession/adoption.hpp"
 
@@ -29,16 +30,6 @@ struct Launch {
   ExitReports* reports = nullptr;  ///< for processes of an earlier supervisor
 };
 
-enum class State {
-  stopped,   ///< as asked, or its work is done
-  starting,  ///< started and not ready, or about to be started (again)
-  ready,
-  stopping,
-  degraded,  ///< dies too often; retried slowly
-  failed     ///< a person must change something; not retried
-};
-std::string_view name_of(State state);
-
 /// One service over its many lives: starts it, sees that it gets ready, starts it again when it dies, stops it. Ready is a service
 /// that said so and, where it publishes a stream, has published its first message.
 class Service {
@@ -53,6 +44,8 @@ class Service {
   /// It will be started when its needs are met: State::starting until then.
   void hold();
   void start();
+  /// Takes what an earlier supervisor knew of it: one that had failed or stopped stays so. Call it before `adopt` and `start`.
+  void inherit(const SavedService& saved);
   /// Goes on with a process that an earlier supervisor started, as ready as it was.
   void adopt(AdoptedProcess process);
   void stop();     ///< asks, and kills after stop_s; Event::stopped follows, at once where nothing runs
@@ -83,6 +76,7 @@ class Service {
   std::optional<std::int64_t> first_start_ns() const { return first_start_; }  ///< empty: it was never started
   int restarts() const { return restarts_; }
   bool ever_ready() const { return ever_ready_; }
+  std::int64_t killed_ns() const { return killed_ns_; }  ///< when kill() was last called; 0: never
   const std::optional<Exit>& last_exit() const { return last_exit_; }
   const LogTail& log() const { return log_; }
   std::size_t recent_deaths() const { return deaths_.recent_ns.size(); }  ///< within the minute before the last
@@ -104,7 +98,7 @@ class Service {
 
   void begin_life();
   void take(Child child);
-  void read_log(const Child& child);
+  void read_log(const Child& child, int most_reads = LogTail::kReadsAtOnce);
   void read_ready();
   void expect_first_message(std::int64_t now_ns, bool needs_are_ready);
   void became_ready();
@@ -122,7 +116,6 @@ class Service {
   const Launch& launch_;
   EventLoop& loop_;
   OnEvent on_event_;
-  std::string file_backend_;             ///< as the rig file has it; spec_ has the one that runs
   std::optional<ipc::RingView> stream_;  ///< of what it publishes
   Standby standby_;
 
@@ -133,6 +126,7 @@ class Service {
   std::optional<Exit> last_exit_;
   std::optional<std::int64_t> ready_ns_, first_start_;
   std::int64_t started_ns_ = 0;
+  std::int64_t killed_ns_ = 0;
   std::int64_t due_ns_ = kNever;  ///< starting: too late to say it is ready, or time to start again; stopping: time to kill
   bool said_ready_ = false;
   bool adopted_ = false;

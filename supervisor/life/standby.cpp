@@ -85,12 +85,8 @@ void Standby::forgive(std::int64_t span_ns) {
     if (*time_ns < kNever - span_ns) *time_ns += span_ns;
 }
 
-void Standby::read_log() {
-  std::array<char, 4096> bytes;
-  ssize_t count = 0;
-  while ((count = ::read(child_->log_fd(), bytes.data(), bytes.size())) > 0)
-    log_.append({bytes.data(), static_cast<std::size_t>(count)}, host_.on_line);
-  if (count == 0) loop_.forget(child_->log_fd());
+void Standby::read_log(int most_reads) {
+  if (!log_.read_from(child_->log_fd(), host_.on_line, most_reads)) loop_.forget(child_->log_fd());
 }
 
 void Standby::read_signs() {
@@ -106,7 +102,7 @@ void Standby::child_ended() {
   const auto exit = child_->try_reap();
   if (!exit) return;
   const Death death{now_ns(), prepared_ns_, *exit};
-  read_log();
+  read_log(LogTail::kAllReads);
   let_go();
   child_.reset();
   prepared_ns_.reset();

@@ -47,7 +47,7 @@ class Standby {
   static constexpr auto kNever = std::numeric_limits<std::int64_t>::max();
 
   void start(std::int64_t now_ns);
-  void read_log();
+  void read_log(int most_reads = LogTail::kReadsAtOnce);
   void read_signs();
   void child_ended();
   void let_go();

@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "ipc/base/clock.hpp"
+#include "supervisor/life/state.hpp"
 #include "supervisor/top/top_model.hpp"
 
 namespace handcast::supervisor {
@@ -21,8 +22,6 @@ using prometheus::ClientMetric;
 using prometheus::MetricFamily;
 using prometheus::MetricType;
 using Labels = std::vector<ClientMetric::Label>;
-
-constexpr std::array<std::string_view, 6> kStates{"stopped", "starting", "ready", "stopping", "degraded", "failed"};
 
 /// One figure of many things.
 struct Family {
@@ -54,7 +53,7 @@ void append(std::vector<MetricFamily>& families, std::vector<MetricFamily> more)
 std::vector<MetricFamily> families_of_rig(const TopModel& model) {
   auto info = Family::gauge("handcast_rig_info", "The rig these figures are of; always 1.");
   auto up = Family::gauge("handcast_supervisor_up", "1 while the rig's supervisor answers.");
-  auto uptime = Family::gauge("handcast_supervisor_uptime_seconds", "Since the supervisor's start.");
+  auto uptime = Family::gauge("handcast_supervisor_uptime_seconds", "Since the rig's start, whichever supervisor it has by now.");
   info.add({{"rig", model.rig}}, 1);
   up.add({}, model.missing.empty() ? 1 : 0);
   uptime.add({}, model.uptime_s);
@@ -64,7 +63,7 @@ std::vector<MetricFamily> families_of_rig(const TopModel& model) {
 MetricFamily states_of(const std::vector<ServiceRow>& services) {
   auto states = Family::gauge("handcast_service_state", "1 for the state a service is in, 0 for all others.");
   for (const auto& service : services)
-    for (const auto state : kStates) states.add({{"service", service.name}, {"state", std::string(state)}}, service.state == state);
+    for (const auto state : kStateNames) states.add({{"service", service.name}, {"state", std::string(state)}}, service.state == state);
   return states.family;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace handcast::supervisor {
@@ -12,6 +13,7 @@ constexpr int kMostAtOnce = 2048;  ///< a service that runs wild must not keep t
 }  // namespace
 
 Result<void> Recorder::follow(std::string service, int ring_fd) {
+  if (std::ranges::find(sources_, service, &Source::service) != sources_.end()) return {};
   auto segment = ipc::Segment::open(UniqueFd(fcntl(ring_fd, F_DUPFD_CLOEXEC, 3)));
   if (!segment) return tl::make_unexpected(segment.error());
   auto marks = ipc::Reader<msg::StageMarks>::attach(std::move(*segment));

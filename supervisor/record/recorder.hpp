@@ -14,7 +14,7 @@ namespace handcast::supervisor {
 class Recorder {
  public:
   explicit Recorder(double history_s = 60) : history_(history_s) {}
-  /// Follows "marks.<service>", behind the descriptor (which stays the caller's).
+  /// Follows "marks.<service>", behind the descriptor (which stays the caller's), unless it does already.
   Result<void> follow(std::string service, int ring_fd);
   void poll();
   const Ledger& ledger() const { return ledger_; }

@@ -22,16 +22,23 @@ std::vector<pid_t> children_of(pid_t parent) {
   return children;
 }
 
-/// The keeper's children, but for this supervisor, are what earlier ones have left. What is not taken over (a spare, a service that
-/// was started an instant before the end and noted nowhere) would only be in the way.
-void end_strays(const ExitReports& reports, const std::optional<AdoptedRig>& adopted) {
+/// Whether it is a process that a supervisor started: a leader of its own session that runs one of our daemons, replaced by now or not.
+bool is_a_daemon(pid_t pid, const std::filesystem::path& program_folder) {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink(fmt::format("/proc/{}/exe", pid), error);
+  return !error && getsid(pid) == pid && program.string().starts_with((program_folder / "handcast-").string());
+}
+
+/// Daemons among the keeper's children are what earlier supervisors have left. What is not taken over (a spare, a service that
+/// was started an instant before the end and noted nowhere) would only be in the way. Who became a keeper by exec has other children too.
+void end_strays(const ExitReports& reports, const std::optional<AdoptedRig>& adopted, const std::filesystem::path& program_folder) {
   const auto keeper = reports.keeper();
   if (keeper < 0) return;
   const auto children = children_of(keeper);
   if (reports.keeper() != keeper) return;  // it died, and these may be anybody's
   for (const auto pid : children) {
     const auto is_it = [&](const AdoptedProcess& process) { return process.saved.pid == pid; };
-    if (pid == getpid() || (adopted && std::ranges::any_of(adopted->services, is_it))) continue;
+    if (!is_a_daemon(pid, program_folder) || (adopted && std::ranges::any_of(adopted->services, is_it))) continue;
     ::kill(-pid, SIGKILL);
     ::kill(pid, SIGKILL);
   }
@@ -53,7 +60,7 @@ Result<void> RigRunner::inherit_or_make(const config::Rig& rig) {
   auto adopted = adopt(name_);
   if (!adopted) return tl::make_unexpected(adopted.error());
   reports_.read();
-  end_strays(reports_, *adopted);
+  end_strays(reports_, *adopted, launch_.program_folder);
   if (!*adopted) return make_rings(rig);
   auto taken = take_over(std::move(**adopted), rig);
   if (!taken)
@@ -70,14 +77,14 @@ Result<void> RigRunner::take_over(AdoptedRig adopted, const config::Rig& rig) {
   rings_ = std::move(adopted.rings);
   if (auto fits = check_types(rings_, rings_of(specs)); !fits) return fits;
   if (auto fits = check_change(rig, specs); !fits) return fits;
-  for (const auto& spec : specs)
-    for (const auto& [stream, fd] : launch_.rings)
-      if (stream == "marks." + spec.name)
-        if (const auto followed = recorder_.follow(spec.name, fd); !followed) return fail_in("the recorder", followed.error());
   if (auto added = add_rings(specs); !added) return added;
 
   for (const auto& spec : specs) add_service(spec, services_.size());
   report_deaths(adopted);
+  for (const auto& saved : adopted.saved.services) {
+    const bool was_between = saved.state == State::starting || saved.state == State::stopping;  // it is begun anew
+    if (const auto service = find(saved.name); service && !was_between) service->inherit(saved);
+  }
   for (auto& process : adopted.services) {
     log::info("{} (pid {}) lives and is taken over", process.saved.name, process.saved.pid);
     if (!find(process.saved.name)) add_service({.name = process.saved.name}, services_.size());  // not in the rig any more: reload stops it
@@ -102,7 +109,7 @@ void RigRunner::continue_run(const SavedRig& saved) {
 void RigRunner::report_deaths(const AdoptedRig& adopted) {
   for (const auto& saved : adopted.saved.services) {
     const auto is_it = [&](const AdoptedProcess& process) { return process.saved.pid == saved.pid; };
-    if (saved.pid == 0 || !saved.ready || std::ranges::any_of(adopted.services, is_it)) continue;
+    if (saved.pid == 0 || saved.state != State::ready || std::ranges::any_of(adopted.services, is_it)) continue;
     const auto exit = reports_.take(saved.pid).value_or(Exit{.unknown = true});
     log::warning("{} (pid {}) died while there was no supervisor ({})", saved.name, saved.pid, exit.describe());
   }

@@ -33,13 +33,12 @@ std::string difference(const ipc::Segment& ring, const ipc::RingSpec& wanted) {
 
 }  // namespace
 
-void RigRunner::reload(ControlServer::Reply reply) {
+void RigRunner::reload(Result<config::Rig> rig, bool revives, ControlServer::Reply reply) {
   const auto refuse = [&](const std::string& sentence) {
     log::warning("not reloaded: {}", sentence);
     reply(failure(sentence));
   };
   if (const auto reason = why_not_reload(); !reason.empty()) return refuse(reason);
-  auto rig = config::load_rig(options_.rig_file, options_.settings);
   if (!rig) return refuse(rig.error().what);
   const auto specs = services_of(with_swaps(*rig));
   if (const auto possible = check_change(*rig, specs); !possible) return refuse(possible.error().what);
@@ -50,6 +49,7 @@ void RigRunner::reload(ControlServer::Reply reply) {
 
   reload_.emplace();
   reload_->reply = std::move(reply);
+  reload_->revives = revives;
   reload_->changed = config::print_rig(*rig) != config::print_rig(rig_);
   launch_.ready_s = rig->supervisor.ready_s;
   launch_.stop_s = rig->supervisor.stop_s;
@@ -106,10 +106,11 @@ Result<void> RigRunner::add_rings(const std::vector<ServiceSpec>& specs) {
     if (!segment) return fail_in(fmt::format("ring {}", wanted.stream), segment.error());
     launch_.rings.emplace_back(wanted.stream, segment->fd());
     rings_.push_back(std::move(*segment));
-    for (const auto& spec : specs)
-      if (wanted.stream == "marks." + spec.name)
-        if (auto followed = recorder_.follow(spec.name, rings_.back().fd()); !followed) return fail_in("the recorder", followed.error());
   }
+  for (const auto& spec : specs)
+    for (const auto& [stream, fd] : launch_.rings)
+      if (stream == "marks." + spec.name)
+        if (auto followed = recorder_.follow(spec.name, fd); !followed) return fail_in("the recorder", followed.error());
   return {};
 }
 
@@ -127,7 +128,7 @@ void RigRunner::apply(const std::vector<ServiceSpec>& specs) {
       continue;
     }
     const bool not_begun = !service->first_start_ns();
-    const bool stale = service->spec().fingerprint != spec.fingerprint || has_given_up(*service);
+    const bool stale = service->spec().fingerprint != spec.fingerprint || (reload_->revives && has_given_up(*service));
     service->update(spec);
     if (stale && !not_begun) reload_->restarted.push_back(spec.name);
   }

@@ -48,7 +48,7 @@ void RigRunner::on_request(const Request& request, ControlServer::Reply reply) {
     case Verb::swap:
       return change(request, std::move(reply));
     case Verb::reload:
-      return reload(std::move(reply));
+      return reload(config::load_rig(options_.rig_file, options_.settings), true, std::move(reply));
     case Verb::rings:
       return give_rings(reply);
     case Verb::history:

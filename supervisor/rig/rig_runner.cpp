@@ -109,8 +109,9 @@ int RigRunner::run() {
   for (const auto& service : services_)
     if (!service->first_start_ns()) service->hold();
   last_tick_ns_ = now_ns();
+  // A reload was cut short, or `handcast up` came with other settings.
+  if (inherited_) reload(rig_, false, ControlServer::Reply([](const auto&, const auto&) {}));
   follow_up();
-  if (inherited_) reload(ControlServer::Reply([](const auto&, const auto&) {}));  // the file may have changed meanwhile
   while (phase_ != Phase::done) {
     loop_.turn();
     follow_up();
@@ -133,6 +134,7 @@ void RigRunner::tick() {
 
 /// After each turn of the event loop: what can wait until those who died have successors.
 void RigRunner::follow_up() {
+  come_up();
   if (phase_ == Phase::starting || phase_ == Phase::up) start_those_held();
   std::uint64_t revision = 0;
   for (const auto& service : services_) revision += service->revision();
@@ -152,11 +154,13 @@ bool RigRunner::needs_are_ready(const Service& service) const {
 bool RigRunner::may_begin(const Service& service, std::int64_t now) const {
   return std::ranges::all_of(service.spec().needs, [&](const auto& name) {
     const auto* need = find(name);
-    if (!need) return true;
-    const auto state = need->state();
-    if (state != State::starting && state != State::stopping) return true;
-    return need->first_start_ns() && now - *need->first_start_ns() > seconds_to_ns(launch_.ready_s);
+    return !need || need_not_be_waited_for(*need, now);
   });
+}
+
+bool RigRunner::need_not_be_waited_for(const Service& service, std::int64_t now) const {
+  if (service.state() != State::starting && service.state() != State::stopping) return true;
+  return service.first_start_ns() && now - *service.first_start_ns() > seconds_to_ns(launch_.ready_s);
 }
 
 void RigRunner::start_those_held() {
@@ -181,7 +185,7 @@ void RigRunner::replace_the_silent(std::int64_t now) {
     if (service->state() != State::ready) continue;
     const auto silence_ms = recorder_.silence_ms(service->spec().name, now);
     const auto heard_ns = silence_ms ? now - ms_to_ns(*silence_ms) : 0;
-    const auto silent_s = ns_to_seconds(now - std::max({heard_ns, *service->ready_ns(), forgiven_ns_}));
+    const auto silent_s = ns_to_seconds(now - std::max({heard_ns, *service->ready_ns(), service->killed_ns(), forgiven_ns_}));
     if (silent_s < launch_.silent_s) continue;
     log::warning("{} has given no sign of life for {:.1f} s; killed", service->spec().name, silent_s);
     service->kill();
@@ -217,8 +221,13 @@ void RigRunner::on_ready(Service& service) {
               ? success()
               : failure(fmt::format("{} did not start with '{}', '{}' goes on: {}", service.spec().name, wanted, before, reason)));
   }
-  const auto ever_ready = [](const auto& each) { return each->ever_ready(); };
-  if (phase_ != Phase::starting || !std::ranges::all_of(services_, ever_ready)) return;
+}
+
+/// A service that is no good does not keep the rig from being up; one that was taken over is.
+void RigRunner::come_up() {
+  const auto now = now_ns();
+  const auto has_begun = [&](const auto& service) { return service->ever_ready() || need_not_be_waited_for(*service, now); };
+  if (phase_ != Phase::starting || !(inherited_ || std::ranges::all_of(services_, has_begun))) return;
   phase_ = Phase::up;
   log::info("rig '{}' is up", name_);
   notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", name_));
@@ -233,7 +242,8 @@ void RigRunner::on_failed(Service& service) {
     return give_backend(service, pending->second.before, false);
   }
   if (pending != pending_.end()) pending_.extract(pending).mapped().reply(failure(fmt::format("{} failed: {}", name, sentence)));
-  if (phase_ != Phase::starting || service.ever_ready()) return;
+  const bool reloaded = reload_ && reload_->begun.contains(name);  // the rig was there before
+  if (phase_ != Phase::starting || service.ever_ready() || reloaded) return;
   print_line(fmt::format("handcast: {} cannot start: {}", name, sentence));
   begin_stop(kExitConfig);
 }
@@ -262,7 +272,7 @@ void RigRunner::finish() {
   if (options_.out && exit_code_ == 0) {
     if (const auto written = write_report(*options_.out, live_report(view())); !written) {
       log::error("{}", written.error().what);
-      exit_code_ = kExitFailure;
+      exit_code_ = kExitConfig;  // not kExitFailure: the rig is not to be started again
     }
   }
   forget_saved(name_);
@@ -273,15 +283,14 @@ void RigRunner::finish() {
 }
 
 void RigRunner::save() const {
+  if (phase_ == Phase::stopping) return;  // one who takes over here shall not take the services that were stopped for idle ones
   SavedRig saved{.name = name_,
                  .rig_file = options_.rig_file,
                  .settings = options_.settings,
-                 .end_ns = {},
                  .out = options_.out ? options_.out->string() : "",
                  .epoch_ns = launch_.epoch_ns,
                  .rings = {},
                  .services = {}};
-  if (options_.seconds) saved.end_ns = started_ns_ + seconds_to_ns(*options_.seconds);
   for (const auto& ring : rings_) {
     struct stat status {};
     if (fstat(ring.fd(), &status) == 0) saved.rings.push_back({ring.stream(), status.st_ino, ring.fd()});

@@ -29,6 +29,7 @@ struct RunOptions {
 /// A reload that is answered when everything it touched has settled (rig_reload.cpp).
 struct Reload {
   ControlServer::Reply reply;
+  bool revives = true;                                     ///< those that have given up are tried again
   bool changed = false;                                    ///< the file says something else than before
   std::vector<std::string> restarted, started, stopped;    ///< services, as the person is told
   std::vector<std::string> waiting;                        ///< of these: not begun, because what they need has not settled
@@ -67,7 +68,9 @@ class RigRunner {
   void follow_up();
   bool needs_are_ready(const Service& service) const;
   bool may_begin(const Service& service, std::int64_t now_ns) const;
+  bool need_not_be_waited_for(const Service& service, std::int64_t now_ns) const;
   void start_those_held();
+  void come_up();
   void forgive_a_standstill(std::int64_t now_ns);
   void replace_the_silent(std::int64_t now_ns);
   void progress(std::int64_t now_ns);
@@ -80,8 +83,9 @@ class RigRunner {
 
   void on_request(const Request& request, ControlServer::Reply reply);
   void change(const Request& request, ControlServer::Reply reply);
-  /// Reads the rig file again and restarts the services whose fingerprints changed (rig_reload.cpp).
-  void reload(ControlServer::Reply reply);
+  /// Makes this rig the one that is applied: restarts the services whose fingerprints changed, and where it `revives` those that have
+  /// given up (rig_reload.cpp).
+  void reload(Result<config::Rig> rig, bool revives, ControlServer::Reply reply);
   std::string why_not_reload() const;
   Result<void> check_change(const config::Rig& rig, const std::vector<ServiceSpec>& specs) const;
   Result<void> add_rings(const std::vector<ServiceSpec>& specs);

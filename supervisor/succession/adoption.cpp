@@ -111,7 +111,7 @@ UniqueFd reopen_log(pid_t pid) { return UniqueFd(::open(fmt::format("/proc/{}/fd
 std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
   std::vector<AdoptedProcess> ready;
   for (auto& process : living) {
-    if (!process.saved.ready) {
+    if (process.saved.state != State::ready) {
       log::info("{} was just starting when its supervisor died; it is started again", process.saved.name);
       kill_now(process);
       continue;

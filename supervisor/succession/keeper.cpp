@@ -83,7 +83,8 @@ class Keeper {
       const auto started_ns = now_ns();
       start();
       while (supervisor_ > 0) handle(wait_for_signal(kMinute_ns));
-      if (exit_ && !exit_->signalled) return see_off(exit_->code);
+      const bool cannot_now = is_successor_ && exit_ && exit_->code == kExitFailure;
+      if (exit_ && !exit_->signalled && !cannot_now) return see_off(exit_->code);
       deaths_.note(started_ns, now_ns());
       if (deaths_.too_many(now_ns())) return give_up();
       const auto pause_ns = deaths_.pause_ns();
@@ -91,6 +92,7 @@ class Keeper {
                    pause_ns > 0 ? fmt::format(" after {:g} ms", ns_to_ms(pause_ns)) : "");
       for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns;) handle(wait_for_signal(until_ns - now_ns()));
       plan_.for_a_successor();
+      is_successor_ = true;
     }
   }
 
@@ -185,6 +187,7 @@ class Keeper {
   sigset_t stop_signals_{}, awaited_{};
   sigset_t asked_{};  ///< stop signals that came: a successor gets them too, since its predecessor did not stop the rig
   pid_t supervisor_ = -1;
+  bool is_successor_ = false;  ///< what runs took over from one that died: its services may live
   std::optional<Exit> exit_;
 };
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -19,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 1;                     ///< raise it when a member changes its meaning
+constexpr int kVersion = 2;                     ///< raise it when a member changes its meaning
 constexpr std::size_t kMostBytes = 1 << 20;     ///< a rig needs some 3 KB
 constexpr int kLeastFd = 3, kMostFd = 1 << 20;  ///< below: stdin, stdout, stderr
 constexpr pid_t kLeastPid = 2, kMostPid = 1 << 22;
@@ -48,8 +49,12 @@ std::string boot_id() { return text_of_proc("/proc/sys/kernel/random/boot_id").s
 json to_json(const SavedRing& ring) { return {{"stream", ring.stream}, {"inode", ring.inode}, {"fd", ring.fd}}; }
 
 json to_json(const SavedService& service) {
-  return {{"name", service.name},        {"pid", service.pid},         {"started_ticks", service.started_ticks},
-          {"ready", service.ready},      {"backend", service.backend}, {"fingerprint", service.fingerprint},
+  return {{"name", service.name},
+          {"pid", service.pid},
+          {"started_ticks", service.started_ticks},
+          {"state", name_of(service.state)},
+          {"swapped", service.swapped},
+          {"fingerprint", service.fingerprint},
           {"restarts", service.restarts}};
 }
 
@@ -57,7 +62,6 @@ json to_json(const SavedRig& rig) {
   json object{{"version", kVersion},      {"boot", boot_id()}, {"name", rig.name},         {"rig_file", rig.rig_file.string()},
               {"settings", rig.settings}, {"out", rig.out},    {"epoch_ns", rig.epoch_ns}, {"rings", json::array()},
               {"services", json::array()}};
-  if (rig.end_ns) object["end_ns"] = *rig.end_ns;
   for (const auto& ring : rig.rings) object["rings"].push_back(to_json(ring));
   for (const auto& service : rig.services) object["services"].push_back(to_json(service));
   return object;
@@ -65,12 +69,18 @@ json to_json(const SavedRig& rig) {
 
 SavedRing ring_from(const json& object) { return {object.at("stream"), object.at("inode"), object.at("fd")}; }
 
+/// A name that nobody knows means the least: it is to be started.
+State state_named(const std::string& name) {
+  const auto found = std::ranges::find(kStateNames, name);
+  return found == kStateNames.end() ? State::starting : static_cast<State>(found - kStateNames.begin());
+}
+
 SavedService service_from(const json& object) {
   return {.name = object.at("name"),
           .pid = object.at("pid"),
           .started_ticks = object.at("started_ticks"),
-          .ready = object.at("ready"),
-          .backend = object.at("backend"),
+          .state = state_named(object.at("state")),
+          .swapped = object.at("swapped"),
           .fingerprint = object.at("fingerprint"),
           .restarts = object.at("restarts")};
 }
@@ -80,12 +90,10 @@ SavedRig rig_from(const json& object) {
   SavedRig rig{.name = object.at("name"),
                .rig_file = object.at("rig_file").get<std::string>(),
                .settings = object.at("settings"),
-               .end_ns = {},
                .out = object.at("out"),
                .epoch_ns = object.at("epoch_ns"),
                .rings = {},
                .services = {}};
-  if (object.contains("end_ns")) rig.end_ns = object.at("end_ns").get<std::int64_t>();
   for (const auto& ring : object.at("rings")) rig.rings.push_back(ring_from(ring));
   for (const auto& service : object.at("services")) rig.services.push_back(service_from(service));
   return rig;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
+#include "supervisor/life/state.hpp"
 
 // contract
 namespace handcast::supervisor {
@@ -22,8 +23,8 @@ struct SavedService {
   std::string name;
   pid_t pid = 0;                    ///< of the process that works (not of a spare); 0: none
   std::uint64_t started_ticks = 0;  ///< of that process (/proc/PID/stat, field 22): numbers are used again
-  bool ready = false;
-  std::string backend;      ///< as it runs: `handcast swap` may have changed it
+  State state = State::starting;
+  std::string swapped;      ///< the back end that `handcast swap` gave it; "" for the rig's own
   std::string fingerprint;  ///< of the settings it runs with (fingerprint.hpp)
   int restarts = 0;
 };
@@ -33,10 +34,9 @@ struct SavedService {
 struct SavedRig {
   std::string name;
   std::filesystem::path rig_file;
-  std::vector<std::string> settings;   ///< --set path=value
-  std::optional<std::int64_t> end_ns;  ///< when --seconds is over
-  std::string out;                     ///< --out; "" for none
-  std::int64_t epoch_ns = 0;           ///< of the services (HANDCAST_EPOCH_NS)
+  std::vector<std::string> settings;  ///< --set path=value
+  std::string out;                    ///< --out; "" for none
+  std::int64_t epoch_ns = 0;          ///< of the services (HANDCAST_EPOCH_NS)
   std::vector<SavedRing> rings;
   std::vector<SavedService> services;
 };

@@ -10,6 +10,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr auto kPatience = std::chrono::seconds(1);  ///< who looks on wants to be able to leave
+
 /// A supervisor that has not been up as long as before, or has other rings, is another one.
 bool is_another(const json& before, const json& now) {
   const auto names_in = [](const json& status, const char* key) {
@@ -51,19 +53,20 @@ RigLook RigWatcher::look() {
 }
 
 void RigWatcher::ask_supervisor() {
-  const auto answer = ask(rig_, {.verb = Verb::status});
-  if (!answer || !answer->contains("status") || !(*answer)["status"].is_object()) {
+  auto answer = ask_with_descriptors(rig_, {.verb = Verb::status}, kPatience);
+  if (!answer || !answer->object.contains("status") || !answer->object["status"].is_object()) {
     missing_ = answer ? "its answer makes no sense" : answer.error().what;
     return;
   }
-  const bool other = !missing_.empty() || is_another(status_, (*answer)["status"]);
+  const auto& status = answer->object["status"];
+  const bool other = !missing_.empty() || is_another(status_, status);
   missing_.clear();
-  status_ = (*answer)["status"];
+  status_ = status;
   if (other) open_rings();
 }
 
 void RigWatcher::open_rings() {
-  auto answer = ask_with_descriptors(rig_, {.verb = Verb::rings});
+  auto answer = ask_with_descriptors(rig_, {.verb = Verb::rings}, kPatience);
   if (!answer) {
     missing_ = answer.error().what;
     return;

@@ -103,7 +103,6 @@ Terminal::Terminal() {
   raw.c_iflag &= ~static_cast<tcflag_t>(IXON);
   raw.c_cc[VSUSP] = _POSIX_VDISABLE;
   raw.c_cc[VQUIT] = _POSIX_VDISABLE;
-  // Without SA_RESTART: what blocks (a supervisor that does not answer) comes back.
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGWINCH}) handle(number, note, 0);
   for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) handle(number, crash, SA_RESETHAND | SA_NODEFER);
   tcsetattr(STDIN_FILENO, TCSANOW, &raw);

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
-
 #include "supervisor/control/control_client.hpp"
 #include "supervisor/life/streams.hpp"
 
@@ -29,14 +26,6 @@ Result<std::map<std::string, double>> ask_for_rates(const std::string& rig) {
       rates[service.name] = answer->at(place).get<double>();
   }
   return rates;
-}
-
-Result<double> parse_seconds(const std::string& text) {
-  double seconds = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  const bool whole = error == std::errc{} && end == text.data() + text.size();
-  if (whole && std::isfinite(seconds) && seconds > 0) return seconds;
-  return fail(Errc::bad_data, fmt::format("--seconds {}: expected a time above 0", text));
 }
 
 }  // namespace handcast::supervisor

@@ -14,7 +14,4 @@ Result<HistorySnapshot> ask_for_history(const std::string& rig, double seconds);
 /// Errors: unavailable, bad_data.
 Result<std::map<std::string, double>> ask_for_rates(const std::string& rig);
 
-/// A time above 0 as a person writes it. Errors: bad_data.
-Result<double> parse_seconds(const std::string& text);
-
 }  // namespace handcast::supervisor

@@ -149,6 +149,25 @@ TEST(CalibrationFile, RefusesAMirroredTracker) {
   EXPECT_THAT(rig.error().what, HasSubstr("not a right-handed rotation"));
 }
 
+TEST(CalibrationFile, RefusesATrackerWhoseAxesSpanNoSpace) {
+  for (const char* rows :
+       {"x = [0, 0, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 0, 0.3]\n", "x = [1, 1, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 1, 0]\n"}) {
+    const auto rig = load_calibration(file_with(std::string("[camera_from_tracker]\n") + rows));
+    ASSERT_FALSE(rig) << rows;
+    EXPECT_THAT(rig.error().what, HasSubstr("not a right-handed rotation"));
+  }
+}
+
+TEST(CalibrationFile, RefusesALensThatFoldsTheImageAndNoOther) {
+  for (const char* lens : {"[-2, 0, 0, 0, 0]", "[-1.2, 0, 0, 0, 0]", "[0, -20, 0, 0, 0]", "[0, 0, 2, 0, 0]"}) {
+    const auto rig = load_calibration(file_with(std::string("[camera]\ndistortion = ") + lens));
+    ASSERT_FALSE(rig) << lens;
+    EXPECT_THAT(rig.error().what, HasSubstr("folds the image"));
+  }
+  for (const char* lens : {"[0, 0, 0, 0, 0]", "[-0.8, 0, 0, 0, 0]", "[1, 0, 0.01, 0.01, 0]"})
+    EXPECT_TRUE(load_calibration(file_with(std::string("[camera]\ndistortion = ") + lens))) << lens;
+}
+
 TEST(CalibrationFile, RefusesAHomographyWithoutAnInverse) {
   const auto rig = load_calibration(file_with("[projector]\nx = [1, 0, 0]\ny = [2, 0, 0]\nw = [0, 0, 1]\n"));
   ASSERT_FALSE(rig);

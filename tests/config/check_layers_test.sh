@@ -33,4 +33,5 @@ must_catch services/camera/main.cpp '"services/pose/pose_source.hpp"' 'services/
 must_catch services/twin/planted.cpp '"services/runtime/context.hpp"' 'services/twin must not include services/runtime/context.hpp'
 must_catch supervisor/planted.cpp '"renderer/image.hpp"' 'supervisor must not include renderer/image.hpp'
 must_catch calib/planted.cpp '<toml++/toml.h>' 'is kept in config/document.cpp'
+must_catch services/camera/pictures.cpp '<opencv2/core.hpp>' 'is kept in renderer/content/'
 echo "all planted breaches were caught"

@@ -16,6 +16,7 @@ DETECTORS = {
     "mediapipe": "MediaPipe lite",
     "mediapipe_corrected": "MediaPipe lite, offsets removed",
     "own": "ours",
+    "own_corrected": "ours, offsets removed",
     "own_one_look": "ours, one look",
     "own_alone": "ours without the tracker",
     "own_wrong_tracker": "ours, tracker in another pose",
@@ -68,8 +69,9 @@ class Renders:
             self.points[name] = np.array([line["seen"][name]["points"] for line in lines])
             self.sigma[name] = np.array([line["seen"][name]["sigma"] for line in lines])
             self.presence[name] = np.array([line["seen"][name]["presence"] for line in lines])
-        if "mediapipe" in self.points:
-            self.points["mediapipe_corrected"] = without_offsets(self.points["mediapipe"], self.truth, self.sources)
+        for name in ("mediapipe", "own"):
+            if name in self.points:
+                self.points[name + "_corrected"] = without_offsets(self.points[name], self.truth, self.sources)
 
     def table(self):
         boxes = np.ptp(self.truth, axis=1).max(1)

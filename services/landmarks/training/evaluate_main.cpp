@@ -85,13 +85,14 @@ Result<void> run_motion(Detectors& detectors, const std::string& motion, int cou
   auto trials = Trials::open(motion, seed);
   if (!trials) return tl::make_unexpected(trials.error());
   for (int i = 0; i < count; ++i) {
-    const Trial trial = trials->make(i, count);
-    auto seen = look_at(detectors, trial.image.view(), trial.side, trial.tracker_px, trial.other_pose_px);
+    const auto trial = trials->make(i, count);
+    if (!trial) continue;
+    auto seen = look_at(detectors, trial->image.view(), trial->side, trial->tracker_px, trial->other_pose_px);
     if (!seen) return tl::make_unexpected(seen.error());
     json line{{"source", fs::path(motion).filename().string()},
-              {"truth", to_json(trial.truth_px)},
-              {"tracker", to_json(trial.tracker_px)},
-              {"folded", trial.folded},
+              {"truth", to_json(trial->truth_px)},
+              {"tracker", to_json(trial->tracker_px)},
+              {"folded", trial->folded},
               {"seen", *seen}};
     fmt::print("{}\n", line.dump());
   }

@@ -1,4 +1,6 @@
 """The landmark network: plain convolutions from a grey crop and the tracker's maps to one heat map per landmark."""
+import math
+
 import torch
 from torch import nn
 from torch.nn import functional as F
@@ -8,6 +10,7 @@ MAP = 24  # cells of a tracker map
 CELLS = 12  # cells of a heat map
 LANDMARKS = 21
 WIDTHS = (16, 32, 64, 96)
+CODE = 64  # numbers that say how the tracker's joints lie to each other
 MAP_SIGMA = 1.2  # of a tracker map's Gaussian, in its cells
 
 
@@ -27,6 +30,31 @@ class Block(nn.Module):
         return F.relu(x + self.second(F.relu(self.first(x))))
 
 
+def ramps():
+    """Weights that read a tracker map: where its Gaussian is, across and down, -1..1, and how much of it lies in the map: (576,3)."""
+    down, across = torch.meshgrid(*2 * [torch.linspace(-1, 1, MAP)], indexing="ij")
+    read = torch.stack([across.flatten(), down.flatten(), torch.ones(MAP * MAP)], 1)
+    return read / (2 * math.pi * MAP_SIGMA**2)
+
+
+class Layout(nn.Module):
+    """How the tracker's joints lie to each other, which tells what it takes a wrist or a knuckle to be: maps -> (n,width,1,1).
+
+    Convolutions see one place at a time; this is a distance over half the crop, of which a few per cent matter."""
+
+    def __init__(self, width):
+        super().__init__()
+        self.register_buffer("ramps", ramps())
+        self.first, self.second = nn.Conv2d(3 * LANDMARKS, CODE, 1), nn.Conv2d(CODE, width, 1)
+        nn.init.zeros_(self.second.weight)
+        nn.init.zeros_(self.second.bias)
+
+    @torch.autocast("cpu", enabled=False)
+    def forward(self, maps):
+        read = maps.reshape(-1, LANDMARKS, MAP * MAP) @ self.ramps
+        return self.second(F.relu(self.first(read.reshape(-1, 3 * LANDMARKS, 1, 1))))
+
+
 class LandmarkNetwork(nn.Module):
     """image (n,1,96,96), tracker maps (n,21,24,24; all 0: there is no tracker) -> (n,43,12,12): 21 heat maps before the softmax,
     21 maps of log sigma (crop sides), and one whose mean is the logit of there being a hand."""
@@ -39,7 +67,8 @@ class LandmarkNetwork(nn.Module):
         self.tracker = nn.Conv2d(LANDMARKS, b, 3, 1, 1)
         self.down2, self.block2 = conv(b, c, 2), Block(c)
         self.down3, self.block3 = conv(c, d, 2), Block(d)
-        self.up = nn.Conv2d(d, c, 1)
+        self.layout = Layout(d)
+        self.up, self.merged = nn.Conv2d(d, c, 1), Block(c)
         self.head = conv(c, c)
         self.out = nn.Conv2d(c, 2 * LANDMARKS + 1, 1)
         nn.init.normal_(self.tracker.weight, 0, 0.03)
@@ -51,8 +80,9 @@ class LandmarkNetwork(nn.Module):
         x = F.relu(self.down1(F.relu(self.stem(image))))
         x = self.block1(F.relu(x + self.tracker(tracker)))
         x = self.block2(F.relu(self.down2(x)))
-        deep = self.block3(F.relu(self.down3(x)))
-        return self.out(F.relu(self.head(F.relu(x + F.interpolate(self.up(deep), scale_factor=2, mode="nearest")))))
+        deep = self.block3(F.relu(self.down3(x) + self.layout(tracker)))
+        x = self.merged(F.relu(x + F.interpolate(self.up(deep), scale_factor=2, mode="nearest")))
+        return self.out(F.relu(self.head(x)))
 
 
 def tracker_maps(places, present):

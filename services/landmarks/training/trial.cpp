@@ -51,7 +51,7 @@ std::array<bool, 5> folded_of(const Joints& joints) {
 }  // namespace
 
 static Result<double> duration_of(const std::string& motion) {
-  constexpr double kBuiltin_s = 4.8;  // each comes round in that time
+  constexpr double kBuiltin_s = 4.8;  // shows all that any of them does, or most of it
   if (motion.starts_with("builtin:")) return kBuiltin_s;
   const auto recording = twin::read_recording(motion);
   if (!recording) return tl::make_unexpected(recording.error());
@@ -91,10 +91,10 @@ Points Trials::image_px(const JointFrames& frames) const {
   return points_px;
 }
 
-Trial Trials::make(int i, int count) {
+std::optional<Trial> Trials::make(int i, int count) {
   Trial trial{.image = {calibration_.camera.width_px, calibration_.camera.height_px}, .side = kSide};
   const auto now = in_camera(i, count);
-  if (!now) return trial;
+  if (!now) return std::nullopt;
   twin_->camera_image(frame(i, count), trial.image.view());
   trial.truth_px = image_px(*now);
   trial.folded = folded_of(joints_of(*now));
@@ -111,9 +111,10 @@ Trial Trials::make(int i, int count) {
   };
   trial.tracker_px = tracked(joints_of(*now));
   const auto other = in_camera((i + count / 5 + dice.pick(count / 2)) % count, count);
-  const glm::mat4 onto_now = (*now)[1] * glm::inverse((*other)[1]);
+  const JointFrames& pose = other ? *other : *now;
+  const glm::mat4 onto_now = (*now)[1] * glm::inverse(pose[1]);
   JointFrames wrong;
-  for (std::size_t j = 0; j < wrong.size(); ++j) wrong[j] = onto_now * (*other)[j];
+  for (std::size_t j = 0; j < wrong.size(); ++j) wrong[j] = onto_now * pose[j];
   trial.other_pose_px = tracked(joints_of(wrong));
   return trial;
 }

@@ -25,8 +25,8 @@ class Trials {
  public:
   /// Errors: as of Twin::create.
   static Result<Trials> open(const std::string& motion, std::uint64_t seed);
-  /// Number `i` of `count`.
-  Trial make(int i, int count);
+  /// Number `i` of `count`; nothing where the motion has no hand then.
+  std::optional<Trial> make(int i, int count);
 
  private:
   Trials(std::unique_ptr<twin::Twin> world, const calib::Calibration& calibration, std::uint64_t seed)

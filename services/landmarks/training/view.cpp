@@ -45,7 +45,7 @@ Posture disturbed(Dice& dice, Posture posture) {
 void misplace(Dice& dice, Points& points_px, float palm_px) {
   const float kind = dice.uniform();
   const float shift_px = palm_px * (kind < 0.5f ? 0.14f : kind < 0.8f ? 0.28f : 0.02f);
-  const float skew = kind < 0.8f ? 0.06f : 0.01f;
+  const float skew = kind < 0.8f ? 0.03f : 0.01f;
   const glm::vec2 by(dice.normal(shift_px), dice.normal(shift_px));
   const glm::mat2 skewed(1 + dice.normal(skew), dice.normal(skew), dice.normal(skew), 1 + dice.normal(skew));
   const glm::vec2 wrist = points_px[0];
@@ -87,8 +87,8 @@ Points project(const calib::CameraModel& camera, const JointFrames& in_camera) {
 
 Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vector<Person>& people, const Person& person, const Pose& pose,
                     const JointFrames& in_camera) {
-  const Person& model = dice.chance(0.65f) ? person : people[dice.pick(static_cast<int>(people.size()))];  // its idea of the person
-  const bool other_pose = dice.chance(0.16f);
+  const Person& model = dice.chance(0.75f) ? person : people[dice.pick(static_cast<int>(people.size()))];  // its idea of the person
+  const bool other_pose = dice.chance(0.2f);
   const Posture posture = other_pose ? draw_pose(dice, model).posture : disturbed(dice, pose.posture);
   const float turned_rad = other_pose && dice.chance(0.5f) ? dice.normal(0.5f) : dice.normal(0.12f);
   const glm::mat4 wrong = turn(turned_rad, draw_direction(dice)) * glm::scale(glm::mat4(1), glm::vec3(std::exp(dice.normal(0.05f))));

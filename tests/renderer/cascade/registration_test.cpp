@@ -119,6 +119,19 @@ TEST(Contour, IsExactToATenthOfAPixelAndEvenlySpread) {
   EXPECT_LT(std::sqrt(square), 0.1);
 }
 
+TEST(Contour, OfALongEdgeEveryPartIsTaken) {
+  Picture picture;
+  for (int y = 8; y < kHeight - 8; ++y)
+    for (int x = 8; x < kWidth - 8; ++x)
+      if (x % 32 < 16) picture.grey.at(x, y) = 160, picture.mask.at(x, y) = 255;
+  static Contour contour;
+  find_contour(picture.silhouette(), contour);
+  EXPECT_GT(contour.count, Contour::kMostPoints / 2 - 1);
+  int above = 0;
+  for (int i = 0; i < contour.count; ++i) above += contour.points_px[i].y < kHeight / 2;
+  EXPECT_NEAR(above, contour.count / 2, 0.05 * contour.count);
+}
+
 TEST(Contour, WhereTheMaskWasCutThereIsNoEdge) {
   Picture picture = picture_of(flat_hand());
   for (int y = 290; y < kHeight; ++y)

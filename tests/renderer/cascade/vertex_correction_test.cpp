@@ -191,6 +191,29 @@ TEST(VertexCorrection, UntanglingMovesSliversOnly) {
   EXPECT_LT(most_px, 6);
 }
 
+TEST(VertexCorrection, AMeshOfMoreTrianglesThanSixteenBitsNumberIsUntangled) {
+  constexpr int kSide = 200;
+  HandMesh mesh;
+  std::vector<glm::vec2> before;
+  const auto at = [](int x, int y) { return static_cast<std::uint16_t>(kSide * y + x); };
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      mesh.positions.emplace_back(x, y, 0);
+      before.emplace_back(4 * x, 4 * y);
+      if (x == 0 || y == 0) continue;
+      mesh.triangles.push_back({at(x - 1, y - 1), at(x, y - 1), at(x, y)});
+      mesh.triangles.push_back({at(x - 1, y - 1), at(x, y), at(x - 1, y)});
+    }
+  ASSERT_GT(mesh.triangles.size(), 65536u);
+  auto after = before;
+  after[at(100, kSide - 2)] += glm::vec2(9, 7);
+  EXPECT_EQ(Untangler(mesh).untangle(before, after, 1), 0);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const glm::vec2 u = after[b] - after[a], v = after[c] - after[a];
+    ASSERT_GT(u.x * v.y - u.y * v.x, -0.02f);
+  }
+}
+
 TEST(VertexCorrection, UntanglingKeepsSeamsClosed) {
   RealHand hand;
   Untangler untangler(hand.mesh);

@@ -1,8 +1,13 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
+// jpeglib.h relies on cstdio
+#include <jpeglib.h>
 
 #include "renderer/content/picture.hpp"
 #include "renderer/content/textures.hpp"
@@ -120,6 +125,57 @@ TEST(Content, WhatIsWrittenIsReadBackAndBrokenFilesAreNotPictures) {
   const TemporaryFile jpeg("handcast_content_cut.jpg", "\xff\xd8\xff\xe0 and no more");
   EXPECT_EQ(read_picture(jpeg.path()).error().code, Errc::bad_config);
   EXPECT_FALSE(write_png("/nowhere/picture.png", picture.view()));
+}
+
+/// A square of noise.
+std::string jpeg_of(J_COLOR_SPACE colours, int components) {
+  constexpr int kSide = 64;
+  jpeg_compress_struct jpeg{};
+  jpeg_error_mgr errors{};
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&jpeg);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &bytes, &size);
+  jpeg.image_width = jpeg.image_height = kSide;
+  jpeg.input_components = components;
+  jpeg.in_color_space = colours;
+  jpeg_set_defaults(&jpeg);
+  jpeg_start_compress(&jpeg, TRUE);
+  std::mt19937 random(1);
+  std::vector<JSAMPLE> row(static_cast<std::size_t>(kSide) * components);
+  while (jpeg.next_scanline < kSide) {
+    for (JSAMPLE& sample : row) sample = static_cast<JSAMPLE>(random());
+    JSAMPLE* line = row.data();
+    jpeg_write_scanlines(&jpeg, &line, 1);
+  }
+  jpeg_finish_compress(&jpeg);
+  std::string file(reinterpret_cast<const char*>(bytes), size);
+  jpeg_destroy_compress(&jpeg);
+  std::free(bytes);
+  return file;
+}
+
+TEST(Content, AJpegThatEndsTooEarlyIsRefused) {
+  const std::string whole = jpeg_of(JCS_RGB, 3);
+  const TemporaryFile file("handcast_content_whole.jpg", whole);
+  ASSERT_TRUE(read_picture(file.path()));
+  for (const std::size_t size : {whole.size() / 2, whole.size() - 20}) {
+    const TemporaryFile cut("handcast_content_cut.jpg", std::string_view(whole).substr(0, size));
+    const auto picture = read_picture(cut.path());
+    ASSERT_FALSE(picture) << size;
+    EXPECT_EQ(picture.error().code, Errc::bad_config);
+    EXPECT_THAT(picture.error().what, HasSubstr("handcast_content_cut.jpg' ends before its picture does"));
+  }
+}
+
+TEST(Content, AJpegForPrintersIsRefusedByItsColours) {
+  const TemporaryFile grey("handcast_content_grey.jpg", jpeg_of(JCS_GRAYSCALE, 1));
+  EXPECT_TRUE(read_picture(grey.path()));
+  const TemporaryFile print("handcast_content_print.jpg", jpeg_of(JCS_CMYK, 4));
+  const auto picture = read_picture(print.path());
+  ASSERT_FALSE(picture);
+  EXPECT_THAT(picture.error().what, HasSubstr("CMYK"));
 }
 
 }  // namespace

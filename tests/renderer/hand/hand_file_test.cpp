@@ -149,6 +149,16 @@ TEST_F(HandFile, AMeshWithoutSkinIsSaid) {
   EXPECT_THAT(refusal(file), HasSubstr("no skinned mesh"));
 }
 
+TEST_F(HandFile, AJointThatIsBoundByNoTurnAndShiftIsNamed) {
+  constexpr int kThumbTip = 5;
+  for (const float scale : {0.01f, 1.5f, -1.0f}) {
+    HandMesh hand = mean_hand(Side::left);
+    hand.rest[kThumbTip] = hand.rest[kThumbTip] * glm::mat4(glm::mat3(scale));
+    ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+    EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("joint thumb-tip")) << scale;
+  }
+}
+
 TEST_F(HandFile, AnIndexBeyondTheVerticesIsSaid) {
   const auto file = changed([](json& gltf) {
     for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"})

@@ -110,6 +110,15 @@ TEST_P(MaskAdvance, TheLightOfAMovingHandIsWhereTheHandWillBe) {
   }
 }
 
+TEST_P(MaskAdvance, AtTheImagesEdgeItMovesAsTheLensShowsIt) {
+  for (const float way : {-1.0f, 1.0f}) {
+    const Scene scene{.hands = {{GetParam(), {1.5f * way, 0, 0}, {0.09f * way, 0, 0}}}};
+    const Pixels with = light_of(scene, true), truth = truth_of(scene);
+    const int last_row = wrist_row(scene);
+    EXPECT_LT(glm::distance(centroid(with, 0, with.width(), last_row), centroid(truth, 0, truth.width(), last_row)), 1) << way;
+  }
+}
+
 TEST_P(MaskAdvance, AStillHandGetsTheSameLight) {
   const Scene scene{.hands = {{GetParam(), {}, {0.02f, 0, 0}}}};
   const Pixels with = light_of(scene, true), without = light_of(scene, false);

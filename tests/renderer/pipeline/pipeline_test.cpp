@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "driven_pipeline.hpp"
+#include "renderer/projection.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -168,6 +169,46 @@ TEST(Pipeline, AHandLeavingTheViewIsFollowedToTheEdgeAndBeyond) {
       }
     }
   }
+}
+
+TEST(Pipeline, WhatIsStampedInTheFutureOutdatesNothing) {
+  const auto calibration = rig_above_hand();
+  const auto hand = pose_of(Side::left), elsewhere = pose_of(Side::left, {0.03f, 0, 0});
+  const auto image = image_of(calibration, {hand});
+  const auto light_of = [&](std::int64_t ahead_ns) {
+    const auto pipeline = make_pipeline();
+    feed_still(*pipeline, {hand}, 45 * kMs);
+    pipeline->track(60 * kMs, 64 * kMs);
+    if (ahead_ns > 0) {
+      pipeline->push(60 * kMs, poses_of(60 * kMs + ahead_ns, {elsewhere}));
+      pipeline->push(60 * kMs, landmarks_of(calibration, 60 * kMs + ahead_ns, elsewhere, {}));
+      pipeline->look(image.view(), 60 * kMs + ahead_ns);
+      EXPECT_EQ(lit_pixels(pipeline->render(60 * kMs, 64 * kMs, image.view(), 60 * kMs + ahead_ns)),
+                lit_pixels(pipeline->render(60 * kMs, 64 * kMs, {}, 0)));
+    } else {
+      pipeline->render(60 * kMs, 64 * kMs, {}, 0);
+      pipeline->render(60 * kMs, 64 * kMs, {}, 0);
+    }
+    for (std::int64_t t = 61 * kMs; t <= 200 * kMs; t += kMs) {
+      const auto moved = pose_of(Side::left, {2e-10f * static_cast<float>(t - 61 * kMs), 0, 0});
+      if (t % (9 * kMs) == 0) pipeline->push(t, poses_of(t - 9 * kMs, {moved}));
+      if (t % (16 * kMs) == 0) pipeline->push(t, landmarks_of(calibration, t - 16 * kMs, moved, {4, 2}));
+      pipeline->track(t, t + 4 * kMs);
+    }
+    const Frame frame = pipeline->render(200 * kMs, 204 * kMs, image.view(), 198 * kMs);
+    return std::pair(frame.hands[0].tracker, frame.hands[0].corrected);
+  };
+  EXPECT_EQ(light_of(3'600'000 * kMs), light_of(0));
+}
+
+TEST(Pipeline, AProjectionWhoseRegionIsLeftOutHasNoPlaceOfAnEarlierOne) {
+  const auto projection = std::make_unique<msg::Projection>();
+  projection->region_x_px = projection->region_y_px = 7;
+  Frame frame;
+  frame.region = {2, 1, 5, 4};
+  write_projection(frame, *projection, 0);
+  EXPECT_EQ(projection->region_x_px, 0);
+  EXPECT_EQ(projection->region_y_px, 0);
 }
 
 TEST(Pipeline, AHandBehindTheCameraIsNotDrawn) {

@@ -114,6 +114,15 @@ TEST_F(ChartsTest, AStressIsTheMeanOverSeedsAndItsBreakdownIsMarked) {
   EXPECT_THAT(text_of(out() / "chart_b_breakdown.csv"), HasSubstr("tracker's age,ms,20,15,\n"));
 }
 
+TEST_F(ChartsTest, ALevelThatOneMethodLacksIsAnEmptyCellAndTheOthersStayInTheirRows) {
+  const auto stress = write_sweep(scratch_.path(), "stress", "twin.tracker.age_ms,landmark_mm_p95",
+                                  {"paper,5,3,", "paper,10,,", "paper,20,7,", "handcast,10,1.1,", "handcast,20,1.9,", "handcast,40,2.5,"});
+  ASSERT_TRUE(write_charts(order({stress})));
+  const std::string harm = ",ms,\"landmark error p95, mm\",";
+  EXPECT_THAT(text_of(out() / "chart_b.csv"), HasSubstr("tracker's age,5" + harm + "3,\ntracker's age,10" + harm +
+                                                        ",1.1\ntracker's age,20" + harm + "7,1.9\ntracker's age,40" + harm + ",2.5\n"));
+}
+
 TEST_F(ChartsTest, TheAtlasTellsWhatPassesFromWhatStaysAndWhoNeverRecovers) {
   const auto failures = failures_of(results());
   ASSERT_EQ(failures.size(), 3u);

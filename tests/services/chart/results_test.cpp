@@ -52,16 +52,22 @@ TEST_F(ResultsTest, FailedRunsAreLeftOutAndCounted) {
   EXPECT_EQ(results->sources[0].failed, 1u);
 }
 
+TEST_F(ResultsTest, ASettingOfNoSectionIsASettingToo) {
+  const auto results = read_results({write_sweep(scratch_.path(), "some", "calibration,iou", {"a,ours.toml,0.9,"})});
+  ASSERT_TRUE(results) << results.error().what;
+  EXPECT_THAT(results->runs[0].turned(), ElementsAre("calibration"));
+}
+
 TEST_F(ResultsTest, WhatIsNoSweepIsToldInASentence) {
   EXPECT_THAT(fault_of(""), HasSubstr("results.csv: holds no results of a sweep"));
   EXPECT_THAT(fault_of("a,b\n1,2\n"), HasSubstr("results.csv: holds no results of a sweep"));
   EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\na,b,c\n"), HasSubstr("results.csv: holds no results of a sweep"));
-  EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,m,error\n"),
+  EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,iou,error\n"),
               HasSubstr("results.csv: no run of it was scored"));
-  EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,m,error\n0,a\n"),
+  EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,iou,error\n0,a\n"),
               HasSubstr("results.csv:3: no line of this sweep"));
-  EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,m,error\n0,a,much,\n"),
-              HasSubstr("results.csv: run 0: m is 'much', not a number"));
+  EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,iou,error\n0,a,much,\n"),
+              HasSubstr("results.csv: run 0: iou is 'much', not a number"));
   const auto absent = read_results({scratch_.path() / "nowhere.csv"});
   ASSERT_FALSE(absent);
   EXPECT_THAT(absent.error().what, HasSubstr("nowhere.csv"));

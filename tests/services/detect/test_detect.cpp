@@ -84,6 +84,23 @@ TEST_F(Detect, TwoPicturesOfOneNameAreDrawnBesideEachOther) {
   EXPECT_TRUE(fs::exists(scratch_.path() / "1_camera_2.png"));
 }
 
+TEST_F(Detect, ANumberedDrawingIsNotDrawnOverByAPictureOfThatName) {
+  fs::copy_file(options_.images[1], scratch_.path() / "1_camera_2.png");
+  options_.images = {options_.images[0], options_.images[0], scratch_.path() / "1_camera_2.png"};
+  options_.output = scratch_.path() / "drawn";
+  ASSERT_TRUE(run(options_));
+  EXPECT_EQ(std::distance(fs::directory_iterator(options_.output), {}), 3);
+}
+
+TEST_F(Detect, ANameThatIsNotUtf8IsPrintedAsJsonAllTheSame) {
+  fs::copy_file(options_.images[0], scratch_.path() / "caf\xe9.png");
+  options_.images = {scratch_.path() / "caf\xe9.png"};
+  options_.json = true;
+  const auto text = run(options_);
+  ASSERT_TRUE(text) << text.error().what;
+  EXPECT_THAT(*text, HasSubstr("caf\xef\xbf\xbd.png"));
+}
+
 TEST_F(Detect, JointsMayBe21PointsInPixels) {
   const auto capture = test::capture(1);
   std::vector<float> values;

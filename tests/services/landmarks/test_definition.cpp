@@ -52,6 +52,14 @@ TEST(Definition, OneTableServesBothHandsAndBothSides) {
   EXPECT_GT(glm::distance(seen[2], hand()[2]), 10) << "the thumb's knuckle is another one";
 }
 
+TEST(Definition, AHandThatWasGoneHasNotRested) {
+  DefinitionOffsets once, twice;
+  const Points other = moved(hand(), 9, {5, 0});
+  once.learn(0, hand(), other);
+  for (int i = 0; i < 30; ++i) twice.learn(i * 3'000'000'000, hand(), other);
+  EXPECT_EQ(once.offsets(), twice.offsets());
+}
+
 TEST(Definition, AnErrorThatShiftsTurnsOrScalesTheTrackersHandIsNotLearnt) {
   Points wrong = hand();
   for (auto& point : wrong)

@@ -66,7 +66,7 @@ class DetectorContract : public testing::TestWithParam<std::string_view> {
       scene_.emplace(*test::capture(1));
     }
     if (GetParam() == "own") {
-      auto shown = training::Trials::open("builtin:open_close", 1)->make(1, 10);
+      auto shown = training::Trials::open("builtin:open_close", 1)->make(1, 10).value();
       scene_.emplace(test::Capture{std::move(shown.image), shown.tracker_px});
     }
     rig_.landmarks.backend = GetParam();

@@ -32,7 +32,7 @@ class OwnSigma : public testing::Test {
     for (const char* motion : {"builtin:fist", "builtin:pinch", "builtin:open_close", "builtin:rotate"}) {
       auto trials = Trials::open(motion, 3);
       ASSERT_TRUE(trials) << trials.error().what;
-      for (int i = 0; i < kImages; ++i) look(**detector, trials->make(i, kImages));
+      for (int i = 0; i < kImages; ++i) look(**detector, trials->make(i, kImages).value());
     }
   }
   static void TearDownTestSuite() { seen_.clear(); }

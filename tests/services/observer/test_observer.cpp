@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "services/observer/judge.hpp"
 #include "services/observer/live_score.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::observer {
 namespace {
@@ -74,18 +72,6 @@ TEST(LiveJudge, TheScoreDoesNotDependOnWhenTheRigWasStarted) {
   EXPECT_EQ(shifted.hands[0].hand_px, expected.hands[0].hand_px);
   EXPECT_EQ(shifted.hands[0].speed_m_s, expected.hands[0].speed_m_s);
   EXPECT_EQ(shifted.hands[0].lit_px, 0);
-}
-
-TEST(WriteWhole, ReplacesTheFileAndLeavesNothingBeside) {
-  test::Scratch scratch;
-  const auto file = scratch.path() / "observer.json";
-  ASSERT_TRUE(write_whole(file, "a longer first text"));
-  ASSERT_TRUE(write_whole(file, "second"));
-  std::string text;
-  std::getline(std::ifstream(file) >> std::ws, text);
-  EXPECT_EQ(text, "second");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.path()), {}), 1);
-  EXPECT_EQ(write_whole("/nowhere/observer.json", "x").error().code, Errc::unavailable);
 }
 
 }  // namespace

@@ -24,6 +24,22 @@ TEST(Pacer, MissedTicksAreSkippedNotMadeUpFor) {
   EXPECT_EQ(pacer.skipped(), 4);
 }
 
+TEST(SleepWhile, ASlowFrameIsWaitedForInStepsAndAStopEndsTheWait) {
+  int asked = 0;
+  EXPECT_FALSE(sleep_while([&] { return ++asked < 3; }, now_ns() + 3'600'000 * kMs));
+  EXPECT_EQ(asked, 3);
+}
+
+TEST(SleepWhile, ATimeThatIsThereIsAskedOnceAndNotWaitedFor) {
+  int asked = 0;
+  const auto running = [&] { return ++asked > 0; };
+  EXPECT_TRUE(sleep_while(running, now_ns()));
+  EXPECT_EQ(asked, 1);
+  const std::int64_t then_ns = now_ns() + 1 * kMs;
+  EXPECT_TRUE(sleep_while(running, then_ns));
+  EXPECT_GE(now_ns(), then_ns);
+}
+
 config::Projector projector() {
   config::Projector settings;
   settings.rate_hz = 500;

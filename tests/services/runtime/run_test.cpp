@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "ipc/msg/hand_poses.hpp"
@@ -94,6 +95,16 @@ TEST_F(Run, WhatRestartingMayHelpIsExitHundredAndEleven) {
   EXPECT_EXIT(_exit(daemon(fail_with(Errc::bad_config))), ExitedWithCode(kExitConfig), "");
 }
 
+TEST_F(Run, ADamagedFileAtStartUpIsExitHundredForItStaysDamaged) {
+  const auto open_recording = [](Context&) { must(Result<int>(fail(Errc::bad_data, "joints_left.npy: its header is cut off"))); };
+  EXPECT_EXIT(_exit(daemon(open_recording)), ExitedWithCode(kExitConfig), "its header is cut off");
+}
+
+TEST_F(Run, AnExceptionIsASentenceAndExitHundredAndEleven) {
+  const auto throws = [](Context&) { throw std::runtime_error("a library's own words"); };
+  EXPECT_EXIT(_exit(daemon(throws)), ExitedWithCode(kExitRestart), "error.*a library's own words");
+}
+
 TEST_F(Run, TimeoutsAndBadItemsAreToleratedAndALostDeviceIsNot) {
   const auto body = [](Context& context) {
     for (int i = 0; i < 1000; ++i) context.tolerate({Errc::timeout, "no frame"});
@@ -173,7 +184,7 @@ TEST_F(Run, AnIdleDaemonBeatsItsHeartAndABusyOneNeedNot) {
 TEST_F(Run, ARingOfAnotherTypeIsRefusedWithItsName) {
   setenv("HANDCAST_RINGS", fmt::format("pose.hands={}", marks_.fd()).c_str(), 1);
   const auto open_ring = [](Context& context) { must(context.writer<msg::HandPoses>("pose.hands")); };
-  EXPECT_EXIT(_exit(daemon(open_ring)), ExitedWithCode(kExitRestart), "");
+  EXPECT_EXIT(_exit(daemon(open_ring)), ExitedWithCode(kExitConfig), "another type of message");
 }
 
 TEST_F(Run, TheListOfBackEndsIsOneNameALine) {

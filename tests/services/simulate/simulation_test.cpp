@@ -5,6 +5,7 @@
 #include <map>
 
 #include "ipc/base/clock.hpp"
+#include "services/simulate/score.hpp"
 #include "services/twin/recording.hpp"
 #include "tests/services/simulate/run_rig.hpp"
 
@@ -161,6 +162,70 @@ TEST(Recording, APictureThatCannotBeWrittenIsSaid) {
   const auto done = run(options);
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error().what, testing::HasSubstr("cannot be written"));
+}
+
+Options short_run() {
+  Options options;
+  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
+  options.seconds = 0.1;
+  options.quiet = true;
+  return options;
+}
+
+TEST(Simulation, FiguresThatCannotBeWrittenAreRefusedBeforeTheRun) {
+  const ScratchFolder folder;
+  auto options = short_run();
+  options.trace_file = (folder.path() / "trace.csv").string();
+  for (const auto& file : {folder.path() / "nowhere" / "metrics.json", folder.path()}) {
+    options.json_file = file.string();
+    const auto done = run(options);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().code, Errc::bad_config);
+    EXPECT_THAT(done.error().what, testing::HasSubstr(file.string()));
+    EXPECT_FALSE(std::filesystem::exists(options.trace_file)) << "it has run";
+  }
+}
+
+TEST(Simulation, AFullDiskCostsTheFileButNotTheSummary) {
+  auto options = short_run();
+  options.json_file = "/dev/full";
+  testing::internal::CaptureStdout();
+  const auto done = run(options);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("interior error mean"));
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error().what, testing::HasSubstr("/dev/full"));
+}
+
+TEST(Simulation, ATraceThatIsCutShortIsSaid) {
+  auto options = short_run();
+  options.trace_file = "/dev/full";
+  const auto done = run(options);
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error().what, testing::HasSubstr("/dev/full: could not be written"));
+}
+
+TEST(Simulation, ANameThatIsNotUtf8IsWrittenAllTheSame) {
+  const ScratchFolder folder;
+  auto options = short_run();
+  options.settings = {"name=caf\xe9"};
+  options.json_file = (folder.path() / "metrics.json").string();
+  const auto done = run(options);
+  ASSERT_TRUE(done) << done.error().what;
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(options.json_file))["rig"], "caf\xef\xbf\xbd");
+}
+
+TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
+  const auto rig = config::load_rig(source_root() / "config/rigs/baseline.toml", {"twin.motion=builtin:wave"});
+  ASSERT_TRUE(rig) << rig.error().what;
+  auto blind = *rig;
+  blind.twin.tracker.lost = {0.2, 0.6};
+  auto options = short_run();
+  options.seconds = 1;
+  options.draw_every = 0;
+  const auto lit = score(*rig, calib::reference_rig(), options), dark = score(blind, calib::reference_rig(), options);
+  ASSERT_TRUE(lit && dark);
+  EXPECT_GT((*dark)["fault"]["dark_ms"], 100) << "the light went out";
+  EXPECT_EQ((*dark)["hand_speed_m_s"], (*lit)["hand_speed_m_s"]);
 }
 
 TEST(Simulation, ABrokenRecordingIsOneSentence) {

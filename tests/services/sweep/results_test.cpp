@@ -17,9 +17,12 @@ using testing::StartsWith;
 /// A plan of six runs and a folder for what they give.
 class ResultsTest : public testing::Test {
  protected:
-  Row row(std::size_t index, double error_mm, double frame_us = 900) const {
+  Row row(std::size_t index, double error_mm, double machine = 900) const {
     return scored_row(plan_, expansion_.runs[index],
-                      {{"landmark_mm", {{"mean", error_mm}, {"p95", nullptr}}}, {"frame_us", {{"p50", frame_us}}}});
+                      {{"landmark_mm", {{"mean", error_mm}, {"p95", nullptr}}},
+                       {"frame_us", {{"p50", machine}}},
+                       {"stage_us", {{"predict", {{"p50", machine}}}}},
+                       {"detector", {{"ms_p50", machine}}}});
   }
   Row broken(std::size_t index) const { return failed_row(plan_, expansion_.runs[index], "hand 'x, \"y\".glb':\nno such file"); }
 
@@ -145,7 +148,7 @@ TEST_F(ResultsTest, MergingNamesTheRunsThatAreMissing) {
   EXPECT_EQ(print_indices(merged->missing), "0, 2-5");
 }
 
-TEST_F(ResultsTest, DuplicatesMustAgreeButForTheTimes) {
+TEST_F(ResultsTest, DuplicatesMustAgreeButForTheTimesARealDetectorsAmongThem) {
   const auto a = written("a.csv", {row(0, 1, 900), row(1, 1)});
   EXPECT_TRUE(merge({a, written("b.csv", {row(0, 1, 1234)})}, file("merged.csv")));
   const auto refused = merge({a, written("c.csv", {row(0, 1.0001)})}, file("merged.csv"));
@@ -161,6 +164,13 @@ TEST_F(ResultsTest, AShardInWhichTheRunSucceededCounts) {
     EXPECT_EQ(merged->failed, 0u);
     EXPECT_THAT(read_table(file("merged.csv"))->rows, ElementsAre(row(0, 1)));
   }
+}
+
+TEST_F(ResultsTest, AnEmptyFileIsATableOfNothing) {
+  write_text(file("empty.csv"), "");
+  const auto table = read_table(file("empty.csv"));
+  ASSERT_TRUE(table) << table.error().what;
+  EXPECT_TRUE(table->rows.empty());
 }
 
 TEST_F(ResultsTest, FilesOfTwoPlansAreNotMerged) {

@@ -86,6 +86,17 @@ TEST_F(SweepTest, ARunThatCannotBeDoneIsALineAndTheOthersGoOn) {
   EXPECT_EQ(table->rows[1].back(), "");
 }
 
+/// A motion that is a link to itself: asking what it is throws.
+TEST_F(SweepTest, ARunThatThrowsIsALineAndTheOthersGoOn) {
+  const auto motion = file("motion");
+  std::filesystem::create_symlink("motion", motion);
+  const auto outcome =
+      sweep("joints_only = true\nseconds = 0.1\n[grid]\ntwin.motion = [\"" + motion.string() + "\", \"builtin:wave\"]\n", "a.csv");
+  EXPECT_EQ(outcome.failed, 1u);
+  EXPECT_EQ(outcome.scored, 1u);
+  EXPECT_THAT(read_table(file("a.csv"))->rows[0].back(), HasSubstr(motion.string()));
+}
+
 TEST_F(SweepTest, AMotionThatIsNotThereIsLeftOut) {
   testing::internal::CaptureStderr();
   const auto outcome = sweep("joints_only = true\nseconds = 0.1\n[grid]\ntwin.motion = [\"nowhere\", \"builtin:wave\"]\n", "a.csv");

@@ -6,7 +6,7 @@
 namespace handcast::timing {
 namespace {
 
-Loop loop_of(std::vector<std::int64_t> times_ns, bool repeat = true) { return *Loop::make(std::move(times_ns), 1000, repeat, 10); }
+Loop loop_of(std::vector<std::int64_t> times_ns, bool repeat = true) { return *Loop::make(std::move(times_ns), {}, 1000, repeat, 10); }
 
 TEST(FirstAt, FindsTheFirstThatIsNotEarlier) {
   const auto tens = [](std::uint64_t k) { return static_cast<std::int64_t>(k) * 10; };
@@ -55,9 +55,27 @@ TEST(Loop, TheNearestItemMayBeTheLastOfTheLapBefore) {
   EXPECT_EQ(loop.nearest(1039)->number, 3u);
 }
 
+TEST(Lap, LastsFromTheEarliestItemUntilTheLastSensorIsThrough) {
+  const auto lap = Lap::of({{20, 40, 60}, {}, {10, 40}});
+  EXPECT_EQ(lap.first_ns, 10);
+  EXPECT_EQ(lap.length_ns, 70);
+  EXPECT_EQ(Lap::of({{20}, {0, kLoneStep_ns / 2}}).length_ns, 20 + kLoneStep_ns);
+}
+
+TEST(Loop, ItsItemsLieInALapOfTheWholeRecordingWhereTheyWereTaken) {
+  const Loop loop = *Loop::make({530, 540}, {.first_ns = 500, .length_ns = 100}, 1000, true, 10);
+  EXPECT_EQ(loop.at_or_after(0)->due_ns, 1030);
+  EXPECT_EQ(loop.at_or_after(1041)->due_ns, 1130);
+  EXPECT_EQ(loop.at_or_after(1041)->number, 2u);
+  EXPECT_EQ(loop.nearest(1084)->index, 1u);
+  EXPECT_EQ(loop.nearest(1086)->index, 0u);
+  const Loop longer = *Loop::make({530, 590}, {.first_ns = 500, .length_ns = 100}, 1000, true, 10);
+  EXPECT_EQ(longer.at_or_after(1091)->due_ns, 1180) << "530 to 590 and a mean step: until 650";
+}
+
 TEST(Loop, RefusesNoItemsAndTimesThatStandStill) {
-  EXPECT_EQ(Loop::make({}, 0, true, 10).error().code, Errc::bad_config);
-  EXPECT_EQ(Loop::make({5, 5}, 0, true, 10).error().code, Errc::bad_config);
+  EXPECT_EQ(Loop::make({}, {}, 0, true, 10).error().code, Errc::bad_config);
+  EXPECT_EQ(Loop::make({5, 5}, {}, 0, true, 10).error().code, Errc::bad_config);
 }
 
 }  // namespace

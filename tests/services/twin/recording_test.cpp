@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <glm/gtc/quaternion.hpp>
 
@@ -117,10 +119,12 @@ Recording made_up_recording() {
 }
 
 TEST_F(RecordingFiles, WhatIsWrittenIsReadBack) {
-  const Recording written = made_up_recording();
+  Recording written = made_up_recording();
+  written.first_ns = 1'700'000'000'123'456'000;
   ASSERT_TRUE(write_recording(folder_, written));
   const auto read = read_recording(folder_);
   ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->first_ns, written.first_ns);
   EXPECT_EQ(read->time_ns, written.time_ns);
   for (std::size_t side = 0; side < 2; ++side) {
     ASSERT_EQ(read->hands[side].size(), 5u);
@@ -144,6 +148,31 @@ TEST_F(RecordingFiles, TimesThatDoNotAscendAreRefused) {
   const auto read = read_recording(folder_);
   ASSERT_FALSE(read);
   EXPECT_THAT(read.error().what, HasSubstr("timestamps.npy: time 3"));
+}
+
+TEST_F(RecordingFiles, ATimeThatIsNoneIsRefused) {
+  for (const double time_us : {std::nan(""), 1e300, -5e15}) {
+    std::string bytes(sizeof time_us, '\0');
+    std::memcpy(bytes.data(), &time_us, sizeof time_us);
+    ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {7}));
+    std::string whole = bytes_of(file("timestamps.npy"));
+    whole.replace(whole.find("<i8"), 3, "<f8").replace(whole.size() - 8, 8, bytes);
+    write(file("timestamps.npy"), whole);
+    const auto stamps_ns = read_stamps_ns(file("timestamps.npy"));
+    ASSERT_FALSE(stamps_ns);
+    EXPECT_THAT(stamps_ns.error().what, HasSubstr("timestamps.npy: time 0 is no time"));
+  }
+}
+
+TEST_F(RecordingFiles, AHandOfAnEarlierRecordingIsNotLeftAsAGhost) {
+  ASSERT_TRUE(write_recording(folder_, made_up_recording()));
+  Recording one_hand = made_up_recording();
+  one_hand.hands[1].clear();
+  ASSERT_TRUE(write_recording(folder_, one_hand));
+  const auto read = read_recording(folder_);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->hands[0].size(), 5u);
+  EXPECT_TRUE(read->hands[1].empty());
 }
 
 TEST_F(RecordingFiles, AMissingOrOddFileIsNamed) {

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
+#include "supervisor/top/top_look.hpp"
 #include "tests/supervisor/control/control_fixture.hpp"
 
 namespace handcast::supervisor {
@@ -166,6 +167,11 @@ TEST_F(Control, ASupervisorThatHangsIsTold) {
     ASSERT_FALSE(answer);
     EXPECT_THAT(answer.error().what, HasSubstr("its supervisor hangs"));
   }
+}
+
+TEST_F(Control, WhoLooksOnDoesNotWaitLongForASupervisorThatHangs) {
+  serve(refuse);  // and the loop does not turn
+  EXPECT_THAT(RigWatcher("desk").look().missing, HasSubstr("has not answered for 1 s"));
 }
 
 TEST_F(Control, WhatTakesLongIsWaitedForWhileTheSupervisorIsAwake) {

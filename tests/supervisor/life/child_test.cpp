@@ -70,9 +70,11 @@ TEST(Child, TheContractStandsInTheEnvironment) {
 
 TEST(Child, NothingOfTheSupervisorLeaksIntoAService) {
   const UniqueFd secret(memfd_create("secret", MFD_CLOEXEC));
+  sigset_t before;
+  sigprocmask(SIG_SETMASK, nullptr, &before);
   const auto blocked_here = open_stop_signals();
   const auto output = output_of("/bin/bash", {"-c", "ls -l /proc/self/fd; grep -i sigblk /proc/self/status"}, 20000);
-  restore_signals();
+  sigprocmask(SIG_SETMASK, &before, nullptr);
   ASSERT_TRUE(output);
   EXPECT_THAT(*output, Not(HasSubstr("secret")));
   EXPECT_THAT(*output, Not(HasSubstr("signalfd")));
@@ -167,6 +169,10 @@ TEST(Child, TheEndOfAnAdoptedProcessThatNobodyReportsIsUnknown) {
 TEST(Child, AServiceNeverWaitsForItsSupervisorToRead) {
   auto child = shell("for ((i = 0; i < 20000; ++i)); do echo 0123456789 2>/dev/null; done; exit 7").value();
   EXPECT_EQ(wait_for(child).code, 7) << "200 KB into a pipe of 64 KB that nobody reads";
+}
+
+TEST(Child, WhatACommandWritesToStderrIsNotItsAnswer) {
+  EXPECT_EQ(output_of("/bin/bash", {"-c", "echo a warning >&2; echo twin"}, 20000), "twin\n");
 }
 
 TEST(Child, ACommandThatDoesNotAnswerIsGivenUp) {

@@ -1,6 +1,10 @@
 #include "supervisor/life/log_tail.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
+
+#include "ipc/base/unique_fd.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -40,6 +44,25 @@ TEST(LogTail, TheLastSentenceIsWhatThePersonShouldRead) {
   EXPECT_EQ(tail.last_sentence(), "camera 'A-2134': no such device");
   tail.append("Segmentation fault in the driver\n", ignore);
   EXPECT_EQ(tail.last_sentence(), "Segmentation fault in the driver");
+}
+
+TEST(LogTail, OneThatWritesFasterThanItIsReadIsNotReadForEver) {
+  int ends[2];
+  ASSERT_EQ(pipe2(ends, O_NONBLOCK), 0);
+  const UniqueFd reader(ends[0]);
+  UniqueFd writer(ends[1]);
+  ASSERT_GE(fcntl(writer.get(), F_SETPIPE_SZ, 1 << 18), 1 << 18);
+  const std::string lines(1 << 18, '\n');
+  ASSERT_EQ(::write(writer.get(), lines.data(), lines.size()), 1 << 18);
+  writer.reset();
+
+  int seen = 0;
+  const auto count = [&](std::string_view) { ++seen; };
+  LogTail tail;
+  EXPECT_TRUE(tail.read_from(reader.get(), count));
+  EXPECT_LT(seen, 1 << 18) << "what is left is read at the next turn";
+  EXPECT_FALSE(tail.read_from(reader.get(), count, LogTail::kAllReads));
+  EXPECT_EQ(seen, 1 << 18);
 }
 
 }  // namespace

@@ -154,8 +154,8 @@ TEST_F(ServiceTest, WhatASuccessorNeedsToKnowIsSaved) {
   EXPECT_EQ(saved.name, "pose");
   EXPECT_EQ(saved.pid, pose.pid());
   EXPECT_EQ(saved.started_ticks, start_ticks_of(pose.pid()).value());
-  EXPECT_TRUE(saved.ready);
-  EXPECT_EQ(saved.backend, "twin");
+  EXPECT_EQ(saved.state, State::ready);
+  EXPECT_EQ(saved.swapped, "") << "its back end is the rig's own";
 }
 
 TEST_F(ServiceTest, AnAdoptedServiceGoesOnAsItWasAndIsReplacedWhenItDies) {
@@ -167,6 +167,7 @@ TEST_F(ServiceTest, AnAdoptedServiceGoesOnAsItWasAndIsReplacedWhenItDies) {
   AdoptedProcess process{.saved = first.saved(), .pidfd = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, first.pid(), 0))), .log = {}};
   process.saved.restarts = 3;
   auto& second = service(kWorks);
+  second.inherit(process.saved);
   second.adopt(std::move(process));
   EXPECT_EQ(second.state(), State::ready);
   EXPECT_EQ(second.pid(), first.pid());
@@ -176,6 +177,29 @@ TEST_F(ServiceTest, AnAdoptedServiceGoesOnAsItWasAndIsReplacedWhenItDies) {
   run_until([&] { return second.state() == State::ready && second.pid() != adopted; });
   EXPECT_EQ(second.restarts(), 4);
   services_.pop_back();  // before `reports`
+}
+
+TEST_F(ServiceTest, OnlyASwapIsInheritedAsASwap) {
+  auto& first = service(kWorks);
+  first.use_backend("replay", true);
+  EXPECT_EQ(first.saved().swapped, "replay");
+  auto saved = first.saved();
+  auto& second = service(kWorks);
+  second.inherit(saved);
+  EXPECT_EQ(second.spec().backend, "replay");
+  saved.swapped.clear();
+  auto& third = service(kWorks);
+  third.inherit(saved);
+  EXPECT_EQ(third.spec().backend, "twin");
+}
+
+TEST_F(ServiceTest, OneThatHadFailedStaysFailedUnderTheNextSupervisor) {
+  auto& pose = service(kWorks);
+  pose.inherit({.name = "pose", .state = State::failed, .swapped = {}, .fingerprint = "as it was", .restarts = 2});
+  EXPECT_EQ(pose.state(), State::failed);
+  EXPECT_TRUE(pose.first_start_ns()) << "it is not to be begun";
+  EXPECT_EQ(pose.restarts(), 2);
+  EXPECT_EQ(pose.saved().fingerprint, "as it was");
 }
 
 /// A service with the ring it publishes. The test publishes in its place.

@@ -36,6 +36,14 @@ TEST_F(Followed, WhatAServiceMarksIsInTheLedgerAndInTheHistory) {
   EXPECT_EQ(seen.frames[9].header.frame_id, 9u);
 }
 
+TEST_F(Followed, AServiceThatIsFollowedAlreadyIsNotCountedTwice) {
+  ASSERT_TRUE(recorder.follow("camera", ring.fd()));
+  ASSERT_TRUE(recorder.follow("camera", ring.fd()));
+  publish(10);
+  recorder.poll();
+  EXPECT_EQ(recorder.ledger().frames("camera").total(), 10u);
+}
+
 TEST_F(Followed, WhatWasOverwrittenBeforeItWasReadIsCountedAsMissed) {
   ASSERT_TRUE(recorder.follow("camera", ring.fd()));
   publish(5);

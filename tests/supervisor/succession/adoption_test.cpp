@@ -69,7 +69,7 @@ class AdoptionTest : public testing::Test {
     EXPECT_TRUE(child);
     children_.push_back(std::make_unique<Child>(std::move(*child)));
     const auto pid = children_.back()->pid();
-    saved_.services.push_back({name, pid, start_ticks_of(pid).value_or(0), ready, "twin", "f", 2});
+    saved_.services.push_back({name, pid, start_ticks_of(pid).value_or(0), ready ? State::ready : State::starting, "", "f", 2});
     return *children_.back();
   }
 

@@ -95,6 +95,18 @@ TEST_F(KeeperTest, ASupervisorThatIsKilledIsStartedAgainAndToldThatItIsASuccesso
   EXPECT_THAT(log(), HasSubstr("signal 9"));
 }
 
+TEST_F(KeeperTest, ASuccessorThatCannotTakeOverNowIsTriedAgain) {
+  keep_script("echo life >> $NOTES; case $(wc -l < $NOTES) in 1) kill -9 $$;; 2) exit 111;; *) exit 7;; esac");
+  EXPECT_EQ(wait(), 7);
+  EXPECT_THAT(log(), HasSubstr("exit 111"));
+}
+
+TEST_F(KeeperTest, AFirstSupervisorThatCannotStartIsNotTriedAgain) {
+  keep_script("echo life >> $NOTES; exit 111");
+  EXPECT_EQ(wait(), kExitFailure);
+  EXPECT_THAT(notes(), ElementsAre("life"));
+}
+
 TEST_F(KeeperTest, OneThatDiesAgainAndAgainIsGivenUpWithASentence) {
   keep_script("echo life >> $NOTES; kill -ABRT $$");
   EXPECT_EQ(wait(), kExitFailure);

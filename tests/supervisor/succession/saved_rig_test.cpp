@@ -22,11 +22,10 @@ SavedRig desk() {
   return {.name = "desk",
           .rig_file = "/rigs/desk.toml",
           .settings = {"camera.rate_hz=60", "name=\"desk\""},
-          .end_ns = 77'000'000'000,
           .out = "/tmp/out",
           .epoch_ns = 42,
           .rings = {{"camera.frames", 123456789012345, 64}},
-          .services = {{"pose", 4711, 99887766, true, "replay", "abcdef", 3}, {"camera", 0, 0, false, "twin", "", 0}}};
+          .services = {{"pose", 4711, 99887766, State::ready, "replay", "abcdef", 3}, {"camera", 0, 0, State::failed, "", "", 0}}};
 }
 
 class SavedRigTest : public testing::Test {
@@ -63,7 +62,6 @@ TEST_F(SavedRigTest, WhatIsSavedIsLoadedAgain) {
   const auto& rig = **loaded;
   EXPECT_EQ(rig.rig_file, "/rigs/desk.toml");
   EXPECT_EQ(rig.settings, desk().settings);
-  EXPECT_EQ(rig.end_ns, 77'000'000'000);
   EXPECT_EQ(rig.out, "/tmp/out");
   EXPECT_EQ(rig.epoch_ns, 42);
   ASSERT_THAT(rig.rings, SizeIs(1));
@@ -73,10 +71,11 @@ TEST_F(SavedRigTest, WhatIsSavedIsLoadedAgain) {
   ASSERT_THAT(rig.services, SizeIs(2));
   EXPECT_EQ(rig.services[0].pid, 4711);
   EXPECT_EQ(rig.services[0].started_ticks, 99887766u);
-  EXPECT_TRUE(rig.services[0].ready);
-  EXPECT_EQ(rig.services[0].backend, "replay");
+  EXPECT_EQ(rig.services[0].state, State::ready);
+  EXPECT_EQ(rig.services[0].swapped, "replay");
   EXPECT_EQ(rig.services[0].fingerprint, "abcdef");
   EXPECT_EQ(rig.services[0].restarts, 3);
+  EXPECT_EQ(rig.services[1].state, State::failed);
 }
 
 TEST_F(SavedRigTest, NothingLeftIsNotAnError) {

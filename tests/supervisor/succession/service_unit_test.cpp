@@ -53,8 +53,8 @@ TEST_P(EachUnit, IsAcceptedBySystemd) {
   const test::Scratch scratch;
   const auto file = scratch.path() / unit_name(desk(GetParam()));
   std::ofstream(file) << unit_text(desk(GetParam()));
-  const auto verdict =
-      output_of("/bin/bash", {"-c", "systemd-analyze verify --man=no --recursive-errors=no " + file.string() + "; echo exit $?"}, 30000);
+  const auto verdict = output_of(
+      "/bin/bash", {"-c", "systemd-analyze verify --man=no --recursive-errors=no " + file.string() + " 2>&1; echo exit $?"}, 30000);
   ASSERT_TRUE(verdict);
   EXPECT_THAT(*verdict, AllOf(HasSubstr("exit 0"), Not(HasSubstr("desk.service"))));  // a complaint names the unit
 }

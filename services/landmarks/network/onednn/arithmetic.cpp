@@ -155,6 +155,7 @@ std::size_t emit_matmul(Builder& builder, const Node& node, std::span<const Node
   const Value output = builder.make(chosen.dst_desc());
   builder.program().add_step(dnnl::matmul(chosen), {{DNNL_ARG_SRC, a}, {DNNL_ARG_WEIGHTS, b}, {DNNL_ARG_DST, output}},
                              chosen.scratchpad_desc());
+  builder.count_multiplications(static_cast<double>(onnx::elements(result)) * static_cast<double>(rows.back()));
   builder.define(node.outputs[0], output);
   return 0;
 }

@@ -73,6 +73,12 @@ Value Builder::operand(const Node& node, std::size_t input) {
   return values_[name] = weights(tensor->floats, desc, desc);
 }
 
+const Value& Builder::value(const std::string& name) const {
+  const auto found = values_.find(name);
+  if (found == values_.end()) throw Refused{fmt::format("nothing calculates '{}'", name)};
+  return found->second;
+}
+
 const onnx::Tensor* Builder::constant(const Node& node, std::size_t input) const {
   if (!node.has_input(input)) return nullptr;
   const auto found = model_.constants.find(node.inputs[input]);

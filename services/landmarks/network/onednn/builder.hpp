@@ -50,7 +50,8 @@ class Builder {
   std::optional<std::vector<std::int64_t>> integers(const Node& node, std::size_t input) const;
 
   void define(const std::string& name, const Value& value) { values_[name] = value; }
-  const Value& value(const std::string& name) const { return values_.at(name); }
+  /// Refuses a name that no step makes.
+  const Value& value(const std::string& name) const;
 
   /// Room for a new value.
   Value make(const dnnl::memory::desc& desc);

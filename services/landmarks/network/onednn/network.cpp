@@ -131,6 +131,8 @@ Result<std::unique_ptr<OnednnNetwork>> open(const std::filesystem::path& file) {
     return network;
   } catch (const onednn::Refused& refused) {
     return fail(Errc::bad_config, place + ": " + refused.what);
+  } catch (const onednn::Program::TooLarge&) {
+    return fail(Errc::bad_config, fmt::format("{}: it needs more than {} MB of memory", place, onednn::Program::kMostBytes >> 20));
   } catch (const std::exception& error) {
     return fail(Errc::bad_config, fmt::format("{}: oneDNN cannot run it: {}", place, error.what()));
   }

@@ -17,9 +17,20 @@ int Program::add_buffer(std::size_t bytes) {
   return static_cast<int>(buffers_.size()) - 1;
 }
 
+void Program::reckon(std::size_t bytes) {
+  if (bytes > kMostBytes - bytes_) throw TooLarge{};
+  bytes_ += bytes;
+}
+
 int Program::add_fixed_buffer(std::size_t bytes) {
+  reckon(bytes);
   buffers_.push_back({.bytes = bytes, .fixed = zeroed_bytes(bytes)});
   return static_cast<int>(buffers_.size()) - 1;
+}
+
+void Program::drop(int buffer) {
+  bytes_ -= buffers_[buffer].bytes;
+  buffers_[buffer].fixed.reset();
 }
 
 void Program::reorder_now(const Value& from, const Value& to) {
@@ -81,7 +92,9 @@ void Program::bind() {
 
 void Program::finish() {
   note_lifetimes();
-  arena_ = zeroed_bytes(std::max<std::size_t>(place_buffers(), 64));
+  const std::size_t bytes = std::max<std::size_t>(place_buffers(), 64);
+  reckon(bytes);
+  arena_ = zeroed_bytes(bytes);
   bind();
 }
 

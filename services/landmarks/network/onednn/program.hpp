@@ -31,20 +31,24 @@ class Program {
  public:
   const dnnl::engine& engine() const { return engine_; }
 
+  /// What a network may have in all; the largest known one has 20 MB.
+  static constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+  struct TooLarge {};
+
   /// For values that one step writes and later ones read.
   int add_buffer(std::size_t bytes);
-  /// Zeroed, never shared: inputs, outputs, weights.
+  /// Zeroed, never shared: inputs, outputs, weights. Throws TooLarge.
   int add_fixed_buffer(std::size_t bytes);
   bool is_fixed(int buffer) const { return buffers_[buffer].fixed != nullptr; }
   /// Of a fixed buffer.
   void* data(int buffer) { return buffers_[buffer].fixed.get(); }
   /// A fixed buffer that no step will use.
-  void drop(int buffer) { buffers_[buffer].fixed.reset(); }
+  void drop(int buffer);
   /// Only now, while the program is built: a reorder between two fixed buffers.
   void reorder_now(const Value& from, const Value& to);
 
   void add_step(const dnnl::primitive& primitive, std::vector<Argument> arguments, const dnnl::memory::desc& scratchpad = {});
-  /// Gives every buffer its place. Nothing is added afterwards.
+  /// Gives every buffer its place. Nothing is added afterwards. Throws TooLarge.
   void finish();
 
   void run();
@@ -62,6 +66,7 @@ class Program {
     std::vector<dnnl_exec_arg_t> bound;
   };
 
+  void reckon(std::size_t bytes);
   void note_lifetimes();
   std::size_t place_buffers();
   void bind();
@@ -72,6 +77,7 @@ class Program {
   std::vector<Buffer> buffers_;
   std::vector<Step> steps_;
   AlignedBytes arena_;
+  std::size_t bytes_ = 0;  ///< of the fixed buffers, and of the arena when it is there
 };
 
 }  // namespace handcast::landmarks::onednn

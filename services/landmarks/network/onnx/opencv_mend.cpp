@@ -25,11 +25,16 @@ const Tensor* constant(const Model& model, const Node& node, std::size_t input) 
   return found == model.constants.end() ? nullptr : &found->second;
 }
 
+/// A bound that is no constant stays what it is: for OpenCV to refuse, not to be left out.
 void bounds_to_attributes(const Model& model, Node& node) {
+  const auto is_known = [&](std::size_t input) {
+    const Tensor* bound = constant(model, node, input);
+    return !node.has_input(input) || (bound && bound->floats.size() == 1);
+  };
+  if (!is_known(1) || !is_known(2)) return;
   const auto move = [&](std::size_t input, const char* name, float otherwise) {
     const Tensor* bound = constant(model, node, input);
-    const bool given = bound && bound->floats.size() == 1;
-    if (!node.has(name)) node.attributes[name] = number(given ? bound->floats[0] : otherwise);
+    if (!node.has(name)) node.attributes[name] = number(bound ? bound->floats[0] : otherwise);
   };
   move(1, "min", std::numeric_limits<float>::lowest());
   move(2, "max", std::numeric_limits<float>::max());

@@ -1,6 +1,7 @@
 // Field numbers: onnx.proto of the ONNX project, IR version 3 and up.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -90,11 +91,11 @@ void append_raw(Bytes raw, std::int64_t type, Tensor& tensor) {
 }
 
 void check_size(const Tensor& tensor, const std::string& name) {
+  if (!tensor.floats.empty() && !tensor.integers.empty()) broken(fmt::format("the constant '{}' holds both whole and other numbers", name));
   const std::size_t given = tensor.floats.size() + tensor.integers.size();
-  std::size_t wanted = static_cast<std::size_t>(elements(tensor.shape));
-  for (const std::int64_t extent : tensor.shape)
-    if (extent == 0) wanted = given;  // a list of nothing, as exporters write for "no region"
-  if (given != wanted || (wanted == 0 && !tensor.shape.empty() && given != 0))
+  // A list of nothing is what exporters write for "no region"; elements() is 0 of one that is too large as well.
+  const bool of_nothing = std::ranges::find(tensor.shape, 0) != tensor.shape.end();
+  if (given != static_cast<std::size_t>(elements(tensor.shape)) || (given == 0 && !of_nothing))
     broken(fmt::format("the constant '{}' is declared as {} and holds {} numbers", name, to_string(tensor.shape), given));
 }
 

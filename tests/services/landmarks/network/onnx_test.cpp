@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "little_model.hpp"
+#include "services/landmarks/network/onnx/wire.hpp"
 
 namespace handcast::landmarks {
 namespace {
@@ -47,6 +48,21 @@ TEST(OnnxReader, AFileCutOffAnywhereIsAnErrorInASentence) {
     ASSERT_EQ(model.error().code, Errc::bad_config);
     ASSERT_FALSE(model.error().what.empty());
   }
+}
+
+TEST(OnnxReader, AConstantOfBothWholeAndOtherNumbersIsRefused) {
+  const std::array<std::uint8_t, 4> one_float{};
+  onnx::WireWriter tensor, graph, file;
+  tensor.varint(1, 1000);  // its extent
+  tensor.varint(2, 1);     // numbers of type float
+  tensor.text(8, "w");
+  tensor.bytes(9, one_float);
+  for (int i = 0; i < 999; ++i) tensor.varint(7, 1);  // and whole ones beside them
+  graph.message(5, tensor);
+  file.message(7, graph);
+  const auto model = onnx::parse_model(std::move(file).take());
+  ASSERT_FALSE(model);
+  EXPECT_THAT(model.error().what, HasSubstr("both whole and other numbers"));
 }
 
 TEST(OnnxReader, FlippedBytesNeverCrashTheReaderOrTheExecutor) {
@@ -116,6 +132,29 @@ TEST(Networks, AnOutputOfAnotherShapeThanDeclaredIsRefused) {
   onnx::Model model = little_model();
   model.outputs[0].shape = {1, 3, 2, 2};
   expect_refused(model, "'y'");
+}
+
+TEST(Networks, AFileThatAsksForMoreMemoryThanAnyNetworkIsRefused) {
+  onnx::Model model = little_model();
+  model.constants["pads"] = {.shape = {8}, .integers = {0, 0, 0, 0, 0, 0, 1500, 1500}};
+  for (int i = 0; i < 20; ++i) {
+    const std::string name = "wide " + std::to_string(i);
+    model.nodes.push_back({"Pad", {"c", "pads"}, {name}, {}});
+    model.outputs.push_back({name, {1, 3, 1504, 1504}});
+  }
+  const auto network = open_network("onednn", ModelFile(model).path());
+  ASSERT_FALSE(network);
+  EXPECT_EQ(network.error().code, Errc::bad_config);
+  EXPECT_THAT(network.error().what, HasSubstr("MB of memory"));
+}
+
+TEST(Networks, AnOutputThatNothingCalculatesIsNamed) {
+  onnx::Model model = little_model();
+  model.constants["k"] = random_tensor({1, 3}, 4);
+  model.outputs.push_back({"k", {1, 3}});
+  const auto network = open_network("onednn", ModelFile(model).path());
+  ASSERT_FALSE(network);
+  EXPECT_THAT(network.error().what, HasSubstr("nothing calculates 'k'"));
 }
 
 TEST(Networks, AnUnknownOperatorIsNamed) {

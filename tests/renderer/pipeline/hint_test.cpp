@@ -1,0 +1,27 @@
+#include "renderer/pipeline/hint.hpp"
+
+#include <gtest/gtest.h>
+
+#include "stage_set.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+TEST(Hint, AHandFarOutsideTheImageIsNotLookedForEvenWhereTheLensWouldFoldItIn) {
+  auto calibration = rig_above_hand();
+  calibration.camera.k1 = -0.8;  // turns back some way outside the image
+  calibration.camera.k2 = calibration.camera.k3 = 0;
+  ASSERT_FALSE(calibration.camera.folds());
+  const auto hint_at = [&](float x_m) {
+    HandTrack::Tracked tracked;
+    tracked.pose = pose_of(Side::left, {x_m, 0, 0});
+    tracked.tracker = tracked.corrected = *project_landmarks(calibration, tracked.pose);
+    return make_hint(calibration, {}, tracked.pose, tracked);
+  };
+  EXPECT_TRUE(hint_at(0));
+  EXPECT_TRUE(hint_at(0.2f));    // a part of it is seen
+  EXPECT_FALSE(hint_at(0.55f));  // the polynomial lays it into the image
+}
+
+}  // namespace
+}  // namespace handcast::renderer

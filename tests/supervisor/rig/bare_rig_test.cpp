@@ -1,0 +1,177 @@
+// Whole rigs of daemons that do next to nothing: what a supervisor, and the one after it, makes of their lives.
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "supervisor/control/control_client.hpp"
+#include "tests/supervisor/runtime_scratch.hpp"
+#include "tests/system/command.hpp"
+#include "tests/system/variable.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using nlohmann::json;
+using system_test::Command, system_test::eventually, system_test::is_alive, system_test::Variable;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::vector<std::string> kDaemons{"camera", "pose", "landmarks", "projector"};
+constexpr auto kObserver = "[observer]\nenabled = true\n", kNoObserver = "[observer]\nenabled = false\n";
+constexpr auto kNeverReady = "exec sleep 1000";
+
+class BareRig : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto built = system_test::program_folder();
+    for (const auto* program : {"handcast", "handcast_bare_daemon", "handcast_looping_observer"})
+      if (!std::filesystem::exists(built / program)) GTEST_SKIP() << program << " has not been built";
+    std::filesystem::create_directory(programs_);
+    std::filesystem::copy_file(built / "handcast", programs_ / "handcast");
+    for (const auto& daemon : kDaemons) std::filesystem::copy_file(built / "handcast_bare_daemon", programs_ / ("handcast-" + daemon));
+    std::filesystem::copy_file(built / "handcast_looping_observer", programs_ / "handcast-observer");
+    write_rig(kNoObserver);
+    bin_.emplace("HANDCAST_BIN", programs_.string());
+  }
+  void TearDown() override { system_test::kill_all_of(scratch_.path()); }
+
+  void write_file(const std::string& text) const { std::ofstream(file_) << text; }
+  void write_rig(const std::string& more) const { write_file("name = \"desk\"\n" + more); }
+  /// In the place of what was there, running or not.
+  static void write_program(const std::filesystem::path& program, const std::string& script) {
+    std::filesystem::remove(program);
+    std::ofstream(program) << "#!/bin/bash\n" << script << "\n";
+    chmod(program.c_str(), 0755);
+  }
+  void make_daemon(const std::string& name, const std::string& script) const { write_program(programs_ / ("handcast-" + name), script); }
+
+  std::unique_ptr<Command> up() const { return std::make_unique<Command>(scratch_.path(), system_test::Arguments{"up", file_.string()}); }
+  std::unique_ptr<Command> ready_rig() const {
+    auto rig = up();
+    EXPECT_TRUE(eventually([this] {
+      const auto now = services();
+      return now.is_object() && std::ranges::all_of(now, [](const auto& service) { return service["state"] == "ready"; });
+    })) << rig->log();
+    return rig;
+  }
+  void replace_supervisor(const Command& rig) const {
+    const auto before = rig.supervisor();
+    ASSERT_GT(before, 0);
+    ASSERT_EQ(kill(before, SIGKILL), 0);
+    ASSERT_TRUE(eventually([&] { return rig.supervisor() > 0 && rig.supervisor() != before && services().is_object(); })) << rig.log();
+  }
+
+  static json services() {
+    const auto answer = ask("desk", {.verb = Verb::status, .service = {}, .backend = {}});
+    return answer ? (*answer)["status"]["services"] : json();
+  }
+  static pid_t pid_of(const std::string& service) { return services()[service]["pid"].get<pid_t>(); }
+  static Result<json> reload() { return ask("desk", {.verb = Verb::reload, .service = {}, .backend = {}}); }
+  static Result<json> restart(const std::string& service) {
+    return ask("desk", {.verb = Verb::restart, .service = service, .backend = {}});
+  }
+
+  RuntimeScratch scratch_;
+  const std::filesystem::path file_ = scratch_.path() / "desk.toml", programs_ = scratch_.path() / "programs";
+  std::optional<Variable> bin_;
+};
+
+TEST_F(BareRig, ASuccessorGoesOnWithTheRigAsItWasAppliedAndTheFileCountsWhenItIsReloaded) {
+  const auto rig = ready_rig();
+  const auto camera = pid_of("camera");
+  for (const auto* text : {"name = \"desk\"\n[camera\nrate", "name = \"wall\"\n"}) {
+    write_file(text);
+    replace_supervisor(*rig);
+    EXPECT_EQ(pid_of("camera"), camera);
+  }
+  EXPECT_THAT(rig->log(), HasSubstr("rig 'desk' goes on as it was applied; `handcast reload` reads " + file_.string()));
+  write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
+  replace_supervisor(*rig);
+  EXPECT_EQ(pid_of("camera"), camera);
+  const auto reloaded = reload();
+  ASSERT_TRUE(reloaded) << reloaded.error().what;
+  EXPECT_NE(pid_of("camera"), camera);
+}
+
+TEST_F(BareRig, AServiceThatHadFailedStaysFailedUnderTheNextSupervisorAndTheRestGoesOn) {
+  const auto rig = ready_rig();
+  make_daemon("landmarks", "exit 100");
+  EXPECT_FALSE(restart("landmarks"));
+  const auto camera = pid_of("camera");
+  replace_supervisor(*rig);
+  EXPECT_EQ(services()["landmarks"]["state"], "failed");
+  EXPECT_EQ(pid_of("camera"), camera);
+  std::filesystem::remove(programs_ / "handcast-landmarks");
+  std::filesystem::copy_file(programs_ / "handcast-pose", programs_ / "handcast-landmarks");
+  EXPECT_TRUE(restart("landmarks"));
+}
+
+TEST_F(BareRig, IsUpAlthoughOneServiceDoesNotGetReady) {
+  make_daemon("landmarks", kNeverReady);
+  write_rig(std::string("[supervisor]\nready_s = 2\n") + kNoObserver);
+  const auto rig = up();
+  EXPECT_TRUE(eventually([&] { return rig->log().find("rig 'desk' is up") != std::string::npos; })) << rig->log();
+}
+
+TEST_F(BareRig, AServiceThatIsSwitchedOnAgainUnderTheNextSupervisorIsHeard) {
+  write_rig(kObserver);
+  const auto rig = ready_rig();
+  write_rig(kNoObserver);
+  ASSERT_TRUE(reload());
+  replace_supervisor(*rig);
+  write_rig(kObserver);
+  ASSERT_TRUE(reload());
+  EXPECT_TRUE(eventually([] { return services()["observer"]["silent_ms"].is_number(); }));
+}
+
+TEST_F(BareRig, OnlyDaemonsAreEndedAsStraysNotWhateverElseIsAChildOfTheKeeper) {
+  const auto notes = scratch_.path() / "notes";
+  std::filesystem::create_directory(scratch_.path() / "entry");
+  std::filesystem::copy_file("/bin/sleep", programs_ / "handcast-stray");
+  write_program(scratch_.path() / "entry" / "handcast", "sleep 1000 & echo $! > " + notes.string() + "; setsid " + programs_.string() +
+                                                            "/handcast-stray 1000 & echo $! >> " + notes.string() + "; exec " +
+                                                            programs_.string() + "/handcast \"$@\"");
+  bin_.emplace("HANDCAST_BIN", (scratch_.path() / "entry").string());
+  const auto rig = ready_rig();
+  pid_t other = 0, stray = 0;
+  std::ifstream(notes) >> other >> stray;
+  ASSERT_TRUE(other > 0 && stray > 0);
+  replace_supervisor(*rig);
+  EXPECT_TRUE(eventually([&] { return !is_alive(stray); }));
+  EXPECT_TRUE(is_alive(other));
+}
+
+TEST_F(BareRig, AReloadWhoseServiceCannotStartDoesNotStopARigThatIsNotUpYet) {
+  make_daemon("landmarks", kNeverReady);
+  std::filesystem::remove(programs_ / "handcast-observer");
+  write_rig(std::string("[supervisor]\nready_s = 60\n") + kNoObserver);
+  const auto rig = up();
+  ASSERT_TRUE(eventually([] { return services().is_object() && services()["landmarks"]["pid"] != 0; }));
+  write_rig(std::string("[supervisor]\nready_s = 60\n") + kObserver);
+  const auto reloaded = reload();
+  ASSERT_FALSE(reloaded);
+  EXPECT_THAT(reloaded.error().what, HasSubstr("observer is failed"));
+  EXPECT_EQ(services()["camera"]["state"], "ready");
+}
+
+// What SIGKILL does not end at once: here an orphan whose end nobody reaps, since the keeper stands still.
+TEST_F(BareRig, ASilentServiceIsSaidToBeKilledOnce) {
+  write_rig(std::string("[supervisor]\nsilent_s = 1\n") + kNoObserver);
+  const auto rig = ready_rig();
+  replace_supervisor(*rig);
+  const auto pose = pid_of("pose");
+  rig->signal(SIGSTOP);
+  kill(pose, SIGSTOP);
+  EXPECT_TRUE(eventually([&] { return pid_of("pose") != pose && services()["pose"]["state"] == "ready"; }));
+  rig->signal(SIGCONT);
+  const auto log = rig->log();
+  const auto first = log.find("pose has given no sign of life");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(log.find("pose has given no sign of life", first + 1), std::string::npos) << log;
+}
+
+}  // namespace
+}  // namespace handcast::supervisor
