@@ -70,8 +70,8 @@ constexpr double kRigidTolerance = 1e-3;
 
 template <class Matrix>
 std::vector<double> row_of(const Matrix& matrix, int row) {
-  std::vector<double> values;
-  for (int column = 0; column < Matrix::length(); ++column) values.push_back(matrix[column][row]);
+  std::vector<double> values(Matrix::length());
+  for (int column = 0; column < Matrix::length(); ++column) values[column] = matrix[column][row];
   return values;
 }
 

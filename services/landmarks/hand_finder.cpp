@@ -130,7 +130,8 @@ void HandFinder::choose_candidates(const Hints& hints_px) {
     const Track& seen = tracks_[i];
     candidates_.push_back({seen.side, hand_->region_around(seen.points_px), std::nullopt, seen.steady, seen.left_score});
   }
-  std::ranges::stable_partition(candidates_, [](const Candidate& candidate) { return candidate.is_followed && candidate.hint_px; });
+  std::stable_partition(candidates_.begin(), candidates_.end(),
+                        [](const Candidate& candidate) { return candidate.is_followed && candidate.hint_px; });
 }
 
 /// Sets `region`: where it was looked for last.
