@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "renderer/content/picture.hpp"
@@ -121,7 +122,7 @@ Result<void> run_picture(Detectors& detectors, const fs::path& file, const fs::p
   fmt::print("{}\n", json{{"source", name}, {"tracker", to_json(*tracker_px)}, {"seen", *seen}}.dump());
   if (drawings.empty()) return {};
   for (const auto& [detector, answer] : seen->items()) {
-    const auto drawn = draw_into(drawings / fmt::format("{}_{}.png", name, detector), picture->view(), answer["points"], *tracker_px);
+    auto drawn = draw_into(drawings / fmt::format("{}_{}.png", name, detector), picture->view(), answer["points"], *tracker_px);
     if (!drawn) return drawn;
   }
   return {};
@@ -141,7 +142,7 @@ Result<Detectors> open(const std::string& backend, const std::string& network, c
 }  // namespace
 }  // namespace handcast::landmarks::training
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   using namespace handcast::landmarks::training;
   std::string backend = "opencv", network, models, drawings;
   std::vector<std::string> motions, pictures;
@@ -163,4 +164,9 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; done && i < pictures.size(); ++i) done = run_picture(*detectors, pictures[i], drawings);
   if (!done) fmt::print(stderr, "handcast-evaluate-landmarks: {}\n", done.error().what);
   return done ? 0 : 1;
+} catch (const std::exception& problem) {
+  std::fputs("handcast-evaluate-landmarks: ", stderr);
+  std::fputs(problem.what(), stderr);
+  std::fputs("\n", stderr);
+  return 1;
 }
