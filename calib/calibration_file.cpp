@@ -2,6 +2,7 @@
 
 #include "calib/calibration.hpp"
 #include "calib/rigid.hpp"
+#include "config/files.hpp"
 #include "config/load.hpp"
 #include "config/settings.hpp"
 

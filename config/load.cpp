@@ -3,13 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <tuple>
 
 #include "config/join.hpp"
@@ -209,30 +204,6 @@ void apply_assignment(std::string_view assignment, const Listing& listing, Fault
   const auto value = read_assigned(text, setting->target);
   const auto complaint = value ? store(*value, *setting) : expected(*setting);
   if (!complaint.empty()) complain(complaint);
-}
-
-Result<std::string> read_text(const std::filesystem::path& file) {
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (!stream.is_open() || stream.bad() || !text)
-    return fail(Errc::bad_config, fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-  return std::move(text).str();
-}
-
-Result<void> write_whole(const std::filesystem::path& file, const std::string& text) {
-  std::error_code unknown;
-  const auto kind = std::filesystem::symlink_status(file, unknown);
-  const bool in_place = std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind);
-  const auto target = in_place ? file.string() : file.string() + ".tmp";
-  errno = 0;
-  std::ofstream stream(target, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream || (!in_place && std::rename(target.c_str(), file.c_str()) != 0))
-    return fail(Errc::unavailable, fmt::format("'{}' cannot be written: {}", file.string(), std::strerror(errno)));
-  return {};
 }
 
 std::string suggest(std::string_view wrong, const std::vector<std::string_view>& known) {

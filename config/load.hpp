@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,13 +27,6 @@ void apply_document(const Value& document, std::string_view file, const Listing&
 
 /// Writes one "path=value", the value typed by its setting: text needs no quotes, a list may go without brackets.
 void apply_assignment(std::string_view assignment, const Listing& listing, Faults& faults);
-
-/// The text of a file. Errors (bad_config): it cannot be read, and why.
-Result<std::string> read_text(const std::filesystem::path& file);
-
-/// Writes a file so that a reader never sees half of it; what is no plain file (a link, a pipe, /dev/stdout) is written in place.
-/// Errors: unavailable.
-Result<void> write_whole(const std::filesystem::path& file, const std::string& text);
 
 /// " (did you mean 'rate_hz'?)", or nothing where no name is near.
 std::string suggest(std::string_view wrong, const std::vector<std::string_view>& known);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "config/files.hpp"
 #include "config/load.hpp"
 #include "config/settings.hpp"
 

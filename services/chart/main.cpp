@@ -40,8 +40,6 @@ int main(int argc, char** argv) try {
   fmt::print("{}\n", written->page.string());
   return 0;
 } catch (const std::exception& problem) {
-  std::fputs("handcast chart: ", stderr);
-  std::fputs(problem.what(), stderr);
-  std::fputs("\n", stderr);
+  std::fprintf(stderr, "handcast chart: %s\n", problem.what());
   return 111;
 }

@@ -52,8 +52,6 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
   return detect::detect(options);
 } catch (const std::exception& problem) {
-  std::fputs("handcast detect: ", stderr);
-  std::fputs(problem.what(), stderr);
-  std::fputs("\n", stderr);
+  std::fprintf(stderr, "handcast detect: %s\n", problem.what());
   return 111;
 }

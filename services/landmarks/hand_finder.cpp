@@ -136,17 +136,23 @@ void HandFinder::choose_candidates(const Hints& hints_px) {
 
 /// Sets `region`: where it was looked for last.
 Result<HandLooker::Seen> HandFinder::look_at(renderer::GreyView image, const Candidate& candidate, Region& region) {
-  HandLooker::Times times;
   HandLooker::Seen seen;
   const int looks = candidate.is_followed ? 1 : hand_->first_looks();
   for (int i = 0; i < looks; ++i) {
     region = i == 0 ? candidate.region : hand_->region_around(seen.points_px);
     if (!(region.size_px >= kLeastRegion_px) || !touches(region, image)) return HandLooker::Seen{};
-    auto answer = hand_->look(image, region, candidate.side, candidate.hint_px, times);
+    auto answer = look_once(image, region, candidate.side, candidate.hint_px);
     if (!answer) return answer;
     seen = *answer;
-    ++times_.looks;
   }
+  return seen;
+}
+
+Result<HandLooker::Seen> HandFinder::look_once(renderer::GreyView image, const Region& region, msg::Side side,
+                                               const std::optional<Points>& hint_px) {
+  HandLooker::Times times;
+  auto seen = hand_->look(image, region, side, hint_px, times);
+  ++times_.looks;
   times_.crop_ns += times.crop_ns;
   times_.network_ns += times.network_ns;
   return seen;
@@ -172,12 +178,8 @@ Result<void> HandFinder::look(renderer::GreyView image, const Candidate& candida
 Result<float> HandFinder::left_score_of(renderer::GreyView image, const Candidate& candidate, const FoundHand& hand) {
   if (++since_side_ < kAskSideEvery) return candidate.left_score;
   since_side_ = 0;
-  HandLooker::Times times;
-  const auto mirrored = hand_->look(image, hand.region, other(hand.side), std::nullopt, times);
+  const auto mirrored = look_once(image, hand.region, other(hand.side), std::nullopt);
   if (!mirrored) return tl::make_unexpected(mirrored.error());
-  ++times_.looks;
-  times_.crop_ns += times.crop_ns;
-  times_.network_ns += times.network_ns;
   const bool is_so = sum_of(hand.sigma_px) <= sum_of(mirrored->sigma_px);
   return is_so == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
 }

@@ -79,6 +79,7 @@ class HandFinder {
   bool is_found(msg::Side side) const;
   Result<void> look(renderer::GreyView image, const Candidate& candidate);
   Result<HandLooker::Seen> look_at(renderer::GreyView image, const Candidate& candidate, Region& region);
+  Result<HandLooker::Seen> look_once(renderer::GreyView image, const Region& region, msg::Side side, const std::optional<Points>& hint_px);
   Result<float> left_score_of(renderer::GreyView image, const Candidate& candidate, const FoundHand& hand);
   bool search_is_due(const Hints& hints_px);
   Result<void> search(renderer::GreyView image);

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "config/load.hpp"
+#include "config/files.hpp"
 #include "services/observer/judge.hpp"
 #include "services/observer/live_score.hpp"
 #include "services/runtime/context.hpp"

@@ -29,8 +29,6 @@ int main(int argc, char** argv) try {
   fmt::print("{}\n", page->string());
   return 0;
 } catch (const std::exception& problem) {
-  std::fputs("handcast report: ", stderr);
-  std::fputs(problem.what(), stderr);
-  std::fputs("\n", stderr);
+  std::fprintf(stderr, "handcast report: %s\n", problem.what());
   return 111;
 }

@@ -27,9 +27,9 @@ std::optional<LandmarkErrors> landmark_errors(const renderer::FrameHand& hand, s
   if (!truth || !joints) return std::nullopt;
   LandmarkErrors errors;
   for (std::size_t i = 0; i < truth->size(); ++i) {
-    errors.true_places_m[i] = calibration.camera_from_tracker * (*joints)[msg::kJointOfLandmark[i]][3];
+    const glm::dvec3 true_place_m = calibration.camera_from_tracker * (*joints)[msg::kJointOfLandmark[i]][3];
     errors.px[i] = glm::length(hand.corrected[i] - (*truth)[i]);
-    errors.mm[i] = 1e3 * errors.px[i] * errors.true_places_m[i].z / calibration.camera.fx_px;
+    errors.mm[i] = 1e3 * errors.px[i] * true_place_m.z / calibration.camera.fx_px;
   }
   return errors;
 }

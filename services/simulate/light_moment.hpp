@@ -11,8 +11,7 @@ namespace handcast::simulate {
 
 /// How far the landmarks of one hand's light are off.
 struct LandmarkErrors {
-  std::array<double, msg::kLandmarks> px{}, mm{};           ///< camera px; mm at the joint's distance
-  std::array<glm::dvec3, msg::kLandmarks> true_places_m{};  ///< camera space
+  std::array<double, msg::kLandmarks> px{}, mm{};  ///< camera px; mm at the joint's distance
 
   double mean_mm() const;
 };

@@ -26,8 +26,6 @@ int main(int argc, char** argv) try {
   }
   return 0;
 } catch (const std::exception& problem) {
-  std::fputs("handcast simulate: ", stderr);
-  std::fputs(problem.what(), stderr);
-  std::fputs("\n", stderr);
+  std::fprintf(stderr, "handcast simulate: %s\n", problem.what());
   return 111;
 }

@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "calib/calibration.hpp"
-#include "config/load.hpp"
+#include "config/files.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/simulate/score.hpp"
 
@@ -47,17 +44,6 @@ Result<nlohmann::json> score_in_sight(const config::Rig& rig, const calib::Calib
   return score(rig, calibration, options, [&](double done_s) { progress.at(done_s); });
 }
 
-/// Said before the run, not after it.
-Result<void> check_writable(const std::filesystem::path& file) {
-  std::error_code unknown;
-  if (std::filesystem::is_directory(file, unknown)) return fail(Errc::bad_config, fmt::format("{}: is a folder", file.string()));
-  const auto kind = std::filesystem::symlink_status(file, unknown);
-  const bool in_place = std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind);  // as write_whole does
-  const auto written_to = in_place ? file : std::filesystem::absolute(file).parent_path();
-  if (::access(written_to.c_str(), W_OK) == 0) return {};
-  return fail(Errc::bad_config, fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
-}
-
 /// Where a detector looked at images: how it fared.
 void print_detector(const nlohmann::json& detector) {
   if (!detector["ms_p50"].is_number()) return;
@@ -90,7 +76,7 @@ void print_summary(const nlohmann::json& json, const config::Rig& rig, const Opt
 
 Result<void> run(const Options& options) {
   if (!options.json_file.empty())
-    if (auto writable = check_writable(options.json_file); !writable) return writable;
+    if (auto writable = config::check_writable(options.json_file); !writable) return writable;
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
   const auto calibration = calib::load_calibration(rig->calibration);

@@ -121,8 +121,6 @@ int main(int argc, char** argv) try {
   if (line.files.size() > 1) return complain({handcast::Errc::bad_config, "one plan, please; for files of results say --merge"});
   return sweep(line);
 } catch (const std::exception& problem) {
-  std::fputs("handcast sweep: ", stderr);
-  std::fputs(problem.what(), stderr);
-  std::fputs("\n", stderr);
+  std::fprintf(stderr, "handcast sweep: %s\n", problem.what());
   return 111;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "config/document.hpp"
+#include "config/files.hpp"
 #include "config/join.hpp"
 #include "config/load.hpp"
 #include "config/rig.hpp"

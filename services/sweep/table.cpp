@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "config/load.hpp"
+#include "config/files.hpp"
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 

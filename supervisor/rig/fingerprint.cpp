@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "config/load.hpp"
+#include "config/files.hpp"
 #include "config/settings.hpp"
 
 namespace handcast::supervisor {

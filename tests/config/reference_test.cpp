@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "config/load.hpp"
+#include "config/files.hpp"
 #include "tests/config/every_setting.hpp"
 
 namespace handcast::config {

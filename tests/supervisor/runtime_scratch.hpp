@@ -1,7 +1,7 @@
 #pragma once
 #include <stdlib.h>
 
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
 

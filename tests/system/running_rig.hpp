@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 #include "tests/system/command.hpp"
 
 namespace handcast::system_test {

@@ -165,8 +165,6 @@ int main(int argc, char** argv) try {
   if (!done) fmt::print(stderr, "handcast-evaluate-landmarks: {}\n", done.error().what);
   return done ? 0 : 1;
 } catch (const std::exception& problem) {
-  std::fputs("handcast-evaluate-landmarks: ", stderr);
-  std::fputs(problem.what(), stderr);
-  std::fputs("\n", stderr);
+  std::fprintf(stderr, "handcast-evaluate-landmarks: %s\n", problem.what());
   return 1;
 }

@@ -54,17 +54,10 @@ TEST_P(EveryCorrection, AWrongTrackerIsMendedByLandmarksMaskAndFill) {
   feed_still(*pipeline, {hand});
   feed_landmarks(*pipeline, calibration, hand, {15, 10});
   const Frame frame = pipeline->render(104 * kMs, 108 * kMs, image.view(), 102 * kMs);
-  int hand_px = 0, dark_px = 0, spill_px = 0;
   const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].corrected[0]));
-  for (int y = 0; y < 768; ++y)
-    for (int x = 0; x < 1024; ++x) {
-      const bool on_hand = grey_at(calibration, image, x, y) > 100;
-      spill_px += lit(frame, x, y) && beside_hand(calibration, image, x, y);
-      hand_px += on_hand && y < wrist.y;
-      dark_px += on_hand && y < wrist.y && !lit(frame, x, y);
-    }
-  EXPECT_EQ(spill_px, 0);
-  EXPECT_LT(dark_px, hand_px / 100);
+  const LightCount count = count_light(frame, calibration, image, wrist.y);
+  EXPECT_EQ(count.spill_px, 0);
+  EXPECT_LT(count.dark_px, count.hand_px / 100);
   EXPECT_GT(frame.fill.lit, 9 * frame.fill.filled);
 }
 

@@ -65,6 +65,23 @@ inline bool beside_hand(const calib::Calibration& calibration, const Image<std::
   return most < 100;
 }
 
+/// Projector pixels of the hand above its wrist, those of them that are dark, and lit ones where no hand is.
+struct LightCount {
+  int hand_px = 0, dark_px = 0, spill_px = 0;
+};
+inline LightCount count_light(const Frame& frame, const calib::Calibration& calibration, const Image<std::uint8_t>& image,
+                              double wrist_y_px) {
+  LightCount count;
+  for (int y = 0; y < 768; ++y)
+    for (int x = 0; x < 1024; ++x) {
+      const bool on_hand = y < wrist_y_px && grey_at(calibration, image, x, y) > 100;
+      count.hand_px += on_hand;
+      count.dark_px += on_hand && !lit(frame, x, y);
+      count.spill_px += lit(frame, x, y) && beside_hand(calibration, image, x, y);
+    }
+  return count;
+}
+
 inline glm::vec2 mean_landing(const FrameHand& hand) {
   glm::vec2 sum{0};
   for (const glm::vec2& landing : hand.landings) sum += landing / static_cast<float>(hand.landings.size());

@@ -65,19 +65,11 @@ TEST_P(EverySide, LightCoversTheHandAndNothingElse) {
   EXPECT_EQ(frame.hands[0].side, GetParam());
 
   const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].tracker[0]));
-  int hand_px = 0, dark_px = 0, spill_px = 0, arm_px = 0;
-  for (int y = 0; y < 768; ++y)
-    for (int x = 0; x < 1024; ++x) {
-      const bool on_hand = grey_at(calibration, image, x, y) > 100;
-      spill_px += lit(frame, x, y) && beside_hand(calibration, image, x, y);
-      hand_px += on_hand && y < wrist.y;
-      dark_px += on_hand && y < wrist.y && !lit(frame, x, y);
-      arm_px += y > wrist.y + 45 && lit(frame, x, y);
-    }
-  EXPECT_GT(hand_px, 20000);
-  EXPECT_LT(dark_px, hand_px / 200);
-  EXPECT_EQ(spill_px, 0);
-  EXPECT_EQ(arm_px, 0);
+  const LightCount count = count_light(frame, calibration, image, wrist.y);
+  EXPECT_GT(count.hand_px, 20000);
+  EXPECT_LT(count.dark_px, count.hand_px / 200);
+  EXPECT_EQ(count.spill_px, 0);
+  EXPECT_LE(frame.region.y1, wrist.y + 46) << "no light on the arm";
 }
 
 TEST(Pipeline, WithoutMaskingTheArmBeyondTheWristIsNotDrawnEither) {

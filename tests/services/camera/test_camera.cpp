@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "services/camera/camera.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::camera {
 namespace {

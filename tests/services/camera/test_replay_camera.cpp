@@ -5,8 +5,8 @@
 
 #include "services/camera/camera.hpp"
 #include "services/twin/recording.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::camera {
 namespace {

@@ -8,8 +8,8 @@
 #include "services/chart/stress.hpp"
 #include "services/chart/svg.hpp"
 #include "services/chart/write.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/chart/sweeps.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::chart {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/scratch.hpp"
 #include "tests/services/chart/sweeps.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::chart {
 namespace {

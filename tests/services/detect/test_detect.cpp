@@ -8,8 +8,8 @@
 
 #include "services/detect/run.hpp"
 #include "services/twin/recording.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/landmarks/pictures.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::detect {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <map>
 
+#include "tests/scratch.hpp"
 #include "tests/services/landmarks/hostile.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::landmarks {
 namespace {

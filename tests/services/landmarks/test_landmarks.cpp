@@ -9,8 +9,8 @@
 #include "services/landmarks/hints.hpp"
 #include "services/landmarks/training/trial.hpp"
 #include "services/twin/recording.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/landmarks/pictures.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::landmarks {
 namespace {

@@ -8,8 +8,8 @@
 #include "services/landmarks/hints.hpp"
 #include "services/landmarks/own_finder.hpp"
 #include "services/landmarks/training/trial.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/landmarks/pictures.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::landmarks {
 namespace {

@@ -5,7 +5,7 @@
 #include "services/pose/pose_source.hpp"
 #include "services/twin/recording.hpp"
 #include "services/twin/twin.hpp"
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::pose {
 namespace {

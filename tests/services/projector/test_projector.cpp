@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "services/projector/projector.hpp"
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::projector {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "services/page/html.hpp"
 #include "services/report/report.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/report/demonstration.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast::report {
 namespace {

@@ -156,11 +156,9 @@ TEST(DetectorTally, CountsMissedAndInventedHandsAndTheErrorOfTheOthers) {
 }
 
 TEST(SimulatedDetector, AMissingModelIsOneSentence) {
-  const ScratchFolder empty;
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
+  const test::Scratch empty;
+  Options options = options_of("twin", 1);
   options.settings = {"landmarks.backend=onednn", "landmarks.models=" + empty.path().string()};
-  options.quiet = true;
   const auto done = run(options);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::bad_config);
@@ -169,10 +167,8 @@ TEST(SimulatedDetector, AMissingModelIsOneSentence) {
 }
 
 TEST(SimulatedDetector, ABackEndThatIsNotThereIsNamedBesideThoseThatAre) {
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
+  Options options = options_of("twin", 1);
   options.settings = {"landmarks.backend=eagle"};
-  options.quiet = true;
   const auto done = run(options);
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error().what, AllOf(HasSubstr("eagle"), HasSubstr("onednn"), Not(HasSubstr("\n"))));

@@ -67,7 +67,7 @@ class Recorder : public testing::Test {
     return array ? array->values : std::vector<double>();
   }
 
-  const ScratchFolder folder_;
+  const test::Scratch folder_;
   MadeUpFeed* feed_ = nullptr;
   std::unique_ptr<RecordingFeed> recorder_;
 };
@@ -152,13 +152,10 @@ TEST_F(Recorder, RemovesAnEarlierRecordingAndNothingElse) {
 }
 
 TEST(Frames, OfAnEarlierRunAreRemovedAndOtherFilesLeft) {
-  const ScratchFolder folder;
+  const test::Scratch folder;
   for (const char* name : {"000000.png", "000777.png", "hand.png"}) std::ofstream(folder.path() / name) << "earlier";
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/baseline.toml").string();
-  options.seconds = 0.01;
+  Options options = options_of("baseline", 0.01);
   options.warm_up_s = 0.1;
-  options.quiet = true;
   options.frames_directory = folder.path().string();
   const auto done = run(options);
   ASSERT_TRUE(done) << done.error().what;
@@ -167,14 +164,11 @@ TEST(Frames, OfAnEarlierRunAreRemovedAndOtherFilesLeft) {
 }
 
 TEST(Recording, OfARigThatLooksAtNoImageHoldsThemAllTheSame) {
-  const ScratchFolder folder;
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/baseline.toml").string();
+  const test::Scratch folder;
+  Options options = options_of("baseline", 0.2);
   options.settings = {"camera.rate_hz=100"};
-  options.seconds = 0.2;
   options.warm_up_s = 0;
   options.draw_every = 0;
-  options.quiet = true;
   options.record_directory = folder.path().string();
   const auto done = run(options);
   ASSERT_TRUE(done) << done.error().what;

@@ -12,6 +12,7 @@
 #include "config/rig.hpp"
 #include "services/simulate/run.hpp"
 #include "services/twin/twin.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::simulate {
 
@@ -24,20 +25,6 @@ inline std::filesystem::path data_root() {
   const char* root = std::getenv("HANDCAST_DATA");
   return root ? std::filesystem::path(root) : source_root() / "../shared/data";
 }
-
-/// A folder of its own for one test, removed with it.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    auto name = (std::filesystem::temp_directory_path() / "handcast-test-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// twin.toml with settings of a test, and its world.
 inline config::Rig rig_with(const std::vector<std::string>& settings) {
@@ -52,16 +39,22 @@ inline std::unique_ptr<twin::Twin> twin_of(const config::Rig& rig) {
   return std::move(*twin);
 }
 
-/// Runs one of config/rigs and returns its metrics.
-inline nlohmann::json run_rig(const std::string& rig, const std::string& motion, double seconds, std::vector<std::string> settings = {}) {
-  const ScratchFolder folder;
+/// A short, quiet run of one of config/rigs.
+inline Options options_of(const std::string& rig, double seconds) {
   Options options;
   options.rig_file = (source_root() / "config/rigs" / (rig + ".toml")).string();
+  options.seconds = seconds;
+  options.quiet = true;
+  return options;
+}
+
+/// Runs one of config/rigs and returns its metrics.
+inline nlohmann::json run_rig(const std::string& rig, const std::string& motion, double seconds, std::vector<std::string> settings = {}) {
+  const test::Scratch folder;
+  Options options = options_of(rig, seconds);
   options.settings = std::move(settings);
   options.settings.push_back("twin.motion=" + motion);
-  options.seconds = seconds;
   options.draw_every = 24;
-  options.quiet = true;
   options.json_file = (folder.path() / "metrics.json").string();
   const auto done = run(options);
   EXPECT_TRUE(done) << done.error().what;

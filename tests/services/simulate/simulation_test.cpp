@@ -132,12 +132,9 @@ TEST(TwinFeed, MessagesArriveInOrderAndAtTheirAge) {
 }
 
 TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
-  const ScratchFolder folder;
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
+  const test::Scratch folder;
+  Options options = options_of("twin", 0.5);
   options.settings = {"twin.detector.dropout=0.6"};
-  options.seconds = 0.5;
-  options.quiet = true;
   options.draw_every = 64;
   options.record_directory = folder.path().string();
   for (int seed = 1; seed <= 3; ++seed) {  // whichever detection is the first to find nothing
@@ -152,12 +149,9 @@ TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
 }
 
 TEST(Recording, APictureThatCannotBeWrittenIsSaid) {
-  const ScratchFolder folder;
+  const test::Scratch folder;
   std::ofstream(folder.path() / "camera") << "in the way of the pictures' folder";
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
-  options.seconds = 0.1;
-  options.quiet = true;
+  Options options = options_of("twin", 0.1);
   options.record_directory = folder.path().string();
   const auto done = run(options);
   ASSERT_FALSE(done);
@@ -165,15 +159,12 @@ TEST(Recording, APictureThatCannotBeWrittenIsSaid) {
 }
 
 Options short_run() {
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
-  options.seconds = 0.1;
-  options.quiet = true;
+  Options options = options_of("twin", 0.1);
   return options;
 }
 
 TEST(Simulation, FiguresThatCannotBeWrittenAreRefusedBeforeTheRun) {
-  const ScratchFolder folder;
+  const test::Scratch folder;
   auto options = short_run();
   options.trace_file = (folder.path() / "trace.csv").string();
   for (const auto& file : {folder.path() / "nowhere" / "metrics.json", folder.path()}) {
@@ -205,7 +196,7 @@ TEST(Simulation, ATraceThatIsCutShortIsSaid) {
 }
 
 TEST(Simulation, ANameThatIsNotUtf8IsWrittenAllTheSame) {
-  const ScratchFolder folder;
+  const test::Scratch folder;
   auto options = short_run();
   options.settings = {"name=caf\xe9"};
   options.json_file = (folder.path() / "metrics.json").string();
@@ -229,8 +220,7 @@ TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
 }
 
 TEST(Simulation, ABrokenRecordingIsOneSentence) {
-  Options options;
-  options.rig_file = (source_root() / "config/rigs/twin.toml").string();
+  Options options = options_of("twin", 1);
   options.settings = {"twin.motion=/nowhere/at/all"};
   const auto done = run(options);
   ASSERT_FALSE(done);

@@ -9,7 +9,7 @@
 
 #include "services/sweep/runs.hpp"
 #include "services/sweep/table.hpp"
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::sweep {
 

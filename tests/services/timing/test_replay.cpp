@@ -6,8 +6,8 @@
 #include "services/landmarks/detector.hpp"
 #include "services/pose/pose_source.hpp"
 #include "services/twin/recording.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
-#include "tests/services/scratch.hpp"
 
 namespace handcast {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "config/settings.hpp"
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {

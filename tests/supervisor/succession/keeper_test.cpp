@@ -14,7 +14,7 @@
 #include "ipc/base/clock.hpp"
 #include "supervisor/exit.hpp"
 #include "supervisor/succession/saved_rig.hpp"
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "supervisor/life/child.hpp"
-#include "tests/services/scratch.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {

@@ -1,9 +1,10 @@
-#include "config/load.hpp"
+#include "config/files.hpp"
 
 #include <gmock/gmock.h>
-#include <stdlib.h>
 
 #include <fstream>
+
+#include "tests/scratch.hpp"
 
 namespace handcast::config {
 namespace {
@@ -13,14 +14,8 @@ using testing::HasSubstr;
 
 class Files : public testing::Test {
  protected:
-  void SetUp() override {
-    char name[] = "/tmp/handcast-config-XXXXXX";
-    ASSERT_NE(mkdtemp(name), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  test::Scratch scratch_;
+  const fs::path& folder_ = scratch_.path();
 };
 
 TEST_F(Files, AnEmptyFileIsAnEmptyText) {
