@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration.hpp"
 
 #include <algorithm>
@@ -16,8 +17,9 @@ glm::dvec2 apply(const glm::dmat3& homography, const glm::dvec2& px) {
 
 glm::dmat3 translation(double x, double y) { return {1, 0, 0, 0, 1, 0, x, y, 1}; }
 
-/// The paper's rig publishes no homography. This one covers the projector's picture with the camera's, as a coaxial rig
-/// does that was aligned by hand: turned by 0.4 degrees, with a keystone of about a pixel in the corners.
+/// The paper's rig publishes no homography. This one covers the projector's picture with the
+/// camera's, as a coaxial rig does that was aligned by hand: turned by 0.4 degrees, with a keystone
+/// of about a pixel in the corners.
 glm::dmat3 coaxial_homography(const CameraModel& camera, int width_px, int height_px) {
   const double angle = glm::radians(0.4);
   const double scale = static_cast<double>(width_px) / camera.width_px;
@@ -32,7 +34,8 @@ glm::dmat3 coaxial_homography(const CameraModel& camera, int width_px, int heigh
 
 glm::dmat4 orthonormalised(const glm::dmat4& transform) {
   const auto x = glm::normalize(glm::dvec3(transform[0]));
-  const auto y = glm::normalize(glm::dvec3(transform[1]) - glm::dot(glm::dvec3(transform[1]), x) * x);
+  const auto y =
+      glm::normalize(glm::dvec3(transform[1]) - glm::dot(glm::dvec3(transform[1]), x) * x);
   return {glm::dvec4(x, 0), glm::dvec4(y, 0), glm::dvec4(glm::cross(x, y), 0), transform[3]};
 }
 
@@ -48,15 +51,21 @@ double distance_from_rigid(const glm::dmat4& transform) {
   return distance;
 }
 
-glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px) const { return apply(projector_from_camera, camera_px); }
+glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px) const {
+  return apply(projector_from_camera, camera_px);
+}
 
-glm::dvec2 Calibration::to_camera(const glm::dvec2& projector_px) const { return apply(glm::inverse(projector_from_camera), projector_px); }
+glm::dvec2 Calibration::to_camera(const glm::dvec2& projector_px) const {
+  return apply(glm::inverse(projector_from_camera), projector_px);
+}
 
 double Calibration::mm_per_projector_px(double distance_m) const {
   const glm::dvec2 centre((projector_width_px - 1) / 2.0, (projector_height_px - 1) / 2.0);
   const auto here = to_camera(centre);
-  const auto right = to_camera(centre + glm::dvec2(1, 0)) - here, down = to_camera(centre + glm::dvec2(0, 1)) - here;
-  const double area_px2 = std::abs(right.x * down.y - right.y * down.x);  // camera px^2 of one projector pixel
+  const auto right = to_camera(centre + glm::dvec2(1, 0)) - here,
+             down = to_camera(centre + glm::dvec2(0, 1)) - here;
+  const double area_px2 =
+      std::abs(right.x * down.y - right.y * down.x);  // camera px^2 of one projector pixel
   return 1000 * distance_m * std::sqrt(area_px2 / (camera.fx_px * camera.fy_px));
 }
 
@@ -68,11 +77,13 @@ Calibration reference_rig() {
   rig.camera.p2 = 0.0000942112;
   rig.camera.k3 = 1.63144417;
   // Columns: where the tracker's axes point in camera space, and its origin in metres.
-  rig.camera_from_tracker = orthonormalised({-0.9820147752761841, 0.14056652784347534, -0.1260479986667633, 0,  //
-                                             -0.01631111092865467, 0.6019535064697266, 0.7983646988868713, 0,   //
-                                             0.18809837102890015, 0.7860618829727173, -0.5888343453407288, 0,   //
-                                             -0.1351909637451172, -0.2582590026855469, 0.3932641906738281, 1});
-  rig.projector_from_camera = coaxial_homography(rig.camera, rig.projector_width_px, rig.projector_height_px);
+  rig.camera_from_tracker =
+      orthonormalised({-0.9820147752761841, 0.14056652784347534, -0.1260479986667633, 0,  //
+                       -0.01631111092865467, 0.6019535064697266, 0.7983646988868713, 0,   //
+                       0.18809837102890015, 0.7860618829727173, -0.5888343453407288, 0,   //
+                       -0.1351909637451172, -0.2582590026855469, 0.3932641906738281, 1});
+  rig.projector_from_camera =
+      coaxial_homography(rig.camera, rig.projector_width_px, rig.projector_height_px);
   return rig;
 }
 

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "calib/calibration.hpp"
 #include "calib/rigid.hpp"
-#include "config/files.hpp"
-#include "config/load.hpp"
-#include "config/settings.hpp"
+#include "config/settings/files.hpp"
+#include "config/settings/load.hpp"
+#include "config/settings/settings.hpp"
 
 /// The calibration file: TOML, with the same declarations, messages and printer as a rig file.
 namespace handcast::calib {
@@ -24,7 +25,8 @@ void describe(Visitor& visitor, CameraSection& camera) {
   visitor.field("focal_px", camera.focal_px, between(1, 1e6, "px"), "Focal lengths fx, fy.");
   visitor.field("centre_px", camera.centre_px, between(-1e5, 1e5, "px"),
                 "Principal point cx, cy; (0, 0) is the centre of the top-left pixel.");
-  visitor.field("distortion", camera.distortion, between(-1e3, 1e3), "Brown-Conrady coefficients k1, k2, p1, p2, k3.");
+  visitor.field("distortion", camera.distortion, between(-1e3, 1e3),
+                "Brown-Conrady coefficients k1, k2, p1, p2, k3.");
 }
 
 struct TransformSection {
@@ -33,7 +35,8 @@ struct TransformSection {
 
 template <class Visitor>
 void describe(Visitor& visitor, TransformSection& rows) {
-  visitor.field("x", rows.x, between(-100, 100), "Camera x (right) of the tracker's three axes and of its origin.");
+  visitor.field("x", rows.x, between(-100, 100),
+                "Camera x (right) of the tracker's three axes and of its origin.");
   visitor.field("y", rows.y, between(-100, 100), "Camera y (down) of the same.");
   visitor.field("z", rows.z, between(-100, 100), "Camera z (forward) of the same.");
 }
@@ -46,8 +49,10 @@ struct ProjectorSection {
 template <class Visitor>
 void describe(Visitor& visitor, ProjectorSection& projector) {
   visitor.field("width_px", projector.width_px, between(16, 16384, "px"), "Width of the picture.");
-  visitor.field("height_px", projector.height_px, between(16, 16384, "px"), "Height of the picture.");
-  visitor.field("x", projector.x, Range{}, "First row of the homography from undistorted camera pixels to projector pixels.");
+  visitor.field("height_px", projector.height_px, between(16, 16384, "px"),
+                "Height of the picture.");
+  visitor.field("x", projector.x, Range{},
+                "First row of the homography from undistorted camera pixels to projector pixels.");
   visitor.field("y", projector.y, Range{}, "Second row.");
   visitor.field("w", projector.w, Range{}, "Third row: what both are divided by.");
 }
@@ -61,7 +66,8 @@ struct File {
 template <class Visitor>
 void describe(Visitor& visitor, File& file) {
   visitor.section("camera", file.camera, "The infrared camera.");
-  visitor.section("camera_from_tracker", file.camera_from_tracker, "Rigid, in rows; the last column in metres.");
+  visitor.section("camera_from_tracker", file.camera_from_tracker,
+                  "Rigid, in rows; the last column in metres.");
   visitor.section("projector", file.projector, "The projector, coaxial with the camera.");
 }
 
@@ -85,15 +91,20 @@ File to_file(const Calibration& calibration) {
   const auto& c = calibration.camera;
   const auto& tracker = calibration.camera_from_tracker;
   const auto& homography = calibration.projector_from_camera;
-  return {{c.width_px, c.height_px, {c.fx_px, c.fy_px}, {c.cx_px, c.cy_px}, {c.k1, c.k2, c.p1, c.p2, c.k3}},
+  return {{c.width_px,
+           c.height_px,
+           {c.fx_px, c.fy_px},
+           {c.cx_px, c.cy_px},
+           {c.k1, c.k2, c.p1, c.p2, c.k3}},
           {row_of(tracker, 0), row_of(tracker, 1), row_of(tracker, 2)},
-          {calibration.projector_width_px, calibration.projector_height_px, row_of(homography, 0), row_of(homography, 1),
-           row_of(homography, 2)}};
+          {calibration.projector_width_px, calibration.projector_height_px, row_of(homography, 0),
+           row_of(homography, 1), row_of(homography, 2)}};
 }
 
 CameraModel to_camera_model(const CameraSection& s) {
-  return {s.width_px,      s.height_px,     s.focal_px[0],   s.focal_px[1],   s.centre_px[0], s.centre_px[1],
-          s.distortion[0], s.distortion[1], s.distortion[2], s.distortion[3], s.distortion[4]};
+  return {s.width_px,      s.height_px,     s.focal_px[0],   s.focal_px[1],
+          s.centre_px[0],  s.centre_px[1],  s.distortion[0], s.distortion[1],
+          s.distortion[2], s.distortion[3], s.distortion[4]};
 }
 
 Calibration to_calibration(const File& file) {
@@ -113,14 +124,20 @@ Calibration to_calibration(const File& file) {
 }
 
 void check(const Calibration& calibration, std::string_view file, config::Faults& faults) {
-  if (const double off = distance_from_rigid(calibration.camera_from_tracker); !(off < kRigidTolerance))
+  if (const double off = distance_from_rigid(calibration.camera_from_tracker);
+      !(off < kRigidTolerance))
     faults.add(
-        fmt::format("{}: camera_from_tracker: its first three columns are not a right-handed rotation (off by {:.2g}; {} is allowed)", file,
-                    off, kRigidTolerance));
+        fmt::format("{}: camera_from_tracker: its first three columns are not a right-handed "
+                    "rotation (off by {:.2g}; {} is allowed)",
+                    file, off, kRigidTolerance));
   if (calibration.camera.folds())
-    faults.add(fmt::format("{}: camera.distortion: the lens folds the image: towards its edge two directions are seen in one pixel", file));
+    faults.add(
+        fmt::format("{}: camera.distortion: the lens folds the image: towards its edge two "
+                    "directions are seen in one pixel",
+                    file));
   if (!(std::abs(glm::determinant(calibration.projector_from_camera)) > 1e-9))
-    faults.add(fmt::format("{}: projector: the homography's rows x, y, w depend on each other", file));
+    faults.add(
+        fmt::format("{}: projector: the homography's rows x, y, w depend on each other", file));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration.hpp"
 
 /// The lens: Brown-Conrady, as in OpenCV's "Camera Calibration and 3D Reconstruction".
@@ -12,7 +13,8 @@ glm::dvec2 to_px(const CameraModel& camera, const glm::dvec2& normalised) {
   return {normalised.x * camera.fx_px + camera.cx_px, normalised.y * camera.fy_px + camera.cy_px};
 }
 
-/// Where the lens puts a ray, and how that moves with the ray (d distorted / d ray). Both without a unit, at z = 1.
+/// Where the lens puts a ray, and how that moves with the ray (d distorted / d ray). Both without a
+/// unit, at z = 1.
 struct Bent {
   glm::dvec2 point;
   glm::dmat2 slope;
@@ -22,7 +24,8 @@ Bent bend(const CameraModel& c, const glm::dvec2& ray) {
   const double x = ray.x, y = ray.y;
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
-  const double radial_slope = 2 * (c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3));  // d radial / d x = radial_slope * x
+  const double radial_slope =
+      2 * (c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3));  // d radial / d x = radial_slope * x
 
   Bent bent;
   bent.point.x = x * radial + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x);
@@ -37,7 +40,9 @@ Bent bend(const CameraModel& c, const glm::dvec2& ray) {
 
 glm::dmat3 CameraModel::matrix() const { return {fx_px, 0, 0, 0, fy_px, 0, cx_px, cy_px, 1}; }
 
-glm::dvec2 CameraModel::project(const glm::dvec3& point_m) const { return to_px(*this, glm::dvec2(point_m) / point_m.z); }
+glm::dvec2 CameraModel::project(const glm::dvec3& point_m) const {
+  return to_px(*this, glm::dvec2(point_m) / point_m.z);
+}
 
 glm::dvec2 CameraModel::distort(const glm::dvec2& undistorted_px) const {
   return to_px(*this, bend(*this, to_normalised(*this, undistorted_px)).point);
@@ -58,17 +63,20 @@ glm::dvec2 CameraModel::undistort(const glm::dvec2& image_px) const {
 }
 
 bool CameraModel::folds() const {
-  constexpr int kSteps = 16;  // of each side of the image, and from its principal point out to there
+  constexpr int kSteps =
+      16;  // of each side of the image, and from its principal point out to there
   constexpr double kFound_px = 0.01;
   const glm::dvec2 last(width_px - 1, height_px - 1);
   for (int i = 0; i <= kSteps; ++i) {
     const double share = static_cast<double>(i) / kSteps;
-    for (const glm::dvec2 side : {glm::dvec2(share, 0), glm::dvec2(share, 1), glm::dvec2(0, share), glm::dvec2(1, share)}) {
+    for (const glm::dvec2 side :
+         {glm::dvec2(share, 0), glm::dvec2(share, 1), glm::dvec2(0, share), glm::dvec2(1, share)}) {
       const glm::dvec2 image_px = side * last, px = undistort(image_px);
       if (!(glm::distance(distort(px), image_px) < kFound_px)) return true;
       const auto ray = to_normalised(*this, px);
       for (int step = 1; step <= kSteps; ++step)
-        if (!(glm::determinant(bend(*this, ray * (static_cast<double>(step) / kSteps)).slope) > 0)) return true;
+        if (!(glm::determinant(bend(*this, ray * (static_cast<double>(step) / kSteps)).slope) > 0))
+          return true;
     }
   }
   return false;

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "config/join.hpp"
 #include "config/rig.hpp"
-#include "config/settings.hpp"
+#include "config/settings/join.hpp"
+#include "config/settings/settings.hpp"
 
 namespace handcast::config {
 namespace {
@@ -10,12 +11,16 @@ namespace {
 constexpr std::string_view kHead =
     "# Settings\n"
     "\n"
-    "Every setting of a rig file, from the declarations in `config/sections`. This page is generated; a test compares it.\n"
+    "Every setting of a rig file, from the declarations in `config/sections`. This page is "
+    "generated; a test compares it.\n"
     "Write a new one with `handcast config --reference > config/REFERENCE.md`.\n"
     "\n"
-    "A rig file is TOML and says only what differs from the defaults. `--set path=value` changes one setting for one run, for\n"
-    "example `--set cascade.fill.method=none`. A relative path in a rig file starts at that file's folder, one in `--set` at the\n"
-    "current folder. `handcast config --check FILE` lists everything that is wrong with a file at once.\n";
+    "A rig file is TOML and says only what differs from the defaults. `--set path=value` changes "
+    "one setting for one run, for\n"
+    "example `--set cascade.fill.method=none`. A relative path in a rig file starts at that file's "
+    "folder, one in `--set` at the\n"
+    "current folder. `handcast config --check FILE` lists everything that is wrong with a file at "
+    "once.\n";
 
 /// A bar would end the cell.
 std::string cell(std::string_view text) {
@@ -32,8 +37,9 @@ std::string allowed_without_unit(const Setting& setting) {
 }
 
 std::string row(const Setting& setting) {
-  return fmt::format("| `{}` | `{}` | {} | {} | {} |\n", setting.name(), cell(print_value(setting)), allowed_without_unit(setting),
-                     cell(setting.range.unit), cell(setting.sentence));
+  return fmt::format("| `{}` | `{}` | {} | {} | {} |\n", setting.name(), cell(print_value(setting)),
+                     allowed_without_unit(setting), cell(setting.range.unit),
+                     cell(setting.sentence));
 }
 
 }  // namespace
@@ -42,7 +48,8 @@ std::string print_reference() {
   Rig defaults;
   std::string page(kHead);
   for (const auto& section : list_settings(defaults)) {
-    page += section.path.empty() ? "\n## The file itself\n" : fmt::format("\n## [{}]\n\n{}\n", section.path, section.sentence);
+    page += section.path.empty() ? "\n## The file itself\n"
+                                 : fmt::format("\n## [{}]\n\n{}\n", section.path, section.sentence);
     if (section.settings.empty()) continue;
     page += "\n| setting | default | allowed | unit | |\n|---|---|---|---|---|\n";
     for (const auto& setting : section.settings) page += row(setting);

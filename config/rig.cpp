@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "config/rig.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "config/files.hpp"
-#include "config/load.hpp"
-#include "config/settings.hpp"
+#include "config/settings/files.hpp"
+#include "config/settings/load.hpp"
+#include "config/settings/settings.hpp"
 
 namespace handcast::config {
 namespace {
@@ -36,13 +37,17 @@ void resolve_paths(const Listing& listing, const std::filesystem::path& folder) 
 void check_together(const Rig& rig, std::string_view file, Faults& faults) {
   const auto& correct = rig.cascade.correct;
   if (correct.bone_short_px >= correct.bone_long_px)
-    faults.add(fmt::format("{}: cascade.correct.bone_short_px: {} px must be less than cascade.correct.bone_long_px, {} px", file,
-                           correct.bone_short_px, correct.bone_long_px));
+    faults.add(
+        fmt::format("{}: cascade.correct.bone_short_px: {} px must be less than "
+                    "cascade.correct.bone_long_px, {} px",
+                    file, correct.bone_short_px, correct.bone_long_px));
 }
 
 }  // namespace
 
-bool names_a_file(std::string_view setting) { return std::ranges::find(kPaths, setting) != std::end(kPaths); }
+bool names_a_file(std::string_view setting) {
+  return std::ranges::find(kPaths, setting) != std::end(kPaths);
+}
 
 Process process_of(const Rig& rig, std::string_view service) {
   if (service == "camera") return rig.camera.process;
@@ -53,7 +58,8 @@ Process process_of(const Rig& rig, std::string_view service) {
   return {};
 }
 
-Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file, const std::vector<std::string>& settings) {
+Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
+                      const std::vector<std::string>& settings) {
   const auto document = parse_document(toml, file.string());
   if (!document) return tl::make_unexpected(document.error());
 

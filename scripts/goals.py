@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Merges the goals that benchmarks wrote and prints them as a table.
 
 usage: goals.py [--json FILE] GOALS.json...

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The work of scripts/soak: kills, samples, judges, draws. Standard library only."""
 import argparse
 import csv

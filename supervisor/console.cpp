@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/console.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +9,9 @@ namespace {
 
 constexpr std::string_view kClearLine = "\r\x1b[K";
 
-void put(std::string_view text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size()); }
+void put(std::string_view text) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+}
 
 }  // namespace
 
@@ -17,11 +20,14 @@ bool has_terminal() {
   return terminal;
 }
 
-void print_line(std::string_view line) { put(fmt::format("{}{}\n", has_terminal() ? kClearLine : "", line)); }
+void print_line(std::string_view line) {
+  put(fmt::format("{}{}\n", has_terminal() ? kClearLine : "", line));
+}
 
 void show_progress(std::string_view line) {
   if (has_terminal())
-    put(fmt::format("{}{}\r", kClearLine, line));  // what is printed next begins where this line did
+    put(fmt::format("{}{}\r", kClearLine,
+                    line));  // what is printed next begins where this line did
   else
     print_line(line);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/event_loop.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +14,9 @@
 namespace handcast::supervisor {
 namespace {
 
-tl::unexpected<Error> no_descriptor(const char* what) { return fail(Errc::unavailable, fmt::format("{}: {}", what, std::strerror(errno))); }
+tl::unexpected<Error> no_descriptor(const char* what) {
+  return fail(Errc::unavailable, fmt::format("{}: {}", what, std::strerror(errno)));
+}
 
 sigset_t stop_signals() {
   sigset_t signals;
@@ -53,7 +56,8 @@ void EventLoop::turn() {
   const int count = epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), -1);
   for (int i = 0; i < count; ++i) {
     const auto& event = events[static_cast<std::size_t>(i)];
-    if (event.events & ~static_cast<std::uint32_t>(EPOLLOUT)) call(event.data.fd, &Handlers::readable);
+    if (event.events & ~static_cast<std::uint32_t>(EPOLLOUT))
+      call(event.data.fd, &Handlers::readable);
     if (event.events & EPOLLOUT) call(event.data.fd, &Handlers::writable);
   }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -8,8 +9,9 @@
 
 namespace handcast::supervisor {
 
-/// Calls back when descriptors become readable. One thread; callbacks may watch and forget, also themselves. A callback may be
-/// called once too often (its descriptor's number was reused in the same turn): it must not block on an empty descriptor.
+/// Calls back when descriptors become readable. One thread; callbacks may watch and forget, also
+/// themselves. A callback may be called once too often (its descriptor's number was reused in the
+/// same turn): it must not block on an empty descriptor.
 class EventLoop {
  public:
   static Result<EventLoop> open();

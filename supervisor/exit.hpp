@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
 
@@ -22,7 +23,8 @@ struct Exit {
   bool asks_for_a_person() const { return !signalled && !unknown && code == kExitConfig; }
   std::string describe() const {
     if (unknown) return "end unknown";
-    return signalled ? fmt::format("signal {} ({})", code, strsignal(code)) : fmt::format("exit {}", code);
+    return signalled ? fmt::format("signal {} ({})", code, strsignal(code))
+                     : fmt::format("exit {}", code);
   }
 };
 

@@ -1,4 +1,6 @@
-// The `handcast` command: like git, it runs what it knows and hands every other verb to a program beside itself.
+// SPDX-License-Identifier: Apache-2.0
+// The `handcast` command: like git, it runs what it knows and hands every other verb to a program
+// beside itself.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -6,19 +8,22 @@
 #include <array>
 #include <utility>
 
-#include "config/join.hpp"
+#include "config/settings/join.hpp"
+#include "ipc/base/version.hpp"
 #include "supervisor/exit.hpp"
 #include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::array kGroups{std::pair{VerbGroup::run, "run a rig"}, std::pair{VerbGroup::look, "look at one that is up"},
-                             std::pair{VerbGroup::change, "change one that is up"}, std::pair{VerbGroup::set_up, "set one up"},
-                             std::pair{VerbGroup::score, "score one"}};
+constexpr std::array kGroups{
+    std::pair{VerbGroup::run, "run a rig"}, std::pair{VerbGroup::look, "look at one that is up"},
+    std::pair{VerbGroup::change, "change one that is up"},
+    std::pair{VerbGroup::set_up, "set one up"}, std::pair{VerbGroup::score, "score one"}};
 
 void print_overview() {
-  fmt::print("handcast {} — light that stays on moving hands\n\nusage: handcast VERB ...\n", HANDCAST_VERSION);
+  fmt::print("handcast {} — light that stays on moving hands\n\nusage: handcast VERB ...\n",
+             version());
   for (const auto& [group, title] : kGroups) {
     fmt::print("\n{}\n", title);
     for (const auto& verb : verbs())
@@ -37,7 +42,8 @@ int become_program(const std::string& verb, const Arguments& arguments) {
     pointers.push_back(nullptr);
     execv(program.c_str(), pointers.data());
   }
-  return complain(kExitUsage, fmt::format("there is no verb '{}'; there are: {}", verb, config::join(verb_names(), ", ")));
+  return complain(kExitUsage, fmt::format("there is no verb '{}'; there are: {}", verb,
+                                          config::join(verb_names(), ", ")));
 }
 
 const VerbEntry* find_verb(const std::string& name) {
@@ -59,7 +65,7 @@ int help(const Arguments& arguments) {
 int dispatch(const std::string& name, const Arguments& arguments) {
   if (name == "help" || name == "--help" || name == "-h") return help(arguments);
   if (name == "--version") {
-    fmt::print("handcast {}\n", HANDCAST_VERSION);
+    fmt::print("handcast {}\n{}", version(), absent_features());
     return 0;
   }
   const auto verb = find_verb(name);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/options.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +9,9 @@
 namespace handcast::supervisor {
 
 Result<Options> sort_options(const std::vector<std::string>& arguments, const OptionTable& table) {
-  const auto is_in = [](const auto& names, const std::string& name) { return std::ranges::find(names, name) != names.end(); };
+  const auto is_in = [](const auto& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
   Options options;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const auto& argument = arguments[i];
@@ -23,7 +26,8 @@ Result<Options> sort_options(const std::vector<std::string>& arguments, const Op
     else
       options.values[argument].push_back(arguments[++i]);
   }
-  if (options.words.size() < table.least_words) return fail(Errc::bad_data, "an argument is missing");
+  if (options.words.size() < table.least_words)
+    return fail(Errc::bad_data, "an argument is missing");
   if (options.words.size() > table.most_words)
     return fail(Errc::bad_data, fmt::format("'{}' is one argument too many", options.words.back()));
   return options;
@@ -35,7 +39,8 @@ Result<double> parse_seconds(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   const bool whole = error == std::errc{} && end == text.data() + text.size();
   if (whole && seconds > 0 && seconds <= kMost_s) return seconds;
-  return fail(Errc::bad_data, fmt::format("--seconds {}: expected a time above 0 and up to {:g}", text, kMost_s));
+  return fail(Errc::bad_data,
+              fmt::format("--seconds {}: expected a time above 0 and up to {:g}", text, kMost_s));
 }
 
 }  // namespace handcast::supervisor

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 
-#include "config/field.hpp"
 #include "config/sections/process.hpp"
+#include "config/settings/field.hpp"
 
 namespace handcast::config {
 
@@ -17,11 +18,15 @@ struct Projector {
 
 template <class Visitor>
 void describe(Visitor& visitor, Projector& projector) {
-  visitor.field("backend", projector.backend, Choices{}, "Where light goes; `handcast-projector --backends` lists what this build has.");
-  visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"), "Frames a second asked of the projector.");
-  visitor.field("latency_ms", projector.latency_ms, between(0, 200, "ms"), "From handing over a frame to the start of its light.");
+  visitor.field("backend", projector.backend, Choices{},
+                "Where light goes; `handcast-projector --backends` lists what this build has.");
+  visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"),
+                "Frames a second asked of the projector.");
+  visitor.field("latency_ms", projector.latency_ms, between(0, 200, "ms"),
+                "From handing over a frame to the start of its light.");
   visitor.field("software_ms", projector.software_ms, between(0, 100, "ms"),
-                "From the newest inputs to the frame handed over: what the simulator lets the software take, and the horizon of the first "
+                "From the newest inputs to the frame handed over: what the simulator lets the "
+                "software take, and the horizon of the first "
                 "live frames (later ones use the measured time).");
   visitor.field("frame_wait_ms", projector.frame_wait_ms, between(0, 100, "ms"),
                 "How long a projector frame may wait for a newer camera image. 0: not at all.");
@@ -37,10 +42,12 @@ struct Content {
 template <class Visitor>
 void describe(Visitor& visitor, Content& content) {
   visitor.field("left", content.left, Choices{},
-                "What the left hand wears: a PNG picture in the hand's texture layout, or builtin:atlas, builtin:checker, "
+                "What the left hand wears: a PNG picture in the hand's texture layout, or "
+                "builtin:atlas, builtin:checker, "
                 "builtin:skeleton, builtin:white.");
   visitor.field("right", content.right, Choices{}, "What the right hand wears.");
-  visitor.field("shading", content.shading, between(0, 1), "How much a light from the projector's side shades the drawing. 0: not at all.");
+  visitor.field("shading", content.shading, between(0, 1),
+                "How much a light from the projector's side shades the drawing. 0: not at all.");
 }
 
 struct Hand {
@@ -51,7 +58,8 @@ struct Hand {
 template <class Visitor>
 void describe(Visitor& visitor, Hand& hand) {
   visitor.field("left", hand.left, Choices{},
-                "A skinned glTF hand with WebXR joint names to draw as the left hand. Empty: the one made by handcast.");
+                "A skinned glTF hand with WebXR joint names to draw as the left hand. Empty: the "
+                "one made by handcast.");
   visitor.field("right", hand.right, Choices{}, "The same for the right hand.");
 }
 

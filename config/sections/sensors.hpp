@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 
-#include "config/field.hpp"
 #include "config/sections/process.hpp"
+#include "config/settings/field.hpp"
 
 namespace handcast::config {
 
@@ -13,7 +14,8 @@ struct Replay {
 
 template <class Visitor>
 void describe(Visitor& visitor, Replay& replay) {
-  visitor.field("directory", replay.directory, Choices{}, "Folder of the recording; relative to the rig file.");
+  visitor.field("directory", replay.directory, Choices{},
+                "Folder of the recording; relative to the rig file.");
   visitor.field("loop", replay.loop, "Start again at the end of the recording.");
 }
 
@@ -27,11 +29,15 @@ struct Camera {
 
 template <class Visitor>
 void describe(Visitor& visitor, Camera& camera) {
-  visitor.field("backend", camera.backend, Choices{}, "Where frames come from; `handcast-camera --backends` lists what this build has.");
-  visitor.field("rate_hz", camera.rate_hz, between(1, 2000, "Hz"), "Frames a second asked of the camera.");
-  visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"), "Time the shutter is open.");
+  visitor.field("backend", camera.backend, Choices{},
+                "Where frames come from; `handcast-camera --backends` lists what this build has.");
+  visitor.field("rate_hz", camera.rate_hz, between(1, 2000, "Hz"),
+                "Frames a second asked of the camera.");
+  visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"),
+                "Time the shutter is open.");
   visitor.section("replay", camera.replay,
-                  "For backend = \"replay\": grey PNG pictures in camera/ with their times in camera_timestamps.npy.");
+                  "For backend = \"replay\": grey PNG pictures in camera/ with their times in "
+                  "camera_timestamps.npy.");
   visitor.section("process", camera.process, "How the service runs.");
 }
 
@@ -43,9 +49,12 @@ struct Pose {
 
 template <class Visitor>
 void describe(Visitor& visitor, Pose& pose) {
-  visitor.field("backend", pose.backend, Choices{}, "Where hand poses come from; `handcast-pose --backends` lists what this build has.");
+  visitor.field(
+      "backend", pose.backend, Choices{},
+      "Where hand poses come from; `handcast-pose --backends` lists what this build has.");
   visitor.section("replay", pose.replay,
-                  "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and bones_{left,right}.npy.");
+                  "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and "
+                  "bones_{left,right}.npy.");
   visitor.section("process", pose.process, "How the service runs.");
 }
 
@@ -60,23 +69,27 @@ struct Landmarks {
 
 template <class Visitor>
 void describe(Visitor& visitor, Landmarks& landmarks) {
-  visitor.field(
-      "backend", landmarks.backend, Choices{},
-      "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build has. onednn, opencv: MediaPipe Hands on the "
-      "camera's images, run by oneDNN or by OpenCV. own: handcast's own network, which also looks at the tracker's joints and needs no "
-      "file from outside. twin: the twin's model of a detector. replay: recorded ones.");
-  visitor.field(
-      "models", landmarks.models, Choices{},
-      "onednn, opencv: folder of the networks' files, which scripts/get-models fetches; relative to the rig file. Empty: the folder "
-      "HANDCAST_MODELS names, else share/handcast/models of the installation, else ~/.local/share/handcast/models. own: the palm "
-      "network there, if any, finds hands that the tracker does not see.");
-  visitor.field("hands", landmarks.hands, between(1, 2), "onednn, opencv, own: how many hands are looked for.");
-  visitor.field(
-      "definition", landmarks.definition, Choices{"tracker", "network"},
-      "onednn, opencv: network: points as the network defines them. tracker: wrist and knuckles moved to where the tracker's joints "
-      "are defined, which is what the cascade compares them with.");
+  visitor.field("backend", landmarks.backend, Choices{},
+                "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build "
+                "has. onednn, opencv: MediaPipe Hands on the "
+                "camera's images, run by oneDNN or by OpenCV. own: handcast's own network, which "
+                "also looks at the tracker's joints and needs no "
+                "file from outside. twin: the twin's model of a detector. replay: recorded ones.");
+  visitor.field("models", landmarks.models, Choices{},
+                "onednn, opencv: folder of the networks' files, which scripts/get-models fetches; "
+                "relative to the rig file. Empty: the folder "
+                "HANDCAST_MODELS names, else share/handcast/models of the installation, else "
+                "~/.local/share/handcast/models. own: the palm "
+                "network there, if any, finds hands that the tracker does not see.");
+  visitor.field("hands", landmarks.hands, between(1, 2),
+                "onednn, opencv, own: how many hands are looked for.");
+  visitor.field("definition", landmarks.definition, Choices{"tracker", "network"},
+                "onednn, opencv: network: points as the network defines them. tracker: wrist and "
+                "knuckles moved to where the tracker's joints "
+                "are defined, which is what the cascade compares them with.");
   visitor.section("replay", landmarks.replay,
-                  "For backend = \"replay\": landmarks_{left,right}.npy, (n,21,2) or with sigmas (n,21,3), with landmarks_timestamps.npy.");
+                  "For backend = \"replay\": landmarks_{left,right}.npy, (n,21,2) or with sigmas "
+                  "(n,21,3), with landmarks_timestamps.npy.");
   visitor.section("process", landmarks.process, "How the service runs.");
 }
 

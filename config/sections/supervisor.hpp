@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 
-#include "config/field.hpp"
 #include "config/sections/process.hpp"
+#include "config/settings/field.hpp"
 
 namespace handcast::config {
 
@@ -16,8 +17,10 @@ struct Observer {
 template <class Visitor>
 void describe(Visitor& visitor, Observer& observer) {
   visitor.field("enabled", observer.enabled, "Score the live light against the twin's truth.");
-  visitor.field("rate_hz", observer.rate_hz, between(0.1, 1000, "Hz"), "Projector frames scored a second.");
-  visitor.field("step_px", observer.step_px, between(1, 16, "px"), "Distance of the surface points that are scored.");
+  visitor.field("rate_hz", observer.rate_hz, between(0.1, 1000, "Hz"),
+                "Projector frames scored a second.");
+  visitor.field("step_px", observer.step_px, between(1, 16, "px"),
+                "Distance of the surface points that are scored.");
   visitor.section("process", observer.process, "How the service runs.");
 }
 
@@ -31,14 +34,18 @@ struct Supervisor {
 
 template <class Visitor>
 void describe(Visitor& visitor, Supervisor& supervisor) {
-  visitor.field("ready_s", supervisor.ready_s, between(0.1, 300, "s"), "A service that is not ready after this time is replaced.");
-  visitor.field("stop_s", supervisor.stop_s, between(0.1, 60, "s"), "How long a service may take to stop before it is killed.");
+  visitor.field("ready_s", supervisor.ready_s, between(0.1, 300, "s"),
+                "A service that is not ready after this time is replaced.");
+  visitor.field("stop_s", supervisor.stop_s, between(0.1, 60, "s"),
+                "How long a service may take to stop before it is killed.");
   visitor.field("silent_s", supervisor.silent_s, between(0.2, 300, "s"),
-                "A service whose heart has not beaten for this time (stopped, or in an endless loop) is killed and replaced.");
+                "A service whose heart has not beaten for this time (stopped, or in an endless "
+                "loop) is killed and replaced.");
   visitor.field("history_s", supervisor.history_s, between(1, 3600, "s"),
                 "How much of the past `handcast trace` and `handcast latency` can look at.");
-  visitor.field("metrics_port", supervisor.metrics_port, between(0, 65535),
-                "Serves the figures to Prometheus at http://127.0.0.1:PORT/metrics; 0: not at all.");
+  visitor.field(
+      "metrics_port", supervisor.metrics_port, between(0, 65535),
+      "Serves the figures to Prometheus at http://127.0.0.1:PORT/metrics; 0: not at all.");
 }
 
 }  // namespace handcast::config

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <string_view>
 
-#include "config/field.hpp"
+#include "config/settings/field.hpp"
 
-/// The digital twin: a true hand and the errors of the sensors that watch it. Defaults: METHOD's figures, the same for every rig that is
-/// compared.
+/// The digital twin: a true hand and the errors of the sensors that watch it. Defaults: METHOD's
+/// figures, the same for every rig that is compared.
 namespace handcast::config {
 
 /// Something goes wrong at one time, for a while: a pure function of the time since the epoch.
@@ -13,13 +14,17 @@ struct Fault {
   double at_s = 0;
   double lasting_s = 0;  ///< 0: it never happens
 
-  constexpr bool holds(double seconds) const { return seconds >= at_s && seconds < at_s + lasting_s; }
+  constexpr bool holds(double seconds) const {
+    return seconds >= at_s && seconds < at_s + lasting_s;
+  }
 };
 
 /// The two settings of a fault, and the sentence that says what it does.
 template <class Visitor>
-void describe_fault(Visitor& visitor, Fault& fault, std::string_view at_name, std::string_view lasting_name, std::string_view sentence) {
-  visitor.field(at_name, fault.at_s, between(0, 1e6, "s"), "When the fault of the next setting begins, since the epoch.");
+void describe_fault(Visitor& visitor, Fault& fault, std::string_view at_name,
+                    std::string_view lasting_name, std::string_view sentence) {
+  visitor.field(at_name, fault.at_s, between(0, 1e6, "s"),
+                "When the fault of the next setting begins, since the epoch.");
   visitor.field(lasting_name, fault.lasting_s, between(0, 1e6, "s"), sentence);
 }
 
@@ -40,22 +45,31 @@ struct TwinTracker {
 template <class Visitor>
 void describe(Visitor& visitor, TwinTracker& tracker) {
   visitor.field("rate_hz", tracker.rate_hz, between(1, 1000, "Hz"), "Samples a second.");
-  visitor.field("age_ms", tracker.age_ms, between(0, 500, "ms"), "Mean age of a sample when it arrives.");
-  visitor.field("age_sd_ms", tracker.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that age.");
-  visitor.field("scale", tracker.scale, between(0.5, 2), "Size of the hand it reports, about the wrist; 1 is true.");
+  visitor.field("age_ms", tracker.age_ms, between(0, 500, "ms"),
+                "Mean age of a sample when it arrives.");
+  visitor.field("age_sd_ms", tracker.age_sd_ms, between(0, 50, "ms"),
+                "Standard deviation of that age.");
+  visitor.field("scale", tracker.scale, between(0.5, 2),
+                "Size of the hand it reports, about the wrist; 1 is true.");
   visitor.field("offset_mm", tracker.offset_mm, between(0, 200, "mm"),
                 "How far off the hand is placed, in a direction drawn from the seed.");
-  visitor.field("rotation_deg", tracker.rotation_deg, between(0, 45, "deg"), "How far it is turned, about an axis drawn from the seed.");
+  visitor.field("rotation_deg", tracker.rotation_deg, between(0, 45, "deg"),
+                "How far it is turned, about an axis drawn from the seed.");
   visitor.field("drift_px", tracker.drift_px, between(0, 100, "px"),
-                "Slow drift of every joint at 0.2-1.5 Hz: RMS per axis, in camera pixels at the hand's distance.");
-  visitor.field("noise_mm", tracker.noise_mm, between(0, 50, "mm"), "White noise per joint and axis.");
+                "Slow drift of every joint at 0.2-1.5 Hz: RMS per axis, in camera pixels at the "
+                "hand's distance.");
+  visitor.field("noise_mm", tracker.noise_mm, between(0, 50, "mm"),
+                "White noise per joint and axis.");
   visitor.field("dropout", tracker.dropout, between(0, 1), "Share of samples that are lost.");
   visitor.field("clock_skew_ms", tracker.clock_skew_ms, between(-200, 200, "ms"),
                 "How far off the time stamps are; positive: samples seem younger than they are.");
-  describe_fault(visitor, tracker.frozen, "frozen_at_s", "frozen_s", "Fault: how long it repeats its last pose with new time stamps.");
-  describe_fault(visitor, tracker.lost, "lost_at_s", "lost_s", "Fault: how long it gives no samples.");
-  describe_fault(visitor, tracker.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
-                 "Fault: how long it takes the index finger for the middle one and the other way round.");
+  describe_fault(visitor, tracker.frozen, "frozen_at_s", "frozen_s",
+                 "Fault: how long it repeats its last pose with new time stamps.");
+  describe_fault(visitor, tracker.lost, "lost_at_s", "lost_s",
+                 "Fault: how long it gives no samples.");
+  describe_fault(
+      visitor, tracker.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
+      "Fault: how long it takes the index finger for the middle one and the other way round.");
   describe_fault(visitor, tracker.swapped, "swapped_at_s", "swapped_s",
                  "Fault: how long it takes left hands for right ones and right for left.");
 }
@@ -73,17 +87,26 @@ struct TwinDetector {
 template <class Visitor>
 void describe(Visitor& visitor, TwinDetector& detector) {
   visitor.field("age_ms", detector.age_ms, between(0, 500, "ms"),
-                "Mean time from the middle of an exposure to its landmarks; it runs back to back. In the simulator it holds for every "
-                "landmarks.backend, as do age_sd_ms and clock_skew_ms; the other settings are the model's alone.");
-  visitor.field("age_sd_ms", detector.age_sd_ms, between(0, 50, "ms"), "Standard deviation of that time.");
-  visitor.field("noise_px", detector.noise_px, between(0, 50, "px"), "White noise per landmark and axis.");
-  visitor.field("dropout", detector.dropout, between(0, 1), "Share of detections that find nothing.");
-  visitor.field("outliers", detector.outliers, between(0, 1), "Share of landmarks that are thrown 40-200 px off.");
-  visitor.field("clock_skew_ms", detector.clock_skew_ms, between(-200, 200, "ms"),
-                "How far off the time stamps are; positive: detections seem younger than they are.");
-  describe_fault(visitor, detector.lost, "lost_at_s", "lost_s", "Fault: how long it finds nothing.");
-  describe_fault(visitor, detector.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
-                 "Fault: how long it takes the index finger for the middle one and the other way round.");
+                "Mean time from the middle of an exposure to its landmarks; it runs back to back. "
+                "In the simulator it holds for every "
+                "landmarks.backend, as do age_sd_ms and clock_skew_ms; the other settings are the "
+                "model's alone.");
+  visitor.field("age_sd_ms", detector.age_sd_ms, between(0, 50, "ms"),
+                "Standard deviation of that time.");
+  visitor.field("noise_px", detector.noise_px, between(0, 50, "px"),
+                "White noise per landmark and axis.");
+  visitor.field("dropout", detector.dropout, between(0, 1),
+                "Share of detections that find nothing.");
+  visitor.field("outliers", detector.outliers, between(0, 1),
+                "Share of landmarks that are thrown 40-200 px off.");
+  visitor.field(
+      "clock_skew_ms", detector.clock_skew_ms, between(-200, 200, "ms"),
+      "How far off the time stamps are; positive: detections seem younger than they are.");
+  describe_fault(visitor, detector.lost, "lost_at_s", "lost_s",
+                 "Fault: how long it finds nothing.");
+  describe_fault(
+      visitor, detector.wrong_finger, "wrong_finger_at_s", "wrong_finger_s",
+      "Fault: how long it takes the index finger for the middle one and the other way round.");
 }
 
 struct TwinImage {
@@ -103,19 +126,28 @@ struct TwinImage {
 
 template <class Visitor>
 void describe(Visitor& visitor, TwinImage& image) {
-  visitor.field("gain", image.gain, between(1, 2000), "Grey value of skin that faces the lamp at the nominal distance.");
+  visitor.field("gain", image.gain, between(1, 2000),
+                "Grey value of skin that faces the lamp at the nominal distance.");
   visitor.field("background", image.background, between(0, 255), "Grey value of the empty scene.");
   visitor.field("noise", image.noise, between(0, 50), "Standard deviation of a pixel.");
-  visitor.field("sleeve_mm", image.sleeve_mm, between(0, 400, "mm"), "Where the bright sleeve begins, from the wrist towards the elbow.");
-  visitor.field("blur_samples", image.blur_samples, between(1, 16), "Instants of the exposure that are averaged.");
-  visitor.field("delivery_ms", image.delivery_ms, between(0, 50, "ms"), "From the end of the exposure to the frame in memory.");
-  visitor.field("dark", image.dark, between(0, 1), "Fault: too little light. Grey values times this; 1 is none.");
-  visitor.field("saturated", image.saturated, between(1, 100), "Fault: too much light. Grey values times this, up to white; 1 is none.");
-  visitor.field("holes", image.holes, between(0, 0.9), "Fault: share of each hand's surface under dark blobs that move with it.");
+  visitor.field("sleeve_mm", image.sleeve_mm, between(0, 400, "mm"),
+                "Where the bright sleeve begins, from the wrist towards the elbow.");
+  visitor.field("blur_samples", image.blur_samples, between(1, 16),
+                "Instants of the exposure that are averaged.");
+  visitor.field("delivery_ms", image.delivery_ms, between(0, 50, "ms"),
+                "From the end of the exposure to the frame in memory.");
+  visitor.field("dark", image.dark, between(0, 1),
+                "Fault: too little light. Grey values times this; 1 is none.");
+  visitor.field("saturated", image.saturated, between(1, 100),
+                "Fault: too much light. Grey values times this, up to white; 1 is none.");
+  visitor.field("holes", image.holes, between(0, 0.9),
+                "Fault: share of each hand's surface under dark blobs that move with it.");
   visitor.field("covered", image.covered, between(0, 1),
-                "Fault: share of the image, from its left edge, behind something dark; 0.5 hides half of a hand in the middle.");
+                "Fault: share of the image, from its left edge, behind something dark; 0.5 hides "
+                "half of a hand in the middle.");
   visitor.field("face", image.face, "Fault: a face looks on from behind the hands.");
-  describe_fault(visitor, image.fault, "fault_at_s", "fault_s", "How long the image has the faults above; all the time unless set.");
+  describe_fault(visitor, image.fault, "fault_at_s", "fault_s",
+                 "How long the image has the faults above; all the time unless set.");
 }
 
 struct TwinShape {
@@ -144,9 +176,11 @@ struct Twin {
 template <class Visitor>
 void describe(Visitor& visitor, Twin& twin) {
   visitor.field("motion", twin.motion, Choices{},
-                "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, still, crossing, flip, fist, point_at_camera, "
+                "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, "
+                "still, crossing, flip, fist, point_at_camera, "
                 "enter_leave, reverse, cross_fingers; or a folder with a recording.");
-  visitor.field("hands", twin.hands, Choices{"both", "left", "right"}, "Which of the motion's hands are there.");
+  visitor.field("hands", twin.hands, Choices{"both", "left", "right"},
+                "Which of the motion's hands are there.");
   visitor.field("speed", twin.speed, between(0.01, 20), "Plays the motion faster or slower.");
   visitor.field("seed", twin.seed, between(0, 1e9), "Everything random is drawn from this number.");
   visitor.section("shape", twin.shape, "How the true hand differs from the model.");

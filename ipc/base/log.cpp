@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/log.hpp"
 
 #include <unistd.h>
@@ -38,8 +39,8 @@ void set_level(Level level) { threshold() = level; }
 
 void write(Level level, std::string_view line) {
   if (level < threshold().load(std::memory_order_relaxed)) return;
-  const auto text =
-      fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(), kNames[static_cast<std::size_t>(level)], line);
+  const auto text = fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
+                                kNames[static_cast<std::size_t>(level)], line);
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 

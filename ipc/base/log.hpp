@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
 
@@ -10,10 +11,12 @@ enum class Level { debug, info, warning, error };
 
 /// Names this process in every line ("camera"), once, at start-up.
 void set_program(std::string_view name);
-/// Lines below this level are not written. Default: info; HANDCAST_LOG=debug|info|warning|error changes it.
+/// Lines below this level are not written. Default: info; HANDCAST_LOG=debug|info|warning|error
+/// changes it.
 void set_level(Level level);
 
-/// One line to stderr in one write(): "12.345 camera  info  …" (seconds of CLOCK_MONOTONIC). Safe from any thread.
+/// One line to stderr in one write(): "12.345 camera  info  …" (seconds of CLOCK_MONOTONIC). Safe
+/// from any thread.
 void write(Level level, std::string_view line);
 
 template <class... Args>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <string_view>
@@ -25,7 +26,9 @@ template <class T>
 using Result = tl::expected<T, Error>;
 
 /// Shorthand for the unhappy return of a function that yields a Result.
-inline tl::unexpected<Error> fail(Errc code, std::string what) { return tl::make_unexpected(Error{code, std::move(what)}); }
+inline tl::unexpected<Error> fail(Errc code, std::string what) {
+  return tl::make_unexpected(Error{code, std::move(what)});
+}
 
 /// Passes an error on with the place it came from put in front of its sentence.
 inline tl::unexpected<Error> fail_in(std::string_view place, Error error) {

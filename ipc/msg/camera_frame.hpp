@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -9,7 +10,8 @@
 namespace handcast::msg {
 
 /// One 8-bit grey image; the pixels follow the struct in the same slot, row by row without padding.
-/// Published by: services/camera ("camera.frames").  Read by: services/landmarks, services/projector, observers.
+/// Published by: services/camera ("camera.frames").  Read by: services/landmarks,
+/// services/projector, observers.
 struct CameraFrame {
   static constexpr std::string_view layout = "CameraFrame/1";
 

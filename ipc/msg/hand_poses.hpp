@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,7 +12,8 @@ inline constexpr int kMaxHands = 2;  ///< per rig
 
 enum class Side : std::uint32_t { left = 0, right = 1 };
 
-/// One joint in tracker space. Axes as in OpenXR: +x right, +y out of the back of the hand, -z towards the finger tip.
+/// One joint in tracker space. Axes as in OpenXR: +x right, +y out of the back of the hand, -z
+/// towards the finger tip.
 struct Joint {
   std::array<float, 3> position_m{};
   std::array<float, 4> orientation_xyzw{0, 0, 0, 1};

@@ -1,18 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string_view>
 
 namespace handcast::msg {
 
-/// The first member of every message. The origin travels unchanged through every message derived from it.
+/// The first member of every message. The origin travels unchanged through every message derived
+/// from it.
 struct Header {
   std::uint64_t frame_id = 0;     ///< counts up at the source; a derived message keeps its source's
-  std::int64_t origin_ns = 0;     ///< CLOCK_MONOTONIC: the middle of the exposure, or the sensor's sample time on the host's clock
+  std::int64_t origin_ns = 0;     ///< CLOCK_MONOTONIC: the middle of the exposure, or the sensor's
+                                  ///< sample time on the host's clock
   std::int64_t published_ns = 0;  ///< when this message was published (set by the ring's writer)
 };
 
-/// Identifies the layout of a message type to whoever maps a ring: FNV-1a over name, version and size.
-/// A message type declares `static constexpr std::string_view layout = "Name/version"`; raise the version when fields change.
+/// Identifies the layout of a message type to whoever maps a ring: FNV-1a over name, version and
+/// size. A message type declares `static constexpr std::string_view layout = "Name/version"`; raise
+/// the version when fields change.
 template <class T>
 constexpr std::uint64_t type_hash() {
   std::uint64_t hash = 14695981039346656037ull;

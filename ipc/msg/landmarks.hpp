@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,13 +8,16 @@
 
 namespace handcast::msg {
 
-inline constexpr int kLandmarks = 21;  ///< MediaPipe's: wrist, then thumb to little finger, each from palm to tip
+inline constexpr int kLandmarks =
+    21;  ///< MediaPipe's: wrist, then thumb to little finger, each from palm to tip
 
 /// The one table between the two hand models: landmark i is the image of joint kJointOfLandmark[i].
-inline constexpr std::array<int, kLandmarks> kJointOfLandmark{1, 2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14, 15, 17, 18, 19, 20, 22, 23, 24, 25};
+inline constexpr std::array<int, kLandmarks> kJointOfLandmark{
+    1, 2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14, 15, 17, 18, 19, 20, 22, 23, 24, 25};
 
 struct Landmark {
-  float x_px = 0;        ///< right from the centre of the camera's top-left pixel, lens distortion removed
+  float x_px =
+      0;  ///< right from the centre of the camera's top-left pixel, lens distortion removed
   float y_px = 0;        ///< down from there
   float confidence = 0;  ///< 0..1; 0: not seen
   float sigma_px = 0;    ///< standard deviation of x and of y each; 0: the detector does not say

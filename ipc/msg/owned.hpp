@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -10,7 +11,9 @@ template <class T>
 class Owned {
  public:
   explicit Owned(std::size_t bytes = sizeof(T))
-      : bytes_(bytes < sizeof(T) ? sizeof(T) : bytes), memory_(new std::byte[bytes_]()), message_(new (memory_.get()) T) {}
+      : bytes_(bytes < sizeof(T) ? sizeof(T) : bytes),
+        memory_(new std::byte[bytes_]()),
+        message_(new (memory_.get()) T) {}
 
   T& operator*() { return *message_; }
   const T& operator*() const { return *message_; }

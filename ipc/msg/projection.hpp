@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,7 +12,8 @@ namespace handcast::msg {
 
 inline constexpr int kMaxVertices = 4096;  ///< of one hand's mesh
 
-/// Where one vertex of the drawn hand lands, after every correction: projector px from the centre of the top-left pixel.
+/// Where one vertex of the drawn hand lands, after every correction: projector px from the centre
+/// of the top-left pixel.
 struct Landing {
   float x_px = 0;
   float y_px = 0;
@@ -23,8 +25,8 @@ struct ProjectedHand {
   std::array<Landing, kMaxVertices> landings{};  ///< the first `vertex_count` are valid
 };
 
-/// What the projector was given: the lit region's pixels (RGBA8, alpha 0 = dark, >0 = light meant for a hand) follow the
-/// struct row by row without padding; everything outside the region is dark.
+/// What the projector was given: the lit region's pixels (RGBA8, alpha 0 = dark, >0 = light meant
+/// for a hand) follow the struct row by row without padding; everything outside the region is dark.
 /// Published by: services/projector ("projection.frames").  Read by: services/observer, previews.
 struct Projection {
   static constexpr std::string_view layout = "Projection/1";

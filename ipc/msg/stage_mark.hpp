@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -40,7 +41,8 @@ struct StageMark {
 };
 
 /// The stages one service spent on one frame.
-/// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's recorder, the observer.
+/// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's
+/// recorder, the observer.
 struct StageMarks {
   static constexpr std::string_view layout = "StageMarks/3";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -14,12 +15,16 @@ namespace handcast::ipc {
 class Buffer {
  public:
   std::byte* data() const { return data_.get(); }
-  void give_back() { in_use_.store(false, std::memory_order_release); }  ///< from any thread; what was read before, was read before
+  void give_back() {
+    in_use_.store(false, std::memory_order_release);
+  }  ///< from any thread; what was read before, was read before
 
  private:
   friend class BufferPool;
   struct Free {
-    void operator()(std::byte* data) const { ::operator delete (data, std::align_val_t{kLineBytes}); }
+    void operator()(std::byte* data) const {
+      ::operator delete (data, std::align_val_t{kLineBytes});
+    }
   };
   explicit Buffer(std::byte* data) : data_(data) {}
 
@@ -27,7 +32,8 @@ class Buffer {
   std::atomic<bool> in_use_{true};
 };
 
-/// Buffers of one size, handed out again and again: no allocation per message once as many exist as are held at a time.
+/// Buffers of one size, handed out again and again: no allocation per message once as many exist as
+/// are held at a time.
 class BufferPool {
  public:
   explicit BufferPool(std::size_t bytes) : bytes_(round_up(bytes, kLineBytes)) {}
@@ -39,7 +45,8 @@ class BufferPool {
         buffer->in_use_.store(true, std::memory_order_relaxed);
         return buffer.get();
       }
-    auto* data = static_cast<std::byte*>(::operator new (bytes_, std::align_val_t{kLineBytes}, std::nothrow));
+    auto* data = static_cast<std::byte*>(
+        ::operator new (bytes_, std::align_val_t{kLineBytes}, std::nothrow));
     if (!data) return nullptr;
     return buffers_.emplace_back(new Buffer(data)).get();
   }

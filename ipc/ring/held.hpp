@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -5,21 +6,27 @@
 #include <utility>
 
 #include "ipc/ring/protocol.hpp"
-#include "ipc/ring/seat.hpp"
+#include "ipc/ring/reader_attachment.hpp"
 
 namespace handcast::ipc {
 
-/// A message in hand, as bytes: leased where it lies, or copied into a buffer. Ends its lease or gives its buffer back when it
-/// dies, on whichever thread.
+/// A message in hand, as bytes: leased where it lies, or copied into a buffer. Ends its lease or
+/// gives its buffer back when it dies, on whichever thread.
 class Held {
  public:
   Held() = default;
-  Held(std::shared_ptr<Seat> seat, const Lease& lease, const Taken& taken)
-      : seat_(std::move(seat)), bytes_(seat_->segment().slot_at(lease.slot)), lease_(lease), taken_(taken) {}
-  Held(std::shared_ptr<Seat> seat, Buffer& buffer, const Taken& taken)
-      : seat_(std::move(seat)), bytes_(buffer.data()), buffer_(&buffer), taken_(taken) {}
+  Held(std::shared_ptr<ReaderAttachment> attachment, const Lease& lease, const Taken& taken)
+      : attachment_(std::move(attachment)),
+        bytes_(attachment_->segment().slot_at(lease.slot)),
+        lease_(lease),
+        taken_(taken) {}
+  Held(std::shared_ptr<ReaderAttachment> attachment, Buffer& buffer, const Taken& taken)
+      : attachment_(std::move(attachment)),
+        bytes_(buffer.data()),
+        buffer_(&buffer),
+        taken_(taken) {}
   Held(Held&& other) noexcept
-      : seat_(std::move(other.seat_)),
+      : attachment_(std::move(other.attachment_)),
         bytes_(std::exchange(other.bytes_, nullptr)),
         buffer_(other.buffer_),
         lease_(other.lease_),
@@ -27,7 +34,7 @@ class Held {
   Held& operator=(Held&& other) noexcept {
     if (this == &other) return *this;
     let_go();
-    seat_ = std::move(other.seat_);
+    attachment_ = std::move(other.attachment_);
     bytes_ = std::exchange(other.bytes_, nullptr);
     buffer_ = other.buffer_;
     lease_ = other.lease_;
@@ -42,15 +49,15 @@ class Held {
 
  private:
   void let_go() {
-    if (!seat_) return;
+    if (!attachment_) return;
     if (buffer_)
       buffer_->give_back();
     else
-      seat_->end(lease_);
-    seat_.reset();
+      attachment_->end(lease_);
+    attachment_.reset();
   }
 
-  std::shared_ptr<Seat> seat_;
+  std::shared_ptr<ReaderAttachment> attachment_;
   const std::byte* bytes_ = nullptr;
   Buffer* buffer_ = nullptr;  ///< null: leased
   Lease lease_;

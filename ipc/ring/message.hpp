@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <concepts>
 #include <cstddef>
@@ -10,8 +11,8 @@
 
 namespace handcast::ipc {
 
-/// A message with a tail: its used_bytes() counts the tail in. It is asked of bytes that may be torn or hostile, so it must
-/// bear any values in the fields.
+/// A message with a tail: its used_bytes() counts the tail in. It is asked of bytes that may be
+/// torn or hostile, so it must bear any values in the fields.
 template <class T>
 concept HasTail = requires(const T& message) {
   { message.used_bytes() } -> std::convertible_to<std::size_t>;
@@ -27,8 +28,10 @@ struct MessageShape {
 
 template <class T>
 constexpr MessageShape shape_of() {
-  static_assert(std::is_trivially_copyable_v<T> && std::is_standard_layout_v<T>, "a message is plain bytes");
-  static_assert(std::is_same_v<decltype(T::header), msg::Header> && offsetof(T, header) == 0, "a message begins with its header");
+  static_assert(std::is_trivially_copyable_v<T> && std::is_standard_layout_v<T>,
+                "a message is plain bytes");
+  static_assert(std::is_same_v<decltype(T::header), msg::Header> && offsetof(T, header) == 0,
+                "a message begins with its header");
   static_assert(alignof(T) <= kLineBytes);
   const auto used_bytes = [](const std::byte* message) -> std::size_t {
     if constexpr (HasTail<T>)

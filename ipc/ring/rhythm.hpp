@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <optional>
 
 namespace handcast::ipc {
 
-/// Learns when the next message of a regular stream will come, from the times its messages were published.
+/// Learns when the next message of a regular stream will come, from the times its messages were
+/// published.
 class Rhythm {
  public:
   /// When to stop sleeping and watch for the message, and when to stop watching.

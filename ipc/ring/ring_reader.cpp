@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/ring/ring_reader.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,8 @@
 namespace handcast::ipc {
 namespace {
 
-/// A wait is looked at again this often, so that no lost wake-up, and no writer that died before its own, can hang a reader.
+/// A wait is looked at again this often, so that no lost wake-up, and no writer that died before
+/// its own, can hang a reader.
 constexpr std::int64_t kSlice_ns = 100'000'000;
 
 void pause() {
@@ -22,12 +24,14 @@ void pause() {
 #endif
 }
 
-/// What a bridge's thread does over and over: the futex wait, with a place of its own in the stream.
-std::function<bool()> wait_for_news(const std::shared_ptr<Seat>& seat) {
-  return [core = seat->another_core()]() mutable {
+/// What a bridge's thread does over and over: the futex wait, with a place of its own in the
+/// stream.
+std::function<bool()> wait_for_news(const std::shared_ptr<ReaderAttachment>& attachment) {
+  return [core = attachment->another_core()]() mutable {
     core.wait(now_ns() + kSlice_ns);
     if (!core.something_new()) return false;
-    core.catch_up();  // before the descriptor is made readable: what comes after this is told of next time
+    core.catch_up();  // before the descriptor is made readable: what comes after this is told of
+                      // next time
     return true;
   };
 }
@@ -41,46 +45,64 @@ void wait_readable(int fd, std::int64_t until_ns) {
 
 /// `now_ns` - `origin_ns` of a message that may say anything.
 std::int64_t age(std::int64_t origin_ns, std::int64_t time_ns) {
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(origin_ns));
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
+                                   static_cast<std::uint64_t>(origin_ns));
 }
 
-const msg::Header& header_of(const Held& held) { return *reinterpret_cast<const msg::Header*>(held.bytes()); }
+const msg::Header& header_of(const Held& held) {
+  return *reinterpret_cast<const msg::Header*>(held.bytes());
+}
 
 }  // namespace
 
-RingReader::RingReader(std::shared_ptr<Seat> seat, const MessageShape& shape, Wait wait, Hold hold)
-    : seat_(std::move(seat)), shape_(shape), wait_(wait), hold_(hold) {}
+RingReader::RingReader(std::shared_ptr<ReaderAttachment> attachment, const MessageShape& shape,
+                       Wait wait, Hold hold)
+    : attachment_(std::move(attachment)), shape_(shape), wait_(wait), hold_(hold) {}
 
-Result<std::unique_ptr<RingReader>> RingReader::attach(Segment segment, const MessageShape& shape, Wait wait, Hold hold) {
-  if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits) return tl::make_unexpected(fits.error());
-  auto seat = Seat::take(std::move(segment));
-  if (!seat) return tl::make_unexpected(seat.error());
-  std::unique_ptr<RingReader> reader(new RingReader(std::move(*seat), shape, wait, hold));
+Result<std::unique_ptr<RingReader>> RingReader::attach(Segment segment, const MessageShape& shape,
+                                                       Wait wait, Hold hold) {
+  if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits)
+    return tl::make_unexpected(fits.error());
+  auto attachment = ReaderAttachment::take(std::move(segment));
+  if (!attachment) return tl::make_unexpected(attachment.error());
+  std::unique_ptr<RingReader> reader(new RingReader(std::move(*attachment), shape, wait, hold));
   if (wait != Wait::eventfd) return reader;
-  auto bridge = WakeBridge::start(wait_for_news(reader->seat_));
-  if (!bridge) return fail_in(fmt::format("ring '{}'", reader->seat_->segment().stream()), std::move(bridge.error()));
+  auto bridge = WakeBridge::start(wait_for_news(reader->attachment_));
+  if (!bridge)
+    return fail_in(fmt::format("ring '{}'", reader->attachment_->segment().stream()),
+                   std::move(bridge.error()));
   reader->bridge_ = std::move(*bridge);
   return reader;
 }
 
 Result<Held> RingReader::next(Deadline deadline) {
-  return take_until(deadline, [this](const auto& take, Taken& taken) { return seat_->core().next(take, taken); });
+  return take_until(deadline, [this](const auto& take, Taken& taken) {
+    return attachment_->core().next(take, taken);
+  });
 }
 
 Result<Held> RingReader::latest(Deadline deadline) {
-  return take_until(deadline, [this](const auto& take, Taken& taken) { return seat_->core().latest(take, taken); });
+  return take_until(deadline, [this](const auto& take, Taken& taken) {
+    return attachment_->core().latest(take, taken);
+  });
 }
 
 Result<Held> RingReader::at(std::int64_t origin_ns) {
   const auto origin_of = [this](int slot) {
-    return __atomic_load_n(&reinterpret_cast<const msg::Header*>(seat_->segment().slot_at(slot))->origin_ns, __ATOMIC_RELAXED);
+    return __atomic_load_n(
+        &reinterpret_cast<const msg::Header*>(attachment_->segment().slot_at(slot))->origin_ns,
+        __ATOMIC_RELAXED);
   };
-  const auto nearest = [&](const auto& take, Taken& taken) { return seat_->core().nearest(origin_ns, origin_of, take, taken); };
+  const auto nearest = [&](const auto& take, Taken& taken) {
+    return attachment_->core().nearest(origin_ns, origin_of, take, taken);
+  };
   Held held;
   const auto outcome = attempt(nearest, held);
   if (!outcome) return tl::make_unexpected(outcome.error());
   if (*outcome == Outcome::taken) return checked(std::move(held));
-  return fail_here(Errc::timeout, *outcome == Outcome::nothing ? "it is empty" : "its messages change faster than they can be read");
+  return fail_here(Errc::timeout, *outcome == Outcome::nothing
+                                      ? "it is empty"
+                                      : "its messages change faster than they can be read");
 }
 
 template <class Verb>
@@ -89,14 +111,16 @@ Result<Held> RingReader::take_until(Deadline deadline, const Verb& verb) {
     const auto outcome = look(verb, held);
     if (!outcome) return tl::make_unexpected(outcome.error());
     if (*outcome == Outcome::taken) return counted(std::move(held));
-    if (*outcome == Outcome::corrupt) return fail_here(Errc::bad_data, "its words make no sense: something else writes to its memory");
+    if (*outcome == Outcome::corrupt)
+      return fail_here(Errc::bad_data,
+                       "its words make no sense: something else writes to its memory");
     if (deadline.passed()) return fail_here(Errc::timeout, "nothing new before the deadline");
     if (*outcome == Outcome::nothing) wait(deadline);
   }
 }
 
-/// With a bridge, what has just been read may have been told of, or not: the descriptor is cleared before the look that
-/// finds nothing.
+/// With a bridge, what has just been read may have been told of, or not: the descriptor is cleared
+/// before the look that finds nothing.
 template <class Verb>
 Result<Outcome> RingReader::look(const Verb& verb, Held& held) {
   auto outcome = attempt(verb, held);
@@ -107,51 +131,52 @@ Result<Outcome> RingReader::look(const Verb& verb, Held& held) {
 
 template <class Verb>
 Result<Outcome> RingReader::attempt(const Verb& verb, Held& held) {
-  Lease lease{hold_ == Hold::lease ? seat_->core().free_lease() : -1};
+  Lease lease{hold_ == Hold::lease ? attachment_->core().free_lease() : -1};
   if (lease.index < 0) return attempt_copy(verb, held);
   Taken taken;
-  const auto outcome = verb(seat_->core().leasing(lease), taken);
-  if (outcome == Outcome::taken) held = Held(seat_, lease, taken);
+  const auto outcome = verb(attachment_->core().leasing(lease), taken);
+  if (outcome == Outcome::taken) held = Held(attachment_, lease, taken);
   return outcome;
 }
 
 template <class Verb>
 Result<Outcome> RingReader::attempt_copy(const Verb& verb, Held& held) {
-  auto* buffer = seat_->buffers().take();
+  auto* buffer = attachment_->buffers().take();
   if (!buffer) return fail_here(Errc::unavailable, "no memory for a copy of its message");
   Taken taken;
   const auto copy = [&](int slot) { copy_out(slot, buffer->data()); };
-  const auto outcome = verb(seat_->core().copying(copy), taken);
+  const auto outcome = verb(attachment_->core().copying(copy), taken);
   if (outcome != Outcome::taken) {
     buffer->give_back();
     return outcome;
   }
-  if (hold_ == Hold::lease) seat_->tally().copied.store(++copied_, std::memory_order_relaxed);
-  held = Held(seat_, *buffer, taken);
+  if (hold_ == Hold::lease) attachment_->tally().copied.store(++copied_, std::memory_order_relaxed);
+  held = Held(attachment_, *buffer, taken);
   return outcome;
 }
 
 /// Copies what the message says it uses, and never more than the slot has.
 void RingReader::copy_out(int slot, std::byte* to) const {
-  const auto* from = seat_->segment().slot_at(slot);
+  const auto* from = attachment_->segment().slot_at(slot);
   const auto fixed = round_up(shape_.bytes, sizeof(PayloadWord));
   copy_from_slot(to, from, fixed);
-  const auto used = std::min(shape_.used_bytes(to), seat_->segment().payload_bytes());
+  const auto used = std::min(shape_.used_bytes(to), attachment_->segment().payload_bytes());
   if (used > fixed) copy_from_slot(to + fixed, from + fixed, used - fixed);
 }
 
 Result<Held> RingReader::checked(Held&& held) const {
   const auto claimed = shape_.used_bytes(held.bytes());
-  const auto room = seat_->segment().payload_bytes();
+  const auto room = attachment_->segment().payload_bytes();
   if (claimed >= shape_.bytes && claimed <= room) return std::move(held);
-  return fail_here(Errc::bad_data, fmt::format("message {} says it has {} bytes, its slot has {}", held.taken().sequence, claimed, room));
+  return fail_here(Errc::bad_data, fmt::format("message {} says it has {} bytes, its slot has {}",
+                                               held.taken().sequence, claimed, room));
 }
 
 Result<Held> RingReader::counted(Held&& held) {
   const auto taken = held.taken();
   auto message = checked(std::move(held));
-  auto& tally = seat_->tally();
-  tally.skipped.store(seat_->core().skipped(), std::memory_order_relaxed);
+  auto& tally = attachment_->tally();
+  tally.skipped.store(attachment_->core().skipped(), std::memory_order_relaxed);
   tally.seen.store(taken.sequence, std::memory_order_relaxed);
   if (!message) {
     tally.unusable.store(++unusable_, std::memory_order_relaxed);
@@ -171,19 +196,20 @@ void RingReader::wait(Deadline deadline) {
   const auto window = wait_ == Wait::predictive ? rhythm_.window() : std::nullopt;
   if (window && now_ns() < window->until_ns) {
     const auto from_ns = std::min(window->from_ns, slice_end_ns);
-    while (!seat_->core().something_new() && now_ns() < from_ns) seat_->core().doze(from_ns);
+    while (!attachment_->core().something_new() && now_ns() < from_ns)
+      attachment_->core().doze(from_ns);
     if (from_ns == window->from_ns) spin(std::min(window->until_ns, deadline.time_ns()));
     return;
   }
-  seat_->core().wait(slice_end_ns);
+  attachment_->core().wait(slice_end_ns);
 }
 
 void RingReader::spin(std::int64_t until_ns) const {
-  while (!seat_->core().something_new() && now_ns() < until_ns) pause();
+  while (!attachment_->core().something_new() && now_ns() < until_ns) pause();
 }
 
 tl::unexpected<Error> RingReader::fail_here(Errc code, std::string_view what) const {
-  return fail(code, fmt::format("ring '{}': {}", seat_->segment().stream(), what));
+  return fail(code, fmt::format("ring '{}': {}", attachment_->segment().stream(), what));
 }
 
 }  // namespace handcast::ipc

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,8 +8,8 @@
 #include "ipc/base/result.hpp"
 #include "ipc/ring/held.hpp"
 #include "ipc/ring/message.hpp"
+#include "ipc/ring/reader_attachment.hpp"
 #include "ipc/ring/rhythm.hpp"
-#include "ipc/ring/seat.hpp"
 #include "ipc/ring/wait.hpp"
 #include "ipc/ring/wake_bridge.hpp"
 #include "ipc/shm/segment.hpp"
@@ -18,13 +19,15 @@ namespace handcast::ipc {
 /// What a sample is.
 enum class Hold {
   copy,   ///< a private copy: right for small messages
-  lease,  ///< the message where it lies, which the writer leaves alone meanwhile; a copy where all leases of the row are out
+  lease,  ///< the message where it lies, which the writer leaves alone meanwhile; a copy where all
+          ///< leases of the row are out
 };
 
 /// What every Reader<T> is made of: the protocol on a mapped segment, messages as bytes.
 class RingReader {
  public:
-  static Result<std::unique_ptr<RingReader>> attach(Segment segment, const MessageShape& shape, Wait wait, Hold hold);
+  static Result<std::unique_ptr<RingReader>> attach(Segment segment, const MessageShape& shape,
+                                                    Wait wait, Hold hold);
 
   Result<Held> next(Deadline deadline);
   Result<Held> latest(Deadline deadline);
@@ -33,12 +36,13 @@ class RingReader {
   int event_fd() const { return bridge_ ? bridge_->fd() : -1; }
 
   std::uint64_t received() const { return received_; }
-  std::uint64_t skipped() const { return seat_->core().skipped() + unusable_; }
+  std::uint64_t skipped() const { return attachment_->core().skipped() + unusable_; }
   std::uint64_t copied() const { return copied_; }
-  std::uint64_t revoked() const { return seat_->revoked(); }
+  std::uint64_t revoked() const { return attachment_->revoked(); }
 
  private:
-  RingReader(std::shared_ptr<Seat> seat, const MessageShape& shape, Wait wait, Hold hold);
+  RingReader(std::shared_ptr<ReaderAttachment> attachment, const MessageShape& shape, Wait wait,
+             Hold hold);
 
   template <class Verb>
   Result<Held> take_until(Deadline deadline, const Verb& verb);
@@ -55,7 +59,7 @@ class RingReader {
   void spin(std::int64_t until_ns) const;
   tl::unexpected<Error> fail_here(Errc code, std::string_view what) const;
 
-  std::shared_ptr<Seat> seat_;
+  std::shared_ptr<ReaderAttachment> attachment_;
   MessageShape shape_;
   Wait wait_;
   Hold hold_;
@@ -63,7 +67,8 @@ class RingReader {
   std::uint64_t received_ = 0;
   std::uint64_t unusable_ = 0;
   std::uint64_t copied_ = 0;
-  std::unique_ptr<WakeBridge> bridge_;  ///< with Wait::eventfd. Its thread uses the seat, so it ends first
+  std::unique_ptr<WakeBridge>
+      bridge_;  ///< with Wait::eventfd. Its thread uses the attachment, so it ends first
 };
 
 }  // namespace handcast::ipc

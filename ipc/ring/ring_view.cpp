@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/ring/ring_view.hpp"
 
 #include <algorithm>
@@ -21,13 +22,17 @@ struct Newest {
   msg::Header header;
 };
 
-/// The newest message's header; zeros where there is none, or the writer is too fast. Of the protocol's reader only the loads are used.
+/// The newest message's header; zeros where there is none, or the writer is too fast. Of the
+/// protocol's reader only the loads are used.
 Newest newest_of(const Segment& segment) {
   ReaderCore<RealAtomics> core(control_words_of(segment), 0, 0);
   alignas(PayloadWord) std::array<std::byte, sizeof(msg::Header)> bytes{};
-  const auto copy = [&](int slot) { copy_from_slot(bytes.data(), segment.slot_at(slot), bytes.size()); };
+  const auto copy = [&](int slot) {
+    copy_from_slot(bytes.data(), segment.slot_at(slot), bytes.size());
+  };
   Newest newest;
-  if (core.latest(core.copying(copy), newest.taken) == Outcome::taken) __builtin_memcpy(&newest.header, bytes.data(), bytes.size());
+  if (core.latest(core.copying(copy), newest.taken) == Outcome::taken)
+    __builtin_memcpy(&newest.header, bytes.data(), bytes.size());
   return newest;
 }
 
@@ -36,7 +41,8 @@ Newest newest_of(const Segment& segment) {
 Result<RingView> RingView::open(UniqueFd fd) {
   auto segment = Segment::open(std::move(fd));
   if (!segment) return tl::make_unexpected(segment.error());
-  if (auto restricted = segment->restrict_to(Access::look); !restricted) return tl::make_unexpected(restricted.error());
+  if (auto restricted = segment->restrict_to(Access::look); !restricted)
+    return tl::make_unexpected(restricted.error());
   return RingView(std::move(*segment));
 }
 
@@ -54,14 +60,16 @@ RingSnapshot RingView::look() const {
   ring.newest_origin_ns = newest.header.origin_ns;
   ring.newest_published_ns = newest.header.published_ns;
   for (int row = 0; row < words.rows(); ++row)
-    if (auto reader = reader_in(row, ring.sequence, time_ns); reader.pid != 0) ring.readers.push_back(reader);
+    if (auto reader = reader_in(row, ring.sequence, time_ns); reader.pid != 0)
+      ring.readers.push_back(reader);
   return ring;
 }
 
 std::uint64_t RingView::epoch() const { return newest_of(segment_).taken.epoch; }
 
 std::uint64_t RingView::sequence() const {
-  return sequence_of(RealAtomics::load(control_words_of(segment_).head(), std::memory_order_acquire));
+  return sequence_of(
+      RealAtomics::load(control_words_of(segment_).head(), std::memory_order_acquire));
 }
 
 ReaderView RingView::reader_in(int row, std::uint64_t newest, std::int64_t time_ns) const {
@@ -70,7 +78,8 @@ ReaderView RingView::reader_in(int row, std::uint64_t newest, std::int64_t time_
   const auto seen = relaxed(tally.seen) & kSequenceMask;
   ReaderView reader;
   reader.row = row;
-  reader.pid = static_cast<pid_t>(pid_of_owner(RealAtomics::load(words.owner(row), std::memory_order_relaxed)));
+  reader.pid = static_cast<pid_t>(
+      pid_of_owner(RealAtomics::load(words.owner(row), std::memory_order_relaxed)));
   reader.waiting = RealAtomics::load(words.wait(row), std::memory_order_relaxed) & kWaiting;
   reader.received = relaxed(tally.received);
   reader.skipped = relaxed(tally.skipped);
@@ -89,7 +98,8 @@ std::int64_t RingView::lease_age_ns(int row, int index, std::int64_t time_ns) co
   if (!is_leased(lease) || slot_of_lease(lease) >= segment_.slots()) return -1;
   const auto* header = reinterpret_cast<const msg::Header*>(segment_.slot_at(slot_of_lease(lease)));
   const auto published_ns = __atomic_load_n(&header->published_ns, __ATOMIC_RELAXED);
-  return time_ns - std::clamp<std::int64_t>(published_ns, 0, time_ns);  // it may have ended meanwhile, and be anything
+  return time_ns - std::clamp<std::int64_t>(
+                       published_ns, 0, time_ns);  // it may have ended meanwhile, and be anything
 }
 
 }  // namespace handcast::ipc

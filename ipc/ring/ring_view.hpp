@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -19,12 +20,14 @@ struct ReaderView {
   pid_t pid = 0;  ///< 24 bits of it are all a row holds; 0: the row is free
   bool waiting = false;
   std::uint64_t received = 0, skipped = 0, unusable = 0, copied = 0;
-  std::uint64_t lag = 0;                                    ///< messages after the last one taken, up to the newest
-  std::int64_t age_ns = 0;                                  ///< of the last message's origin when it was taken
-  std::array<std::int64_t, kLeasesPerRow> lease_ages_ns{};  ///< since the leased message was published; -1: not leased
+  std::uint64_t lag = 0;    ///< messages after the last one taken, up to the newest
+  std::int64_t age_ns = 0;  ///< of the last message's origin when it was taken
+  std::array<std::int64_t, kLeasesPerRow>
+      lease_ages_ns{};  ///< since the leased message was published; -1: not leased
 };
 
-/// A ring at one moment. Its parts are read one after the other while others write: each is true, not all at the same time.
+/// A ring at one moment. Its parts are read one after the other while others write: each is true,
+/// not all at the same time.
 struct RingSnapshot {
   std::string stream;
   int slots = 0;
@@ -44,7 +47,8 @@ class RingView {
   RingSnapshot look() const;
   std::string stream() const { return segment_.stream(); }
   int slots() const { return segment_.slots(); }
-  std::uint64_t epoch() const;     ///< of the newest message, which was published by that writer; 0: none
+  std::uint64_t epoch()
+      const;  ///< of the newest message, which was published by that writer; 0: none
   std::uint64_t sequence() const;  ///< of the newest message; 0: none
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/ring/ring_writer.hpp"
 
 #include <fcntl.h>
@@ -15,22 +16,28 @@
 namespace handcast::ipc {
 namespace {
 
-/// Asking the kernel about the readers takes some 10 us each: too long for every message of a ring whose readers hold on.
+/// Asking the kernel about the readers takes some 10 us each: too long for every message of a ring
+/// whose readers hold on.
 constexpr std::int64_t kBetweenSweeps_ns = 100'000'000;
 
-/// OFD locks belong to an open file description, and an inherited descriptor shares its description with every other
-/// process: so the file is opened anew. The kernel releases the lock when the process is gone, however it died.
+/// OFD locks belong to an open file description, and an inherited descriptor shares its description
+/// with every other process: so the file is opened anew. The kernel releases the lock when the
+/// process is gone, however it died.
 Result<UniqueFd> lock_for_writing(const Segment& segment) {
   UniqueFd file(::open(fmt::format("/proc/self/fd/{}", segment.fd()).c_str(), O_RDWR | O_CLOEXEC));
   if (!file)
-    return fail(Errc::unavailable, fmt::format("ring '{}': it cannot be opened for writing: {}", segment.stream(), std::strerror(errno)));
+    return fail(Errc::unavailable, fmt::format("ring '{}': it cannot be opened for writing: {}",
+                                               segment.stream(), std::strerror(errno)));
   struct flock lock {};
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
   lock.l_len = 1;
   if (::fcntl(file.get(), F_OFD_SETLK, &lock) == 0) return file;
-  if (errno == EAGAIN || errno == EACCES) return fail(Errc::unavailable, fmt::format("ring '{}': another writer lives", segment.stream()));
-  return fail(Errc::unavailable, fmt::format("ring '{}': the writer lock cannot be had: {}", segment.stream(), std::strerror(errno)));
+  if (errno == EAGAIN || errno == EACCES)
+    return fail(Errc::unavailable,
+                fmt::format("ring '{}': another writer lives", segment.stream()));
+  return fail(Errc::unavailable, fmt::format("ring '{}': the writer lock cannot be had: {}",
+                                             segment.stream(), std::strerror(errno)));
 }
 
 void stamp(std::byte* message, std::int64_t published_ns) {
@@ -53,8 +60,10 @@ RingWriter::RingWriter(Segment segment, UniqueFd lock)
 }
 
 Result<std::unique_ptr<RingWriter>> RingWriter::attach(Segment segment, const MessageShape& shape) {
-  if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits) return tl::make_unexpected(fits.error());
-  if (auto restricted = segment.restrict_to(Access::write); !restricted) return tl::make_unexpected(restricted.error());
+  if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits)
+    return tl::make_unexpected(fits.error());
+  if (auto restricted = segment.restrict_to(Access::write); !restricted)
+    return tl::make_unexpected(restricted.error());
   auto lock = lock_for_writing(segment);
   if (!lock) return tl::make_unexpected(lock.error());
   return std::unique_ptr<RingWriter>(new RingWriter(std::move(segment), std::move(*lock)));
@@ -71,7 +80,8 @@ int RingWriter::loan_after_sweep() {
     next_sweep_ns_ = time_ns + kBetweenSweeps_ns;
     if (sweep_dead_rows(segment_) > 0) slot = core_.loan();
   }
-  if (slot == kNoSlot) tally_.dropped.store(dropped_before_ + ++dropped_, std::memory_order_relaxed);
+  if (slot == kNoSlot)
+    tally_.dropped.store(dropped_before_ + ++dropped_, std::memory_order_relaxed);
   return slot;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +19,9 @@ class RingWriter {
   static Result<std::unique_ptr<RingWriter>> attach(Segment segment, const MessageShape& shape);
 
   int loan();  ///< kNoSlot where none is free, even after the rows of dead readers were cleared
-  std::byte* bytes_of(int slot) const { return slots_ + static_cast<std::size_t>(slot) * stride_bytes_; }
+  std::byte* bytes_of(int slot) const {
+    return slots_ + static_cast<std::size_t>(slot) * stride_bytes_;
+  }
   void publish(int slot);
   void abandon(int slot) { core_.abandon(slot); }
   void publish_copy(const std::byte* message, std::size_t bytes);
@@ -32,7 +35,8 @@ class RingWriter {
   int loan_after_sweep();
 
   Segment segment_;
-  UniqueFd lock_;  ///< an open file description of its own, which holds the writer lock as long as it is open
+  UniqueFd lock_;  ///< an open file description of its own, which holds the writer lock as long as
+                   ///< it is open
   WriterCore<RealAtomics> core_;
   std::byte* slots_;
   std::size_t stride_bytes_;

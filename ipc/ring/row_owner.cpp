@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/ring/row_owner.hpp"
 
 #include <fcntl.h>
@@ -23,7 +24,8 @@ struct ProcessStatus {
   std::uint64_t start = 0;  ///< clock ticks since the machine started
 };
 
-/// From /proc/PID/stat: "PID (name) state ...", the start time is field 22. The name may hold anything, so count behind it.
+/// From /proc/PID/stat: "PID (name) state ...", the start time is field 22. The name may hold
+/// anything, so count behind it.
 std::optional<ProcessStatus> status_of(std::uint64_t pid) {
   const UniqueFd file(::open(fmt::format("/proc/{}/stat", pid).c_str(), O_RDONLY | O_CLOEXEC));
   std::array<char, 1024> buffer{};
@@ -72,7 +74,8 @@ int sweep_dead_rows(const Segment& segment) {
   int freed = 0;
   for (int row = 0; row < words.rows(); ++row) {
     const auto owner = RealAtomics::load(words.owner(row), std::memory_order_acquire);
-    const bool dead = pid_of_owner(owner) == 0 ? left_uncleared(words, row, owner) : owner_is_gone(owner);
+    const bool dead =
+        pid_of_owner(owner) == 0 ? left_uncleared(words, row, owner) : owner_is_gone(owner);
     if (dead && claim_row(words, row, owner, free_word(generation_of(owner) + 1))) ++freed;
   }
   return freed;

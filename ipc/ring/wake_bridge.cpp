@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/ring/wake_bridge.hpp"
 
 #include <fmt/format.h>
@@ -31,7 +32,9 @@ class SignalsBlocked {
 
 Result<std::unique_ptr<WakeBridge>> WakeBridge::start(std::function<bool()> wait) {
   UniqueFd event(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-  if (!event) return fail(Errc::unavailable, fmt::format("no descriptor to wait on: {}", std::strerror(errno)));
+  if (!event)
+    return fail(Errc::unavailable,
+                fmt::format("no descriptor to wait on: {}", std::strerror(errno)));
   std::unique_ptr<WakeBridge> bridge(new WakeBridge(std::move(event)));
   const auto run = [bridge = bridge.get(), wait = std::move(wait)] {
     while (!bridge->stop_.load(std::memory_order_relaxed))

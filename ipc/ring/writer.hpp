@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <cstdlib>
@@ -12,8 +13,8 @@
 
 namespace handcast::ipc {
 
-/// A slot of shared memory, on loan to be filled in place. Published or given back (abandoned) exactly once, while its
-/// Writer lives.
+/// A slot of shared memory, on loan to be filled in place. Published or given back (abandoned)
+/// exactly once, while its Writer lives.
 template <class T>
 class Loan {
  public:
@@ -24,7 +25,9 @@ class Loan {
   std::size_t tail_bytes() const { return ring_->payload_bytes() - sizeof(T); }
 
   Loan(Loan&& other) noexcept
-      : ring_(other.ring_), slot_(std::exchange(other.slot_, kNoSlot)), message_(std::exchange(other.message_, nullptr)) {}
+      : ring_(other.ring_),
+        slot_(std::exchange(other.slot_, kNoSlot)),
+        message_(std::exchange(other.message_, nullptr)) {}
   Loan& operator=(Loan&& other) noexcept {
     std::swap(ring_, other.ring_);
     std::swap(slot_, other.slot_);
@@ -37,7 +40,10 @@ class Loan {
  private:
   template <class>
   friend class Writer;
-  Loan(RingWriter* ring, int slot) : ring_(ring), slot_(slot), message_(slot == kNoSlot ? nullptr : new (ring->bytes_of(slot)) T{}) {}
+  Loan(RingWriter* ring, int slot)
+      : ring_(ring),
+        slot_(slot),
+        message_(slot == kNoSlot ? nullptr : new (ring->bytes_of(slot)) T{}) {}
   int take() {
     message_ = nullptr;
     return std::exchange(slot_, kNoSlot);
@@ -55,15 +61,17 @@ class Loan {
 template <class T>
 class Writer {
  public:
-  /// Takes the ring's writer lock (released by the kernel when the process dies) and continues after the last message of a
-  /// predecessor. Errors: bad_data (the ring is of another type), unavailable (another writer lives).
+  /// Takes the ring's writer lock (released by the kernel when the process dies) and continues
+  /// after the last message of a predecessor. Errors: bad_data (the ring is of another type),
+  /// unavailable (another writer lives).
   static Result<Writer> attach(Segment segment) {
     auto ring = RingWriter::attach(std::move(segment), shape_of<T>());
     if (!ring) return tl::make_unexpected(std::move(ring.error()));
     return Writer(std::move(*ring));
   }
 
-  /// A slot with a default T in it. Empty (tests false) where every slot is leased: drop the own message.
+  /// A slot with a default T in it. Empty (tests false) where every slot is leased: drop the own
+  /// message.
   Loan<T> loan() { return {ring_.get(), ring_->loan()}; }
   /// Stamps header.published_ns and makes the message visible. An empty loan is nothing to publish.
   void publish(Loan<T>&& loan) {

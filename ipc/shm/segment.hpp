@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,10 +18,12 @@ struct RingSpec {
   std::uint64_t type_hash = 0;  ///< msg::type_hash<T>()
   std::size_t payload_bytes = 0;
   int slots = 4;
-  bool keep_history = false;  ///< reuse the oldest slot instead of the most recently freed: next() and at() see back
+  bool keep_history = false;  ///< reuse the oldest slot instead of the most recently freed: next()
+                              ///< and at() see back
 
   template <class T>
-  static RingSpec of(std::string stream, int slots, bool keep_history, std::size_t payload_bytes = sizeof(T)) {
+  static RingSpec of(std::string stream, int slots, bool keep_history,
+                     std::size_t payload_bytes = sizeof(T)) {
     return {std::move(stream), msg::type_hash<T>(), payload_bytes, slots, keep_history};
   }
 };
@@ -32,19 +35,22 @@ enum class Access {
   look,   ///< nothing may be written
 };
 
-/// The shared memory of one ring: a sealed memfd (SHRINK | GROW), without a name anywhere. Made by the supervisor,
-/// inherited by the services (its descriptor is close-on-exec: whoever spawns a service passes it on by hand); mapped as
-/// long as the object lives.
+/// The shared memory of one ring: a sealed memfd (SHRINK | GROW), without a name anywhere. Made by
+/// the supervisor, inherited by the services (its descriptor is close-on-exec: whoever spawns a
+/// service passes it on by hand); mapped as long as the object lives.
 class Segment {
  public:
-  /// Makes, sizes, seals and formats the memory of a ring. Errors: unavailable (memory, descriptors), bad_config (sizes).
+  /// Makes, sizes, seals and formats the memory of a ring. Errors: unavailable (memory,
+  /// descriptors), bad_config (sizes).
   static Result<Segment> create(const RingSpec& spec);
-  /// Maps the ring behind a descriptor (which is taken over). Errors: bad_data with a sentence that says what differs:
-  /// not a ring, another user's, other layout version, other boot, impossible sizes, unsealed; unavailable (no memory to map it in).
-  /// A descriptor that is only for reading gives a mapping to look at, no more.
+  /// Maps the ring behind a descriptor (which is taken over). Errors: bad_data with a sentence that
+  /// says what differs: not a ring, another user's, other layout version, other boot, impossible
+  /// sizes, unsealed; unavailable (no memory to map it in). A descriptor that is only for reading
+  /// gives a mapping to look at, no more.
   static Result<Segment> open(UniqueFd fd);
 
-  /// Takes rights from this mapping, never gives any. Errors: unavailable (it has fewer already, or the kernel cannot).
+  /// Takes rights from this mapping, never gives any. Errors: unavailable (it has fewer already, or
+  /// the kernel cannot).
   Result<void> restrict_to(Access access);
 
   Segment(Segment&&) noexcept;
@@ -63,7 +69,8 @@ class Segment {
 
   /// The first byte of a slot; `slot` must be within 0 .. slots() - 1.
   std::byte* slot_at(int slot) const;
-  /// Errors: bad_data, where the ring is for another type of message or its slots are too small for one.
+  /// Errors: bad_data, where the ring is for another type of message or its slots are too small for
+  /// one.
   Result<void> require(std::string_view layout, std::uint64_t type_hash, std::size_t bytes) const;
 
  private:
@@ -74,7 +81,8 @@ class Segment {
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
   Access rights_ = Access::write;
-  SegmentHeader header_;  ///< as it was validated: what others do to the shared one changes no bound of ours
+  SegmentHeader
+      header_;  ///< as it was validated: what others do to the shared one changes no bound of ours
 };
 
 }  // namespace handcast::ipc

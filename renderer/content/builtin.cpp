@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/content/builtin.hpp"
 
 #include <fmt/format.h>
@@ -21,12 +22,17 @@ using Colour = glm::vec3;  ///< red, green, blue, 0..255
 constexpr Colour kPaper{252, 248, 240}, kInk{24, 28, 44};
 
 std::uint32_t packed(Colour colour) {
-  const auto byte = [](float value) { return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.f, 255.f))); };
+  const auto byte = [](float value) {
+    return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.f, 255.f)));
+  };
   return 0xff000000u | byte(colour.b) << 16 | byte(colour.g) << 8 | byte(colour.r);
 }
 
-/// How much of a line of half width `half` a point `away` from its middle sees, over a ramp of `soft`.
-float line(float away, float half, float soft) { return std::clamp((half + soft - away) / soft, 0.f, 1.f); }
+/// How much of a line of half width `half` a point `away` from its middle sees, over a ramp of
+/// `soft`.
+float line(float away, float half, float soft) {
+  return std::clamp((half + soft - away) / soft, 0.f, 1.f);
+}
 
 /// 0 thumb to 4 little finger; -1 for palm, wrist and metacarpals.
 int finger_of(int joint) {
@@ -38,7 +44,8 @@ int finger_of(int joint) {
 /// Which bone of its finger: 0 next to the palm.
 int bone_of(int joint) { return joint < 6 ? joint - 3 : (joint - 7) % 5; }
 
-/// Fields over the back and the palm, numbered; bands on the fingers; a fine grid; the charts' outline.
+/// Fields over the back and the palm, numbered; bands on the fingers; a fine grid; the charts'
+/// outline.
 class Atlas {
  public:
   explicit Atlas(const ChartMap& charts) : charts_(charts) {}
@@ -53,7 +60,8 @@ class Atlas {
     colour = glm::mix(colour, kPaper, 0.45f * line(std::min(fine.x, fine.y), 0.15f, 0.25f));
     const glm::vec2 to_border = kFieldMm / 2 - glm::abs(from_centre);
     colour = glm::mix(colour, kInk, 0.8f * line(std::min(to_border.x, to_border.y), 0.3f, 0.3f));
-    const glm::vec2 right_up{facing * from_centre.x, -from_centre.y};  // as one who looks at this side reads it, fingers up
+    const glm::vec2 right_up{facing * from_centre.x,
+                             -from_centre.y};  // as one who looks at this side reads it, fingers up
     return glm::mix(colour, kInk, coverage(label(texel, field, facing), right_up));
   }
 
@@ -62,7 +70,8 @@ class Atlas {
   static constexpr int kLetterPx = 56;
 
   static Colour ground(const ChartTexel& texel, glm::ivec2 field, float facing) {
-    static constexpr std::array<Colour, 5> kFingers{Colour{236, 94, 80}, {244, 168, 54}, {112, 190, 88}, {64, 156, 220}, {158, 108, 214}};
+    static constexpr std::array<Colour, 5> kFingers{
+        Colour{236, 94, 80}, {244, 168, 54}, {112, 190, 88}, {64, 156, 220}, {158, 108, 214}};
     const int finger = finger_of(texel.joint);
     if (finger >= 0) return kFingers[finger] * (bone_of(texel.joint) % 2 == 0 ? 1.f : 0.72f);
     const bool dark = (field.x + field.y) % 2 != 0;
@@ -70,7 +79,8 @@ class Atlas {
     return dark ? Colour{238, 176, 140} : Colour{250, 212, 180};
   }
 
-  /// Columns A, B, ... on the back and P, Q, ... on the palm, rows numbered from the forearm up. Fingers: 1 (thumb) to 5.
+  /// Columns A, B, ... on the back and P, Q, ... on the palm, rows numbered from the forearm up.
+  /// Fingers: 1 (thumb) to 5.
   static std::string label(const ChartTexel& texel, glm::ivec2 field, float facing) {
     const int finger = finger_of(texel.joint);
     if (finger >= 0) return std::to_string(finger + 1);
@@ -98,7 +108,8 @@ class Atlas {
 class Skeleton {
  public:
   explicit Skeleton(const HandMesh& hand) {
-    for (int joint = 0; joint < kJoints; ++joint) joints_mm_[joint] = 1000.f * glm::vec2(hand.rest[joint][3].x, hand.rest[joint][3].z);
+    for (int joint = 0; joint < kJoints; ++joint)
+      joints_mm_[joint] = 1000.f * glm::vec2(hand.rest[joint][3].x, hand.rest[joint][3].z);
   }
 
   Colour operator()(const ChartTexel& texel) const {
@@ -107,7 +118,8 @@ class Skeleton {
     for (int joint = 1; joint < kJoints; ++joint) {
       to_joint = std::min(to_joint, glm::distance(place, joints_mm_[joint]));
       if (kJointParent[joint] >= 1)
-        to_bone = std::min(to_bone, distance_to_segment(place, joints_mm_[joint], joints_mm_[kJointParent[joint]]));
+        to_bone = std::min(to_bone, distance_to_segment(place, joints_mm_[joint],
+                                                        joints_mm_[kJointParent[joint]]));
     }
     Colour colour{22, 36, 78};
     colour = glm::mix(colour, kPaper, line(to_bone, 1.3f, 0.4f));
@@ -131,7 +143,8 @@ Texture paint(const ChartMap& charts, const PaintTexel& colour_of) {
   Image<Colour> colours(kWidth, kHeight, kInk);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      if (const ChartTexel& texel = charts.at(x, y); texel.chart != 0) colours.at(x, y) = colour_of(texel, x, y);
+      if (const ChartTexel& texel = charts.at(x, y); texel.chart != 0)
+        colours.at(x, y) = colour_of(texel, x, y);
     }
   }
   charts.pad(colours);
@@ -159,8 +172,13 @@ std::optional<Texture> paint_builtin(std::string_view name, const HandMesh& hand
   if (name != "atlas" && name != "checker" && name != "skeleton") return std::nullopt;
   const ChartMap charts(hand, kWidth, kHeight);
   if (name == "checker") return paint(charts, checker);
-  if (name == "atlas") return paint(charts, [atlas = Atlas(charts)](const ChartTexel& texel, int, int) mutable { return atlas(texel); });
-  return paint(charts, [skeleton = Skeleton(hand)](const ChartTexel& texel, int, int) { return skeleton(texel); });
+  if (name == "atlas")
+    return paint(charts, [atlas = Atlas(charts)](const ChartTexel& texel, int, int) mutable {
+      return atlas(texel);
+    });
+  return paint(charts, [skeleton = Skeleton(hand)](const ChartTexel& texel, int, int) {
+    return skeleton(texel);
+  });
 }
 
 }  // namespace handcast::renderer

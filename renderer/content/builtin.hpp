@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <string_view>
 
+#include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
-#include "renderer/image.hpp"
 
 namespace handcast::renderer {
 

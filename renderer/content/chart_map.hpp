@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
-#include "renderer/image.hpp"
 
 namespace handcast::renderer {
 
@@ -23,7 +24,8 @@ class ChartMap {
   const ChartTexel& at(int x, int y) const { return texels_.at(x, y); }
   /// +1 where the chart shows the back of the hand, -1 where it shows the palm.
   float facing(std::uint8_t chart) const { return facing_[chart]; }
-  /// Carries the colours of the charts outwards (32 px), each texel taking its nearest one on a chart.
+  /// Carries the colours of the charts outwards (32 px), each texel taking its nearest one on a
+  /// chart.
   void pad(Image<glm::vec3>& colours) const;
 
  private:

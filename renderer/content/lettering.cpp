@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/content/lettering.hpp"
 
 #include <algorithm>
@@ -11,9 +12,11 @@ Image<std::uint8_t> lettering(const std::string& text, int height) {
   int below = 0;
   const cv::Size size = cv::getTextSize(text, kFont, scale, kThickness, &below);
   cv::Mat page(height, size.width + 2 * kThickness, CV_8UC1, cv::Scalar(0));
-  cv::putText(page, text, {kThickness, height - kThickness}, kFont, scale, cv::Scalar(255), kThickness, cv::LINE_AA);
+  cv::putText(page, text, {kThickness, height - kThickness}, kFont, scale, cv::Scalar(255),
+              kThickness, cv::LINE_AA);
   Image<std::uint8_t> letters(page.cols, page.rows);
-  for (int y = 0; y < page.rows; ++y) std::copy_n(page.ptr<std::uint8_t>(y), page.cols, letters.row(y));
+  for (int y = 0; y < page.rows; ++y)
+    std::copy_n(page.ptr<std::uint8_t>(y), page.cols, letters.row(y));
   return letters;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/content/picture.hpp"
 
 #include <fmt/format.h>
@@ -19,9 +20,11 @@ namespace {
 constexpr std::uint32_t kLargestSide = 8192;
 constexpr std::uint32_t kOpaque = 0xff000000u;
 
-tl::unexpected<Error> too_large(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height) {
+tl::unexpected<Error> too_large(const std::filesystem::path& file, std::uint32_t width,
+                                std::uint32_t height) {
   return fail(Errc::bad_config,
-              fmt::format("The picture '{}' is {}x{} px; {} px a side are allowed.", file.string(), width, height, kLargestSide));
+              fmt::format("The picture '{}' is {}x{} px; {} px a side are allowed.", file.string(),
+                          width, height, kLargestSide));
 }
 
 /// libpng's short way in: it frees what it holds when it goes.
@@ -39,14 +42,18 @@ struct PngFile {
 template <class Pixel>
 Result<Image<Pixel>> read_png(const std::filesystem::path& file, std::uint32_t format) {
   PngFile opened(file);
-  const auto broken = [&] { return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture.", file.string())); };
+  const auto broken = [&] {
+    return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture.", file.string()));
+  };
   if (!opened.is_well()) return broken();
   const auto width = opened.png.width, height = opened.png.height;
   if (std::max(width, height) > kLargestSide) return too_large(file, width, height);
   opened.png.format = format;
   Image<Pixel> image(static_cast<int>(width), static_cast<int>(height));
   const png_color black{};
-  if (!png_image_finish_read(&opened.png, &black, image.row(0), static_cast<png_int_32>(width * PNG_IMAGE_PIXEL_CHANNELS(format)), nullptr))
+  if (!png_image_finish_read(&opened.png, &black, image.row(0),
+                             static_cast<png_int_32>(width * PNG_IMAGE_PIXEL_CHANNELS(format)),
+                             nullptr))
     return broken();
   return image;
 }
@@ -57,7 +64,9 @@ struct JpegErrors {
   const char* trouble = "is not a PNG or JPEG picture";
 };
 
-[[noreturn]] void leave(j_common_ptr jpeg) { std::longjmp(reinterpret_cast<JpegErrors*>(jpeg->err)->way_out, 1); }
+[[noreturn]] void leave(j_common_ptr jpeg) {
+  std::longjmp(reinterpret_cast<JpegErrors*>(jpeg->err)->way_out, 1);
+}
 void say_nothing(j_common_ptr) {}
 
 /// libjpeg would go on in grey where a file ends early, and only warn.
@@ -72,12 +81,14 @@ struct CloseFile {
 };
 
 /// libjpeg ends a broken file by a longjmp to here: nothing with a destructor may be made between.
-bool decode_jpeg(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::FILE* file, Texture& texture) {
+bool decode_jpeg(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::FILE* file,
+                 Texture& texture) {
   if (setjmp(errors.way_out) != 0) return false;
   jpeg_stdio_src(&jpeg, file);
   jpeg_read_header(&jpeg, TRUE);
   if (std::max(jpeg.image_width, jpeg.image_height) > kLargestSide) return true;
-  if (jpeg.jpeg_color_space != JCS_GRAYSCALE && jpeg.jpeg_color_space != JCS_YCbCr && jpeg.jpeg_color_space != JCS_RGB) {
+  if (jpeg.jpeg_color_space != JCS_GRAYSCALE && jpeg.jpeg_color_space != JCS_YCbCr &&
+      jpeg.jpeg_color_space != JCS_RGB) {
     errors.trouble = "is a JPEG in CMYK or another colour space; grey, RGB and YCbCr are read";
     return false;
   }
@@ -106,7 +117,8 @@ Result<Texture> read_jpeg(const std::filesystem::path& path) {
   const auto width = jpeg.image_width, height = jpeg.image_height;
   jpeg_destroy_decompress(&jpeg);
   if (decoded && std::max(width, height) > kLargestSide) return too_large(path, width, height);
-  if (!decoded) return fail(Errc::bad_config, fmt::format("'{}' {}.", path.string(), errors.trouble));
+  if (!decoded)
+    return fail(Errc::bad_config, fmt::format("'{}' {}.", path.string(), errors.trouble));
   return texture;
 }
 
@@ -123,21 +135,25 @@ Result<Texture> read_picture(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
     return fail(Errc::bad_config, fmt::format("There is no picture file '{}'.", file.string()));
-  auto picture = begins_like_png(file) ? read_png<std::uint32_t>(file, PNG_FORMAT_RGBA) : read_jpeg(file);
+  auto picture =
+      begins_like_png(file) ? read_png<std::uint32_t>(file, PNG_FORMAT_RGBA) : read_jpeg(file);
   if (!picture) return picture;
   for (int y = 0; y < picture->height(); ++y)
     for (int x = 0; x < picture->width(); ++x) picture->at(x, y) |= kOpaque;
   return picture;
 }
 
-Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) { return read_png<std::uint8_t>(file, PNG_FORMAT_GRAY); }
+Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
+  return read_png<std::uint8_t>(file, PNG_FORMAT_GRAY);
+}
 
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {
   std::vector<std::uint8_t> rgb;
   rgb.reserve(static_cast<std::size_t>(picture.width) * picture.height * 3);
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x)
-      for (const int shift : {0, 8, 16}) rgb.push_back(static_cast<std::uint8_t>(picture.at(x, y) >> shift));
+      for (const int shift : {0, 8, 16})
+        rgb.push_back(static_cast<std::uint8_t>(picture.at(x, y) >> shift));
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(picture.width);
@@ -145,7 +161,8 @@ Result<void> write_png(const std::filesystem::path& file, View<const std::uint32
   png.format = PNG_FORMAT_RGB;
   png.flags = PNG_IMAGE_FLAG_FAST;
   if (png_image_write_to_file(&png, file.c_str(), 0, rgb.data(), 0, nullptr)) return {};
-  return fail(Errc::unavailable, fmt::format("'{}' cannot be written: {}", file.string(), png.message));
+  return fail(Errc::unavailable,
+              fmt::format("'{}' cannot be written: {}", file.string(), png.message));
 }
 
 }  // namespace handcast::renderer

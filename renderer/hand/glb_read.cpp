@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
@@ -11,13 +12,15 @@
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/hand/mesh_charts.hpp"
 
-// The one file that knows tinygltf. Its loader checks the JSON but not that accessors stay inside their buffers: that is done here.
+// The one file that knows tinygltf. Its loader checks the JSON but not that accessors stay inside
+// their buffers: that is done here.
 namespace handcast::renderer {
 namespace {
 
 constexpr std::size_t kMaxVertices = 65535;
 
-/// Reads accessors as rows of `width` numbers; the first trouble is kept and everything after it reads as nothing.
+/// Reads accessors as rows of `width` numbers; the first trouble is kept and everything after it
+/// reads as nothing.
 class ArrayReader {
  public:
   explicit ArrayReader(const tinygltf::Model& model) : model_(model) {}
@@ -33,7 +36,9 @@ class ArrayReader {
     for (std::size_t row = 0; row < accessor.count; ++row)
       for (int k = 0; k < width; ++k) {
         const double value = number(accessor, bytes->data + row * bytes->stride, k);
-        if (!std::isfinite(value)) return complain(fmt::format("its {} hold a number that is not finite", what)), std::vector<T>{};
+        if (!std::isfinite(value))
+          return complain(fmt::format("its {} hold a number that is not finite", what)),
+                 std::vector<T>{};
         numbers.push_back(static_cast<T>(value));
       }
     return numbers;
@@ -56,16 +61,22 @@ class ArrayReader {
     };
     if (index < 0 || index >= std::ssize(model_.accessors)) return refuse("are missing");
     const tinygltf::Accessor& accessor = model_.accessors[index];
-    if (accessor.bufferView < 0 || accessor.bufferView >= std::ssize(model_.bufferViews)) return refuse("have no buffer view");
+    if (accessor.bufferView < 0 || accessor.bufferView >= std::ssize(model_.bufferViews))
+      return refuse("have no buffer view");
     const tinygltf::BufferView& view = model_.bufferViews[accessor.bufferView];
-    if (view.buffer < 0 || view.buffer >= std::ssize(model_.buffers)) return refuse("have no buffer");
+    if (view.buffer < 0 || view.buffer >= std::ssize(model_.buffers))
+      return refuse("have no buffer");
     const auto& buffer = model_.buffers[view.buffer].data;
-    const int component = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
-    if (component <= 0 || tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != width)
+    const int component =
+        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
+    if (component <= 0 ||
+        tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)) != width)
       return refuse("have an unexpected type");
-    const std::size_t row = static_cast<std::size_t>(component) * width, stride = view.byteStride ? view.byteStride : row;
+    const std::size_t row = static_cast<std::size_t>(component) * width,
+                      stride = view.byteStride ? view.byteStride : row;
     if (accessor.count == 0) return refuse("are empty");
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) return refuse("lie outside their buffer");
+    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+      return refuse("lie outside their buffer");
     if (accessor.byteOffset > view.byteLength || row > view.byteLength - accessor.byteOffset ||
         (accessor.count - 1) > (view.byteLength - accessor.byteOffset - row) / stride)
       return refuse("lie outside their buffer view");
@@ -76,7 +87,8 @@ class ArrayReader {
   static double component_at(const unsigned char* row, int k, bool normalized) {
     Component value;
     std::memcpy(&value, row + sizeof(Component) * k, sizeof value);
-    return normalized ? double(value) / double(std::numeric_limits<Component>::max()) : double(value);
+    return normalized ? double(value) / double(std::numeric_limits<Component>::max())
+                      : double(value);
   }
 
   static double number(const tinygltf::Accessor& accessor, const unsigned char* row, int k) {
@@ -104,7 +116,10 @@ class ArrayReader {
 
 /// "Left_Index-Finger-Tip", "r-little-finger-tip" -> WebXR's own spelling.
 std::string plain_name(std::string name) {
-  for (char& c : name) c = c == '_' || c == ' ' || c == '.' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (char& c : name)
+    c = c == '_' || c == ' ' || c == '.'
+            ? '-'
+            : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   for (const std::string_view prefix : {"left-", "right-", "l-", "r-"})
     if (name.starts_with(prefix)) {
       name.erase(0, prefix.size());
@@ -114,7 +129,8 @@ std::string plain_name(std::string name) {
   return name;
 }
 
-/// The palm, the tips and the metacarpals of the fingers may be missing: they carry little or no skin.
+/// The palm, the tips and the metacarpals of the fingers may be missing: they carry little or no
+/// skin.
 bool may_be_missing(int joint) {
   const std::string_view name = kJointNames[joint];
   return name == "palm" || name.ends_with("-tip") || name.ends_with("finger-metacarpal");
@@ -130,27 +146,34 @@ bool is_rigid(const glm::mat4& transform) {
   return glm::determinant(axes) > 0 && std::isfinite(glm::dot(transform[3], transform[3]));
 }
 
-/// Fills hand.rest and returns our joint for each joint of the skin; those with names we do not know count as the wrist.
-std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Model& model, const tinygltf::Skin& skin, HandMesh& hand) {
+/// Fills hand.rest and returns our joint for each joint of the skin; those with names we do not
+/// know count as the wrist.
+std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Model& model,
+                                        const tinygltf::Skin& skin, HandMesh& hand) {
   std::vector<std::uint8_t> ours(skin.joints.size(), 1);
   std::array<bool, kJoints> found{};
   const auto inverse = reader.read<float>(skin.inverseBindMatrices, 16, "inverse bind matrices");
-  if (inverse.size() < skin.joints.size() * 16) return reader.complain("its inverse bind matrices are too few"), ours;
+  if (inverse.size() < skin.joints.size() * 16)
+    return reader.complain("its inverse bind matrices are too few"), ours;
   for (std::size_t k = 0; k < skin.joints.size(); ++k) {
     const int node = skin.joints[k];
-    if (node < 0 || node >= std::ssize(model.nodes)) return reader.complain("its skin names a node that is not there"), ours;
-    const auto known = std::find(kJointNames.begin(), kJointNames.end(), plain_name(model.nodes[node].name));
+    if (node < 0 || node >= std::ssize(model.nodes))
+      return reader.complain("its skin names a node that is not there"), ours;
+    const auto known =
+        std::find(kJointNames.begin(), kJointNames.end(), plain_name(model.nodes[node].name));
     if (known == kJointNames.end()) continue;
     const auto joint = static_cast<std::size_t>(known - kJointNames.begin());
     hand.rest[joint] = glm::inverse(glm::make_mat4(inverse.data() + k * 16));
     if (!is_rigid(hand.rest[joint]))
-      reader.complain(fmt::format("the inverse bind matrix of its joint {} is not a turn and a shift", *known));
+      reader.complain(
+          fmt::format("the inverse bind matrix of its joint {} is not a turn and a shift", *known));
     ours[k] = static_cast<std::uint8_t>(joint);
     found[joint] = true;
   }
   std::string missing;
   for (int j = 0; j < kJoints; ++j)
-    if (!found[j] && !may_be_missing(j)) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", kJointNames[j]);
+    if (!found[j] && !may_be_missing(j))
+      missing += fmt::format("{}{}", missing.empty() ? "" : ", ", kJointNames[j]);
   if (!missing.empty()) reader.complain(fmt::format("its skin lacks the joints {}", missing));
   for (int k = 1; k <= kJoints; ++k) {
     const int j = k % kJoints;  // from the wrist on and the palm last: parents first
@@ -164,17 +187,21 @@ int attribute(const tinygltf::Primitive& primitive, const char* name) {
   return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive, const std::vector<std::uint8_t>& ours, HandMesh& hand) {
-  const auto joints = reader.read<std::uint32_t>(attribute(primitive, "JOINTS_0"), 4, "joint indices");
+void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive,
+                  const std::vector<std::uint8_t>& ours, HandMesh& hand) {
+  const auto joints =
+      reader.read<std::uint32_t>(attribute(primitive, "JOINTS_0"), 4, "joint indices");
   const auto weights = reader.read<float>(attribute(primitive, "WEIGHTS_0"), 4, "weights");
-  if (joints.size() != weights.size()) return reader.complain("it has not one set of joints per set of weights");
+  if (joints.size() != weights.size())
+    return reader.complain("it has not one set of joints per set of weights");
   for (std::size_t v = 0; v < joints.size(); v += 4) {
     std::array<std::uint8_t, 4> joint{};
     std::array<float, 4> weight{};
     float sum = 0;
     for (int k = 0; k < 4; ++k) {
       if (!(weights[v + k] > 0)) continue;
-      if (joints[v + k] >= ours.size()) return reader.complain("it binds a vertex to a joint that is not there");
+      if (joints[v + k] >= ours.size())
+        return reader.complain("it binds a vertex to a joint that is not there");
       joint[k] = ours[joints[v + k]];
       sum += weight[k] = weights[v + k];
     }
@@ -185,7 +212,8 @@ void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive, con
   }
 }
 
-void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, std::size_t first, std::size_t count, HandMesh& hand) {
+void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, std::size_t first,
+                    std::size_t count, HandMesh& hand) {
   std::vector<std::uint32_t> indices;
   if (primitive.indices >= 0)
     indices = reader.read<std::uint32_t>(primitive.indices, 1, "indices");
@@ -194,21 +222,27 @@ void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, s
   for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
     std::array<std::uint16_t, 3> triangle;
     for (int c = 0; c < 3; ++c) {
-      if (indices[k + c] >= count) return reader.complain(fmt::format("a triangle names vertex {} of {}", indices[k + c], count));
+      if (indices[k + c] >= count)
+        return reader.complain(
+            fmt::format("a triangle names vertex {} of {}", indices[k + c], count));
       triangle[c] = static_cast<std::uint16_t>(first + indices[k + c]);
     }
     hand.triangles.push_back(triangle);
   }
 }
 
-void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive, const std::vector<std::uint8_t>& ours, HandMesh& hand) {
+void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive,
+                    const std::vector<std::uint8_t>& ours, HandMesh& hand) {
   const std::size_t first = hand.vertex_count();
   const auto positions = reader.read<float>(attribute(primitive, "POSITION"), 3, "positions");
   const std::size_t count = positions.size() / 3;
-  if (first + count > kMaxVertices) return reader.complain(fmt::format("it has more than {} vertices", kMaxVertices));
+  if (first + count > kMaxVertices)
+    return reader.complain(fmt::format("it has more than {} vertices", kMaxVertices));
   std::vector<float> normals(count * 3), uv(count * 2);
-  if (attribute(primitive, "NORMAL") >= 0) normals = reader.read<float>(attribute(primitive, "NORMAL"), 3, "normals");
-  if (attribute(primitive, "TEXCOORD_0") >= 0) uv = reader.read<float>(attribute(primitive, "TEXCOORD_0"), 2, "texture coordinates");
+  if (attribute(primitive, "NORMAL") >= 0)
+    normals = reader.read<float>(attribute(primitive, "NORMAL"), 3, "normals");
+  if (attribute(primitive, "TEXCOORD_0") >= 0)
+    uv = reader.read<float>(attribute(primitive, "TEXCOORD_0"), 2, "texture coordinates");
   read_weights(reader, primitive, ours, hand);
   if (reader.trouble()) return;
   if (normals.size() != count * 3 || uv.size() != count * 2 || hand.weights.size() != first + count)
@@ -230,11 +264,15 @@ void fill_missing_normals(HandMesh& hand) {
     for (const auto v : t) sum[v] += n;
   }
   for (std::size_t v = 0; v < hand.vertex_count(); ++v)
-    if (hand.normals[v] == glm::vec3(0)) hand.normals[v] = sum[v] / std::max(glm::length(sum[v]), 1e-20f);
+    if (hand.normals[v] == glm::vec3(0))
+      hand.normals[v] = sum[v] / std::max(glm::length(sum[v]), 1e-20f);
 }
 
 /// Pictures in the file are not needed, so they are not decoded.
-bool ignore_picture(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) { return true; }
+bool ignore_picture(tinygltf::Image*, int, std::string*, std::string*, int, int,
+                    const unsigned char*, int, void*) {
+  return true;
+}
 
 bool parse(const std::filesystem::path& file, tinygltf::Model& model, std::string& error) {
   std::ifstream in(file, std::ios::binary);
@@ -244,8 +282,9 @@ bool parse(const std::filesystem::path& file, tinygltf::Model& model, std::strin
   loader.SetImageLoader(ignore_picture, nullptr);
   std::string warning;
   try {
-    return std::string_view(magic.data(), 4) == "glTF" ? loader.LoadBinaryFromFile(&model, &error, &warning, file.string())
-                                                       : loader.LoadASCIIFromFile(&model, &error, &warning, file.string());
+    return std::string_view(magic.data(), 4) == "glTF"
+               ? loader.LoadBinaryFromFile(&model, &error, &warning, file.string())
+               : loader.LoadASCIIFromFile(&model, &error, &warning, file.string());
   } catch (const std::exception& exception) {
     error = exception.what();
     return false;
@@ -254,20 +293,25 @@ bool parse(const std::filesystem::path& file, tinygltf::Model& model, std::strin
 
 const tinygltf::Node* first_skinned_node(const tinygltf::Model& model) {
   for (const tinygltf::Node& node : model.nodes)
-    if (node.skin >= 0 && node.skin < std::ssize(model.skins) && node.mesh >= 0 && node.mesh < std::ssize(model.meshes)) return &node;
+    if (node.skin >= 0 && node.skin < std::ssize(model.skins) && node.mesh >= 0 &&
+        node.mesh < std::ssize(model.meshes))
+      return &node;
   return nullptr;
 }
 
 }  // namespace
 
 Result<HandMesh> load_hand(const std::filesystem::path& file, Side side) {
-  const auto refuse = [&](const std::string& why) { return fail(Errc::bad_config, fmt::format("hand '{}': {}", file.string(), why)); };
+  const auto refuse = [&](const std::string& why) {
+    return fail(Errc::bad_config, fmt::format("hand '{}': {}", file.string(), why));
+  };
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return refuse("there is no such file");
   tinygltf::Model model;
   std::string error;
   if (!parse(file, model, error))
-    return refuse(fmt::format("it is not a glTF file that can be read ({})", error.substr(0, error.find('\n'))));
+    return refuse(fmt::format("it is not a glTF file that can be read ({})",
+                              error.substr(0, error.find('\n'))));
   const tinygltf::Node* node = first_skinned_node(model);
   if (!node) return refuse("it holds no skinned mesh");
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <glm/gtc/quaternion.hpp>
 
 #include "renderer/hand/hand_mesh.hpp"

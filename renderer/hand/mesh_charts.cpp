@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "renderer/hand/mesh_charts.hpp"
 
 #include <algorithm>
@@ -9,10 +10,13 @@ namespace {
 
 constexpr int kMaxCharts = 60;
 
-/// Union-find whose roots are the lowest members, so that numbering follows the order of the vertices.
+/// Union-find whose roots are the lowest members, so that numbering follows the order of the
+/// vertices.
 class Parts {
  public:
-  explicit Parts(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit Parts(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
   std::size_t root(std::size_t v) {
     while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
     return v;
@@ -44,7 +48,8 @@ void number_charts(HandMesh& hand) {
   hand.chart.resize(hand.vertex_count());
   for (std::size_t v = 0; v < hand.vertex_count(); ++v) {
     const int next = std::min<int>(static_cast<int>(number.size()) + 1, kMaxCharts);
-    hand.chart[v] = static_cast<std::uint8_t>(number.try_emplace(parts.root(v), next).first->second);
+    hand.chart[v] =
+        static_cast<std::uint8_t>(number.try_emplace(parts.root(v), next).first->second);
   }
 }
 

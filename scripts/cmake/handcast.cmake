@@ -1,10 +1,12 @@
-# What every room of the house is built with.
+# SPDX-License-Identifier: Apache-2.0
+# How the modules of this repository are built. One module is one folder with one CMakeLists.txt and one target.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
@@ -18,52 +20,89 @@ if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
 endif()
 
-# g++ 12 takes fmt's joining of strings for an overflow at -O3.
-add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow)
+# g++ 12 reports overflows that are none where fmt joins strings at -O3.
+add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow -Wno-restrict)
 if(HANDCAST_SANITIZE)
   add_compile_options(-fsanitize=${HANDCAST_SANITIZE} -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${HANDCAST_SANITIZE})
   add_compile_definitions(HANDCAST_WITH_SANITIZER)
 endif()
 
-include_directories(${CMAKE_SOURCE_DIR})
-include_directories(SYSTEM /usr/include/eigen3)
-
-find_package(Threads REQUIRED)
-find_package(fmt REQUIRED)
-find_package(PkgConfig REQUIRED)
-
-# handcast_library(name SOURCES a.cpp ... [LINKS target ...])
-function(handcast_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
-  add_library(${name} STATIC ${ARG_SOURCES})
-  target_link_libraries(${name} PUBLIC ${ARG_LINKS})
+# The target of the module in FOLDER (relative to the root): renderer/mask -> handcast_renderer_mask
+function(handcast_target_of folder result)
+  string(REPLACE "/" "_" name ${folder})
+  set(${result} handcast_${name} PARENT_SCOPE)
 endfunction()
 
-# handcast_program(name SOURCES a.cpp ... [LINKS target ...]): an executable in bin/
+function(handcast_use target scope)
+  foreach(folder ${ARGN})
+    handcast_target_of(${folder} used)
+    target_link_libraries(${target} ${scope} ${used})
+  endforeach()
+endfunction()
+
+# handcast_module(SOURCES a.cpp ... USES folder ... [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...] [OPTIONS flag ...])
+#
+# The module of the current folder. USES names the folders whose headers it may include; `scripts/check_layers` reads it, too.
+# LIBRARIES are those of other projects that its headers need, PRIVATE_LIBRARIES those that only its sources need.
+function(handcast_module)
+  cmake_parse_arguments(ARG "" "" "SOURCES;USES;LIBRARIES;PRIVATE_LIBRARIES;OPTIONS" ${ARGN})
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  handcast_target_of(${folder} target)
+  if(ARG_SOURCES)
+    set(scope PUBLIC)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    target_compile_options(${target} PRIVATE ${ARG_OPTIONS})
+    target_link_libraries(${target} PRIVATE ${ARG_PRIVATE_LIBRARIES})
+  else()
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:include/handcast>)
+  target_link_libraries(${target} ${scope} ${ARG_LIBRARIES})
+  handcast_use(${target} ${scope} ${ARG_USES})
+endfunction()
+
+# handcast_program(name SOURCES a.cpp ... USES folder ... [LIBRARIES target ...] [NOT_INSTALLED]): an executable in bin/
 function(handcast_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED" "" "SOURCES;USES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE ${ARG_LINKS})
-  install(TARGETS ${name} RUNTIME DESTINATION bin)
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES})
+  handcast_use(${name} PRIVATE ${ARG_USES})
+  if(NOT ARG_NOT_INSTALLED)
+    install(TARGETS ${name} RUNTIME DESTINATION bin)
+  endif()
 endfunction()
 
-# handcast_test(name SOURCES a.cpp ... [LINKS target ...] [TIMEOUT seconds] [LABELS ...]): one GoogleTest program, one ctest
-function(handcast_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
+# handcast_test([SUFFIX word] SOURCES a_test.cpp ... USES folder ... [LIBRARIES target ...] [NEEDS target ...] [TIMEOUT seconds]
+#               [LABELS ...])
+#
+# One GoogleTest program and one ctest, named after its folder: tests/renderer/mask -> test_renderer_mask[_SUFFIX].
+# NEEDS are programs and files that it uses when it runs.
+function(handcast_test)
+  cmake_parse_arguments(ARG "" "SUFFIX;TIMEOUT" "SOURCES;USES;LIBRARIES;NEEDS;LABELS" ${ARGN})
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REPLACE "/" "_" name test_${folder})
+  if(ARG_SUFFIX)
+    string(APPEND name _${ARG_SUFFIX})
+  endif()
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE ${ARG_LINKS} GTest::gmock GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
+  handcast_use(${name} PRIVATE ${ARG_USES})
+  if(ARG_NEEDS)
+    add_dependencies(${name} ${ARG_NEEDS})
+  endif()
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-  set(environment "HANDCAST_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};HANDCAST_SOURCE=${CMAKE_SOURCE_DIR}")
-  set_tests_properties(${name} PROPERTIES ENVIRONMENT "${environment}")
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
   if(HANDCAST_SANITIZE)
     math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")  # a hang still ends; slowness is the sanitizer's
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
-  if(ARG_LABELS)
-    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
-  endif()
+  set_tests_properties(${name} PROPERTIES
+    TIMEOUT ${ARG_TIMEOUT}
+    LABELS "${ARG_LABELS}"
+    ENVIRONMENT "HANDCAST_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};HANDCAST_SOURCE=${CMAKE_SOURCE_DIR}")
 endfunction()

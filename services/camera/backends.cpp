@@ -1,11 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 
 #include "services/camera/camera.hpp"
 
 namespace handcast::camera {
 
-Result<std::unique_ptr<Camera>> open_twin(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
-Result<std::unique_ptr<Camera>> open_replay(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Camera>> open_twin(const config::Rig&, const calib::Calibration&,
+                                          const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Camera>> open_replay(const config::Rig&, const calib::Calibration&,
+                                            const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
     CameraBackend{"twin", open_twin},
@@ -14,8 +17,11 @@ static constexpr std::array kBackends{
 
 std::span<const CameraBackend> camera_backends() { return kBackends; }
 
-Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig, const calib::Calibration& calibration, std::int64_t epoch_ns) {
-  return service::open_backend("camera", rig.camera.backend, camera_backends(), rig, calibration, epoch_ns);
+Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig,
+                                            const calib::Calibration& calibration,
+                                            std::int64_t epoch_ns) {
+  return service::open_backend("camera", rig.camera.backend, camera_backends(), rig, calibration,
+                               epoch_ns);
 }
 
 }  // namespace handcast::camera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,10 +18,12 @@ class Camera {
  public:
   virtual ~Camera() = default;
 
-  /// Fills `frame` and the `tail_bytes` behind it with the next image; waits for one until the deadline. Frame ids and origins
-  /// increase from call to call; images that nobody fetched in time are skipped, never queued.
-  /// Errors: timeout, bad_data (this image is lost), disconnected, bad_config (the image does not fit the tail).
-  virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes, Deadline deadline) = 0;
+  /// Fills `frame` and the `tail_bytes` behind it with the next image; waits for one until the
+  /// deadline. Frame ids and origins increase from call to call; images that nobody fetched in time
+  /// are skipped, never queued. Errors: timeout, bad_data (this image is lost), disconnected,
+  /// bad_config (the image does not fit the tail).
+  virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
+                               Deadline deadline) = 0;
 };
 
 /// Opened with the rig, its calibration and its epoch (ns).
@@ -29,6 +32,8 @@ using CameraBackend = service::Backend<Camera, config::Rig, calib::Calibration, 
 std::span<const CameraBackend> camera_backends();
 
 /// Opens the back end that rig.camera.backend names.
-Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig, const calib::Calibration& calibration, std::int64_t epoch_ns);
+Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig,
+                                            const calib::Calibration& calibration,
+                                            std::int64_t epoch_ns);
 
 }  // namespace handcast::camera

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/camera/camera.hpp"
 #include "services/runtime/context.hpp"
 
@@ -7,8 +8,10 @@ using service::must;
 
 /// Frames from the camera into shared memory: camera.frames.
 static void run_camera(service::Context& context) {
-  if (service::is_exclusive(context.rig().camera.backend, camera::camera_backends())) context.stand_by({"camera.frames"});
-  const auto source = must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns()));
+  if (service::is_exclusive(context.rig().camera.backend, camera::camera_backends()))
+    context.stand_by({"camera.frames"});
+  const auto source =
+      must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by({"camera.frames"});
   auto frames = must(context.writer<msg::CameraFrame>("camera.frames"));
 
@@ -20,13 +23,15 @@ static void run_camera(service::Context& context) {
       sleep_until_ns(now_ns() + to_ns(1ms));
       continue;
     }
-    if (const auto captured = source->capture(*slot, slot.tail_bytes(), Deadline::in(50ms)); !captured) {
+    if (const auto captured = source->capture(*slot, slot.tail_bytes(), Deadline::in(50ms));
+        !captured) {
       context.tolerate(captured.error());
       continue;
     }
     const msg::Header header = slot->header;
     frames.publish(std::move(slot));
-    context.mark(header, std::array{msg::StageMark{msg::Stage::capture, 0, header.origin_ns, now_ns()}});
+    context.mark(header,
+                 std::array{msg::StageMark{msg::Stage::capture, 0, header.origin_ns, now_ns()}});
   }
 }
 

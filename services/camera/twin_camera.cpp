@@ -1,28 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
 #include "services/camera/camera.hpp"
 #include "services/camera/frame_size.hpp"
-#include "services/timing/first_at.hpp"
-#include "services/twin/twin.hpp"
+#include "services/evaluation/twin/twin.hpp"
+#include "services/runtime/first_at.hpp"
 
 namespace handcast::camera {
 namespace {
 
-/// More is never allowed for: an image that took a second, once, must not make every later one seem too late to begin.
+/// More is never allowed for: an image that took a second, once, must not make every later one seem
+/// too late to begin.
 constexpr std::int64_t kLongestDrawing_ns = 20'000'000;
 
-/// The twin's camera in real time. An image is a function of its number alone, so it is drawn before it arrives and handed
-/// over when it does: a frame is never late for having been drawn, there are only fewer of them on a slow machine.
+/// The twin's camera in real time. An image is a function of its number alone, so it is drawn
+/// before it arrives and handed over when it does: a frame is never late for having been drawn,
+/// there are only fewer of them on a slow machine.
 class TwinCamera final : public Camera {
  public:
-  TwinCamera(std::unique_ptr<twin::Twin> twin, const config::Camera& settings, const calib::CameraModel& model, std::int64_t epoch_ns)
-      : twin_(std::move(twin)), model_(model), exposure_ns_(ms_to_ns(settings.exposure_ms)), epoch_ns_(epoch_ns) {
+  TwinCamera(std::unique_ptr<twin::Twin> twin, const config::Camera& settings,
+             const calib::CameraModel& model, std::int64_t epoch_ns)
+      : twin_(std::move(twin)),
+        model_(model),
+        exposure_ns_(ms_to_ns(settings.exposure_ms)),
+        epoch_ns_(epoch_ns) {
     warm_up();
   }
 
-  Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes, Deadline deadline) override {
+  Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
+                       Deadline deadline) override {
     if (auto room = check_room(model_.width_px, model_.height_px, tail_bytes); !room) return room;
-    const auto arrival_ns = [&](std::uint64_t k) { return epoch_ns_ + twin_->camera_arrival_ns(k); };
+    const auto arrival_ns = [&](std::uint64_t k) {
+      return epoch_ns_ + twin_->camera_arrival_ns(k);
+    };
     const std::uint64_t k = timing::first_at(next_, now_ns() + drawing_ns_, arrival_ns);
     if (arrival_ns(k) > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
@@ -64,7 +74,9 @@ class TwinCamera final : public Camera {
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_twin(const config::Rig& rig, const calib::Calibration& calibration, const std::int64_t& epoch_ns) {
+Result<std::unique_ptr<Camera>> open_twin(const config::Rig& rig,
+                                          const calib::Calibration& calibration,
+                                          const std::int64_t& epoch_ns) {
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return fail_in("camera 'twin'", twin.error());
   return std::make_unique<TwinCamera>(std::move(*twin), rig.camera, calibration.camera, epoch_ns);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -9,7 +10,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/landmarks.hpp"
-#include "services/landmarks/hand_finder.hpp"
+#include "services/landmarks/finder/hand_finder.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::landmarks {
@@ -19,11 +20,14 @@ class Detector {
  public:
   virtual ~Detector() = default;
 
-  /// The landmarks of `frame`, with its id and origin; an image without a hand gives count 0. `hints`: what the tracker says of the
-  /// hands at that time, undistorted camera px. A detection that is not done by the deadline is a timeout and goes on: the next call
-  /// waits for it, whatever frame it is given, and returns the landmarks of the frame it was begun with. (A network at work is not cut
-  /// short: it is done a few ms after the deadline.) Errors: timeout, bad_data (this image cannot be used).
-  virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints, Deadline deadline) = 0;
+  /// The landmarks of `frame`, with its id and origin; an image without a hand gives count 0.
+  /// `hints`: what the tracker says of the hands at that time, undistorted camera px. A detection
+  /// that is not done by the deadline is a timeout and goes on: the next call waits for it,
+  /// whatever frame it is given, and returns the landmarks of the frame it was begun with. (A
+  /// network at work is not cut short: it is done a few ms after the deadline.) Errors: timeout,
+  /// bad_data (this image cannot be used).
+  virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints,
+                                        Deadline deadline) = 0;
 };
 
 /// Opened with the rig, its calibration and its epoch (ns).
@@ -32,6 +36,8 @@ using DetectorBackend = service::Backend<Detector, config::Rig, calib::Calibrati
 std::span<const DetectorBackend> detector_backends();
 
 /// Opens the back end that rig.landmarks.backend names.
-Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig, const calib::Calibration& calibration, std::int64_t epoch_ns);
+Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
+                                                const calib::Calibration& calibration,
+                                                std::int64_t epoch_ns);
 
 }  // namespace handcast::landmarks

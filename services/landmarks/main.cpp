@@ -1,24 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/hints.hpp"
+#include "services/landmarks/finder/hints.hpp"
 #include "services/runtime/context.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-/// Every sample of the tracker up to now. A rig without a tracker has no such ring, a damaged one says so once a second.
-static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPoses>>& poses, landmarks::TrackerHints& tracker) {
+/// Every sample of the tracker up to now. A rig without a tracker has no such ring, a damaged one
+/// says so once a second.
+static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPoses>>& poses,
+                       landmarks::TrackerHints& tracker) {
   if (!poses) return;
   auto sample = poses->next(Deadline::now());
   for (; sample; sample = poses->next(Deadline::now())) tracker.push(**sample);
   if (sample.error().code != Errc::timeout) context.tolerate(sample.error());
 }
 
-/// Landmarks of the newest camera frame, back to back: landmarks.hands. Frames that came meanwhile are passed over.
+/// Landmarks of the newest camera frame, back to back: landmarks.hands. Frames that came meanwhile
+/// are passed over.
 static void run_landmarks(service::Context& context) {
   if (service::is_exclusive(context.rig().landmarks.backend, landmarks::detector_backends()))
     context.stand_by({"camera.frames", "pose.hands", "landmarks.hands"});
-  const auto detector = must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns()));
+  const auto detector =
+      must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by({"camera.frames", "pose.hands", "landmarks.hands"});
   auto frames = must(context.reader<msg::CameraFrame>("camera.frames"));
   auto poses = context.reader<msg::HandPoses>("pose.hands");
@@ -36,18 +41,21 @@ static void run_landmarks(service::Context& context) {
     take_poses(context, poses, tracker);
     const auto hints = tracker.at((*frame)->header.origin_ns);
     auto found = detector->detect(**frame, hints, Deadline::in(50ms));
-    while (!found && found.error().code == Errc::timeout && context.running()) found = detector->detect(**frame, hints, Deadline::in(50ms));
+    while (!found && found.error().code == Errc::timeout && context.running())
+      found = detector->detect(**frame, hints, Deadline::in(50ms));
     if (!found) {
       context.tolerate(found.error());
       continue;
     }
     hands.publish(*found);
-    context.mark(found->header, std::array{msg::StageMark{msg::Stage::detect, 0, begin_ns, now_ns()}});
+    context.mark(found->header,
+                 std::array{msg::StageMark{msg::Stage::detect, 0, begin_ns, now_ns()}});
   }
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"landmarks", "Finds the landmarks of the hands in camera images.",
+  const service::Description description{"landmarks",
+                                         "Finds the landmarks of the hands in camera images.",
                                          service::names_of(landmarks::detector_backends())};
   return service::run(description, argc, argv, run_landmarks);
 }

@@ -1,24 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
 
+#include "services/evaluation/twin/recording.hpp"
 #include "services/landmarks/detector.hpp"
-#include "services/timing/loop.hpp"
-#include "services/twin/recording.hpp"
+#include "services/runtime/loop.hpp"
 
 namespace handcast::landmarks {
 namespace fs = std::filesystem;
 namespace {
 
-using Track = std::vector<msg::HandLandmarks>;  ///< one hand over the recording; empty: not recorded
+using Track =
+    std::vector<msg::HandLandmarks>;  ///< one hand over the recording; empty: not recorded
 
 /// Recorded landmarks: the ones nearest in the recording's time to the image.
 class ReplayDetector final : public Detector {
  public:
-  ReplayDetector(std::array<Track, msg::kMaxHands> hands, timing::Loop loop) : hands_(std::move(hands)), loop_(std::move(loop)) {}
+  ReplayDetector(std::array<Track, msg::kMaxHands> hands, timing::Loop loop)
+      : hands_(std::move(hands)), loop_(std::move(loop)) {}
 
-  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&, Deadline deadline) override {
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&,
+                                Deadline deadline) override {
     const auto item = loop_.nearest(frame.header.origin_ns);
     if (!item) {
       sleep_until_ns(deadline.time_ns());
@@ -27,7 +31,8 @@ class ReplayDetector final : public Detector {
     msg::Landmarks landmarks;
     landmarks.header = {frame.header.frame_id, frame.header.origin_ns, 0};
     for (const auto& hand : hands_)
-      if (!hand.empty() && hand[item->index].presence > 0) landmarks.hands[landmarks.count++] = hand[item->index];
+      if (!hand.empty() && hand[item->index].presence > 0)
+        landmarks.hands[landmarks.count++] = hand[item->index];
     return landmarks;
   }
 
@@ -36,7 +41,8 @@ class ReplayDetector final : public Detector {
   timing::Loop loop_;
 };
 
-/// x, y and, where the recording has it, sigma. A landmark that is not a number was not seen; a hand without any was not there.
+/// x, y and, where the recording has it, sigma. A landmark that is not a number was not seen; a
+/// hand without any was not there.
 msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side side) {
   const std::size_t columns = array.shape[2];
   msg::HandLandmarks hand;
@@ -44,7 +50,8 @@ msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side 
   for (std::size_t i = 0; i < msg::kLandmarks; ++i) {
     const double* point = &array.values[(index * msg::kLandmarks + i) * columns];
     if (!std::isfinite(point[0]) || !std::isfinite(point[1])) continue;
-    hand.points[i] = {static_cast<float>(point[0]), static_cast<float>(point[1]), 1, columns == 3 ? static_cast<float>(point[2]) : 0.0f};
+    hand.points[i] = {static_cast<float>(point[0]), static_cast<float>(point[1]), 1,
+                      columns == 3 ? static_cast<float>(point[2]) : 0.0f};
     hand.presence = 1;
   }
   return hand;
@@ -56,12 +63,15 @@ Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side
   if (!*there) return Track{};
   const auto array = twin::read_npy(file);
   if (!array) return tl::make_unexpected(array.error());
-  const auto has_columns = [&](std::size_t columns) { return array->shape == std::vector<std::size_t>{count, msg::kLandmarks, columns}; };
+  const auto has_columns = [&](std::size_t columns) {
+    return array->shape == std::vector<std::size_t>{count, msg::kLandmarks, columns};
+  };
   if (!has_columns(2) && !has_columns(3))
-    return fail(Errc::bad_config,
-                fmt::format("'{}' has the shape ({}); expected ({}, {}, 2) or, with sigmas, ({}, {}, 3), as many as "
-                            "landmarks_timestamps.npy",
-                            file.string(), fmt::join(array->shape, ", "), count, msg::kLandmarks, count, msg::kLandmarks));
+    return fail(Errc::bad_config, fmt::format("'{}' has the shape ({}); expected ({}, {}, 2) or, "
+                                              "with sigmas, ({}, {}, 3), as many as "
+                                              "landmarks_timestamps.npy",
+                                              file.string(), fmt::join(array->shape, ", "), count,
+                                              msg::kLandmarks, count, msg::kLandmarks));
   Track track;
   for (std::size_t i = 0; i < count; ++i) track.push_back(hand_at(*array, i, side));
   return track;
@@ -76,21 +86,26 @@ Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int6
   if (!stamps_ns) return tl::make_unexpected(stamps_ns.error());
 
   std::array<Track, msg::kMaxHands> hands;
-  for (const auto& [side, name] : {std::pair{msg::Side::left, "landmarks_left.npy"}, {msg::Side::right, "landmarks_right.npy"}}) {
+  for (const auto& [side, name] : {std::pair{msg::Side::left, "landmarks_left.npy"},
+                                   {msg::Side::right, "landmarks_right.npy"}}) {
     auto track = read_track(folder / name, times_ns->size(), side);
     if (!track) return tl::make_unexpected(track.error());
     hands[static_cast<std::size_t>(side)] = std::move(*track);
   }
   if (hands[0].empty() && hands[1].empty())
-    return fail(Errc::bad_config, fmt::format("'{}' holds neither landmarks_left.npy nor landmarks_right.npy", folder.string()));
-  auto loop = timing::Loop::make(std::move(*times_ns), timing::Lap::of(*stamps_ns), epoch_ns, settings.loop, timing::kLoneStep_ns);
+    return fail(Errc::bad_config,
+                fmt::format("'{}' holds neither landmarks_left.npy nor landmarks_right.npy",
+                            folder.string()));
+  auto loop = timing::Loop::make(std::move(*times_ns), timing::Lap::of(*stamps_ns), epoch_ns,
+                                 settings.loop, timing::kLoneStep_ns);
   if (!loop) return fail_in("landmarks_timestamps.npy", loop.error());
   return std::make_unique<ReplayDetector>(std::move(hands), std::move(*loop));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Detector>> open_replay(const config::Rig& rig, const calib::Calibration&, const std::int64_t& epoch_ns) {
+Result<std::unique_ptr<Detector>> open_replay(const config::Rig& rig, const calib::Calibration&,
+                                              const std::int64_t& epoch_ns) {
   auto detector = read(rig.landmarks.replay, epoch_ns);
   if (!detector) return fail_in("landmarks 'replay'", detector.error());
   return detector;

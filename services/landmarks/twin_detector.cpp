@@ -1,18 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <optional>
 
+#include "services/evaluation/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
-#include "services/twin/twin.hpp"
 
 namespace handcast::landmarks {
 namespace {
 
-/// The twin's model of a detector in real time: it knows the answer at once and keeps it as long as a detector would take.
+/// The twin's model of a detector in real time: it knows the answer at once and keeps it as long as
+/// a detector would take.
 class TwinDetector final : public Detector {
  public:
-  TwinDetector(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns) : twin_(std::move(twin)), epoch_ns_(epoch_ns) {}
+  TwinDetector(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns)
+      : twin_(std::move(twin)), epoch_ns_(epoch_ns) {}
 
-  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&, Deadline deadline) override {
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&,
+                                Deadline deadline) override {
     if (!under_way_) begin(frame.header);
     if (done_ns_ > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
@@ -27,12 +31,14 @@ class TwinDetector final : public Detector {
  private:
   void begin(const msg::Header& seen) {
     const auto detection = twin_->detect(runs_++, seen.frame_id, seen.origin_ns - epoch_ns_);
-    done_ns_ = std::max(seen.origin_ns + detection.age_ns, now_ns() + detection.age_ns - oldest_ns(seen.frame_id));
+    done_ns_ = std::max(seen.origin_ns + detection.age_ns,
+                        now_ns() + detection.age_ns - oldest_ns(seen.frame_id));
     under_way_ = detection.landmarks;
     under_way_->header = {seen.frame_id, detection.landmarks.header.origin_ns + epoch_ns_, 0};
   }
 
-  /// How old the newest frame can be where the camera holds its rate. One that is older does not make the work shorter.
+  /// How old the newest frame can be where the camera holds its rate. One that is older does not
+  /// make the work shorter.
   std::int64_t oldest_ns(std::uint64_t frame_id) const {
     return twin_->camera_arrival_ns(frame_id + 1) - twin_->camera_origin_ns(frame_id);
   }
@@ -46,7 +52,9 @@ class TwinDetector final : public Detector {
 
 }  // namespace
 
-Result<std::unique_ptr<Detector>> open_twin(const config::Rig& rig, const calib::Calibration& calibration, const std::int64_t& epoch_ns) {
+Result<std::unique_ptr<Detector>> open_twin(const config::Rig& rig,
+                                            const calib::Calibration& calibration,
+                                            const std::int64_t& epoch_ns) {
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return fail_in("landmarks 'twin'", twin.error());
   return std::make_unique<TwinDetector>(std::move(*twin), epoch_ns);

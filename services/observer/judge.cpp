@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/observer/judge.hpp"
 
 #include <cstring>
 
 namespace handcast::observer {
 
-Result<LiveJudge> LiveJudge::create(const config::Rig& rig, const calib::Calibration& calibration, std::int64_t epoch_ns) {
+Result<LiveJudge> LiveJudge::create(const config::Rig& rig, const calib::Calibration& calibration,
+                                    std::int64_t epoch_ns) {
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return fail_in("observer", twin.error());
   auto judge = twin::Judge::create(**twin, calibration, rig.observer.step_px);

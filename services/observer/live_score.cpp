@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/observer/live_score.hpp"
 
 #include <nlohmann/json.hpp>
@@ -8,7 +9,8 @@ static constexpr std::size_t kPointsPerHand = 300;
 
 static void thin(std::vector<float>& values) {
   if (values.size() <= kPointsPerHand) return;
-  for (std::size_t i = 0; i < kPointsPerHand; ++i) values[i] = values[i * values.size() / kPointsPerHand];
+  for (std::size_t i = 0; i < kPointsPerHand; ++i)
+    values[i] = values[i * values.size() / kPointsPerHand];
   values.resize(kPointsPerHand);
 }
 

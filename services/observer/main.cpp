@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "config/files.hpp"
+#include "config/settings/files.hpp"
 #include "services/observer/judge.hpp"
 #include "services/observer/live_score.hpp"
 #include "services/runtime/context.hpp"
@@ -12,13 +13,17 @@ using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-static bool has_truth(const config::Rig& rig) { return rig.camera.backend == "twin" && rig.pose.backend == "twin"; }
+static bool has_truth(const config::Rig& rig) {
+  return rig.camera.backend == "twin" && rig.pose.backend == "twin";
+}
 
-/// Writes observer.json into the folder that HANDCAST_OUT names; without it the log is all there is.
+/// Writes observer.json into the folder that HANDCAST_OUT names; without it the log is all there
+/// is.
 static void save(const observer::LiveScore& scores, service::Context& context) {
   const char* folder = std::getenv("HANDCAST_OUT");
   if (folder == nullptr || scores.empty()) return;
-  const auto written = config::write_whole(std::filesystem::path(folder) / "observer.json", scores.to_json().dump(2) + "\n");
+  const auto written = config::write_whole(std::filesystem::path(folder) / "observer.json",
+                                           scores.to_json().dump(2) + "\n");
   if (!written) context.tolerate({Errc::bad_data, "observer: " + written.error().what});
 }
 
@@ -30,17 +35,21 @@ static double number(const nlohmann::json& json, const char* pointer) {
 static void tell(const observer::LiveScore& scores) {
   if (scores.empty()) return;
   const auto json = scores.to_json();
-  log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}", number(json, "/interior_mm/p95"), number(json, "/coverage"),
-            number(json, "/spill"));
+  log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}",
+            number(json, "/interior_mm/p95"), number(json, "/coverage"), number(json, "/spill"));
 }
 
-/// Judges the newest projected frame, observer.rate_hz times a second, in the time that the others leave.
+/// Judges the newest projected frame, observer.rate_hz times a second, in the time that the others
+/// leave.
 static void run_observer(service::Context& context) {
   if (::nice(10) == -1) log::debug("stays at the others' priority");
-  auto judge = must(observer::LiveJudge::create(context.rig(), context.calibration(), context.epoch_ns()));
+  auto judge =
+      must(observer::LiveJudge::create(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by({"projection.frames"});
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
-  if (!has_truth(context.rig())) log::warning("the sensors are not the twin's: there is no truth to score against, nothing is scored");
+  if (!has_truth(context.rig()))
+    log::warning(
+        "the sensors are not the twin's: there is no truth to score against, nothing is scored");
 
   observer::LiveScore scores;
   const auto period_ns = seconds_to_ns(1 / context.rig().observer.rate_hz);
@@ -51,7 +60,8 @@ static void run_observer(service::Context& context) {
     const std::int64_t time_ns = now_ns();
     if (time_ns >= look_ns && has_truth(context.rig())) {
       look_ns = std::max(look_ns + period_ns, time_ns);
-      if (const auto seen = projections.latest(Deadline::in(20ms))) scores.add(judge.score(**seen), static_cast<int>((*seen)->foldovers));
+      if (const auto seen = projections.latest(Deadline::in(20ms)))
+        scores.add(judge.score(**seen), static_cast<int>((*seen)->foldovers));
     }
     if (time_ns >= save_ns) {
       save(scores, context);
@@ -66,6 +76,7 @@ static void run_observer(service::Context& context) {
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"observer", "Scores the projected light against the twin's truth.", {"twin"}};
+  const service::Description description{
+      "observer", "Scores the projected light against the twin's truth.", {"twin"}};
   return service::run(description, argc, argv, run_observer);
 }

@@ -1,11 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 
 #include "services/pose/pose_source.hpp"
 
 namespace handcast::pose {
 
-Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
-Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig&, const calib::Calibration&, const std::int64_t& epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig&, const calib::Calibration&,
+                                              const std::int64_t& epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig&, const calib::Calibration&,
+                                                const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
     PoseBackend{"twin", open_twin},
@@ -14,8 +17,11 @@ static constexpr std::array kBackends{
 
 std::span<const PoseBackend> pose_backends() { return kBackends; }
 
-Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig, const calib::Calibration& calibration, std::int64_t epoch_ns) {
-  return service::open_backend("pose", rig.pose.backend, pose_backends(), rig, calibration, epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
+                                                     const calib::Calibration& calibration,
+                                                     std::int64_t epoch_ns) {
+  return service::open_backend("pose", rig.pose.backend, pose_backends(), rig, calibration,
+                               epoch_ns);
 }
 
 }  // namespace handcast::pose

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/pose/pose_source.hpp"
 #include "services/runtime/context.hpp"
 
@@ -5,10 +6,13 @@ using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-/// Samples of the hand tracker: pose.hands. One without a hand is published too, so that readers know it looked.
+/// Samples of the hand tracker: pose.hands. One without a hand is published too, so that readers
+/// know it looked.
 static void run_pose(service::Context& context) {
-  if (service::is_exclusive(context.rig().pose.backend, pose::pose_backends())) context.stand_by({"pose.hands"});
-  const auto source = must(pose::open_pose_source(context.rig(), context.calibration(), context.epoch_ns()));
+  if (service::is_exclusive(context.rig().pose.backend, pose::pose_backends()))
+    context.stand_by({"pose.hands"});
+  const auto source =
+      must(pose::open_pose_source(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by({"pose.hands"});
   auto hands = must(context.writer<msg::HandPoses>("pose.hands"));
 
@@ -20,11 +24,13 @@ static void run_pose(service::Context& context) {
       continue;
     }
     hands.publish(poses);
-    context.mark(poses.header, std::array{msg::StageMark{msg::Stage::sample, 0, poses.header.origin_ns, now_ns()}});
+    context.mark(poses.header, std::array{msg::StageMark{msg::Stage::sample, 0,
+                                                         poses.header.origin_ns, now_ns()}});
   }
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"pose", "Delivers the hand poses of the tracker.", service::names_of(pose::pose_backends())};
+  const service::Description description{"pose", "Delivers the hand poses of the tracker.",
+                                         service::names_of(pose::pose_backends())};
   return service::run(description, argc, argv, run_pose);
 }

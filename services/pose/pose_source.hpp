@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,8 +18,9 @@ class PoseSource {
  public:
   virtual ~PoseSource() = default;
 
-  /// Fills `poses` with the next sample, also where it sees no hand (count 0); waits for one until the deadline. Ids and
-  /// origins increase from call to call. Errors: timeout, bad_data (this sample is lost), disconnected.
+  /// Fills `poses` with the next sample, also where it sees no hand (count 0); waits for one until
+  /// the deadline. Ids and origins increase from call to call. Errors: timeout, bad_data (this
+  /// sample is lost), disconnected.
   virtual Result<void> sample(msg::HandPoses& poses, Deadline deadline) = 0;
 };
 
@@ -28,6 +30,8 @@ using PoseBackend = service::Backend<PoseSource, config::Rig, calib::Calibration
 std::span<const PoseBackend> pose_backends();
 
 /// Opens the back end that rig.pose.backend names.
-Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig, const calib::Calibration& calibration, std::int64_t epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
+                                                     const calib::Calibration& calibration,
+                                                     std::int64_t epoch_ns);
 
 }  // namespace handcast::pose

@@ -1,22 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "services/evaluation/twin/recording.hpp"
 #include "services/pose/pose_source.hpp"
-#include "services/timing/loop.hpp"
-#include "services/twin/recording.hpp"
+#include "services/runtime/loop.hpp"
 
 namespace handcast::pose {
 namespace {
 
-/// A recording played at the pace it was taken. A sample is handed over at its own time: it has no age.
+/// A recording played at the pace it was taken. A sample is handed over at its own time: it has no
+/// age.
 class ReplayPose final : public PoseSource {
  public:
-  ReplayPose(twin::Recording recording, timing::Loop loop) : recording_(std::move(recording)), loop_(std::move(loop)) {}
+  ReplayPose(twin::Recording recording, timing::Loop loop)
+      : recording_(std::move(recording)), loop_(std::move(loop)) {}
 
   Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
     const auto item = loop_.at_or_after(std::max(now_ns(), last_ns_ + 1));
     if (!item || item->due_ns > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, item ? "pose 'replay': no sample before the deadline" : "pose 'replay': the recording is over");
+      return fail(Errc::timeout, item ? "pose 'replay': no sample before the deadline"
+                                      : "pose 'replay': the recording is over");
     }
     sleep_until_ns(item->due_ns);
     last_ns_ = item->due_ns;
@@ -36,16 +40,19 @@ class ReplayPose final : public PoseSource {
 
 }  // namespace
 
-Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const calib::Calibration&, const std::int64_t& epoch_ns) {
+Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const calib::Calibration&,
+                                                const std::int64_t& epoch_ns) {
   const auto& settings = rig.pose.replay;
-  if (settings.directory.empty()) return fail(Errc::bad_config, "pose 'replay': pose.replay.directory names no folder");
+  if (settings.directory.empty())
+    return fail(Errc::bad_config, "pose 'replay': pose.replay.directory names no folder");
   auto recording = twin::read_recording(settings.directory);
   if (!recording) return fail_in("pose 'replay'", recording.error());
   const auto stamps_ns = twin::read_all_stamps_ns(settings.directory);
   if (!stamps_ns) return fail_in("pose 'replay'", stamps_ns.error());
   auto times_ns = recording->time_ns;
   for (auto& time_ns : times_ns) time_ns += recording->first_ns;
-  auto loop = timing::Loop::make(std::move(times_ns), timing::Lap::of(*stamps_ns), epoch_ns, settings.loop, timing::kLoneStep_ns);
+  auto loop = timing::Loop::make(std::move(times_ns), timing::Lap::of(*stamps_ns), epoch_ns,
+                                 settings.loop, timing::kLoneStep_ns);
   if (!loop) return fail_in("pose 'replay': timestamps.npy", loop.error());
   return std::make_unique<ReplayPose>(std::move(*recording), std::move(*loop));
 }

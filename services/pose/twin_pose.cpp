@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/twin/twin.hpp"
 #include "services/pose/pose_source.hpp"
-#include "services/timing/first_at.hpp"
-#include "services/twin/twin.hpp"
+#include "services/runtime/first_at.hpp"
 
 namespace handcast::pose {
 namespace {
@@ -8,13 +9,17 @@ namespace {
 /// A sample later than this is skipped: a tracker that was stopped goes on with the present.
 constexpr std::int64_t kLatest_ns = 50'000'000;
 
-/// The twin's tracker in real time: each sample is handed over when it arrives, as old as the rig says.
+/// The twin's tracker in real time: each sample is handed over when it arrives, as old as the rig
+/// says.
 class TwinPose final : public PoseSource {
  public:
-  TwinPose(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns) : twin_(std::move(twin)), epoch_ns_(epoch_ns) {}
+  TwinPose(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns)
+      : twin_(std::move(twin)), epoch_ns_(epoch_ns) {}
 
   Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
-    const auto arrival_ns = [&](std::uint64_t k) { return epoch_ns_ + twin_->tracker_sample(k).arrival_ns; };
+    const auto arrival_ns = [&](std::uint64_t k) {
+      return epoch_ns_ + twin_->tracker_sample(k).arrival_ns;
+    };
     next_ = timing::first_at(next_, now_ns() - kLatest_ns, arrival_ns);
     const auto sample = twin_->tracker_sample(next_);
     if (epoch_ns_ + sample.arrival_ns > deadline.time_ns()) {
@@ -36,7 +41,9 @@ class TwinPose final : public PoseSource {
 
 }  // namespace
 
-Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig& rig, const calib::Calibration& calibration, const std::int64_t& epoch_ns) {
+Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig& rig,
+                                              const calib::Calibration& calibration,
+                                              const std::int64_t& epoch_ns) {
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return fail_in("pose 'twin'", twin.error());
   return std::make_unique<TwinPose>(std::move(*twin), epoch_ns);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -14,16 +15,20 @@ namespace {
 constexpr std::int64_t kEvery = 100;  ///< one frame in so many is written
 constexpr std::int64_t kKept = 100;   ///< files; then the oldest is written over
 
-/// Light as pictures, for a look without hardware: PNG files in light/ of the folder HANDCAST_OUT names (else the working folder).
+/// Light as pictures, for a look without hardware: PNG files in light/ of the folder HANDCAST_OUT
+/// names (else the working folder).
 class FileProjector final : public Projector {
  public:
-  FileProjector(const config::Projector& settings, fs::path folder) : clock_(settings), folder_(std::move(folder)) {}
+  FileProjector(const config::Projector& settings, fs::path folder)
+      : clock_(settings), folder_(std::move(folder)) {}
 
-  Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id, Deadline deadline) override {
+  Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id,
+                               Deadline deadline) override {
     auto times = clock_.take(deadline);
     if (!times || frame_id % kEvery != 0) return times;
     const fs::path file = folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept);
-    if (const auto written = write(frame, file); !written) return fail(Errc::bad_data, "projector 'file': " + written.error().what);
+    if (const auto written = write(frame, file); !written)
+      return fail(Errc::bad_data, "projector 'file': " + written.error().what);
     return times;
   }
 
@@ -34,7 +39,8 @@ class FileProjector final : public Projector {
     const auto& region = frame.region;
     for (int y = region.y0; y < region.y1; ++y)
       for (int x = region.x0; x < region.x1; ++x)
-        if (const std::uint32_t rgba = frame.colour.at(x, y); rgba >> 24 != 0) image.at(x, y) = rgba;
+        if (const std::uint32_t rgba = frame.colour.at(x, y); rgba >> 24 != 0)
+          image.at(x, y) = rgba;
     return renderer::write_png(file, image.view());
   }
 
@@ -49,7 +55,9 @@ Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig) {
   const fs::path folder = fs::path(out != nullptr ? out : ".") / "light";
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) return fail(Errc::bad_config, fmt::format("projector 'file': '{}' cannot be made: {}", folder.string(), error.message()));
+  if (error)
+    return fail(Errc::bad_config, fmt::format("projector 'file': '{}' cannot be made: {}",
+                                              folder.string(), error.message()));
   log::info("every {}th frame is written to '{}'", kEvery, folder.string());
   return std::make_unique<FileProjector>(rig.projector, folder);
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/projector/inputs.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
@@ -8,40 +9,49 @@ using namespace std::chrono_literals;
 using service::must;
 
 /// The stages of a frame as the cascade measured them, then the whole of it, then its presentation.
-static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std::int64_t begin_ns, std::int64_t drawn_ns,
+static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std::int64_t begin_ns,
+                                              std::int64_t drawn_ns,
                                               const projector::PresentTimes& times) {
   std::vector<msg::StageMark> marks;
   for (const auto& mark : frame.stages)
     if (mark.stage < msg::Stage::frame) marks.push_back(mark);
   marks.push_back({msg::Stage::frame, 0, begin_ns, drawn_ns});
   marks.push_back({msg::Stage::present, 0, drawn_ns, times.handed_ns});
-  if (times.lit_ns > times.handed_ns) marks.push_back({msg::Stage::light, 0, times.handed_ns, times.lit_ns});
+  if (times.lit_ns > times.handed_ns)
+    marks.push_back({msg::Stage::light, 0, times.handed_ns, times.lit_ns});
   return marks;
 }
 
 /// Sensors in, light out, one frame a projector period: projection.frames.
 static void run_projector(service::Context& context) {
   const auto& rig = context.rig();
-  const auto pipeline = must(renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, context.calibration()));
-  const auto stand_by = [&] { context.stand_by({"projection.frames", "camera.frames", "pose.hands", "landmarks.hands"}); };
+  const auto pipeline =
+      must(renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, context.calibration()));
+  const auto stand_by = [&] {
+    context.stand_by({"projection.frames", "camera.frames", "pose.hands", "landmarks.hands"});
+  };
   if (service::is_exclusive(rig.projector.backend, projector::projector_backends())) stand_by();
   const auto projector = must(projector::open_projector(rig));
   stand_by();
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
-  projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")), must(context.reader<msg::HandPoses>("pose.hands")),
+  projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
+                           must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")));
   projector::Pacer pacer(rig.projector.rate_hz);
   projector::Horizon horizon(rig.projector);
 
   context.ready();
   const auto running = [&] { return context.running(); };
-  for (std::int64_t frame_id = 0; projector::sleep_while(running, pacer.next_ns(now_ns())); ++frame_id) {
-    const Deadline image_deadline = Deadline::at_ns(now_ns() + ms_to_ns(rig.projector.frame_wait_ms));
-    if (const auto delivered = inputs.deliver(*pipeline, image_deadline); !delivered) context.tolerate(delivered.error());
+  for (std::int64_t frame_id = 0; projector::sleep_while(running, pacer.next_ns(now_ns()));
+       ++frame_id) {
+    const Deadline image_deadline =
+        Deadline::at_ns(now_ns() + ms_to_ns(rig.projector.frame_wait_ms));
+    if (const auto delivered = inputs.deliver(*pipeline, image_deadline); !delivered)
+      context.tolerate(delivered.error());
 
     const msg::Header image = inputs.image_header();
     const std::int64_t begin_ns = now_ns();
-    const auto frame = pipeline->render(begin_ns, horizon.target_ns(begin_ns), inputs.image(), image.origin_ns);
+    const auto frame = pipeline->render(begin_ns, horizon.target_ns(begin_ns), inputs.image());
     const std::int64_t drawn_ns = now_ns();
     const auto times = projector->present(frame, frame_id, Deadline::in(50ms));
     if (!times) {
@@ -55,7 +65,8 @@ static void run_projector(service::Context& context) {
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"projector", "Turns what the sensors see into light on the hands.",
+  const service::Description description{"projector",
+                                         "Turns what the sensors see into light on the hands.",
                                          service::names_of(projector::projector_backends())};
   return service::run(description, argc, argv, run_projector);
 }

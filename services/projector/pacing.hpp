@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>
@@ -8,10 +9,12 @@
 
 namespace handcast::projector {
 
-/// Ticks at a steady rate, counted from the first: a late tick does not delay those after it, missed ones are skipped.
+/// Ticks at a steady rate, counted from the first: a late tick does not delay those after it,
+/// missed ones are skipped.
 class Pacer {
  public:
-  explicit Pacer(double rate_hz) : period_ns_(std::max<std::int64_t>(seconds_to_ns(1 / rate_hz), 1)) {}
+  explicit Pacer(double rate_hz)
+      : period_ns_(std::max<std::int64_t>(seconds_to_ns(1 / rate_hz), 1)) {}
 
   /// The time of the first tick not before `time_ns` that was not given out yet.
   std::int64_t next_ns(std::int64_t time_ns) {
@@ -29,8 +32,8 @@ class Pacer {
   std::int64_t start_ns_ = 0, ticks_ = 0, skipped_ = 0;
 };
 
-/// Sleeps until then, and asks on the way whether to go on: a daemon must say that it lives more often than a slow projector's frame
-/// comes. False: not to.
+/// Sleeps until then, and asks on the way whether to go on: a daemon must say that it lives more
+/// often than a slow projector's frame comes. False: not to.
 template <class Running>
 bool sleep_while(const Running& running, std::int64_t time_ns) {
   constexpr std::int64_t kStep_ns = 50'000'000;
@@ -42,16 +45,20 @@ bool sleep_while(const Running& running, std::int64_t time_ns) {
   return false;
 }
 
-/// When the light of a frame begun now will be seen: after the software (the median of what the last frames took, so that one
-/// slow frame does not move it), the projector's latency and half of the time it is lit.
+/// When the light of a frame begun now will be seen: after the software (the median of what the
+/// last frames took, so that one slow frame does not move it), the projector's latency and half of
+/// the time it is lit.
 class Horizon {
  public:
   explicit Horizon(const config::Projector& settings)
-      : light_ns_(ms_to_ns(settings.latency_ms) + seconds_to_ns(0.5 / settings.rate_hz)), software_ns_(ms_to_ns(settings.software_ms)) {
+      : light_ns_(ms_to_ns(settings.latency_ms) + seconds_to_ns(0.5 / settings.rate_hz)),
+        software_ns_(ms_to_ns(settings.software_ms)) {
     recent_ns_.fill(software_ns_);
   }
 
-  std::int64_t target_ns(std::int64_t begin_ns) const { return begin_ns + software_ns_ + light_ns_; }
+  std::int64_t target_ns(std::int64_t begin_ns) const {
+    return begin_ns + software_ns_ + light_ns_;
+  }
   std::int64_t software_ns() const { return software_ns_; }
 
   /// The last frame was handed over so long after it was begun.

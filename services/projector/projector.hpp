@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -6,7 +7,7 @@
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
-#include "renderer/pipeline.hpp"
+#include "renderer/pipeline/pipeline.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::projector {
@@ -21,9 +22,11 @@ class Projector {
  public:
   virtual ~Projector() = default;
 
-  /// Hands a frame over; waits until the deadline where frames come faster than the projector takes them. The frame may be
-  /// reused when the call returns. Errors: timeout (this frame is not shown), disconnected.
-  virtual Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id, Deadline deadline) = 0;
+  /// Hands a frame over; waits until the deadline where frames come faster than the projector takes
+  /// them. The frame may be reused when the call returns. Errors: timeout (this frame is not
+  /// shown), disconnected.
+  virtual Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id,
+                                       Deadline deadline) = 0;
 };
 
 using ProjectorBackend = service::Backend<Projector, config::Rig>;

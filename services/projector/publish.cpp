@@ -1,18 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/projector/publish.hpp"
 
-#include "renderer/projection.hpp"
+#include "renderer/pipeline/projection.hpp"
 
 namespace handcast::projector {
 
-void write_projection(const renderer::Frame& frame, const msg::Header& image, const PresentTimes& times, msg::Projection& projection,
+void write_projection(const renderer::Frame& frame, const msg::Header& image,
+                      const PresentTimes& times, msg::Projection& projection,
                       std::size_t tail_bytes) {
   renderer::write_projection(frame, projection, tail_bytes);
   projection.header = image;
   projection.lit_ns = times.lit_ns;
 }
 
-void publish_projection(const renderer::Frame& frame, const msg::Header& image, const PresentTimes& times,
-                        ipc::Writer<msg::Projection>& projections) {
+void publish_projection(const renderer::Frame& frame, const msg::Header& image,
+                        const PresentTimes& times, ipc::Writer<msg::Projection>& projections) {
   auto slot = projections.loan();
   if (!slot) return;
   write_projection(frame, image, times, *slot, slot.tail_bytes());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/projector/light_clock.hpp"
 
 namespace handcast::projector {
@@ -7,7 +8,9 @@ namespace {
 class TwinProjector final : public Projector {
  public:
   explicit TwinProjector(const config::Projector& settings) : clock_(settings) {}
-  Result<PresentTimes> present(const renderer::Frame&, std::int64_t, Deadline deadline) override { return clock_.take(deadline); }
+  Result<PresentTimes> present(const renderer::Frame&, std::int64_t, Deadline deadline) override {
+    return clock_.take(deadline);
+  }
 
  private:
   LightClock clock_;
@@ -15,6 +18,8 @@ class TwinProjector final : public Projector {
 
 }  // namespace
 
-Result<std::unique_ptr<Projector>> open_twin(const config::Rig& rig) { return std::make_unique<TwinProjector>(rig.projector); }
+Result<std::unique_ptr<Projector>> open_twin(const config::Rig& rig) {
+  return std::make_unique<TwinProjector>(rig.projector);
+}
 
 }  // namespace handcast::projector

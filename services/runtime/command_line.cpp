@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/command_line.hpp"
 
 #include <fmt/format.h>
@@ -33,14 +34,17 @@ Result<CommandLine> parse_command_line(int argc, const char* const* argv) {
     else if (option == "--backends")
       line.task = Task::backends;
     else if (!takes_value(option))
-      return fail(Errc::bad_config, fmt::format("unknown argument '{}'; --help lists the known ones", option));
+      return fail(Errc::bad_config,
+                  fmt::format("unknown argument '{}'; --help lists the known ones", option));
     else if (i + 1 == argc)
       return fail(Errc::bad_config, fmt::format("{} needs a value", option));
     else if (const auto applied = apply(line, option, argv[++i]); !applied)
       return tl::make_unexpected(applied.error());
   }
   if (line.task == Task::serve && line.config_file.empty())
-    return fail(Errc::bad_config, "--config FILE is missing; `handcast up FILE` starts this program with a whole rig");
+    return fail(
+        Errc::bad_config,
+        "--config FILE is missing; `handcast up FILE` starts this program with a whole rig");
   return line;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/context.hpp"
 
 #include <fcntl.h>
@@ -25,10 +26,12 @@ bool worth_going_on(Errc code) { return code == Errc::timeout || code == Errc::b
 
 }  // namespace
 
-// Ends without destructors: a daemon has nothing to save that it would not lose to SIGKILL as well, and its threads may still run.
+// Ends without destructors: a daemon has nothing to save that it would not lose to SIGKILL as well,
+// and its threads may still run.
 void give_up(const Error& error) {
   log::error("{}", error.what);
-  const bool lasting = error.code == Errc::bad_config || error.code == Errc::bad_data;  // a damaged file stays damaged
+  const bool lasting = error.code == Errc::bad_config ||
+                       error.code == Errc::bad_data;  // a damaged file stays damaged
   std::_Exit(lasting ? kExitConfig : kExitRestart);
 }
 
@@ -63,7 +66,8 @@ void Context::stand_by(std::initializer_list<std::string_view> streams) {
   open_marks();
 }
 
-// Signals are let in only while it sleeps, so that none is missed between the look at the flag and the sleep.
+// Signals are let in only while it sleeps, so that none is missed between the look at the flag and
+// the sleep.
 void Context::wait_for_turn() const {
   sigset_t stops, usual;
   sigemptyset(&stops);
@@ -89,12 +93,19 @@ Result<ipc::Segment> Context::take_segment(std::string_view stream) {
 // Each caller gets a descriptor of its own, so that one stream can be asked for twice.
 Result<ipc::Segment> Context::open_segment(std::string_view stream) const {
   if (ring_fds_.empty())
-    return fail(Errc::bad_config, fmt::format("{} was started by hand, without rings; `handcast up RIG.toml` starts it", name_));
+    return fail(
+        Errc::bad_config,
+        fmt::format("{} was started by hand, without rings; `handcast up RIG.toml` starts it",
+                    name_));
   const auto found = ring_fds_.find(stream);
-  if (found == ring_fds_.end()) return fail(Errc::bad_config, fmt::format("{} was given no ring '{}' in HANDCAST_RINGS", name_, stream));
+  if (found == ring_fds_.end())
+    return fail(Errc::bad_config,
+                fmt::format("{} was given no ring '{}' in HANDCAST_RINGS", name_, stream));
 
   UniqueFd fd(fcntl(found->second, F_DUPFD_CLOEXEC, 3));
-  if (!fd) return fail(Errc::unavailable, fmt::format("ring '{}', descriptor {}: {}", stream, found->second, std::strerror(errno)));
+  if (!fd)
+    return fail(Errc::unavailable, fmt::format("ring '{}', descriptor {}: {}", stream,
+                                               found->second, std::strerror(errno)));
   auto segment = ipc::Segment::open(std::move(fd));
   if (!segment) return fail_in(fmt::format("ring '{}'", stream), segment.error());
   return segment;
@@ -104,7 +115,8 @@ void Context::ready() {
   stand_by();
   log::info("ready");
   if (ready_fd_ < 0) return;
-  if (::write(ready_fd_, "\n", 1) != 1) log::warning("the supervisor could not be told: {}", std::strerror(errno));
+  if (::write(ready_fd_, "\n", 1) != 1)
+    log::warning("the supervisor could not be told: {}", std::strerror(errno));
   ::close(ready_fd_);
   ready_fd_ = -1;
 }

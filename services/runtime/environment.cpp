@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/environment.hpp"
 
 #include <charconv>
@@ -24,7 +25,8 @@ RingFds parse_rings(std::string_view text) {
     text = comma == std::string_view::npos ? std::string_view{} : text.substr(comma + 1);
     const auto equals = entry.find('=');
     if (equals == 0 || equals == std::string_view::npos) continue;
-    if (const auto fd = parse_number<int>(entry.substr(equals + 1)); fd && *fd >= 0) rings.emplace(entry.substr(0, equals), *fd);
+    if (const auto fd = parse_number<int>(entry.substr(equals + 1)); fd && *fd >= 0)
+      rings.emplace(entry.substr(0, equals), *fd);
   }
   return rings;
 }

@@ -1,6 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
 
+#include "ipc/base/version.hpp"
 #include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
 #include "services/runtime/scheduling.hpp"
@@ -17,14 +19,18 @@ void print_help(const Description& description) {
       "  --set path=value   a setting that overrides the file's; may be repeated\n"
       "  --backends         the back ends of this build, one name a line\n"
       "  --version, --help\n\n"
-      "`handcast up RIG.toml` starts this program together with the rest of the rig and hands it its rings.\n",
+      "`handcast up RIG.toml` starts this program together with the rest of the rig and hands it "
+      "its rings.\n",
       description.name, description.summary, description.name);
 }
 
-int serve(const Description& description, const CommandLine& line, const std::function<void(Context&)>& body) {
+int serve(const Description& description, const CommandLine& line,
+          const std::function<void(Context&)>& body) {
   install_stop_signals();
   auto rig = must(config::load_rig(line.config_file, line.settings));
-  for (const auto& note : must(apply_scheduling(config::process_of(rig, description.name), description.name))) log::warning("{}", note);
+  for (const auto& note :
+       must(apply_scheduling(config::process_of(rig, description.name), description.name)))
+    log::warning("{}", note);
   auto calibration = must(calib::load_calibration(rig.calibration));
   Context context(std::string(description.name), std::move(rig), calibration);
   body(context);
@@ -34,7 +40,8 @@ int serve(const Description& description, const CommandLine& line, const std::fu
 
 }  // namespace
 
-int run(const Description& description, int argc, char** argv, const std::function<void(Context&)>& body) try {
+int run(const Description& description, int argc, char** argv,
+        const std::function<void(Context&)>& body) try {
   using Task = CommandLine::Task;
   log::set_program(description.name);
   const auto line = must(parse_command_line(argc, argv));
@@ -43,7 +50,7 @@ int run(const Description& description, int argc, char** argv, const std::functi
       print_help(description);
       return 0;
     case Task::version:
-      fmt::print("handcast-{} {}\n", description.name, HANDCAST_VERSION);
+      fmt::print("handcast-{} {}\n", description.name, version());
       return 0;
     case Task::backends:
       for (const auto name : description.backends) fmt::print("{}\n", name);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/scheduling.hpp"
 
 #include <fmt/format.h>
@@ -26,20 +27,26 @@ Result<Note> use_cores(const std::vector<double>& cores, std::string_view servic
   CPU_ZERO(&set);
   for (const double core : cores) {
     if (core != std::floor(core) || core < 0 || core >= static_cast<double>(there_are))
-      return fail(Errc::bad_config,
-                  fmt::format("{}.process.cores: there is no core {:g}; this machine has cores 0 to {}", service, core, there_are - 1));
+      return fail(
+          Errc::bad_config,
+          fmt::format("{}.process.cores: there is no core {:g}; this machine has cores 0 to {}",
+                      service, core, there_are - 1));
     CPU_SET(static_cast<int>(core), &set);
   }
   if (sched_setaffinity(0, sizeof set, &set) == 0) return Note{};
-  return Note{fmt::format("{}.process.cores: it runs on any core, those asked for are not given to it: {}", service, std::strerror(errno))};
+  return Note{
+      fmt::format("{}.process.cores: it runs on any core, those asked for are not given to it: {}",
+                  service, std::strerror(errno))};
 }
 
 Note use_priority(int priority, std::string_view service) {
   if (priority == 0) return {};
   const sched_param parameters{.sched_priority = priority};
   if (sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return {};
-  return fmt::format("{}.process.priority: it runs at the usual priority, real time needs CAP_SYS_NICE or an rtprio limit of {}: {}",
-                     service, priority, std::strerror(errno));
+  return fmt::format(
+      "{}.process.priority: it runs at the usual priority, real time needs CAP_SYS_NICE or an "
+      "rtprio limit of {}: {}",
+      service, priority, std::strerror(errno));
 }
 
 bool may_lock_all_memory() {
@@ -47,7 +54,8 @@ bool may_lock_all_memory() {
   if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) return true;
   __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
   std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> data{};
-  return syscall(SYS_capget, &header, data.data()) == 0 && (data[0].effective & (1u << CAP_IPC_LOCK)) != 0;
+  return syscall(SYS_capget, &header, data.data()) == 0 &&
+         (data[0].effective & (1u << CAP_IPC_LOCK)) != 0;
 }
 
 // Under a limit the lock might succeed now and a later allocation fail for it: then rather no lock.
@@ -55,17 +63,21 @@ Note lock_memory(bool wanted, std::string_view service) {
   if (!wanted) return {};
   errno = EPERM;
   if (may_lock_all_memory() && mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return {};
-  return fmt::format("{}.process.lock_memory: its memory may be swapped out, locking needs CAP_IPC_LOCK or no memlock limit: {}", service,
-                     std::strerror(errno));
+  return fmt::format(
+      "{}.process.lock_memory: its memory may be swapped out, locking needs CAP_IPC_LOCK or no "
+      "memlock limit: {}",
+      service, std::strerror(errno));
 }
 
 }  // namespace
 
-Result<std::vector<std::string>> apply_scheduling(const config::Process& process, std::string_view service) {
+Result<std::vector<std::string>> apply_scheduling(const config::Process& process,
+                                                  std::string_view service) {
   auto cores = use_cores(process.cores, service);
   if (!cores) return tl::make_unexpected(cores.error());
   std::vector<std::string> notes;
-  for (auto& note : {*cores, use_priority(process.priority, service), lock_memory(process.lock_memory, service)})
+  for (auto& note :
+       {*cores, use_priority(process.priority, service), lock_memory(process.lock_memory, service)})
     if (note) notes.push_back(*note);
   return notes;
 }

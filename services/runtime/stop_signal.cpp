@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/stop_signal.hpp"
 
 #include <signal.h>

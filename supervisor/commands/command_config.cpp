@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "config/rig.hpp"
@@ -8,20 +9,26 @@
 namespace handcast::supervisor {
 
 int run_config(const Arguments& arguments) {
-  const auto options =
-      sort_options(arguments, {.with_value = {"--set"}, .flags = {"--print", "--check", "--reference"}, .least_words = 0, .most_words = 1});
-  if (!options) return complain(kExitUsage, "config: " + options.error().what + "; `handcast help config`");
+  const auto options = sort_options(arguments, {.with_value = {"--set"},
+                                                .flags = {"--print", "--check", "--reference"},
+                                                .least_words = 0,
+                                                .most_words = 1});
+  if (!options)
+    return complain(kExitUsage, "config: " + options.error().what + "; `handcast help config`");
   if (options->has("--reference")) {
     fmt::print("{}", config::print_reference());
     return 0;
   }
   const bool print = options->has("--print"), check = options->has("--check");
-  if (print == check) return complain(kExitUsage, "config: one of --print, --check, --reference is needed");
+  if (print == check)
+    return complain(kExitUsage, "config: one of --print, --check, --reference is needed");
   if (check && options->words.empty()) return complain(kExitUsage, "config: --check needs a file");
 
   const auto settings = options->all("--set");
-  const auto rig = options->words.empty() ? config::parse_rig("", std::filesystem::current_path() / "defaults", settings)
-                                          : config::load_rig(options->words.front(), settings);
+  const auto rig =
+      options->words.empty()
+          ? config::parse_rig("", std::filesystem::current_path() / "defaults", settings)
+          : config::load_rig(options->words.front(), settings);
   if (!rig) return complain(rig.error());
   fmt::print("{}", print ? config::print_rig(*rig) : options->words.front() + " is in order\n");
   return 0;

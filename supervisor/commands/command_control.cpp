@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verbs that talk to a rig that is up.
 #include <fmt/format.h>
 
-#include "config/join.hpp"
+#include "config/settings/join.hpp"
 #include "supervisor/control/control_client.hpp"
 #include "supervisor/exit.hpp"
 #include "supervisor/options.hpp"
@@ -33,18 +34,26 @@ std::string print_reload(const nlohmann::json& answer) {
   for (const auto* what : {"restarted", "started", "stopped", "untouched"})
     if (const auto names = answer.value(what, std::vector<std::string>()); !names.empty())
       parts.push_back(config::join(names, ", ") + " " + what);
-  const bool acted = !parts.empty() && (parts.size() > 1 || answer.value("untouched", nlohmann::json::array()).empty());
-  return acted || answer.value("changed", false) ? "reloaded: " + config::join(parts, "; ") : "nothing changed";
+  const bool acted = !parts.empty() && (parts.size() > 1 ||
+                                        answer.value("untouched", nlohmann::json::array()).empty());
+  return acted || answer.value("changed", false) ? "reloaded: " + config::join(parts, "; ")
+                                                 : "nothing changed";
 }
 
-/// Asks for what the words say; `done` tells the person that it is done, {0} and {1} being the service and the back end.
-int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words, Request request, const char* done) {
-  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}, .least_words = words, .most_words = words});
-  if (!options) return complain(kExitUsage, fmt::format("{0}: {1}; `handcast help {0}`", verb, options.error().what));
+/// Asks for what the words say; `done` tells the person that it is done, {0} and {1} being the
+/// service and the back end.
+int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words, Request request,
+                   const char* done) {
+  const auto options = sort_options(
+      arguments, {.with_value = {"--rig"}, .flags = {}, .least_words = words, .most_words = words});
+  if (!options)
+    return complain(kExitUsage,
+                    fmt::format("{0}: {1}; `handcast help {0}`", verb, options.error().what));
   if (words > 0) request.service = options->words[0];
   if (words > 1) request.backend = options->words[1];
   const int exit_code = talk(options->value("--rig"), request).exit_code;
-  if (exit_code == 0) fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, request.backend));
+  if (exit_code == 0)
+    fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, request.backend));
   return exit_code;
 }
 
@@ -54,30 +63,39 @@ int run_down(const Arguments& arguments) {
   constexpr double kStop_s = 3;  // as the rig file has it where it does not say
   const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}});
   if (const auto rig = options ? abandoned_rig(options->value("--rig")) : std::nullopt) {
-    fmt::print("rig '{}' had no supervisor; services stopped: {}\n", *rig, stop_orphans(*rig, kStop_s));
+    fmt::print("rig '{}' had no supervisor; services stopped: {}\n", *rig,
+               stop_orphans(*rig, kStop_s));
     return 0;
   }
-  return ask_with_words("down", arguments, 0, {.verb = Verb::down, .service = {}, .backend = {}}, "the rig has stopped");
+  return ask_with_words("down", arguments, 0, {.verb = Verb::down, .service = {}, .backend = {}},
+                        "the rig has stopped");
 }
 int run_restart(const Arguments& arguments) {
-  return ask_with_words("restart", arguments, 1, {.verb = Verb::restart, .service = {}, .backend = {}}, "{0} is ready again");
+  return ask_with_words("restart", arguments, 1,
+                        {.verb = Verb::restart, .service = {}, .backend = {}},
+                        "{0} is ready again");
 }
 int run_swap(const Arguments& arguments) {
-  return ask_with_words("swap", arguments, 2, {.verb = Verb::swap, .service = {}, .backend = {}}, "{0} is ready with '{1}'");
+  return ask_with_words("swap", arguments, 2, {.verb = Verb::swap, .service = {}, .backend = {}},
+                        "{0} is ready with '{1}'");
 }
 
 int run_reload(const Arguments& arguments) {
   const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}});
-  if (!options) return complain(kExitUsage, "reload: " + options.error().what + "; `handcast help reload`");
-  const auto [exit_code, answer] = talk(options->value("--rig"), {.verb = Verb::reload, .service = {}, .backend = {}});
+  if (!options)
+    return complain(kExitUsage, "reload: " + options.error().what + "; `handcast help reload`");
+  const auto [exit_code, answer] =
+      talk(options->value("--rig"), {.verb = Verb::reload, .service = {}, .backend = {}});
   if (exit_code == 0) fmt::print("{}\n", print_reload(answer));
   return exit_code;
 }
 
 int run_status(const Arguments& arguments) {
   const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {"--json"}});
-  if (!options) return complain(kExitUsage, "status: " + options.error().what + "; `handcast help status`");
-  auto [exit_code, answer] = talk(options->value("--rig"), {.verb = Verb::status, .service = {}, .backend = {}});
+  if (!options)
+    return complain(kExitUsage, "status: " + options.error().what + "; `handcast help status`");
+  auto [exit_code, answer] =
+      talk(options->value("--rig"), {.verb = Verb::status, .service = {}, .backend = {}});
   if (exit_code != 0) return exit_code;
   const auto& status = answer["status"];
   fmt::print("{}", options->has("--json") ? status.dump(2) + "\n" : print_status(status));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lets systemd run a rig: `handcast install-units RIG.toml`.
 #include <fmt/format.h>
 #include <pwd.h>
@@ -20,7 +21,9 @@ namespace {
 std::string user_name() {
   const char* before_sudo = std::getenv("SUDO_USER");
   const auto* entry = getpwuid(getuid());
-  return before_sudo && *before_sudo ? before_sudo : entry ? entry->pw_name : std::to_string(getuid());
+  return before_sudo && *before_sudo ? before_sudo
+         : entry                     ? entry->pw_name
+                                     : std::to_string(getuid());
 }
 
 Result<void> write_unit(const std::filesystem::path& file, const std::string& text) {
@@ -29,7 +32,9 @@ Result<void> write_unit(const std::filesystem::path& file, const std::string& te
   std::ofstream out(file, std::ios::trunc);
   out << text;
   out.close();
-  if (!out) return fail(Errc::unavailable, fmt::format("{} cannot be written{}", file.string(), getuid() == 0 ? "" : "; `sudo` may help"));
+  if (!out)
+    return fail(Errc::unavailable, fmt::format("{} cannot be written{}", file.string(),
+                                               getuid() == 0 ? "" : "; `sudo` may help"));
   return {};
 }
 
@@ -38,7 +43,9 @@ void print_next_steps(const UnitSpec& spec) {
   fmt::print("  {} daemon-reload\n", systemctl);
   fmt::print("  {} enable --now {}\n", systemctl, unit_name(spec));
   if (spec.system)
-    fmt::print("`handcast status` and the like find it with XDG_RUNTIME_DIR=/run/handcast, as user {}.\n", spec.user);
+    fmt::print(
+        "`handcast status` and the like find it with XDG_RUNTIME_DIR=/run/handcast, as user {}.\n",
+        spec.user);
   else
     fmt::print("  loginctl enable-linger    # to run also while nobody is logged in\n");
 }
@@ -46,9 +53,13 @@ void print_next_steps(const UnitSpec& spec) {
 }  // namespace
 
 int run_install_units(const Arguments& arguments) {
-  const auto options =
-      sort_options(arguments, {.with_value = {"--set"}, .flags = {"--system", "--print"}, .least_words = 1, .most_words = 1});
-  if (!options) return complain(kExitUsage, "install-units: " + options.error().what + "; `handcast help install-units`");
+  const auto options = sort_options(arguments, {.with_value = {"--set"},
+                                                .flags = {"--system", "--print"},
+                                                .least_words = 1,
+                                                .most_words = 1});
+  if (!options)
+    return complain(kExitUsage,
+                    "install-units: " + options.error().what + "; `handcast help install-units`");
   const auto rig_file = std::filesystem::absolute(options->words.front());
   const auto rig = config::load_rig(rig_file, options->all("--set"));
   if (!rig) return complain(rig.error());

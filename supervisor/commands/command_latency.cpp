@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "supervisor/control/control_client.hpp"
@@ -10,9 +11,12 @@
 namespace handcast::supervisor {
 
 int run_latency(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--seconds", "--rig"}, .flags = {"--json"}});
-  if (!options) return complain(kExitUsage, "latency: " + options.error().what + "; `handcast help latency`");
-  const auto seconds = parse_seconds(options->has("--seconds") ? options->value("--seconds") : "10");
+  const auto options =
+      sort_options(arguments, {.with_value = {"--seconds", "--rig"}, .flags = {"--json"}});
+  if (!options)
+    return complain(kExitUsage, "latency: " + options.error().what + "; `handcast help latency`");
+  const auto seconds =
+      parse_seconds(options->has("--seconds") ? options->value("--seconds") : "10");
   if (!seconds) return complain(kExitUsage, "latency: " + seconds.error().what);
 
   const auto rig = choose_rig(options->value("--rig"));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <deque>
@@ -28,10 +29,12 @@ int show_once(const std::string& rig, bool as_json) {
 
   const auto model = compare(before, now);
   if (as_json) {
-    fmt::print("{}\n", json_of(model).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n",
+               json_of(model).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return 0;
   }
-  for (const auto& line : lay_out(model, {.columns = kPlainColumns})) fmt::print("{}\n", print(line, false));
+  for (const auto& line : lay_out(model, {.columns = kPlainColumns}))
+    fmt::print("{}\n", print(line, false));
   return 0;
 }
 
@@ -41,11 +44,13 @@ class Screen {
   void show(const TopModel& model) {
     const auto [columns, rows] = terminal_.size();
     std::vector<std::string> texts;
-    for (const auto& line : fit(lay_out(model, {columns, with_marks_}), columns, rows, first_)) texts.push_back(print(line, true));
+    for (const auto& line : fit(lay_out(model, {columns, with_marks_}), columns, rows, first_))
+      texts.push_back(print(line, true));
     terminal_.show(texts);
   }
 
-  /// Lets `model` be looked at until it is time for the next look; false: the person has seen enough.
+  /// Lets `model` be looked at until it is time for the next look; false: the person has seen
+  /// enough.
   bool watch(const TopModel& model, std::int64_t until_ns) {
     for (;;) {
       show(model);
@@ -92,7 +97,8 @@ int show_until_quit(const std::string& rig) {
   std::deque<RigLook> looks{watcher.look()};
   auto next_ns = now_ns();
   for (;;) {
-    next_ns = std::max(next_ns + kRefresh_ns, now_ns());  // a machine that was asleep does not catch up
+    next_ns =
+        std::max(next_ns + kRefresh_ns, now_ns());  // a machine that was asleep does not catch up
     if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return 0;
     looks.push_back(watcher.look());
     if (looks.size() > kLooksBack + 1) looks.pop_front();
@@ -102,8 +108,10 @@ int show_until_quit(const std::string& rig) {
 }  // namespace
 
 int run_top(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {"--once", "--json"}});
-  if (!options) return complain(kExitUsage, "top: " + options.error().what + "; `handcast help top`");
+  const auto options =
+      sort_options(arguments, {.with_value = {"--rig"}, .flags = {"--once", "--json"}});
+  if (!options)
+    return complain(kExitUsage, "top: " + options.error().what + "; `handcast help top`");
   const auto rig = choose_rig(options->value("--rig"));
   if (!rig) return complain(kExitNotRunning, rig.error().what);
   const bool once = options->has("--once") || options->has("--json") || !Terminal::present();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,10 +16,14 @@ namespace handcast::supervisor {
 int run_trace(const Arguments& given) {
   auto arguments = given;
   std::ranges::replace(arguments, "-o", "--out");
-  const auto options = sort_options(arguments, {.with_value = {"--seconds", "--out", "--rig"}, .flags = {}});
-  if (!options) return complain(kExitUsage, "trace: " + options.error().what + "; `handcast help trace`");
-  if (!options->has("--out")) return complain(kExitUsage, "trace: -o FILE is needed; `handcast help trace`");
-  const auto seconds = parse_seconds(options->has("--seconds") ? options->value("--seconds") : "10");
+  const auto options =
+      sort_options(arguments, {.with_value = {"--seconds", "--out", "--rig"}, .flags = {}});
+  if (!options)
+    return complain(kExitUsage, "trace: " + options.error().what + "; `handcast help trace`");
+  if (!options->has("--out"))
+    return complain(kExitUsage, "trace: -o FILE is needed; `handcast help trace`");
+  const auto seconds =
+      parse_seconds(options->has("--seconds") ? options->value("--seconds") : "10");
   if (!seconds) return complain(kExitUsage, "trace: " + seconds.error().what);
 
   const auto rig = choose_rig(options->value("--rig"));
@@ -32,8 +37,9 @@ int run_trace(const Arguments& given) {
   file.write(trace.data(), static_cast<std::streamsize>(trace.size()));
   file.close();
   if (!file) return complain(kExitFailure, fmt::format("{} cannot be written", path));
-  fmt::print("{}: {} frames of {} services, {:.1f} MB; open it in https://ui.perfetto.dev\n", path, history->frames.size(),
-             history->services.size(), static_cast<double>(trace.size()) * 1e-6);
+  fmt::print("{}: {} frames of {} services, {:.1f} MB; open it in https://ui.perfetto.dev\n", path,
+             history->frames.size(), history->services.size(),
+             static_cast<double>(trace.size()) * 1e-6);
   return 0;
 }
 

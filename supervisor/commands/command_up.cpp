@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -32,8 +33,10 @@ int keep_up(const Arguments& arguments) {
 }  // namespace
 
 int run_up(const Arguments& arguments) {
-  const auto options = sort_options(
-      arguments, {.with_value = {"--set", "--seconds", "--out"}, .flags = {kNoKeeper, kKept}, .least_words = 1, .most_words = 1});
+  const auto options = sort_options(arguments, {.with_value = {"--set", "--seconds", "--out"},
+                                                .flags = {kNoKeeper, kKept},
+                                                .least_words = 1,
+                                                .most_words = 1});
   if (!options) return complain(kExitUsage, "up: " + options.error().what + "; `handcast help up`");
   std::optional<double> seconds;
   if (options->has("--seconds")) {
@@ -51,7 +54,9 @@ int run_up(const Arguments& arguments) {
                  .is_successor = take_successor_mark()};
   if (options->has("--out")) {
     run.out = std::filesystem::absolute(options->value("--out"));
-    setenv("HANDCAST_OUT", run.out->c_str(), 1);  // the services write there too: part of their contract (services/runtime/context.hpp)
+    setenv(
+        "HANDCAST_OUT", run.out->c_str(),
+        1);  // the services write there too: part of their contract (services/runtime/context.hpp)
   }
   const auto applied = applied_before(run.rig_file, run.settings);
   const auto rig = applied ? *applied : config::load_rig(run.rig_file, run.settings);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/control/control_client.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "config/join.hpp"
+#include "config/settings/join.hpp"
 #include "ipc/base/clock.hpp"
 #include "supervisor/control/runtime_folder.hpp"
 #include "supervisor/succession/adoption.hpp"
@@ -26,14 +27,17 @@ struct Received {
 };
 
 /// Restarts and stops take as long as the services do.
-bool may_take_long(Verb verb) { return verb != Verb::status && verb != Verb::rings && verb != Verb::history; }
+bool may_take_long(Verb verb) {
+  return verb != Verb::status && verb != Verb::rings && verb != Verb::history;
+}
 
 /// Waits until the socket is readable. Errors: timeout.
 Result<void> wait_for(int socket, Deadline deadline) {
   for (;;) {
     const auto left_ns = deadline.time_ns() - now_ns();
     pollfd readable{.fd = socket, .events = POLLIN, .revents = 0};
-    if (poll(&readable, 1, static_cast<int>(std::max<std::int64_t>(left_ns / 1'000'000, 0))) > 0) return {};
+    if (poll(&readable, 1, static_cast<int>(std::max<std::int64_t>(left_ns / 1'000'000, 0))) > 0)
+      return {};
     if (deadline.passed()) return fail(Errc::timeout, "no answer in time");
   }
 }
@@ -50,7 +54,8 @@ void take_descriptors(msghdr& message, std::vector<UniqueFd>& descriptors) {
   }
 }
 
-/// Takes what is there. Errors: unavailable (the rig went away, or this program has no room for the descriptors).
+/// Takes what is there. Errors: unavailable (the rig went away, or this program has no room for the
+/// descriptors).
 Result<void> receive(int socket, Received& received) {
   std::array<char, 1 << 16> bytes;
   alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(kMostDescriptors * sizeof(int))> room;
@@ -64,9 +69,12 @@ Result<void> receive(int socket, Received& received) {
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return {};
   if (count <= 0) return fail(Errc::unavailable, "the rig went away before it answered");
   take_descriptors(message, received.descriptors);
-  if (message.msg_flags & MSG_CTRUNC) return fail(Errc::unavailable, "this program cannot hold that many descriptors; see `ulimit -n`");
+  if (message.msg_flags & MSG_CTRUNC)
+    return fail(Errc::unavailable,
+                "this program cannot hold that many descriptors; see `ulimit -n`");
   received.line.append(bytes.data(), static_cast<std::size_t>(count));
-  if (received.line.size() > kLongestAnswer) return fail(Errc::bad_data, "the rig's answer does not end");
+  if (received.line.size() > kLongestAnswer)
+    return fail(Errc::bad_data, "the rig's answer does not end");
   return {};
 }
 
@@ -85,7 +93,8 @@ Result<UniqueFd> send_to(const std::string& rig, const Request& request) {
   auto socket = connect_to(*path);
   if (!socket) return tl::make_unexpected(socket.error());
   const auto line = print_request(request) + "\n";
-  if (::send(socket->get(), line.data(), line.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(line.size()))
+  if (::send(socket->get(), line.data(), line.size(), MSG_NOSIGNAL) !=
+      static_cast<ssize_t>(line.size()))
     return fail(Errc::unavailable, fmt::format("rig '{}' does not take requests", rig));
   return socket;
 }
@@ -105,12 +114,15 @@ std::size_t expected_descriptors(Verb verb, const nlohmann::json& answer) {
 
 Result<Answer> read_answer(const std::string& rig, Verb verb, Received received) {
   auto object = nlohmann::json::parse(received.line, nullptr, false);
-  if (!object.is_object()) return fail(Errc::bad_data, fmt::format("rig '{}' gave an answer that makes no sense", rig));
+  if (!object.is_object())
+    return fail(Errc::bad_data, fmt::format("rig '{}' gave an answer that makes no sense", rig));
   if (object["ok"] != true)
-    return fail(Errc::bad_data, object["error"].is_string() ? object["error"].get<std::string>() : "the rig refused without a reason");
+    return fail(Errc::bad_data, object["error"].is_string() ? object["error"].get<std::string>()
+                                                            : "the rig refused without a reason");
   const auto expected = expected_descriptors(verb, object);
   if (received.descriptors.size() < expected)
-    return fail(Errc::bad_data, fmt::format("rig '{}' sent {} descriptors of {}", rig, received.descriptors.size(), expected));
+    return fail(Errc::bad_data, fmt::format("rig '{}' sent {} descriptors of {}", rig,
+                                            received.descriptors.size(), expected));
   while (received.descriptors.size() > expected) received.descriptors.pop_back();
   return Answer{std::move(object), std::move(received.descriptors)};
 }
@@ -121,8 +133,10 @@ Result<Answer> read_answer(const std::string& rig, Verb verb, Received received)
 static std::string nobody_is_up() {
   const auto orphaned = orphaned_rigs();
   if (orphaned.empty()) return "no rig is up; `handcast up RIG.toml` starts one";
-  return fmt::format("no supervisor is up, but services of {} live; `handcast up RIG.toml` takes them over, `handcast down` ends them",
-                     config::join(orphaned, ", "));
+  return fmt::format(
+      "no supervisor is up, but services of {} live; `handcast up RIG.toml` takes them over, "
+      "`handcast down` ends them",
+      config::join(orphaned, ", "));
 }
 
 Result<std::string> choose_rig(const std::string& name) {
@@ -131,9 +145,11 @@ Result<std::string> choose_rig(const std::string& name) {
   if (rigs->empty()) return fail(Errc::unavailable, nobody_is_up());
   if (name.empty() && rigs->size() == 1) return rigs->front();
   if (name.empty())
-    return fail(Errc::unavailable, fmt::format("several rigs are up, choose one with --rig: {}", config::join(*rigs, ", ")));
+    return fail(Errc::unavailable, fmt::format("several rigs are up, choose one with --rig: {}",
+                                               config::join(*rigs, ", ")));
   if (std::ranges::find(*rigs, name) == rigs->end())
-    return fail(Errc::unavailable, fmt::format("no rig named '{}' is up; there is: {}", name, config::join(*rigs, ", ")));
+    return fail(Errc::unavailable, fmt::format("no rig named '{}' is up; there is: {}", name,
+                                               config::join(*rigs, ", ")));
   return name;
 }
 
@@ -143,7 +159,8 @@ Result<nlohmann::json> ask(const std::string& rig, const Request& request) {
   return std::move(answer->object);
 }
 
-Result<Answer> ask_with_descriptors(const std::string& rig, const Request& request, std::chrono::nanoseconds patience) {
+Result<Answer> ask_with_descriptors(const std::string& rig, const Request& request,
+                                    std::chrono::nanoseconds patience) {
   const auto socket = send_to(rig, request);
   if (!socket) return tl::make_unexpected(socket.error());
   Received received;
@@ -153,7 +170,8 @@ Result<Answer> ask_with_descriptors(const std::string& rig, const Request& reque
     if (whole.error().code != Errc::timeout) return tl::make_unexpected(whole.error());
     if (!may_take_long(request.verb) || !is_awake(rig, patience))
       return fail(Errc::unavailable,
-                  fmt::format("rig '{}' has not answered for {:g} s: its supervisor hangs", rig, ns_to_seconds(patience.count())));
+                  fmt::format("rig '{}' has not answered for {:g} s: its supervisor hangs", rig,
+                              ns_to_seconds(patience.count())));
   }
 }
 

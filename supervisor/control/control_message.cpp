@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/control/control_message.hpp"
 
 #include <fmt/format.h>
@@ -5,12 +6,13 @@
 #include <algorithm>
 #include <array>
 
-#include "config/join.hpp"
+#include "config/settings/join.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::array<std::string_view, 7> kVerbs{"status", "down", "restart", "swap", "reload", "rings", "history"};
+constexpr std::array<std::string_view, 7> kVerbs{"status", "down",  "restart", "swap",
+                                                 "reload", "rings", "history"};
 
 std::string text_of(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);
@@ -27,7 +29,8 @@ std::string_view lack_of(const Request& request) {
   const bool on_service = request.verb == Verb::restart || request.verb == Verb::swap;
   if (on_service && request.service.empty()) return "\"service\"";
   if (request.verb == Verb::swap && request.backend.empty()) return "\"backend\"";
-  if (request.verb == Verb::history && !(request.seconds > 0)) return "\"seconds\", a number above 0";
+  if (request.verb == Verb::history && !(request.seconds > 0))
+    return "\"seconds\", a number above 0";
   return {};
 }
 
@@ -38,11 +41,14 @@ Result<Request> parse_request(std::string_view line) {
   if (!object.is_object()) return fail(Errc::bad_data, "a request is one JSON object on a line");
   const auto name = text_of(object, "verb");
   const auto verb = std::ranges::find(kVerbs, name);
-  if (verb == kVerbs.end()) return fail(Errc::bad_data, fmt::format("no verb '{}'; there are: {}", name, config::join(kVerbs, ", ")));
+  if (verb == kVerbs.end())
+    return fail(Errc::bad_data,
+                fmt::format("no verb '{}'; there are: {}", name, config::join(kVerbs, ", ")));
 
-  const Request request{static_cast<Verb>(verb - kVerbs.begin()), text_of(object, "service"), text_of(object, "backend"),
-                        number_of(object, "seconds")};
-  if (const auto lack = lack_of(request); !lack.empty()) return fail(Errc::bad_data, fmt::format("{} needs {}", name, lack));
+  const Request request{static_cast<Verb>(verb - kVerbs.begin()), text_of(object, "service"),
+                        text_of(object, "backend"), number_of(object, "seconds")};
+  if (const auto lack = lack_of(request); !lack.empty())
+    return fail(Errc::bad_data, fmt::format("{} needs {}", name, lack));
   return request;
 }
 
@@ -55,9 +61,13 @@ std::string print_request(const Request& request) {
 }
 
 // What a person typed need not be UTF-8.
-std::string to_line(const nlohmann::json& object) { return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+std::string to_line(const nlohmann::json& object) {
+  return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
 
 nlohmann::json success() { return {{"ok", true}}; }
-nlohmann::json failure(std::string sentence) { return {{"ok", false}, {"error", std::move(sentence)}}; }
+nlohmann::json failure(std::string sentence) {
+  return {{"ok", false}, {"error", std::move(sentence)}};
+}
 
 }  // namespace handcast::supervisor

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,16 +10,23 @@
 
 /// What goes over a rig's control socket: one JSON object a line, a request and its answer.
 ///   {"verb":"status"}                                      → {"ok":true,"status":{…}}
-///   {"verb":"down"}                                        → {"ok":true}, when everything has stopped
+///   {"verb":"down"}                                        → {"ok":true}, when everything has
+///   stopped
 ///   {"verb":"restart","service":"pose"}                    → {"ok":true}, when it is ready again
-///   {"verb":"swap","service":"pose","backend":"replay"}    → {"ok":true}, when the new back end is ready
-///   {"verb":"reload"}                                      → {"ok":true,"restarted":["pose"],…}, when all are ready again
-///   {"verb":"rings"}                                       → {"ok":true,"rings":["camera.frames",…]} and their descriptors
-///   {"verb":"history","seconds":10}                        → {"ok":true} and the descriptor of a snapshot (history.hpp)
-/// Descriptors come with the answer's first byte (SCM_RIGHTS). What cannot be done: {"ok":false,"error":"one sentence"}.
+///   {"verb":"swap","service":"pose","backend":"replay"}    → {"ok":true}, when the new back end is
+///   ready
+///   {"verb":"reload"}                                      → {"ok":true,"restarted":["pose"],…},
+///   when all are ready again
+///   {"verb":"rings"}                                       →
+///   {"ok":true,"rings":["camera.frames",…]} and their descriptors
+///   {"verb":"history","seconds":10}                        → {"ok":true} and the descriptor of a
+///   snapshot (history.hpp)
+/// Descriptors come with the answer's first byte (SCM_RIGHTS). What cannot be done:
+/// {"ok":false,"error":"one sentence"}.
 namespace handcast::supervisor {
 
-inline constexpr std::size_t kMostDescriptors = 253;  ///< that the kernel passes on with one answer (SCM_MAX_FD)
+inline constexpr std::size_t kMostDescriptors =
+    253;  ///< that the kernel passes on with one answer (SCM_MAX_FD)
 
 enum class Verb { status, down, restart, swap, reload, rings, history };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/control/control_server.hpp"
 
 #include <fcntl.h>
@@ -28,15 +29,19 @@ Result<UniqueFd> bind_to(const std::filesystem::path& path, const std::string& r
   const auto other = connect_to(path);
   if (!other && other.error().code == Errc::bad_config) return tl::make_unexpected(other.error());
   if (other || other.error().code == Errc::timeout)
-    return fail(Errc::unavailable, fmt::format("a rig named '{}' is up already; `handcast down --rig {}` stops it", rig, rig));
+    return fail(
+        Errc::unavailable,
+        fmt::format("a rig named '{}' is up already; `handcast down --rig {}` stops it", rig, rig));
   unlink(path.c_str());  // left by a supervisor that was killed
 
   UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto address = address_of(path);
   // The mode of the file that bind makes. Its folder keeps others out already.
   if (!listener || fchmod(listener.get(), 0600) != 0 ||
-      bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || ::listen(listener.get(), 16) != 0)
-    return fail(Errc::unavailable, fmt::format("control socket {}: {}", path.string(), std::strerror(errno)));
+      bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listener.get(), 16) != 0)
+    return fail(Errc::unavailable,
+                fmt::format("control socket {}: {}", path.string(), std::strerror(errno)));
   return listener;
 }
 
@@ -51,16 +56,23 @@ std::vector<std::string> take_lines(std::string& text) {
 
 }  // namespace
 
-Result<std::unique_ptr<ControlServer>> ControlServer::listen(const std::string& rig, EventLoop& loop, OnRequest on_request) {
+Result<std::unique_ptr<ControlServer>> ControlServer::listen(const std::string& rig,
+                                                             EventLoop& loop,
+                                                             OnRequest on_request) {
   const auto path = socket_of(rig);
   if (!path) return tl::make_unexpected(path.error());
   auto listener = bind_to(*path, rig);
   if (!listener) return tl::make_unexpected(listener.error());
-  return std::unique_ptr<ControlServer>(new ControlServer(std::move(*listener), *path, loop, std::move(on_request)));
+  return std::unique_ptr<ControlServer>(
+      new ControlServer(std::move(*listener), *path, loop, std::move(on_request)));
 }
 
-ControlServer::ControlServer(UniqueFd listener, std::filesystem::path path, EventLoop& loop, OnRequest on_request)
-    : listener_(std::move(listener)), path_(std::move(path)), loop_(loop), on_request_(std::move(on_request)) {
+ControlServer::ControlServer(UniqueFd listener, std::filesystem::path path, EventLoop& loop,
+                             OnRequest on_request)
+    : listener_(std::move(listener)),
+      path_(std::move(path)),
+      loop_(loop),
+      on_request_(std::move(on_request)) {
   loop_.watch(listener_.get(), [this] { accept(); });
 }
 
@@ -102,12 +114,16 @@ void ControlServer::answer_line(std::uint64_t id, const std::string& line) {
   const auto request = parse_request(line);
   if (!request) return send(id, failure(request.error().what));
   on_request_(*request,
-              Reply([this, id](const nlohmann::json& answer, const std::vector<int>& descriptors) { send(id, answer, descriptors); }));
+              Reply([this, id](const nlohmann::json& answer, const std::vector<int>& descriptors) {
+                send(id, answer, descriptors);
+              }));
 }
 
-// Not a larger socket buffer in place of `unsent`: the kernel's limit for those (net.core.wmem_max) is below what a status with
-// every service's last lines can take. Descriptors go with a first byte that is sent now, so that none is kept for a slow client.
-void ControlServer::send(std::uint64_t id, const nlohmann::json& answer, const std::vector<int>& descriptors) {
+// Not a larger socket buffer in place of `unsent`: the kernel's limit for those (net.core.wmem_max)
+// is below what a status with every service's last lines can take. Descriptors go with a first byte
+// that is sent now, so that none is kept for a slow client.
+void ControlServer::send(std::uint64_t id, const nlohmann::json& answer,
+                         const std::vector<int>& descriptors) {
   const auto found = clients_.find(id);
   if (found == clients_.end()) return;
   auto& client = found->second;
@@ -116,10 +132,12 @@ void ControlServer::send(std::uint64_t id, const nlohmann::json& answer, const s
   client.unsent += to_line(answer) + "\n";
   if (!is_slow && !send_some(client, descriptors)) return drop(id);
   if (client.unsent.size() > kMostUnsent) return drop(id);
-  if (!is_slow && !client.unsent.empty()) loop_.watch_writing(client.socket.get(), [this, id] { send_rest(id); });
+  if (!is_slow && !client.unsent.empty())
+    loop_.watch_writing(client.socket.get(), [this, id] { send_rest(id); });
 }
 
-/// As much as fits into the socket's buffer. False: the client can get nothing any more, or not these descriptors.
+/// As much as fits into the socket's buffer. False: the client can get nothing any more, or not
+/// these descriptors.
 bool ControlServer::send_some(Client& client, const std::vector<int>& descriptors) {
   if (descriptors.size() > kMostDescriptors) return false;
   iovec text{.iov_base = client.unsent.data(), .iov_len = client.unsent.size()};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -13,15 +14,19 @@
 
 namespace handcast::supervisor {
 
-/// The rig's end of the control socket, on the event loop. The socket file goes with the object. It waits for nobody: what a
-/// client has not read yet is kept for it up to a limit; a client that lets more pile up is dropped.
+/// The rig's end of the control socket, on the event loop. The socket file goes with the object. It
+/// waits for nobody: what a client has not read yet is kept for it up to a limit; a client that
+/// lets more pile up is dropped.
 class ControlServer {
  public:
-  /// Answers the request, now or later; does nothing if the client has left. Must not outlive the server.
+  /// Answers the request, now or later; does nothing if the client has left. Must not outlive the
+  /// server.
   class Reply {
    public:
     /// `descriptors` stay the caller's; the client gets its own of them.
-    void operator()(const nlohmann::json& answer, const std::vector<int>& descriptors = {}) const { send_(answer, descriptors); }
+    void operator()(const nlohmann::json& answer, const std::vector<int>& descriptors = {}) const {
+      send_(answer, descriptors);
+    }
     using Send = std::function<void(const nlohmann::json&, const std::vector<int>&)>;
     Reply() = default;
     explicit Reply(Send send) : send_(std::move(send)) {}
@@ -32,7 +37,8 @@ class ControlServer {
   using OnRequest = std::function<void(const Request&, Reply)>;
 
   /// Errors: unavailable (a rig of this name is up), bad_config (its name, the folder).
-  static Result<std::unique_ptr<ControlServer>> listen(const std::string& rig, EventLoop& loop, OnRequest on_request);
+  static Result<std::unique_ptr<ControlServer>> listen(const std::string& rig, EventLoop& loop,
+                                                       OnRequest on_request);
   ~ControlServer();
   /// Lets nobody in any more and gives the name free. Those inside still get their answers.
   void close_door();
@@ -43,12 +49,14 @@ class ControlServer {
     std::string unread;  ///< of its next request
     std::string unsent;  ///< of its answers: what did not fit into the socket's buffer
   };
-  ControlServer(UniqueFd listener, std::filesystem::path path, EventLoop& loop, OnRequest on_request);
+  ControlServer(UniqueFd listener, std::filesystem::path path, EventLoop& loop,
+                OnRequest on_request);
 
   void accept();
   void read(std::uint64_t id);
   void answer_line(std::uint64_t id, const std::string& line);
-  void send(std::uint64_t id, const nlohmann::json& answer, const std::vector<int>& descriptors = {});
+  void send(std::uint64_t id, const nlohmann::json& answer,
+            const std::vector<int>& descriptors = {});
   static bool send_some(Client& client, const std::vector<int>& descriptors);
   void send_rest(std::uint64_t id);
   void drop(std::uint64_t id);

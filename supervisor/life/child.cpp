@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/child.hpp"
 
 #include <fcntl.h>
@@ -21,10 +22,16 @@ namespace {
 
 constexpr std::int64_t kReportWait_ns = 300'000'000;
 
-/// Of the supervisor's own contracts, with its daemons (each gets its own), with its keeper and with systemd.
-constexpr std::array<std::string_view, 8> kNotInherited{
-    "HANDCAST_RINGS=", "HANDCAST_READY_FD=", "HANDCAST_EPOCH_NS=", "HANDCAST_STANDBY_FD=", "HANDCAST_KEEPER_FD=", "NOTIFY_SOCKET=",
-    "LISTEN_",         "WATCHDOG_"};
+/// Of the supervisor's own contracts, with its daemons (each gets its own), with its keeper and
+/// with systemd.
+constexpr std::array<std::string_view, 8> kNotInherited{"HANDCAST_RINGS=",
+                                                        "HANDCAST_READY_FD=",
+                                                        "HANDCAST_EPOCH_NS=",
+                                                        "HANDCAST_STANDBY_FD=",
+                                                        "HANDCAST_KEEPER_FD=",
+                                                        "NOTIFY_SOCKET=",
+                                                        "LISTEN_",
+                                                        "WATCHDOG_"};
 
 struct Pipe {
   UniqueFd read, write;
@@ -39,7 +46,9 @@ struct Plan {
   bool log_errors = true;
 };
 
-tl::unexpected<Error> cannot(std::string_view what) { return fail(Errc::unavailable, fmt::format("{}: {}", what, std::strerror(errno))); }
+tl::unexpected<Error> cannot(std::string_view what) {
+  return fail(Errc::unavailable, fmt::format("{}: {}", what, std::strerror(errno)));
+}
 
 enum class ReadBy { supervisor, service };
 
@@ -54,7 +63,8 @@ std::vector<std::string> inherited_environment() {
   std::vector<std::string> environment;
   for (char** entry = environ; *entry; ++entry) {
     const std::string_view text = *entry;
-    const bool ours = std::ranges::any_of(kNotInherited, [&](std::string_view name) { return text.starts_with(name); });
+    const bool ours = std::ranges::any_of(
+        kNotInherited, [&](std::string_view name) { return text.starts_with(name); });
     if (!ours) environment.emplace_back(text);
   }
   return environment;
@@ -108,8 +118,10 @@ class SpawnActions {
     posix_spawn_file_actions_init(&files_);
     posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDOUT_FILENO);
-    if (plan.log_errors) posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDERR_FILENO);
-    for (const int fd : plan.inherited) posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: exec does not close it
+    if (plan.log_errors)
+      posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDERR_FILENO);
+    for (const int fd : plan.inherited)
+      posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: exec does not close it
 
     sigset_t none, stops;
     sigemptyset(&none);
@@ -118,7 +130,8 @@ class SpawnActions {
     posix_spawnattr_init(&attributes_);
     posix_spawnattr_setsigmask(&attributes_, &none);
     posix_spawnattr_setsigdefault(&attributes_, &stops);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    posix_spawnattr_setflags(&attributes_,
+                             POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   }
   ~SpawnActions() {
     posix_spawn_file_actions_destroy(&files_);
@@ -134,19 +147,23 @@ class SpawnActions {
   posix_spawnattr_t attributes_;
 };
 
-bool is_a_persons_fault(int error) { return error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR; }
+bool is_a_persons_fault(int error) {
+  return error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR;
+}
 
-/// The new process borrows the supervisor's memory until it is the daemon (vfork): the rings' mappings are not copied, which is
-/// most of what a fork would cost.
+/// The new process borrows the supervisor's memory until it is the daemon (vfork): the rings'
+/// mappings are not copied, which is most of what a fork would cost.
 Result<pid_t> start(Plan& plan) {
   const SpawnActions actions(plan);
   const auto arguments = pointers_to(plan.arguments);
   const auto environment = pointers_to(plan.environment);
   pid_t pid = -1;
-  const int error = posix_spawn(&pid, arguments[0], actions.files(), actions.attributes(), arguments.data(), environment.data());
+  const int error = posix_spawn(&pid, arguments[0], actions.files(), actions.attributes(),
+                                arguments.data(), environment.data());
   if (error == 0) return pid;
-  return fail(is_a_persons_fault(error) ? Errc::bad_config : Errc::unavailable,
-              fmt::format("the program {} cannot be started: {}", plan.arguments[0], std::strerror(error)));
+  return fail(
+      is_a_persons_fault(error) ? Errc::bad_config : Errc::unavailable,
+      fmt::format("the program {} cannot be started: {}", plan.arguments[0], std::strerror(error)));
 }
 
 }  // namespace
@@ -206,7 +223,9 @@ std::optional<Exit> Child::try_reap() {
   if (reaped_) return std::nullopt;
   if (reports_) return try_reap_adopted();
   siginfo_t info{};
-  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == 0) return std::nullopt;
+  if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+      info.si_pid == 0)
+    return std::nullopt;
   kill(-pid_, SIGKILL);  // before the status is taken: until then nobody else can have this number
   waitpid(pid_, nullptr, 0);
   reaped_ = true;
@@ -228,7 +247,8 @@ std::optional<Exit> Child::try_reap_adopted() {
   return exit.value_or(Exit{.unknown = true});
 }
 
-Result<std::string> output_of(const std::filesystem::path& program, const std::vector<std::string>& arguments, int limit_ms) {
+Result<std::string> output_of(const std::filesystem::path& program,
+                              const std::vector<std::string>& arguments, int limit_ms) {
   auto child = Child::spawn({.program = program, .arguments = arguments, .log_errors = false});
   if (!child) return tl::make_unexpected(child.error());
 
@@ -242,7 +262,8 @@ Result<std::string> output_of(const std::filesystem::path& program, const std::v
     if (count == 0) return output;
     if (count > 0) output.append(bytes.data(), static_cast<std::size_t>(count));
   }
-  return fail(Errc::unavailable, fmt::format("{} did not answer within {} ms", program.string(), limit_ms));
+  return fail(Errc::unavailable,
+              fmt::format("{} did not answer within {} ms", program.string(), limit_ms));
 }
 
 }  // namespace handcast::supervisor

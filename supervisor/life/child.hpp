@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -20,19 +21,21 @@ namespace handcast::supervisor {
 struct ChildSpec {
   std::filesystem::path program;
   std::vector<std::string> arguments;
-  std::vector<std::pair<std::string, int>> rings;  ///< stream and the supervisor's descriptor of its segment
+  std::vector<std::pair<std::string, int>>
+      rings;  ///< stream and the supervisor's descriptor of its segment
   std::int64_t epoch_ns = 0;
   bool spare = false;      ///< it prepares everything and waits for its turn
   bool log_errors = true;  ///< stderr is read with stdout; otherwise it is this process's own
 };
 
-/// One process of a daemon, leader of its own session. It outlives a supervisor that dies; destroying the object kills it and
-/// waits for its end.
+/// One process of a daemon, leader of its own session. It outlives a supervisor that dies;
+/// destroying the object kills it and waits for its end.
 class Child {
  public:
   /// Errors: bad_config (no such program), unavailable (no process or descriptor to be had).
   static Result<Child> spawn(const ChildSpec& spec);
-  /// A process that somebody else started. `reports` must outlive it; how it ended may stay unknown.
+  /// A process that somebody else started. `reports` must outlive it; how it ended may stay
+  /// unknown.
   static Child adopt(AdoptedProcess process, ExitReports& reports);
   Child(Child&& other) noexcept
       : pid_(std::exchange(other.pid_, -1)),
@@ -47,15 +50,20 @@ class Child {
   ~Child();
 
   pid_t pid() const { return pid_; }
-  int pidfd() const { return pidfd_.get(); }     ///< readable when the process has ended
-  int log_fd() const { return log_.get(); }      ///< what it writes to stdout and stderr; does not block
-  int ready_fd() const { return ready_.get(); }  ///< one newline when it is ready ('s' from a spare); does not block; -1 of an adopted one
+  int pidfd() const { return pidfd_.get(); }  ///< readable when the process has ended
+  int log_fd() const {
+    return log_.get();
+  }  ///< what it writes to stdout and stderr; does not block
+  int ready_fd() const {
+    return ready_.get();
+  }  ///< one newline when it is ready ('s' from a spare); does not block; -1 of an adopted one
   void signal(int number);
-  /// Lets a spare go to work. Without its turn it ends when this object, or the supervisor, is gone.
+  /// Lets a spare go to work. Without its turn it ends when this object, or the supervisor, is
+  /// gone.
   void give_turn();
 
-  /// Empty while it lives (of an adopted one: also until its end was reported, 300 ms at most). At its end: kills what is left
-  /// of its process group, then takes the exit status.
+  /// Empty while it lives (of an adopted one: also until its end was reported, 300 ms at most). At
+  /// its end: kills what is left of its process group, then takes the exit status.
   std::optional<Exit> try_reap();
   bool has_ended() const;
 
@@ -71,6 +79,7 @@ class Child {
 };
 
 /// The standard output of a short command, which is killed after `limit_ms`. Errors: unavailable.
-Result<std::string> output_of(const std::filesystem::path& program, const std::vector<std::string>& arguments, int limit_ms);
+Result<std::string> output_of(const std::filesystem::path& program,
+                              const std::vector<std::string>& arguments, int limit_ms);
 
 }  // namespace handcast::supervisor

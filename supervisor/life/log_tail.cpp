@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/log_tail.hpp"
 
 #include <unistd.h>
@@ -26,7 +27,8 @@ void LogTail::append(std::string_view bytes, const std::function<void(std::strin
   }
 }
 
-bool LogTail::read_from(int fd, const std::function<void(std::string_view)>& on_line, int most_reads) {
+bool LogTail::read_from(int fd, const std::function<void(std::string_view)>& on_line,
+                        int most_reads) {
   std::array<char, 4096> bytes;
   for (int i = 0; i < most_reads; ++i) {
     const auto count = ::read(fd, bytes.data(), bytes.size());

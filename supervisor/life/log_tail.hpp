@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
 #include <functional>
@@ -14,16 +15,20 @@ class LogTail {
   static constexpr std::size_t kLines = 200;
   static constexpr std::size_t kLongestLine = 4096;  ///< bytes; what is longer is cut into lines
 
-  static constexpr int kReadsAtOnce = 16;                            ///< of one that lives: it may write faster than its lines are printed
-  static constexpr int kAllReads = std::numeric_limits<int>::max();  ///< of one that is dead: its rest has an end
+  static constexpr int kReadsAtOnce =
+      16;  ///< of one that lives: it may write faster than its lines are printed
+  static constexpr int kAllReads =
+      std::numeric_limits<int>::max();  ///< of one that is dead: its rest has an end
 
   /// `on_line` is called for each line that `bytes` completes.
   void append(std::string_view bytes, const std::function<void(std::string_view)>& on_line);
   /// Appends what can be read without waiting. False where there will be no more.
-  bool read_from(int fd, const std::function<void(std::string_view)>& on_line, int most_reads = kReadsAtOnce);
+  bool read_from(int fd, const std::function<void(std::string_view)>& on_line,
+                 int most_reads = kReadsAtOnce);
   /// The newest `count` lines, oldest first.
   std::vector<std::string> last(std::size_t count) const;
-  /// What the newest line says, without the time, program and level that handcast's log puts in front. "" if there is none.
+  /// What the newest line says, without the time, program and level that handcast's log puts in
+  /// front. "" if there is none.
   std::string last_sentence() const;
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/restart_policy.hpp"
 
 #include <algorithm>
@@ -16,14 +17,18 @@ std::int64_t with_jitter(std::int64_t wait_ns, double jitter) {
   return wait_ns + static_cast<std::int64_t>(kMostJitter * jitter * static_cast<double>(wait_ns));
 }
 
-bool was_healthy(const Death& death) { return death.ready_ns && death.died_ns - *death.ready_ns >= kHealthyAfter_ns; }
+bool was_healthy(const Death& death) {
+  return death.ready_ns && death.died_ns - *death.ready_ns >= kHealthyAfter_ns;
+}
 
 }  // namespace
 
 Decision decide(DeathRecord record, const Death& death, double jitter) {
   using Action = Decision::Action;
   if (was_healthy(death)) record.streak = 0;
-  std::erase_if(record.recent_ns, [&](std::int64_t earlier_ns) { return death.died_ns - earlier_ns >= kStormWindow_ns; });
+  std::erase_if(record.recent_ns, [&](std::int64_t earlier_ns) {
+    return death.died_ns - earlier_ns >= kStormWindow_ns;
+  });
   record.recent_ns.push_back(death.died_ns);
 
   Decision decision;

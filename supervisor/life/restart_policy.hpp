@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -23,7 +24,8 @@ struct DeathRecord {
 struct Decision {
   enum class Action {
     restart,  ///< after wait_ns
-    degrade,  ///< it dies too often: reported, retried after wait_ns, while the rest of the rig goes on
+    degrade,  ///< it dies too often: reported, retried after wait_ns, while the rest of the rig
+              ///< goes on
     fail,     ///< exit 100: a person must change something
     retire    ///< exit 0 without being asked: its work is done
   };
@@ -39,9 +41,10 @@ inline constexpr std::int64_t kHealthyAfter_ns = 30'000'000'000;
 inline constexpr std::int64_t kStormWindow_ns = 60'000'000'000;
 inline constexpr std::size_t kStormDeaths = 10;
 
-/// The first restart comes at once, the next after 50 ms, 100 ms, … up to 5 s; 30 s of health make the next one the first again.
-/// Ten deaths within a minute are a storm, however they were spaced: neither health nor a quick restart clears that count, time
-/// does. `jitter` (0..1, drawn by the caller) makes a wait up to a quarter longer, so that services that died together do not come
+/// The first restart comes at once, the next after 50 ms, 100 ms, … up to 5 s; 30 s of health make
+/// the next one the first again. Ten deaths within a minute are a storm, however they were spaced:
+/// neither health nor a quick restart clears that count, time does. `jitter` (0..1, drawn by the
+/// caller) makes a wait up to a quarter longer, so that services that died together do not come
 /// back together.
 Decision decide(DeathRecord record, const Death& death, double jitter = 0);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/service.hpp"
 
 #include <fcntl.h>
@@ -18,8 +19,10 @@ namespace {
 constexpr std::int64_t kSpareAfterPromotion_ns = 1'000'000'000;
 
 /// The ring of this stream, to look at; empty where there is none.
-std::optional<ipc::RingView> look_at(std::string_view stream, const std::vector<std::pair<std::string, int>>& rings) {
-  const auto found = std::ranges::find_if(rings, [&](const auto& ring) { return ring.first == stream; });
+std::optional<ipc::RingView> look_at(std::string_view stream,
+                                     const std::vector<std::pair<std::string, int>>& rings) {
+  const auto found =
+      std::ranges::find_if(rings, [&](const auto& ring) { return ring.first == stream; });
   if (found == rings.end()) return std::nullopt;
   auto view = ipc::RingView::open(UniqueFd(fcntl(found->second, F_DUPFD_CLOEXEC, 3)));
   if (view) return std::move(*view);
@@ -61,12 +64,14 @@ Service::~Service() {
 
 std::vector<std::string> Service::arguments() const {
   std::vector<std::string> arguments{"--config", launch_.rig_file.string()};
-  if (!backend_override_.empty()) arguments.insert(arguments.end(), {"--set", spec_.name + ".backend=" + backend_override_});
+  if (!backend_override_.empty())
+    arguments.insert(arguments.end(), {"--set", spec_.name + ".backend=" + backend_override_});
   return arguments;
 }
 
 Result<Child> Service::spawn(bool spare) const {
-  return Child::spawn({launch_.program_folder / ("handcast-" + spec_.name), arguments(), launch_.rings, launch_.epoch_ns, spare});
+  return Child::spawn({launch_.program_folder / ("handcast-" + spec_.name), arguments(),
+                       launch_.rings, launch_.epoch_ns, spare});
 }
 
 void Service::hold() { state_ = State::starting; }
@@ -178,7 +183,8 @@ SavedService Service::saved() const {
 void Service::tick(std::int64_t now, bool needs_are_ready) {
   standby_.tick(now, launch_.ready_s, launch_.silent_s);
   if (child_ && adopted_) child_ended();  // its end may have been reported late
-  if (child_ && said_ready_ && state_ == State::starting) expect_first_message(now, needs_are_ready);
+  if (child_ && said_ready_ && state_ == State::starting)
+    expect_first_message(now, needs_are_ready);
   last_tick_ns_ = now;
   if (now < due_ns_) return;
   due_ns_ = kNever;
@@ -186,13 +192,16 @@ void Service::tick(std::int64_t now, bool needs_are_ready) {
   if (state_ == State::stopping)
     log::warning("{} does not stop; killed", spec_.name);
   else
-    log::warning("{} was not ready within {:g} s; killed", spec_.name, ns_to_seconds(now - started_ns_));
+    log::warning("{} was not ready within {:g} s; killed", spec_.name,
+                 ns_to_seconds(now - started_ns_));
   kill();
 }
 
 std::optional<double> Service::retry_s(std::int64_t now) const {
-  const bool waits = !child_ && (state_ == State::starting || state_ == State::degraded) && due_ns_ != kNever;
-  return waits ? std::optional(ns_to_seconds(std::max<std::int64_t>(due_ns_ - now, 0))) : std::nullopt;
+  const bool waits =
+      !child_ && (state_ == State::starting || state_ == State::degraded) && due_ns_ != kNever;
+  return waits ? std::optional(ns_to_seconds(std::max<std::int64_t>(due_ns_ - now, 0)))
+               : std::nullopt;
 }
 
 void Service::forgive(std::int64_t span_ns) {
@@ -219,7 +228,9 @@ void Service::read_ready() {
   if (!stream_ || has_published()) became_ready();
 }
 
-Service::StreamMark Service::stream_mark() const { return stream_ ? StreamMark{stream_->epoch(), stream_->sequence()} : StreamMark{}; }
+Service::StreamMark Service::stream_mark() const {
+  return stream_ ? StreamMark{stream_->epoch(), stream_->sequence()} : StreamMark{};
+}
 
 // An adopted service may have published before, in the same epoch.
 bool Service::has_published() const {
@@ -232,7 +243,8 @@ void Service::expect_first_message(std::int64_t now, bool needs_are_ready) {
   if (!needs_are_ready) return;
   dry_ns_ += now - last_tick_ns_;
   if (dry_ns_ < seconds_to_ns(launch_.ready_s)) return;
-  log::warning("{} said it was ready and has published nothing for {:g} s; killed", spec_.name, launch_.ready_s);
+  log::warning("{} said it was ready and has published nothing for {:g} s; killed", spec_.name,
+               launch_.ready_s);
   dry_ns_ = 0;
   kill();
 }
@@ -260,7 +272,8 @@ void Service::let_go(const Child& child) {
 void Service::child_ended() {
   const auto exit = child_->try_reap();
   if (!exit) {
-    if (adopted_ && child_->has_ended()) loop_.forget(child_->pidfd());  // tick() asks again: how it ended will be reported
+    if (adopted_ && child_->has_ended())
+      loop_.forget(child_->pidfd());  // tick() asks again: how it ended will be reported
     return;
   }
   const Child dead = std::move(*child_);
@@ -274,7 +287,8 @@ void Service::child_ended() {
     return is_running() ? void() : stopped();
   }
   const auto decision = judge(*exit);
-  const bool at_once = state_ == State::starting && (decision.wait_ns == 0 || standby_.is_prepared());
+  const bool at_once =
+      state_ == State::starting && (decision.wait_ns == 0 || standby_.is_prepared());
   if (at_once) start();
   read_log(dead, LogTail::kAllReads);
   let_go(dead);
@@ -320,7 +334,8 @@ void Service::log_death(Exit exit, const Decision& decision) const {
     log::warning("{} died ({}); its spare goes on", spec_.name, exit.describe());
   else
     log::warning("{} died ({}){}; started again after {:g} ms", spec_.name, exit.describe(),
-                 decision.action == Decision::Action::degrade ? ", too often" : "", ns_to_ms(decision.wait_ns));
+                 decision.action == Decision::Action::degrade ? ", too often" : "",
+                 ns_to_ms(decision.wait_ns));
 }
 
 void Service::note_failed_start(const Error& error) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/standby.hpp"
 
 #include <signal.h>
@@ -74,7 +75,8 @@ void Standby::tick(std::int64_t now, double ready_s, double silent_s) {
     log::warning("the spare of {} was not prepared within {:g} s; killed", host_.name, ready_s);
   } else {
     if (now - sign_ns_ < seconds_to_ns(silent_s)) return;
-    log::warning("the spare of {} has given no sign of life for {:g} s; killed", host_.name, silent_s);
+    log::warning("the spare of {} has given no sign of life for {:g} s; killed", host_.name,
+                 silent_s);
   }
   kill();
   kill_ns_ = started_ns_ = sign_ns_ = now;  // that is said once, then again only if it survives
@@ -114,11 +116,14 @@ void Standby::replace_after(const Death& death) {
   auto decision = decide(std::move(deaths_), death);
   deaths_ = std::move(decision.record);
   if (decision.action == Decision::Action::fail) {
-    log::warning("the spare of {} ended ({}); {} has none until it is started again", host_.name, death.exit.describe(), host_.name);
+    log::warning("the spare of {} ended ({}); {} has none until it is started again", host_.name,
+                 death.exit.describe(), host_.name);
     return;
   }
-  const auto wait_ns = decision.action == Decision::Action::restart ? decision.wait_ns : kLongestWait_ns;
-  log::warning("the spare of {} ended ({}); another one in {:g} ms", host_.name, death.exit.describe(), ns_to_ms(wait_ns));
+  const auto wait_ns =
+      decision.action == Decision::Action::restart ? decision.wait_ns : kLongestWait_ns;
+  log::warning("the spare of {} ended ({}); another one in {:g} ms", host_.name,
+               death.exit.describe(), ns_to_ms(wait_ns));
   start_ns_ = death.died_ns + wait_ns;
 }
 

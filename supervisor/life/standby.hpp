@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -12,8 +13,9 @@
 
 namespace handcast::supervisor {
 
-/// The spare of a service: a second process that has prepared everything and waits for its turn. It is kept alive by the restart
-/// policy's waits; its deaths are its own and never count against the service.
+/// The spare of a service: a second process that has prepared everything and waits for its turn. It
+/// is kept alive by the restart policy's waits; its deaths are its own and never count against the
+/// service.
 class Standby {
  public:
   struct Host {

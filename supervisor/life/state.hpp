@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>
@@ -14,7 +15,10 @@ enum class State {
   failed     ///< a person must change something; not retried
 };
 
-inline constexpr std::array<std::string_view, 6> kStateNames{"stopped", "starting", "ready", "stopping", "degraded", "failed"};
-constexpr std::string_view name_of(State state) { return kStateNames[static_cast<std::size_t>(state)]; }
+inline constexpr std::array<std::string_view, 6> kStateNames{"stopped",  "starting", "ready",
+                                                             "stopping", "degraded", "failed"};
+constexpr std::string_view name_of(State state) {
+  return kStateNames[static_cast<std::size_t>(state)];
+}
 
 }  // namespace handcast::supervisor

@@ -1,5 +1,7 @@
-// handcast-exporter: a rig's figures for Prometheus. A service of the rig like the others, but it looks on as `handcast top` does.
-// It keeps the services' contract (services/runtime/context.hpp) by hand: this room must not include that one.
+// SPDX-License-Identifier: Apache-2.0
+// handcast-exporter: a rig's figures for Prometheus. A service of the rig like the others, but it
+// looks on as `handcast top` does. It keeps the services' contract (services/runtime/context.hpp)
+// by hand: this room must not include that one.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
@@ -12,6 +14,7 @@
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/version.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/writer.hpp"
 #include "supervisor/exit.hpp"
@@ -40,7 +43,8 @@ void install_signals() {
   signal(SIGPIPE, SIG_IGN);
 }
 
-/// The descriptor of a stream in HANDCAST_RINGS ("camera.frames=5,…"), or the number in another variable; empty where there is none.
+/// The descriptor of a stream in HANDCAST_RINGS ("camera.frames=5,…"), or the number in another
+/// variable; empty where there is none.
 std::optional<int> descriptor_in(const char* variable, const std::string& stream = "") {
   const char* value = std::getenv(variable);
   if (value == nullptr) return std::nullopt;
@@ -54,7 +58,8 @@ std::optional<int> descriptor_in(const char* variable, const std::string& stream
   return fd;
 }
 
-/// Where the supervisor sees that this process lives. Without one (started by hand) it lives unseen.
+/// Where the supervisor sees that this process lives. Without one (started by hand) it lives
+/// unseen.
 Heart open_heart() {
   const auto fd = descriptor_in("HANDCAST_RINGS", "marks.exporter");
   if (!fd) return std::nullopt;
@@ -92,9 +97,11 @@ int serve(const Options& options) {
   install_signals();
   const auto rig = config::load_rig(options.value("--config"), options.all("--set"));
   if (!rig) return give_up(rig.error());
-  if (rig->supervisor.metrics_port == 0) return give_up({Errc::bad_config, "supervisor.metrics_port is 0: there is nowhere to serve"});
+  if (rig->supervisor.metrics_port == 0)
+    return give_up({Errc::bad_config, "supervisor.metrics_port is 0: there is nowhere to serve"});
   RigWatcher watcher(rig->name);
-  const auto server = MetricsServer::listen(rig->supervisor.metrics_port, [&] { return watcher.look(); });
+  const auto server =
+      MetricsServer::listen(rig->supervisor.metrics_port, [&] { return watcher.look(); });
   if (!server) return give_up(server.error());
   auto heart = open_heart();
   tell_ready();
@@ -108,13 +115,15 @@ int serve(const Options& options) {
 int main(int argc, char** argv) {
   using namespace handcast::supervisor;
   handcast::log::set_program("exporter");
-  const auto options =
-      sort_options({argv + 1, argv + argc}, {.with_value = {"--config", "--set"}, .flags = {"--help", "--version", "--backends"}});
+  const auto options = sort_options(
+      {argv + 1, argv + argc},
+      {.with_value = {"--config", "--set"}, .flags = {"--help", "--version", "--backends"}});
   if (!options) return give_up({handcast::Errc::bad_config, options.error().what});
   if (options->has("--backends")) return 0;  // it has none to choose from
   if (options->has("--help")) fmt::print("{}", kHelp);
-  if (options->has("--version")) fmt::print("handcast-exporter {}\n", HANDCAST_VERSION);
+  if (options->has("--version")) fmt::print("handcast-exporter {}\n", handcast::version());
   if (options->has("--help") || options->has("--version")) return 0;
-  if (!options->has("--config")) return give_up({handcast::Errc::bad_config, "--config FILE is needed: the rig"});
+  if (!options->has("--config"))
+    return give_up({handcast::Errc::bad_config, "--config FILE is needed: the rig"});
   return serve(*options);
 }

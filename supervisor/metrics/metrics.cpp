@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/metrics/metrics.hpp"
 
 #include <fmt/format.h>
@@ -27,8 +28,12 @@ using Labels = std::vector<ClientMetric::Label>;
 struct Family {
   MetricFamily family;
 
-  static Family counter(std::string name, std::string help) { return {{std::move(name), std::move(help), MetricType::Counter, {}}}; }
-  static Family gauge(std::string name, std::string help) { return {{std::move(name), std::move(help), MetricType::Gauge, {}}}; }
+  static Family counter(std::string name, std::string help) {
+    return {{std::move(name), std::move(help), MetricType::Counter, {}}};
+  }
+  static Family gauge(std::string name, std::string help) {
+    return {{std::move(name), std::move(help), MetricType::Gauge, {}}};
+  }
 
   template <class Number>
   void add(Labels labels, Number number) {
@@ -48,12 +53,15 @@ MetricFamily over(const std::vector<Row>& rows, Family family, Label labels_of, 
   return std::move(family.family);
 }
 
-void append(std::vector<MetricFamily>& families, std::vector<MetricFamily> more) { std::ranges::move(more, std::back_inserter(families)); }
+void append(std::vector<MetricFamily>& families, std::vector<MetricFamily> more) {
+  std::ranges::move(more, std::back_inserter(families));
+}
 
 std::vector<MetricFamily> families_of_rig(const TopModel& model) {
   auto info = Family::gauge("handcast_rig_info", "The rig these figures are of; always 1.");
   auto up = Family::gauge("handcast_supervisor_up", "1 while the rig's supervisor answers.");
-  auto uptime = Family::gauge("handcast_supervisor_uptime_seconds", "Since the rig's start, whichever supervisor it has by now.");
+  auto uptime = Family::gauge("handcast_supervisor_uptime_seconds",
+                              "Since the rig's start, whichever supervisor it has by now.");
   info.add({{"rig", model.rig}}, 1);
   up.add({}, model.missing.empty() ? 1 : 0);
   uptime.add({}, model.uptime_s);
@@ -61,9 +69,12 @@ std::vector<MetricFamily> families_of_rig(const TopModel& model) {
 }
 
 MetricFamily states_of(const std::vector<ServiceRow>& services) {
-  auto states = Family::gauge("handcast_service_state", "1 for the state a service is in, 0 for all others.");
+  auto states =
+      Family::gauge("handcast_service_state", "1 for the state a service is in, 0 for all others.");
   for (const auto& service : services)
-    for (const auto state : kStateNames) states.add({{"service", service.name}, {"state", std::string(state)}}, service.state == state);
+    for (const auto state : kStateNames)
+      states.add({{"service", service.name}, {"state", std::string(state)}},
+                 service.state == state);
   return states.family;
 }
 
@@ -71,25 +82,37 @@ std::vector<MetricFamily> families_of(const std::vector<ServiceRow>& services) {
   const auto labels = [](const ServiceRow& service) { return Labels{{"service", service.name}}; };
   const auto usage = [](auto figure) {
     return [figure](const ServiceRow& service) -> std::optional<double> {
-      return service.usage ? std::optional(static_cast<double>(figure(*service.usage))) : std::nullopt;
+      return service.usage ? std::optional(static_cast<double>(figure(*service.usage)))
+                           : std::nullopt;
     };
   };
   return {
       over(services, Family::gauge("handcast_service_up", "1 while a service is ready."), labels,
            [](const auto& service) { return service.state == "ready" ? 1.0 : 0.0; }),
       states_of(services),
-      over(services, Family::counter("handcast_service_restarts_total", "How often a service was started again."), labels,
-           [](const auto& service) { return service.restarts; }),
-      over(services, Family::gauge("handcast_service_uptime_seconds", "Since the start of a service's process."), labels,
-           [](const auto& service) { return service.uptime_s; }),
-      over(services, Family::counter("handcast_service_cpu_seconds_total", "Processor time of a service's process."), labels,
+      over(services,
+           Family::counter("handcast_service_restarts_total",
+                           "How often a service was started again."),
+           labels, [](const auto& service) { return service.restarts; }),
+      over(services,
+           Family::gauge("handcast_service_uptime_seconds",
+                         "Since the start of a service's process."),
+           labels, [](const auto& service) { return service.uptime_s; }),
+      over(services,
+           Family::counter("handcast_service_cpu_seconds_total",
+                           "Processor time of a service's process."),
+           labels,
            usage([](const ProcessUsage& process) { return ns_to_seconds(process.cpu_ns); })),
-      over(services, Family::gauge("handcast_service_resident_bytes", "Memory of a service's process, shared rings included."), labels,
-           usage([](const ProcessUsage& process) { return process.resident_bytes; })),
-      over(services, Family::gauge("handcast_service_threads", "Threads of a service's process."), labels,
-           usage([](const ProcessUsage& process) { return process.threads; })),
-      over(services, Family::gauge("handcast_service_open_descriptors", "Open file descriptors of a service's process."), labels,
-           usage([](const ProcessUsage& process) { return process.descriptors; })),
+      over(services,
+           Family::gauge("handcast_service_resident_bytes",
+                         "Memory of a service's process, shared rings included."),
+           labels, usage([](const ProcessUsage& process) { return process.resident_bytes; })),
+      over(services, Family::gauge("handcast_service_threads", "Threads of a service's process."),
+           labels, usage([](const ProcessUsage& process) { return process.threads; })),
+      over(services,
+           Family::gauge("handcast_service_open_descriptors",
+                         "Open file descriptors of a service's process."),
+           labels, usage([](const ProcessUsage& process) { return process.descriptors; })),
   };
 }
 
@@ -99,16 +122,25 @@ std::vector<MetricFamily> families_of(const std::vector<RingRow>& rings) {
     return span_ns ? std::optional(ns_to_seconds(*span_ns)) : std::nullopt;
   };
   return {
-      over(rings, Family::counter("handcast_ring_messages_total", "Messages published in a ring, by all its writers."), labels,
-           [](const auto& ring) { return ring.now.published; }),
-      over(rings, Family::counter("handcast_ring_dropped_total", "Messages a writer had to drop: every slot was leased."), labels,
-           [](const auto& ring) { return ring.now.dropped; }),
-      over(rings, Family::gauge("handcast_ring_newest_age_seconds", "Since the newest message of a ring was published."), labels,
-           [&](const auto& ring) { return seconds(ring.newest_age_ns); }),
-      over(rings, Family::gauge("handcast_ring_latency_seconds", "From the origin of a ring's newest message to its publication."), labels,
-           [&](const auto& ring) { return seconds(ring.latency_ns); }),
-      over(rings, Family::gauge("handcast_ring_epoch", "Number of a ring's last writer: 1 was the first."), labels,
-           [](const auto& ring) { return ring.now.epoch; }),
+      over(rings,
+           Family::counter("handcast_ring_messages_total",
+                           "Messages published in a ring, by all its writers."),
+           labels, [](const auto& ring) { return ring.now.published; }),
+      over(rings,
+           Family::counter("handcast_ring_dropped_total",
+                           "Messages a writer had to drop: every slot was leased."),
+           labels, [](const auto& ring) { return ring.now.dropped; }),
+      over(rings,
+           Family::gauge("handcast_ring_newest_age_seconds",
+                         "Since the newest message of a ring was published."),
+           labels, [&](const auto& ring) { return seconds(ring.newest_age_ns); }),
+      over(rings,
+           Family::gauge("handcast_ring_latency_seconds",
+                         "From the origin of a ring's newest message to its publication."),
+           labels, [&](const auto& ring) { return seconds(ring.latency_ns); }),
+      over(rings,
+           Family::gauge("handcast_ring_epoch", "Number of a ring's last writer: 1 was the first."),
+           labels, [](const auto& ring) { return ring.now.epoch; }),
   };
 }
 
@@ -122,39 +154,56 @@ std::vector<MetricFamily> families_of_readers(const std::vector<RingRow>& rings)
   std::vector<RingReader> readers;
   for (const auto& ring : rings)
     for (const auto& reader : ring.readers)
-      readers.push_back({{{"ring", ring.now.stream}, {"reader", reader.who}, {"row", std::to_string(reader.now.row)}}, reader});
+      readers.push_back({{{"ring", ring.now.stream},
+                          {"reader", reader.who},
+                          {"row", std::to_string(reader.now.row)}},
+                         reader});
   const auto labels = [](const RingReader& reader) { return reader.labels; };
   const auto oldest_lease = [](const RingReader& reader) {
     return ns_to_seconds(std::max<std::int64_t>(0, std::ranges::max(reader.row.now.lease_ages_ns)));
   };
   return {
-      over(readers, Family::counter("handcast_reader_received_total", "Messages a reader has taken."), labels,
-           [](const auto& reader) { return reader.row.now.received; }),
-      over(readers, Family::counter("handcast_reader_skipped_total", "Messages that passed a reader unread."), labels,
-           [](const auto& reader) { return reader.row.now.skipped; }),
-      over(readers, Family::counter("handcast_reader_unusable_total", "Messages that made no sense to a reader."), labels,
-           [](const auto& reader) { return reader.row.now.unusable; }),
-      over(readers, Family::gauge("handcast_reader_lag_messages", "Messages between a ring's newest and a reader's last."), labels,
-           [](const auto& reader) { return reader.row.now.lag; }),
-      over(readers, Family::gauge("handcast_reader_age_seconds", "Age of a reader's last message when it was taken."), labels,
-           [](const auto& reader) { return ns_to_seconds(reader.row.now.age_ns); }),
-      over(readers, Family::gauge("handcast_reader_lease_seconds", "Age of the oldest message a reader holds in place; 0: none."), labels,
-           oldest_lease),
+      over(readers,
+           Family::counter("handcast_reader_received_total", "Messages a reader has taken."),
+           labels, [](const auto& reader) { return reader.row.now.received; }),
+      over(
+          readers,
+          Family::counter("handcast_reader_skipped_total", "Messages that passed a reader unread."),
+          labels, [](const auto& reader) { return reader.row.now.skipped; }),
+      over(readers,
+           Family::counter("handcast_reader_unusable_total",
+                           "Messages that made no sense to a reader."),
+           labels, [](const auto& reader) { return reader.row.now.unusable; }),
+      over(readers,
+           Family::gauge("handcast_reader_lag_messages",
+                         "Messages between a ring's newest and a reader's last."),
+           labels, [](const auto& reader) { return reader.row.now.lag; }),
+      over(readers,
+           Family::gauge("handcast_reader_age_seconds",
+                         "Age of a reader's last message when it was taken."),
+           labels, [](const auto& reader) { return ns_to_seconds(reader.row.now.age_ns); }),
+      over(readers,
+           Family::gauge("handcast_reader_lease_seconds",
+                         "Age of the oldest message a reader holds in place; 0: none."),
+           labels, oldest_lease),
   };
 }
 
 MetricFamily stages_of(const nlohmann::json& status) {
-  auto stages = Family::gauge("handcast_stage_seconds", "What a stage took in the last ten seconds, by quantile.");
+  auto stages = Family::gauge("handcast_stage_seconds",
+                              "What a stage took in the last ten seconds, by quantile.");
   if (!status.contains("stage_us")) return stages.family;
   for (const auto& [stage, times] : status["stage_us"].items())
     for (const auto& [key, quantile] : {std::pair{"p50", "0.5"}, std::pair{"p99", "0.99"}})
       if (times.contains(key) && times[key].is_number())
-        stages.add({{"stage", stage}, {"quantile", quantile}}, times[key].template get<double>() * 1e-6);
+        stages.add({{"stage", stage}, {"quantile", quantile}},
+                   times[key].template get<double>() * 1e-6);
   return stages.family;
 }
 
 MetricFamily rungs_of(const nlohmann::json& status) {
-  auto rungs = Family::counter("handcast_rung_hands_total", "Hands of drawn frames that were given each rung of the ladder.");
+  auto rungs = Family::counter("handcast_rung_hands_total",
+                               "Hands of drawn frames that were given each rung of the ladder.");
   if (!status.contains("rungs")) return rungs.family;
   for (const auto& [rung, hands] : status["rungs"].items())
     if (hands.is_number()) rungs.add({{"rung", rung}}, hands.template get<double>());
@@ -189,7 +238,9 @@ class Collector : public prometheus::Collectable {
 
 }  // namespace
 
-std::string metrics_text(const RigLook& look) { return prometheus::TextSerializer().Serialize(metrics_of(look)); }
+std::string metrics_text(const RigLook& look) {
+  return prometheus::TextSerializer().Serialize(metrics_of(look));
+}
 
 struct MetricsServer::Parts {
   std::shared_ptr<Collector> collector;
@@ -197,14 +248,16 @@ struct MetricsServer::Parts {
 };
 
 Result<MetricsServer> MetricsServer::listen(int port, std::function<RigLook()> look) try {
-  auto parts = std::unique_ptr<Parts>(
-      new Parts{std::make_shared<Collector>(std::move(look)), prometheus::Exposer(fmt::format("127.0.0.1:{}", port), 1)});
+  auto parts =
+      std::unique_ptr<Parts>(new Parts{std::make_shared<Collector>(std::move(look)),
+                                       prometheus::Exposer(fmt::format("127.0.0.1:{}", port), 1)});
   parts->exposer.RegisterCollectable(parts->collector);
   return MetricsServer(std::move(parts));
 } catch (const std::exception&) {
-  return fail(
-      Errc::bad_config,
-      fmt::format("port {} of 127.0.0.1 cannot be listened at (is it taken?); set supervisor.metrics_port to another, or to 0", port));
+  return fail(Errc::bad_config,
+              fmt::format("port {} of 127.0.0.1 cannot be listened at (is it taken?); set "
+                          "supervisor.metrics_port to another, or to 0",
+                          port));
 }
 
 MetricsServer::MetricsServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}

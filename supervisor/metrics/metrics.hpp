@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
 #include <memory>
@@ -8,10 +9,12 @@
 
 namespace handcast::supervisor {
 
-/// A rig's figures as Prometheus reads them (text format 0.0.4). All are counts since a start or states of now: rates are Prometheus's.
+/// A rig's figures as Prometheus reads them (text format 0.0.4). All are counts since a start or
+/// states of now: rates are Prometheus's.
 std::string metrics_text(const RigLook& look);
 
-/// Serves them at http://127.0.0.1:PORT/metrics, to this machine alone, as long as the object lives.
+/// Serves them at http://127.0.0.1:PORT/metrics, to this machine alone, as long as the object
+/// lives.
 class MetricsServer {
  public:
   /// `look` is called for each scrape, from another thread, never twice at the same time.

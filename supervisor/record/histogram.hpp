@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
 
 namespace handcast::supervisor {
 
-/// How long something took, many times. Buckets are logarithmic, 16 to an octave: a percentile is right within 4.5 %.
+/// How long something took, many times. Buckets are logarithmic, 16 to an octave: a percentile is
+/// right within 4.5 %.
 class Histogram {
  public:
   void add(std::int64_t span_ns);

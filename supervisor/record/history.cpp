@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/record/history.hpp"
 
 #include <fcntl.h>
@@ -35,14 +36,17 @@ ServiceName name_field(std::string_view name) {
 }
 
 /// `kept` gets the marks that make sense; how many there are.
-std::uint32_t keep_sensible(const msg::StageMarks& marks, std::array<msg::StageMark, kMostMarks>& kept) {
+std::uint32_t keep_sensible(const msg::StageMarks& marks,
+                            std::array<msg::StageMark, kMostMarks>& kept) {
   const auto count = std::min<std::size_t>(marks.count, kMostMarks);
-  const auto end = std::copy_if(marks.marks.begin(), marks.marks.begin() + count, kept.begin(), makes_sense);
+  const auto end =
+      std::copy_if(marks.marks.begin(), marks.marks.begin() + count, kept.begin(), makes_sense);
   return static_cast<std::uint32_t>(end - kept.begin());
 }
 
 tl::unexpected<Error> no_memory() {
-  return fail(Errc::unavailable, fmt::format("the history finds no memory for a snapshot: {}", std::strerror(errno)));
+  return fail(Errc::unavailable,
+              fmt::format("the history finds no memory for a snapshot: {}", std::strerror(errno)));
 }
 
 Result<void> write_all(int fd, std::span<const std::byte> bytes) {
@@ -64,10 +68,12 @@ std::uint32_t History::index_of(std::string_view service) {
   return index;
 }
 
-/// The newest block, or where that is full the oldest one, whose frames are forgotten, or a new one while there may be more.
+/// The newest block, or where that is full the oldest one, whose frames are forgotten, or a new one
+/// while there may be more.
 History::Block& History::block_with_room(std::size_t bytes, std::int64_t time_ns) {
   if (!blocks_.empty() && blocks_.back().used + bytes <= kBlockBytes) return blocks_.back();
-  const bool forget_oldest = !blocks_.empty() && (blocks_.front().newest_ns < time_ns - span_ns_ || blocks_.size() == kMostBlocks);
+  const bool forget_oldest = !blocks_.empty() && (blocks_.front().newest_ns < time_ns - span_ns_ ||
+                                                  blocks_.size() == kMostBlocks);
   if (forget_oldest)
     std::rotate(blocks_.begin(), blocks_.begin() + 1, blocks_.end());
   else
@@ -85,12 +91,14 @@ void History::note(std::string_view service, const msg::StageMarks& marks, std::
   std::array<msg::StageMark, kMostMarks> kept;
   head.marks = keep_sensible(marks, kept);
   if (head.marks == 0) return;
-  head.missed = static_cast<std::uint32_t>(std::min<std::uint64_t>(std::exchange(untold, 0), std::numeric_limits<std::uint32_t>::max()));
+  head.missed = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(std::exchange(untold, 0), std::numeric_limits<std::uint32_t>::max()));
 
   const auto time_ns = std::max<std::int64_t>(head.header.published_ns, 0);
   auto& block = block_with_room(bytes_of(head), time_ns);
   std::memcpy(block.memory.get() + block.used, &head, sizeof(head));
-  std::memcpy(block.memory.get() + block.used + sizeof(head), kept.data(), head.marks * sizeof(kept[0]));
+  std::memcpy(block.memory.get() + block.used + sizeof(head), kept.data(),
+              head.marks * sizeof(kept[0]));
   block.used += bytes_of(head);
   block.oldest_ns = std::min(block.oldest_ns, time_ns);
   block.newest_ns = std::max(block.newest_ns, time_ns);
@@ -107,7 +115,8 @@ std::vector<std::span<const std::byte>> History::frames_since(std::int64_t since
     }
     for (std::size_t at = 0; at < block.used && block.newest_ns >= since_ns;) {
       const auto head = head_at(block.memory.get() + at);
-      if (head.header.published_ns >= since_ns) pieces.emplace_back(block.memory.get() + at, bytes_of(head));
+      if (head.header.published_ns >= since_ns)
+        pieces.emplace_back(block.memory.get() + at, bytes_of(head));
       at += bytes_of(head);
     }
   }
@@ -118,7 +127,9 @@ Result<UniqueFd> History::snapshot(std::int64_t since_ns) const {
   UniqueFd file(memfd_create("handcast history", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!file) return no_memory();
 
-  FileHead head{.taken_ns = now_ns(), .supervisor = getpid(), .services = static_cast<std::uint32_t>(services_.size())};
+  FileHead head{.taken_ns = now_ns(),
+                .supervisor = getpid(),
+                .services = static_cast<std::uint32_t>(services_.size())};
   std::vector<ServiceName> names;
   for (const auto& service : services_) names.push_back(name_field(service.name));
   auto pieces = frames_since(std::max(since_ns, newest_ns_ - span_ns_));
@@ -126,8 +137,10 @@ Result<UniqueFd> History::snapshot(std::int64_t since_ns) const {
   for (const auto& piece : pieces) head.bytes += piece.size();
 
   for (const auto& piece : pieces)
-    if (const auto written = write_all(file.get(), piece); !written) return tl::make_unexpected(written.error());
-  if (fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0) return no_memory();
+    if (const auto written = write_all(file.get(), piece); !written)
+      return tl::make_unexpected(written.error());
+  if (fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0)
+    return no_memory();
   return file;
 }
 

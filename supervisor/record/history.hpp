@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -20,12 +21,14 @@ namespace handcast::supervisor {
 /// What one service spent on one frame.
 struct FrameRecord {
   std::uint32_t service = 0;  ///< index into the names
-  std::uint32_t missed = 0;   ///< frames of this service before this one whose marks were overwritten before they were read
+  std::uint32_t missed = 0;   ///< frames of this service before this one whose marks were
+                              ///< overwritten before they were read
   msg::Header header;
   std::vector<msg::StageMark> marks;  ///< in the order of their making; none ends before it begins
 };
 
-/// The recorder's memory of the last frames: bounded in time and in bytes, in the order in which they were read.
+/// The recorder's memory of the last frames: bounded in time and in bytes, in the order in which
+/// they were read.
 class History {
  public:
   static constexpr std::size_t kBlockBytes = 256 << 10;
@@ -37,10 +40,11 @@ class History {
 
   /// Gives the service its place in the order of the services, before its first frame.
   void expect(std::string_view service) { index_of(service); }
-  /// Heart-beats are not kept, nor marks that make no sense. Allocates only until the history is as long as it gets.
+  /// Heart-beats are not kept, nor marks that make no sense. Allocates only until the history is as
+  /// long as it gets.
   void note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed);
-  /// Everything since `since_ns` as a memory file (sealed, read_history() reads it): what a tool gets over the control socket.
-  /// Errors: unavailable.
+  /// Everything since `since_ns` as a memory file (sealed, read_history() reads it): what a tool
+  /// gets over the control socket. Errors: unavailable.
   Result<UniqueFd> snapshot(std::int64_t since_ns) const;
   std::size_t bytes() const { return blocks_.size() * kBlockBytes; }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>
@@ -5,8 +6,9 @@
 
 #include "ipc/msg/stage_mark.hpp"
 
-/// How frames lie in the history's memory and in its snapshots: FileHead, the services' names, then per frame a FrameHead and its
-/// marks. One machine writes and reads it, so the numbers are as the machine has them.
+/// How frames lie in the history's memory and in its snapshots: FileHead, the services' names, then
+/// per frame a FrameHead and its marks. One machine writes and reads it, so the numbers are as the
+/// machine has them.
 namespace handcast::supervisor {
 
 struct FileHead {
@@ -29,7 +31,9 @@ struct FrameHead {
 
 inline constexpr std::size_t kMostMarks = std::tuple_size_v<decltype(msg::StageMarks::marks)>;
 
-inline constexpr std::size_t bytes_of(const FrameHead& head) { return sizeof(FrameHead) + head.marks * sizeof(msg::StageMark); }
+inline constexpr std::size_t bytes_of(const FrameHead& head) {
+  return sizeof(FrameHead) + head.marks * sizeof(msg::StageMark);
+}
 
 /// Marks come from memory that others write.
 inline bool makes_sense(const msg::StageMark& mark) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a snapshot back. It came over a socket: nothing in it is taken for granted.
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -16,16 +17,20 @@ namespace {
 constexpr std::size_t kMostBytes = 2 * History::kMostBlocks * History::kBlockBytes;
 constexpr std::uint32_t kMostServices = 1024;
 
-tl::unexpected<Error> nonsense(std::string_view what) { return fail(Errc::bad_data, fmt::format("the history makes no sense: {}", what)); }
+tl::unexpected<Error> nonsense(std::string_view what) {
+  return fail(Errc::bad_data, fmt::format("the history makes no sense: {}", what));
+}
 
 /// A private copy, so that whatever happens to the file from here on changes nothing.
 Result<std::vector<std::byte>> contents_of(int fd) {
   struct stat file {};
   if (fstat(fd, &file) != 0 || !S_ISREG(file.st_mode)) return nonsense("it is not a file");
-  if (file.st_size < 0 || static_cast<std::size_t>(file.st_size) > kMostBytes) return nonsense("its size");
+  if (file.st_size < 0 || static_cast<std::size_t>(file.st_size) > kMostBytes)
+    return nonsense("its size");
   std::vector<std::byte> bytes(static_cast<std::size_t>(file.st_size));
   for (std::size_t read = 0; read < bytes.size();) {
-    const auto count = ::pread(fd, bytes.data() + read, bytes.size() - read, static_cast<off_t>(read));
+    const auto count =
+        ::pread(fd, bytes.data() + read, bytes.size() - read, static_cast<off_t>(read));
     if (count <= 0) return nonsense("it ends early");
     read += static_cast<std::size_t>(count);
   }

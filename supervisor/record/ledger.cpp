@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/record/ledger.hpp"
 
 #include <algorithm>
@@ -25,7 +26,8 @@ void FrameCount::add(const msg::Header& frame, std::uint64_t missed) {
   if (time_ns - first_ns_ >= kSecond_ns) settled_ += frames;
   newest_origin_ns_ = frame.origin_ns;
   recent_.push_back({time_ns, frames});
-  while (time_ns - recent_.front().time_ns > kRecent_ns || recent_.size() > kMostRecent) recent_.pop_front();
+  while (time_ns - recent_.front().time_ns > kRecent_ns || recent_.size() > kMostRecent)
+    recent_.pop_front();
 }
 
 double FrameCount::recent_hz(std::int64_t now_ns) const {
@@ -36,7 +38,9 @@ double FrameCount::recent_hz(std::int64_t now_ns) const {
   return per_second(frames, now_ns - from_ns);
 }
 
-double FrameCount::held_hz(std::int64_t now_ns) const { return per_second(settled_, now_ns - first_ns_ - kSecond_ns); }
+double FrameCount::held_hz(std::int64_t now_ns) const {
+  return per_second(settled_, now_ns - first_ns_ - kSecond_ns);
+}
 
 std::optional<double> FrameCount::newest_age_ms(std::int64_t now_ns) const {
   if (total_ == 0) return std::nullopt;
@@ -65,11 +69,13 @@ void Ledger::note(std::string_view service, const msg::StageMarks& marks, std::u
   for (std::size_t i = 0; i < count; ++i) {
     const auto& mark = marks.marks[i];
     const auto stage = static_cast<std::size_t>(mark.stage);
-    if (stage >= msg::kStageNames.size()) continue;  // shared memory: nothing read from it is trusted
+    if (stage >= msg::kStageNames.size())
+      continue;  // shared memory: nothing read from it is trusted
     stages_[std::string(msg::kStageNames[stage])].add(mark.end_ns, mark.end_ns - mark.begin_ns);
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})
-      if (const auto rung = msg::rung_in(mark.detail, side)) ++rungs_[static_cast<std::size_t>(*rung)];
+      if (const auto rung = msg::rung_in(mark.detail, side))
+        ++rungs_[static_cast<std::size_t>(*rung)];
   }
 }
 

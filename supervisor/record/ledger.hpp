@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,13 +17,15 @@ namespace handcast::supervisor {
 /// How many frames a service finished, and when.
 class FrameCount {
  public:
-  /// `missed` frames before this one were finished, but their marks were overwritten before they were read.
+  /// `missed` frames before this one were finished, but their marks were overwritten before they
+  /// were read.
   void add(const msg::Header& frame, std::uint64_t missed);
 
   std::uint64_t total() const { return total_; }
   /// Frames a second over the last two seconds (or since the first frame, if that is less).
   double recent_hz(std::int64_t now_ns) const;
-  /// Frames a second from one second after the first frame on, up to `now_ns`: with every interruption, without the start.
+  /// Frames a second from one second after the first frame on, up to `now_ns`: with every
+  /// interruption, without the start.
   double held_hz(std::int64_t now_ns) const;
   /// The age of the newest frame's origin; empty if there was none.
   std::optional<double> newest_age_ms(std::int64_t now_ns) const;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/record/recorder.hpp"
 
 #include <fcntl.h>
@@ -39,7 +40,8 @@ void Recorder::poll() {
 
 std::optional<double> Recorder::silence_ms(std::string_view service, std::int64_t now_ns) const {
   for (const auto& source : sources_)
-    if (source.service == service && source.last_sign_ns > 0) return ns_to_ms(now_ns - source.last_sign_ns);
+    if (source.service == service && source.last_sign_ns > 0)
+      return ns_to_ms(now_ns - source.last_sign_ns);
   return std::nullopt;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,11 +11,13 @@
 
 namespace handcast::supervisor {
 
-/// Reads the services' stage marks into a ledger and a history: from the supervisor's event loop, a few dozen times a second.
+/// Reads the services' stage marks into a ledger and a history: from the supervisor's event loop, a
+/// few dozen times a second.
 class Recorder {
  public:
   explicit Recorder(double history_s = 60) : history_(history_s) {}
-  /// Follows "marks.<service>", behind the descriptor (which stays the caller's), unless it does already.
+  /// Follows "marks.<service>", behind the descriptor (which stays the caller's), unless it does
+  /// already.
   Result<void> follow(std::string service, int ring_fd);
   void poll();
   const Ledger& ledger() const { return ledger_; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/rig/applied_rig.hpp"
 
 #include <unistd.h>
@@ -20,17 +21,22 @@ Result<std::filesystem::path> applied_file(const std::string& rig) {
 Result<std::filesystem::path> write_applied(const config::Rig& rig) {
   auto path = applied_file(rig.name);
   if (!path) return path;
-  if (auto written = replace_file(*path, config::print_rig(rig)); !written) return tl::make_unexpected(written.error());
+  if (auto written = replace_file(*path, config::print_rig(rig)); !written)
+    return tl::make_unexpected(written.error());
   return path;
 }
 
-std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file, const std::vector<std::string>& settings) {
+std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
+                                          const std::vector<std::string>& settings) {
   for (const auto& name : orphaned_rigs()) {
     const auto saved = load_saved(name);
-    if (!saved || !*saved || (*saved)->rig_file != rig_file || (*saved)->settings != settings) continue;
-    const auto rig = applied_file(name).and_then([](const auto& file) { return config::load_rig(file); });
+    if (!saved || !*saved || (*saved)->rig_file != rig_file || (*saved)->settings != settings)
+      continue;
+    const auto rig =
+        applied_file(name).and_then([](const auto& file) { return config::load_rig(file); });
     if (!rig || rig->name != name) continue;
-    log::info("rig '{}' goes on as it was applied; `handcast reload` reads {}", name, rig_file.string());
+    log::info("rig '{}' goes on as it was applied; `handcast reload` reads {}", name,
+              rig_file.string());
     return *rig;
   }
   return std::nullopt;

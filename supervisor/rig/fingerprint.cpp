@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/rig/fingerprint.hpp"
 
 #include <fmt/format.h>
@@ -7,13 +8,14 @@
 #include <filesystem>
 #include <vector>
 
-#include "config/files.hpp"
-#include "config/settings.hpp"
+#include "config/settings/files.hpp"
+#include "config/settings/settings.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-using Paths = std::vector<std::string_view>;  ///< sections (with those inside them) and single settings
+using Paths =
+    std::vector<std::string_view>;  ///< sections (with those inside them) and single settings
 
 /// What a service depends on with one of its back ends.
 struct Reads {
@@ -22,7 +24,8 @@ struct Reads {
   Paths paths;
 };
 
-/// The true person and motion (services/twin/twin.cpp): all that Twin::create fails for without them.
+/// The true person and motion (services/twin/twin.cpp): all that Twin::create fails for without
+/// them.
 const Paths kTruth{"twin.motion", "twin.hands", "twin.speed", "twin.seed", "twin.shape", "hand"};
 const Paths kEveryDaemon{"calibration"};
 
@@ -42,7 +45,9 @@ const std::vector<Reads>& table() {
       {"landmarks", "opencv", {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
       {"landmarks", "own", {"landmarks.models", "landmarks.hands"}},
       {"landmarks", "twin", kTruth},
-      {"landmarks", "twin", {"twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}},
+      {"landmarks",
+       "twin",
+       {"twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}},
       {"projector", "", {"projector", "content", "hand", "cascade"}},
       {"observer", "", {"observer", "camera.backend", "pose.backend"}},
       {"observer", "", kTruth},
@@ -56,20 +61,24 @@ const Paths kFiles{"calibration", "hand.left", "hand.right", "content.left", "co
 
 /// What only the supervisor reads.
 bool is_the_supervisors(std::string_view service, std::string_view path) {
-  return path == "name" || path == fmt::format("{}.process.standby", service) || path == fmt::format("{}.enabled", service);
+  return path == "name" || path == fmt::format("{}.process.standby", service) ||
+         path == fmt::format("{}.enabled", service);
 }
 
 bool is_within(std::string_view path, std::string_view section) {
-  return path == section || (path.starts_with(section) && path.substr(section.size()).starts_with('.'));
+  return path == section ||
+         (path.starts_with(section) && path.substr(section.size()).starts_with('.'));
 }
 
 bool is_in(std::string_view path, const Paths& paths) {
   return std::ranges::any_of(paths, [&](auto section) { return is_within(path, section); });
 }
 
-/// A service or back end that the table does not know depends on everything: it is restarted once too often, never too seldom.
+/// A service or back end that the table does not know depends on everything: it is restarted once
+/// too often, never too seldom.
 bool reads(std::string_view service, std::string_view backend, std::string_view path) {
-  bool has_backends = false, knows_backend = false, found = is_in(path, kEveryDaemon), knows_service = false;
+  bool has_backends = false, knows_backend = false, found = is_in(path, kEveryDaemon),
+       knows_service = false;
   for (const auto& line : table()) {
     if (line.service != service) continue;
     knows_service = true;
@@ -118,7 +127,8 @@ std::string fingerprint_of(std::string_view service, const config::Rig& rig) {
   Hash hash;
   for (const auto& section : listing) {
     for (const auto& setting : section.settings) {
-      if (is_the_supervisors(service, setting.path) || !reads(service, backend, setting.path)) continue;
+      if (is_the_supervisors(service, setting.path) || !reads(service, backend, setting.path))
+        continue;
       hash.add(setting.path);
       hash.add(config::print_value(setting));
       if (is_in(setting.path, kFiles)) hash.add(content_of(setting));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,8 +8,9 @@
 // contract
 namespace handcast::supervisor {
 
-/// A short text that changes when a setting changes on which the service depends: those of its own section and of the sections
-/// it reads (the twin's for every back end named twin, the cascade's for the projector, …). What only the supervisor reads
+/// A short text that changes when a setting changes on which the service depends: those of its own
+/// section and of the sections it reads (the twin's for every back end named twin, the cascade's
+/// for the projector, …). What only the supervisor reads
 /// ([supervisor], and of [X.process] the standby) is not in it.
 std::string fingerprint_of(std::string_view service, const config::Rig& rig);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a rig does when it is asked over its control socket.
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -7,7 +8,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "config/join.hpp"
+#include "config/settings/join.hpp"
 #include "ipc/base/clock.hpp"
 #include "supervisor/rig/fingerprint.hpp"
 #include "supervisor/rig/rig_runner.hpp"
@@ -15,7 +16,8 @@
 namespace handcast::supervisor {
 namespace {
 
-// The rig's data path does not pass through the supervisor, so asking a daemon for its list may take a moment.
+// The rig's data path does not pass through the supervisor, so asking a daemon for its list may
+// take a moment.
 constexpr int kListLimit_ms = 3000;
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -28,7 +30,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 Service* RigRunner::find(std::string_view name) const {
-  const auto found = std::ranges::find_if(services_, [&](const auto& service) { return service->spec().name == name; });
+  const auto found = std::ranges::find_if(
+      services_, [&](const auto& service) { return service->spec().name == name; });
   return found == services_.end() ? nullptr : found->get();
 }
 
@@ -65,7 +68,9 @@ void RigRunner::give_rings(const ControlServer::Reply& reply) const {
   std::vector<int> descriptors;
   for (const auto& [stream, fd] : launch_.rings) {
     owned.emplace_back(::open(fmt::format("/proc/self/fd/{}", fd).c_str(), O_RDONLY | O_CLOEXEC));
-    if (!owned.back()) return reply(failure(fmt::format("ring '{}' cannot be opened again: {}", stream, std::strerror(errno))));
+    if (!owned.back())
+      return reply(failure(
+          fmt::format("ring '{}' cannot be opened again: {}", stream, std::strerror(errno))));
     answer["rings"].push_back(stream);
     descriptors.push_back(owned.back().get());
   }
@@ -85,17 +90,20 @@ void RigRunner::change(const Request& request, ControlServer::Reply reply) {
   if (!service) {
     std::vector<std::string> names;
     for (const auto& each : services_) names.push_back(each->spec().name);
-    return reply(failure(fmt::format("rig '{}' has no service '{}'; it has: {}", name_, request.service, config::join(names, ", "))));
+    return reply(failure(fmt::format("rig '{}' has no service '{}'; it has: {}", name_,
+                                     request.service, config::join(names, ", "))));
   }
   if (phase_ == Phase::stopping) return reply(failure("the rig stops"));
   if (reload_) return reply(failure("the rig is being reloaded; try again when that is done"));
-  if (pending_.contains(request.service)) return reply(failure(request.service + " is being restarted already"));
+  if (pending_.contains(request.service))
+    return reply(failure(request.service + " is being restarted already"));
 
   if (request.verb == Verb::restart) {
     pending_[request.service] = {std::move(reply), {}, {}, {}};
     return service->restart();
   }
-  if (const auto known = check_backend(request.service, request.backend); !known) return reply(failure(known.error().what));
+  if (const auto known = check_backend(request.service, request.backend); !known)
+    return reply(failure(known.error().what));
   pending_[request.service] = {std::move(reply), request.backend, service->spec().backend, {}};
   give_backend(*service, request.backend, true);
 }
@@ -107,13 +115,16 @@ void RigRunner::give_backend(Service& service, const std::string& backend, bool 
   service.use_backend(backend, on_trial);
 }
 
-Result<void> RigRunner::check_backend(const std::string& service, const std::string& backend) const {
-  const auto output = output_of(launch_.program_folder / ("handcast-" + service), {"--backends"}, kListLimit_ms);
+Result<void> RigRunner::check_backend(const std::string& service,
+                                      const std::string& backend) const {
+  const auto output =
+      output_of(launch_.program_folder / ("handcast-" + service), {"--backends"}, kListLimit_ms);
   if (!output) return tl::make_unexpected(output.error());
   const auto known = lines_of(*output);
   if (known.empty()) return fail(Errc::bad_config, service + " has no back ends to choose from");
   if (std::ranges::find(known, backend) != known.end()) return {};
-  return fail(Errc::bad_config, fmt::format("{} has no back end '{}'; it has: {}", service, backend, config::join(known, ", ")));
+  return fail(Errc::bad_config, fmt::format("{} has no back end '{}'; it has: {}", service, backend,
+                                            config::join(known, ", ")));
 }
 
 }  // namespace handcast::supervisor

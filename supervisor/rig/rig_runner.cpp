@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/rig/rig_runner.hpp"
 
 #include <fmt/format.h>
@@ -13,14 +14,15 @@
 #include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
 #include "supervisor/console.hpp"
-#include "supervisor/life/streams.hpp"
+#include "supervisor/life/service_spec.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::int64_t kTick_ns = 50'000'000;
-constexpr std::int64_t kStoodStill_ns = 1'000'000'000;  ///< a tick this late: the supervisor, or the machine, was stopped
+constexpr std::int64_t kStoodStill_ns =
+    1'000'000'000;  ///< a tick this late: the supervisor, or the machine, was stopped
 
 std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
 
@@ -59,14 +61,18 @@ Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOp
 
   auto control = ControlServer::listen(
       rig.name, runner->loop_,
-      [runner = runner.get()](const Request& request, ControlServer::Reply reply) { runner->on_request(request, std::move(reply)); });
+      [runner = runner.get()](const Request& request, ControlServer::Reply reply) {
+        runner->on_request(request, std::move(reply));
+      });
   if (!control) return tl::make_unexpected(control.error());
   runner->control_ = std::move(*control);
-  if (const auto opened = runner->open_descriptors(); !opened) return tl::make_unexpected(opened.error());
+  if (const auto opened = runner->open_descriptors(); !opened)
+    return tl::make_unexpected(opened.error());
   auto applied = write_applied(rig);
   if (!applied) return tl::make_unexpected(applied.error());
   runner->launch_.rig_file = std::move(*applied);
-  if (const auto made = runner->inherit_or_make(rig); !made) return tl::make_unexpected(made.error());
+  if (const auto made = runner->inherit_or_make(rig); !made)
+    return tl::make_unexpected(made.error());
   store_with_systemd(runner->launch_.rings);
   return runner;
 }
@@ -126,7 +132,8 @@ void RigRunner::tick() {
   recorder_.poll();
   for (const auto& service : services_) service->tick(now, needs_are_ready(*service));
   if (phase_ == Phase::stopping || phase_ == Phase::done) return;
-  if (options_.seconds && now - started_ns_ >= seconds_to_ns(*options_.seconds)) return begin_stop(0);
+  if (options_.seconds && now - started_ns_ >= seconds_to_ns(*options_.seconds))
+    return begin_stop(0);
   replace_the_silent(now);
   continue_reload(now);
   progress(now);
@@ -160,7 +167,8 @@ bool RigRunner::may_begin(const Service& service, std::int64_t now) const {
 
 bool RigRunner::need_not_be_waited_for(const Service& service, std::int64_t now) const {
   if (service.state() != State::starting && service.state() != State::stopping) return true;
-  return service.first_start_ns() && now - *service.first_start_ns() > seconds_to_ns(launch_.ready_s);
+  return service.first_start_ns() &&
+         now - *service.first_start_ns() > seconds_to_ns(launch_.ready_s);
 }
 
 void RigRunner::start_those_held() {
@@ -168,14 +176,16 @@ void RigRunner::start_those_held() {
   for (std::size_t i = 0; i < services_.size(); ++i) {
     const bool held = services_[i]->state() == State::starting && !services_[i]->first_start_ns();
     if (held && may_begin(*services_[i], now)) services_[i]->start();
-    if (phase_ != Phase::starting && phase_ != Phase::up) return;  // one that cannot start stops the rig
+    if (phase_ != Phase::starting && phase_ != Phase::up)
+      return;  // one that cannot start stops the rig
   }
 }
 
 void RigRunner::forgive_a_standstill(std::int64_t now) {
   const auto late_ns = now - std::exchange(last_tick_ns_, now) - kTick_ns;
   if (late_ns < kStoodStill_ns) return;
-  log::warning("everything stood still for {:.1f} s; nobody is late for it", ns_to_seconds(late_ns));
+  log::warning("everything stood still for {:.1f} s; nobody is late for it",
+               ns_to_seconds(late_ns));
   forgiven_ns_ = now;
   for (const auto& service : services_) service->forgive(late_ns);
 }
@@ -185,9 +195,11 @@ void RigRunner::replace_the_silent(std::int64_t now) {
     if (service->state() != State::ready) continue;
     const auto silence_ms = recorder_.silence_ms(service->spec().name, now);
     const auto heard_ns = silence_ms ? now - ms_to_ns(*silence_ms) : 0;
-    const auto silent_s = ns_to_seconds(now - std::max({heard_ns, *service->ready_ns(), service->killed_ns(), forgiven_ns_}));
+    const auto silent_s = ns_to_seconds(
+        now - std::max({heard_ns, *service->ready_ns(), service->killed_ns(), forgiven_ns_}));
     if (silent_s < launch_.silent_s) continue;
-    log::warning("{} has given no sign of life for {:.1f} s; killed", service->spec().name, silent_s);
+    log::warning("{} has given no sign of life for {:.1f} s; killed", service->spec().name,
+                 silent_s);
     service->kill();
   }
 }
@@ -217,17 +229,20 @@ void RigRunner::on_event(Service& service, Service::Event event) {
 void RigRunner::on_ready(Service& service) {
   if (const auto pending = pending_.extract(service.spec().name)) {
     const auto& [reply, wanted, before, reason] = pending.mapped();
-    reply(reason.empty()
-              ? success()
-              : failure(fmt::format("{} did not start with '{}', '{}' goes on: {}", service.spec().name, wanted, before, reason)));
+    reply(reason.empty() ? success()
+                         : failure(fmt::format("{} did not start with '{}', '{}' goes on: {}",
+                                               service.spec().name, wanted, before, reason)));
   }
 }
 
 /// A service that is no good does not keep the rig from being up; one that was taken over is.
 void RigRunner::come_up() {
   const auto now = now_ns();
-  const auto has_begun = [&](const auto& service) { return service->ever_ready() || need_not_be_waited_for(*service, now); };
-  if (phase_ != Phase::starting || !(inherited_ || std::ranges::all_of(services_, has_begun))) return;
+  const auto has_begun = [&](const auto& service) {
+    return service->ever_ready() || need_not_be_waited_for(*service, now);
+  };
+  if (phase_ != Phase::starting || !(inherited_ || std::ranges::all_of(services_, has_begun)))
+    return;
   phase_ = Phase::up;
   log::info("rig '{}' is up", name_);
   notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", name_));
@@ -237,11 +252,13 @@ void RigRunner::on_failed(Service& service) {
   const auto& name = service.spec().name;
   const auto sentence = service.log().last_sentence();
   const auto pending = pending_.find(name);
-  if (pending != pending_.end() && !pending->second.wanted.empty() && pending->second.reason.empty()) {
+  if (pending != pending_.end() && !pending->second.wanted.empty() &&
+      pending->second.reason.empty()) {
     pending->second.reason = sentence;
     return give_backend(service, pending->second.before, false);
   }
-  if (pending != pending_.end()) pending_.extract(pending).mapped().reply(failure(fmt::format("{} failed: {}", name, sentence)));
+  if (pending != pending_.end())
+    pending_.extract(pending).mapped().reply(failure(fmt::format("{} failed: {}", name, sentence)));
   const bool reloaded = reload_ && reload_->begun.contains(name);  // the rig was there before
   if (phase_ != Phase::starting || service.ever_ready() || reloaded) return;
   print_line(fmt::format("handcast: {} cannot start: {}", name, sentence));
@@ -252,7 +269,8 @@ void RigRunner::begin_stop(int exit_code) {
   exit_code_ = exit_code;
   phase_ = Phase::stopping;
   notify_systemd("STOPPING=1");
-  for (const auto& [name, pending] : std::exchange(pending_, {})) pending.reply(failure("the rig stops"));
+  for (const auto& [name, pending] : std::exchange(pending_, {}))
+    pending.reply(failure("the rig stops"));
   if (const auto reload = std::exchange(reload_, {})) reload->reply(failure("the rig stops"));
   for (const auto& service : services_)
     if (!service->is_running()) service->stop();  // takes back a start that was due
@@ -260,7 +278,8 @@ void RigRunner::begin_stop(int exit_code) {
 }
 
 void RigRunner::stop_next() {
-  const auto last = std::find_if(services_.rbegin(), services_.rend(), [](const auto& service) { return service->is_running(); });
+  const auto last = std::find_if(services_.rbegin(), services_.rend(),
+                                 [](const auto& service) { return service->is_running(); });
   if (last != services_.rend()) return (*last)->stop();
   finish();
 }
@@ -283,7 +302,8 @@ void RigRunner::finish() {
 }
 
 void RigRunner::save() const {
-  if (phase_ == Phase::stopping) return;  // one who takes over here shall not take the services that were stopped for idle ones
+  if (phase_ == Phase::stopping)
+    return;  // one who takes over here shall not take the services that were stopped for idle ones
   SavedRig saved{.name = name_,
                  .rig_file = options_.rig_file,
                  .settings = options_.settings,
@@ -293,11 +313,13 @@ void RigRunner::save() const {
                  .services = {}};
   for (const auto& ring : rings_) {
     struct stat status {};
-    if (fstat(ring.fd(), &status) == 0) saved.rings.push_back({ring.stream(), status.st_ino, ring.fd()});
+    if (fstat(ring.fd(), &status) == 0)
+      saved.rings.push_back({ring.stream(), status.st_ino, ring.fd()});
   }
   for (const auto& service : services_) saved.services.push_back(service->saved());
   const auto written = supervisor::save(saved);
-  if (!written && !std::exchange(save_failed_, true)) log::warning("no successor could take over: {}", written.error().what);
+  if (!written && !std::exchange(save_failed_, true))
+    log::warning("no successor could take over: {}", written.error().what);
 }
 
 }  // namespace handcast::supervisor

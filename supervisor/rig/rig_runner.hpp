@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <map>
@@ -13,7 +14,7 @@
 #include "supervisor/life/service.hpp"
 #include "supervisor/record/recorder.hpp"
 #include "supervisor/rig/status.hpp"
-#include "supervisor/succession/notify.hpp"
+#include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
 
@@ -23,21 +24,25 @@ struct RunOptions {
   std::filesystem::path program_folder;      ///< where the daemons are
   std::optional<double> seconds;             ///< how long; empty: until told to stop
   std::optional<std::filesystem::path> out;  ///< where live.json goes
-  bool is_successor = false;                 ///< of a supervisor that died under the same keeper: --seconds goes on
+  bool is_successor =
+      false;  ///< of a supervisor that died under the same keeper: --seconds goes on
 };
 
 /// A reload that is answered when everything it touched has settled (rig_reload.cpp).
 struct Reload {
   ControlServer::Reply reply;
-  bool revives = true;                                     ///< those that have given up are tried again
-  bool changed = false;                                    ///< the file says something else than before
-  std::vector<std::string> restarted, started, stopped;    ///< services, as the person is told
-  std::vector<std::string> waiting;                        ///< of these: not begun, because what they need has not settled
-  std::map<std::string, std::int64_t, std::less<>> begun;  ///< of these: until when they must have settled
-  std::vector<std::string> failures;                       ///< a sentence each
+  bool revives = true;   ///< those that have given up are tried again
+  bool changed = false;  ///< the file says something else than before
+  std::vector<std::string> restarted, started, stopped;  ///< services, as the person is told
+  std::vector<std::string>
+      waiting;  ///< of these: not begun, because what they need has not settled
+  std::map<std::string, std::int64_t, std::less<>>
+      begun;                          ///< of these: until when they must have settled
+  std::vector<std::string> failures;  ///< a sentence each
 };
 
-/// One rig from start to stop: its rings, its services, its control socket, its recorder. One thread, one event loop.
+/// One rig from start to stop: its rings, its services, its control socket, its recorder. One
+/// thread, one event loop.
 class RigRunner {
  public:
   /// Makes everything that can fail before the first service starts.
@@ -56,7 +61,8 @@ class RigRunner {
   };
 
   RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop);
-  /// Goes on with what a supervisor that died has left, or makes everything anew (rig_adoption.cpp).
+  /// Goes on with what a supervisor that died has left, or makes everything anew
+  /// (rig_adoption.cpp).
   Result<void> inherit_or_make(const config::Rig& rig);
   Result<void> take_over(AdoptedRig adopted, const config::Rig& rig);
   void continue_run(const SavedRig& saved);
@@ -83,8 +89,8 @@ class RigRunner {
 
   void on_request(const Request& request, ControlServer::Reply reply);
   void change(const Request& request, ControlServer::Reply reply);
-  /// Makes this rig the one that is applied: restarts the services whose fingerprints changed, and where it `revives` those that have
-  /// given up (rig_reload.cpp).
+  /// Makes this rig the one that is applied: restarts the services whose fingerprints changed, and
+  /// where it `revives` those that have given up (rig_reload.cpp).
   void reload(Result<config::Rig> rig, bool revives, ControlServer::Reply reply);
   std::string why_not_reload() const;
   Result<void> check_change(const config::Rig& rig, const std::vector<ServiceSpec>& specs) const;
@@ -102,7 +108,8 @@ class RigRunner {
   void give_backend(Service& service, const std::string& backend, bool on_trial);
   void give_rings(const ControlServer::Reply& reply) const;
   void give_history(const Request& request, const ControlServer::Reply& reply) const;
-  /// Leaves word for a successor (saved_rig.hpp); call it whenever a service was started, got ready, ended or was changed.
+  /// Leaves word for a successor (saved_rig.hpp); call it whenever a service was started, got
+  /// ready, ended or was changed.
   void save() const;
   Result<void> check_backend(const std::string& service, const std::string& backend) const;
   Service* find(std::string_view name) const;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/rig/status.hpp"
 
 #include <fmt/format.h>
@@ -21,13 +22,16 @@ json asked(const ServiceSpec& spec) {
   return known ? json(spec.asked_hz) : json();
 }
 
-bool is_well(const Service& service) { return service.state() == State::ready || service.state() == State::stopped; }
+bool is_well(const Service& service) {
+  return service.state() == State::ready || service.state() == State::stopped;
+}
 
 /// Why a service is not well; null if it is.
 json reason_of(const Service& service) {
   switch (service.state()) {
     case State::degraded:
-      return fmt::format("died {} times within {:g} s", service.recent_deaths(), ns_to_seconds(kStormWindow_ns));
+      return fmt::format("died {} times within {:g} s", service.recent_deaths(),
+                         ns_to_seconds(kStormWindow_ns));
     case State::failed:
       return service.log().last_sentence().empty() ? "cannot start" : service.log().last_sentence();
     default:
@@ -51,7 +55,8 @@ json service_status(const Service& service, const RigView& rig) {
   return status;
 }
 
-// Every service marks each message it publishes, so the marks give the rates of the rings without touching their payloads.
+// Every service marks each message it publishes, so the marks give the rates of the rings without
+// touching their payloads.
 json ring_status(const Service& service, const RigView& rig) {
   const auto& frames = rig.recorder.ledger().frames(service.spec().name);
   return {{"asked_hz", asked(service.spec())},
@@ -61,7 +66,9 @@ json ring_status(const Service& service, const RigView& rig) {
 }
 
 json summary_of(const Histogram& times) {
-  return {{"p50", rounded(times.percentile_ns(0.50) * 1e-3)}, {"p99", rounded(times.percentile_ns(0.99) * 1e-3)}, {"count", times.count()}};
+  return {{"p50", rounded(times.percentile_ns(0.50) * 1e-3)},
+          {"p99", rounded(times.percentile_ns(0.99) * 1e-3)},
+          {"count", times.count()}};
 }
 
 int restarts_of(const Services& services) {
@@ -78,9 +85,11 @@ std::string text_of(const json& value, std::string_view unit = "") {
 
 /// "died 10 times within 60 s; tried again in 4.2 s".
 std::string print_trouble(const json& service) {
-  std::string text = service.contains("reason") && !service["reason"].is_null() ? text_of(service["reason"]) : "";
+  std::string text =
+      service.contains("reason") && !service["reason"].is_null() ? text_of(service["reason"]) : "";
   if (!service.contains("retry_s") || service["retry_s"].is_null()) return text;
-  return text + fmt::format("{}tried again in {}", text.empty() ? "" : "; ", text_of(service["retry_s"], " s"));
+  return text + fmt::format("{}tried again in {}", text.empty() ? "" : "; ",
+                            text_of(service["retry_s"], " s"));
 }
 
 }  // namespace
@@ -89,34 +98,43 @@ json status_of(const RigView& rig) {
   json status{{"rig", rig.name}, {"uptime_s", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))}};
   for (const auto& service : rig.services) {
     status["services"][service->spec().name] = service_status(*service, rig);
-    if (!service->spec().stream.empty()) status["rings"][service->spec().stream] = ring_status(*service, rig);
+    if (!service->spec().stream.empty())
+      status["rings"][service->spec().stream] = ring_status(*service, rig);
   }
   status["stage_us"] = json::object();
-  for (const auto& [stage, times] : rig.recorder.ledger().stages()) status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
-  for (std::size_t r = 0; r < msg::kRungs; ++r) status["rungs"][std::string(msg::kRungNames[r])] = rig.recorder.ledger().rungs()[r];
+  for (const auto& [stage, times] : rig.recorder.ledger().stages())
+    status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
+  for (std::size_t r = 0; r < msg::kRungs; ++r)
+    status["rungs"][std::string(msg::kRungNames[r])] = rig.recorder.ledger().rungs()[r];
   return status;
 }
 
 std::string print_status(const json& status) {
-  auto text = fmt::format("rig {}, up {}\n\n", text_of(status["rig"]), text_of(status["uptime_s"], " s"));
-  text +=
-      fmt::format("{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n", "service", "state", "pid", "back end", "up", "restarts", "last exit");
+  auto text =
+      fmt::format("rig {}, up {}\n\n", text_of(status["rig"]), text_of(status["uptime_s"], " s"));
+  text += fmt::format("{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n", "service", "state", "pid",
+                      "back end", "up", "restarts", "last exit");
   for (const auto& [name, service] : status["services"].items()) {
-    text += fmt::format("{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n", name, text_of(service["state"]), text_of(service["pid"]),
-                        text_of(service["backend"]), text_of(service["uptime_s"], " s"), text_of(service["restarts"]),
-                        text_of(service["last_exit"]));
-    if (const auto trouble = print_trouble(service); !trouble.empty()) text += fmt::format("  {}\n", trouble);
+    text += fmt::format("{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n", name,
+                        text_of(service["state"]), text_of(service["pid"]),
+                        text_of(service["backend"]), text_of(service["uptime_s"], " s"),
+                        text_of(service["restarts"]), text_of(service["last_exit"]));
+    if (const auto trouble = print_trouble(service); !trouble.empty())
+      text += fmt::format("  {}\n", trouble);
     if (!service.contains("log")) continue;
     for (const auto& line : service["log"]) text += fmt::format("    {}\n", text_of(line));
   }
-  text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>10}\n", "ring", "asked", "held", "newest age", "messages");
+  text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>10}\n", "ring", "asked", "held",
+                      "newest age", "messages");
   for (const auto& [name, ring] : status["rings"].items())
-    text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>10}\n", name, text_of(ring["asked_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
+    text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>10}\n", name,
+                        text_of(ring["asked_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
                         text_of(ring["newest_age_ms"], " ms"), text_of(ring["count"]));
-  text += fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
+  text +=
+      fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
   for (const auto& [stage, times] : status["stage_us"].items())
-    text += fmt::format("{:<12} {:>12} {:>12} {:>10}\n", stage, text_of(times["p50"], " us"), text_of(times["p99"], " us"),
-                        text_of(times["count"]));
+    text += fmt::format("{:<12} {:>12} {:>12} {:>10}\n", stage, text_of(times["p50"], " us"),
+                        text_of(times["p99"], " us"), text_of(times["count"]));
   return text;
 }
 
@@ -124,7 +142,8 @@ std::string progress_line(const RigView& rig) {
   auto line = fmt::format("up {:.0f} s", ns_to_seconds(rig.now_ns - rig.started_ns));
   for (const auto& service : rig.services) {
     if (service->spec().stream.empty()) continue;
-    line += fmt::format("  {} {:.0f} Hz", service->spec().name, rig.recorder.ledger().frames(service->spec().name).recent_hz(rig.now_ns));
+    line += fmt::format("  {} {:.0f} Hz", service->spec().name,
+                        rig.recorder.ledger().frames(service->spec().name).recent_hz(rig.now_ns));
   }
   return line + fmt::format("  restarts {}", restarts_of(rig.services));
 }
@@ -139,7 +158,8 @@ json live_report(const RigView& rig) {
     report["rates"][spec.name] = {{"asked_hz", asked(spec)}, {"held_hz", rounded(held_hz)}};
   }
   report["stage_us"] = json::object();
-  for (const auto& [stage, times] : rig.recorder.ledger().stages()) report["stage_us"][stage] = summary_of(times.whole_run());
+  for (const auto& [stage, times] : rig.recorder.ledger().stages())
+    report["stage_us"][stage] = summary_of(times.whole_run());
   return report;
 }
 

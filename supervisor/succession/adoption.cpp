@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/adoption.hpp"
 
 #include <fcntl.h>
@@ -16,14 +17,16 @@
 #include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
 #include "supervisor/control/runtime_folder.hpp"
-#include "supervisor/succession/notify.hpp"
+#include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-using Stored = std::vector<std::pair<std::string, UniqueFd>>;  ///< rings by their streams' names, from systemd
+using Stored =
+    std::vector<std::pair<std::string, UniqueFd>>;  ///< rings by their streams' names, from systemd
 
-// The order makes it certain: once the pidfd is open, its number cannot go to another process unnoticed.
+// The order makes it certain: once the pidfd is open, its number cannot go to another process
+// unnoticed.
 UniqueFd pidfd_of(const SavedService& saved) {
   if (saved.pid == 0) return {};
   UniqueFd pidfd(static_cast<int>(syscall(SYS_pidfd_open, saved.pid, 0)));
@@ -38,7 +41,9 @@ std::vector<AdoptedProcess> living_of(const SavedRig& saved) {
   return living;
 }
 
-void send_signal(const AdoptedProcess& process, int number) { syscall(SYS_pidfd_send_signal, process.pidfd.get(), number, nullptr, 0); }
+void send_signal(const AdoptedProcess& process, int number) {
+  syscall(SYS_pidfd_send_signal, process.pidfd.get(), number, nullptr, 0);
+}
 
 bool ends_before(const AdoptedProcess& process, Deadline deadline) {
   pollfd ended{.fd = process.pidfd.get(), .events = POLLIN, .revents = 0};
@@ -46,7 +51,8 @@ bool ends_before(const AdoptedProcess& process, Deadline deadline) {
   return poll(&ended, 1, static_cast<int>(ns_to_ms(left_ns)) + 1) == 1;
 }
 
-/// With all that is left of its process group, for a process that was just seen alive: its number is still its own.
+/// With all that is left of its process group, for a process that was just seen alive: its number
+/// is still its own.
 void kill_now(const AdoptedProcess& process) {
   kill(-process.saved.pid, SIGKILL);
   send_signal(process, SIGKILL);
@@ -58,8 +64,10 @@ bool is_inode(int fd, std::uint64_t inode) {
   return fd >= 0 && fstat(fd, &status) == 0 && status.st_ino == inode;
 }
 
-/// The memory of a ring, opened anew: a description of its own, which shares no lock with the service's.
-Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>& living, const Stored& stored) {
+/// The memory of a ring, opened anew: a description of its own, which shares no lock with the
+/// service's.
+Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>& living,
+                        const Stored& stored) {
   std::string reason = "no process that lives has it";
   for (const auto& process : living) {
     const auto file = fmt::format("/proc/{}/fd/{}", process.saved.pid, ring.fd);
@@ -68,20 +76,26 @@ Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>
     reason = fmt::format("{}: {}", file, fd ? "that is another file" : std::strerror(errno));
   }
   for (const auto& [stream, fd] : stored)
-    if (stream == ring.stream && is_inode(fd.get(), ring.inode)) return UniqueFd(fcntl(fd.get(), F_DUPFD_CLOEXEC, 3));
-  return fail(Errc::unavailable, fmt::format("ring '{}' cannot be opened ({})", ring.stream, reason));
+    if (stream == ring.stream && is_inode(fd.get(), ring.inode))
+      return UniqueFd(fcntl(fd.get(), F_DUPFD_CLOEXEC, 3));
+  return fail(Errc::unavailable,
+              fmt::format("ring '{}' cannot be opened ({})", ring.stream, reason));
 }
 
 /// Under the very number that the services know it by: children inherit rings by number.
 Result<UniqueFd> place(UniqueFd fd, int number) {
   if (fd.get() == number) return fd;
-  if (fcntl(number, F_GETFD) != -1) return fail(Errc::unavailable, fmt::format("descriptor {} is needed for a ring and is taken", number));
+  if (fcntl(number, F_GETFD) != -1)
+    return fail(Errc::unavailable,
+                fmt::format("descriptor {} is needed for a ring and is taken", number));
   if (dup3(fd.get(), number, O_CLOEXEC) != number)
     return fail(Errc::unavailable, fmt::format("descriptor {}: {}", number, std::strerror(errno)));
   return UniqueFd(number);
 }
 
-Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved, const std::vector<AdoptedProcess>& living, const Stored& stored) {
+Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved,
+                                             const std::vector<AdoptedProcess>& living,
+                                             const Stored& stored) {
   int above_all = 3;  // out of each other's way until each has its place
   for (const auto& ring : saved.rings) above_all = std::max(above_all, ring.fd + 1);
 
@@ -90,7 +104,9 @@ Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved, const std::v
     auto memory = reopen(ring, living, stored);
     if (!memory) return tl::make_unexpected(memory.error());
     memories.emplace_back(fcntl(memory->get(), F_DUPFD_CLOEXEC, above_all));
-    if (!memories.back()) return fail(Errc::unavailable, fmt::format("ring '{}': {}", ring.stream, std::strerror(errno)));
+    if (!memories.back())
+      return fail(Errc::unavailable,
+                  fmt::format("ring '{}': {}", ring.stream, std::strerror(errno)));
   }
   std::vector<ipc::Segment> rings;
   for (std::size_t i = 0; i < memories.size(); ++i) {
@@ -104,15 +120,21 @@ Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved, const std::v
   return rings;
 }
 
-/// A pipe can be opened again, for reading too. Until now nobody did: what the service said meanwhile is lost.
-UniqueFd reopen_log(pid_t pid) { return UniqueFd(::open(fmt::format("/proc/{}/fd/1", pid).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)); }
+/// A pipe can be opened again, for reading too. Until now nobody did: what the service said
+/// meanwhile is lost.
+UniqueFd reopen_log(pid_t pid) {
+  return UniqueFd(
+      ::open(fmt::format("/proc/{}/fd/1", pid).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+}
 
-/// Those that were starting cannot say any more that they are ready, so they are ended, to be started anew.
+/// Those that were starting cannot say any more that they are ready, so they are ended, to be
+/// started anew.
 std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
   std::vector<AdoptedProcess> ready;
   for (auto& process : living) {
     if (process.saved.state != State::ready) {
-      log::info("{} was just starting when its supervisor died; it is started again", process.saved.name);
+      log::info("{} was just starting when its supervisor died; it is started again",
+                process.saved.name);
       kill_now(process);
       continue;
     }
@@ -125,18 +147,22 @@ std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
 std::string names_of(const std::vector<AdoptedProcess>& processes) {
   std::string names;
   for (const auto& process : processes)
-    names += fmt::format("{}{} (pid {})", names.empty() ? "" : ", ", process.saved.name, process.saved.pid);
+    names += fmt::format("{}{} (pid {})", names.empty() ? "" : ", ", process.saved.name,
+                         process.saved.pid);
   return names;
 }
 
 }  // namespace
 
 Result<ipc::Segment> make_ring(const ipc::RingSpec& spec) {
-  constexpr int kFirstNumber = 100;  // a supervisor has some 40 descriptors of its own before it adopts
+  constexpr int kFirstNumber =
+      100;  // a supervisor has some 40 descriptors of its own before it adopts
   const auto made = ipc::Segment::create(spec);
   if (!made) return tl::make_unexpected(made.error());
   UniqueFd fd(fcntl(made->fd(), F_DUPFD_CLOEXEC, kFirstNumber));
-  if (!fd) return fail(Errc::unavailable, fmt::format("ring '{}': no descriptor: {}", spec.stream, std::strerror(errno)));
+  if (!fd)
+    return fail(Errc::unavailable,
+                fmt::format("ring '{}': no descriptor: {}", spec.stream, std::strerror(errno)));
   return ipc::Segment::open(std::move(fd));
 }
 
@@ -149,11 +175,15 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   auto living = living_of(**saved);
   if (living.empty() && stored.empty()) return std::nullopt;
   auto rings = take_rings(**saved, living, stored);
-  if (!rings && living.empty()) return std::nullopt;  // what systemd kept is not all that is needed, and nobody uses it
+  if (!rings && living.empty())
+    return std::nullopt;  // what systemd kept is not all that is needed, and nobody uses it
   if (!rings)
-    return fail(rings.error().code, fmt::format("services of rig '{}' live without a supervisor and cannot be taken over: {}: {}; "
-                                                "`handcast down --rig {}` ends them",
-                                                name, names_of(living), rings.error().what, name));
+    return fail(
+        rings.error().code,
+        fmt::format(
+            "services of rig '{}' live without a supervisor and cannot be taken over: {}: {}; "
+            "`handcast down --rig {}` ends them",
+            name, names_of(living), rings.error().what, name));
   return AdoptedRig{std::move(**saved), std::move(*rings), keep_the_ready(std::move(living))};
 }
 
@@ -161,7 +191,8 @@ int stop_orphans(const std::string& name, double stop_s) {
   const auto saved = load_saved(name);
   if (!saved || !*saved) return 0;
   const auto living = living_of(**saved);
-  std::for_each(living.rbegin(), living.rend(), [](const auto& process) { send_signal(process, SIGTERM); });
+  std::for_each(living.rbegin(), living.rend(),
+                [](const auto& process) { send_signal(process, SIGTERM); });
   const auto deadline = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(stop_s)));
   for (const auto& process : living) {
     if (ends_before(process, deadline)) continue;
@@ -181,7 +212,8 @@ std::vector<std::string> orphaned_rigs() {
     if (entry.path().extension() != ".state") continue;
     const auto name = entry.path().stem().string();
     const auto socket = socket_of(name);
-    const bool has_supervisor = socket && (connect_to(*socket) || connect_to(*socket).error().code == Errc::timeout);
+    const bool has_supervisor =
+        socket && (connect_to(*socket) || connect_to(*socket).error().code == Errc::timeout);
     const auto saved = load_saved(name);
     if (!has_supervisor && saved && *saved && !living_of(**saved).empty()) rigs.push_back(name);
   }

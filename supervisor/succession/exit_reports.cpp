@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/exit_reports.hpp"
 
 #include <fcntl.h>
@@ -17,7 +18,8 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::size_t kMostRemembered = 1024;  ///< the keeper also reports grandchildren, whom nobody asks about
+constexpr std::size_t kMostRemembered =
+    1024;  ///< the keeper also reports grandchildren, whom nobody asks about
 
 /// The number in the variable, which is then unset: services must not hold the socket.
 int take_number(const char* variable) {
@@ -33,7 +35,8 @@ int take_number(const char* variable) {
 bool is_report_socket(int fd) {
   int type = 0;
   socklen_t size = sizeof type;
-  return fd > STDERR_FILENO && getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) == 0 && type == SOCK_SEQPACKET;
+  return fd > STDERR_FILENO && getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) == 0 &&
+         type == SOCK_SEQPACKET;
 }
 
 Exit exit_of(int code, int status) { return {.signalled = code != CLD_EXITED, .code = status}; }
@@ -84,8 +87,10 @@ std::optional<Exit> ExitReports::take(pid_t pid) {
 
 std::optional<Exit> exit_told_by_kernel(int pidfd) {
   PidfdInfo info{.mask = kPidfdInfoExit};
-  if (ioctl(pidfd, kPidfdGetInfo, &info) != 0 || (info.mask & kPidfdInfoExit) == 0) return std::nullopt;
-  if (WIFEXITED(info.exit_code)) return Exit{.signalled = false, .code = WEXITSTATUS(info.exit_code)};
+  if (ioctl(pidfd, kPidfdGetInfo, &info) != 0 || (info.mask & kPidfdInfoExit) == 0)
+    return std::nullopt;
+  if (WIFEXITED(info.exit_code))
+    return Exit{.signalled = false, .code = WEXITSTATUS(info.exit_code)};
   return Exit{.signalled = true, .code = WTERMSIG(info.exit_code)};
 }
 

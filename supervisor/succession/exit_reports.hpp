@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -17,8 +18,9 @@ struct ExitReport {
   int status = 0;
 };
 
-/// How processes ended that are not this supervisor's children: its keeper, which inherits the orphans of a supervisor that
-/// died, takes their exit status and sends it on (a datagram each, over a socket pair whose end is in HANDCAST_KEEPER_FD).
+/// How processes ended that are not this supervisor's children: its keeper, which inherits the
+/// orphans of a supervisor that died, takes their exit status and sends it on (a datagram each,
+/// over a socket pair whose end is in HANDCAST_KEEPER_FD).
 class ExitReports {
  public:
   static ExitReports from_environment();
@@ -36,7 +38,8 @@ class ExitReports {
   std::map<pid_t, Exit> exits_;
 };
 
-/// How a process ended that somebody else has reaped, where the kernel tells (from Linux 6.15 on). Empty until it is reaped.
+/// How a process ended that somebody else has reaped, where the kernel tells (from Linux 6.15 on).
+/// Empty until it is reaped.
 std::optional<Exit> exit_told_by_kernel(int pidfd);
 
 }  // namespace handcast::supervisor

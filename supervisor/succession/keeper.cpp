@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/keeper.hpp"
 
 #include <fcntl.h>
@@ -29,7 +30,8 @@ constexpr std::int64_t kShortLife_ns = 1'000'000'000;
 constexpr std::int64_t kFirstPause_ns = 50'000'000;
 constexpr std::int64_t kMinute_ns = 60'000'000'000;
 constexpr int kDeathsInAMinute = 10;
-constexpr std::int64_t kFarewell_ns = 1'000'000'000;  ///< for what is left after the supervisor has ended by itself
+constexpr std::int64_t kFarewell_ns =
+    1'000'000'000;  ///< for what is left after the supervisor has ended by itself
 
 /// When the supervisor died, and what follows from it.
 class Deaths {
@@ -39,11 +41,14 @@ class Deaths {
     short_lives_ = died_ns - started_ns < kShortLife_ns ? short_lives_ + 1 : 0;
   }
   bool too_many(std::int64_t now) const {
-    return std::ranges::count_if(recent_ns_, [&](std::int64_t died_ns) { return died_ns > 0 && now - died_ns < kMinute_ns; }) ==
-           kDeathsInAMinute;
+    return std::ranges::count_if(recent_ns_, [&](std::int64_t died_ns) {
+             return died_ns > 0 && now - died_ns < kMinute_ns;
+           }) == kDeathsInAMinute;
   }
   /// None after a life of some length, and none the first time.
-  std::int64_t pause_ns() const { return short_lives_ < 2 ? 0 : kFirstPause_ns << (std::min(short_lives_, 6) - 2); }
+  std::int64_t pause_ns() const {
+    return short_lives_ < 2 ? 0 : kFirstPause_ns << (std::min(short_lives_, 6) - 2);
+  }
 
  private:
   std::array<std::int64_t, kDeathsInAMinute> recent_ns_{};
@@ -51,7 +56,8 @@ class Deaths {
   int short_lives_ = 0;
 };
 
-/// Everything the supervisor is started with, made once: later nothing is allocated that could be missing.
+/// Everything the supervisor is started with, made once: later nothing is allocated that could be
+/// missing.
 struct Plan {
   std::vector<std::string> arguments, environment;
   std::vector<char*> argument_pointers, environment_pointers;
@@ -60,16 +66,20 @@ struct Plan {
   Plan(const std::vector<std::string>& command, int report_fd) : arguments(command) {
     for (char** entry = environ; *entry; ++entry) {
       const std::string_view text = *entry;
-      if (!text.starts_with(fmt::format("{}=", kKeeperVariable)) && !text.starts_with(fmt::format("{}=", kSuccessorVariable)))
+      if (!text.starts_with(fmt::format("{}=", kKeeperVariable)) &&
+          !text.starts_with(fmt::format("{}=", kSuccessorVariable)))
         environment.emplace_back(text);
     }
     environment.push_back(fmt::format("{}={}", kKeeperVariable, report_fd));
     for (auto& text : arguments) argument_pointers.push_back(text.data());
     for (auto& text : environment) environment_pointers.push_back(text.data());
     argument_pointers.push_back(nullptr);
-    environment_pointers.insert(environment_pointers.end(), {nullptr, nullptr});  // room for the successor's word
+    environment_pointers.insert(environment_pointers.end(),
+                                {nullptr, nullptr});  // room for the successor's word
   }
-  void for_a_successor() { environment_pointers[environment_pointers.size() - 2] = successor.data(); }
+  void for_a_successor() {
+    environment_pointers[environment_pointers.size() - 2] = successor.data();
+  }
 };
 
 class Keeper {
@@ -88,9 +98,11 @@ class Keeper {
       deaths_.note(started_ns, now_ns());
       if (deaths_.too_many(now_ns())) return give_up();
       const auto pause_ns = deaths_.pause_ns();
-      log::warning("the supervisor died ({}); started again{}", exit_ ? exit_->describe() : "no process to be had",
+      log::warning("the supervisor died ({}); started again{}",
+                   exit_ ? exit_->describe() : "no process to be had",
                    pause_ns > 0 ? fmt::format(" after {:g} ms", ns_to_ms(pause_ns)) : "");
-      for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns;) handle(wait_for_signal(until_ns - now_ns()));
+      for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns;)
+        handle(wait_for_signal(until_ns - now_ns()));
       plan_.for_a_successor();
       is_successor_ = true;
     }
@@ -119,7 +131,8 @@ class Keeper {
       if (sigismember(&asked_, number) == 1) kill(supervisor_, number);
   }
 
-  // The stop signals stay blocked beyond exec: one that comes before the supervisor listens waits for it.
+  // The stop signals stay blocked beyond exec: one that comes before the supervisor listens waits
+  // for it.
   [[noreturn]] void become_supervisor() {
     setpgid(0, 0);
     signal(SIGTTOU, SIG_IGN);  // it writes to the terminal from the background
@@ -128,7 +141,8 @@ class Keeper {
     sigaddset(&children, SIGCHLD);
     sigprocmask(SIG_UNBLOCK, &children, nullptr);
     fcntl(there_.get(), F_SETFD, 0);
-    execve(plan_.argument_pointers[0], plan_.argument_pointers.data(), plan_.environment_pointers.data());
+    execve(plan_.argument_pointers[0], plan_.argument_pointers.data(),
+           plan_.environment_pointers.data());
     print_line(fmt::format("handcast: {}: {}", plan_.arguments[0], std::strerror(errno)));
     _exit(kExitFailure);
   }
@@ -146,16 +160,19 @@ class Keeper {
     if (supervisor_ > 0) kill(supervisor_, signal_number);
   }
 
-  /// Of the children that ended: the supervisor's end is our business, the others' that of the next supervisor.
+  /// Of the children that ended: the supervisor's end is our business, the others' that of the next
+  /// supervisor.
   void reap() {
-    for (siginfo_t info{}; waitid(P_ALL, 0, &info, WEXITED | WNOHANG) == 0 && info.si_pid != 0; info = {}) {
+    for (siginfo_t info{}; waitid(P_ALL, 0, &info, WEXITED | WNOHANG) == 0 && info.si_pid != 0;
+         info = {}) {
       if (info.si_pid == supervisor_) {
         exit_ = Exit{.signalled = info.si_code != CLD_EXITED, .code = info.si_status};
         supervisor_ = -1;
         continue;
       }
       const ExitReport report{info.si_pid, info.si_code, info.si_status};
-      send(here_.get(), &report, sizeof report, MSG_DONTWAIT | MSG_NOSIGNAL);  // where nobody reads for long, it is lost
+      send(here_.get(), &report, sizeof report,
+           MSG_DONTWAIT | MSG_NOSIGNAL);  // where nobody reads for long, it is lost
     }
   }
 
@@ -165,7 +182,8 @@ class Keeper {
   }
 
   int see_off(int exit_code) {
-    for (const auto limit = Deadline::in(std::chrono::nanoseconds(kFarewell_ns)); has_children() && !limit.passed();) {
+    for (const auto limit = Deadline::in(std::chrono::nanoseconds(kFarewell_ns));
+         has_children() && !limit.passed();) {
       wait_for_signal(kFarewell_ns / 20);
       reap();
     }
@@ -174,18 +192,21 @@ class Keeper {
 
   int give_up() const {
     print_line(
-        fmt::format("handcast: the supervisor died {} times within a minute and is not started again; what lives of its services goes on: "
+        fmt::format("handcast: the supervisor died {} times within a minute and is not started "
+                    "again; what lives of its services goes on: "
                     "`handcast up` takes them over, `handcast down` ends them",
                     kDeathsInAMinute));
     return kExitFailure;
   }
 
   UniqueFd here_;   ///< reports go in here
-  UniqueFd there_;  ///< and come out here, for whichever supervisor lives; held open so that nothing is lost between two
+  UniqueFd there_;  ///< and come out here, for whichever supervisor lives; held open so that
+                    ///< nothing is lost between two
   Plan plan_;
   Deaths deaths_;
   sigset_t stop_signals_{}, awaited_{};
-  sigset_t asked_{};  ///< stop signals that came: a successor gets them too, since its predecessor did not stop the rig
+  sigset_t asked_{};  ///< stop signals that came: a successor gets them too, since its predecessor
+                      ///< did not stop the rig
   pid_t supervisor_ = -1;
   bool is_successor_ = false;  ///< what runs took over from one that died: its services may live
   std::optional<Exit> exit_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/saved_rig.hpp"
 
 #include <fcntl.h>
@@ -34,7 +35,8 @@ Result<std::filesystem::path> state_of(const std::string& rig) {
 std::string text_of(int fd, std::size_t most_bytes) {
   std::string text;
   std::array<char, 4096> bytes;
-  for (ssize_t count = 0; text.size() < most_bytes && (count = ::read(fd, bytes.data(), bytes.size())) > 0;)
+  for (ssize_t count = 0;
+       text.size() < most_bytes && (count = ::read(fd, bytes.data(), bytes.size())) > 0;)
     text.append(bytes.data(), static_cast<std::size_t>(count));
   return text;
 }
@@ -46,7 +48,9 @@ std::string text_of_proc(const std::string& file) {
 
 std::string boot_id() { return text_of_proc("/proc/sys/kernel/random/boot_id").substr(0, 36); }
 
-json to_json(const SavedRing& ring) { return {{"stream", ring.stream}, {"inode", ring.inode}, {"fd", ring.fd}}; }
+json to_json(const SavedRing& ring) {
+  return {{"stream", ring.stream}, {"inode", ring.inode}, {"fd", ring.fd}};
+}
 
 json to_json(const SavedService& service) {
   return {{"name", service.name},
@@ -59,20 +63,25 @@ json to_json(const SavedService& service) {
 }
 
 json to_json(const SavedRig& rig) {
-  json object{{"version", kVersion},      {"boot", boot_id()}, {"name", rig.name},         {"rig_file", rig.rig_file.string()},
-              {"settings", rig.settings}, {"out", rig.out},    {"epoch_ns", rig.epoch_ns}, {"rings", json::array()},
+  json object{{"version", kVersion},      {"boot", boot_id()},
+              {"name", rig.name},         {"rig_file", rig.rig_file.string()},
+              {"settings", rig.settings}, {"out", rig.out},
+              {"epoch_ns", rig.epoch_ns}, {"rings", json::array()},
               {"services", json::array()}};
   for (const auto& ring : rig.rings) object["rings"].push_back(to_json(ring));
   for (const auto& service : rig.services) object["services"].push_back(to_json(service));
   return object;
 }
 
-SavedRing ring_from(const json& object) { return {object.at("stream"), object.at("inode"), object.at("fd")}; }
+SavedRing ring_from(const json& object) {
+  return {object.at("stream"), object.at("inode"), object.at("fd")};
+}
 
 /// A name that nobody knows means the least: it is to be started.
 State state_named(const std::string& name) {
   const auto found = std::ranges::find(kStateNames, name);
-  return found == kStateNames.end() ? State::starting : static_cast<State>(found - kStateNames.begin());
+  return found == kStateNames.end() ? State::starting
+                                    : static_cast<State>(found - kStateNames.begin());
 }
 
 SavedService service_from(const json& object) {
@@ -103,7 +112,8 @@ SavedRig rig_from(const json& object) {
 std::string problem_of(const SavedRig& rig, const std::string& name) {
   if (rig.name != name) return fmt::format("it is of a rig named '{}'", rig.name);
   for (const auto& ring : rig.rings)
-    if (ring.fd < kLeastFd || ring.fd > kMostFd) return fmt::format("ring '{}' has the descriptor {}", ring.stream, ring.fd);
+    if (ring.fd < kLeastFd || ring.fd > kMostFd)
+      return fmt::format("ring '{}' has the descriptor {}", ring.stream, ring.fd);
   for (const auto& service : rig.services)
     if (service.pid != 0 && (service.pid < kLeastPid || service.pid > kMostPid))
       return fmt::format("{} has the process number {}", service.name, service.pid);
@@ -126,7 +136,8 @@ std::string problem_of(int fd) {
 Result<void> save(const SavedRig& rig) {
   const auto path = state_of(rig.name);
   if (!path) return tl::make_unexpected(path.error());
-  return replace_file(*path, to_json(rig).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  return replace_file(*path,
+                      to_json(rig).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 Result<std::optional<SavedRig>> load_saved(const std::string& name) {
@@ -137,7 +148,9 @@ Result<std::optional<SavedRig>> load_saved(const std::string& name) {
   };
 
   const UniqueFd file(::open(path->c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-  if (!file) return errno == ENOENT ? Result<std::optional<SavedRig>>(std::nullopt) : no_sense(std::strerror(errno));
+  if (!file)
+    return errno == ENOENT ? Result<std::optional<SavedRig>>(std::nullopt)
+                           : no_sense(std::strerror(errno));
   if (const auto problem = problem_of(file.get()); !problem.empty()) return no_sense(problem);
   const auto object = json::parse(text_of(file.get(), kMostBytes), nullptr, false);
   if (!object.is_object()) return no_sense("it is not whole");
@@ -156,7 +169,8 @@ void forget_saved(const std::string& rig) {
   if (const auto path = state_of(rig)) unlink(path->c_str());
 }
 
-// "PID (name) state ppid ...": the name may hold anything, so count behind it. The state is field 3.
+// "PID (name) state ppid ...": the name may hold anything, so count behind it. The state is
+// field 3.
 std::optional<std::uint64_t> start_ticks_of(pid_t pid) {
   constexpr int kStartField = 22;
   const auto text = text_of_proc(fmt::format("/proc/{}/stat", pid));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/service_unit.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,8 @@ namespace {
 
 constexpr std::string_view kForSystem = "#system#", kForUser = "#user#";
 
-/// One word of a command line: systemd expands %x and $X, and takes quotes and backslashes as a shell does.
+/// One word of a command line: systemd expands %x and $X, and takes quotes and backslashes as a
+/// shell does.
 std::string word(const std::string& text) {
   std::string quoted = "\"";
   for (const char character : text) {
@@ -34,7 +36,9 @@ std::string command_of(const UnitSpec& spec) {
 
 std::string replaced(std::string line, const std::map<std::string, std::string>& values) {
   for (const auto& [mark, value] : values)
-    for (auto at = line.find(mark); at != std::string::npos; at = line.find(mark, at + value.size())) line.replace(at, mark.size(), value);
+    for (auto at = line.find(mark); at != std::string::npos;
+         at = line.find(mark, at + value.size()))
+      line.replace(at, mark.size(), value);
   return line;
 }
 
@@ -56,8 +60,10 @@ std::string home() {
 std::string unit_name(const UnitSpec& spec) { return fmt::format("handcast-{}.service", spec.rig); }
 
 std::string unit_text(const UnitSpec& spec) {
-  const std::map<std::string, std::string> values{
-      {"@NAME@", spec.rig}, {"@PROGRAM@", word(spec.program)}, {"@COMMAND@", command_of(spec)}, {"@USER@", spec.user}};
+  const std::map<std::string, std::string> values{{"@NAME@", spec.rig},
+                                                  {"@PROGRAM@", word(spec.program)},
+                                                  {"@COMMAND@", command_of(spec)},
+                                                  {"@USER@", spec.user}};
   std::istringstream lines{std::string(kServiceTemplate)};
   std::string text;
   for (std::string line; std::getline(lines, line);) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/process_usage.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +25,8 @@ std::vector<std::int64_t> numbers_in(std::string_view text) {
   while (at != end) {
     std::int64_t number = 0;
     const auto [after, error] = std::from_chars(at, end, number);
-    if (after != at) numbers.push_back(number);  // also where it is too large for one: its place counts
+    if (after != at)
+      numbers.push_back(number);  // also where it is too large for one: its place counts
     at = after != at ? after : at + 1;
   }
   return numbers;
@@ -45,7 +47,8 @@ int descriptors_in(const std::filesystem::path& folder) {
 std::optional<std::int64_t> cpu_time_of(pid_t pid) {
   clockid_t clock{};
   timespec time{};
-  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return std::nullopt;
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0)
+    return std::nullopt;
   return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
@@ -54,7 +57,9 @@ std::optional<std::int64_t> cpu_time_of(pid_t pid) {
 // Fields as in proc(5). The name is in brackets and may hold anything, brackets too.
 bool read_stat(std::string_view text, std::int64_t ticks_per_second, ProcessUsage& usage) {
   const auto open = text.find('('), close = text.rfind(')');
-  if (open == std::string_view::npos || close == std::string_view::npos || close < open || text.size() < close + 4) return false;
+  if (open == std::string_view::npos || close == std::string_view::npos || close < open ||
+      text.size() < close + 4)
+    return false;
   const char state = text[close + 2];
   const auto fields = numbers_in(text.substr(close + 4));  // from field 4 on
   const auto field = [&](std::size_t number) { return fields[number - 4]; };
@@ -93,7 +98,8 @@ std::optional<ProcessUsage> usage_of(pid_t pid) {
 
 std::optional<double> cores_used(const ProcessUsage& before, const ProcessUsage& now) {
   const auto span_ns = now.taken_ns - before.taken_ns;
-  if (before.started_ticks != now.started_ticks || span_ns <= 0 || now.cpu_ns < before.cpu_ns) return std::nullopt;
+  if (before.started_ticks != now.started_ticks || span_ns <= 0 || now.cpu_ns < before.cpu_ns)
+    return std::nullopt;
   return static_cast<double>(now.cpu_ns - before.cpu_ns) / static_cast<double>(span_ns);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/top_model.hpp"
 
 namespace handcast::supervisor {
@@ -11,9 +12,11 @@ json or_null(const std::optional<Number>& value) {
 }
 
 json json_of(const ServiceRow& service) {
-  json object{{"service", service.name},      {"state", service.state},         {"backend", service.backend},
-              {"pid", service.pid},           {"spare_pid", service.spare_pid}, {"restarts", service.restarts},
-              {"uptime_s", service.uptime_s}, {"last_exit", service.last_exit}, {"cores", or_null(service.cores)}};
+  json object{{"service", service.name},        {"state", service.state},
+              {"backend", service.backend},     {"pid", service.pid},
+              {"spare_pid", service.spare_pid}, {"restarts", service.restarts},
+              {"uptime_s", service.uptime_s},   {"last_exit", service.last_exit},
+              {"cores", or_null(service.cores)}};
   if (!service.well()) object["trouble"] = service.trouble;
   if (!service.usage) return object;
   const auto& usage = *service.usage;
@@ -70,8 +73,9 @@ json json_of(const TopModel& model) {
   for (const auto& service : model.services) services.push_back(json_of(service));
   for (const auto& ring : model.rings) rings.push_back(json_of(ring));
   for (const auto& [rung, share] : model.rungs) rungs[rung] = share;
-  return {{"rig", model.rig}, {"uptime_s", model.uptime_s}, {"missing", model.missing}, {"services", services}, {"rings", rings},
-          {"rungs", rungs}};
+  return {{"rig", model.rig},         {"uptime_s", model.uptime_s},
+          {"missing", model.missing}, {"services", services},
+          {"rings", rings},           {"rungs", rungs}};
 }
 
 }  // namespace handcast::supervisor

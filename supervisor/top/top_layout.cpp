@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/top_layout.hpp"
 
 #include <fmt/format.h>
@@ -33,14 +34,16 @@ Span text_or_none(const std::string& text) { return text.empty() ? none() : Span
 
 Style style_of_state(const ServiceRow& service) {
   if (service.state == "ready") return Style::good;
-  if (service.state == "degraded" || service.state == "failed" || service.state == "gone") return Style::bad;
+  if (service.state == "degraded" || service.state == "failed" || service.state == "gone")
+    return Style::bad;
   return service.state == "stopped" ? Style::faint : Style::warning;
 }
 
 /// A bar that is full at one whole core.
 std::string meter(double cores) {
   static constexpr std::array<std::string_view, 8> kEighths{"", "▏", "▎", "▍", "▌", "▋", "▊", "▉"};
-  const auto eighths = static_cast<std::size_t>(std::lround(std::clamp(cores, 0.0, 1.0) * 8 * kMeterCells));
+  const auto eighths =
+      static_cast<std::size_t>(std::lround(std::clamp(cores, 0.0, 1.0) * 8 * kMeterCells));
   std::string bar;
   for (std::size_t i = 0; i < eighths / 8; ++i) bar += "█";
   return bar.append(kEighths[eighths % 8]);
@@ -51,26 +54,30 @@ Table::Row cells_of(const ServiceRow& service) {
   const auto own = [](const ProcessUsage& usage) { return text_of_bytes(usage.own_bytes()); };
   const auto shared = [](const ProcessUsage& usage) { return text_of_bytes(usage.shared_bytes); };
   const auto threads = [](const ProcessUsage& usage) { return std::to_string(usage.threads); };
-  const auto descriptors = [](const ProcessUsage& usage) { return std::to_string(usage.descriptors); };
+  const auto descriptors = [](const ProcessUsage& usage) {
+    return std::to_string(usage.descriptors);
+  };
   const auto core = [](const ProcessUsage& usage) { return std::to_string(usage.last_core); };
   Table::Row row;
-  row.cells = {{harmless(service.name), Style::strong},
-               {"● " + harmless(service.state), state},
-               text_or_none(service.backend),
-               number_or_none(service.pid),
-               number_or_none(service.spare_pid),
-               if_known(service.cores, text_of_share),
-               {service.cores ? meter(*service.cores) : "", Style::heading},
-               if_known(service.usage, own),
-               if_known(service.usage, shared),
-               if_known(service.usage, threads),
-               if_known(service.usage, descriptors),
-               if_known(service.usage, core),
-               text_or_none(service.usage ? scheduling_of(*service.usage) : ""),
-               {std::to_string(service.restarts), service.restarts > 0 ? Style::warning : Style::plain},
-               service.uptime_s > 0 ? Span{text_of_span(seconds_to_ns(service.uptime_s))} : none(),
-               text_or_none(service.last_exit)};
-  if (!service.well() && !service.trouble.empty()) row.note = {{"    └ ", state}, {harmless(service.trouble), state}};
+  row.cells = {
+      {harmless(service.name), Style::strong},
+      {"● " + harmless(service.state), state},
+      text_or_none(service.backend),
+      number_or_none(service.pid),
+      number_or_none(service.spare_pid),
+      if_known(service.cores, text_of_share),
+      {service.cores ? meter(*service.cores) : "", Style::heading},
+      if_known(service.usage, own),
+      if_known(service.usage, shared),
+      if_known(service.usage, threads),
+      if_known(service.usage, descriptors),
+      if_known(service.usage, core),
+      text_or_none(service.usage ? scheduling_of(*service.usage) : ""),
+      {std::to_string(service.restarts), service.restarts > 0 ? Style::warning : Style::plain},
+      service.uptime_s > 0 ? Span{text_of_span(seconds_to_ns(service.uptime_s))} : none(),
+      text_or_none(service.last_exit)};
+  if (!service.well() && !service.trouble.empty())
+    row.note = {{"    └ ", state}, {harmless(service.trouble), state}};
   return row;
 }
 
@@ -115,7 +122,8 @@ Table::Row cells_of(const RingRow& ring) {
            {text_of_count(ring.now.published)},
            growing(ring.now.dropped, ring.dropped_hz, Style::bad),
            growth(ring.dropped_hz, Style::bad),
-           {fmt::format("writer {}", ring.now.epoch), ring.now.epoch > 1 ? Style::warning : Style::plain}},
+           {fmt::format("writer {}", ring.now.epoch),
+            ring.now.epoch > 1 ? Style::warning : Style::plain}},
           {}};
 }
 
@@ -148,26 +156,36 @@ Table::Row cells_of(const ReaderRow& reader, bool last) {
 
 Table ring_table(const TopModel& model, bool with_marks) {
   Table table;
-  table.columns = {{.title = "RING", .second_title = "  ├ reader", .align = Align::left, .least = 18, .importance = 100},
-                   {.title = "RATE", .second_title = "reads", .least = 8, .importance = 95},
-                   {.title = "AGE", .second_title = "at reading", .least = 8, .importance = 90},
-                   {.title = "LATENCY", .second_title = "behind", .least = 8, .importance = 50},
-                   {.title = "MESSAGES", .second_title = "read", .least = 9, .importance = 40},
-                   {.title = "DROPPED", .second_title = "skipped", .least = 7, .importance = 80},
-                   {.title = "", .second_title = "", .least = 8, .importance = 60},
-                   {.title = "NOW", .second_title = "", .align = Align::left, .least = 12, .importance = 70}};
+  table.columns = {
+      {.title = "RING",
+       .second_title = "  ├ reader",
+       .align = Align::left,
+       .least = 18,
+       .importance = 100},
+      {.title = "RATE", .second_title = "reads", .least = 8, .importance = 95},
+      {.title = "AGE", .second_title = "at reading", .least = 8, .importance = 90},
+      {.title = "LATENCY", .second_title = "behind", .least = 8, .importance = 50},
+      {.title = "MESSAGES", .second_title = "read", .least = 9, .importance = 40},
+      {.title = "DROPPED", .second_title = "skipped", .least = 7, .importance = 80},
+      {.title = "", .second_title = "", .least = 8, .importance = 60},
+      {.title = "NOW", .second_title = "", .align = Align::left, .least = 12, .importance = 70}};
   for (const auto& ring : model.rings) {
     if (ring.marks() && !with_marks) continue;
     table.rows.push_back(cells_of(ring));
-    for (const auto& reader : ring.readers) table.rows.push_back(cells_of(reader, &reader == &ring.readers.back()));
+    for (const auto& reader : ring.readers)
+      table.rows.push_back(cells_of(reader, &reader == &ring.readers.back()));
   }
   return table;
 }
 
 int problems_of(const TopModel& model) {
-  const auto ill = std::ranges::count_if(model.services, [](const auto& service) { return !service.well(); });
-  const auto bad_reader = [](const auto& reader) { return reader.gone || reader.holds_an_old_lease(); };
-  auto rings = std::ranges::count_if(model.rings, [](const auto& ring) { return ring.late() || ring.drops(); });
+  const auto ill =
+      std::ranges::count_if(model.services, [](const auto& service) { return !service.well(); });
+  const auto bad_reader = [](const auto& reader) {
+    return reader.gone || reader.holds_an_old_lease();
+  };
+  auto rings = std::ranges::count_if(model.rings,
+                                     [](const auto& ring) { return ring.late() || ring.drops(); });
   for (const auto& ring : model.rings) rings += std::ranges::count_if(ring.readers, bad_reader);
   return static_cast<int>(ill + rings);
 }
@@ -216,7 +234,9 @@ std::string_view ansi_of(Style style) {
   return "";
 }
 
-void append(std::vector<Line>& lines, std::vector<Line> more) { std::ranges::move(more, std::back_inserter(lines)); }
+void append(std::vector<Line>& lines, std::vector<Line> more) {
+  std::ranges::move(more, std::back_inserter(lines));
+}
 
 }  // namespace
 
@@ -232,7 +252,8 @@ std::vector<Line> lay_out(const TopModel& model, const Page& page) {
   return lines;
 }
 
-std::vector<Line> fit(const std::vector<Line>& lines, std::size_t columns, std::size_t rows, std::size_t& first) {
+std::vector<Line> fit(const std::vector<Line>& lines, std::size_t columns, std::size_t rows,
+                      std::size_t& first) {
   const auto head = std::min({kHeaderLines, lines.size(), rows});
   const auto room = rows > head + 1 ? rows - head - 1 : 0;
   const auto body = lines.size() - head;
@@ -246,7 +267,8 @@ std::vector<Line> fit(const std::vector<Line>& lines, std::size_t columns, std::
   seen.resize(rows - 1);
   const auto below = body - first - shown;
   Line keys{faint("q quit   m stage marks")};
-  if (below > 0 || first > 0) keys.push_back(faint(fmt::format("   ↑↓ scroll ({} above, {} below)", first, below)));
+  if (below > 0 || first > 0)
+    keys.push_back(faint(fmt::format("   ↑↓ scroll ({} above, {} below)", first, below)));
   seen.push_back(cut_to(std::move(keys), columns));
   return seen;
 }

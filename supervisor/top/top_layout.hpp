@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>
@@ -20,12 +21,15 @@ struct Page {
   bool with_marks = true;  ///< the rings of stage marks, too
 };
 
-/// The whole view as lines of at most `page.columns` columns; what matters least is left out where there is not enough room.
+/// The whole view as lines of at most `page.columns` columns; what matters least is left out where
+/// there is not enough room.
 std::vector<Line> lay_out(const TopModel& model, const Page& page);
 
-/// What of the lines is seen on a screen of so many rows: the first lines are always there, the rest is scrolled by `first` (which is
-/// brought into bounds), the last row says which keys there are.
-std::vector<Line> fit(const std::vector<Line>& lines, std::size_t columns, std::size_t rows, std::size_t& first);
+/// What of the lines is seen on a screen of so many rows: the first lines are always there, the
+/// rest is scrolled by `first` (which is brought into bounds), the last row says which keys there
+/// are.
+std::vector<Line> fit(const std::vector<Line>& lines, std::size_t columns, std::size_t rows,
+                      std::size_t& first);
 
 /// Without a line's end. With colours: as ANSI sequences.
 std::string print(const Line& line, bool with_colours);

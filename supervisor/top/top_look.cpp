@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/top_look.hpp"
 
 #include <set>
@@ -20,7 +21,8 @@ bool is_another(const json& before, const json& now) {
       for (const auto& [name, entry] : found->items()) names.insert(name);
     return names;
   };
-  if (!before.is_object() || before.value("uptime_s", 0.0) > now.value("uptime_s", 0.0)) return true;
+  if (!before.is_object() || before.value("uptime_s", 0.0) > now.value("uptime_s", 0.0))
+    return true;
   return names_in(before, "services") != names_in(now, "services");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -16,13 +17,15 @@ namespace handcast::supervisor {
 struct RigLook {
   std::string rig;
   std::int64_t taken_ns = 0;
-  std::string missing;    ///< why its supervisor does not answer; "" where it does
-  nlohmann::json status;  ///< as `handcast status --json`; the last there was while the supervisor is missing
+  std::string missing;  ///< why its supervisor does not answer; "" where it does
+  nlohmann::json
+      status;  ///< as `handcast status --json`; the last there was while the supervisor is missing
   std::vector<ipc::RingSnapshot> rings;
   std::map<pid_t, ProcessUsage> processes;  ///< services, spares and readers that live
 };
 
-/// Looks at a rig again and again without taking part. Rings and services are seen while their supervisor is dead, too.
+/// Looks at a rig again and again without taking part. Rings and services are seen while their
+/// supervisor is dead, too.
 class RigWatcher {
  public:
   explicit RigWatcher(std::string rig) : rig_(std::move(rig)) {}

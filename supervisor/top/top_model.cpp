@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/top_model.hpp"
 
 #include <fmt/format.h>
@@ -36,9 +37,11 @@ std::optional<double> rate(std::uint64_t before, std::uint64_t now, std::int64_t
 std::string trouble_in(const json& service) {
   auto trouble = text_in(service, "reason");
   if (const auto wait_s = number_in(service, "retry_s"); wait_s > 0)
-    trouble += fmt::format("{}again in {}", trouble.empty() ? "" : "; ", text_of_span(seconds_to_ns(wait_s)));
+    trouble += fmt::format("{}again in {}", trouble.empty() ? "" : "; ",
+                           text_of_span(seconds_to_ns(wait_s)));
   const auto log = service.find("log");
-  if (log == service.end() || !log->is_array() || log->empty() || !log->back().is_string()) return trouble;
+  if (log == service.end() || !log->is_array() || log->empty() || !log->back().is_string())
+    return trouble;
   auto last_line = log->back().get<std::string>();
   if (trouble.empty() || last_line.ends_with(trouble)) return last_line;
   return trouble + ": " + last_line;
@@ -49,7 +52,8 @@ const ProcessUsage* usage_in(const RigLook& look, pid_t pid) {
   return found == look.processes.end() ? nullptr : &found->second;
 }
 
-ServiceRow service_row(const std::string& name, const json& service, const RigLook& before, const RigLook& now) {
+ServiceRow service_row(const std::string& name, const json& service, const RigLook& before,
+                       const RigLook& now) {
   ServiceRow row{.name = name,
                  .state = text_in(service, "state"),
                  .backend = text_in(service, "backend"),
@@ -62,7 +66,8 @@ ServiceRow service_row(const std::string& name, const json& service, const RigLo
   const auto* usage = usage_in(now, row.pid);
   const auto* earlier = usage_in(before, row.pid);
   if (usage) row.usage = *usage;
-  if (!usage && row.pid > 0 && !now.missing.empty()) row.state = "gone";  // what the supervisor said last does not hold any more
+  if (!usage && row.pid > 0 && !now.missing.empty())
+    row.state = "gone";  // what the supervisor said last does not hold any more
   if (usage && earlier) row.cores = cores_used(*earlier, *usage);
   return row;
 }
@@ -95,11 +100,14 @@ auto find_same(const Things& things, Same same) {
   return found == std::end(things) ? nullptr : &*found;
 }
 
-ReaderRow reader_row(const ipc::ReaderView& reader, const ipc::RingSnapshot* earlier, std::int64_t span_ns, const RigLook& look,
-                     const Names& names) {
-  ReaderRow row{.now = reader, .who = names.of(reader.pid), .gone = usage_in(look, reader.pid) == nullptr};
+ReaderRow reader_row(const ipc::ReaderView& reader, const ipc::RingSnapshot* earlier,
+                     std::int64_t span_ns, const RigLook& look, const Names& names) {
+  ReaderRow row{
+      .now = reader, .who = names.of(reader.pid), .gone = usage_in(look, reader.pid) == nullptr};
   if (!earlier) return row;
-  const auto same = [&](const auto& other) { return other.row == reader.row && other.pid == reader.pid; };
+  const auto same = [&](const auto& other) {
+    return other.row == reader.row && other.pid == reader.pid;
+  };
   if (const auto* before = find_same(earlier->readers, same)) {
     row.received_hz = rate(before->received, reader.received, span_ns);
     row.skipped_hz = rate(before->skipped, reader.skipped, span_ns);
@@ -113,19 +121,22 @@ std::optional<double> asked_hz_of(const std::string& stream, const json& status)
   return asked_hz > 0 ? std::optional(asked_hz) : std::nullopt;
 }
 
-RingRow ring_row(const ipc::RingSnapshot& ring, const RigLook& before, const RigLook& now, const Names& names) {
+RingRow ring_row(const ipc::RingSnapshot& ring, const RigLook& before, const RigLook& now,
+                 const Names& names) {
   RingRow row{.now = ring, .asked_hz = asked_hz_of(ring.stream, now.status)};
   if (ring.newest_published_ns != 0) {
     row.newest_age_ns = std::max<std::int64_t>(0, now.taken_ns - ring.newest_published_ns);
     row.latency_ns = ring.newest_published_ns - ring.newest_origin_ns;
   }
   const auto span_ns = now.taken_ns - before.taken_ns;
-  const auto* earlier = find_same(before.rings, [&](const auto& other) { return other.stream == ring.stream; });
+  const auto* earlier =
+      find_same(before.rings, [&](const auto& other) { return other.stream == ring.stream; });
   if (earlier) {
     row.rate_hz = rate(earlier->published, ring.published, span_ns);
     row.dropped_hz = rate(earlier->dropped, ring.dropped, span_ns);
   }
-  for (const auto& reader : ring.readers) row.readers.push_back(reader_row(reader, earlier, span_ns, now, names));
+  for (const auto& reader : ring.readers)
+    row.readers.push_back(reader_row(reader, earlier, span_ns, now, names));
   return row;
 }
 
@@ -164,7 +175,8 @@ TopModel compare(const RigLook& before, const RigLook& now) {
   const Names names(now);
   if (now.status.is_object()) model.uptime_s = number_in(now.status, "uptime_s");
   if (now.status.contains("services"))
-    for (const auto& [name, service] : now.status["services"].items()) model.services.push_back(service_row(name, service, before, now));
+    for (const auto& [name, service] : now.status["services"].items())
+      model.services.push_back(service_row(name, service, before, now));
   for (const auto& ring : now.rings) model.rings.push_back(ring_row(ring, before, now, names));
   model.rungs = rungs_of(before, now);
   return model;

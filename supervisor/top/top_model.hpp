@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -12,7 +13,8 @@
 namespace handcast::supervisor {
 
 inline constexpr std::int64_t kOldLease_ns = 100'000'000;  ///< a lease is meant to last one frame
-inline constexpr double kLatePeriods = 3;                  ///< a ring whose newest message is older than so many periods is late
+inline constexpr double kLatePeriods =
+    3;  ///< a ring whose newest message is older than so many periods is late
 
 struct ServiceRow {
   std::string name, state, backend, last_exit;
@@ -63,7 +65,8 @@ struct TopModel {
   double uptime_s = 0;
   std::vector<ServiceRow> services;
   std::vector<RingRow> rings;
-  std::vector<RungShare> rungs;  ///< of the hands drawn since the look before, cheapest first; rungs that were taken
+  std::vector<RungShare>
+      rungs;  ///< of the hands drawn since the look before, cheapest first; rungs that were taken
 };
 
 /// Rates are between the two looks; there are none for what has changed hands in between.

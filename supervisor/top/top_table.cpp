@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/top_table.hpp"
 
 #include <algorithm>
@@ -17,14 +18,17 @@ std::size_t width_of(const Table& table, std::size_t column) {
 }
 
 /// Which columns there is room for, in their order.
-std::vector<std::size_t> choose(const Table& table, const std::vector<std::size_t>& widths, std::size_t room) {
+std::vector<std::size_t> choose(const Table& table, const std::vector<std::size_t>& widths,
+                                std::size_t room) {
   std::vector<std::size_t> chosen;
   std::size_t needed = 0;
   for (std::size_t i = 0; i < widths.size(); ++i) {
     chosen.push_back(i);
     needed += widths[i] + kGap;
   }
-  const auto less_important = [&](auto a, auto b) { return table.columns[a].importance < table.columns[b].importance; };
+  const auto less_important = [&](auto a, auto b) {
+    return table.columns[a].importance < table.columns[b].importance;
+  };
   while (chosen.size() > 1 && needed > room + kGap) {
     const auto least = std::ranges::min_element(chosen, less_important);
     needed -= widths[*least] + kGap;
@@ -68,7 +72,8 @@ std::vector<Line> lay_out(const Table& table, std::size_t columns) {
     lines.push_back(cut_to(std::move(line), columns));
   };
   add([&](std::size_t i) { return Span{table.columns[i].title, Style::heading}; });
-  if (std::ranges::any_of(table.columns, [](const auto& column) { return !column.second_title.empty(); }))
+  if (std::ranges::any_of(table.columns,
+                          [](const auto& column) { return !column.second_title.empty(); }))
     add([&](std::size_t i) { return Span{table.columns[i].second_title, Style::faint}; });
   for (const auto& row : table.rows) {
     add([&](std::size_t i) { return row.cells[i]; });

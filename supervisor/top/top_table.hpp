@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>
@@ -6,15 +7,18 @@
 
 namespace handcast::supervisor {
 
-/// A table on a screen: columns as wide as they need to be, the least important ones left out where there is no room.
+/// A table on a screen: columns as wide as they need to be, the least important ones left out where
+/// there is no room.
 struct Table {
   enum class Align { left, right };
   struct Column {
     std::string title;
-    std::string second_title;  ///< below it; none of the table's columns has one: one line of titles
+    std::string
+        second_title;  ///< below it; none of the table's columns has one: one line of titles
     Align align = Align::right;
-    std::size_t least = 0;  ///< columns of the screen: so that it does not jump when a figure gets longer
-    int importance = 0;     ///< the lowest is left out first
+    std::size_t least =
+        0;  ///< columns of the screen: so that it does not jump when a figure gets longer
+    int importance = 0;  ///< the lowest is left out first
   };
   struct Row {
     std::vector<Span> cells;  ///< as many as there are columns

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/top_terminal.hpp"
 
 #include <fcntl.h>
@@ -82,7 +83,8 @@ std::vector<Key> keys_in(std::string_view bytes) {
                                                                     {"Q", Key::quit}}};
   std::vector<Key> keys;
   while (!bytes.empty()) {
-    const auto found = std::ranges::find_if(kKeys, [&](const auto& key) { return bytes.starts_with(key.first); });
+    const auto found =
+        std::ranges::find_if(kKeys, [&](const auto& key) { return bytes.starts_with(key.first); });
     if (found != kKeys.end()) keys.push_back(found->second);
     bytes.remove_prefix(found != kKeys.end() ? found->first.size() : 1);
   }
@@ -104,36 +106,43 @@ Terminal::Terminal() {
   raw.c_cc[VSUSP] = _POSIX_VDISABLE;
   raw.c_cc[VQUIT] = _POSIX_VDISABLE;
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGWINCH}) handle(number, note, 0);
-  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) handle(number, crash, SA_RESETHAND | SA_NODEFER);
+  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
+    handle(number, crash, SA_RESETHAND | SA_NODEFER);
   tcsetattr(STDIN_FILENO, TCSANOW, &raw);
   put(kEnter);
 }
 
 Terminal::~Terminal() {
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGWINCH, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) handle(number, SIG_DFL, 0);
+  for (const int number :
+       {SIGINT, SIGTERM, SIGHUP, SIGWINCH, SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL})
+    handle(number, SIG_DFL, 0);
   give_back();
   ::close(std::exchange(signal_pipe, -1));
 }
 
 Terminal::Size Terminal::size() const {
   winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0)
+    return {};
   return {size.ws_col, size.ws_row};
 }
 
 void Terminal::show(const std::vector<std::string>& lines) const {
   std::string picture(kBeginPicture);
-  for (const auto& line : lines) picture += (&line == &lines.front() ? "" : "\r\n") + line + "\x1b[K";
+  for (const auto& line : lines)
+    picture += (&line == &lines.front() ? "" : "\r\n") + line + "\x1b[K";
   put(picture.append(kEndPicture));
 }
 
 std::optional<std::vector<Key>> Terminal::wait(std::int64_t until_ns) const {
   const auto left_ms = std::max<std::int64_t>(0, (until_ns - now_ns() + 999'999) / 1'000'000);
-  std::array<pollfd, 2> sources{{{.fd = STDIN_FILENO, .events = POLLIN}, {.fd = signals_.get(), .events = POLLIN}}};
+  std::array<pollfd, 2> sources{
+      {{.fd = STDIN_FILENO, .events = POLLIN}, {.fd = signals_.get(), .events = POLLIN}}};
   const int ready = poll(sources.data(), sources.size(), static_cast<int>(left_ms));
   if (ready == 0) return std::nullopt;
   if (ready < 0) return std::vector<Key>{};  // a signal: the next call reads it
-  if (sources[1].revents != 0 && asks_to_quit(read_some(signals_.get()))) return std::vector{Key::quit};
+  if (sources[1].revents != 0 && asks_to_quit(read_some(signals_.get())))
+    return std::vector{Key::quit};
   if (sources[0].revents == 0) return std::vector<Key>{};
   const auto bytes = read_some(STDIN_FILENO);
   return bytes.empty() ? std::vector{Key::quit} : keys_in(bytes);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/units_text.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,9 @@ struct Unit {
 };
 
 /// "1020", "999", "99.9", "9.99", without zeros at the end.
-std::string three_digits(double value) { return std::abs(value) < 999.5 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value); }
+std::string three_digits(double value) {
+  return std::abs(value) < 999.5 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+}
 
 /// In the largest of the `units` (ascending) in which the number is not below 1.
 template <std::size_t N>
@@ -27,8 +30,8 @@ std::string in_units(double value, const std::array<Unit, N>& units) {
   return three_digits(value / unit.size) + " " + std::string(unit.name);
 }
 
-std::string two_units(std::int64_t span_s, std::int64_t large, std::string_view large_name, std::int64_t small,
-                      std::string_view small_name) {
+std::string two_units(std::int64_t span_s, std::int64_t large, std::string_view large_name,
+                      std::int64_t small, std::string_view small_name) {
   const auto rest = span_s % large / small;
   const auto text = fmt::format("{} {}", span_s / large, large_name);
   return rest == 0 ? text : fmt::format("{} {} {}", text, rest, small_name);
@@ -44,24 +47,30 @@ std::string text_of_span(std::int64_t span_ns) {
   if (span_s >= kDay_s) return two_units(span_s, kDay_s, "d", kHour_s, "h");
   if (span_s >= kHour_s) return two_units(span_s, kHour_s, "h", kMinute_s, "min");
   if (span_s >= kMinute_s) return two_units(span_s, kMinute_s, "min", 1, "s");
-  return in_units(static_cast<double>(span_ns), std::array<Unit, 4>{{{1, "ns"}, {1e3, "us"}, {1e6, "ms"}, {1e9, "s"}}});
+  return in_units(static_cast<double>(span_ns),
+                  std::array<Unit, 4>{{{1, "ns"}, {1e3, "us"}, {1e6, "ms"}, {1e9, "s"}}});
 }
 
 std::string text_of_bytes(std::int64_t bytes) {
   constexpr double kKibi = 1024;
-  static constexpr std::array<Unit, 4> kUnits{{{1, "B"}, {kKibi, "KiB"}, {kKibi * kKibi, "MiB"}, {kKibi * kKibi * kKibi, "GiB"}}};
+  static constexpr std::array<Unit, 4> kUnits{
+      {{1, "B"}, {kKibi, "KiB"}, {kKibi * kKibi, "MiB"}, {kKibi * kKibi * kKibi, "GiB"}}};
   return in_units(static_cast<double>(bytes), kUnits);
 }
 
-std::string text_of_rate(double per_second) { return in_units(per_second, std::array<Unit, 2>{{{1, "Hz"}, {1e3, "kHz"}}}); }
+std::string text_of_rate(double per_second) {
+  return in_units(per_second, std::array<Unit, 2>{{{1, "Hz"}, {1e3, "kHz"}}});
+}
 
 std::string text_of_share(double share) {
-  return share < 0.9995 ? fmt::format("{:.1f} %", share * 100) : fmt::format("{:.0f} %", share * 100);
+  return share < 0.9995 ? fmt::format("{:.1f} %", share * 100)
+                        : fmt::format("{:.0f} %", share * 100);
 }
 
 std::string text_of_count(std::uint64_t count) {
   auto text = std::to_string(count);
-  for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), 1, ' ');
+  for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
+    text.insert(static_cast<std::size_t>(at), 1, ' ');
   return text;
 }
 
@@ -84,7 +93,8 @@ std::string harmless(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    const bool second_control = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;  // U+0080 to U+009F
+    const bool second_control = byte == 0xc2 && i + 1 < text.size() &&
+                                static_cast<unsigned char>(text[i + 1]) < 0xa0;  // U+0080 to U+009F
     if (second_control) ++i;
     result += byte < 0x20 || byte == 0x7f || second_control ? '?' : text[i];
   }

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/trace/history_request.hpp"
 
 #include <fmt/format.h>
 
 #include "supervisor/control/control_client.hpp"
-#include "supervisor/life/streams.hpp"
+#include "supervisor/life/service_spec.hpp"
 
 namespace handcast::supervisor {
 
@@ -12,7 +13,8 @@ Result<HistorySnapshot> ask_for_history(const std::string& rig, double seconds) 
   request.seconds = seconds;
   auto answer = ask_with_descriptors(rig, request);
   if (!answer) return tl::make_unexpected(answer.error());
-  if (answer->descriptors.size() != 1) return fail(Errc::bad_data, fmt::format("rig '{}' gave no history", rig));
+  if (answer->descriptors.size() != 1)
+    return fail(Errc::bad_data, fmt::format("rig '{}' gave no history", rig));
   return read_history(answer->descriptors.front());
 }
 

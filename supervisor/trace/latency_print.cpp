@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +21,8 @@ constexpr std::array<const char*, 9> kLevels{" ", "▁", "▂", "▃", "▄", "�
 constexpr const char* kAxis = "1us   10us  100us 1ms   10ms";
 
 std::size_t cell_of(std::int64_t span_ns) {
-  const auto decades = std::log10(std::max(static_cast<double>(span_ns), kAxisBegin_ns) / kAxisBegin_ns);
+  const auto decades =
+      std::log10(std::max(static_cast<double>(span_ns), kAxisBegin_ns) / kAxisBegin_ns);
   return std::min<std::size_t>(static_cast<std::size_t>(decades * kCellsPerDecade), kCells - 1);
 }
 
@@ -30,7 +32,8 @@ std::string picture_of(const Spans& spans) {
   for (const auto span_ns : spans.sorted_ns()) ++counts[cell_of(span_ns)];
   const auto most = std::max<std::size_t>(std::ranges::max(counts), 1);
   std::string picture;
-  for (const auto count : counts) picture += kLevels[(count * (kLevels.size() - 1) + most - 1) / most];
+  for (const auto count : counts)
+    picture += kLevels[(count * (kLevels.size() - 1) + most - 1) / most];
   return picture;
 }
 
@@ -41,20 +44,26 @@ std::string time_of(std::int64_t span_ns) {
 }
 
 std::string figures_of(const Spans& spans) {
-  return fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10}  {}\n", spans.count(), time_of(spans.percentile_ns(0.5)),
-                     time_of(spans.percentile_ns(0.99)), time_of(spans.percentile_ns(0.999)), time_of(spans.percentile_ns(1)),
+  return fmt::format("{:>8} {:>10} {:>10} {:>10} {:>10}  {}\n", spans.count(),
+                     time_of(spans.percentile_ns(0.5)), time_of(spans.percentile_ns(0.99)),
+                     time_of(spans.percentile_ns(0.999)), time_of(spans.percentile_ns(1)),
                      picture_of(spans));
 }
 
 std::string heading(const char* left, const char* right) {
-  return fmt::format("{:<20} {:<16} {:>8} {:>10} {:>10} {:>10} {:>10}  {}\n", left, right, "count", "p50", "p99", "p99.9", "max", kAxis);
+  return fmt::format("{:<20} {:<16} {:>8} {:>10} {:>10} {:>10} {:>10}  {}\n", left, right, "count",
+                     "p50", "p99", "p99.9", "max", kAxis);
 }
 
 std::string rate_of(double hz) { return hz > 0 ? fmt::format("{:.1f} Hz", hz) : "-"; }
 
 json figures_in_us(const Spans& spans) {
   const auto us = [&](double share) { return ns_to_us(spans.percentile_ns(share)); };
-  return {{"count", spans.count()}, {"p50_us", us(0.5)}, {"p99_us", us(0.99)}, {"p999_us", us(0.999)}, {"max_us", us(1)}};
+  return {{"count", spans.count()},
+          {"p50_us", us(0.5)},
+          {"p99_us", us(0.99)},
+          {"p999_us", us(0.999)},
+          {"max_us", us(1)}};
 }
 
 }  // namespace
@@ -79,25 +88,32 @@ json to_json(const LatencyTable& table) {
                       {"skipped_ids", misses.skipped_ids},
                       {"longest_gap_ms", ns_to_ms(misses.longest_gap_ns)},
                       {"lost_marks", misses.lost_marks}});
-  return {{"seconds", table.seconds}, {"stages", stages}, {"end_to_end", ways}, {"services", missed}};
+  return {
+      {"seconds", table.seconds}, {"stages", stages}, {"end_to_end", ways}, {"services", missed}};
 }
 
 std::string print_latency(const LatencyTable& table) {
-  auto text =
-      fmt::format("the last {:.1f} s; light: the middle of the time a frame is lit, as the projector reports it\n\n", table.seconds);
+  auto text = fmt::format(
+      "the last {:.1f} s; light: the middle of the time a frame is lit, as the projector reports "
+      "it\n\n",
+      table.seconds);
   text += heading("from", "to");
   for (const auto& [from, to, spans] : table.ways)
     if (spans.count() > 0) text += fmt::format("{:<20} {:<16} ", from, to) + figures_of(spans);
   text += "\n" + heading("service", "stage");
-  for (const auto& [service, stage, spans] : table.stages) text += fmt::format("{:<20} {:<16} ", service, stage) + figures_of(spans);
+  for (const auto& [service, stage, spans] : table.stages)
+    text += fmt::format("{:<20} {:<16} ", service, stage) + figures_of(spans);
 
-  text += fmt::format("\n{:<12} {:>8} {:>10} {:>10} {:>8} {:>8} {:>8} {:>12} {:>12}\n", "service", "frames", "asked", "held", "missed",
-                      "late", "skipped", "longest gap", "marks lost");
+  text += fmt::format("\n{:<12} {:>8} {:>10} {:>10} {:>8} {:>8} {:>8} {:>12} {:>12}\n", "service",
+                      "frames", "asked", "held", "missed", "late", "skipped", "longest gap",
+                      "marks lost");
   for (const auto& misses : table.misses)
-    text += fmt::format("{:<12} {:>8} {:>10} {:>10} {:>8} {:>8} {:>8} {:>12} {:>12}\n", misses.service, misses.frames,
-                        rate_of(misses.asked_hz), rate_of(misses.held_hz), misses.asked_hz > 0 ? std::to_string(misses.missed) : "-",
-                        misses.asked_hz > 0 ? std::to_string(misses.late) : "-", misses.skipped_ids, time_of(misses.longest_gap_ns),
-                        misses.lost_marks);
+    text +=
+        fmt::format("{:<12} {:>8} {:>10} {:>10} {:>8} {:>8} {:>8} {:>12} {:>12}\n", misses.service,
+                    misses.frames, rate_of(misses.asked_hz), rate_of(misses.held_hz),
+                    misses.asked_hz > 0 ? std::to_string(misses.missed) : "-",
+                    misses.asked_hz > 0 ? std::to_string(misses.late) : "-", misses.skipped_ids,
+                    time_of(misses.longest_gap_ns), misses.lost_marks);
   return text;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/trace/latency_table.hpp"
 
 #include <algorithm>
@@ -15,7 +16,8 @@ namespace {
 
 using msg::Stage;
 
-/// Spans of several ways at once, each under its two names, in the order in which the ways are told.
+/// Spans of several ways at once, each under its two names, in the order in which the ways are
+/// told.
 class Ways {
  public:
   void add(const char* from, const char* to, std::optional<std::int64_t> span_ns) {
@@ -43,28 +45,34 @@ std::vector<StageLatency> stage_latencies(const HistorySnapshot& history) {
   std::vector<std::array<std::vector<std::int64_t>, kStages>> spans_ns(history.services.size());
   for (const auto& frame : history.frames)
     for (const auto& mark : frame.marks)
-      spans_ns[frame.service][static_cast<std::size_t>(mark.stage)].push_back(mark.end_ns - mark.begin_ns);
+      spans_ns[frame.service][static_cast<std::size_t>(mark.stage)].push_back(mark.end_ns -
+                                                                              mark.begin_ns);
 
   std::vector<StageLatency> stages;
   for (std::size_t service = 0; service < spans_ns.size(); ++service)
     for (std::size_t stage = 0; stage < kStages; ++stage)
       if (!spans_ns[service][stage].empty())
-        stages.push_back({history.services[service], std::string(msg::kStageNames[stage]), Spans(std::move(spans_ns[service][stage]))});
+        stages.push_back({history.services[service], std::string(msg::kStageNames[stage]),
+                          Spans(std::move(spans_ns[service][stage]))});
   return stages;
 }
 
 /// How old something was when a mark of the same or another frame ended.
-std::optional<std::int64_t> age_at(const HistorySnapshot& history, std::optional<std::size_t> ingredient, const msg::StageMark& mark) {
+std::optional<std::int64_t> age_at(const HistorySnapshot& history,
+                                   std::optional<std::size_t> ingredient,
+                                   const msg::StageMark& mark) {
   return ingredient ? age_of(history.frames[*ingredient], mark) : std::nullopt;
 }
 
 std::vector<WayLatency> way_latencies(const HistorySnapshot& history) {
   Ways ways;
   for (const auto& frame : history.frames) {
-    if (const auto* capture = find_mark(frame, Stage::capture)) ways.add("exposure", "image delivered", age_of(frame, *capture));
+    if (const auto* capture = find_mark(frame, Stage::capture))
+      ways.add("exposure", "image delivered", age_of(frame, *capture));
   }
   for (const auto& frame : history.frames)
-    if (const auto* detect = find_mark(frame, Stage::detect)) ways.add("exposure", "landmarks found", age_of(frame, *detect));
+    if (const auto* detect = find_mark(frame, Stage::detect))
+      ways.add("exposure", "landmarks found", age_of(frame, *detect));
 
   std::set<std::size_t> shown;
   for (const auto& made : made_frames(history)) {
@@ -78,7 +86,8 @@ std::vector<WayLatency> way_latencies(const HistorySnapshot& history) {
     ways.add("landmarks' exposure", "light", age_at(history, made.detection, *light));
     ways.add("pose sample", "light", age_at(history, made.sample, *light));
     if (!made.image || !shown.insert(*made.image).second) continue;
-    ways.add("image delivered", "first light", light->end_ns - find_mark(history.frames[*made.image], Stage::capture)->end_ns);
+    ways.add("image delivered", "first light",
+             light->end_ns - find_mark(history.frames[*made.image], Stage::capture)->end_ns);
   }
   return ways.take();
 }
@@ -103,17 +112,23 @@ std::vector<Done> done_by(const HistorySnapshot& history, std::size_t service) {
   return done;
 }
 
-std::uint64_t above(std::uint64_t value, std::uint64_t allowed) { return value > allowed ? value - allowed : 0; }
+std::uint64_t above(std::uint64_t value, std::uint64_t allowed) {
+  return value > allowed ? value - allowed : 0;
+}
 
 /// How many periods lie between two frames.
-double periods_between(const Done& before, const Done& after, double hz) { return ns_to_seconds(after.time_ns - before.time_ns) * hz; }
+double periods_between(const Done& before, const Done& after, double hz) {
+  return ns_to_seconds(after.time_ns - before.time_ns) * hz;
+}
 
-/// The periods without a frame before frame `i`. One that comes late, with the next in its usual place, was not missed.
+/// The periods without a frame before frame `i`. One that comes late, with the next in its usual
+/// place, was not missed.
 std::uint64_t missed_before(const std::vector<Done>& done, std::size_t i, double hz) {
   auto periods = periods_between(done[i - 1], done[i], hz);
   std::uint64_t frames = 1 + done[i].lost;
   if (periods <= 0.5 + static_cast<double>(frames)) return 0;
-  const bool caught_up = i + 1 < done.size() && done[i + 1].lost == 0 && periods_between(done[i], done[i + 1], hz) < 1;
+  const bool caught_up =
+      i + 1 < done.size() && done[i + 1].lost == 0 && periods_between(done[i], done[i + 1], hz) < 1;
   if (caught_up) periods += periods_between(done[i], done[i + 1], hz), ++frames;
   return above(static_cast<std::uint64_t>(std::llround(periods)), frames);
 }
@@ -121,7 +136,8 @@ std::uint64_t missed_before(const std::vector<Done>& done, std::size_t i, double
 void count_gap(const std::vector<Done>& done, std::size_t i, Misses& misses) {
   const auto &before = done[i - 1], &after = done[i];
   misses.lost_marks += after.lost;
-  if (after.from_sensor && after.frame_id > before.frame_id) misses.skipped_ids += above(after.frame_id - before.frame_id - 1, after.lost);
+  if (after.from_sensor && after.frame_id > before.frame_id)
+    misses.skipped_ids += above(after.frame_id - before.frame_id - 1, after.lost);
   if (misses.asked_hz > 0) misses.missed += missed_before(done, i, misses.asked_hz);
   if (after.lost > 0) return;
   misses.longest_gap_ns = std::max(misses.longest_gap_ns, after.time_ns - before.time_ns);
@@ -133,7 +149,9 @@ Misses misses_of(const HistorySnapshot& history, std::size_t service, double ask
   Misses misses{.service = history.services[service], .frames = done.size(), .asked_hz = asked_hz};
   for (std::size_t i = 1; i < done.size(); ++i) count_gap(done, i, misses);
   const auto span_ns = done.empty() ? 0 : done.back().time_ns - done.front().time_ns;
-  if (span_ns > 0) misses.held_hz = static_cast<double>(done.size() - 1 + misses.lost_marks) / ns_to_seconds(span_ns);
+  if (span_ns > 0)
+    misses.held_hz =
+        static_cast<double>(done.size() - 1 + misses.lost_marks) / ns_to_seconds(span_ns);
   return misses;
 }
 
@@ -150,15 +168,19 @@ double seconds_in(const HistorySnapshot& history) {
 
 }  // namespace
 
-Spans::Spans(std::vector<std::int64_t> spans_ns) : sorted_ns_(std::move(spans_ns)) { std::ranges::sort(sorted_ns_); }
+Spans::Spans(std::vector<std::int64_t> spans_ns) : sorted_ns_(std::move(spans_ns)) {
+  std::ranges::sort(sorted_ns_);
+}
 
 std::int64_t Spans::percentile_ns(double share) const {
   if (sorted_ns_.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted_ns_.size())));
+  const auto rank =
+      static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted_ns_.size())));
   return sorted_ns_[std::clamp<std::size_t>(rank, 1, sorted_ns_.size()) - 1];
 }
 
-LatencyTable measure_latency(const HistorySnapshot& history, const std::map<std::string, double>& asked_hz) {
+LatencyTable measure_latency(const HistorySnapshot& history,
+                             const std::map<std::string, double>& asked_hz) {
   LatencyTable table{seconds_in(history), stage_latencies(history), way_latencies(history), {}};
   for (std::size_t service = 0; service < history.services.size(); ++service) {
     const auto asked = asked_hz.find(history.services[service]);

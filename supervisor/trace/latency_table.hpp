@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
@@ -37,13 +38,15 @@ struct WayLatency {
 struct Misses {
   std::string service;
   std::uint64_t frames = 0;
-  double asked_hz = 0;            ///< 0: as fast as it can
-  double held_hz = 0;             ///< over the time from its first to its last frame
-  std::uint64_t missed = 0;       ///< periods of the asked rate that passed without a frame, and were not made good by the next one
-  std::uint64_t late = 0;         ///< frames that came more than 1.5 periods after the one before
+  double asked_hz = 0;       ///< 0: as fast as it can
+  double held_hz = 0;        ///< over the time from its first to its last frame
+  std::uint64_t missed = 0;  ///< periods of the asked rate that passed without a frame, and were
+                             ///< not made good by the next one
+  std::uint64_t late = 0;    ///< frames that came more than 1.5 periods after the one before
   std::uint64_t skipped_ids = 0;  ///< of a sensor: numbers that never came
   std::int64_t longest_gap_ns = 0;
-  std::uint64_t lost_marks = 0;  ///< frames whose marks the recorder came too late for; in none of the figures above
+  std::uint64_t lost_marks =
+      0;  ///< frames whose marks the recorder came too late for; in none of the figures above
 };
 
 struct LatencyTable {
@@ -54,7 +57,8 @@ struct LatencyTable {
 };
 
 /// `asked_hz` by service; those not in it run as fast as they can.
-LatencyTable measure_latency(const HistorySnapshot& history, const std::map<std::string, double>& asked_hz);
+LatencyTable measure_latency(const HistorySnapshot& history,
+                             const std::map<std::string, double>& asked_hz);
 
 nlohmann::json to_json(const LatencyTable& table);
 std::string print_latency(const LatencyTable& table);

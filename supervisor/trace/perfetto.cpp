@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/trace/perfetto.hpp"
 
 #include <fmt/format.h>
@@ -21,15 +22,20 @@ namespace {
 using namespace perfetto;
 
 constexpr std::uint64_t kSequence = 1, kProcessTrack = 1, kAgeTrack = 2, kFirstServiceTrack = 3;
-constexpr std::array<std::string_view, 5> kAnnotations{"frame_id", "age_ms", "marks_lost", "left_hand", "right_hand"};
+constexpr std::array<std::string_view, 5> kAnnotations{"frame_id", "age_ms", "marks_lost",
+                                                       "left_hand", "right_hand"};
 enum Annotation { frame_id, age_ms, marks_lost, left_hand, right_hand };
 
-constexpr std::uint64_t name_id(msg::Stage stage) { return static_cast<std::uint64_t>(stage) + 1; }  // 0 is no name
+constexpr std::uint64_t name_id(msg::Stage stage) {
+  return static_cast<std::uint64_t>(stage) + 1;
+}  // 0 is no name
 
-/// Those that stand for their whole frame: flows pass through them, and they tell which frame it is.
+/// Those that stand for their whole frame: flows pass through them, and they tell which frame it
+/// is.
 bool is_leading(msg::Stage stage) {
   using enum msg::Stage;
-  return stage == capture || stage == sample || stage == detect || stage == frame || stage == present || stage == light;
+  return stage == capture || stage == sample || stage == detect || stage == frame ||
+         stage == present || stage == light;
 }
 
 /// A packet that is yet to find its place in time.
@@ -40,7 +46,8 @@ struct TimedEvent {
 
 class TraceWriter {
  public:
-  TraceWriter(const HistorySnapshot& history, std::string_view rig) : history_(history), rig_(rig), flows_(flows_of(history)) {}
+  TraceWriter(const HistorySnapshot& history, std::string_view rig)
+      : history_(history), rig_(rig), flows_(flows_of(history)) {}
 
   std::string write(const ClockReadings& clocks) {
     add_clocks(clocks);
@@ -71,7 +78,9 @@ class TraceWriter {
     Protobuf snapshot;
     const auto clock = [&](std::uint64_t id, std::int64_t time_ns) {
       const auto reading = static_cast<std::uint64_t>(time_ns);
-      snapshot.message(clock_snapshot::clock, Protobuf().number(clock_snapshot::clock_id, id).number(clock_snapshot::clock_time, reading));
+      snapshot.message(clock_snapshot::clock, Protobuf()
+                                                  .number(clock_snapshot::clock_id, id)
+                                                  .number(clock_snapshot::clock_time, reading));
     };
     clock(clock_snapshot::monotonic, clocks.monotonic_ns);
     clock(clock_snapshot::boottime, clocks.boottime_ns);
@@ -84,29 +93,37 @@ class TraceWriter {
   void add_names() {
     Protobuf names;
     for (std::size_t i = 0; i < msg::kStageNames.size(); ++i)
-      names.message(interned::event_name, Protobuf().number(interned::id, i + 1).text(interned::text, msg::kStageNames[i]));
+      names.message(
+          interned::event_name,
+          Protobuf().number(interned::id, i + 1).text(interned::text, msg::kStageNames[i]));
     for (std::size_t i = 0; i < kAnnotations.size(); ++i)
-      names.message(interned::annotation_name, Protobuf().number(interned::id, i + 1).text(interned::text, kAnnotations[i]));
+      names.message(interned::annotation_name,
+                    Protobuf().number(interned::id, i + 1).text(interned::text, kAnnotations[i]));
     add(Protobuf()
             .number(packet::sequence_flags, packet::state_cleared | packet::needs_state)
-            .message(packet::defaults, Protobuf().number(packet::clock_id, clock_snapshot::monotonic))
+            .message(packet::defaults,
+                     Protobuf().number(packet::clock_id, clock_snapshot::monotonic))
             .message(packet::interned_data, names));
   }
 
   void add_process() {
     const auto name = fmt::format("handcast {}", rig_);
     const auto pid = static_cast<std::uint64_t>(history_.supervisor);
-    add(Protobuf().message(packet::track_descriptor,
-                           Protobuf()
-                               .number(track::uuid, kProcessTrack)
-                               .number(track::child_ordering, track::by_rank)
-                               .message(track::process, Protobuf().number(track::process_pid, pid).text(track::process_name, name))));
-    add(Protobuf().message(packet::track_descriptor, Protobuf()
-                                                         .number(track::uuid, kAgeTrack)
-                                                         .text(track::name, "age of the image in the light")
-                                                         .number(track::parent, kProcessTrack)
-                                                         .number(track::sibling_rank, history_.services.size())
-                                                         .message(track::counter, Protobuf().text(track::counter_unit_name, "ms"))));
+    add(Protobuf().message(
+        packet::track_descriptor,
+        Protobuf()
+            .number(track::uuid, kProcessTrack)
+            .number(track::child_ordering, track::by_rank)
+            .message(track::process,
+                     Protobuf().number(track::process_pid, pid).text(track::process_name, name))));
+    add(Protobuf().message(
+        packet::track_descriptor,
+        Protobuf()
+            .number(track::uuid, kAgeTrack)
+            .text(track::name, "age of the image in the light")
+            .number(track::parent, kProcessTrack)
+            .number(track::sibling_rank, history_.services.size())
+            .message(track::counter, Protobuf().text(track::counter_unit_name, "ms"))));
   }
 
   /// The viewer shows tracks of the same name and parent as one, a lane each.
@@ -122,7 +139,9 @@ class TraceWriter {
     std::vector<std::int64_t> open;  ///< ends, the innermost last
     const auto close_until = [&](std::int64_t time_ns) {
       for (; !open.empty() && open.back() <= time_ns; open.pop_back())
-        events_.push_back({open.back(), Protobuf().number(event::type, event::slice_end).number(event::track, track)});
+        events_.push_back(
+            {open.back(),
+             Protobuf().number(event::type, event::slice_end).number(event::track, track)});
     };
     for (const auto& slice : lane) {
       close_until(slice.mark.begin_ns);
@@ -134,7 +153,9 @@ class TraceWriter {
 
   Protobuf slice_begin(std::uint64_t track, const Slice& slice) const {
     Protobuf begin;
-    begin.number(event::type, event::slice_begin).number(event::track, track).number(event::name_id, name_id(slice.mark.stage));
+    begin.number(event::type, event::slice_begin)
+        .number(event::track, track)
+        .number(event::name_id, name_id(slice.mark.stage));
     const auto annotate = [&](Annotation name, auto put) {
       Protobuf annotation;
       put(annotation.number(event::annotation_name_id, name + 1u));
@@ -143,15 +164,21 @@ class TraceWriter {
     if (slice.mark.stage == msg::Stage::correct)
       for (const auto side : {msg::Side::left, msg::Side::right})
         if (const auto rung = msg::rung_in(slice.mark.detail, side))
-          annotate(side == msg::Side::left ? left_hand : right_hand,
-                   [&](Protobuf& value) { value.text(event::annotation_text, msg::name_of(*rung)); });
+          annotate(side == msg::Side::left ? left_hand : right_hand, [&](Protobuf& value) {
+            value.text(event::annotation_text, msg::name_of(*rung));
+          });
     if (!is_leading(slice.mark.stage)) return begin;
     const auto& frame = history_.frames[slice.frame];
     for (const auto flow : flows_[slice.frame]) begin.fixed64(event::flow, flow);
-    annotate(frame_id, [&](Protobuf& value) { value.number(event::annotation_number, frame.header.frame_id); });
+    annotate(frame_id, [&](Protobuf& value) {
+      value.number(event::annotation_number, frame.header.frame_id);
+    });
     if (const auto age_ns = age_of(frame, slice.mark))
-      annotate(age_ms, [&](Protobuf& value) { value.real(event::annotation_real, ns_to_ms(*age_ns)); });
-    if (frame.missed > 0) annotate(marks_lost, [&](Protobuf& value) { value.number(event::annotation_number, frame.missed); });
+      annotate(age_ms,
+               [&](Protobuf& value) { value.real(event::annotation_real, ns_to_ms(*age_ns)); });
+    if (frame.missed > 0)
+      annotate(marks_lost,
+               [&](Protobuf& value) { value.number(event::annotation_number, frame.missed); });
     return begin;
   }
 
@@ -160,9 +187,10 @@ class TraceWriter {
       const auto* light = find_light(frame);
       const auto age_ns = light ? age_of(frame, *light) : std::nullopt;
       if (!age_ns) continue;
-      events_.push_back(
-          {light->end_ns,
-           Protobuf().number(event::type, event::counter).number(event::track, kAgeTrack).real(event::value, ns_to_ms(*age_ns))});
+      events_.push_back({light->end_ns, Protobuf()
+                                            .number(event::type, event::counter)
+                                            .number(event::track, kAgeTrack)
+                                            .real(event::value, ns_to_ms(*age_ns))});
     }
   }
 
@@ -190,9 +218,12 @@ std::int64_t read_clock(clockid_t clock) {
 
 }  // namespace
 
-ClockReadings ClockReadings::now() { return {read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_BOOTTIME), read_clock(CLOCK_REALTIME)}; }
+ClockReadings ClockReadings::now() {
+  return {read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_BOOTTIME), read_clock(CLOCK_REALTIME)};
+}
 
-std::string perfetto_trace(const HistorySnapshot& history, std::string_view rig, const ClockReadings& clocks) {
+std::string perfetto_trace(const HistorySnapshot& history, std::string_view rig,
+                           const ClockReadings& clocks) {
   return TraceWriter(history, rig).write(clocks);
 }
 

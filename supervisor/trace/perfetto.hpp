@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <string_view>
@@ -12,9 +13,11 @@ struct ClockReadings {
   static ClockReadings now();
 };
 
-/// The history as a trace for ui.perfetto.dev: the bytes of a perfetto.protos.Trace of TrackEvents. A track per service, slices for its
-/// stages (`correct` with the rung each hand was given), flows from the sensors to the light (trace_flows.hpp), a counter for the age of
-/// the image in the light. Times are CLOCK_MONOTONIC's, as in every log and message of the house.
-std::string perfetto_trace(const HistorySnapshot& history, std::string_view rig, const ClockReadings& clocks);
+/// The history as a trace for ui.perfetto.dev: the bytes of a perfetto.protos.Trace of TrackEvents.
+/// A track per service, slices for its stages (`correct` with the rung each hand was given), flows
+/// from the sensors to the light (trace_flows.hpp), a counter for the age of the image in the
+/// light. Times are CLOCK_MONOTONIC's, as in every log and message of the house.
+std::string perfetto_trace(const HistorySnapshot& history, std::string_view rig,
+                           const ClockReadings& clocks);
 
 }  // namespace handcast::supervisor

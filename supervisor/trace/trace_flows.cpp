@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/trace/trace_flows.hpp"
 
 #include <map>
@@ -25,9 +26,11 @@ class Flows {
   std::uint64_t count_ = 0;
 };
 
-using Users = std::map<std::size_t, std::vector<std::size_t>>;  ///< by what they use, in the order of time
+using Users =
+    std::map<std::size_t, std::vector<std::size_t>>;  ///< by what they use, in the order of time
 
-Users users_of(const std::vector<MadeFrame>& frames, std::optional<std::size_t> MadeFrame::*ingredient) {
+Users users_of(const std::vector<MadeFrame>& frames,
+               std::optional<std::size_t> MadeFrame::*ingredient) {
   Users users;
   for (const auto& made : frames)
     if (made.*ingredient) users[*(made.*ingredient)].push_back(made.frame);
@@ -43,7 +46,8 @@ std::vector<std::vector<std::uint64_t>> flows_of(const HistorySnapshot& history)
     shown.insert(shown.begin(), image);
     flows.connect(shown);
   }
-  for (const auto& [sample, known] : users_of(frames, &MadeFrame::sample)) flows.connect({sample, known.front()});
+  for (const auto& [sample, known] : users_of(frames, &MadeFrame::sample))
+    flows.connect({sample, known.front()});
 
   const auto informed = users_of(frames, &MadeFrame::detection);
   const Images images(history);
@@ -52,7 +56,8 @@ std::vector<std::vector<std::uint64_t>> flows_of(const HistorySnapshot& history)
     std::vector<std::size_t> way;
     if (const auto image = images.of(history.frames[i].header)) way.push_back(*image);
     way.push_back(i);
-    if (const auto known = informed.find(i); known != informed.end()) way.push_back(known->second.front());
+    if (const auto known = informed.find(i); known != informed.end())
+      way.push_back(known->second.front());
     flows.connect(way);
   }
   return std::move(flows.of_frame);

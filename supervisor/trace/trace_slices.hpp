@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,8 +8,9 @@
 
 namespace handcast::supervisor {
 
-/// One mark on a lane of its service. On a lane, slices lie one behind the other or, those of one frame, one inside the other: what a
-/// trace viewer can draw. A service whose frames overlap in time (a sensor that delivers later than its period) gets more lanes.
+/// One mark on a lane of its service. On a lane, slices lie one behind the other or, those of one
+/// frame, one inside the other: what a trace viewer can draw. A service whose frames overlap in
+/// time (a sensor that delivers later than its period) gets more lanes.
 struct Slice {
   std::size_t frame = 0;  ///< index into the snapshot's frames
   msg::StageMark mark;

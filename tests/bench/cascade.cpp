@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Speed against accuracy: every rung of the ladder on the twin, and the goals of the cascade.
 //   bench_cascade [--goals FILE]
-// Accuracy: twin.toml at the defaults of METHOD section 4, 3 s of each motion; two runs side by side. Speed: render() of a swaying hand
-// on one core, alone, the rungs in turns.
+// Accuracy: twin.toml at the defaults of METHOD section 4, 3 s of each motion; two runs side by
+// side. Speed: render() of a swaying hand on one core, alone, the rungs in turns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,11 +12,11 @@
 #include <functional>
 #include <map>
 
-#include "cascade_runs.hpp"
-#include "frame_pipeline.hpp"
-#include "goals.hpp"
 #include "ipc/msg/rung.hpp"
-#include "percentiles.hpp"
+#include "tests/bench/cascade_runs.hpp"
+#include "tests/bench/frame_pipeline.hpp"
+#include "tests/bench/goals.hpp"
+#include "tests/bench/percentiles.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -26,14 +27,16 @@ const std::string kStill = "builtin:still";
 
 /// Motions of our own, and the recordings that are there.
 std::vector<std::string> find_motions() {
-  std::vector<std::string> motions{"builtin:wave", "builtin:open_close", "builtin:rotate", "builtin:pinch"};
+  std::vector<std::string> motions{"builtin:wave", "builtin:open_close", "builtin:rotate",
+                                   "builtin:pinch"};
   const char* data = std::getenv("HANDCAST_DATA");
   for (const char* name : {"deformation", "translation"}) {
     const auto recording = std::filesystem::path(data ? data : "../shared/data") / "lmc" / name;
     if (std::filesystem::exists(recording)) {
       motions.push_back(recording.string());
     } else {
-      fmt::print("not measured: the recording {} is not here (set HANDCAST_DATA)\n", recording.string());
+      fmt::print("not measured: the recording {} is not here (set HANDCAST_DATA)\n",
+                 recording.string());
     }
   }
   return motions;
@@ -41,7 +44,8 @@ std::vector<std::string> find_motions() {
 const std::vector<std::string> kMotions = find_motions();
 
 std::string short_name(const std::string& motion) {
-  return motion.starts_with("builtin:") ? motion.substr(8) : std::filesystem::path(motion).filename().string();
+  return motion.starts_with("builtin:") ? motion.substr(8)
+                                        : std::filesystem::path(motion).filename().string();
 }
 
 std::vector<std::string> rung_names() {
@@ -59,7 +63,8 @@ std::vector<SimulatedRun> ladder_runs() {
   std::vector<SimulatedRun> runs;
   for (const auto& rung : rung_names()) {
     for (const auto& motion : kMotions)
-      for (const double speed : kSpeeds) runs.push_back({rung, motion, speed, {"cascade.ladder.rung=" + rung}, 24, {}});
+      for (const double speed : kSpeeds)
+        runs.push_back({rung, motion, speed, {"cascade.ladder.rung=" + rung}, 24, {}});
     runs.push_back({rung, kStill, 1, {"cascade.ladder.rung=" + rung}, 24, {}});
   }
   return runs;
@@ -71,7 +76,8 @@ std::vector<SimulatedRun> filter_runs() {
   std::vector<SimulatedRun> runs;
   for (const auto& motion : kMotions) {
     auto ours = common, paper = common;
-    paper.insert(paper.end(), {"cascade.filter.method=paper", "cascade.filter.hindsight=false", "cascade.filter.blend_ms=0"});
+    paper.insert(paper.end(), {"cascade.filter.method=paper", "cascade.filter.hindsight=false",
+                               "cascade.filter.blend_ms=0"});
     runs.push_back({"ours", motion, 1, ours, 0, {}});
     runs.push_back({"paper", motion, 1, paper, 0, {}});
   }
@@ -82,14 +88,16 @@ std::vector<SimulatedRun> filter_runs() {
 std::vector<SimulatedRun> lost_detector_runs() {
   std::vector<SimulatedRun> runs;
   for (const auto& motion : kMotions)
-    runs.push_back({"lost", motion, 1, {"twin.detector.lost_at_s=1.7", "twin.detector.lost_s=0.3"}, 0, {}});
+    runs.push_back(
+        {"lost", motion, 1, {"twin.detector.lost_at_s=1.7", "twin.detector.lost_s=0.3"}, 0, {}});
   return runs;
 }
 
 using Runs = std::vector<SimulatedRun>;
 
 /// Of the runs that `wanted` names, the mean of a figure.
-double mean_of(const Runs& runs, const char* place, const std::function<bool(const SimulatedRun&)>& wanted) {
+double mean_of(const Runs& runs, const char* place,
+               const std::function<bool(const SimulatedRun&)>& wanted) {
   double sum = 0;
   int count = 0;
   for (const auto& run : runs)
@@ -97,8 +105,11 @@ double mean_of(const Runs& runs, const char* place, const std::function<bool(con
   return count > 0 ? sum / count : std::nan("");
 }
 
-const SimulatedRun& find(const Runs& runs, const std::string& label, const std::string& motion, double speed) {
-  return *std::ranges::find_if(runs, [&](const auto& run) { return run.label == label && run.motion == motion && run.speed == speed; });
+const SimulatedRun& find(const Runs& runs, const std::string& label, const std::string& motion,
+                         double speed) {
+  return *std::ranges::find_if(runs, [&](const auto& run) {
+    return run.label == label && run.motion == motion && run.speed == speed;
+  });
 }
 
 /// Median frame times by rung: short turns, so that whatever else the machine does meets all alike.
@@ -121,26 +132,34 @@ std::map<std::string, double> frame_times_us() {
 }
 
 void print_table(const Runs& runs, const std::map<std::string, double>& frame_us) {
-  fmt::print("interior error, mean/p95 mm, by motion x speed; jitter px of a still hand; render() on one core, p50 µs\n{:<11}", "rung");
+  fmt::print(
+      "interior error, mean/p95 mm, by motion x speed; jitter px of a still hand; render() on one "
+      "core, p50 µs\n{:<11}",
+      "rung");
   for (const auto& motion : kMotions)
-    for (const double speed : kSpeeds) fmt::print(" {:>15}", fmt::format("{} x{:g}", short_name(motion), speed));
+    for (const double speed : kSpeeds)
+      fmt::print(" {:>15}", fmt::format("{} x{:g}", short_name(motion), speed));
   fmt::print(" {:>15} {:>7} {:>7}\n", "still", "jitter", "µs");
   const auto spread = [](const SimulatedRun& run) {
-    return fmt::format("{:.2f}/{:.2f}", number(run.metrics, "/interior_mm/mean"), number(run.metrics, "/interior_mm/p95"));
+    return fmt::format("{:.2f}/{:.2f}", number(run.metrics, "/interior_mm/mean"),
+                       number(run.metrics, "/interior_mm/p95"));
   };
   for (const auto& rung : rung_names()) {
     fmt::print("{:<11}", rung);
     for (const auto& motion : kMotions)
-      for (const double speed : kSpeeds) fmt::print(" {:>15}", spread(find(runs, rung, motion, speed)));
+      for (const double speed : kSpeeds)
+        fmt::print(" {:>15}", spread(find(runs, rung, motion, speed)));
     const auto& still = find(runs, rung, kStill, 1);
-    fmt::print(" {:>15} {:>7.3f} {:>7.0f}\n", spread(still), number(still.metrics, "/jitter_px"), frame_us.at(rung));
+    fmt::print(" {:>15} {:>7.3f} {:>7.0f}\n", spread(still), number(still.metrics, "/jitter_px"),
+               frame_us.at(rung));
   }
   fmt::print("\nwhat auto took, share of hands\n");
   for (const auto& run : runs) {
     if (run.label != "auto") continue;
     fmt::print("{:<20} x{:g} ", short_name(run.motion), run.speed);
     for (const auto& rung : msg::kRungNames)
-      if (const double share = number(run.metrics, fmt::format("/rungs/{}", rung).c_str()); share > 0)
+      if (const double share = number(run.metrics, fmt::format("/rungs/{}", rung).c_str());
+          share > 0)
         fmt::print(" {} {:.2f}", rung, share);
     fmt::print("\n");
   }
@@ -149,7 +168,8 @@ void print_table(const Runs& runs, const std::map<std::string, double>& frame_us
 void print_recovery(const Runs& lost) {
   fmt::print("\na detector lost for 0.3 s: good again after, ms (detections)\n");
   for (const auto& run : lost)
-    fmt::print("{:<20} {:.0f} ({:.0f})\n", short_name(run.motion), number(run.metrics, "/fault/recovery_ms"),
+    fmt::print("{:<20} {:.0f} ({:.0f})\n", short_name(run.motion),
+               number(run.metrics, "/fault/recovery_ms"),
                number(run.metrics, "/fault/recovery_detections"));
 }
 
@@ -167,7 +187,8 @@ double worst_against_best(const Runs& runs) {
   return worst;
 }
 
-/// A figure of the speed bins named, weighed by their frames, over all runs of `auto` but the still one.
+/// A figure of the speed bins named, weighed by their frames, over all runs of `auto` but the still
+/// one.
 double in_bins(const Runs& runs, const char* figure, const std::vector<std::string>& bins) {
   double sum = 0, frames = 0;
   for (const auto& run : runs)
@@ -181,30 +202,43 @@ double in_bins(const Runs& runs, const char* figure, const std::vector<std::stri
   return frames > 0 ? sum / frames : std::nan("");
 }
 
-std::vector<Goal> goals_of(const Runs& runs, const Runs& filters, const Runs& lost, std::map<std::string, double> frame_us) {
+std::vector<Goal> goals_of(const Runs& runs, const Runs& filters, const Runs& lost,
+                           std::map<std::string, double> frame_us) {
   const auto chosen = [&](double speed) {
-    return [speed](const SimulatedRun& run) { return run.label == "auto" && run.speed == speed && run.motion != kStill; };
+    return [speed](const SimulatedRun& run) {
+      return run.label == "auto" && run.speed == speed && run.motion != kStill;
+    };
   };
-  const auto of = [](const char* label) { return [label](const SimulatedRun& run) { return run.label == label; }; };
+  const auto of = [](const char* label) {
+    return [label](const SimulatedRun& run) { return run.label == label; };
+  };
   const std::vector<std::string> slow{"0-0.1", "0.1-0.3", "0.3-0.6"};
   return {
-      {"interior error, natural speed, mean", mean_of(runs, "/interior_mm/mean", chosen(1)), 1.35, "mm"},
-      {"interior error, natural speed, p95", mean_of(runs, "/interior_mm/p95", chosen(1)), 2.9, "mm"},
+      {"interior error, natural speed, mean", mean_of(runs, "/interior_mm/mean", chosen(1)), 1.35,
+       "mm"},
+      {"interior error, natural speed, p95", mean_of(runs, "/interior_mm/p95", chosen(1)), 2.9,
+       "mm"},
       {"interior error, 3x speed, mean", mean_of(runs, "/interior_mm/mean", chosen(3)), 2.4, "mm"},
       {"interior error, 3x speed, p95", mean_of(runs, "/interior_mm/p95", chosen(3)), 6.6, "mm"},
       {"filter, landmark error against the paper's",
-       mean_of(filters, "/landmark_mm/mean", of("ours")) / mean_of(filters, "/landmark_mm/mean", of("paper")), 0.7, "times"},
-      {"filter, jitter against the paper's", mean_of(filters, "/jitter_px", of("ours")) / mean_of(filters, "/jitter_px", of("paper")), 0.25,
-       "times"},
+       mean_of(filters, "/landmark_mm/mean", of("ours")) /
+           mean_of(filters, "/landmark_mm/mean", of("paper")),
+       0.7, "times"},
+      {"filter, jitter against the paper's",
+       mean_of(filters, "/jitter_px", of("ours")) / mean_of(filters, "/jitter_px", of("paper")),
+       0.25, "times"},
       {"coverage up to 0.6 m/s", in_bins(runs, "coverage", slow), 0.99, "", true},
       {"spill up to 0.6 m/s", in_bins(runs, "spill", slow), 0.01, ""},
       {"still-hand jitter", number(find(runs, "auto", kStill, 1).metrics, "/jitter_px"), 0.1, "px"},
       {"fold-overs", mean_of(runs, "/foldovers", of("auto")), 0, ""},
-      {"good again after a lost detector", mean_of(lost, "/fault/recovery_detections", of("lost")), 2, "detections"},
-      {"equivalent latency above 1 m/s", in_bins(runs, "equivalent_latency_ms", {">1.0"}), 6.62, "ms"},
+      {"good again after a lost detector", mean_of(lost, "/fault/recovery_detections", of("lost")),
+       2, "detections"},
+      {"equivalent latency above 1 m/s", in_bins(runs, "equivalent_latency_ms", {">1.0"}), 6.62,
+       "ms"},
       {"auto against the best rung, worst motion", worst_against_best(runs), 1.05, "times"},
       {"whole cascade with registration, one core, p50", frame_us["register"] / 1000, 1.5, "ms"},
-      {"auto against the full ladder, time", frame_us["auto"] / frame_us["register"], 1.02, "times"},
+      {"auto against the full ladder, time", frame_us["auto"] / frame_us["register"], 1.02,
+       "times"},
   };
 }
 

@@ -1,4 +1,5 @@
-#include "cascade_runs.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/cascade_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +10,7 @@
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
-#include "services/simulate/score.hpp"
+#include "services/evaluation/simulate/score.hpp"
 
 namespace handcast::bench {
 namespace {

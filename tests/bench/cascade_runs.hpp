@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,7 +15,8 @@ struct SimulatedRun {
   nlohmann::json metrics;
 };
 
-/// Runs them on twin.toml, `seconds` each, two side by side, with a line of progress every few seconds.
+/// Runs them on twin.toml, `seconds` each, two side by side, with a line of progress every few
+/// seconds.
 void simulate_all(std::vector<SimulatedRun>& runs, double seconds);
 
 }  // namespace handcast::bench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the time of a frame goes on one core, and the nearest-pixel transform beside OpenCV's.
 //   bench_frame [--goals FILE] [Google Benchmark's options]
 #include <benchmark/benchmark.h>
@@ -7,11 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "capsule_hand.hpp"
-#include "frame_pipeline.hpp"
-#include "goals.hpp"
-#include "nearest_against_opencv.hpp"
-#include "percentiles.hpp"
+#include "renderer/draw/cpu/cpu_painter.hpp"
+#include "tests/bench/capsule_hand.hpp"
+#include "tests/bench/frame_pipeline.hpp"
+#include "tests/bench/goals.hpp"
+#include "tests/bench/nearest_against_opencv.hpp"
+#include "tests/bench/percentiles.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -37,7 +39,8 @@ renderer::WarpGrid bent_grid() {
   renderer::WarpGrid grid{21, 21, kWholeFrame, {}};
   for (int row = 0; row < 21; ++row) {
     for (int column = 0; column < 21; ++column) {
-      grid.nodes.emplace_back(column * 1023 / 20.f + 3 * std::sin(row + column), row * 767 / 20.f + 2 * std::cos(row - column));
+      grid.nodes.emplace_back(column * 1023 / 20.f + 3 * std::sin(row + column),
+                              row * 767 / 20.f + 2 * std::cos(row - column));
     }
   }
   return grid;
@@ -74,15 +77,20 @@ void print_frame(const char* title, const FrameTimes& times) {
     fmt::print("{}: not measured: {}\n", title, times.error);
     return;
   }
-  fmt::print("{} ({} lit + {} filled px), µs\n  {:<10} {:>8} {:>8}\n", title, times.lit_px, times.filled_px, "", "p50", "p99");
+  fmt::print("{} ({} lit + {} filled px), µs\n  {:<10} {:>8} {:>8}\n", title, times.lit_px,
+             times.filled_px, "", "p50", "p99");
   for (const auto& [stage, samples] : times.stage_us)
     fmt::print("  {:<10} {:8.1f} {:8.1f}\n", stage, median(samples), percentile(samples, 0.99));
-  fmt::print("  {:<10} {:8.1f} {:8.1f}\n", "render()", median(times.frame_us), percentile(times.frame_us, 0.99));
+  fmt::print("  {:<10} {:8.1f} {:8.1f}\n", "render()", median(times.frame_us),
+             percentile(times.frame_us, 0.99));
 }
 
 void print_comparison(const char* title, const NearestComparison& c) {
-  fmt::print("nearest pixel, {}: ours {:.0f} µs, OpenCV {:.0f} µs: {:.1f} times; wrong of {}: ours {}, OpenCV {}\n", title, c.ours_us,
-             c.opencv_us, c.opencv_us / c.ours_us, c.wanted, c.wrong_ours, c.wrong_opencv);
+  fmt::print(
+      "nearest pixel, {}: ours {:.0f} µs, OpenCV {:.0f} µs: {:.1f} times; wrong of {}: ours {}, "
+      "OpenCV {}\n",
+      title, c.ours_us, c.opencv_us, c.opencv_us / c.ours_us, c.wanted, c.wrong_ours,
+      c.wrong_opencv);
 }
 
 std::vector<Goal> measure_goals() {
@@ -98,10 +106,14 @@ std::vector<Goal> measure_goals() {
   print_comparison("full frame", full);
   print_comparison("region 350x350", region);
   std::vector<Goal> goals;
-  if (frame.error.empty()) goals.push_back({"cpu frame 1024x768 p50", median(frame.frame_us) / 1000, 1.2, "ms"});
-  goals.push_back({"nearest pixel, OpenCV / ours, full frame", full.opencv_us / full.ours_us, 20, "times", true});
-  goals.push_back({"nearest pixel, OpenCV / ours, region", region.opencv_us / region.ours_us, 3, "times", true});
-  goals.push_back({"wrong labels", static_cast<double>(full.wrong_ours + region.wrong_ours), 0, "px"});
+  if (frame.error.empty())
+    goals.push_back({"cpu frame 1024x768 p50", median(frame.frame_us) / 1000, 1.2, "ms"});
+  goals.push_back({"nearest pixel, OpenCV / ours, full frame", full.opencv_us / full.ours_us, 20,
+                   "times", true});
+  goals.push_back({"nearest pixel, OpenCV / ours, region", region.opencv_us / region.ours_us, 3,
+                   "times", true});
+  goals.push_back(
+      {"wrong labels", static_cast<double>(full.wrong_ours + region.wrong_ours), 0, "px"});
   return goals;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
 #include <string>
@@ -14,8 +15,8 @@ struct FrameTimes {
   std::string error;                                    ///< where it could not run
 };
 
-/// Whole frames of Pipeline on one core: the paper's rig, one left hand `distance_m` away (0.9: some 45,000 px) swaying 0.6 m/s, the
-/// tracker 9 ms and the landmarks 16 ms late and 5 px off.
+/// Whole frames of Pipeline on one core: the paper's rig, one left hand `distance_m` away (0.9:
+/// some 45,000 px) swaying 0.6 m/s, the tracker 9 ms and the landmarks 16 ms late and 5 px off.
 FrameTimes time_frames(const config::Cascade& cascade, double distance_m, int frames);
 
 }  // namespace handcast::bench

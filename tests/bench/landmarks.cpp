@@ -1,6 +1,9 @@
-// What a landmark network costs in each back end on one core, and a whole look at a hand: those of a kind in turn, in one run.
+// SPDX-License-Identifier: Apache-2.0
+// What a landmark network costs in each back end on one core, and a whole look at a hand: those of
+// a kind in turn, in one run.
 //   bench_landmarks [--goals FILE] [--rounds N] [NETWORK.onnx...]
-// Without files: the network that comes with handcast, those of ../shared/models (HANDCAST_MODELS names another place), and whole looks.
+// Without files: the network that comes with handcast, those of ../shared/models (HANDCAST_MODELS
+// names another place), and whole looks.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -8,10 +11,10 @@
 #include <ctime>
 #include <map>
 
-#include "goals.hpp"
-#include "landmarks_subjects.hpp"
-#include "percentiles.hpp"
-#include "services/landmarks/own_network.hpp"
+#include "services/landmarks/finder/own_network.hpp"
+#include "tests/bench/goals.hpp"
+#include "tests/bench/landmarks_subjects.hpp"
+#include "tests/bench/percentiles.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -39,9 +42,10 @@ double own_time_ms() {
 }
 
 void print(const Subject& subject, const Times& times) {
-  fmt::print("{:<22} {:<8} {:7.1f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.1f}\n", subject.name, subject.backend, subject.mmac,
-             percentile(times.wall_ms, 0), median(times.wall_ms), percentile(times.wall_ms, 0.99), median(times.own_ms),
-             percentile(times.own_ms, 0.99), subject.mmac / median(times.own_ms));
+  fmt::print("{:<22} {:<8} {:7.1f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.1f}\n", subject.name,
+             subject.backend, subject.mmac, percentile(times.wall_ms, 0), median(times.wall_ms),
+             percentile(times.wall_ms, 0.99), median(times.own_ms), percentile(times.own_ms, 0.99),
+             subject.mmac / median(times.own_ms));
 }
 
 void measure(const std::vector<Subject>& subjects, int rounds, Medians& medians) {
@@ -66,17 +70,20 @@ std::vector<Goal> goals_of(const Medians& medians) {
     const char *name, *goal;
     double most_ms;
   };
-  static const Limit kLimits[] = {{"handcast", "our own network in onednn, one core, p50", 1},
-                                  {kOwnLook, "our own network's whole look, one core, p50", 1},
-                                  {"hand_landmark_lite", "hand_landmark_lite in onednn, one core, p50", 4},
-                                  {"palm_detection_lite", "palm_detection_lite in onednn, one core, p50", 6}};
+  static const Limit kLimits[] = {
+      {"handcast", "our own network in onednn, one core, p50", 1},
+      {kOwnLook, "our own network's whole look, one core, p50", 1},
+      {"hand_landmark_lite", "hand_landmark_lite in onednn, one core, p50", 4},
+      {"palm_detection_lite", "palm_detection_lite in onednn, one core, p50", 6}};
   std::vector<Goal> goals;
   for (const Limit& limit : kLimits)
     if (const auto found = medians.find({limit.name, "onednn"}); found != medians.end())
       goals.push_back({limit.goal, found->second, limit.most_ms, "ms"});
-  const auto ours = medians.find({"hand_landmark_lite", "onednn"}), reference = medians.find({"hand_landmark_lite", "opencv"});
+  const auto ours = medians.find({"hand_landmark_lite", "onednn"}),
+             reference = medians.find({"hand_landmark_lite", "opencv"});
   if (ours != medians.end() && reference != medians.end())
-    goals.push_back({"hand_landmark_lite, opencv / onednn", reference->second / ours->second, 4, "times", true});
+    goals.push_back({"hand_landmark_lite, opencv / onednn", reference->second / ours->second, 4,
+                     "times", true});
   return goals;
 }
 
@@ -89,8 +96,10 @@ bool is_there(const fs::path& file) {
 
 void measure_known(int rounds, Medians& medians) {
   const char* place = std::getenv("HANDCAST_MODELS");
-  const fs::path folder = place && *place ? place : "../shared/models", own = landmarks::own::default_network_file();
-  for (const fs::path& file : {own, folder / "first_trial.onnx", folder / "hand_landmark_lite.onnx", folder / "palm_detection_lite.onnx"})
+  const fs::path folder = place && *place ? place : "../shared/models",
+                 own = landmarks::own::default_network_file();
+  for (const fs::path& file : {own, folder / "first_trial.onnx", folder / "hand_landmark_lite.onnx",
+                               folder / "palm_detection_lite.onnx"})
     if (is_there(file)) measure(network_subjects(file), rounds, medians);
   measure(own_looks(own), rounds, medians);
   measure(mediapipe_looks(folder), rounds, medians);
@@ -115,8 +124,8 @@ Options parse(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace handcast::bench;
   const Options options = parse(argc, argv);
-  fmt::print("{:<22} {:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "one thread, ms", "", "MMAC", "min", "p50", "p99", "own p50",
-             "own p99", "GMAC/s");
+  fmt::print("{:<22} {:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "one thread, ms", "",
+             "MMAC", "min", "p50", "p99", "own p50", "own p99", "GMAC/s");
   Medians medians;
   for (const auto& file : options.files) measure(network_subjects(file), options.rounds, medians);
   if (options.files.empty()) measure_known(options.rounds, medians);

@@ -1,14 +1,15 @@
-#include "landmarks_subjects.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/landmarks_subjects.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <memory>
 
-#include "services/landmarks/hand_network.hpp"
-#include "services/landmarks/models.hpp"
-#include "services/landmarks/network/cost.hpp"
-#include "services/landmarks/own_network.hpp"
+#include "services/landmarks/finder/hand_network.hpp"
+#include "services/landmarks/finder/models.hpp"
+#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/inference/cost.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -27,14 +28,16 @@ struct Scene {
   renderer::Image<std::uint8_t> image{720, 540};
   Region region{{361.3f, 268.6f}, 250, 0.7f};
   Points joints_px{};
-  HandLooker::Times ignored;
+  LandmarkModel::Times ignored;
 
   Scene() {
     unsigned seed = 1;
     for (int y = 0; y < image.height(); ++y)
       for (int x = 0; x < image.width(); ++x)
-        image.at(x, y) = static_cast<std::uint8_t>((std::hypot(x - 360, y - 270) < 100 ? 120 : 8) + 16 * noise(seed));
-    for (glm::vec2& joint : joints_px) joint = region.to_image({0.8f * noise(seed) - 0.4f, 0.8f * noise(seed) - 0.4f});
+        image.at(x, y) = static_cast<std::uint8_t>((std::hypot(x - 360, y - 270) < 100 ? 120 : 8) +
+                                                   16 * noise(seed));
+    for (glm::vec2& joint : joints_px)
+      joint = region.to_image({0.8f * noise(seed) - 0.4f, 0.8f * noise(seed) - 0.4f});
   }
 };
 
@@ -42,9 +45,12 @@ template <class Looker>
 Subject look_with(Looker looker, const char* name, const char* backend, const fs::path& file) {
   const auto shared = std::make_shared<Looker>(std::move(looker));
   const auto scene = std::make_shared<Scene>();
-  HandLooker* with = shared.get();
+  LandmarkModel* with = shared.get();
   return {name, backend, network_mmac(file).value_or(0), [shared, with, scene] {
-            return with->look(scene->image.view(), scene->region, msg::Side::left, scene->joints_px, scene->ignored).has_value();
+            return with
+                ->look(scene->image.view(), scene->region, msg::Side::left, scene->joints_px,
+                       scene->ignored)
+                .has_value();
           }};
 }
 
@@ -67,7 +73,8 @@ std::vector<Subject> network_subjects(const fs::path& file) {
     unsigned seed = 1;
     for (std::size_t i = 0; i < network->inputs().size(); ++i)
       for (float& number : network->input(i)) number = noise(seed);
-    subjects.push_back({name, backend.name, network_mmac(file).value_or(0), [network] { return network->run().has_value(); }});
+    subjects.push_back({name, backend.name, network_mmac(file).value_or(0),
+                        [network] { return network->run().has_value(); }});
   }
   return subjects;
 }
@@ -89,7 +96,8 @@ std::vector<Subject> mediapipe_looks(const fs::path& models) {
   for (const auto& backend : network_backends()) {
     auto opened = HandNetwork::open(backend.name, models);
     if (opened)
-      subjects.push_back(look_with(std::move(*opened), kMediaPipeLook, backend.name, models / kHandModel));
+      subjects.push_back(
+          look_with(std::move(*opened), kMediaPipeLook, backend.name, models / kHandModel));
     else
       report(kMediaPipeLook, backend.name, opened.error());
   }

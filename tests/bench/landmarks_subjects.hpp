@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -16,7 +17,8 @@ struct Subject {
 /// Says why where there is nothing to measure.
 /// The network of a file in each back end, on noise.
 std::vector<Subject> network_subjects(const std::filesystem::path& file);
-/// Whole looks in each back end: crop, network, reading of its answer. `models`: MediaPipe's folder.
+/// Whole looks in each back end: crop, network, reading of its answer. `models`: MediaPipe's
+/// folder.
 std::vector<Subject> own_looks(const std::filesystem::path& file);
 std::vector<Subject> mediapipe_looks(const std::filesystem::path& models);
 

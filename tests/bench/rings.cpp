@@ -1,4 +1,6 @@
-// What a ring costs between two processes, beside a Unix socket and ZeroMQ in the same, interleaved run.
+// SPDX-License-Identifier: Apache-2.0
+// What a ring costs between two processes, beside a Unix socket and ZeroMQ in the same, interleaved
+// run.
 //   bench_rings [--goals FILE] [--rounds N]
 #include <fmt/format.h>
 
@@ -7,8 +9,8 @@
 #include <string_view>
 
 #include "ipc/shm/layout.hpp"
-#include "rings_costs.hpp"
-#include "rings_table.hpp"
+#include "tests/bench/rings_costs.hpp"
+#include "tests/bench/rings_table.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -36,10 +38,13 @@ Options parse(int argc, char** argv) {
 Goal measure_costs() {
   constexpr std::size_t kImage_bytes = 720 * 540;
   const double alone_ns = loan_and_publish_ns(0), beside_ns = loan_and_publish_ns(ipc::kReaderRows);
-  fmt::print("loan + publish: {:.0f} ns without a reader, {:.0f} ns with {}, {:.0f} ns where one of them reads without end\n", alone_ns,
-             beside_ns, ipc::kReaderRows, loan_and_publish_ns(ipc::kReaderRows, true));
-  fmt::print("take and give back {} B from the cache: leased {:.0f} ns, copied {:.0f} ns\n", kImage_bytes,
-             take_ns(kImage_bytes, ipc::Hold::lease), take_ns(kImage_bytes, ipc::Hold::copy));
+  fmt::print(
+      "loan + publish: {:.0f} ns without a reader, {:.0f} ns with {}, {:.0f} ns where one of them "
+      "reads without end\n",
+      alone_ns, beside_ns, ipc::kReaderRows, loan_and_publish_ns(ipc::kReaderRows, true));
+  fmt::print("take and give back {} B from the cache: leased {:.0f} ns, copied {:.0f} ns\n",
+             kImage_bytes, take_ns(kImage_bytes, ipc::Hold::lease),
+             take_ns(kImage_bytes, ipc::Hold::copy));
   return {fmt::format("loan + publish with {} readers", ipc::kReaderRows), beside_ns, 100, "ns"};
 }
 
@@ -63,5 +68,6 @@ int main(int argc, char** argv) {
   using namespace handcast::bench;
   const auto options = parse(argc, argv);
   const auto goals = measure_goals(options.rounds);
-  if (!options.goals_file.empty() && !write_goals(options.goals_file, goals)) give_up("cannot write " + options.goals_file);
+  if (!options.goals_file.empty() && !write_goals(options.goals_file, goals))
+    give_up("cannot write " + options.goals_file);
 }

@@ -1,4 +1,5 @@
-#include "rings_bare_rig.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/rings_bare_rig.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,8 +11,8 @@
 
 #include <vector>
 
-#include "rings_transports.hpp"
 #include "supervisor/control/control_client.hpp"
+#include "tests/bench/rings_transports.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -27,7 +28,8 @@ constexpr int kPrepare_us = 100'000;  // what a bare spare needs to be prepared,
   const int log = ::open((folder / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   ::dup2(log, STDOUT_FILENO);
   ::dup2(log, STDERR_FILENO);
-  std::vector<std::string> words{(folder / "handcast").string(), "up", (folder / "rig.toml").string(), "--set", "observer.enabled=false"};
+  std::vector<std::string> words{(folder / "handcast").string(), "up",
+                                 (folder / "rig.toml").string(), "--set", "observer.enabled=false"};
   for (const auto& [service, stream] : BareRig::streams())
     words.insert(words.end(), {"--set", fmt::format("{}.process.standby={}", service, standby)});
   std::vector<char*> arguments;
@@ -44,11 +46,13 @@ BarePrograms::BarePrograms() {
   if (!::mkdtemp(name.data())) give_up("no folder for the programs of a bare rig");
   folder_ = name;
   const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  if (!std::filesystem::exists(bin / "handcast") || !std::filesystem::exists(bin / "handcast_bare_daemon"))
+  if (!std::filesystem::exists(bin / "handcast") ||
+      !std::filesystem::exists(bin / "handcast_bare_daemon"))
     give_up("handcast or handcast_bare_daemon has not been built");
   std::filesystem::copy_file(bin / "handcast", folder_ / "handcast");
   for (const auto& [service, stream] : BareRig::streams())
-    std::filesystem::create_symlink(bin / "handcast_bare_daemon", folder_ / ("handcast-" + service));
+    std::filesystem::create_symlink(bin / "handcast_bare_daemon",
+                                    folder_ / ("handcast-" + service));
   const UniqueFd rig(::open((folder_ / "rig.toml").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
   const auto text = fmt::format("name = \"{}\"\n", kRigName);
   if (::write(rig.get(), text.data(), text.size()) < 0) give_up("no rig file for a bare rig");
@@ -74,12 +78,15 @@ BareRig::~BareRig() {
   ::kill(pid_, SIGTERM);
   int status = 0;
   ::waitpid(pid_, &status, 0);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fmt::print(stderr, "bench_rings_restarts: the supervisor ended with {}\n", status);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    fmt::print(stderr, "bench_rings_restarts: the supervisor ended with {}\n", status);
 }
 
 const std::map<std::string, std::string>& BareRig::streams() {
-  static const std::map<std::string, std::string> kStreams{
-      {"camera", "camera.frames"}, {"pose", "pose.hands"}, {"landmarks", "landmarks.hands"}, {"projector", "projection.frames"}};
+  static const std::map<std::string, std::string> kStreams{{"camera", "camera.frames"},
+                                                           {"pose", "pose.hands"},
+                                                           {"landmarks", "landmarks.hands"},
+                                                           {"projector", "projection.frames"}};
   return kStreams;
 }
 
@@ -98,7 +105,9 @@ bool BareRig::is_ready(bool standby) const {
   return true;
 }
 
-pid_t BareRig::pid_of(const std::string& service) const { return status()["services"][service]["pid"].get<pid_t>(); }
+pid_t BareRig::pid_of(const std::string& service) const {
+  return status()["services"][service]["pid"].get<pid_t>();
+}
 
 ipc::RingView BareRig::view_of(const std::string& stream) const {
   auto answer = must(supervisor::ask_with_descriptors(kRigName, Request{.verb = Verb::rings}));

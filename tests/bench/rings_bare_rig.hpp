@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -10,8 +11,9 @@
 
 namespace handcast::bench {
 
-/// A folder with the real `handcast` and bare daemons (tests/system/bare_daemon.cpp) under the names of its services.
-/// The folder is also where its rigs meet: XDG_RUNTIME_DIR of this process is set to it.
+/// A folder with the real `handcast` and bare daemons (tests/system/bare_daemon.cpp) under the
+/// names of its services. The folder is also where its rigs meet: XDG_RUNTIME_DIR of this process
+/// is set to it.
 class BarePrograms {
  public:
   BarePrograms();

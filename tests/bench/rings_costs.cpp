@@ -1,13 +1,14 @@
-#include "rings_costs.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/rings_costs.hpp"
 
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "ipc/ring/writer.hpp"
-#include "percentiles.hpp"
-#include "rings_process.hpp"
-#include "rings_transports.hpp"
+#include "tests/bench/percentiles.hpp"
+#include "tests/bench/rings_process.hpp"
+#include "tests/bench/rings_transports.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -27,7 +28,9 @@ double median_ns(const std::function<void()>& work) {
   return median(batches_us) * 1000 / kPerBatch;
 }
 
-ipc::Segment make_ring(std::size_t bytes) { return must(ipc::Segment::create(ipc::RingSpec::of<Block>("bench", kSlots, false, bytes))); }
+ipc::Segment make_ring(std::size_t bytes) {
+  return must(ipc::Segment::create(ipc::RingSpec::of<Block>("bench", kSlots, false, bytes)));
+}
 
 void read_without_end(const ipc::Segment& segment) {
   auto reader = must(Reader::attach(again(segment), ipc::Wait::spin));
@@ -39,7 +42,8 @@ void read_without_end(const ipc::Segment& segment) {
 double loan_and_publish_ns(int readers, bool busy) {
   const auto segment = make_ring(sizeof(Block));
   std::vector<Reader> attached;
-  for (int i = busy ? 1 : 0; i < readers; ++i) attached.push_back(must(Reader::attach(again(segment))));
+  for (int i = busy ? 1 : 0; i < readers; ++i)
+    attached.push_back(must(Reader::attach(again(segment))));
   std::optional<Process> other;
   if (busy) other.emplace(1, [&] { read_without_end(segment); });
   auto writer = must(Writer::attach(again(segment)));

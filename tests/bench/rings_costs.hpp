@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 
@@ -6,8 +7,8 @@
 /// What a ring's verbs cost on one core, everything in its caches. Medians, in ns.
 namespace handcast::bench {
 
-/// Loan and publish together, with this many readers attached. `busy`: one of them, on the other core, takes and gives back
-/// without end.
+/// Loan and publish together, with this many readers attached. `busy`: one of them, on the other
+/// core, takes and gives back without end.
 double loan_and_publish_ns(int readers, bool busy = false);
 
 /// To take the newest message of `bytes`, and give it back.

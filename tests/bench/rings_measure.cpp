@@ -1,4 +1,5 @@
-#include "rings_measure.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/rings_measure.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -8,8 +9,8 @@
 #include <ctime>
 
 #include "ipc/base/clock.hpp"
-#include "percentiles.hpp"
-#include "rings_process.hpp"
+#include "tests/bench/percentiles.hpp"
+#include "tests/bench/rings_process.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -28,7 +29,8 @@ struct Record {
 class SharedRecord {
  public:
   SharedRecord()
-      : record_(new (::mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_POPULATE, -1, 0)) Record) {}
+      : record_(new (::mmap(nullptr, sizeof(Record), PROT_READ | PROT_WRITE,
+                            MAP_SHARED | MAP_ANONYMOUS | MAP_POPULATE, -1, 0)) Record) {}
   ~SharedRecord() { ::munmap(record_, sizeof(Record)); }
   SharedRecord(const SharedRecord&) = delete;
   Record& operator*() const { return *record_; }
@@ -60,7 +62,8 @@ void consume(const Transport& transport, Record& record) {
     last = ++record.count == kMessages || block.header.frame_id >= kMessages;
   };
   while (!last && take(look)) continue;
-  record.cpu_percent = 100.0 * static_cast<double>(cpu_time_ns() - first_cpu_ns) / static_cast<double>(now_ns() - first_ns);
+  record.cpu_percent = 100.0 * static_cast<double>(cpu_time_ns() - first_cpu_ns) /
+                       static_cast<double>(now_ns() - first_ns);
 }
 
 void produce(const Transport& transport, const Record& record) {
@@ -86,7 +89,9 @@ void measure(Row& row) {
   consumer.join();
   producer.join();
   if (record->count <= kWarmUp) give_up(row.name + " carried nothing");
-  const auto counted = [&](const auto& samples) { return std::vector<double>(&samples[kWarmUp], &samples[record->count]); };
+  const auto counted = [&](const auto& samples) {
+    return std::vector<double>(&samples[kWarmUp], &samples[record->count]);
+  };
   row.seen_p50_us.push_back(median(counted(record->seen_us)));
   row.seen_p99_us.push_back(percentile(counted(record->seen_us), 0.99));
   row.consumed_p50_us.push_back(median(counted(record->consumed_us)));

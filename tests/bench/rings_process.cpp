@@ -1,4 +1,5 @@
-#include "rings_process.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/rings_process.hpp"
 
 #include <sched.h>
 #include <signal.h>

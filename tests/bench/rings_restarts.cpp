@@ -1,4 +1,6 @@
-// From kill -9 of a service to its successor's first message, as somebody outside sees it: the real supervisor, bare daemons.
+// SPDX-License-Identifier: Apache-2.0
+// From kill -9 of a service to its successor's first message, as somebody outside sees it: the real
+// supervisor, bare daemons.
 //   bench_rings_restarts [--goals FILE] [--kills N]
 #include <fmt/format.h>
 #include <signal.h>
@@ -7,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "goals.hpp"
 #include "ipc/base/clock.hpp"
-#include "percentiles.hpp"
-#include "rings_bare_rig.hpp"
-#include "rings_process.hpp"
-#include "rings_transports.hpp"
+#include "tests/bench/goals.hpp"
+#include "tests/bench/percentiles.hpp"
+#include "tests/bench/rings_bare_rig.hpp"
+#include "tests/bench/rings_process.hpp"
+#include "tests/bench/rings_transports.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -42,16 +44,19 @@ void kill_one(const BareRig& rig, const std::string& service, Restarts& restarts
   restarts.program_ms.push_back(ns_to_ms(view.look().newest_origin_ns - killed_ns));
 }
 
-/// Each service of a new rig once: the second death of one would be waited for by the restart policy.
+/// Each service of a new rig once: the second death of one would be waited for by the restart
+/// policy.
 void kill_each(const BarePrograms& programs, bool standby, Restarts& restarts) {
   const BareRig rig(programs, standby);
   for (const auto& [service, stream] : rig.streams()) kill_one(rig, service, restarts);
 }
 
 void print(std::string_view name, const Restarts& restarts) {
-  fmt::print("{:<14} {:>5} kills   first message after {:.2f} ms p50, {:.2f} ms p99, {:.2f} ms at most   its main after {:.2f} ms p50\n",
-             name, restarts.seen_ms.size(), median(restarts.seen_ms), percentile(restarts.seen_ms, 0.99), percentile(restarts.seen_ms, 1),
-             median(restarts.program_ms));
+  fmt::print(
+      "{:<14} {:>5} kills   first message after {:.2f} ms p50, {:.2f} ms p99, {:.2f} ms at most   "
+      "its main after {:.2f} ms p50\n",
+      name, restarts.seen_ms.size(), median(restarts.seen_ms), percentile(restarts.seen_ms, 0.99),
+      percentile(restarts.seen_ms, 1), median(restarts.program_ms));
 }
 
 std::vector<Goal> measure_goals(std::size_t kills) {
@@ -65,8 +70,9 @@ std::vector<Goal> measure_goals(std::size_t kills) {
   fmt::print("\nkill -9 of a bare daemon under `handcast up`\n");
   print("started anew", bare);
   print("warm standby", warm);
-  return {{"kill -9 -> first new message p99, bare daemon", percentile(bare.seen_ms, 0.99), 3, "ms"},
-          {"kill -9 -> first new message p50, warm standby", median(warm.seen_ms), 1, "ms"}};
+  return {
+      {"kill -9 -> first new message p99, bare daemon", percentile(bare.seen_ms, 0.99), 3, "ms"},
+      {"kill -9 -> first new message p50, warm standby", median(warm.seen_ms), 1, "ms"}};
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-#include "rings_table.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/rings_table.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "percentiles.hpp"
+#include "tests/bench/percentiles.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -19,21 +20,29 @@ struct Waiting {
   const char* name;
   Wait wait;
 };
-constexpr Waiting kWaits[] = {{"spin", Wait::spin}, {"predictive", Wait::predictive}, {"futex", Wait::futex}, {"eventfd", Wait::eventfd}};
+constexpr Waiting kWaits[] = {{"spin", Wait::spin},
+                              {"predictive", Wait::predictive},
+                              {"futex", Wait::futex},
+                              {"eventfd", Wait::eventfd}};
 
 constexpr auto kZeroMq = "ZeroMQ ipc push/pull";
 
 void add_rings(Table& table, Hold hold) {
   for (const auto& [name, wait] : kWaits)
-    table.rows.push_back({.name = fmt::format("ring, {}, {}", name, hold == Hold::lease ? "leased" : "copied"),
-                          .bytes = table.bytes,
-                          .make = [bytes = table.bytes, wait = wait, hold] { return over_ring(bytes, wait, hold); }});
+    table.rows.push_back(
+        {.name = fmt::format("ring, {}, {}", name, hold == Hold::lease ? "leased" : "copied"),
+         .bytes = table.bytes,
+         .make = [bytes = table.bytes, wait = wait, hold] {
+           return over_ring(bytes, wait, hold);
+         }});
 }
 
 void add_others(Table& table) {
   const auto bytes = table.bytes;
-  table.rows.push_back({.name = "Unix socket", .bytes = bytes, .make = [bytes] { return over_socket(bytes); }});
-  table.rows.push_back({.name = kZeroMq, .bytes = bytes, .make = [bytes] { return over_zeromq(bytes); }});
+  table.rows.push_back(
+      {.name = "Unix socket", .bytes = bytes, .make = [bytes] { return over_socket(bytes); }});
+  table.rows.push_back(
+      {.name = kZeroMq, .bytes = bytes, .make = [bytes] { return over_zeromq(bytes); }});
 }
 
 }  // namespace
@@ -61,27 +70,35 @@ Table table_of_images() {
 
 void print(const Table& table) {
   const auto rounds = table.rows.front().seen_p50_us.size();
-  fmt::print("\n{} B at {} Hz between two processes, in us: medians of {} rounds of {} messages\n", table.bytes, kRate_hz, rounds,
-             kMessages - kWarmUp);
-  fmt::print("{:<26} {:>21} {:>22} {:>9} {:>14} {:>6}\n", "", "publish->seen", "ready->consumed", "/ ZeroMQ", "consumer's CPU", "lost");
+  fmt::print("\n{} B at {} Hz between two processes, in us: medians of {} rounds of {} messages\n",
+             table.bytes, kRate_hz, rounds, kMessages - kWarmUp);
+  fmt::print("{:<26} {:>21} {:>22} {:>9} {:>14} {:>6}\n", "", "publish->seen", "ready->consumed",
+             "/ ZeroMQ", "consumer's CPU", "lost");
   fmt::print("{:<26} {:>10} {:>10} {:>11} {:>10}\n", "", "p50", "p99", "p50", "p99");
   const auto zeromq_us = median(table.row(kZeroMq).consumed_p50_us);
   for (const auto& row : table.rows)
-    fmt::print("{:<26} {:>10.2f} {:>10.2f} {:>11.2f} {:>10.2f} {:>9.3f} {:>12.1f} % {:>6}\n", row.name, median(row.seen_p50_us),
-               median(row.seen_p99_us), median(row.consumed_p50_us), median(row.consumed_p99_us), median(row.consumed_p50_us) / zeromq_us,
-               median(row.cpu_percent), row.lost);
+    fmt::print("{:<26} {:>10.2f} {:>10.2f} {:>11.2f} {:>10.2f} {:>9.3f} {:>12.1f} % {:>6}\n",
+               row.name, median(row.seen_p50_us), median(row.seen_p99_us),
+               median(row.consumed_p50_us), median(row.consumed_p99_us),
+               median(row.consumed_p50_us) / zeromq_us, median(row.cpu_percent), row.lost);
 }
 
 std::vector<Goal> goals_of(const Table& poses, const Table& images) {
   const auto seen = [&](std::string_view name) { return median(poses.row(name).seen_p50_us); };
-  const auto consumed = [&](std::string_view name) { return median(images.row(name).consumed_p50_us); };
+  const auto consumed = [&](std::string_view name) {
+    return median(images.row(name).consumed_p50_us);
+  };
   const auto predictive = "ring, predictive, copied", leased = "ring, predictive, leased";
   return {
-      {"2 KiB publish->seen p50, predictive / ZeroMQ", seen(predictive) / seen(kZeroMq), 0.01, "times"},
-      {"2 KiB publish->seen p50, predictive / spinning", seen(predictive) / seen("ring, spin, copied"), 1.5, "times"},
+      {"2 KiB publish->seen p50, predictive / ZeroMQ", seen(predictive) / seen(kZeroMq), 0.01,
+       "times"},
+      {"2 KiB publish->seen p50, predictive / spinning",
+       seen(predictive) / seen("ring, spin, copied"), 1.5, "times"},
       {"predictive wait, of a core at 525 Hz", median(poses.row(predictive).cpu_percent), 6, "%"},
-      {"388,800 B ready->consumed p50, leased / copied", consumed(leased) / consumed(predictive), 0.6, "times"},
-      {"388,800 B ready->consumed p50, leased / ZeroMQ", consumed(leased) / consumed(kZeroMq), 0.15, "times"},
+      {"388,800 B ready->consumed p50, leased / copied", consumed(leased) / consumed(predictive),
+       0.6, "times"},
+      {"388,800 B ready->consumed p50, leased / ZeroMQ", consumed(leased) / consumed(kZeroMq), 0.15,
+       "times"},
   };
 }
 

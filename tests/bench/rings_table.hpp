@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
 #include <vector>
 
-#include "goals.hpp"
-#include "rings_measure.hpp"
+#include "tests/bench/goals.hpp"
+#include "tests/bench/rings_measure.hpp"
 
 namespace handcast::bench {
 

@@ -1,4 +1,5 @@
-#include "rings_transports.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/rings_transports.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -54,7 +55,8 @@ Sockets open_sockets(int type, std::size_t bytes) {
 Sockets sockets_for(std::size_t bytes) {
   auto sockets = open_sockets(SOCK_SEQPACKET, bytes);
   std::vector<std::byte> probe(bytes);
-  const bool fits = ::send(sockets.sender.get(), probe.data(), bytes, MSG_DONTWAIT) == static_cast<ssize_t>(bytes);
+  const bool fits = ::send(sockets.sender.get(), probe.data(), bytes, MSG_DONTWAIT) ==
+                    static_cast<ssize_t>(bytes);
   if (fits && ::recv(sockets.receiver.get(), probe.data(), bytes, 0) > 0) return sockets;
   return open_sockets(SOCK_STREAM, bytes);
 }
@@ -79,7 +81,8 @@ bool receive_all(int socket, std::byte* to, std::size_t bytes) {
 /// Memory of a process of its own for one block.
 class PrivateBlock {
  public:
-  explicit PrivateBlock(std::size_t bytes) : memory_(std::make_shared<std::vector<std::uint64_t>>(bytes / sizeof(std::uint64_t))) {}
+  explicit PrivateBlock(std::size_t bytes)
+      : memory_(std::make_shared<std::vector<std::uint64_t>>(bytes / sizeof(std::uint64_t))) {}
   Block& operator*() const { return *reinterpret_cast<Block*>(memory_->data()); }
   std::byte* bytes() const { return reinterpret_cast<std::byte*>(memory_->data()); }
 
@@ -106,12 +109,16 @@ std::uint64_t sum(const Block& block) {
   return total;
 }
 
-ipc::Segment again(const ipc::Segment& segment) { return must(ipc::Segment::open(UniqueFd(::dup(segment.fd())))); }
+ipc::Segment again(const ipc::Segment& segment) {
+  return must(ipc::Segment::open(UniqueFd(::dup(segment.fd()))));
+}
 
 Transport over_ring(std::size_t bytes, ipc::Wait wait, ipc::Hold hold) {
-  const auto segment = std::make_shared<ipc::Segment>(must(ipc::Segment::create(ipc::RingSpec::of<Block>("bench", kSlots, false, bytes))));
+  const auto segment = std::make_shared<ipc::Segment>(
+      must(ipc::Segment::create(ipc::RingSpec::of<Block>("bench", kSlots, false, bytes))));
   const auto open_sender = [=]() -> Send {
-    const auto writer = std::make_shared<ipc::Writer<Block>>(must(ipc::Writer<Block>::attach(again(*segment))));
+    const auto writer =
+        std::make_shared<ipc::Writer<Block>>(must(ipc::Writer<Block>::attach(again(*segment))));
     return [=](std::uint64_t number) {
       auto block = writer->loan();
       if (!block) return;
@@ -123,8 +130,9 @@ Transport over_ring(std::size_t bytes, ipc::Wait wait, ipc::Hold hold) {
   const auto open_receiver = [=]() -> Take {
     const auto reader = std::make_shared<Reader>(must(Reader::attach(again(*segment), wait, hold)));
     return [=](const auto& look) {
-      const auto block =
-          wait == ipc::Wait::eventfd && reader->event_fd() >= 0 ? next_by_event(*reader) : reader->next(Deadline::in(kPatience));
+      const auto block = wait == ipc::Wait::eventfd && reader->event_fd() >= 0
+                             ? next_by_event(*reader)
+                             : reader->next(Deadline::in(kPatience));
       if (block) look(**block);
       return block.has_value();
     };

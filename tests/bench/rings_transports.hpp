@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -9,10 +10,12 @@
 
 namespace handcast::bench {
 
-/// What is carried: `total_bytes` long, itself included; every word after it holds the frame's number.
+/// What is carried: `total_bytes` long, itself included; every word after it holds the frame's
+/// number.
 struct Block {
   static constexpr std::string_view layout = "Block/1";
-  msg::Header header;  ///< origin: the payload is complete (ready); published: the producer's last stamp before it sends
+  msg::Header header;  ///< origin: the payload is complete (ready); published: the producer's last
+                       ///< stamp before it sends
   std::uint64_t total_bytes = sizeof(Block);
 
   std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(this + 1); }
@@ -31,7 +34,8 @@ using Send = std::function<void(std::uint64_t number)>;
 /// Waits for the next block and shows it. False: none came within two seconds.
 using Take = std::function<bool(const std::function<void(const Block&)>& look)>;
 
-/// One way to carry blocks between two processes. Each end is opened by the process that uses it, the receiving one first.
+/// One way to carry blocks between two processes. Each end is opened by the process that uses it,
+/// the receiving one first.
 struct Transport {
   std::function<Send()> open_sender;
   std::function<Take()> open_receiver;

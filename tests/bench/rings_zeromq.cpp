@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only file that knows ZeroMQ.
 #include <fmt/format.h>
 #include <unistd.h>
 #include <zmq.h>
 
-#include "rings_transports.hpp"
+#include "tests/bench/rings_transports.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -15,7 +16,8 @@ class ZeroMqSocket {
  public:
   explicit ZeroMqSocket(int type) : context_(zmq_ctx_new()), socket_(zmq_socket(context_, type)) {
     if (!socket_) give_up(zmq_strerror(zmq_errno()));
-    for (const int option : {ZMQ_LINGER, ZMQ_RCVTIMEO, ZMQ_SNDTIMEO}) zmq_setsockopt(socket_, option, &kPatience_ms, sizeof kPatience_ms);
+    for (const int option : {ZMQ_LINGER, ZMQ_RCVTIMEO, ZMQ_SNDTIMEO})
+      zmq_setsockopt(socket_, option, &kPatience_ms, sizeof kPatience_ms);
   }
   ~ZeroMqSocket() {
     zmq_close(socket_);
@@ -38,7 +40,8 @@ void check(bool worked) {
 
 Transport over_zeromq(std::size_t bytes) {
   static int number_of_endpoint = 0;
-  const auto endpoint = fmt::format("ipc://@handcast-bench-{}-{}", ::getpid(), ++number_of_endpoint);  // '@': a name without a file
+  const auto endpoint = fmt::format("ipc://@handcast-bench-{}-{}", ::getpid(),
+                                    ++number_of_endpoint);  // '@': a name without a file
   const auto open_sender = [=]() -> Send {
     const auto socket = std::make_shared<ZeroMqSocket>(ZMQ_PUSH);
     check(zmq_connect(socket->get(), endpoint.c_str()) == 0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration.hpp"
 
 #include <gmock/gmock.h>
@@ -22,22 +23,27 @@ std::filesystem::path file_with(const std::string& text) {
 double largest_difference(const auto& a, const auto& b) {
   double largest = 0;
   for (int column = 0; column < a.length(); ++column)
-    for (int row = 0; row < a[0].length(); ++row) largest = std::max(largest, std::abs(a[column][row] - b[column][row]));
+    for (int row = 0; row < a[0].length(); ++row)
+      largest = std::max(largest, std::abs(a[column][row] - b[column][row]));
   return largest;
 }
 
-/// The bytes of a file of the authors' published calibration; empty where the outside data is absent.
+/// The bytes of a file of the authors' published calibration; empty where the outside data is
+/// absent.
 std::string published(const std::string& name) {
   const char* data = std::getenv("HANDCAST_DATA");
   const char* source = std::getenv("HANDCAST_SOURCE");
-  const auto folder = data ? std::filesystem::path(data) : std::filesystem::path(source ? source : ".") / "../shared/data";
+  const auto folder = data ? std::filesystem::path(data)
+                           : std::filesystem::path(source ? source : ".") / "../shared/data";
   std::ifstream stream(folder / "calibration" / name, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The numbers of the array `name` (".npy", uncompressed) in a file: they start where its header's line ends.
+/// The numbers of the array `name` (".npy", uncompressed) in a file: they start where its header's
+/// line ends.
 template <class Number>
-std::vector<Number> numbers_of(const std::string& bytes, const std::string& name, std::size_t count) {
+std::vector<Number> numbers_of(const std::string& bytes, const std::string& name,
+                               std::size_t count) {
   const auto data = bytes.find('\n', bytes.find("\x93NUMPY", bytes.find(name))) + 1;
   std::vector<Number> numbers(count);
   std::memcpy(numbers.data(), bytes.data() + data, count * sizeof(Number));
@@ -52,13 +58,15 @@ TEST(ReferenceRig, HasTheLensItsAuthorsPublished) {
   const auto camera = reference_rig().camera;
   const double ours[] = {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(ours[i], lens[i], 1e-8) << i;
-  EXPECT_LT(largest_difference(camera.matrix(), glm::transpose(glm::make_mat3(matrix.data()))), 1e-3);
+  EXPECT_LT(largest_difference(camera.matrix(), glm::transpose(glm::make_mat3(matrix.data()))),
+            1e-3);
 }
 
 TEST(ReferenceRig, PlacesTheTrackerWhereItsAuthorsPublished) {
   const auto bytes = published("w2c.npy");
   if (bytes.empty()) GTEST_SKIP() << "no ../shared/data/calibration/w2c.npy";
-  auto view = glm::dmat4(glm::make_mat4(numbers_of<float>(bytes, "", 16).data()));  // OpenGL's camera: y up, z backward; mm
+  auto view = glm::dmat4(glm::make_mat4(
+      numbers_of<float>(bytes, "", 16).data()));  // OpenGL's camera: y up, z backward; mm
   view[3] *= glm::dvec4(1e-3, 1e-3, 1e-3, 1);
   const glm::dmat4 flip(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
   EXPECT_LT(largest_difference(reference_rig().camera_from_tracker, flip * view), 1e-6);
@@ -97,15 +105,18 @@ TEST(ReferenceRig, CoversTheProjectorsPictureWithTheCamerasToTwoPercent) {
 
 TEST(ReferenceRig, HasATrueHomography) {
   const auto rig = reference_rig();
-  const auto left = rig.to_projector({0, 269}), middle = rig.to_projector({359, 269}), right = rig.to_projector({718, 269});
-  EXPECT_GT(std::abs(glm::distance(left, middle) - glm::distance(middle, right)), 0.5) << "no keystone";
+  const auto left = rig.to_projector({0, 269}), middle = rig.to_projector({359, 269}),
+             right = rig.to_projector({718, 269});
+  EXPECT_GT(std::abs(glm::distance(left, middle) - glm::distance(middle, right)), 0.5)
+      << "no keystone";
   EXPECT_GT(std::abs(right.y - left.y), 3) << "not turned";
 }
 
 TEST(Calibration, ToCameraIsTheInverseOfToProjector) {
   const auto rig = reference_rig();
   for (double x : {0.0, 300.5, 1023.0})
-    for (double y : {0.0, 200.25, 767.0}) EXPECT_LT(glm::distance(rig.to_projector(rig.to_camera({x, y})), {x, y}), 1e-9);
+    for (double y : {0.0, 200.25, 767.0})
+      EXPECT_LT(glm::distance(rig.to_projector(rig.to_camera({x, y})), {x, y}), 1e-9);
 }
 
 TEST(Calibration, MillimetresPerPixelGrowWithTheDistance) {
@@ -140,18 +151,20 @@ TEST(CalibrationFile, SaysWhatIsWrongAndWhere) {
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, Errc::bad_config);
   EXPECT_THAT(rig.error().what, HasSubstr("toml:2: camera.width_px: 0 is outside 16..16384 px"));
-  EXPECT_THAT(rig.error().what, HasSubstr("toml:3: camera.focal_px: must be a list of 2 numbers, not of 1"));
+  EXPECT_THAT(rig.error().what,
+              HasSubstr("toml:3: camera.focal_px: must be a list of 2 numbers, not of 1"));
 }
 
 TEST(CalibrationFile, RefusesAMirroredTracker) {
-  const auto rig = load_calibration(file_with("[camera_from_tracker]\nx = [1, 0, 0, 0]\ny = [0, 1, 0, 0]\nz = [0, 0, -1, 0]\n"));
+  const auto rig = load_calibration(
+      file_with("[camera_from_tracker]\nx = [1, 0, 0, 0]\ny = [0, 1, 0, 0]\nz = [0, 0, -1, 0]\n"));
   ASSERT_FALSE(rig);
   EXPECT_THAT(rig.error().what, HasSubstr("not a right-handed rotation"));
 }
 
 TEST(CalibrationFile, RefusesATrackerWhoseAxesSpanNoSpace) {
-  for (const char* rows :
-       {"x = [0, 0, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 0, 0.3]\n", "x = [1, 1, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 1, 0]\n"}) {
+  for (const char* rows : {"x = [0, 0, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 0, 0.3]\n",
+                           "x = [1, 1, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 1, 0]\n"}) {
     const auto rig = load_calibration(file_with(std::string("[camera_from_tracker]\n") + rows));
     ASSERT_FALSE(rig) << rows;
     EXPECT_THAT(rig.error().what, HasSubstr("not a right-handed rotation"));
@@ -159,7 +172,8 @@ TEST(CalibrationFile, RefusesATrackerWhoseAxesSpanNoSpace) {
 }
 
 TEST(CalibrationFile, RefusesALensThatFoldsTheImageAndNoOther) {
-  for (const char* lens : {"[-2, 0, 0, 0, 0]", "[-1.2, 0, 0, 0, 0]", "[0, -20, 0, 0, 0]", "[0, 0, 2, 0, 0]"}) {
+  for (const char* lens :
+       {"[-2, 0, 0, 0, 0]", "[-1.2, 0, 0, 0, 0]", "[0, -20, 0, 0, 0]", "[0, 0, 2, 0, 0]"}) {
     const auto rig = load_calibration(file_with(std::string("[camera]\ndistortion = ") + lens));
     ASSERT_FALSE(rig) << lens;
     EXPECT_THAT(rig.error().what, HasSubstr("folds the image"));
@@ -169,7 +183,8 @@ TEST(CalibrationFile, RefusesALensThatFoldsTheImageAndNoOther) {
 }
 
 TEST(CalibrationFile, RefusesAHomographyWithoutAnInverse) {
-  const auto rig = load_calibration(file_with("[projector]\nx = [1, 0, 0]\ny = [2, 0, 0]\nw = [0, 0, 1]\n"));
+  const auto rig =
+      load_calibration(file_with("[projector]\nx = [1, 0, 0]\ny = [2, 0, 0]\nw = [0, 0, 1]\n"));
   ASSERT_FALSE(rig);
   EXPECT_THAT(rig.error().what, HasSubstr("homography"));
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <opencv2/calib3d.hpp>
@@ -15,8 +16,10 @@ TEST(CameraModel, UndistortIsTheInverseOfDistortAllOverTheImage) {
   for (int y = 0; y < camera.height_px; y += 7)
     for (int x = 0; x < camera.width_px; x += 7) {
       const glm::dvec2 px(x, y);
-      EXPECT_LT(glm::distance(camera.distort(camera.undistort(px)), px), kTolerancePx) << x << "," << y;
-      EXPECT_LT(glm::distance(camera.undistort(camera.distort(px)), px), kTolerancePx) << x << "," << y;
+      EXPECT_LT(glm::distance(camera.distort(camera.undistort(px)), px), kTolerancePx)
+          << x << "," << y;
+      EXPECT_LT(glm::distance(camera.undistort(camera.distort(px)), px), kTolerancePx)
+          << x << "," << y;
     }
 }
 
@@ -24,7 +27,8 @@ TEST(CameraModel, TheReferenceLensMovesPixelsByWhatItsAuthorsMeasured) {
   const auto camera = reference_rig().camera;
   double largest = 0;
   for (int x : {0, 719})
-    for (int y : {0, 539}) largest = std::max(largest, glm::distance(camera.distort({x, y}), {x, y}));
+    for (int y : {0, 539})
+      largest = std::max(largest, glm::distance(camera.distort({x, y}), {x, y}));
   EXPECT_GT(largest, 5);
   EXPECT_LT(largest, 30);
   EXPECT_LT(glm::distance(camera.distort({359.5, 269.5}), {359.5, 269.5}), 1e-9);
@@ -35,10 +39,12 @@ TEST(CameraModel, ProjectsAsOpenCvDoes) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> sideways(-0.12, 0.12), depth(0.4, 0.8);
   std::vector<cv::Point3d> points;
-  for (int i = 0; i < 200; ++i) points.emplace_back(sideways(random), sideways(random), depth(random));
+  for (int i = 0; i < 200; ++i)
+    points.emplace_back(sideways(random), sideways(random), depth(random));
 
   const auto k = camera.matrix();
-  const cv::Matx33d matrix(k[0][0], k[1][0], k[2][0], k[0][1], k[1][1], k[2][1], k[0][2], k[1][2], k[2][2]);
+  const cv::Matx33d matrix(k[0][0], k[1][0], k[2][0], k[0][1], k[1][1], k[2][1], k[0][2], k[1][2],
+                           k[2][2]);
   const cv::Vec<double, 5> lens(camera.k1, camera.k2, camera.p1, camera.p2, camera.k3);
   std::vector<cv::Point2d> bent, straight;
   cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), matrix, lens, bent);

@@ -1,37 +1,65 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_layers passes on the tree as it is and catches breaches that are planted in a copy of it.
 set -euo pipefail
 
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-for room in ipc config calib renderer services supervisor; do
-  [ ! -d "$room" ] || find "$room" -name '*.[ch]pp' -exec cp --parents {} "$copy" \;
+for top in ipc config calib renderer services supervisor; do
+  find "$top" \( -name '*.[ch]pp' -o -name CMakeLists.txt \) -exec cp --parents {} "$copy" \;
 done
 scripts/check_layers "$copy" >/dev/null
 
-# must_catch FILE INCLUDE WORDS: planting the include in the file is reported with these words.
+# must_catch WORDS FILE LINE [FILE LINE]...: planting each line in its file is reported with these words.
 must_catch() {
-  local file=$copy/$1 said
-  mkdir -p "$(dirname "$file")"
-  printf '\n#include %s\n' "$2" >>"$file"
+  local words=$1 said
+  shift
+  local planted=("$@") i
+  for ((i = 0; i < ${#planted[@]}; i += 2)); do
+    mkdir -p "$copy/$(dirname "${planted[i]}")"
+    printf '\n%s\n' "${planted[i + 1]}" >>"$copy/${planted[i]}"
+  done
   if said=$(scripts/check_layers "$copy"); then
-    echo "not caught: $1 includes $2"
+    echo "not caught: ${planted[*]}"
     exit 1
   fi
-  if ! grep -qF "$1:" <<<"$said" || ! grep -qF "$3" <<<"$said"; then
-    printf 'reported, but not with the file and "%s":\n%s\n' "$3" "$said"
+  if ! grep -qF "$words" <<<"$said"; then
+    printf 'reported, but not as "%s":\n%s\n' "$words" "$said"
     exit 1
   fi
-  rm "$file"
-  [ ! -f "$1" ] || cp "$1" "$file"
+  for ((i = 0; i < ${#planted[@]}; i += 2)); do
+    rm "$copy/${planted[i]}"
+    [ ! -f "${planted[i]}" ] || cp "${planted[i]}" "$copy/${planted[i]}"
+  done
 }
 
-must_catch ipc/base/planted.hpp '"ipc/msg/header.hpp"' 'ipc/base must not include ipc/msg/header.hpp'
-must_catch config/rig.cpp '"calib/calibration.hpp"' 'config must not include calib/calibration.hpp'
-must_catch renderer/planted.cpp '"ipc/ring/reader.hpp"' 'renderer must not include ipc/ring/reader.hpp'
-must_catch services/camera/main.cpp '"services/pose/pose_source.hpp"' 'services/camera must not include services/pose/pose_source.hpp'
-must_catch services/twin/planted.cpp '"services/runtime/context.hpp"' 'services/twin must not include services/runtime/context.hpp'
-must_catch supervisor/planted.cpp '"renderer/image.hpp"' 'supervisor must not include renderer/image.hpp'
-must_catch calib/planted.cpp '<toml++/toml.h>' 'is kept in config/document.cpp'
-must_catch services/camera/pictures.cpp '<opencv2/core.hpp>' 'is kept in renderer/content/'
+# What a module does not declare, and what it declares in vain.
+must_catch 'ipc/base does not declare that it USES ipc/msg (ipc/msg/header.hpp)' \
+  ipc/base/planted.hpp '#include "ipc/msg/header.hpp"'
+must_catch 'renderer/mask does not declare that it USES renderer/skin' \
+  renderer/mask/planted.cpp '#include "renderer/skin/skinning.hpp"'
+must_catch 'calib/CMakeLists.txt: USES renderer/base, and no file includes anything of it' \
+  calib/CMakeLists.txt 'handcast_program(planted USES renderer/base)'
+
+# A declaration that points up.
+must_catch 'renderer/base must not use services/runtime' \
+  renderer/base/CMakeLists.txt 'handcast_program(planted USES services/runtime)' \
+  renderer/base/planted.cpp '#include "services/runtime/context.hpp"'
+must_catch 'services/camera must not use services/pose' \
+  services/camera/CMakeLists.txt 'handcast_program(planted USES services/pose)' \
+  services/camera/planted.cpp '#include "services/pose/pose_source.hpp"'
+must_catch 'supervisor must not use renderer/base' \
+  supervisor/CMakeLists.txt 'handcast_program(planted USES renderer/base)' \
+  supervisor/planted.cpp '#include "renderer/base/image.hpp"'
+
+# Circles: of two modules, and of two folders inside one.
+must_catch 'a circle: renderer/filter -> renderer/predict -> renderer/filter' \
+  renderer/predict/CMakeLists.txt 'handcast_program(planted USES renderer/filter)' \
+  renderer/predict/planted.cpp '#include "renderer/filter/filters.hpp"'
+must_catch 'a circle: services/landmarks/inference/onnx -> services/landmarks/inference/onednn -> ' \
+  services/landmarks/inference/onnx/planted.cpp '#include "services/landmarks/inference/onednn/builder.hpp"'
+
+# The headers of other projects.
+must_catch 'is kept in config/settings/document.cpp' calib/planted.cpp '#include <toml++/toml.h>'
+must_catch 'is kept in renderer/content/' services/camera/pictures.cpp '#include <opencv2/core.hpp>'
 echo "all planted breaches were caught"

@@ -1,17 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "config/rig.hpp"
-#include "config/settings.hpp"
+#include "config/settings/settings.hpp"
 
 /// Tools for tests that must not forget a setting: they walk over all of them.
 namespace handcast::config {
 
 inline std::vector<Setting> every_setting(Rig& rig) {
   std::vector<Setting> all;
-  for (const auto& section : list_settings(rig)) all.insert(all.end(), section.settings.begin(), section.settings.end());
+  for (const auto& section : list_settings(rig))
+    all.insert(all.end(), section.settings.begin(), section.settings.end());
   return all;
 }
 
@@ -24,20 +26,23 @@ inline std::vector<std::string> differences(Rig a, Rig b) {
   return paths;
 }
 
-/// Gives a setting another allowed value than it has, one that is hard to print where the type has such.
+/// Gives a setting another allowed value than it has, one that is hard to print where the type has
+/// such.
 inline void change(const Setting& setting) {
   std::visit(
       [&](auto* value) {
         using T = std::decay_t<decltype(*value)>;
         if constexpr (std::is_same_v<T, bool>) *value = !*value;
         if constexpr (std::is_same_v<T, int>) *value += *value + 1 <= setting.range.max ? 1 : -1;
-        if constexpr (std::is_same_v<T, double>) *value = (*value + setting.range.min) / 2 + (setting.range.max - setting.range.min) / 3e6;
+        if constexpr (std::is_same_v<T, double>)
+          *value = (*value + setting.range.min) / 2 + (setting.range.max - setting.range.min) / 3e6;
         if constexpr (std::is_same_v<T, std::vector<double>>) value->push_back(0.1);
         if constexpr (std::is_same_v<T, std::string>) {
           if (setting.choices.empty())
             *value = "/a \"quoted\" \\ path\twith a tab and a hä\x01";
           else
-            *value = *value == setting.choices.front() ? setting.choices.back() : setting.choices.front();
+            *value = *value == setting.choices.front() ? setting.choices.back()
+                                                       : setting.choices.front();
         }
       },
       setting.target);

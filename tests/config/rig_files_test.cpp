@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -13,7 +14,8 @@ using ::testing::UnorderedElementsAre;
 
 Rig shipped(const std::string& name) {
   const char* source = std::getenv("HANDCAST_SOURCE");
-  const auto rig = load_rig(std::filesystem::path(source ? source : ".") / "config/rigs" / (name + ".toml"));
+  const auto rig =
+      load_rig(std::filesystem::path(source ? source : ".") / "config/rigs" / (name + ".toml"));
   EXPECT_TRUE(rig) << rig.error().what;
   return rig ? *rig : Rig{};
 }
@@ -21,12 +23,15 @@ Rig shipped(const std::string& name) {
 /// Differences that are neither the name nor the cascade nor the time the software takes.
 std::vector<std::string> differences_in_hardware(const Rig& a, const Rig& b) {
   auto paths = differences(a, b);
-  std::erase_if(paths,
-                [](const std::string& path) { return path == "name" || path == "projector.software_ms" || path.starts_with("cascade."); });
+  std::erase_if(paths, [](const std::string& path) {
+    return path == "name" || path == "projector.software_ms" || path.starts_with("cascade.");
+  });
   return paths;
 }
 
-TEST(ShippedRigs, TwinIsTheDefaults) { EXPECT_THAT(differences(shipped("twin"), Rig{}), UnorderedElementsAre("name")); }
+TEST(ShippedRigs, TwinIsTheDefaults) {
+  EXPECT_THAT(differences(shipped("twin"), Rig{}), UnorderedElementsAre("name"));
+}
 
 TEST(ShippedRigs, PaperAndBaselineDifferFromTwinInSoftwareAlone) {
   EXPECT_THAT(differences_in_hardware(shipped("paper"), shipped("twin")), IsEmpty());
@@ -52,8 +57,10 @@ TEST(ShippedRigs, BaselinePredictsAndDrawsOnly) {
 
 TEST(ShippedRigs, ReplayReadsOneRecordingWithAllSensors) {
   const auto rig = shipped("replay");
-  for (const auto* sensor : {&rig.camera.backend, &rig.pose.backend, &rig.landmarks.backend}) EXPECT_EQ(*sensor, "replay");
-  EXPECT_TRUE(rig.camera.replay.directory.ends_with("/out/recording")) << rig.camera.replay.directory;
+  for (const auto* sensor : {&rig.camera.backend, &rig.pose.backend, &rig.landmarks.backend})
+    EXPECT_EQ(*sensor, "replay");
+  EXPECT_TRUE(rig.camera.replay.directory.ends_with("/out/recording"))
+      << rig.camera.replay.directory;
   EXPECT_EQ(rig.pose.replay.directory, rig.camera.replay.directory);
   EXPECT_EQ(rig.landmarks.replay.directory, rig.camera.replay.directory);
 }

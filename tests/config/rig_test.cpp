@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "config/rig.hpp"
 
 #include <gmock/gmock.h>
@@ -16,7 +17,8 @@ using ::testing::Not;
 
 constexpr auto kFile = "/rigs/test.toml";
 
-std::vector<std::string> faults_of(const std::string& toml, const std::vector<std::string>& settings = {}) {
+std::vector<std::string> faults_of(const std::string& toml,
+                                   const std::vector<std::string>& settings = {}) {
   const auto rig = parse_rig(toml, kFile, settings);
   if (rig) return {};
   EXPECT_EQ(rig.error().code, Errc::bad_config);
@@ -35,37 +37,47 @@ Rig rig_of(const std::string& toml, const std::vector<std::string>& settings = {
 TEST(Rig, AnEmptyFileIsTheDefaults) { EXPECT_THAT(differences(rig_of(""), Rig{}), IsEmpty()); }
 
 TEST(Rig, AFileChangesWhatItSaysAndNothingElse) {
-  const auto rig = rig_of("name = 'mine'\n[camera]\nrate_hz = 240\nreplay.loop = false\n[cascade.fill]\nreach_px = 7\n");
+  const auto rig = rig_of(
+      "name = 'mine'\n[camera]\nrate_hz = 240\nreplay.loop = false\n[cascade.fill]\nreach_px = "
+      "7\n");
   EXPECT_EQ(rig.camera.rate_hz, 240);
-  EXPECT_THAT(differences(rig, Rig{}), ElementsAre("name", "camera.rate_hz", "camera.replay.loop", "cascade.fill.reach_px"));
+  EXPECT_THAT(differences(rig, Rig{}),
+              ElementsAre("name", "camera.rate_hz", "camera.replay.loop", "cascade.fill.reach_px"));
 }
 
 TEST(Rig, AFileSaysAllItsFaultsAtOnceInTheOrderOfItsLines) {
-  EXPECT_THAT(faults_of("[projector]\n"
-                        "rate_hz = 0\n"
-                        "[camera]\n"
-                        "rate_hz = \"fast\"\n"
-                        "expsure_ms = 1\n"
-                        "[cascade.fill]\n"
-                        "method = \"reflct\"\n"
-                        "reach_px = 3.5\n"
-                        "[observer]\n"
-                        "enabled = 1\n"),
-              ElementsAre("/rigs/test.toml:2: projector.rate_hz: 0 is outside 1..10000 Hz",
-                          "/rigs/test.toml:4: camera.rate_hz: must be a number, 1..2000 Hz, not text",
-                          "/rigs/test.toml:5: camera.expsure_ms: there is no such setting (did you mean 'exposure_ms'?)",
-                          "/rigs/test.toml:7: cascade.fill.method: 'reflct' is not one of: none, reflect (did you mean 'reflect'?)",
-                          "/rigs/test.toml:8: cascade.fill.reach_px: must be a whole number, 1..32 px, not a number",
-                          "/rigs/test.toml:10: observer.enabled: must be true or false, not a whole number"));
+  EXPECT_THAT(
+      faults_of("[projector]\n"
+                "rate_hz = 0\n"
+                "[camera]\n"
+                "rate_hz = \"fast\"\n"
+                "expsure_ms = 1\n"
+                "[cascade.fill]\n"
+                "method = \"reflct\"\n"
+                "reach_px = 3.5\n"
+                "[observer]\n"
+                "enabled = 1\n"),
+      ElementsAre(
+          "/rigs/test.toml:2: projector.rate_hz: 0 is outside 1..10000 Hz",
+          "/rigs/test.toml:4: camera.rate_hz: must be a number, 1..2000 Hz, not text",
+          "/rigs/test.toml:5: camera.expsure_ms: there is no such setting (did you mean "
+          "'exposure_ms'?)",
+          "/rigs/test.toml:7: cascade.fill.method: 'reflct' is not one of: none, reflect (did you "
+          "mean 'reflect'?)",
+          "/rigs/test.toml:8: cascade.fill.reach_px: must be a whole number, 1..32 px, not a "
+          "number",
+          "/rigs/test.toml:10: observer.enabled: must be true or false, not a whole number"));
 }
 
 TEST(Rig, AnUnknownSectionIsOneFaultWithASuggestion) {
-  EXPECT_THAT(faults_of("[camrea]\nrate_hz = 1\nexposure_ms = 2\n"),
-              ElementsAre("/rigs/test.toml:1: camrea: there is no such setting (did you mean 'camera'?)"));
+  EXPECT_THAT(
+      faults_of("[camrea]\nrate_hz = 1\nexposure_ms = 2\n"),
+      ElementsAre("/rigs/test.toml:1: camrea: there is no such setting (did you mean 'camera'?)"));
 }
 
 TEST(Rig, ASettingInTheWrongSectionIsToldWhereItBelongs) {
-  EXPECT_THAT(faults_of("[camera]\nreach_px = 4\n"), ElementsAre(HasSubstr("did you mean 'cascade.fill.reach_px'?")));
+  EXPECT_THAT(faults_of("[camera]\nreach_px = 4\n"),
+              ElementsAre(HasSubstr("did you mean 'cascade.fill.reach_px'?")));
 }
 
 TEST(Rig, ANameLikeNoOtherGetsNoSuggestion) {
@@ -73,19 +85,24 @@ TEST(Rig, ANameLikeNoOtherGetsNoSuggestion) {
 }
 
 TEST(Rig, ASectionCannotBeAValueNorAValueASection) {
-  EXPECT_THAT(faults_of("camera = 5\n[name]\n"),
-              ElementsAre("/rigs/test.toml:1: camera: is a section, [camera], and cannot be a whole number",
-                          "/rigs/test.toml:2: name: must be text in quotes, not a section"));
+  EXPECT_THAT(
+      faults_of("camera = 5\n[name]\n"),
+      ElementsAre("/rigs/test.toml:1: camera: is a section, [camera], and cannot be a whole number",
+                  "/rigs/test.toml:2: name: must be text in quotes, not a section"));
 }
 
 TEST(Rig, WhatIsNotAFiniteNumberIsRefused) {
-  EXPECT_THAT(faults_of("[camera]\nrate_hz = nan\n[projector]\nrate_hz = inf\n[twin]\nseed = 9223372036854775807\n"),
-              ElementsAre(HasSubstr("camera.rate_hz"), HasSubstr("projector.rate_hz"), HasSubstr("twin.seed")));
+  EXPECT_THAT(faults_of("[camera]\nrate_hz = nan\n[projector]\nrate_hz = inf\n[twin]\nseed = "
+                        "9223372036854775807\n"),
+              ElementsAre(HasSubstr("camera.rate_hz"), HasSubstr("projector.rate_hz"),
+                          HasSubstr("twin.seed")));
 }
 
 TEST(Rig, AFileThatIsNotTomlSaysLineAndColumn) {
-  EXPECT_THAT(faults_of("[camera]\nrate_hz = = 5\n"), ElementsAre(HasSubstr("/rigs/test.toml:2:11: not TOML: ")));
-  EXPECT_THAT(faults_of("[camera]\nrate_hz = 5\nrate_hz = 6\n"), ElementsAre(HasSubstr("/rigs/test.toml:3:")));
+  EXPECT_THAT(faults_of("[camera]\nrate_hz = = 5\n"),
+              ElementsAre(HasSubstr("/rigs/test.toml:2:11: not TOML: ")));
+  EXPECT_THAT(faults_of("[camera]\nrate_hz = 5\nrate_hz = 6\n"),
+              ElementsAre(HasSubstr("/rigs/test.toml:3:")));
 }
 
 TEST(Rig, BonesMustBeCalledShortBeforeTheyAreCalledLong) {
@@ -101,7 +118,8 @@ TEST(Rig, AMissingFileIsNamed) {
 }
 
 TEST(Assignment, IsTypedByItsSetting) {
-  const auto rig = rig_of("", {"camera.rate_hz=240", "twin.seed=7", "observer.enabled=false", "cascade.filter.method=paper", "name=5"});
+  const auto rig = rig_of("", {"camera.rate_hz=240", "twin.seed=7", "observer.enabled=false",
+                               "cascade.filter.method=paper", "name=5"});
   EXPECT_EQ(rig.camera.rate_hz, 240);
   EXPECT_EQ(rig.twin.seed, 7);
   EXPECT_FALSE(rig.observer.enabled);
@@ -110,23 +128,29 @@ TEST(Assignment, IsTypedByItsSetting) {
 }
 
 TEST(Assignment, WinsOverTheFileAndTheLastOneWins) {
-  EXPECT_EQ(rig_of("[camera]\nrate_hz = 100\n", {"camera.rate_hz=200", "camera.rate_hz=300"}).camera.rate_hz, 300);
+  EXPECT_EQ(rig_of("[camera]\nrate_hz = 100\n", {"camera.rate_hz=200", "camera.rate_hz=300"})
+                .camera.rate_hz,
+            300);
 }
 
 TEST(Assignment, FaultsAreToldWithThoseOfTheFile) {
   EXPECT_THAT(
-      faults_of("nme = 'x'\n", {"camera.rate_hz=0", "camera.rate_hz=fast", "camera.rat_hz=5", "camera=5", "seed=3", "observer.enabled"}),
-      ElementsAre("/rigs/test.toml:1: nme: there is no such setting (did you mean 'name'?)",
-                  "--set camera.rate_hz=0: 0 is outside 1..2000 Hz", "--set camera.rate_hz=fast: must be a number, 1..2000 Hz",
-                  "--set camera.rat_hz=5: there is no such setting (did you mean 'camera.rate_hz'?)",
-                  "--set camera=5: is a section; set one of its settings",
-                  "--set seed=3: there is no such setting (did you mean 'twin.seed'?)",
-                  "--set observer.enabled: must look like path=value"));
+      faults_of("nme = 'x'\n", {"camera.rate_hz=0", "camera.rate_hz=fast", "camera.rat_hz=5",
+                                "camera=5", "seed=3", "observer.enabled"}),
+      ElementsAre(
+          "/rigs/test.toml:1: nme: there is no such setting (did you mean 'name'?)",
+          "--set camera.rate_hz=0: 0 is outside 1..2000 Hz",
+          "--set camera.rate_hz=fast: must be a number, 1..2000 Hz",
+          "--set camera.rat_hz=5: there is no such setting (did you mean 'camera.rate_hz'?)",
+          "--set camera=5: is a section; set one of its settings",
+          "--set seed=3: there is no such setting (did you mean 'twin.seed'?)",
+          "--set observer.enabled: must look like path=value"));
 }
 
 TEST(Paths, OfAFileStartAtItsFolder) {
-  const auto rig =
-      rig_of("calibration = 'c.toml'\n[twin]\nmotion = '../lmc'\n[camera.replay]\ndirectory = '/abs'\n[content]\nleft = 'a.png'\n");
+  const auto rig = rig_of(
+      "calibration = 'c.toml'\n[twin]\nmotion = '../lmc'\n[camera.replay]\ndirectory = "
+      "'/abs'\n[content]\nleft = 'a.png'\n");
   EXPECT_EQ(rig.calibration, "/rigs/c.toml");
   EXPECT_EQ(rig.twin.motion, "/lmc");
   EXPECT_EQ(rig.camera.replay.directory, "/abs");
@@ -134,7 +158,8 @@ TEST(Paths, OfAFileStartAtItsFolder) {
 }
 
 TEST(Paths, OfAnAssignmentStartAtTheCurrentFolder) {
-  EXPECT_EQ(rig_of("", {"hand.left=hand.glb"}).hand.left, (std::filesystem::current_path() / "hand.glb").string());
+  EXPECT_EQ(rig_of("", {"hand.left=hand.glb"}).hand.left,
+            (std::filesystem::current_path() / "hand.glb").string());
 }
 
 TEST(Paths, BuiltinAndEmptyStayAsTheyAre) {
@@ -153,14 +178,17 @@ TEST(Print, EverySettingReadsBackAsItWas) {
   EXPECT_THAT(differences(*back, changed), IsEmpty());
 
   Rig defaults;
-  EXPECT_EQ(differences(*back, defaults).size(), every_setting(defaults).size()) << "a setting was not changed by this test";
+  EXPECT_EQ(differences(*back, defaults).size(), every_setting(defaults).size())
+      << "a setting was not changed by this test";
 }
 
 TEST(Print, SaysOfEverySettingWhatItIsAndMayBe) {
   const auto text = print_rig(Rig{});
   EXPECT_THAT(text, HasSubstr("[camera]\n# Where frames come from"));
-  EXPECT_THAT(text, HasSubstr("# Frames a second asked of the camera. (1..2000 Hz)\nrate_hz = 525\n"));
-  EXPECT_THAT(text, HasSubstr("(one of: hold, velocity, acceleration)\nmethod = \"acceleration\"\n"));
+  EXPECT_THAT(text,
+              HasSubstr("# Frames a second asked of the camera. (1..2000 Hz)\nrate_hz = 525\n"));
+  EXPECT_THAT(text,
+              HasSubstr("(one of: hold, velocity, acceleration)\nmethod = \"acceleration\"\n"));
 }
 
 TEST(Rig, EveryServiceRunsAsItsOwnSectionSays) {
@@ -173,7 +201,8 @@ TEST(Rig, EveryServiceRunsAsItsOwnSectionSays) {
   int priority = 10;
   for (const auto& [name, process] : sections) process->priority = ++priority;
   priority = 10;
-  for (const auto& [name, process] : sections) EXPECT_EQ(process_of(rig, name).priority, ++priority) << name;
+  for (const auto& [name, process] : sections)
+    EXPECT_EQ(process_of(rig, name).priority, ++priority) << name;
   EXPECT_EQ(process_of(rig, "moon").priority, 0);
 }
 

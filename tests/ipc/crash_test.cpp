@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Real processes that die at any moment.
 #include <signal.h>
 #include <sys/prctl.h>
@@ -100,11 +101,13 @@ TEST_P(Crash, AWriterKilledAtAnyMomentLeavesNoTornMessageAndItsSuccessorGoesOn) 
   EXPECT_EQ(storm.torn, 0u);
   EXPECT_EQ(storm.backwards, 0u);
   EXPECT_GE(storm.received, static_cast<std::uint64_t>(kKills));
-  EXPECT_GT(storm.epochs, static_cast<std::uint64_t>(kKills / 2)) << "most writers lived long enough to be read";
+  EXPECT_GT(storm.epochs, static_cast<std::uint64_t>(kKills / 2))
+      << "most writers lived long enough to be read";
   EXPECT_GT(storm.died_writing, 0u) << "the test must hit writers in the middle of a message";
 }
 
-INSTANTIATE_TEST_SUITE_P(OnFewSlots, Crash, ::testing::Values(std::pair{2, false}, std::pair{3, true}));
+INSTANTIATE_TEST_SUITE_P(OnFewSlots, Crash,
+                         ::testing::Values(std::pair{2, false}, std::pair{3, true}));
 
 TEST(Processes, ASleepingReaderIsWokenByAnotherProcess) {
   const auto segment = make_ring<Note>(4);
@@ -172,7 +175,8 @@ TEST(Processes, RowsOfDeadReadersAreTakenOver) {
     child.join();
   }
   std::vector<Reader<Note>> readers;
-  for (int i = 0; i < kReaderRows - 1; ++i) readers.push_back(must(Reader<Note>::attach(again(segment))));
+  for (int i = 0; i < kReaderRows - 1; ++i)
+    readers.push_back(must(Reader<Note>::attach(again(segment))));
   EXPECT_FALSE(Reader<Note>::attach(again(segment)));
   EXPECT_EQ(RealAtomics::load(words.owner(0), std::memory_order_relaxed), kept);
 }
@@ -184,7 +188,8 @@ Child reader_with_hands_full(const Segment& segment) {
     auto reader = Reader<Page>::attach(again(segment), Wait::futex, Hold::lease);
     if (!reader) ::_exit(1);
     const auto first = reader->at(1), second = reader->at(2);
-    [[maybe_unused]] const auto nothing = reader->next(Deadline::in(60s)), still_nothing = reader->next(Deadline::in(60s));
+    [[maybe_unused]] const auto nothing = reader->next(Deadline::in(60s)),
+                                still_nothing = reader->next(Deadline::in(60s));
   });
   const auto leased = [&](int row) {
     return is_leased(RealAtomics::load(words.lease(row, 0), std::memory_order_relaxed)) &&
@@ -209,8 +214,10 @@ struct FullRing {
 
 bool row_is_clean(const Segment& segment, int row) {
   const auto words = control_words_of(segment);
-  const auto idle = free_word(generation_of(RealAtomics::load(words.owner(row), std::memory_order_seq_cst)));
-  for (const auto* word : {&words.owner(row), &words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
+  const auto idle =
+      free_word(generation_of(RealAtomics::load(words.owner(row), std::memory_order_seq_cst)));
+  for (const auto* word :
+       {&words.owner(row), &words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
     if (RealAtomics::load(*word, std::memory_order_seq_cst) != idle) return false;
   return true;
 }
@@ -226,14 +233,16 @@ TEST(Processes, ASweepFreesTheRowsOfDeadReadersAndNoOthers) {
   EXPECT_EQ(sweep_dead_rows(ring.segment), 1);
   EXPECT_TRUE(row_is_clean(ring.segment, 0));
   EXPECT_EQ(sweep_dead_rows(ring.segment), 0);
-  EXPECT_TRUE(is_leased(RealAtomics::load(control_words_of(ring.segment).lease(1, 0), std::memory_order_seq_cst)));
+  EXPECT_TRUE(is_leased(
+      RealAtomics::load(control_words_of(ring.segment).lease(1, 0), std::memory_order_seq_cst)));
   EXPECT_TRUE(sample->whole());
 }
 
 TEST(Processes, ASweepMakesGoodASweeperThatDiedHalfWay) {
   const auto segment = make_ring<Note>(3);
   const auto words = control_words_of(segment);
-  RealAtomics::store(words.owner(4), free_word(8), std::memory_order_seq_cst);  // freed by somebody who got no further
+  RealAtomics::store(words.owner(4), free_word(8),
+                     std::memory_order_seq_cst);  // freed by somebody who got no further
   RealAtomics::store(words.wait(4), free_word(7) | kWaiting, std::memory_order_seq_cst);
   RealAtomics::store(words.lease(4, 0), lease_word(7, 1, 1), std::memory_order_seq_cst);
   RealAtomics::store(words.lease(4, 1), free_word(7), std::memory_order_seq_cst);

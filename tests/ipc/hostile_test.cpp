@@ -1,4 +1,6 @@
-// Memory that somebody else writes nonsense to: every call comes back, with a message that keeps to its bounds or an error.
+// SPDX-License-Identifier: Apache-2.0
+// Memory that somebody else writes nonsense to: every call comes back, with a message that keeps to
+// its bounds or an error.
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -43,12 +45,14 @@ std::uint64_t nonsense(std::mt19937_64& random) {
 
 void scribble_between(std::byte* from, std::byte* to, std::mt19937_64& random, int one_word_in) {
   for (auto* at = from; at + sizeof(std::uint64_t) <= to; at += sizeof(std::uint64_t))
-    if (random() % static_cast<unsigned>(one_word_in) == 0) store_relaxed(*reinterpret_cast<PayloadWord*>(at), nonsense(random));
+    if (random() % static_cast<unsigned>(one_word_in) == 0)
+      store_relaxed(*reinterpret_cast<PayloadWord*>(at), nonsense(random));
 }
 
 /// Every word there is but the header: head, epoch, states, rows, tallies, messages.
 void scribble(const Segment& segment, std::mt19937_64& random, int one_word_in) {
-  scribble_between(segment.data() + kControlOffset, segment.data() + segment.size(), random, one_word_in);
+  scribble_between(segment.data() + kControlOffset, segment.data() + segment.size(), random,
+                   one_word_in);
 }
 
 std::uint64_t sum_of_tail(const Strip& strip) {  // a sanitizer would see a read beyond a copy
@@ -57,7 +61,8 @@ std::uint64_t sum_of_tail(const Strip& strip) {  // a sanitizer would see a read
   return sum;
 }
 
-/// What a copy says was checked and stays so; what lies in shared memory may change while it is held.
+/// What a copy says was checked and stays so; what lies in shared memory may change while it is
+/// held.
 void check(const Result<Sample<Strip>>& sample) {
   if (!sample) return;
   EXPECT_TRUE(sample->leased() || (*sample)->tail_length <= kTail);
@@ -105,9 +110,12 @@ TEST(Hostile, RandomWordsNeitherCrashNorHangAReaderAWriterAViewOrASweep) {
     auto writer = must(Writer<Strip>::attach(again(segment)));
     look(view);
     sweep_dead_rows(segment);
-    auto reader = Reader<Strip>::attach(again(segment), static_cast<Wait>(random() % 3), any_hold(random));  // or every row looks taken
+    auto reader = Reader<Strip>::attach(again(segment), static_cast<Wait>(random() % 3),
+                                        any_hold(random));  // or every row looks taken
     for (int turn = 0; turn < 10; ++turn) {
-      if (turn == 5) scribble_between(segment.data(), segment.data() + kControlOffset, random, 3);  // nobody reads the header again
+      if (turn == 5)
+        scribble_between(segment.data(), segment.data() + kControlOffset, random,
+                         3);  // nobody reads the header again
       use(writer, random);
       if (reader) use(*reader, random);
       look(view);
@@ -149,8 +157,10 @@ void expect_no_size_to_wrap(std::uint32_t Message::*width, std::uint32_t Message
     for (const std::uint32_t h : {0u, 1u, 3u, 1u << 16, 1u << 30, 1u << 31, ~0u}) {
       (*message).*width = w;
       (*message).*height = h;
-      const auto exact = static_cast<long double>(sizeof(Message)) + static_cast<long double>(w) * h;  // at one byte a pixel
-      EXPECT_GE(static_cast<long double>(message->used_bytes()), std::min(exact, static_cast<long double>(~std::size_t{0})))
+      const auto exact = static_cast<long double>(sizeof(Message)) +
+                         static_cast<long double>(w) * h;  // at one byte a pixel
+      EXPECT_GE(static_cast<long double>(message->used_bytes()),
+                std::min(exact, static_cast<long double>(~std::size_t{0})))
           << w << " x " << h;
     }
 }
@@ -164,11 +174,12 @@ TEST(Hostile, NoSizeOfAPictureWrapsAround) {
 }
 
 TEST(Hostile, APictureLargerThanItsSlotIsBadDataHoweverLarge) {
-  const auto segment = must(Segment::create(RingSpec::of<msg::Projection>("test.ring", 3, false, msg::Projection::bytes(4, 4))));
+  const auto segment = must(Segment::create(
+      RingSpec::of<msg::Projection>("test.ring", 3, false, msg::Projection::bytes(4, 4))));
   auto writer = must(Writer<msg::Projection>::attach(again(segment)));
   auto reader = must(Reader<msg::Projection>::attach(again(segment)));
-  for (const auto& [width, height] :
-       {std::pair{4u, 5u}, std::pair{1u << 31, 1u << 31}, std::pair{1u << 31, 1u << 30}, std::pair{~0u, ~0u}}) {
+  for (const auto& [width, height] : {std::pair{4u, 5u}, std::pair{1u << 31, 1u << 31},
+                                      std::pair{1u << 31, 1u << 30}, std::pair{~0u, ~0u}}) {
     auto loan = writer.loan();
     loan->region_width_px = width;
     loan->region_height_px = height;
@@ -206,7 +217,8 @@ TEST(Hostile, AWriterFindsItsWayPastTheLastSequence) {
   const auto segment = make_ring<Note>(4);
   const auto words = control_words_of(segment);
   RealAtomics::store(words.head(), head_word(0, kSequenceMask), std::memory_order_seq_cst);
-  RealAtomics::store(words.state(0), state_word(kEpochMask, kSequenceMask), std::memory_order_seq_cst);
+  RealAtomics::store(words.state(0), state_word(kEpochMask, kSequenceMask),
+                     std::memory_order_seq_cst);
   auto writer = must(Writer<Note>::attach(again(segment)));
   writer.publish(note(1));
   auto reader = must(Reader<Note>::attach(again(segment)));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages that are read where they lie.
 #include <gmock/gmock.h>
 
@@ -29,16 +30,22 @@ using ::testing::HasSubstr;
 constexpr std::size_t kTail = 100;
 
 struct Strips {
-  explicit Strips(int slots, bool keep_history = false) : segment(make_ring<Strip>(slots, keep_history, sizeof(Strip) + kTail)) {}
+  explicit Strips(int slots, bool keep_history = false)
+      : segment(make_ring<Strip>(slots, keep_history, sizeof(Strip) + kTail)) {}
 
   Writer<Strip> writer() const { return must(Writer<Strip>::attach(again(segment))); }
-  Reader<Strip> reader(Hold hold = Hold::lease) const { return must(Reader<Strip>::attach(again(segment), Wait::futex, hold)); }
+  Reader<Strip> reader(Hold hold = Hold::lease) const {
+    return must(Reader<Strip>::attach(again(segment), Wait::futex, hold));
+  }
   ControlWords<RealAtomics> words() const { return control_words_of(segment); }
-  std::uint64_t lease_word_of(int row, int index) const { return RealAtomics::load(words().lease(row, index), std::memory_order_seq_cst); }
+  std::uint64_t lease_word_of(int row, int index) const {
+    return RealAtomics::load(words().lease(row, index), std::memory_order_seq_cst);
+  }
   int leases_out() const {
     int out = 0;
     for (int row = 0; row < kReaderRows; ++row)
-      for (int index = 0; index < kLeasesPerRow; ++index) out += is_leased(lease_word_of(row, index));
+      for (int index = 0; index < kLeasesPerRow; ++index)
+        out += is_leased(lease_word_of(row, index));
     return out;
   }
 
@@ -55,7 +62,8 @@ void publish(Writer<Strip>& writer, std::uint8_t value) {
 }
 
 bool says(const Sample<Strip>& sample, std::uint8_t value) {
-  return sample->tail_length == kTail && std::all_of(sample->tail(), sample->tail() + kTail, [=](auto byte) { return byte == value; });
+  return sample->tail_length == kTail && std::all_of(sample->tail(), sample->tail() + kTail,
+                                                     [=](auto byte) { return byte == value; });
 }
 
 TEST(Lease, AMessageWithATailIsReadWhereItLiesAndASmallOneIsCopied) {
@@ -66,7 +74,8 @@ TEST(Lease, AMessageWithATailIsReadWhereItLiesAndASmallOneIsCopied) {
   const auto sample = must(reader.next(kNow));
   EXPECT_TRUE(sample.leased());
   EXPECT_TRUE(says(sample, 1));
-  reinterpret_cast<Strip*>(ring.segment.slot_at(slot_of_lease(ring.lease_word_of(0, 0))))->tail()[7] = 99;
+  reinterpret_cast<Strip*>(ring.segment.slot_at(slot_of_lease(ring.lease_word_of(0, 0))))
+      ->tail()[7] = 99;
   EXPECT_EQ(sample->tail()[7], 99) << "it is the slot itself";
 
   const auto notes = make_ring<Note>(4);
@@ -191,7 +200,8 @@ TEST(Lease, ASampleMayDieOnAnotherThread) {
   std::vector<std::jthread> threads;
   for (std::uint8_t value = 1; value <= 200; ++value) {
     publish(writer, value);
-    threads.emplace_back([value, sample = must(reader.next(kNow))] { EXPECT_TRUE(says(sample, value)); });
+    threads.emplace_back(
+        [value, sample = must(reader.next(kNow))] { EXPECT_TRUE(says(sample, value)); });
   }
   threads.clear();
   EXPECT_EQ(ring.leases_out(), 0);
@@ -239,7 +249,8 @@ TEST(Lease, ALeaseThatWasTakenAwayIsToldOnceAndCountedAndTheReaderGoesOnWithCopi
   publish(writer, 2);
   auto second = std::make_unique<Sample<Strip>>(must(reader.next(kNow)));
   const auto owner = RealAtomics::load(ring.words().owner(0), std::memory_order_seq_cst);
-  ASSERT_TRUE(claim_row(ring.words(), 0, owner, free_word(generation_of(owner) + 1)));  // somebody took us for dead
+  ASSERT_TRUE(claim_row(ring.words(), 0, owner,
+                        free_word(generation_of(owner) + 1)));  // somebody took us for dead
   EXPECT_EQ(ring.leases_out(), 0);
   ::testing::internal::CaptureStderr();
   first.reset();

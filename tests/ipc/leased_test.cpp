@@ -1,5 +1,6 @@
-// Leases against a writer in full flight, payload in plain memory on both sides, with threads in place of processes and one
-// mapping for all: what ThreadSanitizer says here is about the protocol.
+// SPDX-License-Identifier: Apache-2.0
+// Leases against a writer in full flight, payload in plain memory on both sides, with threads in
+// place of processes and one mapping for all: what ThreadSanitizer says here is about the protocol.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,9 @@ struct Tally {
   std::uint64_t taken = 0, torn = 0, backwards = 0, revoked = 0;
 };
 
-SmallRing::Payload& payload_of(SmallRing& ring, int slot) { return *reinterpret_cast<SmallRing::Payload*>(ring.slot(slot)); }
+SmallRing::Payload& payload_of(SmallRing& ring, int slot) {
+  return *reinterpret_cast<SmallRing::Payload*>(ring.slot(slot));
+}
 
 /// Returns how many loans failed.
 std::uint64_t write_until(SmallRing& ring, const std::atomic<int>& readers_left) {
@@ -49,7 +52,8 @@ struct Hand {
   Taken taken;
 };
 
-/// Holds two messages at a time: the older one is read again, and let go, when the next one is in hand.
+/// Holds two messages at a time: the older one is read again, and let go, when the next one is in
+/// hand.
 Tally read_some(SmallRing& ring, int row) {
   ReaderCore<RealAtomics> reader(ring.words(), row, 0);
   reader.start();
@@ -57,7 +61,8 @@ Tally read_some(SmallRing& ring, int row) {
   std::array<Hand, 2> hands;
   const auto whole = [&](const Hand& hand) {
     const auto& payload = payload_of(ring, hand.lease.slot);
-    return std::all_of(payload.begin(), payload.end(), [&](auto word) { return word == hand.taken.sequence; });
+    return std::all_of(payload.begin(), payload.end(),
+                       [&](auto word) { return word == hand.taken.sequence; });
   };
   while (tally.taken < 10000) {
     auto& hand = hands[tally.taken % 2];
@@ -110,7 +115,9 @@ void expect_sound(const Run& run) {
 }
 
 TEST(Leased, AMessageInHandIsNeverWrittenTo) {
-  constexpr int kSlots = SmallRing::kRows + 2;  // one more for each reader would never run out; with one less they may wait for ever
+  constexpr int kSlots =
+      SmallRing::kRows +
+      2;  // one more for each reader would never run out; with one less they may wait for ever
   for (const bool keep_history : {false, true}) {
     const auto scarce = run(kSlots, keep_history);
     expect_sound(scarce);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the kernel may refuse, each in a process of its own that may then have no more of it.
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -23,10 +24,13 @@ void insist(bool so, const char* what, const std::string& said) {
 template <class T>
 void expect_refusal(const Result<T>& result, const char* what, std::string_view hint = "") {
   insist(!result, what, "nothing");
-  insist(result.error().code == Errc::unavailable && result.error().what.find(hint) != std::string::npos, what, result.error().what);
+  insist(result.error().code == Errc::unavailable &&
+             result.error().what.find(hint) != std::string::npos,
+         what, result.error().what);
 }
 
-/// Runs `body` under a limit; it ends well unless it insists on something that is not so, or crashes.
+/// Runs `body` under a limit; it ends well unless it insists on something that is not so, or
+/// crashes.
 void with_limit(int resource, rlim_t limit, const std::function<void()>& body) {
   const auto pid = ::fork();
   if (pid == 0) {
@@ -53,22 +57,29 @@ TEST(Limits, WithoutDescriptorsNothingIsMadeAndNobodyIsTakenForDead) {
   const auto segment = make_ring<Note>(4);
   auto for_reader = again(segment), for_writer = again(segment);
   with_limit(RLIMIT_NOFILE, descriptors_in_use(), [&] {
-    expect_refusal(Segment::create(RingSpec::of<Note>("test.ring", 4, false)), "a segment needs a descriptor", "no memory file");
-    expect_refusal(Reader<Note>::attach(std::move(for_reader)), "a reader must know when its process began", "when this process began");
-    const auto owner = RealAtomics::load(control_words_of(segment).owner(0), std::memory_order_seq_cst);
+    expect_refusal(Segment::create(RingSpec::of<Note>("test.ring", 4, false)),
+                   "a segment needs a descriptor", "no memory file");
+    expect_refusal(Reader<Note>::attach(std::move(for_reader)),
+                   "a reader must know when its process began", "when this process began");
+    const auto owner =
+        RealAtomics::load(control_words_of(segment).owner(0), std::memory_order_seq_cst);
     insist(owner == 0, "no row was taken with a wrong start time", "");
   });
   with_limit(RLIMIT_NOFILE, descriptors_in_use(), [&] {
-    expect_refusal(Writer<Note>::attach(std::move(for_writer)), "a writer needs a descriptor for its lock", "cannot be opened for writing");
+    expect_refusal(Writer<Note>::attach(std::move(for_writer)),
+                   "a writer needs a descriptor for its lock", "cannot be opened for writing");
   });
-  with_limit(RLIMIT_NOFILE, descriptors_in_use(),
-             [] { expect_refusal(WakeBridge::start([] { return false; }), "a bridge needs a descriptor", "no descriptor"); });
+  with_limit(RLIMIT_NOFILE, descriptors_in_use(), [] {
+    expect_refusal(WakeBridge::start([] { return false; }), "a bridge needs a descriptor",
+                   "no descriptor");
+  });
 }
 
 TEST(Limits, AFileLargerThanAllowedIsAnErrorValue) {
   with_limit(RLIMIT_FSIZE, 1 << 20, [] {
     std::signal(SIGXFSZ, SIG_IGN);
-    expect_refusal(Segment::create({"test.ring", 1, 1 << 20, 4, false}), "a segment needs room", "no memory for");
+    expect_refusal(Segment::create({"test.ring", 1, 1 << 20, 4, false}), "a segment needs room",
+                   "no memory for");
   });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who comes, goes, waits and comes again.
 #include <gmock/gmock.h>
 
@@ -44,12 +45,15 @@ TEST(Ring, AMessageWhoseWriterDiedBeforeAnnouncingItIsAnnouncedByTheNextWriter) 
   EXPECT_TRUE(reader.latest(kNow));
   const auto words = control_words_of(segment);
   reinterpret_cast<Note*>(segment.slot_at(2))->value = 2;
-  RealAtomics::store(words.state(2), state_word(1, 2), std::memory_order_seq_cst);             // published, head not moved
-  RealAtomics::store(words.state(3), state_word(1, 3) | kWriting, std::memory_order_seq_cst);  // died while writing
+  RealAtomics::store(words.state(2), state_word(1, 2),
+                     std::memory_order_seq_cst);  // published, head not moved
+  RealAtomics::store(words.state(3), state_word(1, 3) | kWriting,
+                     std::memory_order_seq_cst);  // died while writing
   auto writer = must(Writer<Note>::attach(again(segment)));
   const auto rolled_forward = must(reader.latest(kNow));
   EXPECT_EQ(rolled_forward->value, 2u);
-  EXPECT_EQ(RealAtomics::load(words.state(3), std::memory_order_relaxed), state_word(1, 3) | kWriting);
+  EXPECT_EQ(RealAtomics::load(words.state(3), std::memory_order_relaxed),
+            state_word(1, 3) | kWriting);
   writer.publish(note(3));
   EXPECT_EQ(must(reader.latest(kNow)).sequence(), 3u);
 }
@@ -58,7 +62,8 @@ TEST(Ring, AnEmptyRingIsATimeoutNotAHang) {
   const auto segment = make_ring<Note>(4);
   for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex, Wait::eventfd}) {
     auto reader = must(Reader<Note>::attach(again(segment), wait));
-    for (const auto deadline : {Deadline::now(), Deadline::at_ns(-5), Deadline::at_ns(1), Deadline::in(-1s), Deadline::in(3ms)}) {
+    for (const auto deadline : {Deadline::now(), Deadline::at_ns(-5), Deadline::at_ns(1),
+                                Deadline::in(-1s), Deadline::in(3ms)}) {
       EXPECT_EQ(reader.next(deadline).error().code, Errc::timeout);
       EXPECT_EQ(reader.latest(deadline).error().code, Errc::timeout);
     }
@@ -93,7 +98,8 @@ TEST(Ring, EveryWayOfWaitingSeesMessagesThatComeRegularlyThenLateThenNoMore) {
 TEST(Ring, ThereIsARowForSixteenReadersAndARowGivenBackIsUsedAgain) {
   const auto segment = make_ring<Note>(4);
   std::vector<Reader<Note>> readers;
-  for (int i = 0; i < kReaderRows; ++i) readers.push_back(must(Reader<Note>::attach(again(segment))));
+  for (int i = 0; i < kReaderRows; ++i)
+    readers.push_back(must(Reader<Note>::attach(again(segment))));
   const auto one_more = Reader<Note>::attach(again(segment));
   ASSERT_FALSE(one_more);
   EXPECT_EQ(one_more.error().code, Errc::unavailable);

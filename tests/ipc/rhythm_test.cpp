@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/ring/rhythm.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,8 @@ constexpr std::int64_t kStart_ns = 1'000'000'000;
 
 Rhythm regular(int messages) {
   Rhythm rhythm;
-  for (int i = 0; i < messages; ++i) rhythm.heard(static_cast<std::uint64_t>(i) + 1, kStart_ns + i * kPeriod_ns);
+  for (int i = 0; i < messages; ++i)
+    rhythm.heard(static_cast<std::uint64_t>(i) + 1, kStart_ns + i * kPeriod_ns);
   return rhythm;
 }
 
@@ -32,15 +34,18 @@ TEST(Rhythm, ANewStreamIsNotPredicted) {
 
 TEST(Rhythm, MessagesThatWereSkippedCountAsHeard) {
   Rhythm rhythm;
-  for (int i = 0; i < 20; ++i) rhythm.heard(static_cast<std::uint64_t>(i) * 3 + 1, kStart_ns + i * 3 * kPeriod_ns);
+  for (int i = 0; i < 20; ++i)
+    rhythm.heard(static_cast<std::uint64_t>(i) * 3 + 1, kStart_ns + i * 3 * kPeriod_ns);
   ASSERT_TRUE(rhythm.window());
-  EXPECT_NEAR(static_cast<double>(rhythm.window()->from_ns), static_cast<double>(kStart_ns + 58 * kPeriod_ns), 150'000.0);
+  EXPECT_NEAR(static_cast<double>(rhythm.window()->from_ns),
+              static_cast<double>(kStart_ns + 58 * kPeriod_ns), 150'000.0);
 }
 
 TEST(Rhythm, AnIrregularStreamIsNotPredicted) {
   Rhythm rhythm;
   std::int64_t time_ns = kStart_ns;
-  for (int i = 0; i < 40; ++i) rhythm.heard(static_cast<std::uint64_t>(i) + 1, time_ns += i % 2 ? 1'000'000 : 3'000'000);
+  for (int i = 0; i < 40; ++i)
+    rhythm.heard(static_cast<std::uint64_t>(i) + 1, time_ns += i % 2 ? 1'000'000 : 3'000'000);
   EXPECT_FALSE(rhythm.window());
 }
 
@@ -49,7 +54,8 @@ TEST(Rhythm, APauseStartsTheAveragesAgain) {
   const auto resumed_ns = kStart_ns + 20 * kPeriod_ns + 300'000'000;
   rhythm.heard(21, resumed_ns);
   EXPECT_FALSE(rhythm.window());
-  for (int i = 1; i < 6; ++i) rhythm.heard(21 + static_cast<std::uint64_t>(i), resumed_ns + i * kPeriod_ns);
+  for (int i = 1; i < 6; ++i)
+    rhythm.heard(21 + static_cast<std::uint64_t>(i), resumed_ns + i * kPeriod_ns);
   EXPECT_TRUE(rhythm.window());
 }
 

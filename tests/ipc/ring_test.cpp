@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -80,7 +81,8 @@ TEST(Ring, ALateReaderSeesTheNewestAtOnceAndOnlyOnce) {
   EXPECT_EQ(must(latest.latest(kNow))->value, 5u);
   EXPECT_FALSE(latest.latest(kNow));
   EXPECT_EQ(must(next.next(kNow))->value, 5u);
-  EXPECT_EQ(next.skipped() + latest.skipped(), 0u) << "what came before a reader was not skipped by it";
+  EXPECT_EQ(next.skipped() + latest.skipped(), 0u)
+      << "what came before a reader was not skipped by it";
 }
 
 TEST(Ring, ALateReaderOfAHistoryReadsAllThatIsStillThere) {
@@ -97,15 +99,18 @@ TEST(Ring, AtFindsTheMessageNearestInTimeAndChangesNothingElse) {
   auto writer = must(Writer<Note>::attach(again(segment)));
   auto reader = must(Reader<Note>::attach(again(segment)));
   EXPECT_EQ(reader.at(0).error().code, Errc::timeout);
-  for (std::uint64_t i = 1; i <= 5; ++i) writer.publish(note(i, static_cast<std::int64_t>(i) * 1000));
-  const std::array<std::pair<std::int64_t, std::uint64_t>, 7> cases{{{3000, 3},
-                                                                     {3400, 3},
-                                                                     {3600, 4},
-                                                                     {-5, 1},
-                                                                     {1'000'000, 5},
-                                                                     {std::numeric_limits<std::int64_t>::min(), 1},
-                                                                     {std::numeric_limits<std::int64_t>::max(), 5}}};
-  for (const auto& [asked_ns, expected] : cases) EXPECT_EQ(must(reader.at(asked_ns))->value, expected) << asked_ns;
+  for (std::uint64_t i = 1; i <= 5; ++i)
+    writer.publish(note(i, static_cast<std::int64_t>(i) * 1000));
+  const std::array<std::pair<std::int64_t, std::uint64_t>, 7> cases{
+      {{3000, 3},
+       {3400, 3},
+       {3600, 4},
+       {-5, 1},
+       {1'000'000, 5},
+       {std::numeric_limits<std::int64_t>::min(), 1},
+       {std::numeric_limits<std::int64_t>::max(), 5}}};
+  for (const auto& [asked_ns, expected] : cases)
+    EXPECT_EQ(must(reader.at(asked_ns))->value, expected) << asked_ns;
   EXPECT_EQ(reader.received(), 0u);
   EXPECT_EQ(must(reader.next(kNow))->value, 1u);
 }
@@ -115,15 +120,18 @@ TEST(Ring, ATailTravelsWithItsMessageAndNoFurther) {
   const auto segment = make_ring<Strip>(2, false, sizeof(Strip) + room);
   auto writer = must(Writer<Strip>::attach(again(segment)));
   auto reader = must(Reader<Strip>::attach(again(segment)));
-  for (const std::size_t length : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{500}, room}) {
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{500}, room}) {
     auto loan = writer.loan();
     ASSERT_EQ(loan.tail_bytes(), room);
     loan->tail_length = length;
-    for (std::size_t i = 0; i < length; ++i) loan->tail()[i] = static_cast<std::uint8_t>(length + i);
+    for (std::size_t i = 0; i < length; ++i)
+      loan->tail()[i] = static_cast<std::uint8_t>(length + i);
     writer.publish(std::move(loan));
     const auto sample = must(reader.next(kNow));
     ASSERT_EQ(sample->tail_length, length);
-    for (std::size_t i = 0; i < length; ++i) ASSERT_EQ(sample->tail()[i], static_cast<std::uint8_t>(length + i));
+    for (std::size_t i = 0; i < length; ++i)
+      ASSERT_EQ(sample->tail()[i], static_cast<std::uint8_t>(length + i));
   }
 }
 
@@ -131,7 +139,8 @@ TEST(Ring, AMessageThatClaimsMoreThanItsSlotIsBadData) {
   const auto segment = make_ring<Strip>(2, false, sizeof(Strip) + 100);
   auto writer = must(Writer<Strip>::attach(again(segment)));
   auto reader = must(Reader<Strip>::attach(again(segment)));
-  for (const std::uint64_t claim : {std::uint64_t{101}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+  for (const std::uint64_t claim :
+       {std::uint64_t{101}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     auto loan = writer.loan();
     loan->tail_length = claim;
     writer.publish(std::move(loan));
@@ -224,7 +233,9 @@ TEST(Ring, ALeasedSlotIsNotWrittenAndWithAllLeasedALoanIsEmpty) {
   const auto segment = make_ring<Note>(3);
   auto writer = must(Writer<Note>::attach(again(segment)));
   const auto words = control_words_of(segment);
-  const auto lease = [&](int row, int slot) { RealAtomics::store(words.lease(row, 1), lease_word(0, slot, 1), std::memory_order_seq_cst); };
+  const auto lease = [&](int row, int slot) {
+    RealAtomics::store(words.lease(row, 1), lease_word(0, slot, 1), std::memory_order_seq_cst);
+  };
   writer.publish(note(1));
   const auto leased = RealAtomics::load(words.state(0), std::memory_order_relaxed);
   lease(3, 0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -70,9 +71,13 @@ Segment make_ring(int slots, bool keep_history = false, std::size_t payload_byte
 inline UniqueFd duplicate(int fd) { return UniqueFd(::fcntl(fd, F_DUPFD_CLOEXEC, 0)); }
 
 /// The same memory, mapped once more: what another process has.
-inline Segment again(const Segment& segment) { return must(Segment::open(duplicate(segment.fd()))); }
+inline Segment again(const Segment& segment) {
+  return must(Segment::open(duplicate(segment.fd())));
+}
 
-inline Note note(std::uint64_t value, std::int64_t origin_ns = 0) { return {{value, origin_ns, 0}, value}; }
+inline Note note(std::uint64_t value, std::int64_t origin_ns = 0) {
+  return {{value, origin_ns, 0}, value};
+}
 
 inline const Deadline kNow = Deadline::now();
 

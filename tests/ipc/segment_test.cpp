@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "ipc/shm/segment.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +13,9 @@ namespace {
 using ::testing::HasSubstr;
 using namespace handcast::ipc::testing;
 
-SegmentHeader& header_of(const Segment& segment) { return *reinterpret_cast<SegmentHeader*>(segment.data()); }
+SegmentHeader& header_of(const Segment& segment) {
+  return *reinterpret_cast<SegmentHeader*>(segment.data());
+}
 
 /// Why the ring cannot be opened any more; empty if it can.
 std::string refusal(int fd) {
@@ -46,12 +49,14 @@ TEST(Segment, EveryWriterHasLinesOfItsOwnAndAllLieWithinTheMemory) {
   for (int row = 0; row < kReaderRows; ++row) {
     lines.push_back(offset(words.owner(row)));
     for (const auto* word : {&words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
-      EXPECT_EQ(offset(*word) / kLineBytes, lines.back() / kLineBytes) << "a row's words are one reader's";
+      EXPECT_EQ(offset(*word) / kLineBytes, lines.back() / kLineBytes)
+          << "a row's words are one reader's";
     EXPECT_NE(&words.lease(row, 0), &words.lease(row, 1));
   }
   lines.push_back(offset(writer_tally(segment)));
   for (int row = 0; row < kReaderRows; ++row) lines.push_back(offset(reader_tally(segment, row)));
-  for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_EQ(lines[i], kControlOffset + i * kLineBytes) << "line " << i;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    EXPECT_EQ(lines[i], kControlOffset + i * kLineBytes) << "line " << i;
   EXPECT_GE(offset(*segment.slot_at(0)), lines.back() + kLineBytes);
   EXPECT_LE(segment.slot_at(kMaxSlots - 1) + sizeof(Note), segment.data() + segment.size());
   EXPECT_GE(static_cast<std::size_t>(segment.slot_at(1) - segment.slot_at(0)), sizeof(Note));
@@ -64,9 +69,11 @@ TEST(Segment, CannotBeResizedByAnyone) {
 }
 
 TEST(Segment, ImpossibleSizesAreABadConfiguration) {
-  const auto attempt = [](int slots, std::size_t bytes) { return Segment::create({"test.ring", 1, bytes, slots, false}); };
-  for (const auto& segment : {attempt(1, 100), attempt(255, 100), attempt(-3, 100), attempt(4, 0), attempt(4, kMaxPayloadBytes + 1),
-                              attempt(200, kMaxPayloadBytes)}) {
+  const auto attempt = [](int slots, std::size_t bytes) {
+    return Segment::create({"test.ring", 1, bytes, slots, false});
+  };
+  for (const auto& segment : {attempt(1, 100), attempt(255, 100), attempt(-3, 100), attempt(4, 0),
+                              attempt(4, kMaxPayloadBytes + 1), attempt(200, kMaxPayloadBytes)}) {
     ASSERT_FALSE(segment);
     EXPECT_EQ(segment.error().code, Errc::bad_config) << segment.error().what;
   }
@@ -105,7 +112,8 @@ TEST(Segment, AHeaderThatDiffersIsRefusedWithAReason) {
   EXPECT_EQ(with([](SegmentHeader&) {}), "");
   EXPECT_THAT(with([](auto& h) { h.magic ^= 1; }), HasSubstr("does not begin like a ring"));
   EXPECT_THAT(with([](auto& h) { h.layout_version = 7; }), HasSubstr("layout version 7"));
-  EXPECT_THAT(with([](auto& h) { h.boot_id[3] ^= 1; }), HasSubstr("before the machine last started"));
+  EXPECT_THAT(with([](auto& h) { h.boot_id[3] ^= 1; }),
+              HasSubstr("before the machine last started"));
   EXPECT_THAT(with([](auto& h) { h.stream.fill('x'); }), HasSubstr("do not end"));
   EXPECT_THAT(with([](auto& h) { h.slot_count = 1; }), HasSubstr("1 slots"));
   EXPECT_THAT(with([](auto& h) { h.slot_count = 0xffffffff; }), HasSubstr("slots"));
@@ -115,7 +123,8 @@ TEST(Segment, AHeaderThatDiffersIsRefusedWithAReason) {
   EXPECT_THAT(with([](auto& h) { h.slot_stride = 8; }), HasSubstr("contradict"));
   EXPECT_THAT(with([](auto& h) { h.slots_offset = 1ull << 40; }), HasSubstr("contradict"));
   EXPECT_THAT(with([](auto& h) { h.reader_rows = 99; }), HasSubstr("contradict"));
-  EXPECT_THAT(with([](auto& h) { h.slot_count = 100, h = with_sizes(h); }), HasSubstr("the memory has"));
+  EXPECT_THAT(with([](auto& h) { h.slot_count = 100, h = with_sizes(h); }),
+              HasSubstr("the memory has"));
 }
 
 TEST(Segment, AHeaderChangedAfterOpeningChangesNoBound) {
@@ -128,7 +137,8 @@ TEST(Segment, AHeaderChangedAfterOpeningChangesNoBound) {
 }
 
 UniqueFd read_only(const Segment& segment) {
-  return UniqueFd(::open(("/proc/self/fd/" + std::to_string(segment.fd())).c_str(), O_RDONLY | O_CLOEXEC));
+  return UniqueFd(
+      ::open(("/proc/self/fd/" + std::to_string(segment.fd())).c_str(), O_RDONLY | O_CLOEXEC));
 }
 
 TEST(Segment, ADescriptorForReadingGivesAMappingToLookAtAndNoReaderOrWriter) {
@@ -136,8 +146,9 @@ TEST(Segment, ADescriptorForReadingGivesAMappingToLookAtAndNoReaderOrWriter) {
   const auto opened = must(Segment::open(read_only(segment)));
   EXPECT_EQ(opened.stream(), segment.stream());
   EXPECT_DEATH(*opened.data() = std::byte{1}, "");
-  for (const auto& error : {Reader<Note>::attach(must(Segment::open(read_only(segment)))).error(),
-                            Writer<Note>::attach(must(Segment::open(read_only(segment)))).error()}) {
+  for (const auto& error :
+       {Reader<Note>::attach(must(Segment::open(read_only(segment)))).error(),
+        Writer<Note>::attach(must(Segment::open(read_only(segment)))).error()}) {
     EXPECT_EQ(error.code, Errc::unavailable);
     EXPECT_THAT(error.what, HasSubstr("fewer rights"));
   }
@@ -153,7 +164,8 @@ TEST(Segment, AMappingWithoutARightDiesWhenItIsUsed) {
     return segment;
   };
   const auto control = [](const Segment& segment) { return segment.data() + kControlOffset; };
-  const auto to_write = restricted(Access::write), to_read = restricted(Access::read), to_look = restricted(Access::look);
+  const auto to_write = restricted(Access::write), to_read = restricted(Access::read),
+             to_look = restricted(Access::look);
   EXPECT_DEATH(touch(to_write.data()), "");
   touch(control(to_write));
   touch(to_write.slot_at(0));

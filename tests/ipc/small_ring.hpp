@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstddef>
@@ -22,7 +23,9 @@ class SmallRing {
         words_(lines_.get(), slots, keep_history, kRows) {}
 
   const ControlWords<RealAtomics>& words() const { return words_; }
-  std::byte* slot(int number) { return reinterpret_cast<std::byte*>(payloads_[static_cast<std::size_t>(number)].data()); }
+  std::byte* slot(int number) {
+    return reinterpret_cast<std::byte*>(payloads_[static_cast<std::size_t>(number)].data());
+  }
 
  private:
   std::unique_ptr<ControlWords<RealAtomics>::Line[]> lines_;

@@ -1,5 +1,7 @@
-// A real SIGKILL before each step of a writer's and of a reader's life, on real shared memory: the k-th run dies before step k,
-// until one lives to the end. What is left behind must serve the next one.
+// SPDX-License-Identifier: Apache-2.0
+// A real SIGKILL before each step of a writer's and of a reader's life, on real shared memory: the
+// k-th run dies before step k, until one lives to the end. What is left behind must serve the next
+// one.
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -24,31 +26,44 @@ struct KillingAtomics {
   static void step() {
     if (steps_left >= 0 && steps_left-- == 0) ::raise(SIGKILL);
   }
-  static std::uint64_t load(const Word& word, std::memory_order order) { return step(), RealAtomics::load(word, order); }
-  static void store(Word& word, std::uint64_t value, std::memory_order order) { step(), RealAtomics::store(word, value, order); }
-  static bool compare_exchange(Word& word, std::uint64_t expected, std::uint64_t desired, std::memory_order order) {
+  static std::uint64_t load(const Word& word, std::memory_order order) {
+    return step(), RealAtomics::load(word, order);
+  }
+  static void store(Word& word, std::uint64_t value, std::memory_order order) {
+    step(), RealAtomics::store(word, value, order);
+  }
+  static bool compare_exchange(Word& word, std::uint64_t expected, std::uint64_t desired,
+                               std::memory_order order) {
     return step(), RealAtomics::compare_exchange(word, expected, desired, order);
   }
   static void fence(std::memory_order order) { step(), RealAtomics::fence(order); }
-  static void wait(Word& word, std::uint64_t seen, std::int64_t until_ns) { step(), RealAtomics::wait(word, seen, until_ns); }
+  static void wait(Word& word, std::uint64_t seen, std::int64_t until_ns) {
+    step(), RealAtomics::wait(word, seen, until_ns);
+  }
   static void wake(Word& word) { step(), RealAtomics::wake(word); }
 };
 
 /// A ring whose words are reached through either kind of atomics.
 class Ring {
  public:
-  Ring(int slots, bool keep_history) : segment_(make_ring<Note>(slots, keep_history, sizeof(Note) + 64)) {}
+  Ring(int slots, bool keep_history)
+      : segment_(make_ring<Note>(slots, keep_history, sizeof(Note) + 64)) {}
 
   template <class Atomics>
   ControlWords<Atomics> words() const {
-    auto* lines = reinterpret_cast<typename ControlWords<Atomics>::Line*>(segment_.data() + kControlOffset);
+    auto* lines =
+        reinterpret_cast<typename ControlWords<Atomics>::Line*>(segment_.data() + kControlOffset);
     return {lines, segment_.slots(), segment_.keep_history()};
   }
-  std::uint64_t* payload(int slot) const { return reinterpret_cast<std::uint64_t*>(segment_.slot_at(slot)); }
+  std::uint64_t* payload(int slot) const {
+    return reinterpret_cast<std::uint64_t*>(segment_.slot_at(slot));
+  }
 
   bool is_whole(int slot, std::uint64_t sequence) const {
     for (int i = 0; i < kPayloadWords; ++i)
-      if (__atomic_load_n(payload(slot) + i, __ATOMIC_RELAXED) != sequence * 1000 + static_cast<std::uint64_t>(i)) return false;
+      if (__atomic_load_n(payload(slot) + i, __ATOMIC_RELAXED) !=
+          sequence * 1000 + static_cast<std::uint64_t>(i))
+        return false;
     return true;
   }
   /// Whatever says that it is a message is one.
@@ -72,7 +87,9 @@ bool write_one(const Ring& ring, WriterCore<Atomics>& writer, bool abandons = fa
   if (slot == kNoSlot) return false;
   for (int i = 0; i < kPayloadWords; ++i) {
     KillingAtomics::step();
-    __atomic_store_n(ring.payload(slot) + i, writer.next_sequence() * 1000 + static_cast<std::uint64_t>(i), __ATOMIC_RELAXED);
+    __atomic_store_n(ring.payload(slot) + i,
+                     writer.next_sequence() * 1000 + static_cast<std::uint64_t>(i),
+                     __ATOMIC_RELAXED);
   }
   abandons ? writer.abandon(slot) : writer.publish(slot);
   return true;
@@ -94,7 +111,9 @@ bool dies_before_step(int k, const std::function<void()>& life) {
   return WIFSIGNALED(status);
 }
 
-std::uint64_t owner_of_this_process(std::uint64_t generation) { return owner_word(generation, 0, static_cast<std::uint64_t>(::getpid())); }
+std::uint64_t owner_of_this_process(std::uint64_t generation) {
+  return owner_word(generation, 0, static_cast<std::uint64_t>(::getpid()));
+}
 
 ReaderCore<RealAtomics> reader_in(const Ring& ring, int row) {
   const auto words = ring.words<RealAtomics>();
@@ -130,7 +149,8 @@ void expect_successor_goes_on(const Ring& ring) {
   Taken taken;
   int slot = kNoSlot;
   const auto copy = [&](int from) { slot = from; };
-  EXPECT_EQ(reader.latest(reader.copying(copy), taken), Outcome::taken) << "one message is always there";
+  EXPECT_EQ(reader.latest(reader.copying(copy), taken), Outcome::taken)
+      << "one message is always there";
   EXPECT_TRUE(ring.is_whole(slot, taken.sequence));
   EXPECT_TRUE(ring.all_whole());
 
@@ -218,14 +238,18 @@ TEST(StepKill, AReaderMayDieBeforeAnyStep) {
     RealAtomics::store(words.owner(kVictimRow), dead, std::memory_order_relaxed);
     RealAtomics::store(words.wait(kVictimRow), free_word(7) | kWaiting, std::memory_order_relaxed);
     for (int index = 0; index < kLeasesPerRow; ++index)
-      RealAtomics::store(words.lease(kVictimRow, index), lease_word(7, index, 1), std::memory_order_relaxed);
+      RealAtomics::store(words.lease(kVictimRow, index), lease_word(7, index, 1),
+                         std::memory_order_relaxed);
 
     died = dies_before_step(steps, [&] { readers_life(ring, dead); });
 
     for (int index = 0; index < kLeasesPerRow; ++index)
-      leases_left += is_leased(RealAtomics::load(words.lease(kVictimRow, index), std::memory_order_relaxed));
-    flags_left += (RealAtomics::load(words.wait(kVictimRow), std::memory_order_relaxed) & kWaiting) != 0;
-    for (int i = 0; i < 9; ++i) EXPECT_TRUE(write_one(ring, writer)) << "a dead reader must not stop the writer";
+      leases_left +=
+          is_leased(RealAtomics::load(words.lease(kVictimRow, index), std::memory_order_relaxed));
+    flags_left +=
+        (RealAtomics::load(words.wait(kVictimRow), std::memory_order_relaxed) & kWaiting) != 0;
+    for (int i = 0; i < 9; ++i)
+      EXPECT_TRUE(write_one(ring, writer)) << "a dead reader must not stop the writer";
 
     const auto old = RealAtomics::load(words.owner(kVictimRow), std::memory_order_relaxed);
     const auto old_lease = RealAtomics::load(words.lease(kVictimRow, 0), std::memory_order_relaxed);

@@ -1,5 +1,6 @@
-// Readers against a writer that overwrites what they read, on as few slots as a ring can have, with threads in place of
-// processes and one mapping for all, so that ThreadSanitizer sees both sides.
+// SPDX-License-Identifier: Apache-2.0
+// Readers against a writer that overwrites what they read, on as few slots as a ring can have, with
+// threads in place of processes and one mapping for all, so that ThreadSanitizer sees both sides.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +52,8 @@ Tally read_some(SmallRing& ring, int row, Verb verb) {
     copy_from_slot(to + kHalf, ring.slot(slot) + kHalf, kHalf);
   };
   const auto first_word = [&](int slot) {
-    return static_cast<std::int64_t>(load_relaxed(*reinterpret_cast<const PayloadWord*>(ring.slot(slot))));
+    return static_cast<std::int64_t>(
+        load_relaxed(*reinterpret_cast<const PayloadWord*>(ring.slot(slot))));
   };
   Tally tally;
   while (tally.taken < 20000) {
@@ -59,7 +61,8 @@ Tally read_some(SmallRing& ring, int row, Verb verb) {
     const auto outcome = verb == Verb::next ? reader.next(reader.copying(copy), taken)
                          : verb == Verb::latest
                              ? reader.latest(reader.copying(copy), taken)
-                             : reader.nearest(static_cast<std::int64_t>(last) + 5, first_word, reader.copying(copy), taken);
+                             : reader.nearest(static_cast<std::int64_t>(last) + 5, first_word,
+                                              reader.copying(copy), taken);
     if (outcome == Outcome::nothing) reader.wait(now_ns() + 1'000'000);
     if (outcome != Outcome::taken) continue;
     ++tally.taken;
@@ -88,13 +91,15 @@ TEST_P(Torn, NoReaderEverGetsAMessageThatWasOverwrittenWhileItWasCopied) {
       });
   }
   for (const auto& tally : tallies) {
-    EXPECT_EQ(tally.torn, 0u) << "of " << tally.taken << " messages; " << tally.overwritten << " were caught";
+    EXPECT_EQ(tally.torn, 0u) << "of " << tally.taken << " messages; " << tally.overwritten
+                              << " were caught";
     EXPECT_EQ(tally.backwards, 0u);
     EXPECT_GT(tally.overwritten, 0u) << "the test must catch readers in the middle of a copy";
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OnFewSlots, Torn, ::testing::Values(std::pair{2, false}, std::pair{3, true}));
+INSTANTIATE_TEST_SUITE_P(OnFewSlots, Torn,
+                         ::testing::Values(std::pair{2, false}, std::pair{3, true}));
 
 }  // namespace
 }  // namespace handcast::ipc

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What somebody sees who looks at a ring without taking part.
 #include <gmock/gmock.h>
 
@@ -116,10 +117,12 @@ TEST(View, AWritersCountsGoOnWithTheNextWriterAndARowsBeginAnew) {
 TEST(View, NeedsOnlyADescriptorForReadingAndTakesNoRow) {
   const auto segment = make_ring<Note>(4);
   must(Writer<Note>::attach(again(segment))).publish(note(1));
-  const auto view = must(RingView::open(UniqueFd(::open(("/proc/self/fd/" + std::to_string(segment.fd())).c_str(), O_RDONLY | O_CLOEXEC))));
+  const auto view = must(RingView::open(UniqueFd(
+      ::open(("/proc/self/fd/" + std::to_string(segment.fd())).c_str(), O_RDONLY | O_CLOEXEC))));
   EXPECT_EQ(view.look().sequence, 1u);
   EXPECT_TRUE(view.look().readers.empty());
-  EXPECT_EQ(RingView::open(UniqueFd(::open("/dev/null", O_RDONLY | O_CLOEXEC))).error().code, Errc::bad_data);
+  EXPECT_EQ(RingView::open(UniqueFd(::open("/dev/null", O_RDONLY | O_CLOEXEC))).error().code,
+            Errc::bad_data);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
-// Whoever waits is woken: by the futex, through an eventfd, from an epoll loop. A wake-up that is lost ends a test after 20 s.
+// SPDX-License-Identifier: Apache-2.0
+// Whoever waits is woken: by the futex, through an eventfd, from an epoll loop. A wake-up that is
+// lost ends a test after 20 s.
 #include <gmock/gmock.h>
 #include <poll.h>
 #include <sys/epoll.h>
@@ -24,7 +26,9 @@ bool readable(int fd, int patience_ms) {
   return ::poll(&wanted, 1, patience_ms) == 1;
 }
 
-Reader<Note> bridged(const Segment& segment) { return must(Reader<Note>::attach(again(segment), Wait::eventfd)); }
+Reader<Note> bridged(const Segment& segment) {
+  return must(Reader<Note>::attach(again(segment), Wait::eventfd));
+}
 
 TEST(WaitNames, AreThoseOfTheFourWaysAndAnotherIsRefusedWithThem) {
   EXPECT_EQ(must(parse_wait("spin")), Wait::spin);
@@ -47,7 +51,8 @@ TEST(Wakeups, NoneIsLostBetweenAFlagAndAHead) {
     std::mt19937 random(1);
     for (std::uint64_t i = 1; i <= kMessages; ++i) {
       while (seen.load() + 1 < i) continue;  // the reader is about to wait: meet it there
-      for (auto steps = random() % 200; steps > 0; --steps) std::atomic_signal_fence(std::memory_order_seq_cst);
+      for (auto steps = random() % 200; steps > 0; --steps)
+        std::atomic_signal_fence(std::memory_order_seq_cst);
       writer.publish(writer.loan());
     }
   });
@@ -80,7 +85,8 @@ TEST(EventFd, IsReadableFromAMessageUntilThereIsNothingMore) {
     EXPECT_EQ(must(reader.next(kNow))->value, 2 * round);
     EXPECT_TRUE(readable(reader.event_fd(), 0)) << "there is one more";
     EXPECT_EQ(must(reader.next(kNow))->value, 2 * round + 1);
-    for (int looks = 0; looks < 3 && readable(reader.event_fd(), 5); ++looks)  // the second may be told of late
+    for (int looks = 0; looks < 3 && readable(reader.event_fd(), 5);
+         ++looks)  // the second may be told of late
       EXPECT_FALSE(reader.next(kNow));
   }
 }
@@ -106,15 +112,17 @@ TEST(EventFd, TheReadersOwnWaitIsWokenToo) {
   for (std::uint64_t i = 1; i <= 50; ++i) EXPECT_EQ(must(reader.next(Deadline::in(20s)))->value, i);
 }
 
-/// Publishes one message after the other, each as soon as the last one was seen: the moment its reader looks once more and
-/// clears its descriptor.
-void publish_in_step(const Segment& segment, const std::atomic<std::uint64_t>& seen, std::uint64_t messages, unsigned seed) {
+/// Publishes one message after the other, each as soon as the last one was seen: the moment its
+/// reader looks once more and clears its descriptor.
+void publish_in_step(const Segment& segment, const std::atomic<std::uint64_t>& seen,
+                     std::uint64_t messages, unsigned seed) {
   auto writer = must(Writer<Note>::attach(again(segment)));
   std::mt19937 random(seed);
   const auto give_up = Deadline::in(60s);
   for (std::uint64_t i = 1; i <= messages && !give_up.passed(); ++i) {
     while (seen.load() + 1 < i && !give_up.passed()) std::this_thread::yield();
-    for (auto steps = random() % 20'000; steps > 0; --steps) std::atomic_signal_fence(std::memory_order_seq_cst);
+    for (auto steps = random() % 20'000; steps > 0; --steps)
+      std::atomic_signal_fence(std::memory_order_seq_cst);
     writer.publish(note(i));
   }
 }
@@ -135,7 +143,8 @@ TEST(EventFd, AnEpollLoopWithTwoRingsMissesNothingOfEither) {
     epoll_event event{};
     const auto events = ::epoll_wait(epoll.get(), &event, 1, kLong_ms);
     if (events < 0 && errno == EINTR) continue;
-    ASSERT_EQ(events, 1) << "a message was not told of: " << seen[0] << " and " << seen[1] << " were seen";
+    ASSERT_EQ(events, 1) << "a message was not told of: " << seen[0] << " and " << seen[1]
+                         << " were seen";
     auto& reader = readers[event.data.u32];
     auto& count = seen[event.data.u32];
     while (const auto sample = reader.next(kNow)) {

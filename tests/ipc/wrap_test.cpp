@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers that come to their end: sequences, epochs, generations.
 #include <gtest/gtest.h>
 
@@ -12,7 +13,8 @@ using namespace handcast::ipc::testing;
 constexpr auto kLast = kSequenceMask;
 
 TEST(Wrap, LaterAndHowManyAreTrueAcrossTheLastSequence) {
-  EXPECT_TRUE(is_later(2, 1) && is_later(1, kLast) && is_later(5, kLast - 5) && is_later(kLast, kLast - 1));
+  EXPECT_TRUE(is_later(2, 1) && is_later(1, kLast) && is_later(5, kLast - 5) &&
+              is_later(kLast, kLast - 1));
   EXPECT_FALSE(is_later(1, 2) || is_later(kLast, 1) || is_later(7, 7) || is_later(kLast, kLast));
   EXPECT_TRUE(is_later(1, 0) && is_later(kLast, 0)) << "any is later than none";
   EXPECT_FALSE(is_later(0, 1) || is_later(0, kLast) || is_later(0, 0));
@@ -39,7 +41,8 @@ TEST(Wrap, ReadersGoOnPastTheLastSequence) {
   auto latest = must(Reader<Note>::attach(again(segment)));
   auto slow = must(Reader<Note>::attach(again(segment)));
   auto leasing = must(Reader<Note>::attach(again(segment), Wait::futex, Hold::lease));
-  for (auto* reader : {&next, &latest, &slow, &leasing}) EXPECT_EQ(must(reader->next(kNow)).sequence(), kLast - 3);
+  for (auto* reader : {&next, &latest, &slow, &leasing})
+    EXPECT_EQ(must(reader->next(kNow)).sequence(), kLast - 3);
   auto writer = must(Writer<Note>::attach(again(segment)));
   for (std::uint64_t i = 1; i <= 8; ++i) {
     writer.publish(note(i, static_cast<std::int64_t>(i) * 10));
@@ -95,7 +98,8 @@ TEST(Wrap, AHeadThatWasNotMovedIsRolledForwardAcrossTheLastSequence) {
   const auto segment = ring_at(kLast, 4, false);
   auto reader = must(Reader<Note>::attach(again(segment)));
   EXPECT_TRUE(reader.next(kNow));
-  RealAtomics::store(control_words_of(segment).state(2), state_word(3, 1), std::memory_order_seq_cst);
+  RealAtomics::store(control_words_of(segment).state(2), state_word(3, 1),
+                     std::memory_order_seq_cst);
   auto writer = must(Writer<Note>::attach(again(segment)));
   EXPECT_EQ(must(reader.next(kNow)).sequence(), 1u);
   writer.publish(note(2));
@@ -107,7 +111,8 @@ TEST(Wrap, EpochsGoOnPastTheLastOneAndLeaveOutZero) {
   auto reader = must(Reader<Note>::attach(again(segment)));
   const auto view = must(RingView::open(duplicate(segment.fd())));
   RealAtomics::store(control_words_of(segment).epoch(), kEpochMask - 2, std::memory_order_seq_cst);
-  for (const auto epoch : {kEpochMask - 1, kEpochMask, std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{3}}) {
+  for (const auto epoch :
+       {kEpochMask - 1, kEpochMask, std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{3}}) {
     must(Writer<Note>::attach(again(segment))).publish(note(epoch));
     EXPECT_EQ(must(reader.next(kNow)).epoch(), epoch);
     EXPECT_EQ(view.epoch(), epoch);

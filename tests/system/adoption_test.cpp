@@ -1,4 +1,6 @@
-// The supervisor itself may die: services and picture go on, and the next supervisor takes them over.
+// SPDX-License-Identifier: Apache-2.0
+// The supervisor itself may die: services and picture go on, and the next supervisor takes them
+// over.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -18,16 +20,21 @@ using testing::IsEmpty;
 
 class Adoption : public SystemTest {
  protected:
-  std::filesystem::path state_file() const { return scratch_.path() / ("handcast-" + std::to_string(getuid())) / "twin.state"; }
+  std::filesystem::path state_file() const {
+    return scratch_.path() / ("handcast-" + std::to_string(getuid())) / "twin.state";
+  }
   nlohmann::json state() const { return nlohmann::json::parse(std::ifstream(state_file())); }
 
   /// The ring as an outsider sees it, through the descriptor of a service: it needs no supervisor.
   ipc::RingView view(const std::string& stream) const {
     const auto saved = state();
-    const auto ring = std::ranges::find_if(saved["rings"], [&](const auto& each) { return each["stream"] == stream; });
+    const auto ring = std::ranges::find_if(
+        saved["rings"], [&](const auto& each) { return each["stream"] == stream; });
     const auto fd = std::to_string((*ring)["fd"].get<int>());
     const auto pid = std::to_string(saved["services"][0]["pid"].get<pid_t>());
-    return ipc::RingView::open(UniqueFd(open(("/proc/" + pid + "/fd/" + fd).c_str(), O_RDWR | O_CLOEXEC))).value();
+    return ipc::RingView::open(
+               UniqueFd(open(("/proc/" + pid + "/fd/" + fd).c_str(), O_RDWR | O_CLOEXEC)))
+        .value();
   }
 
   /// Kills the supervisor and waits for another one to answer, which a keeper sees to.
@@ -35,7 +42,8 @@ class Adoption : public SystemTest {
     const auto before = rig.supervisor();
     ASSERT_GT(before, 0);
     ASSERT_EQ(kill(before, SIGKILL), 0);
-    ASSERT_TRUE(eventually([&] { return rig.supervisor() > 0 && rig.supervisor() != before && !status().is_null(); }));
+    ASSERT_TRUE(eventually(
+        [&] { return rig.supervisor() > 0 && rig.supervisor() != before && !status().is_null(); }));
   }
   void kill_keeper_and_supervisor(Command& rig) const {
     const auto supervisor = rig.supervisor();
@@ -67,7 +75,8 @@ TEST_F(Adoption, AKilledSupervisorIsReplacedWhileServicesAndLightGoOn) {
     quiet += middle - start;
     disturbed += light.sequence() - middle;
   }
-  std::printf("frames in 4.5 s: %lu left alone, %lu while the supervisor was killed three times\n", quiet, disturbed);
+  std::printf("frames in 4.5 s: %lu left alone, %lu while the supervisor was killed three times\n",
+              quiet, disturbed);
   EXPECT_GT(quiet, 0u);
   EXPECT_GE(disturbed, quiet * 9 / 10);
 
@@ -118,8 +127,8 @@ TEST_F(Adoption, AServiceThatDiesWhileThereIsNoSupervisorIsStartedByTheNext) {
 
   wait_until_light();
   EXPECT_NE(service("landmarks")["pid"], victim);
-  EXPECT_THAT(rig->log(),
-              HasSubstr("landmarks (pid " + std::to_string(victim) + ") died while there was no supervisor (signal 9 (Killed))"));
+  EXPECT_THAT(rig->log(), HasSubstr("landmarks (pid " + std::to_string(victim) +
+                                    ") died while there was no supervisor (signal 9 (Killed))"));
   for (const auto pid : before) EXPECT_EQ(is_alive(pid), pid != victim) << pid;
 }
 
@@ -134,7 +143,9 @@ TEST_F(Adoption, WithoutKeeperAndSupervisorTheLightGoesOnAndTheNextUpTakesOver) 
 
   rig = up({"--set", "observer.rate_hz=3"});
   wait_until_light();
-  ASSERT_TRUE(eventually([&] { return service("observer")["pid"] != services.back() && service("observer")["state"] == "ready"; }));
+  ASSERT_TRUE(eventually([&] {
+    return service("observer")["pid"] != services.back() && service("observer")["state"] == "ready";
+  }));
   auto now = pids();
   EXPECT_NE(now.back(), services.back());  // its settings are others by now
   now.back() = services.back();
@@ -170,7 +181,8 @@ TEST_F(Adoption, ServicesThatCannotBeTakenOverAreNamedAndLeftAlone) {
 
   const auto refused = up();
   EXPECT_EQ(refused->wait(), 111);
-  EXPECT_THAT(refused->log(), AllOf(HasSubstr("camera (pid " + std::to_string(services[0]) + ")"), HasSubstr("cannot be taken over"),
+  EXPECT_THAT(refused->log(), AllOf(HasSubstr("camera (pid " + std::to_string(services[0]) + ")"),
+                                    HasSubstr("cannot be taken over"),
                                     HasSubstr("`handcast down --rig twin` ends them")));
   expect_all_alive(services);
   EXPECT_EQ(handcast({"down", "--rig", "twin"}).exit_code, 0);

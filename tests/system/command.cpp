@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/system/command.hpp"
 
 #include <fcntl.h>
@@ -58,7 +59,8 @@ pid_t Command::supervisor() const {
   const auto number = std::to_string(pid_);
   std::ifstream children("/proc/" + number + "/task/" + number + "/children");
   for (pid_t child = 0; children >> child;)
-    if (text_of("/proc/" + std::to_string(child) + "/cmdline").find("--kept") != std::string::npos) return child;
+    if (text_of("/proc/" + std::to_string(child) + "/cmdline").find("--kept") != std::string::npos)
+      return child;
   return -1;
 }
 
@@ -95,7 +97,8 @@ void kill_all_of(const std::filesystem::path& folder) {
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
       const pid_t pid = std::atoi(entry.path().filename().c_str());
       if (pid <= 0 || pid == getpid() || !is_alive(pid)) continue;
-      if (('\0' + text_of(entry.path() / "environ")).find('\0' + mark) == std::string::npos) continue;
+      if (('\0' + text_of(entry.path() / "environ")).find('\0' + mark) == std::string::npos)
+        continue;
       found = kill(pid, SIGKILL) == 0 || found;
     }
     usleep(10'000);
@@ -108,8 +111,10 @@ std::filesystem::path program_folder() {
 }
 
 std::string missing_program() {
-  for (const auto* name : {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks", "handcast-projector", "handcast-observer"})
-    if (!std::filesystem::exists(program_folder() / name)) return std::string(name) + " has not been built";
+  for (const auto* name : {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks",
+                           "handcast-projector", "handcast-observer"})
+    if (!std::filesystem::exists(program_folder() / name))
+      return std::string(name) + " has not been built";
   return "";
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -10,17 +11,19 @@ namespace handcast::system_test {
 
 using Arguments = std::vector<std::string>;
 
-/// A `handcast` command as a process of its own. What it writes goes to files. Killed with the object; a
-/// rig's supervisor and services outlive that: kill_all_of().
+/// A `handcast` command as a process of its own. What it writes goes to files. Killed with the
+/// object; a rig's supervisor and services outlive that: kill_all_of().
 class Command {
  public:
-  /// `folder` gets the output files and is the command's XDG_RUNTIME_DIR: rigs of other folders are not seen.
+  /// `folder` gets the output files and is the command's XDG_RUNTIME_DIR: rigs of other folders are
+  /// not seen.
   Command(const std::filesystem::path& folder, const Arguments& arguments);
   ~Command();
   Command(const Command&) = delete;
 
   pid_t pid() const { return pid_; }  ///< of `handcast up`: its keeper
-  pid_t supervisor() const;           ///< of `handcast up`: the process that the keeper keeps; -1 while there is none
+  pid_t supervisor()
+      const;  ///< of `handcast up`: the process that the keeper keeps; -1 while there is none
   void signal(int number) const;
   bool running();
   int wait();                  ///< the exit code, or 128 + the signal

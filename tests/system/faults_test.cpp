@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What goes wrong, and what is changed, while the light must go on.
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -7,8 +8,8 @@
 #include <fstream>
 
 #include "ipc/base/clock.hpp"
-#include "services/twin/recording.hpp"
-#include "services/twin/twin.hpp"
+#include "services/evaluation/twin/recording.hpp"
+#include "services/evaluation/twin/twin.hpp"
 #include "tests/system/running_rig.hpp"
 #include "tests/system/variable.hpp"
 
@@ -22,7 +23,8 @@ class Faults : public SystemTest {
   void expect_restarts(const std::map<std::string, int>& restarts) const {
     const auto now = status();
     for (const auto& name : kServices)
-      EXPECT_EQ(now["services"][name]["restarts"], restarts.contains(name) ? restarts.at(name) : 0) << name;
+      EXPECT_EQ(now["services"][name]["restarts"], restarts.contains(name) ? restarts.at(name) : 0)
+          << name;
   }
 };
 
@@ -51,7 +53,8 @@ TEST_F(Faults, EachServiceMayBeKilledAndTheLightGoesOn) {
       const auto now = service(name);
       return now["pid"] != victim && now["state"] == "ready";
     })) << name;
-    std::printf("%s was ready again %.0f ms after it was killed\n", name.c_str(), ns_to_ms(now_ns() - killed_ns));
+    std::printf("%s was ready again %.0f ms after it was killed\n", name.c_str(),
+                ns_to_ms(now_ns() - killed_ns));
     expect_more_light();
     restarts[name] = 1;
     expect_restarts(restarts);  // it came back, and nobody else had to
@@ -76,10 +79,12 @@ TEST_F(Faults, AServiceInAnEndlessLoopIsReplaced) {
   std::filesystem::create_directory(programs);
   std::filesystem::copy_file(program_folder() / "handcast", programs / "handcast");
   for (const auto* name : {"camera", "pose", "landmarks", "projector"})
-    std::filesystem::create_symlink(std::filesystem::absolute(program_folder()) / ("handcast-" + std::string(name)),
-                                    programs / ("handcast-" + std::string(name)));
-  std::filesystem::create_symlink(std::filesystem::absolute(program_folder()) / "handcast_looping_observer",
-                                  programs / "handcast-observer");
+    std::filesystem::create_symlink(
+        std::filesystem::absolute(program_folder()) / ("handcast-" + std::string(name)),
+        programs / ("handcast-" + std::string(name)));
+  std::filesystem::create_symlink(
+      std::filesystem::absolute(program_folder()) / "handcast_looping_observer",
+      programs / "handcast-observer");
   const auto loop = scratch_.path() / "loop";
   const Variable there("HANDCAST_BIN", programs.string()), told("HANDCAST_LOOP", loop.string());
 
@@ -117,7 +122,8 @@ TEST_F(Faults, ASpareProjectorTakesOverAndTheLightGoesOn) {
   EXPECT_TRUE(eventually([&] { return service("projector")["state"] == "ready"; }));
   EXPECT_EQ(service("projector")["pid"], before["standby"]);
   expect_restarts({{"projector", 1}});
-  EXPECT_TRUE(eventually([&] { return service("projector")["standby"].is_number(); })) << "there is a new spare";
+  EXPECT_TRUE(eventually([&] { return service("projector")["standby"].is_number(); }))
+      << "there is a new spare";
   const auto both = service("projector");
   rig->signal(SIGINT);
   EXPECT_EQ(rig->wait(), 0);
@@ -129,8 +135,11 @@ TEST_F(Faults, ServicesStartInTheOrderOfTheirNeeds) {
   const auto rig = up();
   wait_until_light();
   const auto log = rig->log();
-  const auto ready = [&](const std::string& name) { return log.find(" " + name + std::string(11 - name.size(), ' ') + "info    ready"); };
-  for (const auto& name : kServices) ASSERT_NE(ready(name), std::string::npos) << name << "\n" << log;
+  const auto ready = [&](const std::string& name) {
+    return log.find(" " + name + std::string(11 - name.size(), ' ') + "info    ready");
+  };
+  for (const auto& name : kServices)
+    ASSERT_NE(ready(name), std::string::npos) << name << "\n" << log;
   EXPECT_LT(ready("camera"), ready("landmarks"));
   EXPECT_LT(ready("landmarks"), ready("projector"));
   EXPECT_LT(ready("pose"), ready("projector"));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Looking on at a rig: `handcast top` and the figures for Prometheus.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -24,7 +25,10 @@ using testing::Lt;
 class LookingOn : public SystemTest {};
 
 sockaddr_in loopback(int port) {
-  return {.sin_family = AF_INET, .sin_port = htons(static_cast<std::uint16_t>(port)), .sin_addr = {htonl(INADDR_LOOPBACK)}, .sin_zero = {}};
+  return {.sin_family = AF_INET,
+          .sin_port = htons(static_cast<std::uint16_t>(port)),
+          .sin_addr = {htonl(INADDR_LOOPBACK)},
+          .sin_zero = {}};
 }
 
 /// A socket that listens at a port that was free. Close it to let somebody else have the port.
@@ -32,7 +36,9 @@ std::pair<UniqueFd, int> take_port() {
   UniqueFd listener(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   auto address = loopback(0);
   socklen_t size = sizeof address;
-  if (bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0 || listen(listener.get(), 1) != 0) ADD_FAILURE();
+  if (bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
+      listen(listener.get(), 1) != 0)
+    ADD_FAILURE();
   getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
   return {std::move(listener), ntohs(address.sin_port)};
 }
@@ -41,7 +47,8 @@ std::pair<UniqueFd, int> take_port() {
 std::string fetch(int port, const std::string& path) {
   const UniqueFd client(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto address = loopback(port);
-  if (connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return "";
+  if (connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return "";
   const auto request = "GET " + path + " HTTP/1.0\r\n\r\n";
   send(client.get(), request.data(), request.size(), MSG_NOSIGNAL);
   std::string answer;
@@ -51,7 +58,8 @@ std::string fetch(int port, const std::string& path) {
   return answer;
 }
 
-/// The local addresses at which somebody listens at the port, as the kernel prints them (hexadecimal).
+/// The local addresses at which somebody listens at the port, as the kernel prints them
+/// (hexadecimal).
 std::vector<std::string> listeners_at(int port) {
   std::vector<std::string> addresses;
   for (const auto* file : {"/proc/net/tcp", "/proc/net/tcp6"}) {
@@ -60,13 +68,15 @@ std::vector<std::string> listeners_at(int port) {
     for (std::getline(table, line); std::getline(table, line);) {
       std::istringstream(line) >> number >> local >> remote >> state;
       const auto colon = local.find(':');
-      if (state == "0A" && std::stoi(local.substr(colon + 1), nullptr, 16) == port) addresses.push_back(local.substr(0, colon));
+      if (state == "0A" && std::stoi(local.substr(colon + 1), nullptr, 16) == port)
+        addresses.push_back(local.substr(0, colon));
     }
   }
   return addresses;
 }
 
-nlohmann::json find(const nlohmann::json& things, const std::string& key, const std::string& value) {
+nlohmann::json find(const nlohmann::json& things, const std::string& key,
+                    const std::string& value) {
   for (const auto& thing : things)
     if (thing[key] == value) return thing;
   ADD_FAILURE() << "no " << value;
@@ -102,7 +112,9 @@ TEST_F(LookingOn, TopsFiguresAreThoseOfTheRig) {
   EXPECT_THAT(poses["rate_hz"].get<double>(), AllOf(Gt(50), Lt(130))) << "the tracker has 110.6 Hz";
   EXPECT_EQ(poses["epoch"], 1);
   EXPECT_GT(find(poses["readers"], "who", "projector")["received"], 0);
-  EXPECT_EQ(find(find(top["rings"], "stream", "projection.frames")["readers"], "who", "observer")["gone"], false);
+  EXPECT_EQ(
+      find(find(top["rings"], "stream", "projection.frames")["readers"], "who", "observer")["gone"],
+      false);
 }
 
 TEST_F(LookingOn, PrometheusGetsTheFiguresOnThisMachineAlone) {
@@ -111,9 +123,11 @@ TEST_F(LookingOn, PrometheusGetsTheFiguresOnThisMachineAlone) {
   wait_until_light();
   std::string text;
   ASSERT_TRUE(eventually([&] { return !(text = fetch(port, "/metrics")).empty(); }));
-  for (const auto& name : kServices) EXPECT_THAT(text, HasSubstr("handcast_service_up{service=\"" + name + "\"} 1"));
+  for (const auto& name : kServices)
+    EXPECT_THAT(text, HasSubstr("handcast_service_up{service=\"" + name + "\"} 1"));
   EXPECT_THAT(text, HasSubstr("handcast_ring_messages_total{ring=\"projection.frames\"}"));
-  EXPECT_THAT(text, HasSubstr("handcast_reader_received_total{ring=\"pose.hands\",reader=\"projector\""));
+  EXPECT_THAT(text,
+              HasSubstr("handcast_reader_received_total{ring=\"pose.hands\",reader=\"projector\""));
   EXPECT_THAT(text, HasSubstr("handcast_stage_seconds{stage="));
   EXPECT_THAT(text, HasSubstr("handcast_supervisor_up 1"));
   EXPECT_THAT(listeners_at(port), testing::ElementsAre("0100007F")) << "127.0.0.1";

@@ -1,4 +1,6 @@
-// An observer that falls into an endless loop when it finds the file that HANDCAST_LOOP names, once.
+// SPDX-License-Identifier: Apache-2.0
+// An observer that falls into an endless loop when it finds the file that HANDCAST_LOOP names,
+// once.
 #include <cstdlib>
 #include <filesystem>
 
@@ -6,14 +8,15 @@
 
 int main(int argc, char** argv) {
   using namespace handcast;
-  return service::run({"observer", "Loops when it is told to.", {}}, argc, argv, [](service::Context& context) {
-    const char* file = std::getenv("HANDCAST_LOOP");
-    context.ready();
-    while (context.running()) {
-      sleep_until_ns(now_ns() + 20'000'000);
-      if (!file || !std::filesystem::remove(file)) continue;
-      for (volatile bool for_ever = true; for_ever;) {
-      }
-    }
-  });
+  return service::run({"observer", "Loops when it is told to.", {}}, argc, argv,
+                      [](service::Context& context) {
+                        const char* file = std::getenv("HANDCAST_LOOP");
+                        context.ready();
+                        while (context.running()) {
+                          sleep_until_ns(now_ns() + 20'000'000);
+                          if (!file || !std::filesystem::remove(file)) continue;
+                          for (volatile bool for_ever = true; for_ever;) {
+                          }
+                        }
+                      });
 }

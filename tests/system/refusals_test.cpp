@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What cannot work ends at once, in a sentence.
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -29,7 +30,8 @@ TEST_F(Refusals, ABrokenRigFileIsNamedWithItsLine) {
   const auto outcome = handcast({"up", rig_file("name = \"desk\"\n[camera]\nrate_hz = 0\n")});
   EXPECT_EQ(outcome.exit_code, 100);
   EXPECT_THAT(outcome.log, AllOf(HasSubstr("rig.toml:3"), HasSubstr("camera.rate_hz")));
-  EXPECT_EQ(handcast({"config", "--check", (scratch_.path() / "rig.toml").string()}).exit_code, 100);
+  EXPECT_EQ(handcast({"config", "--check", (scratch_.path() / "rig.toml").string()}).exit_code,
+            100);
 }
 
 TEST_F(Refusals, AMissingRigFileIsNamed) {
@@ -39,7 +41,8 @@ TEST_F(Refusals, AMissingRigFileIsNamed) {
 }
 
 TEST_F(Refusals, AMissingRecordingIsNamedAndNothingKeepsRunning) {
-  const auto rig = up({"--set", "pose.backend=replay", "--set", "pose.replay.directory=/nowhere/recording"});
+  const auto rig =
+      up({"--set", "pose.backend=replay", "--set", "pose.replay.directory=/nowhere/recording"});
   EXPECT_EQ(rig->wait(), 100);
   EXPECT_THAT(rig->log(), HasSubstr("handcast: pose cannot start: "));
   EXPECT_THAT(rig->log(), HasSubstr("/nowhere/recording"));
@@ -47,21 +50,25 @@ TEST_F(Refusals, AMissingRecordingIsNamedAndNothingKeepsRunning) {
 }
 
 TEST_F(Refusals, AMissingNetworkOfOurOwnIsNamed) {
-  const auto all = program_folder().parent_path() / "share" / "handcast", most = scratch_.path() / "assets";
+  const auto all = program_folder().parent_path() / "share" / "handcast",
+             most = scratch_.path() / "assets";
   std::filesystem::create_directory(most);
   for (const auto& entry : std::filesystem::directory_iterator(all))
-    if (entry.path().filename() != "landmarks") std::filesystem::create_symlink(entry.path(), most / entry.path().filename());
+    if (entry.path().filename() != "landmarks")
+      std::filesystem::create_symlink(entry.path(), most / entry.path().filename());
   const Variable assets("HANDCAST_ASSETS", most);
   const auto rig = up({"--set", "landmarks.backend=own"});
   EXPECT_EQ(rig->wait(), 100);
-  EXPECT_THAT(rig->log(), AllOf(HasSubstr("handcast: landmarks cannot start: "), HasSubstr("assets/landmarks/handcast.onnx"),
+  EXPECT_THAT(rig->log(), AllOf(HasSubstr("handcast: landmarks cannot start: "),
+                                HasSubstr("assets/landmarks/handcast.onnx"),
                                 HasSubstr("which comes with handcast, is missing")));
 }
 
 TEST_F(Refusals, AnUnknownBackEndIsNamedBesideTheKnownOnes) {
   const auto rig = up({"--set", "camera.backend=polaroid"});
   EXPECT_EQ(rig->wait(), 100);
-  EXPECT_THAT(rig->log(), AllOf(HasSubstr("handcast: camera cannot start: "), HasSubstr("'polaroid'"), HasSubstr("twin, replay")));
+  EXPECT_THAT(rig->log(), AllOf(HasSubstr("handcast: camera cannot start: "),
+                                HasSubstr("'polaroid'"), HasSubstr("twin, replay")));
 }
 
 TEST_F(Refusals, ASecondRigOfTheSameNameIsRefusedAndTheFirstGoesOn) {
@@ -83,7 +90,8 @@ TEST_F(Refusals, AnUnknownVerbIsAnsweredWithTheKnownOnes) {
 }
 
 TEST_F(Refusals, WhatConfigPrintsConfigAccepts) {
-  const auto printed = handcast({"config", "--print", "config/rigs/twin.toml", "--set", "camera.rate_hz=77"});
+  const auto printed =
+      handcast({"config", "--print", "config/rigs/twin.toml", "--set", "camera.rate_hz=77"});
   ASSERT_EQ(printed.exit_code, 0) << printed.log;
   EXPECT_THAT(printed.output, HasSubstr("rate_hz = 77"));
   EXPECT_EQ(handcast({"config", "--check", rig_file(printed.output)}).exit_code, 0);

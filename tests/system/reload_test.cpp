@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `handcast reload`: a changed rig file restarts what it changes and nothing else.
 #include <gmock/gmock.h>
 
@@ -17,13 +18,17 @@ using testing::UnorderedElementsAre;
 
 class Reload : public SystemTest {
  protected:
-  void write_rig(const std::string& more) const { std::ofstream(file_) << "name = \"desk\"\n" << more; }
+  void write_rig(const std::string& more) const {
+    std::ofstream(file_) << "name = \"desk\"\n" << more;
+  }
   /// A rig file of the test's own, at rates that leave the machine some air.
   void write_rig_with(const std::string& camera, const std::string& more = "") const {
-    write_rig("[camera]\n" + camera + "\n[projector]\nrate_hz = 60\n[supervisor]\nready_s = 60\n" + more);
+    write_rig("[camera]\n" + camera + "\n[projector]\nrate_hz = 60\n[supervisor]\nready_s = 60\n" +
+              more);
   }
   std::unique_ptr<Command> up_with_the_file() {
-    auto rig = std::make_unique<Command>(scratch_.path(), Arguments{"up", file_.string(), "--out", scratch_.path().string()});
+    auto rig = std::make_unique<Command>(
+        scratch_.path(), Arguments{"up", file_.string(), "--out", scratch_.path().string()});
     EXPECT_TRUE(eventually([this] {
       const auto now = status();
       if (now.is_null()) return false;
@@ -36,7 +41,8 @@ class Reload : public SystemTest {
   std::map<std::string, pid_t> processes() const {
     std::map<std::string, pid_t> processes;
     const auto now = status();
-    for (const auto& [name, service] : now["services"].items()) processes[name] = service["pid"].get<pid_t>();
+    for (const auto& [name, service] : now["services"].items())
+      processes[name] = service["pid"].get<pid_t>();
     return processes;
   }
   /// The services that have another process than `before`, or appeared or went.
@@ -54,7 +60,8 @@ class Reload : public SystemTest {
 };
 
 constexpr auto kCalm = "rate_hz = 60";
-constexpr auto kNoObserver = "[observer]\nenabled = false\n", kObserver = "[observer]\nrate_hz = 2\n";
+constexpr auto kNoObserver = "[observer]\nenabled = false\n",
+               kObserver = "[observer]\nrate_hz = 2\n";
 
 TEST_F(Reload, RestartsTheServicesThatReadWhatChangedAndTheLightGoesOn) {
   write_rig_with(kCalm, kObserver);
@@ -63,7 +70,8 @@ TEST_F(Reload, RestartsTheServicesThatReadWhatChangedAndTheLightGoesOn) {
   write_rig_with("rate_hz = 50", kObserver);
   const auto outcome = handcast({"reload"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.log;
-  EXPECT_EQ(outcome.output, "reloaded: camera, landmarks restarted; pose, projector, observer untouched\n");
+  EXPECT_EQ(outcome.output,
+            "reloaded: camera, landmarks restarted; pose, projector, observer untouched\n");
   EXPECT_THAT(changed_since(before), UnorderedElementsAre("camera", "landmarks"));
   EXPECT_EQ(status()["rings"]["camera.frames"]["asked_hz"], 50);
   EXPECT_EQ(service("camera")["state"], "ready");
@@ -86,7 +94,8 @@ TEST_F(Reload, ABrokenFileChangesNothingAndNamesAllItsProblemsWithTheirLines) {
   write_rig_with("rate_hz = 0\nexposure = 2", kNoObserver);
   const auto outcome = handcast({"reload"});
   EXPECT_EQ(outcome.exit_code, 100);
-  EXPECT_THAT(outcome.log, AllOf(HasSubstr("desk.toml:3: camera.rate_hz"), HasSubstr("desk.toml:4: camera.exposure")));
+  EXPECT_THAT(outcome.log, AllOf(HasSubstr("desk.toml:3: camera.rate_hz"),
+                                 HasSubstr("desk.toml:4: camera.exposure")));
   EXPECT_TRUE(changed_since(before).empty());
   expect_more_light();
 }
@@ -133,7 +142,8 @@ TEST_F(Reload, TheSupervisorsOwnSettingsRestartNobody) {
   const auto rig = up_with_the_file();
   const auto before = processes();
   write_rig_with(kCalm, "stop_s = 2\nhistory_s = 5\n" + std::string(kNoObserver));
-  EXPECT_EQ(handcast({"reload"}).output, "reloaded: camera, pose, landmarks, projector untouched\n");
+  EXPECT_EQ(handcast({"reload"}).output,
+            "reloaded: camera, pose, landmarks, projector untouched\n");
   EXPECT_TRUE(changed_since(before).empty());
 }
 

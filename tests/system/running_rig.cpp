@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/system/running_rig.hpp"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ SystemTest::Outcome SystemTest::handcast(const Arguments& arguments) const {
 
 std::unique_ptr<Command> SystemTest::up(const Arguments& more) const {
   Arguments arguments{"up", "config/rigs/twin.toml"};
-  for (const auto* setting : {"camera.rate_hz=60", "projector.rate_hz=60", "observer.rate_hz=2", "supervisor.ready_s=60"})
+  for (const auto* setting :
+       {"camera.rate_hz=60", "projector.rate_hz=60", "observer.rate_hz=2", "supervisor.ready_s=60"})
     arguments.insert(arguments.end(), {"--set", setting});
   arguments.insert(arguments.end(), more.begin(), more.end());
   return std::make_unique<Command>(scratch_.path(), arguments);
@@ -26,7 +28,8 @@ void SystemTest::wait_until_light() const {
   ASSERT_TRUE(eventually([this] {
     const auto now = status();
     if (now.is_null()) return false;
-    const bool ready = std::ranges::all_of(kServices, [&](const auto& name) { return now["services"][name]["state"] == "ready"; });
+    const bool ready = std::ranges::all_of(
+        kServices, [&](const auto& name) { return now["services"][name]["state"] == "ready"; });
     return ready && now["rings"]["projection.frames"]["count"] > 0;
   }));
 }
@@ -36,7 +39,9 @@ nlohmann::json SystemTest::status() const {
   return outcome.exit_code == 0 ? nlohmann::json::parse(outcome.output) : nlohmann::json();
 }
 
-std::uint64_t SystemTest::light() const { return status()["rings"]["projection.frames"]["count"].get<std::uint64_t>(); }
+std::uint64_t SystemTest::light() const {
+  return status()["rings"]["projection.frames"]["count"].get<std::uint64_t>();
+}
 
 void SystemTest::expect_more_light() const {
   const auto before = light();
@@ -54,7 +59,8 @@ std::vector<std::string> SystemTest::traces() const {
   std::vector<std::string> names;
   const auto runtime_folder = scratch_.path() / ("handcast-" + std::to_string(getuid()));
   std::error_code absent;
-  for (const auto& entry : std::filesystem::directory_iterator(runtime_folder, absent)) names.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(runtime_folder, absent))
+    names.push_back(entry.path());
   for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", absent))
     if (entry.path().string().find("handcast") != std::string::npos) names.push_back(entry.path());
   return names;
@@ -64,7 +70,8 @@ std::string last_line(const std::string& text) {
   const auto end = text.find_last_not_of('\n');
   if (end == std::string::npos) return "";
   const auto before = text.rfind('\n', end);
-  return text.substr(before == std::string::npos ? 0 : before + 1, end - (before == std::string::npos ? 0 : before + 1) + 1);
+  return text.substr(before == std::string::npos ? 0 : before + 1,
+                     end - (before == std::string::npos ? 0 : before + 1) + 1);
 }
 
 }  // namespace handcast::system_test

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <gtest/gtest.h>
 
@@ -39,7 +40,8 @@ class SystemTest : public testing::Test {
   test::Scratch scratch_;
 };
 
-inline const std::vector<std::string> kServices{"camera", "pose", "landmarks", "projector", "observer"};
+inline const std::vector<std::string> kServices{"camera", "pose", "landmarks", "projector",
+                                                "observer"};
 
 /// The text of the file's last line.
 std::string last_line(const std::string& text);

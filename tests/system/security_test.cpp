@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a rig that is up shows to others: nothing.
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -39,7 +40,8 @@ class Security : public SystemTest {
 std::set<std::string> socket_inodes_of(pid_t pid) {
   std::set<std::string> inodes;
   std::error_code gone;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd", gone)) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd", gone)) {
     const auto target = std::filesystem::read_symlink(entry.path(), gone).string();
     if (target.starts_with("socket:[")) inodes.insert(target.substr(8, target.size() - 9));
   }
@@ -84,14 +86,16 @@ int free_port() {
 }
 
 TEST_F(Security, TheFiguresForPrometheusAreServedToThisMachineAlone) {
-  if (!std::filesystem::exists(program_folder() / "handcast-exporter")) GTEST_SKIP() << "handcast-exporter has not been built";
+  if (!std::filesystem::exists(program_folder() / "handcast-exporter"))
+    GTEST_SKIP() << "handcast-exporter has not been built";
   const auto rig = up({"--set", "supervisor.metrics_port=" + std::to_string(free_port())});
   wait_until_light();
   ASSERT_TRUE(eventually([this] { return service("exporter")["state"] == "ready"; }));
   const auto exporter = service("exporter")["pid"].get<pid_t>();
   const auto sockets = network_sockets_of(exporter, "tcp");
   EXPECT_FALSE(sockets.empty());
-  for (const auto& line : sockets) EXPECT_NE(line.find(" 0100007F:"), std::string::npos) << line;  // 127.0.0.1
+  for (const auto& line : sockets)
+    EXPECT_NE(line.find(" 0100007F:"), std::string::npos) << line;  // 127.0.0.1
   EXPECT_THAT(network_sockets_of(exporter, "tcp6"), IsEmpty());
 }
 
@@ -133,7 +137,8 @@ TEST_F(Security, AToolGetsEveryRingToReadAndItsSizeCannotChange) {
   for (const auto& ring : given) {
     EXPECT_EQ(fcntl(ring.get(), F_GETFL) & O_ACCMODE, O_RDONLY);
     EXPECT_EQ(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, ring.get(), 0), MAP_FAILED);
-    EXPECT_EQ(fcntl(ring.get(), F_GET_SEALS) & (F_SEAL_SHRINK | F_SEAL_GROW), F_SEAL_SHRINK | F_SEAL_GROW);
+    EXPECT_EQ(fcntl(ring.get(), F_GET_SEALS) & (F_SEAL_SHRINK | F_SEAL_GROW),
+              F_SEAL_SHRINK | F_SEAL_GROW);
     void* bytes = mmap(nullptr, 4096, PROT_READ, MAP_SHARED, ring.get(), 0);
     ASSERT_NE(bytes, MAP_FAILED);
     EXPECT_NE(mprotect(bytes, 4096, PROT_READ | PROT_WRITE), 0);

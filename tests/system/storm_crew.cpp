@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/system/storm_crew.hpp"
 
 #include <fcntl.h>
@@ -72,7 +73,9 @@ class ReaderProcess {
  private:
   using Sample = ipc::Sample<Scroll>;
 
-  Result<Sample> take(Deadline deadline) { return kind_.in_order ? reader_.next(deadline) : reader_.latest(deadline); }
+  Result<Sample> take(Deadline deadline) {
+    return kind_.in_order ? reader_.next(deadline) : reader_.latest(deadline);
+  }
 
   Result<Sample> wait_for_one() {
     const auto deadline = Deadline::in(1s);
@@ -92,7 +95,8 @@ class ReaderProcess {
     sequence_ = scroll.sequence();
     epoch_ = scroll.epoch();
     held_.push_back(std::move(scroll));
-    while (held_.size() > random_() % 3) let_go();  // holds none, one or two of them while it waits for the next
+    while (held_.size() > random_() % 3)
+      let_go();  // holds none, one or two of them while it waits for the next
   }
 
   void let_go() {
@@ -108,7 +112,8 @@ class ReaderProcess {
   std::uint64_t sequence_ = 0, epoch_ = 0;
 };
 
-[[noreturn]] void read_without_end(const ipc::Segment& ring, const ReaderKind& kind, Notes& notes, Random random) {
+[[noreturn]] void read_without_end(const ipc::Segment& ring, const ReaderKind& kind, Notes& notes,
+                                   Random random) {
   auto reader = ipc::Reader<Scroll>::attach(again(ring), kind.wait, kind.hold);
   if (!reader) {
     ++notes.refused;
@@ -138,6 +143,8 @@ void Seat::kill() {
 
 void Seat::stop_for_a_while(bool stop) { ::kill(pid_, stop ? SIGSTOP : SIGCONT); }
 
-std::string Seat::name() const { return ring_.stream() + ", " + (reader_ ? reader_->name : "writer"); }
+std::string Seat::name() const {
+  return ring_.stream() + ", " + (reader_ ? reader_->name : "writer");
+}
 
 }  // namespace handcast::storm

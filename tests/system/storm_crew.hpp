@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -9,7 +10,8 @@
 #include "ipc/ring/reader.hpp"
 #include "ipc/shm/segment.hpp"
 
-/// The processes of the ring storm: one writer and several readers a ring, all of which may be killed at any moment.
+/// The processes of the ring storm: one writer and several readers a ring, all of which may be
+/// killed at any moment.
 namespace handcast::storm {
 
 struct ReaderKind {
@@ -36,7 +38,8 @@ struct Notes {
 /// One seat of the crew: the same job over many lives.
 class Seat {
  public:
-  Seat(const ipc::Segment& ring, const ReaderKind* reader, Notes& notes) : ring_(ring), reader_(reader), notes_(notes) {}
+  Seat(const ipc::Segment& ring, const ReaderKind* reader, Notes& notes)
+      : ring_(ring), reader_(reader), notes_(notes) {}
   ~Seat() { kill(); }
   Seat(const Seat&) = delete;
 

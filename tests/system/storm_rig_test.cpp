@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Services of a living rig, killed at random.
 #include <signal.h>
 
@@ -23,7 +24,8 @@ class RigStorm : public SystemTest {
     const auto frames = light();
     const auto start_ns = now_ns();
     what();
-    return static_cast<double>(light() - frames) / (ns_to_seconds(now_ns() - start_ns) * kProjector_hz);
+    return static_cast<double>(light() - frames) /
+           (ns_to_seconds(now_ns() - start_ns) * kProjector_hz);
   }
 
   /// Its process now; 0 while it is being started again.
@@ -37,7 +39,8 @@ class RigStorm : public SystemTest {
 
   bool all_are_ready() const {
     const auto now = status();
-    return std::ranges::all_of(kServices, [&](const auto& name) { return now["services"][name]["state"] == "ready"; });
+    return std::ranges::all_of(
+        kServices, [&](const auto& name) { return now["services"][name]["state"] == "ready"; });
   }
 };
 
@@ -62,9 +65,11 @@ TEST_F(RigStorm, TheProjectorGoesOnWhileTheOthersAreKilled) {
   const double stormy = share_of_light_during([&] {
     for (int i = 0; i < 10; ++i) kill_one_of({"camera", "pose", "landmarks", "observer"}, random);
   });
-  std::printf("frames of the light, of those asked for: %.1f %% in quiet, %.1f %% under kills\n", 100 * quiet, 100 * stormy);
+  std::printf("frames of the light, of those asked for: %.1f %% in quiet, %.1f %% under kills\n",
+              100 * quiet, 100 * stormy);
   EXPECT_EQ(pid_of("projector"), projector);
-  EXPECT_GT(stormy, 0.9 * quiet);  // the machine has other things to do too: `scripts/soak` measures it to the last frame
+  EXPECT_GT(stormy, 0.9 * quiet);  // the machine has other things to do too: `scripts/soak`
+                                   // measures it to the last frame
 }
 
 }  // namespace

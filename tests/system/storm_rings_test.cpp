@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writers and readers of three rings, killed at random and replaced at once, hundreds of times.
 //   HANDCAST_STORM_KILLS=10000   kills instead of 500
 #include <gtest/gtest.h>
@@ -26,7 +27,8 @@ using ipc::testing::again;
 using ipc::testing::must;
 
 constexpr int kUsualKills = 500;
-constexpr std::int64_t kHang_ns = 250'000'000;  ///< a starved process of a busy machine sleeps 120 ms without anybody's fault
+constexpr std::int64_t kHang_ns =
+    250'000'000;  ///< a starved process of a busy machine sleeps 120 ms without anybody's fault
 constexpr std::int64_t kLook_every_ns = 2'000'000;
 
 int kills_asked() {
@@ -39,12 +41,14 @@ struct RingKind {
   int slots;
   bool keep_history;
 };
-constexpr std::array<RingKind, 3> kRings{{{"storm.few", 3, false}, {"storm.rig", 8, false}, {"storm.history", 16, true}}};
+constexpr std::array<RingKind, 3> kRings{
+    {{"storm.few", 3, false}, {"storm.rig", 8, false}, {"storm.history", 16, true}}};
 constexpr std::size_t kSeatsPerRing = 1 + kReaderKinds.size();
 
 std::size_t entries_of(const std::filesystem::path& folder) {
   std::error_code absent;
-  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder, absent), {}));
+  return static_cast<std::size_t>(
+      std::distance(std::filesystem::directory_iterator(folder, absent), {}));
 }
 
 /// Processes of ours that still have a ring of the storm in their memory.
@@ -64,7 +68,9 @@ int processes_with_a_ring() {
 /// Zeroed memory that all processes of the storm share.
 class SharedNotes {
  public:
-  SharedNotes() : memory_(::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+  SharedNotes()
+      : memory_(
+            ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
     notes_ = new (memory_) Notes[kCount];
   }
   ~SharedNotes() { ::munmap(memory_, kBytes); }
@@ -82,8 +88,8 @@ class Storm {
  public:
   Storm() {
     for (const auto& kind : kRings)
-      rings_.push_back(
-          must(ipc::Segment::create(ipc::RingSpec::of<Scroll>(kind.name, kind.slots, kind.keep_history, Scroll::most_bytes()))));
+      rings_.push_back(must(ipc::Segment::create(ipc::RingSpec::of<Scroll>(
+          kind.name, kind.slots, kind.keep_history, Scroll::most_bytes()))));
     for (const auto& ring : rings_) {
       take_seat(ring, nullptr);
       for (const auto& kind : kReaderKinds) take_seat(ring, &kind);
@@ -113,7 +119,8 @@ class Storm {
       auto writer = must(ipc::Writer<Scroll>::attach(again(ring)));
       std::vector<ipc::Loan<Scroll>> loans;
       for (auto loan = writer.loan(); loan; loan = writer.loan()) loans.push_back(std::move(loan));
-      leaked += ring.slots() - 1 - static_cast<int>(loans.size());  // the newest message is never on loan
+      leaked +=
+          ring.slots() - 1 - static_cast<int>(loans.size());  // the newest message is never on loan
     }
     return leaked;
   }
@@ -161,7 +168,8 @@ class Storm {
 
   static void clear_the_rows_of_the_dead(const ipc::Segment& ring) {
     std::vector<ipc::Reader<Scroll>> everybody;
-    for (int i = 0; i < ipc::kReaderRows; ++i) everybody.push_back(must(ipc::Reader<Scroll>::attach(again(ring))));
+    for (int i = 0; i < ipc::kReaderRows; ++i)
+      everybody.push_back(must(ipc::Reader<Scroll>::attach(again(ring))));
   }
 
   std::mt19937 random_{7};
@@ -187,10 +195,12 @@ TEST(RingStorm, KillsAtRandomLeaveNothingTornNothingLostAndNobodyAsleep) {
     EXPECT_EQ(storm->leaked_slots(), 0);
     for (const auto& seat : storm->seats()) EXPECT_GT(seat->notes().messages, 0u) << seat->name();
     std::printf(
-        "%d kills: %llu messages written, %llu read, %llu times no slot, %d late wake-ups, longest sleep beside something new %.1f ms\n",
+        "%d kills: %llu messages written, %llu read, %llu times no slot, %d late wake-ups, longest "
+        "sleep beside something new %.1f ms\n",
         kills, static_cast<unsigned long long>(storm->total(&Notes::messages, false)),
         static_cast<unsigned long long>(storm->total(&Notes::messages, true)),
-        static_cast<unsigned long long>(storm->total(&Notes::no_slot, false)), storm->late_wakings(), ns_to_ms(storm->longest_sleep_ns()));
+        static_cast<unsigned long long>(storm->total(&Notes::no_slot, false)),
+        storm->late_wakings(), ns_to_ms(storm->longest_sleep_ns()));
   }
   EXPECT_EQ(entries_of("/proc/self/fd"), descriptors);
   EXPECT_EQ(entries_of("/dev/shm"), shared_memory);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +8,8 @@
 
 namespace handcast::storm {
 
-/// A message of changing length whose every word follows from its number: whoever holds one can see whether it is whole.
+/// A message of changing length whose every word follows from its number: whoever holds one can see
+/// whether it is whole.
 struct Scroll {
   static constexpr std::string_view layout = "Scroll/1";
   static constexpr std::size_t kMostWords = 2048;
@@ -15,8 +17,13 @@ struct Scroll {
   msg::Header header;
   std::uint64_t word_count = 0;
 
-  static constexpr std::size_t most_bytes() { return sizeof(Scroll) + kMostWords * sizeof(std::uint64_t); }
-  std::size_t used_bytes() const { return word_count > kMostWords ? ~std::size_t{0} : sizeof(Scroll) + word_count * sizeof(std::uint64_t); }
+  static constexpr std::size_t most_bytes() {
+    return sizeof(Scroll) + kMostWords * sizeof(std::uint64_t);
+  }
+  std::size_t used_bytes() const {
+    return word_count > kMostWords ? ~std::size_t{0}
+                                   : sizeof(Scroll) + word_count * sizeof(std::uint64_t);
+  }
 
   void fill(std::uint64_t number) {
     header.frame_id = number;
@@ -32,7 +39,9 @@ struct Scroll {
 
  private:
   static std::size_t words_of(std::uint64_t number) { return 1 + number * 977 % kMostWords; }
-  static std::uint64_t word_of(std::uint64_t number, std::size_t i) { return number * 0x9e3779b97f4a7c15 + i; }
+  static std::uint64_t word_of(std::uint64_t number, std::size_t i) {
+    return number * 0x9e3779b97f4a7c15 + i;
+  }
   std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(this + 1); }
   const std::uint64_t* words() const { return reinterpret_cast<const std::uint64_t*>(this + 1); }
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/system/storm_watch.hpp"
 
 #include <algorithm>
@@ -21,7 +22,8 @@ char state_of(pid_t pid) {
 }
 
 std::uint64_t newest_of(const ipc::Segment& ring) {
-  return ipc::sequence_of(ipc::RealAtomics::load(ipc::control_words_of(ring).head(), std::memory_order_acquire));
+  return ipc::sequence_of(
+      ipc::RealAtomics::load(ipc::control_words_of(ring).head(), std::memory_order_acquire));
 }
 
 bool is_waiting(std::uint64_t turn) { return turn % 2 == 1; }
@@ -29,10 +31,12 @@ bool is_waiting(std::uint64_t turn) { return turn % 2 == 1; }
 }  // namespace
 
 bool Watch::sleeps_beside_something_new() const {
-  return is_waiting(reader_.notes().turn) && reader_.notes().seen < newest_of(reader_.ring()) && state_of(reader_.pid()) == 'S';
+  return is_waiting(reader_.notes().turn) && reader_.notes().seen < newest_of(reader_.ring()) &&
+         state_of(reader_.pid()) == 'S';
 }
 
-/// It was never awake between two looks that find it asleep in the same turn: awake, it would have seen what is new.
+/// It was never awake between two looks that find it asleep in the same turn: awake, it would have
+/// seen what is new.
 void Watch::look(std::int64_t now_ns) {
   const auto turn = reader_.notes().turn.load();
   const bool same = turn == turn_ && reader_.pid() == pid_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <sys/types.h>
 
@@ -7,8 +8,9 @@
 
 namespace handcast::storm {
 
-/// Sees from outside how long a reader sleeps although its ring holds something newer than what it has seen. A reader that is
-/// runnable and gets no processor, or is stopped, does not count: that is the machine's doing, not the ring's.
+/// Sees from outside how long a reader sleeps although its ring holds something newer than what it
+/// has seen. A reader that is runnable and gets no processor, or is stopped, does not count: that
+/// is the machine's doing, not the ring's.
 class Watch {
  public:
   explicit Watch(const Seat& reader) : reader_(reader) {}
@@ -17,7 +19,8 @@ class Watch {
   void look(std::int64_t now_ns);
   /// The longest such sleep so far.
   std::int64_t longest_ns() const { return longest_ns_; }
-  /// How many were long enough to be ended by the reader's own second look after 100 ms instead of a wake-up.
+  /// How many were long enough to be ended by the reader's own second look after 100 ms instead of
+  /// a wake-up.
   int late() const { return late_; }
 
  private:

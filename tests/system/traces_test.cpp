@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a running rig can tell about where its time went.
 #include <gmock/gmock.h>
 
@@ -25,7 +26,9 @@ class Traces : public SystemTest {
     bytes << std::ifstream(file_, std::ios::binary).rdbuf();
     return supervisor::test::decode_trace(bytes.str());
   }
-  nlohmann::json latency() const { return nlohmann::json::parse(handcast({"latency", "--json"}).output, nullptr, false); }
+  nlohmann::json latency() const {
+    return nlohmann::json::parse(handcast({"latency", "--json"}).output, nullptr, false);
+  }
 };
 
 /// The services through which the flows of a trace pass, from the exposure to the light.
@@ -42,7 +45,8 @@ TEST_F(Traces, ATraceFollowsAFrameFromItsExposureToTheLight) {
   const auto has_a_detected_frame = [this] {
     const auto seen = trace();
     for (const auto& detect : seen.named("detect"))
-      if (tracks_of(seen.along(detect.flows.empty() ? 0 : detect.flows[0])).size() == 3) return true;
+      if (tracks_of(seen.along(detect.flows.empty() ? 0 : detect.flows[0])).size() == 3)
+        return true;
     return false;
   };
   ASSERT_TRUE(eventually(has_a_detected_frame));
@@ -62,7 +66,8 @@ TEST_F(Traces, ATraceFollowsAFrameFromItsExposureToTheLight) {
     EXPECT_LE(way[1].end_ns, way[2].begin_ns) << "a frame knows what was found before it was begun";
   }
   EXPECT_GT(whole, 0);
-  for (const auto& draw : seen.named("draw")) EXPECT_EQ(seen.slices.at(static_cast<std::size_t>(draw.parent)).name, "frame");
+  for (const auto& draw : seen.named("draw"))
+    EXPECT_EQ(seen.slices.at(static_cast<std::size_t>(draw.parent)).name, "frame");
 }
 
 TEST_F(Traces, LatencyTellsEveryStageAndTheWayFromExposureToLight) {

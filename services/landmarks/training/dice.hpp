@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 
-#include "services/twin/random.hpp"
+#include "services/evaluation/twin/random.hpp"
 
 namespace handcast::landmarks::training {
 
@@ -19,10 +20,13 @@ class Dice {
   bool chance(float probability) { return uniform() < probability; }
   int pick(int count) { return static_cast<int>(bits() >> 33) % count; }
   /// Even in the logarithm.
-  float magnitude(float low, float high) { return low * std::exp(uniform() * std::log(high / low)); }
+  float magnitude(float low, float high) {
+    return low * std::exp(uniform() * std::log(high / low));
+  }
   /// Normal about 0, by Box and Muller.
   float normal(float deviation) {
-    const float radius = std::sqrt(-2 * std::log((static_cast<float>(bits() >> 40) + 0.5f) * 0x1p-24f));
+    const float radius =
+        std::sqrt(-2 * std::log((static_cast<float>(bits() >> 40) + 0.5f) * 0x1p-24f));
     return deviation * radius * std::cos(2 * std::numbers::pi_v<float> * uniform());
   }
 

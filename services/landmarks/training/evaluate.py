@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How far landmark detectors are off, from the lines of handcast-evaluate-landmarks.
 
 handcast-evaluate-landmarks --models MODELS --motion A --motion B --picture 1_camera.png | python3 evaluate.py [--tips TIPS.json]

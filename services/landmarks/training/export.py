@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a trained landmark network as an ONNX file of plain operators; normalisations become part of the convolutions.
 
 python3 export.py out/training/training.pt out/training/handcast.onnx

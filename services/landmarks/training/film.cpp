@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/training/film.hpp"
 
 #include <algorithm>
 
-#include "renderer/clones.hpp"
+#include "renderer/base/clones.hpp"
 
 namespace handcast::landmarks::training {
 namespace {
@@ -10,14 +11,17 @@ namespace {
 constexpr int kSide = own::kSide_px;
 constexpr int kPixels = kSide * kSide;
 
-/// A number from -1.7 to 1.7 of unit variance, near enough to normal: four evenly drawn ones summed.
+/// A number from -1.7 to 1.7 of unit variance, near enough to normal: four evenly drawn ones
+/// summed.
 inline float rough_normal(std::uint64_t bits) {
-  const std::uint64_t sum = (bits & 0xffff) + ((bits >> 16) & 0xffff) + ((bits >> 32) & 0xffff) + (bits >> 48);
+  const std::uint64_t sum =
+      (bits & 0xffff) + ((bits >> 16) & 0xffff) + ((bits >> 32) & 0xffff) + (bits >> 48);
   return static_cast<float>(static_cast<int>(sum)) * (1.7320508f / 65536) - 3.4641016f;
 }
 
 HANDCAST_CLONES
-void add_noise(float* image, std::uint64_t seed, float gain, float pedestal, float even, float shot) {
+void add_noise(float* image, std::uint64_t seed, float gain, float pedestal, float even,
+               float shot) {
   for (int i = 0; i < kPixels; ++i) {
     const float value = image[i] * gain + pedestal;
     const float deviation = even + shot * (value > 1 ? 1 : value);
@@ -95,7 +99,8 @@ void Film::texture(Dice& dice) {
 
 /// An ellipse or a box, evenly bright or like a lit ball.
 void Film::add_thing(Dice& dice) {
-  const float x = dice.between(0, kSide), y = dice.between(0, kSide), angle = dice.between(0, 3.14f);
+  const float x = dice.between(0, kSide), y = dice.between(0, kSide),
+              angle = dice.between(0, 3.14f);
   const float long_px = dice.magnitude(3, 45), wide_px = dice.magnitude(2, 30),
               bright = dice.chance(0.25f) ? dice.uniform() : dice.between(0, 0.4f);
   const bool box = dice.chance(0.4f), ball = dice.chance(0.3f);
@@ -105,12 +110,15 @@ void Film::add_thing(Dice& dice) {
       const float dx = static_cast<float>(i) - x, dy = static_cast<float>(j) - y;
       const float u = (dx * c + dy * s) / long_px, v = (dy * c - dx * s) / wide_px;
       const float out = box ? std::max(std::abs(u), std::abs(v)) : u * u + v * v;
-      if (out < 1) wall_[j * kSide + i] = ball ? bright * std::sqrt(1 - std::min(1.0f, u * u + v * v)) : wall_[j * kSide + i] + bright;
+      if (out < 1)
+        wall_[j * kSide + i] = ball ? bright * std::sqrt(1 - std::min(1.0f, u * u + v * v))
+                                    : wall_[j * kSide + i] + bright;
     }
 }
 
 void Film::background(Dice& dice) {
-  std::ranges::fill(wall_, dice.chance(0.08f) ? dice.between(0.1f, 0.5f) : dice.between(0.002f, 0.09f));
+  std::ranges::fill(wall_,
+                    dice.chance(0.08f) ? dice.between(0.1f, 0.5f) : dice.between(0.002f, 0.09f));
   blend_waves(dice, 5, 0.4f, wall_);
   if (dice.chance(0.35f))
     for (int things = 1 + dice.pick(4); things > 0; --things) add_thing(dice);
@@ -119,9 +127,12 @@ void Film::background(Dice& dice) {
 
 void Film::leak(Dice& dice) {
   const int kind = dice.pick(5);
-  const float angle = dice.between(0, 3.14f), period = 2 * std::numbers::pi_v<float> / dice.magnitude(4, 40);
-  const float on_hand = dice.chance(0.5f) ? dice.between(0, 0.12f) : dice.between(0.1f, 0.6f), on_wall = on_hand * dice.between(0, 0.7f);
-  const float c = period * std::cos(angle), s = period * std::sin(angle), start = dice.between(0, 6.28f);
+  const float angle = dice.between(0, 3.14f),
+              period = 2 * std::numbers::pi_v<float> / dice.magnitude(4, 40);
+  const float on_hand = dice.chance(0.5f) ? dice.between(0, 0.12f) : dice.between(0.1f, 0.6f),
+              on_wall = on_hand * dice.between(0, 0.7f);
+  const float c = period * std::cos(angle), s = period * std::sin(angle),
+              start = dice.between(0, 6.28f);
   const bool follows = dice.chance(0.6f);  // only the hand is lit
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
@@ -137,7 +148,8 @@ void Film::cover(Dice& dice) {
   const float edge = dice.between(0.1f, 0.45f) * kSide, dark = dice.between(0, 0.08f);
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x)
-      if ((static_cast<float>(x) - kSide / 2) * c + (static_cast<float>(y) - kSide / 2) * s > edge) image_[y * kSide + x] = dark;
+      if ((static_cast<float>(x) - kSide / 2) * c + (static_cast<float>(y) - kSide / 2) * s > edge)
+        image_[y * kSide + x] = dark;
 }
 
 /// A separable Gaussian.
@@ -145,17 +157,22 @@ void Film::blur_across(float sigma_px) {
   const int reach = std::min(6, static_cast<int>(std::ceil(2.5f * sigma_px)));
   std::vector<float> weights;
   float sum = 0;
-  for (int k = -reach; k <= reach; ++k) sum += weights.emplace_back(std::exp(-0.5f * static_cast<float>(k * k) / (sigma_px * sigma_px)));
+  for (int k = -reach; k <= reach; ++k)
+    sum +=
+        weights.emplace_back(std::exp(-0.5f * static_cast<float>(k * k) / (sigma_px * sigma_px)));
   std::vector<float> padded(kSide + 2 * reach);
   for (int y = 0; y < kSide; ++y) {
     for (int x = -reach; x < kSide + reach; ++x) padded[x + reach] = image_[y * kSide + clamped(x)];
     float* row = &other_[y * kSide];
     std::fill_n(row, kSide, 0.0f);
-    for (int k = 0; k <= 2 * reach; ++k) add_scaled(padded.data() + k, weights[k] / sum, row, kSide);
+    for (int k = 0; k <= 2 * reach; ++k)
+      add_scaled(padded.data() + k, weights[k] / sum, row, kSide);
   }
   std::ranges::fill(image_, 0.0f);
   for (int y = 0; y < kSide; ++y)
-    for (int k = 0; k <= 2 * reach; ++k) add_scaled(&other_[clamped(y + k - reach) * kSide], weights[k] / sum, &image_[y * kSide], kSide);
+    for (int k = 0; k <= 2 * reach; ++k)
+      add_scaled(&other_[clamped(y + k - reach) * kSide], weights[k] / sum, &image_[y * kSide],
+                 kSide);
 }
 
 /// The mean along a short straight way.
@@ -167,14 +184,16 @@ void Film::smear(float length_px, float angle_rad) {
     const int dx = static_cast<int>(std::lround(along * std::cos(angle_rad))),
               dy = static_cast<int>(std::lround(along * std::sin(angle_rad)));
     for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) other_[y * kSide + x] += image_[clamped(y + dy) * kSide + clamped(x + dx)];
+      for (int x = 0; x < kSide; ++x)
+        other_[y * kSide + x] += image_[clamped(y + dy) * kSide + clamped(x + dx)];
   }
   for (int i = 0; i < kPixels; ++i) image_[i] = other_[i] / static_cast<float>(steps);
 }
 
 void Film::blur(Dice& dice) {
   blur_across(dice.chance(0.8f) ? dice.between(0.25f, 1.1f) : dice.between(1.1f, 2.2f));
-  if (dice.chance(0.15f)) smear(dice.chance(0.8f) ? dice.between(1, 6) : dice.between(6, 12), dice.between(0, 3.14f));
+  if (dice.chance(0.15f))
+    smear(dice.chance(0.8f) ? dice.between(1, 6) : dice.between(6, 12), dice.between(0, 3.14f));
 }
 
 void Film::develop(Dice& dice, std::vector<std::uint8_t>& pixels) {
@@ -182,10 +201,12 @@ void Film::develop(Dice& dice, std::vector<std::uint8_t>& pixels) {
   const auto bright = other_.begin() + kPixels * 99 / 100;
   std::nth_element(other_.begin(), bright, other_.end());
   const float exposure = dice.chance(0.2f) ? dice.between(1.1f, 1.9f) : dice.between(0.2f, 1.1f);
-  const float pedestal = dice.between(0, 0.04f), even = dice.between(0.002f, 0.018f), shot = dice.between(0, 0.025f);
+  const float pedestal = dice.between(0, 0.04f), even = dice.between(0.002f, 0.018f),
+              shot = dice.between(0, 0.025f);
   add_noise(image_.data(), dice.bits(), exposure / std::max(0.03f, *bright), pedestal, even, shot);
   pixels.resize(kPixels);
-  for (int i = 0; i < kPixels; ++i) pixels[i] = static_cast<std::uint8_t>(std::clamp(image_[i] * 255 + 0.5f, 0.0f, 255.0f));
+  for (int i = 0; i < kPixels; ++i)
+    pixels[i] = static_cast<std::uint8_t>(std::clamp(image_[i] * 255 + 0.5f, 0.0f, 255.0f));
 }
 
 }  // namespace handcast::landmarks::training

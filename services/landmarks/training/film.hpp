@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
 
@@ -6,18 +7,18 @@
 
 namespace handcast::landmarks::training {
 
-/// What happens to a crop between the scene and the network: what lies behind, light of the projector, the lens, the sensor. All images
-/// are kSide_px squared. Keeps buffers; one thread.
+/// What happens to a crop between the scene and the network: what lies behind, light of the
+/// projector, the lens, the sensor. All images are kSide_px squared. Keeps buffers; one thread.
 class Film {
  public:
   Film();
 
   void begin(const std::vector<float>& grey, const std::vector<float>& cover);
-  void texture(Dice& dice);                                     ///< skin finer than the mesh
-  void background(Dice& dice);                                  ///< a wall, things on it
-  void leak(Dice& dice);                                        ///< the projector's picture, faintly, on hand and wall
-  void cover(Dice& dice);                                       ///< something dark in front of a part
-  void blur(Dice& dice);                                        ///< out of focus, moving
+  void texture(Dice& dice);     ///< skin finer than the mesh
+  void background(Dice& dice);  ///< a wall, things on it
+  void leak(Dice& dice);        ///< the projector's picture, faintly, on hand and wall
+  void cover(Dice& dice);       ///< something dark in front of a part
+  void blur(Dice& dice);        ///< out of focus, moving
   void develop(Dice& dice, std::vector<std::uint8_t>& pixels);  ///< gain, saturation, noise, 8 bit
 
  private:

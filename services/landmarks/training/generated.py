@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Training images from handcast-training-images, as batches of tensors."""
 import subprocess
 import threading

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/training/generator.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -18,15 +19,20 @@ void Generator::add_other_hand(Dice& dice, const JointFrames& first, const Light
   const Pose pose = draw_pose(dice, person);
   JointFrames joints = moved(draw_view(dice, pose.joints), pose.joints);
   const float angle = dice.between(0, 6.28f), away_m = dice.between(0.03f, 0.17f);
-  const glm::vec3 place = glm::vec3(first[9][3]) + glm::vec3(away_m * std::cos(angle), away_m * std::sin(angle), dice.normal(0.05f));
-  scene_.add_hand(dice, person, moved(glm::translate(glm::mat4(1), place - glm::vec3(joints[9][3])), joints), light);
+  const glm::vec3 place =
+      glm::vec3(first[9][3]) +
+      glm::vec3(away_m * std::cos(angle), away_m * std::sin(angle), dice.normal(0.05f));
+  scene_.add_hand(dice, person,
+                  moved(glm::translate(glm::mat4(1), place - glm::vec3(joints[9][3])), joints),
+                  light);
 }
 
 void Generator::make_hand(Dice& dice) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
   const JointFrames joints = moved(draw_view(dice, pose.joints), pose.joints);
-  const Points truth_px = project(camera_, joints), tracker_px = draw_tracker(dice, camera_, people_, person, pose, joints);
+  const Points truth_px = project(camera_, joints),
+               tracker_px = draw_tracker(dice, camera_, people_, person, pose, joints);
   sample_.has_hand = 1;
   sample_.has_tracker = dice.chance(0.75f);
   const Region region = draw_region(dice, truth_px, sample_.has_tracker ? &tracker_px : nullptr);
@@ -69,7 +75,8 @@ void Generator::finish(Dice& dice) {
   film_.develop(dice, pixels_);
   const auto shown = own::shown_values(pixels_);
   for (std::size_t i = 0; i < sample_.image.size(); ++i)
-    sample_.image[i] = static_cast<std::uint8_t>(std::lround((shown[pixels_[i]] + own::kShownShift) * Sample::kUnit));
+    sample_.image[i] = static_cast<std::uint8_t>(
+        std::lround((shown[pixels_[i]] + own::kShownShift) * Sample::kUnit));
 }
 
 const Sample& Generator::make(std::uint64_t number) {

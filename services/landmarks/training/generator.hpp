@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "services/landmarks/training/film.hpp"
 #include "services/landmarks/training/sample.hpp"
@@ -5,8 +6,8 @@
 
 namespace handcast::landmarks::training {
 
-/// Makes training images: synthetic infrared crops of right hands with the places of the tracker's joints in them. Image n of a seed is
-/// always the same. One thread.
+/// Makes training images: synthetic infrared crops of right hands with the places of the tracker's
+/// joints in them. Image n of a seed is always the same. One thread.
 class Generator {
  public:
   /// Draws the people first. Errors: the hand model cannot be read.
@@ -15,9 +16,12 @@ class Generator {
   const Sample& make(std::uint64_t number);
 
  private:
-  Generator(std::vector<Person> people, std::uint64_t seed) : people_(std::move(people)), seed_(seed) {}
+  Generator(std::vector<Person> people, std::uint64_t seed)
+      : people_(std::move(people)), seed_(seed) {}
 
-  const Person& pick_person(Dice& dice) const { return people_[static_cast<std::size_t>(dice.pick(static_cast<int>(people_.size())))]; }
+  const Person& pick_person(Dice& dice) const {
+    return people_[static_cast<std::size_t>(dice.pick(static_cast<int>(people_.size())))];
+  }
   void make_hand(Dice& dice);
   void make_other(Dice& dice);
   void add_other_hand(Dice& dice, const renderer::JointFrames& first, const Light& light);

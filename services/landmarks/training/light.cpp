@@ -1,18 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/training/light.hpp"
 
 #include <algorithm>
 
-#include "renderer/clones.hpp"
+#include "renderer/base/clones.hpp"
 
 namespace handcast::landmarks::training {
 namespace {
 
-/// How much of the sky over each point the ball takes: r^2 cos / d^2. d is taken from d^2 by a line that fits 13 to 60 mm.
+/// How much of the sky over each point the ball takes: r^2 cos / d^2. d is taken from d^2 by a line
+/// that fits 13 to 60 mm.
 HANDCAST_CLONES
-void add_occlusion(const glm::vec3* positions, const glm::vec3* normals, std::size_t count, glm::vec3 ball, float* occlusion) {
-  constexpr float kRadius2 = 0.009f * 0.009f, kNear2 = 0.013f * 0.013f, kFar2 = 0.06f * 0.06f, kTypical = 0.03f;
+void add_occlusion(const glm::vec3* positions, const glm::vec3* normals, std::size_t count,
+                   glm::vec3 ball, float* occlusion) {
+  constexpr float kRadius2 = 0.009f * 0.009f, kNear2 = 0.013f * 0.013f, kFar2 = 0.06f * 0.06f,
+                  kTypical = 0.03f;
   for (std::size_t v = 0; v < count; ++v) {
-    const float x = ball.x - positions[v].x, y = ball.y - positions[v].y, z = ball.z - positions[v].z;
+    const float x = ball.x - positions[v].x, y = ball.y - positions[v].y,
+                z = ball.z - positions[v].z;
     const float facing = x * normals[v].x + y * normals[v].y + z * normals[v].z;
     const float distance2 = x * x + y * y + z * z;
     const float distance = (distance2 + kTypical * kTypical) * (0.5f / kTypical);
@@ -51,14 +56,19 @@ void Light::shade(const Surface& surface, std::vector<float>& grey) const {
       const glm::vec2 off = glm::vec2(place) * (plane_m_ / place.z) - spot_m_;
       lit *= std::exp(-0.5f * glm::dot(off, off) / (beam_m_ * beam_m_));
     }
-    grey[v] = lit * (surface.albedo[v] * std::exp2(contrast_ * std::log2(facing + 1e-6f)) + gloss_ * shine4 * shine4 * shine4 * shine4);
+    grey[v] = lit * (surface.albedo[v] * std::exp2(contrast_ * std::log2(facing + 1e-6f)) +
+                     gloss_ * shine4 * shine4 * shine4 * shine4);
   }
 }
 
-void occlude(const Surface& surface, std::span<const glm::vec3> balls, float strength, std::vector<float>& grey) {
+void occlude(const Surface& surface, std::span<const glm::vec3> balls, float strength,
+             std::vector<float>& grey) {
   std::vector<float> occlusion(grey.size());
-  for (const glm::vec3& ball : balls) add_occlusion(surface.positions.data(), surface.normals.data(), grey.size(), ball, occlusion.data());
-  for (std::size_t v = 0; v < grey.size(); ++v) grey[v] *= std::max(0.15f, 1 - strength * occlusion[v]);
+  for (const glm::vec3& ball : balls)
+    add_occlusion(surface.positions.data(), surface.normals.data(), grey.size(), ball,
+                  occlusion.data());
+  for (std::size_t v = 0; v < grey.size(); ++v)
+    grey[v] *= std::max(0.15f, 1 - strength * occlusion[v]);
 }
 
 }  // namespace handcast::landmarks::training

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <glm/glm.hpp>
 #include <span>
@@ -26,7 +27,7 @@ class Light {
   glm::vec3 lamp_m_;
   float distance_m_;
   float falloff_;  ///< exponent of 1/distance
-  float wrap_;     ///< how far light reaches around to what faces away, as if scattered under the skin
+  float wrap_;  ///< how far light reaches around to what faces away, as if scattered under the skin
   float contrast_;
   float gloss_;
   glm::vec2 spot_m_;  ///< middle of the beam at the hand's distance
@@ -34,7 +35,9 @@ class Light {
   float plane_m_;
 };
 
-/// Dims what lies in the corners between `balls` (middles of the hand's parts): ambient occlusion by spheres.
-void occlude(const Surface& surface, std::span<const glm::vec3> balls, float strength, std::vector<float>& grey);
+/// Dims what lies in the corners between `balls` (middles of the hand's parts): ambient occlusion
+/// by spheres.
+void occlude(const Surface& surface, std::span<const glm::vec3> balls, float strength,
+             std::vector<float>& grey);
 
 }  // namespace handcast::landmarks::training

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The landmark network: plain convolutions from a grey crop and the tracker's maps to one heat map per landmark."""
 import math
 

@@ -1,6 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/training/people.hpp"
 
-#include "services/twin/surface.hpp"
+#include "services/evaluation/twin/surface.hpp"
 
 namespace handcast::landmarks::training {
 namespace {
@@ -12,7 +13,8 @@ glm::vec3 draw_shift(Dice& dice, float deviation_mm) {
   return {dice.normal(deviation_mm), dice.normal(deviation_mm), dice.normal(deviation_mm)};
 }
 
-/// Hands differ, and so do trackers' ideas of where in a hand a joint is: wrist, thumb's root and knuckles by a centimetre.
+/// Hands differ, and so do trackers' ideas of where in a hand a joint is: wrist, thumb's root and
+/// knuckles by a centimetre.
 HandShape draw_shape(Dice& dice) {
   HandShape shape = HandShape::mean();
   std::array<float, 5> length;
@@ -42,17 +44,21 @@ struct Seen {
 
 Seen seen_from(const HandMesh& mesh, int joint, std::size_t vertex) {
   const glm::mat4 joint_from_model = glm::inverse(mesh.rest[joint]);
-  return {glm::vec3(joint_from_model * glm::vec4(mesh.positions[vertex], 1)) * 1e3f, glm::mat3(joint_from_model) * mesh.normals[vertex]};
+  return {glm::vec3(joint_from_model * glm::vec4(mesh.positions[vertex], 1)) * 1e3f,
+          glm::mat3(joint_from_model) * mesh.normals[vertex]};
 }
 
 Skin skin_at(const HandMesh& mesh, std::size_t vertex) {
   for (int finger = 0; finger < 5; ++finger) {
     const Seen tip = seen_from(mesh, kTip[finger], vertex);
     const glm::vec3 p = tip.place_mm;
-    if (tip.normal.y > 0.45f && p.z > -2 && p.z < 13 && std::abs(p.x) < 8 && std::abs(p.y) < 14) return Skin::nail;
+    if (tip.normal.y > 0.45f && p.z > -2 && p.z < 13 && std::abs(p.x) < 8 && std::abs(p.y) < 14)
+      return Skin::nail;
     for (int joint = kFirstPhalanx[finger] + 1; joint < kTip[finger]; ++joint) {
       const Seen bent = seen_from(mesh, joint, vertex);
-      if (std::abs(bent.place_mm.z) > 5 || std::abs(bent.place_mm.x) > 12 || std::abs(bent.place_mm.y) > 14) continue;
+      if (std::abs(bent.place_mm.z) > 5 || std::abs(bent.place_mm.x) > 12 ||
+          std::abs(bent.place_mm.y) > 14)
+        continue;
       if (bent.normal.y > 0.4f) return Skin::knuckle;
       if (bent.normal.y < -0.4f) return Skin::crease;
     }
@@ -69,9 +75,14 @@ Result<std::vector<Person>> draw_people(int count, std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     Dice dice(seed ^ 0x70656f706c65, static_cast<std::uint64_t>(i));
     const HandShape shape = draw_shape(dice);
-    Person person{renderer::refit_hand(*model, shape), twin::Articulation(shape), renderer::joint_radii_m(shape), {}, {}};
+    Person person{renderer::refit_hand(*model, shape),
+                  twin::Articulation(shape),
+                  renderer::joint_radii_m(shape),
+                  {},
+                  {}};
     person.behind_m = twin::behind_wrist_m(person.mesh);
-    for (std::size_t v = 0; v < person.mesh.vertex_count(); ++v) person.skin.push_back(skin_at(person.mesh, v));
+    for (std::size_t v = 0; v < person.mesh.vertex_count(); ++v)
+      person.skin.push_back(skin_at(person.mesh, v));
     people.push_back(std::move(person));
   }
   return people;

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <vector>
 
 #include "renderer/hand/hand_mesh.hpp"
+#include "services/evaluation/twin/articulation.hpp"
 #include "services/landmarks/training/dice.hpp"
-#include "services/twin/articulation.hpp"
 
 namespace handcast::landmarks::training {
 
@@ -20,7 +21,8 @@ struct Person {
   std::vector<float> behind_m;  ///< how far each vertex lies behind the wrist
 };
 
-/// Different lengths of fingers and palm, slim and broad hands. A quarter of a second each. Errors: the hand model cannot be read.
+/// Different lengths of fingers and palm, slim and broad hands. A quarter of a second each. Errors:
+/// the hand model cannot be read.
 Result<std::vector<Person>> draw_people(int count, std::uint64_t seed);
 
 /// Finger f, phalanx k (0 proximal): the joint it begins at.

@@ -1,19 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
 #include <cstdint>
 
-#include "services/landmarks/own_network.hpp"
+#include "services/landmarks/finder/own_network.hpp"
 
 namespace handcast::landmarks::training {
 
-/// One training image as the program writes it: little-endian, no padding. generated.py reads the same.
+/// One training image as the program writes it: little-endian, no padding. generated.py reads the
+/// same.
 struct Sample {
-  static constexpr float kUnit = 170;  ///< `image` is (shown value + own::kShownShift) times this, rounded
+  static constexpr float kUnit =
+      170;  ///< `image` is (shown value + own::kShownShift) times this, rounded
 
   own::Places tracker{};  ///< the tracker's joints as it reports them; see has_tracker
   own::Places truth{};    ///< places in the crop, 0..1, may lie outside
   std::array<std::uint8_t, own::kSide_px * own::kSide_px> image{};
-  std::array<std::uint8_t, msg::kLandmarks> visible{};  ///< nothing lies before the joint but its own flesh
+  std::array<std::uint8_t, msg::kLandmarks>
+      visible{};  ///< nothing lies before the joint but its own flesh
   std::uint8_t has_tracker = 0;
   std::uint8_t has_hand = 0;
   std::uint8_t reserved = 0;

@@ -1,16 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <deque>
 
 #include "calib/calibration.hpp"
-#include "renderer/image.hpp"
-#include "services/landmarks/own_network.hpp"
+#include "renderer/base/image.hpp"
+#include "services/evaluation/twin/surface.hpp"
+#include "services/landmarks/finder/own_network.hpp"
 #include "services/landmarks/training/light.hpp"
 #include "services/landmarks/training/view.hpp"
-#include "services/twin/surface.hpp"
 
 namespace handcast::landmarks::training {
 
-/// Lit hands with their forearms and sleeves, drawn straight into the crop. Keeps buffers; one thread.
+/// Lit hands with their forearms and sleeves, drawn straight into the crop. Keeps buffers; one
+/// thread.
 class Scene {
  public:
   static constexpr int kFine = 2;  ///< samples across a pixel of the crop
@@ -18,7 +20,8 @@ class Scene {
   Scene(const calib::CameraModel& camera, const Region& region);
 
   void clear(const Region& region);
-  void add_hand(Dice& dice, const Person& person, const renderer::JointFrames& in_camera, const Light& light);
+  void add_hand(Dice& dice, const Person& person, const renderer::JointFrames& in_camera,
+                const Light& light);
   void draw(Dice& dice, const Light& light);
 
   /// Light from hands and arms, and the share of each pixel they cover. kSide_px squared.
@@ -37,7 +40,8 @@ class Scene {
     bool is_arm = false;
   };
   Shot& next_shot();
-  void add_arm(Dice& dice, const Person& person, const glm::mat4& camera_from_arm, float tone, const Light& light);
+  void add_arm(Dice& dice, const Person& person, const glm::mat4& camera_from_arm, float tone,
+               const Light& light);
   glm::vec2 fine_px(const glm::vec3& place_m) const;
   void cast_shadows(const Light& light, float depth);
   void gather();

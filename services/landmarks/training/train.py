@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Trains the landmark network on images from handcast-training-images, as they are made. Ctrl-C and start again: it goes on.
 
 python3 train.py --program build/bin/handcast-training-images --minutes 240 --folder out/training

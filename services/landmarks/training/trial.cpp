@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/training/trial.hpp"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "ipc/base/clock.hpp"
-#include "services/landmarks/hints.hpp"
-#include "services/twin/recording.hpp"
+#include "services/evaluation/twin/recording.hpp"
+#include "services/landmarks/finder/hints.hpp"
 
 namespace handcast::landmarks::training {
 namespace {
@@ -17,22 +18,26 @@ constexpr std::uint64_t kPersonSeed = 500;    // whose hand a built-in motion mo
 
 Joints joints_of(const JointFrames& frames) {
   Joints joints;
-  for (int i = 0; i < msg::kLandmarks; ++i) joints[i] = glm::vec3(frames[msg::kJointOfLandmark[i]][3]);
+  for (int i = 0; i < msg::kLandmarks; ++i)
+    joints[i] = glm::vec3(frames[msg::kJointOfLandmark[i]][3]);
   return joints;
 }
 
 glm::mat3 turn(Dice& dice, float deviation_rad) {
-  const glm::vec3 axis = glm::normalize(glm::vec3(dice.normal(1), dice.normal(1), dice.normal(1)) + 1e-6f);
+  const glm::vec3 axis =
+      glm::normalize(glm::vec3(dice.normal(1), dice.normal(1), dice.normal(1)) + 1e-6f);
   return glm::mat3(glm::rotate(glm::mat4(1), dice.normal(deviation_rad), axis));
 }
 
-/// A tracker's errors in space: joints bent about any axis, the hand turned and of another size. Not the model that training uses.
+/// A tracker's errors in space: joints bent about any axis, the hand turned and of another size.
+/// Not the model that training uses.
 void disturb(Dice& dice, Joints& joints) {
   for (int finger = 0; finger < 5; ++finger)
     for (int k = 1; k < 4; ++k) {
       const glm::vec3 root = joints[4 * finger + k];
       const glm::mat3 bent = turn(dice, 0.2f);
-      for (int j = k + 1; j <= 4; ++j) joints[4 * finger + j] = root + bent * (joints[4 * finger + j] - root);
+      for (int j = k + 1; j <= 4; ++j)
+        joints[4 * finger + j] = root + bent * (joints[4 * finger + j] - root);
     }
   const glm::mat3 whole = turn(dice, 0.12f) * std::exp(dice.normal(0.07f));
   for (int i = 1; i < msg::kLandmarks; ++i) joints[i] = joints[0] + whole * (joints[i] - joints[0]);
@@ -42,7 +47,8 @@ std::array<bool, 5> folded_of(const Joints& joints) {
   std::array<bool, 5> folded;
   for (int finger = 0; finger < 5; ++finger) {
     float length = 0;
-    for (int k = 1; k < 4; ++k) length += glm::distance(joints[4 * finger + k], joints[4 * finger + k + 1]);
+    for (int k = 1; k < 4; ++k)
+      length += glm::distance(joints[4 * finger + k], joints[4 * finger + k + 1]);
     folded[finger] = glm::distance(joints[4 * finger + 1], joints[4 * finger + 4]) < 0.8f * length;
   }
   return folded;
@@ -87,12 +93,14 @@ std::optional<JointFrames> Trials::in_camera(int i, int count) const {
 Points Trials::image_px(const JointFrames& frames) const {
   Points points_px;
   const Joints joints = joints_of(frames);
-  for (std::size_t i = 0; i < joints.size(); ++i) points_px[i] = calibration_.camera.distort(calibration_.camera.project(joints[i]));
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    points_px[i] = calibration_.camera.distort(calibration_.camera.project(joints[i]));
   return points_px;
 }
 
 std::optional<Trial> Trials::make(int i, int count) {
-  Trial trial{.image = {calibration_.camera.width_px, calibration_.camera.height_px}, .side = kSide};
+  Trial trial{.image = {calibration_.camera.width_px, calibration_.camera.height_px},
+              .side = kSide};
   const auto now = in_camera(i, count);
   if (!now) return std::nullopt;
   twin_->camera_image(frame(i, count), trial.image.view());
@@ -106,7 +114,8 @@ std::optional<Trial> Trials::make(int i, int count) {
     const glm::vec2 by(dice.normal(shift_px), dice.normal(shift_px));
     Points points_px;
     for (std::size_t k = 0; k < joints.size(); ++k)
-      points_px[k] = glm::vec2(calibration_.camera.distort(calibration_.camera.project(joints[k]))) + by;
+      points_px[k] =
+          glm::vec2(calibration_.camera.distort(calibration_.camera.project(joints[k]))) + by;
     return points_px;
   };
   trial.tracker_px = tracked(joints_of(*now));

@@ -1,26 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
 #include <vector>
 
 #include "config/rig.hpp"
-#include "services/landmarks/region.hpp"
+#include "services/evaluation/twin/twin.hpp"
+#include "services/landmarks/finder/region.hpp"
 #include "services/landmarks/training/dice.hpp"
-#include "services/twin/twin.hpp"
 
 namespace handcast::landmarks::training {
 
-/// One picture to test detectors on: a frame of a recording as the twin's camera sees it, and what a tracker would say. Image px.
+/// One picture to test detectors on: a frame of a recording as the twin's camera sees it, and what
+/// a tracker would say. Image px.
 struct Trial {
   renderer::Image<std::uint8_t> image;
   msg::Side side = msg::Side::left;
   Points truth_px{};
-  Points tracker_px{};           ///< off by about a fifth of the palm, fingers bent wrongly by about 10 degrees
+  Points
+      tracker_px{};  ///< off by about a fifth of the palm, fingers bent wrongly by about 10 degrees
   Points other_pose_px{};        ///< as above, of a hand that is in another pose
   std::array<bool, 5> folded{};  ///< the finger's tip is nearer to its root than 0.8 of its length
 };
 
-/// Frames of one of the twin's motions (a recording's folder or builtin:NAME), evenly spaced. No training image is made from a recording,
-/// and the person is the recording's.
+/// Frames of one of the twin's motions (a recording's folder or builtin:NAME), evenly spaced. No
+/// training image is made from a recording, and the person is the recording's.
 class Trials {
  public:
   /// Errors: as of Twin::create.
@@ -29,7 +32,8 @@ class Trials {
   std::optional<Trial> make(int i, int count);
 
  private:
-  Trials(std::unique_ptr<twin::Twin> world, const calib::Calibration& calibration, std::uint64_t seed)
+  Trials(std::unique_ptr<twin::Twin> world, const calib::Calibration& calibration,
+         std::uint64_t seed)
       : twin_(std::move(world)), calibration_(calibration), seed_(seed) {}
 
   std::uint64_t frame(int i, int count) const;

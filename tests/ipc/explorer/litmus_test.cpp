@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The memory model itself: what each classic of weak memory may end with, and what it may not.
 #include <gtest/gtest.h>
 
@@ -21,7 +22,9 @@ constexpr auto seq_cst = std::memory_order_seq_cst;
 
 constexpr int kX = 0, kY = 1;
 std::uint64_t load(int location, std::memory_order order) { return machine->load(location, order); }
-void store(int location, std::uint64_t value, std::memory_order order) { machine->store(location, value, order); }
+void store(int location, std::uint64_t value, std::memory_order order) {
+  machine->store(location, value, order);
+}
 bool exchange(int location, std::uint64_t from, std::uint64_t to, std::memory_order order) {
   return machine->exchange(location, from, to, order);
 }
@@ -101,7 +104,9 @@ Outcomes outcomes_of(const std::vector<TestThread>& threads) {
   return outcomes;
 }
 
-void expect_allowed(const std::vector<TestThread>& threads, const Outcome& outcome) { EXPECT_TRUE(outcomes_of(threads).contains(outcome)); }
+void expect_allowed(const std::vector<TestThread>& threads, const Outcome& outcome) {
+  EXPECT_TRUE(outcomes_of(threads).contains(outcome));
+}
 void expect_forbidden(const std::vector<TestThread>& threads, const Outcome& outcome) {
   const auto outcomes = outcomes_of(threads);
   EXPECT_FALSE(outcomes.contains(outcome));
@@ -116,27 +121,32 @@ TEST(StoreBuffering, BothMayReadOldValuesInSpiteOfAcquireAndRelease) {
                  {0, 0, 0, 0});
 }
 TEST(StoreBuffering, TwoSeqCstFencesExcludeIt) {
-  expect_forbidden({reads([](Registers& r) { store(kX, 1, relaxed), fence(seq_cst), r.a = load(kY, relaxed); }),
-                    reads([](Registers& r) { store(kY, 1, relaxed), fence(seq_cst), r.a = load(kX, relaxed); })},
-                   {0, 0, 0, 0});
+  expect_forbidden(
+      {reads([](Registers& r) { store(kX, 1, relaxed), fence(seq_cst), r.a = load(kY, relaxed); }),
+       reads([](Registers& r) { store(kY, 1, relaxed), fence(seq_cst), r.a = load(kX, relaxed); })},
+      {0, 0, 0, 0});
 }
 TEST(StoreBuffering, OneSeqCstFenceDoesNot) {
-  expect_allowed({reads([](Registers& r) { store(kX, 1, relaxed), fence(seq_cst), r.a = load(kY, relaxed); }),
-                  reads([](Registers& r) { store(kY, 1, relaxed), r.a = load(kX, relaxed); })},
-                 {0, 0, 0, 0});
+  expect_allowed(
+      {reads([](Registers& r) { store(kX, 1, relaxed), fence(seq_cst), r.a = load(kY, relaxed); }),
+       reads([](Registers& r) { store(kY, 1, relaxed), r.a = load(kX, relaxed); })},
+      {0, 0, 0, 0});
 }
 TEST(StoreBuffering, FencesOfAcquireAndReleaseDoNot) {
-  expect_allowed({reads([](Registers& r) { store(kX, 1, relaxed), fence(acq_rel), r.a = load(kY, relaxed); }),
-                  reads([](Registers& r) { store(kY, 1, relaxed), fence(acq_rel), r.a = load(kX, relaxed); })},
-                 {0, 0, 0, 0});
+  expect_allowed(
+      {reads([](Registers& r) { store(kX, 1, relaxed), fence(acq_rel), r.a = load(kY, relaxed); }),
+       reads([](Registers& r) { store(kY, 1, relaxed), fence(acq_rel), r.a = load(kX, relaxed); })},
+      {0, 0, 0, 0});
 }
 TEST(StoreBuffering, AReadModifyWriteDoesNotReplaceAFence) {
-  expect_allowed({reads([](Registers& r) { store(kX, 1, relaxed), fence(seq_cst), r.a = load(kY, relaxed); }),
-                  reads([](Registers& r) { exchange(kY, 0, 1, acq_rel), r.a = load(kX, acquire); })},
-                 {0, 0, 0, 0});
+  expect_allowed(
+      {reads([](Registers& r) { store(kX, 1, relaxed), fence(seq_cst), r.a = load(kY, relaxed); }),
+       reads([](Registers& r) { exchange(kY, 0, 1, acq_rel), r.a = load(kX, acquire); })},
+      {0, 0, 0, 0});
 }
 
-// Message passing: x = 1 (the message); y = 1 | read y; read x. Reading 1 and then 0 is a message that is not there.
+// Message passing: x = 1 (the message); y = 1 | read y; read x. Reading 1 and then 0 is a message
+// that is not there.
 
 TEST(MessagePassing, RelaxedShowsTheFlagBeforeTheMessage) {
   expect_allowed({writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, relaxed); }),
@@ -159,56 +169,70 @@ TEST(MessagePassing, AcquireAloneIsNotEnough) {
                  {1, 0, 0, 0});
 }
 TEST(MessagePassing, TwoFencesMeet) {
-  expect_forbidden({writes([](Registers&) { store(kX, 1, relaxed), fence(release), store(kY, 1, relaxed); }),
-                    reads([](Registers& r) { r.a = load(kY, relaxed), fence(acquire), r.b = load(kX, relaxed); })},
-                   {1, 0, 0, 0});
+  expect_forbidden(
+      {writes([](Registers&) { store(kX, 1, relaxed), fence(release), store(kY, 1, relaxed); }),
+       reads(
+           [](Registers& r) { r.a = load(kY, relaxed), fence(acquire), r.b = load(kX, relaxed); })},
+      {1, 0, 0, 0});
 }
 TEST(MessagePassing, AReleaseFenceMeetsAnAcquireLoad) {
-  expect_forbidden({writes([](Registers&) { store(kX, 1, relaxed), fence(release), store(kY, 1, relaxed); }),
-                    reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
-                   {1, 0, 0, 0});
+  expect_forbidden(
+      {writes([](Registers&) { store(kX, 1, relaxed), fence(release), store(kY, 1, relaxed); }),
+       reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
+      {1, 0, 0, 0});
 }
 TEST(MessagePassing, AFenceAfterTheFlagIsTooLate) {
-  expect_allowed({writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, relaxed), fence(release); }),
-                  reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
-                 {1, 0, 0, 0});
+  expect_allowed(
+      {writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, relaxed), fence(release); }),
+       reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
+      {1, 0, 0, 0});
 }
 TEST(MessagePassing, AnAcquireFenceBeforeTheFlagIsTooEarly) {
   expect_allowed({writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, release); }),
-                  reads([](Registers& r) { fence(acquire), r.a = load(kY, relaxed), r.b = load(kX, relaxed); })},
+                  reads([](Registers& r) {
+                    fence(acquire), r.a = load(kY, relaxed), r.b = load(kX, relaxed);
+                  })},
                  {1, 0, 0, 0});
 }
 
-// A sequence lock in small: the mark, then the payload | the payload, then the mark again. Reading new and then unmarked is a torn copy.
+// A sequence lock in small: the mark, then the payload | the payload, then the mark again. Reading
+// new and then unmarked is a torn copy.
 
 TEST(Mark, AReleaseStoreDoesNotKeepWhatFollowsBehindIt) {
   expect_allowed({writes([](Registers&) { store(kX, 1, release), store(kY, 1, relaxed); }),
-                  reads([](Registers& r) { r.a = load(kY, relaxed), fence(acquire), r.b = load(kX, relaxed); })},
+                  reads([](Registers& r) {
+                    r.a = load(kY, relaxed), fence(acquire), r.b = load(kX, relaxed);
+                  })},
                  {1, 0, 0, 0});
 }
 TEST(Mark, AnAcquireLoadDoesNotKeepWhatPrecedesBeforeIt) {
-  expect_allowed({writes([](Registers&) { store(kX, 1, relaxed), fence(release), store(kY, 1, relaxed); }),
-                  reads([](Registers& r) { r.a = load(kY, relaxed), r.b = load(kX, acquire); })},
-                 {1, 0, 0, 0});
+  expect_allowed(
+      {writes([](Registers&) { store(kX, 1, relaxed), fence(release), store(kY, 1, relaxed); }),
+       reads([](Registers& r) { r.a = load(kY, relaxed), r.b = load(kX, acquire); })},
+      {1, 0, 0, 0});
 }
 
 // Release sequences, as C++20 has them: only read-modify-writes go on with one.
 
 TEST(ReleaseSequence, APlainStoreOnTopEndsIt) {
-  expect_allowed({writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, release), store(kY, 2, relaxed); }),
+  expect_allowed({writes([](Registers&) {
+                    store(kX, 1, relaxed), store(kY, 1, release), store(kY, 2, relaxed);
+                  }),
                   reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
                  {2, 0, 0, 0});
 }
 TEST(ReleaseSequence, AReadModifyWriteOnTopKeepsIt) {
-  expect_forbidden({writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, release), exchange(kY, 1, 2, relaxed); }),
+  expect_forbidden({writes([](Registers&) {
+                      store(kX, 1, relaxed), store(kY, 1, release), exchange(kY, 1, 2, relaxed);
+                    }),
                     reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
                    {2, 0, 0, 0});
 }
 TEST(ReleaseSequence, AnothersReadModifyWriteKeepsItToo) {
-  expect_forbidden(
-      {writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, release); }), writes([](Registers&) { exchange(kY, 1, 2, relaxed); }),
-       reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
-      {2, 0, 0, 0});
+  expect_forbidden({writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, release); }),
+                    writes([](Registers&) { exchange(kY, 1, 2, relaxed); }),
+                    reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, relaxed); })},
+                   {2, 0, 0, 0});
 }
 
 // Coherence: one location has one order for everybody.
@@ -224,28 +248,34 @@ TEST(Coherence, AReaderMayStayBehind) {
                  {1, 1, 0, 0});
 }
 TEST(Coherence, AThreadSeesItsOwnStore) {
-  expect_forbidden({writes([](Registers&) { store(kY, 1, relaxed); }),
-                    reads([](Registers& r) { store(kX, 1, relaxed), r.a = load(kX, relaxed), r.b = load(kY, relaxed); })},
+  expect_forbidden({writes([](Registers&) { store(kY, 1, relaxed); }), reads([](Registers& r) {
+                      store(kX, 1, relaxed), r.a = load(kX, relaxed), r.b = load(kY, relaxed);
+                    })},
                    {0, 0, 0, 0});
 }
 TEST(Coherence, OnlyOneOfTwoExchangesSucceeds) {
-  expect_forbidden(
-      {reads([](Registers& r) { r.a = exchange(kX, 0, 1, relaxed); }), reads([](Registers& r) { r.a = exchange(kX, 0, 2, relaxed); })},
-      {1, 0, 1, 0});
+  expect_forbidden({reads([](Registers& r) { r.a = exchange(kX, 0, 1, relaxed); }),
+                    reads([](Registers& r) { r.a = exchange(kX, 0, 2, relaxed); })},
+                   {1, 0, 1, 0});
 }
 
 // Independent reads of independent writes: may two readers disagree on which came first?
 
 TEST(IndependentReads, MayDisagreeUnderAcquire) {
-  expect_allowed({writes([](Registers&) { store(kX, 1, release); }), writes([](Registers&) { store(kY, 1, release); }),
+  expect_allowed({writes([](Registers&) { store(kX, 1, release); }),
+                  writes([](Registers&) { store(kY, 1, release); }),
                   reads([](Registers& r) { r.a = load(kX, acquire), r.b = load(kY, acquire); }),
                   reads([](Registers& r) { r.a = load(kY, acquire), r.b = load(kX, acquire); })},
                  {1, 0, 1, 0});
 }
 TEST(IndependentReads, AgreeWithSeqCstFences) {
-  expect_forbidden({writes([](Registers&) { store(kX, 1, release); }), writes([](Registers&) { store(kY, 1, release); }),
-                    reads([](Registers& r) { r.a = load(kX, relaxed), fence(seq_cst), r.b = load(kY, relaxed); }),
-                    reads([](Registers& r) { r.a = load(kY, relaxed), fence(seq_cst), r.b = load(kX, relaxed); })},
+  expect_forbidden({writes([](Registers&) { store(kX, 1, release); }),
+                    writes([](Registers&) { store(kY, 1, release); }), reads([](Registers& r) {
+                      r.a = load(kX, relaxed), fence(seq_cst), r.b = load(kY, relaxed);
+                    }),
+                    reads([](Registers& r) {
+                      r.a = load(kY, relaxed), fence(seq_cst), r.b = load(kX, relaxed);
+                    })},
                    {1, 0, 1, 0});
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/ipc/explorer/machine.hpp"
 
 namespace handcast::explorer {
@@ -38,7 +39,8 @@ Manner Machine::manner_of_load(int location) {
 }
 
 Manner Machine::manner_of_store(int location) {
-  return !replaying() && only_i_write(location) && knows_newest(location) ? Manner::early : Manner::contested;
+  return !replaying() && only_i_write(location) && knows_newest(location) ? Manner::early
+                                                                          : Manner::contested;
 }
 
 std::uint64_t Machine::load(int location, std::memory_order order) {
@@ -51,14 +53,18 @@ std::uint64_t Machine::load(int location, std::memory_order order) {
     const int newest = state().memory.newest(location), oldest = self.views.current.place[location];
     const int place = manner == Manner::unnoticed ? newest : newest - choose(newest - oldest + 1);
     const auto read_value = read(state().memory, self.views, location, place, acquires(order));
-    say("load %s: %llx%s", name(location).c_str(), shown(read_value), place < newest ? " (not the newest)" : "");
+    say("load %s: %llx%s", name(location).c_str(), shown(read_value),
+        place < newest ? " (not the newest)" : "");
     return read_value;
   });
-  return fault && fault->instead ? fault->instead(state().memory.newest_value(location), value) : value;
+  return fault && fault->instead ? fault->instead(state().memory.newest_value(location), value)
+                                 : value;
 }
 
-void Machine::append(Thread& self, int location, std::uint64_t value, bool release, const Message* replaced) {
-  if (state().memory.length[location] == kMaxMessages) std::fputs("explorer: kMaxMessages is too small\n", stderr), std::abort();
+void Machine::append(Thread& self, int location, std::uint64_t value, bool release,
+                     const Message* replaced) {
+  if (state().memory.length[location] == kMaxMessages)
+    std::fputs("explorer: kMaxMessages is too small\n", stderr), std::abort();
   explorer::append(changing().memory, self.views, location, value, release, replaced);
   if (watcher_ && kind(location) == watched_) watcher_(*this, changing(), location, value);
 }
@@ -85,7 +91,8 @@ void Machine::store_now(int location, std::uint64_t value, std::memory_order ord
   });
 }
 
-bool Machine::exchange(int location, std::uint64_t expected, std::uint64_t desired, std::memory_order order) {
+bool Machine::exchange(int location, std::uint64_t expected, std::uint64_t desired,
+                       std::memory_order order) {
   release_held_back(Operation::exchange, kind(location));
   const auto* fault = meet(Operation::exchange, kind(location), desired);
   touch(Operation::exchange, kind(location));
@@ -95,8 +102,10 @@ bool Machine::exchange(int location, std::uint64_t expected, std::uint64_t desir
   return exchange_now(location, expected, desired, fault->order.value_or(order));
 }
 
-/// Succeeds on the newest message only; fails on it, or like a load on any older one of another value.
-bool Machine::exchange_now(int location, std::uint64_t expected, std::uint64_t desired, std::memory_order order) {
+/// Succeeds on the newest message only; fails on it, or like a load on any older one of another
+/// value.
+bool Machine::exchange_now(int location, std::uint64_t expected, std::uint64_t desired,
+                           std::memory_order order) {
   return perform(manner_of_store(location), [&](Thread& self) {
            const auto& memory = state().memory;
            int places[kMaxMessages], count = 0;
@@ -108,7 +117,8 @@ bool Machine::exchange_now(int location, std::uint64_t expected, std::uint64_t d
            const bool done = place == newest && before.value == expected;
            read(memory, self.views, location, place, done && acquires(order));
            if (done) append(self, location, desired, releases(order), &before);
-           say("exchange %s: %llx -> %llx %s", name(location).c_str(), shown(expected), shown(desired), done ? "done" : "fails");
+           say("exchange %s: %llx -> %llx %s", name(location).c_str(), shown(expected),
+               shown(desired), done ? "done" : "fails");
            return std::uint64_t{done};
          }) != 0;
 }
@@ -132,7 +142,8 @@ void Machine::futex_wait(int location, std::uint64_t seen) {
     const int place = newest - choose(newest - self.views.current.place[location] + 1);
     const auto value = read(state().memory, self.views, location, place, false);
     const bool sleeps = static_cast<std::uint32_t>(value) == static_cast<std::uint32_t>(seen);
-    if (sleeps) self.status = Status::sleeping, self.sleeps_on = static_cast<std::uint8_t>(location);
+    if (sleeps)
+      self.status = Status::sleeping, self.sleeps_on = static_cast<std::uint8_t>(location);
     say(sleeps ? "futex: sleeps" : "futex: does not sleep");
     return std::uint64_t{0};
   });
@@ -145,20 +156,22 @@ void Machine::futex_wake(int location) {
   perform(Manner::contested, [&](Thread& self) {
     seq_cst_fence(changing().memory, self.views);
     for (auto& sleeper : changing().threads)
-      if (sleeper.status == Status::sleeping && sleeper.sleeps_on == location) sleeper.status = Status::running, sleeper.sleeps_on = 0;
+      if (sleeper.status == Status::sleeping && sleeper.sleeps_on == location)
+        sleeper.status = Status::running, sleeper.sleeps_on = 0;
     say("futex: wakes all");
     return std::uint64_t{0};
   });
 }
 
-/// No other order needs to be tried: a write that nothing orders against this read is found here when it came before, and in
-/// write_payload() when it comes later.
+/// No other order needs to be tried: a write that nothing orders against this read is found here
+/// when it came before, and in write_payload() when it comes later.
 std::uint64_t Machine::plain_read(int location, int read_count) {
   return perform(Manner::unnoticed, [&](Thread& self) {
     check(knows_newest(location), "a payload is written while a lease reads it");
     auto& memory = changing().memory;
     const int count = memory.length[read_count]++;
-    if (count == kMaxMessages) std::fputs("explorer: kMaxMessages is too small\n", stderr), std::abort();
+    if (count == kMaxMessages)
+      std::fputs("explorer: kMaxMessages is too small\n", stderr), std::abort();
     memory.history[read_count][count] = {};
     self.views.current.raise(read_count, count);
     self.views.acquirable.raise(read_count, count);
@@ -167,7 +180,8 @@ std::uint64_t Machine::plain_read(int location, int read_count) {
   });
 }
 
-void Machine::write_payload(int location, std::uint64_t value, const std::vector<int>& read_counts) {
+void Machine::write_payload(int location, std::uint64_t value,
+                            const std::vector<int>& read_counts) {
   release_held_back(Operation::store, Kind::payload);
   const auto* fault = meet(Operation::store, Kind::payload, value);
   touch(Operation::store, Kind::payload);
@@ -176,7 +190,8 @@ void Machine::write_payload(int location, std::uint64_t value, const std::vector
     return;
   }
   perform(manner_of_store(location), [&](Thread& self) {
-    for (const int reads : read_counts) check(knows_newest(reads), "a payload is written while a lease reads it");
+    for (const int reads : read_counts)
+      check(knows_newest(reads), "a payload is written while a lease reads it");
     append(self, location, value, false, nullptr);
     say("write %s = %llx", name(location).c_str(), shown(value));
     return std::uint64_t{0};
@@ -187,7 +202,9 @@ bool Machine::is_gone(int thread) {
   return perform(Manner::contested, [&](Thread& self) {
            const auto& other = state().threads[thread];
            const bool gone = other.status == Status::dead || program(thread).is_doubted;
-           if (gone) self.views.current.join(other.views.current), self.views.acquirable.join(other.views.current);
+           if (gone)
+             self.views.current.join(other.views.current),
+                 self.views.acquirable.join(other.views.current);
            say(gone ? "sees that it is gone" : "sees that it lives");
            return std::uint64_t{gone};
          }) != 0;
@@ -195,8 +212,8 @@ bool Machine::is_gone(int thread) {
 
 const Fault* Machine::meet(Operation operation, Kind kind, std::uint64_t value) {
   for (const auto& fault : faults_)
-    if (fault.role == role() && fault.operation == operation && fault.kind == kind && (!fault.after || *fault.after == touched_) &&
-        (!fault.when || fault.when(value)))
+    if (fault.role == role() && fault.operation == operation && fault.kind == kind &&
+        (!fault.after || *fault.after == touched_) && (!fault.when || fault.when(value)))
       return &fault;
   return nullptr;
 }

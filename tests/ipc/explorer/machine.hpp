@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
 #include <vector>
 
 #include "tests/ipc/explorer/replay.hpp"
 
-/// The operations threads see: atomic words, fences, a futex, and plain memory whose races are found.
+/// The operations threads see: atomic words, fences, a futex, and plain memory whose races are
+/// found.
 namespace handcast::explorer {
 
 class Machine : public Replay {
@@ -20,24 +22,30 @@ class Machine : public Replay {
   /// Locations this thread, or one that it starts, may still load.
   Set reads_of(int thread) const { return reads_[thread]; }
 
-  /// Without the reductions that Manner stands for: slower, and the same result. For tests of the reductions.
+  /// Without the reductions that Manner stands for: slower, and the same result. For tests of the
+  /// reductions.
   void try_every_order(bool on) { every_order_ = on; }
 
   void plant(Faults faults) { faults_ = std::move(faults); }
   /// Called with every value stored in a word of this kind.
-  void watch(Kind kind, void (*watcher)(Machine&, State&, int location, std::uint64_t value)) { watched_ = kind, watcher_ = watcher; }
+  void watch(Kind kind, void (*watcher)(Machine&, State&, int location, std::uint64_t value)) {
+    watched_ = kind, watcher_ = watcher;
+  }
 
   std::uint64_t load(int location, std::memory_order order);
   void store(int location, std::uint64_t value, std::memory_order order);
-  bool exchange(int location, std::uint64_t expected, std::uint64_t desired, std::memory_order order);
+  bool exchange(int location, std::uint64_t expected, std::uint64_t desired,
+                std::memory_order order);
   void fence(std::memory_order order);
-  /// FUTEX_WAIT without a time limit, which would heal a lost wake-up. The kernel's fences are there: it looks under its lock.
+  /// FUTEX_WAIT without a time limit, which would heal a lost wake-up. The kernel's fences are
+  /// there: it looks under its lock.
   void futex_wait(int location, std::uint64_t seen);
   void futex_wake(int location);
 
   /// A plain read in a lease. It races if the newest write did not happen before it.
   std::uint64_t plain_read(int location, int read_count);
-  /// A payload write: plain memory to readers with a lease (their read counts are given), relaxed to those that copy.
+  /// A payload write: plain memory to readers with a lease (their read counts are given), relaxed
+  /// to those that copy.
   void write_payload(int location, std::uint64_t value, const std::vector<int>& read_counts);
 
   bool is_gone(int thread);
@@ -46,7 +54,9 @@ class Machine : public Replay {
   static constexpr Place kNothing{Operation::load, Kind::other};
 
   Kind kind(int location) const { return kinds_[static_cast<std::size_t>(location)]; }
-  bool knows_newest(int location) { return self().views.current.place[location] == state().memory.newest(location); }
+  bool knows_newest(int location) {
+    return self().views.current.place[location] == state().memory.newest(location);
+  }
   bool only_i_write(int location);
   Manner manner_of_load(int location);
   Manner manner_of_store(int location);
@@ -55,8 +65,10 @@ class Machine : public Replay {
   void touch(Operation operation, Kind kind) { touched_ = {operation, kind}; }
   void release_held_back(Operation operation, Kind kind);
   void store_now(int location, std::uint64_t value, std::memory_order order);
-  bool exchange_now(int location, std::uint64_t expected, std::uint64_t desired, std::memory_order order);
-  void append(Thread& self, int location, std::uint64_t value, bool release, const Message* replaced);
+  bool exchange_now(int location, std::uint64_t expected, std::uint64_t desired,
+                    std::memory_order order);
+  void append(Thread& self, int location, std::uint64_t value, bool release,
+              const Message* replaced);
   void operation_begins() override;
   void operation_ends() override;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "ipc/ring/protocol.hpp"
 #include "tests/ipc/explorer/machine.hpp"
@@ -13,13 +14,20 @@ struct ModelAtomics {
     std::uint8_t location = 0;
   };
 
-  static std::uint64_t load(const Word& word, std::memory_order order) { return machine->load(word.location, order); }
-  static void store(Word& word, std::uint64_t value, std::memory_order order) { machine->store(word.location, value, order); }
-  static bool compare_exchange(Word& word, std::uint64_t expected, std::uint64_t desired, std::memory_order order) {
+  static std::uint64_t load(const Word& word, std::memory_order order) {
+    return machine->load(word.location, order);
+  }
+  static void store(Word& word, std::uint64_t value, std::memory_order order) {
+    machine->store(word.location, value, order);
+  }
+  static bool compare_exchange(Word& word, std::uint64_t expected, std::uint64_t desired,
+                               std::memory_order order) {
     return machine->exchange(word.location, expected, desired, order);
   }
   static void fence(std::memory_order order) { machine->fence(order); }
-  static void wait(Word& word, std::uint64_t seen, std::int64_t) { machine->futex_wait(word.location, seen); }
+  static void wait(Word& word, std::uint64_t seen, std::int64_t) {
+    machine->futex_wait(word.location, seen);
+  }
   static void wake(Word& word) { machine->futex_wake(word.location); }
 };
 

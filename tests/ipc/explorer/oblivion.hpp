@@ -1,25 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "tests/ipc/explorer/machine.hpp"
 
 namespace handcast::explorer {
 
-/// Brings a state into the form it shares with all that differ from it only in what nobody can see any more: messages that
-/// every living thread knows to be replaced. Without this, no state would ever come twice.
+/// Brings a state into the form it shares with all that differ from it only in what nobody can see
+/// any more: messages that every living thread knows to be replaced. Without this, no state would
+/// ever come twice.
 class Oblivion {
  public:
-  explicit Oblivion(const Machine& machine) : threads_(machine.threads()), locations_(machine.locations()) {
+  explicit Oblivion(const Machine& machine)
+      : threads_(machine.threads()), locations_(machine.locations()) {
     for (int i = 0; i < threads_; ++i)
-      for (int k = 0; k < kMaxLocations; ++k) blind_[i].place[k] = machine.reads_of(i) & bit(k) ? 0 : 0xff;
+      for (int k = 0; k < kMaxLocations; ++k)
+        blind_[i].place[k] = machine.reads_of(i) & bit(k) ? 0 : 0xff;
   }
 
   void forget(State& state) const {
     const auto old = oldest_in_sight(state);
-    if (std::all_of(old.place, old.place + locations_, [](std::uint8_t place) { return place == 0; })) return;
+    if (std::all_of(old.place, old.place + locations_,
+                    [](std::uint8_t place) { return place == 0; }))
+      return;
     auto& memory = state.memory;
     for (int i = 0; i < locations_; ++i) {
-      std::copy(memory.history[i] + old.place[i], memory.history[i] + memory.length[i], memory.history[i]);
+      std::copy(memory.history[i] + old.place[i], memory.history[i] + memory.length[i],
+                memory.history[i]);
       memory.length[i] = static_cast<std::uint8_t>(memory.length[i] - old.place[i]);
-      for (int place = 0; place < memory.length[i]; ++place) lower(memory.history[i][place].view, old);
+      for (int place = 0; place < memory.length[i]; ++place)
+        lower(memory.history[i][place].view, old);
     }
     lower(memory.fenced, old);
     for (int i = 0; i < threads_; ++i) {
@@ -31,19 +39,22 @@ class Oblivion {
  private:
   View oldest_in_sight(const State& state) const {
     View oldest{};
-    for (int i = 0; i < locations_; ++i) oldest.place[i] = static_cast<std::uint8_t>(state.memory.newest(i));
+    for (int i = 0; i < locations_; ++i)
+      oldest.place[i] = static_cast<std::uint8_t>(state.memory.newest(i));
     for (int i = 0; i < threads_; ++i) {
       if (!state.threads[i].lives()) continue;
       const auto& known = state.threads[i].views.current;
       for (int k = 0; k < kMaxLocations; ++k)
-        oldest.place[k] = std::min<std::uint8_t>(oldest.place[k], known.place[k] | blind_[i].place[k]);
+        oldest.place[k] =
+            std::min<std::uint8_t>(oldest.place[k], known.place[k] | blind_[i].place[k]);
     }
     return oldest;
   }
 
   static void lower(View& view, const View& by) {
     for (int i = 0; i < kMaxLocations; ++i)
-      view.place[i] = static_cast<std::uint8_t>(view.place[i] > by.place[i] ? view.place[i] - by.place[i] : 0);
+      view.place[i] =
+          static_cast<std::uint8_t>(view.place[i] > by.place[i] ? view.place[i] - by.place[i] : 0);
   }
 
   int threads_, locations_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/ipc/explorer/reader_program.hpp"
 
 #include <utility>
@@ -14,32 +15,39 @@ struct Got {
   bool is_whole = true;
 };
 
-std::uint64_t top_sequence() { return ipc::sequence_of(machine->state().memory.newest_value(ring->words().head().location)); }
+std::uint64_t top_sequence() {
+  return ipc::sequence_of(machine->state().memory.newest_value(ring->words().head().location));
+}
 
 /// With relaxed loads, word by word.
 void copy_payload(int slot, Got& got) {
   got.payload = machine->load(ring->payload(slot, 0), std::memory_order_relaxed);
   got.is_whole = true;
   for (int word = 1; word < ring->shape().payload_words; ++word)
-    got.is_whole &= machine->load(ring->payload(slot, word), std::memory_order_relaxed) == got.payload;
+    got.is_whole &=
+        machine->load(ring->payload(slot, word), std::memory_order_relaxed) == got.payload;
 }
 
 std::uint64_t read_leased(const ReaderLocals& self, int slot) {
   const int location = ring->payload(slot, 0);
-  if (self.reading.hold == Hold::doubted_lease) return machine->load(location, std::memory_order_relaxed);
+  if (self.reading.hold == Hold::doubted_lease)
+    return machine->load(location, std::memory_order_relaxed);
   return machine->plain_read(location, ring->read_count(slot, machine->thread()));
 }
 
 template <class Take>
 Outcome apply_verb(ReaderLocals& self, const Take& take, ipc::Taken& taken) {
-  const auto origin_of = [](int slot) { return origin_of_payload(machine->load(ring->payload(slot, 0), std::memory_order_relaxed)); };
+  const auto origin_of = [](int slot) {
+    return origin_of_payload(machine->load(ring->payload(slot, 0), std::memory_order_relaxed));
+  };
   switch (self.reading.verb) {
     case Verb::latest:
       return self.core.latest(take, taken);
     case Verb::next:
       return self.core.next(take, taken);
     default:
-      return self.core.nearest(static_cast<std::int64_t>(ring->shape().first_sequence), origin_of, take, taken);
+      return self.core.nearest(static_cast<std::int64_t>(ring->shape().first_sequence), origin_of,
+                               take, taken);
   }
 }
 
@@ -68,13 +76,17 @@ Got take_lease(ReaderLocals& self) {
 void judge(const ReaderLocals& self, const Got& got, std::uint64_t seen_before) {
   machine->check(got.outcome != Outcome::corrupt, "the words make no sense to a reader");
   if (got.outcome == Outcome::taken && self.reading.hold != Hold::doubted_lease)
-    machine->check(got.is_whole && got.payload == payload_of(got.taken.sequence, got.taken.epoch), "a torn or wrong message is accepted");
+    machine->check(got.is_whole && got.payload == payload_of(got.taken.sequence, got.taken.epoch),
+                   "a torn or wrong message is accepted");
   const bool in_order = self.reading.verb != Verb::nearest;
-  if (got.outcome == Outcome::taken && in_order) machine->check(got.taken.sequence > seen_before, "the sequence goes backwards");
+  if (got.outcome == Outcome::taken && in_order)
+    machine->check(got.taken.sequence > seen_before, "the sequence goes backwards");
   // Only newer messages may make a reader fail: a writer that stands still, or is dead, never does.
   if (got.outcome == Outcome::contended && self.reading.hold != Hold::doubted_lease)
-    machine->check(top_sequence() > seen_before + 1, "a reader starves although nothing newer was published");
-  if (got.outcome == Outcome::nothing) machine->check(seen_before != 0, "a late reader finds no message although there always is one");
+    machine->check(top_sequence() > seen_before + 1,
+                   "a reader starves although nothing newer was published");
+  if (got.outcome == Outcome::nothing)
+    machine->check(seen_before != 0, "a late reader finds no message although there always is one");
 }
 
 /// The oldest lease ends. Its payload is looked at once more: it must still be what was taken.
@@ -83,8 +95,10 @@ bool release_oldest(ReaderLocals& self) {
   const bool is_unchanged = read_leased(self, lease.slot) == self.payloads[0];
   const bool was_mine = self.core.release(lease);
   machine->check(!was_mine || is_unchanged, "a message changes under a lease");
-  machine->check(was_mine || self.reading.hold == Hold::doubted_lease, "a living reader's lease was taken away");
-  for (int i = 1; i < self.held; ++i) self.leases[i - 1] = self.leases[i], self.payloads[i - 1] = self.payloads[i];
+  machine->check(was_mine || self.reading.hold == Hold::doubted_lease,
+                 "a living reader's lease was taken away");
+  for (int i = 1; i < self.held; ++i)
+    self.leases[i - 1] = self.leases[i], self.payloads[i - 1] = self.payloads[i];
   --self.held;
   self.leases[self.held] = {};
   self.payloads[self.held] = 0;
@@ -94,7 +108,8 @@ bool release_oldest(ReaderLocals& self) {
 ReaderLocals::Phase after_taking(ReaderLocals& self, const Got& got) {
   const bool sleeps = self.reading.waits && got.outcome == Outcome::nothing;
   if (!sleeps) --self.left;
-  if (self.held == self.reading.leases_at_once || (self.held > 0 && (self.left == 0 || sleeps))) return ReaderLocals::releasing;
+  if (self.held == self.reading.leases_at_once || (self.held > 0 && (self.left == 0 || sleeps)))
+    return ReaderLocals::releasing;
   if (sleeps) return ReaderLocals::sleeping;
   return self.left > 0 ? ReaderLocals::taking : ReaderLocals::leaving;
 }
@@ -112,7 +127,8 @@ std::uint64_t claim(int row, bool keeps_it) {
   const auto pid = ipc::pid_of_owner(before);
   if (pid != 0 && !machine->is_gone(static_cast<int>(pid) - 1)) return 0;
   const auto generation = (ipc::generation_of(before) + 1) & 0xffff;
-  const auto after = keeps_it ? owner_of(machine->thread(), generation) : ipc::free_word(generation);
+  const auto after =
+      keeps_it ? owner_of(machine->thread(), generation) : ipc::free_word(generation);
   return ipc::claim_row(words, row, before, after) ? after : 0;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "tests/ipc/explorer/ring_memory.hpp"
 
@@ -7,7 +8,8 @@ enum class Verb : std::uint8_t { latest, next, nearest };
 enum class Hold : std::uint8_t {
   copy,
   lease,
-  doubted_lease,  ///< of a process that lives but was taken for dead: it reads atomically, and believes nothing before release() says so
+  doubted_lease,  ///< of a process that lives but was taken for dead: it reads atomically, and
+                  ///< believes nothing before release() says so
 };
 
 /// What a reader does.
@@ -24,7 +26,8 @@ struct Reading {
 struct ReaderLocals {
   enum Phase : std::uint8_t { claiming, starting, taking, sleeping, releasing, leaving };
 
-  ReaderLocals(const Words& words, int which_row, std::uint64_t generation) : core(words, which_row, generation), row(which_row) {}
+  ReaderLocals(const Words& words, int which_row, std::uint64_t generation)
+      : core(words, which_row, generation), row(which_row) {}
 
   ipc::ReaderCore<ModelAtomics> core;
   ipc::Lease leases[ipc::kLeasesPerRow];         ///< those held, the oldest first

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <csetjmp>
 #include <cstdio>
@@ -15,23 +16,27 @@ namespace handcast::explorer {
 using Set = std::uint32_t;  ///< of locations or threads, a bit each
 constexpr Set bit(int i) { return Set{1} << i; }
 
-/// What a thread runs. It consists of operations, each a function of the thread's locals alone; between two of them only the
-/// locals are kept, so short operations let more states fall together.
+/// What a thread runs. It consists of operations, each a function of the thread's locals alone;
+/// between two of them only the locals are kept, so short operations let more states fall together.
 struct Program {
   std::string name;
-  bool (*operation)(void* locals) = nullptr;  ///< false: that was the last one. Leaves by longjmp: nothing in it needs a destructor
+  bool (*operation)(void* locals) = nullptr;  ///< false: that was the last one. Leaves by longjmp:
+                                              ///< nothing in it needs a destructor
   Role role = Role::reader;
   Set reads = 0, writes = 0;                   ///< locations it may ever load or store
   bool mortal = false;                         ///< it may be killed before any of its steps
   bool is_doubted = false;                     ///< others take it for dead while it lives
   bool is_read_at_end = false;                 ///< its locals are kept when it has finished
-  Set starts_on_death = 0, starts_on_end = 0;  ///< threads that are absent until then. They know what this one knew: the kernel tells
+  Set starts_on_death = 0, starts_on_end = 0;  ///< threads that are absent until then. They know
+                                               ///< what this one knew: the kernel tells
 };
 
 /// What the order of an action among other threads' steps is worth. Most orders need not be tried:
 enum class Manner {
-  unnoticed,     ///< no other thread's step, no death can be told from it: it happens with the step before
-  early,         ///< nobody loses a choice when it comes at once. A store is such: others may still load what was there before
+  unnoticed,  ///< no other thread's step, no death can be told from it: it happens with the step
+              ///< before
+  early,  ///< nobody loses a choice when it comes at once. A store is such: others may still load
+          ///< what was there before
   early_choice,  ///< the same, but it has several outcomes
   contested,     ///< its order among the others' steps matters
 };
@@ -48,8 +53,8 @@ class Replay {
   const Program& program(int thread) const { return programs_[static_cast<std::size_t>(thread)]; }
   int threads() const { return static_cast<int>(programs_.size()); }
 
-  /// One step of one thread: the operation is run again against the log, takes one action beyond it, and is left at the next.
-  /// Returns how many outcomes that action has; `choice` picks one.
+  /// One step of one thread: the operation is run again against the log, takes one action beyond
+  /// it, and is left at the next. Returns how many outcomes that action has; `choice` picks one.
   int step(State& state, int thread, int choice) {
     begin(state, thread, choice);
     while (self().status == Status::running && run_operation()) {
@@ -74,7 +79,9 @@ class Replay {
     end(Status::dead, program(thread).starts_on_death);
   }
 
-  bool mortal(const State& state, int thread) { return program(thread).mortal && state.threads[thread].lives(); }
+  bool mortal(const State& state, int thread) {
+    return program(thread).mortal && state.threads[thread].lives();
+  }
 
   void check(bool holds, const char* otherwise) {
     if (!holds && !broken_) broken_ = otherwise;
@@ -103,14 +110,16 @@ class Replay {
   std::uint64_t perform(Manner manner, const Action& action) {
     auto& self = this->self();
     if (cursor_ < self.log_length) return self.log[cursor_++];
-    const bool at_once = manner == Manner::unnoticed || (manner == Manner::early && !program(thread_).mortal);
+    const bool at_once =
+        manner == Manner::unnoticed || (manner == Manner::early && !program(thread_).mortal);
     if (!at_once && acted_) {
       self.urgent = manner != Manner::contested;
       std::longjmp(left_, 1);
     }
     if (!at_once && operations_left_ < 0) acted_ = true;
     const auto value = action(self);
-    if (self.log_length == kMaxLog) std::fputs("explorer: kMaxLog is too small\n", stderr), std::abort();
+    if (self.log_length == kMaxLog)
+      std::fputs("explorer: kMaxLog is too small\n", stderr), std::abort();
     self.log[self.log_length++] = value;
     ++cursor_;
     if (self.status == Status::sleeping) std::longjmp(left_, 1);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
 
@@ -12,7 +13,8 @@ inline constexpr int kMaxPayloadWords = 2;
 struct RingShape {
   int slots = 3;
   bool keep_history = false;
-  /// One is enough: words beyond it can only make a reader notice more, since a copy that holds one new word shows the mark.
+  /// One is enough: words beyond it can only make a reader notice more, since a copy that holds one
+  /// new word shows the mark.
   int payload_words = 1;
   int messages = 1;  ///< published before the story begins, known to all
   std::uint64_t first_sequence = 1;
@@ -20,7 +22,8 @@ struct RingShape {
   std::uint64_t generation = 1;  ///< of the rows' first owners
 };
 
-/// What lies in the memory of the ring that is being explored. One at a time: the threads' code reaches it without locals.
+/// What lies in the memory of the ring that is being explored. One at a time: the threads' code
+/// reaches it without locals.
 class RingMemory {
  public:
   explicit RingMemory(const RingShape& shape);
@@ -49,7 +52,11 @@ class RingMemory {
 inline RingMemory* ring = nullptr;
 
 /// The one payload that belongs to a message.
-constexpr std::uint64_t payload_of(std::uint64_t sequence, std::uint64_t epoch) { return sequence << 15 | epoch; }
-constexpr std::int64_t origin_of_payload(std::uint64_t payload) { return static_cast<std::int64_t>(payload >> 15); }
+constexpr std::uint64_t payload_of(std::uint64_t sequence, std::uint64_t epoch) {
+  return sequence << 15 | epoch;
+}
+constexpr std::int64_t origin_of_payload(std::uint64_t payload) {
+  return static_cast<std::int64_t>(payload >> 15);
+}
 
 }  // namespace handcast::explorer

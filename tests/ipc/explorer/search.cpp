@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/ipc/explorer/search.hpp"
 
 #include <chrono>
@@ -28,7 +29,10 @@ struct Frame {
 class Search {
  public:
   Search(Machine& machine, const State& start, std::uint64_t max_states)
-      : machine_(machine), oblivion_(machine), extent_{machine.threads(), machine.locations()}, max_states_(max_states) {
+      : machine_(machine),
+        oblivion_(machine),
+        extent_{machine.threads(), machine.locations()},
+        max_states_(max_states) {
     open(0);
     copy_state(path_[0]->state, start, extent_);
     oblivion_.forget(path_[0]->state);
@@ -39,7 +43,8 @@ class Search {
     const auto began = std::chrono::steady_clock::now();
     while (depth_ >= 0 && found_.broken.empty() && found_.is_complete) advance(at_end);
     found_.states = visited_.count();
-    found_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    found_.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return found_;
   }
 
@@ -66,7 +71,8 @@ class Search {
     --depth_;
   }
 
-  /// Deaths: to be killed commutes with every step of others, so it is enough to be killed at once after a step of one's own.
+  /// Deaths: to be killed commutes with every step of others, so it is enough to be killed at once
+  /// after a step of one's own.
   bool next_move(Frame& frame) {
     auto& move = frame.move;
     if (!frame.is_started) {
@@ -90,7 +96,8 @@ class Search {
       if (frame.state.threads[move.thread].status != Status::running) continue;
       move.choice = 0;
       frame.choices = 1;
-      if (depth_ == 0 && machine_.mortal(frame.state, move.thread)) move.choice = -1, move.dies = true, frame.may_die = true;
+      if (depth_ == 0 && machine_.mortal(frame.state, move.thread))
+        move.choice = -1, move.dies = true, frame.may_die = true;
       return true;
     }
     return false;
@@ -113,7 +120,8 @@ class Search {
     frame.is_started = false;
     frame.only = -1;
     for (int i = 0; i < extent_.threads && frame.only < 0; ++i)
-      if (frame.state.threads[i].status == Status::running && frame.state.threads[i].urgent) frame.only = i;
+      if (frame.state.threads[i].status == Status::running && frame.state.threads[i].urgent)
+        frame.only = i;
   }
 
   bool is_over(const State& state) const {
@@ -126,7 +134,8 @@ class Search {
     if (static_cast<int>(path_.size()) <= depth) path_.push_back(std::make_unique<Frame>());
   }
 
-  /// Runs the path once more, with words. `above`: how many frames of the path have no move of their own.
+  /// Runs the path once more, with words. `above`: how many frames of the path have no move of
+  /// their own.
   void fail(const char* broken, int above = 0) {
     found_.broken = broken;
     auto state = std::make_unique<State>();
@@ -136,7 +145,8 @@ class Search {
       auto move = *path_[i];
       apply(move, *state);
       oblivion_.forget(*state);
-      found_.trace += "   " + machine_.program(path_[i]->move.thread).name + ": " + machine_.said() + "\n";
+      found_.trace +=
+          "   " + machine_.program(path_[i]->move.thread).name + ": " + machine_.said() + "\n";
     }
     machine_.trace(false);
   }
@@ -153,7 +163,8 @@ class Search {
 
 }  // namespace
 
-Found explore(Machine& machine, const State& start, const std::function<const char*(const State&)>& at_end, std::uint64_t max_states) {
+Found explore(Machine& machine, const State& start,
+              const std::function<const char*(const State&)>& at_end, std::uint64_t max_states) {
   return Search(machine, start, max_states).run(at_end);
 }
 

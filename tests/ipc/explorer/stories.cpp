@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/ipc/explorer/stories.hpp"
 
 namespace handcast::explorer::stories {
@@ -10,11 +11,16 @@ Made on(const RingShape& shape) { return std::make_unique<Story>(shape); }
 Reading copies(int takes) { return {.takes = takes + deeper()}; }
 Reading copies_in_order(int takes) { return {.verb = Verb::next, .takes = takes + deeper()}; }
 Reading leases(int takes) { return {.hold = Hold::lease, .takes = takes + deeper()}; }
-Reading leases_in_order(int takes) { return {.verb = Verb::next, .hold = Hold::lease, .takes = takes + deeper()}; }
-Reading two_leases(int takes) { return {.hold = Hold::lease, .takes = takes + deeper(), .leases_at_once = 2}; }
+Reading leases_in_order(int takes) {
+  return {.verb = Verb::next, .hold = Hold::lease, .takes = takes + deeper()};
+}
+Reading two_leases(int takes) {
+  return {.hold = Hold::lease, .takes = takes + deeper(), .leases_at_once = 2};
+}
 Reading sleeps(int takes) { return {.takes = takes, .waits = true}; }
 
-Made writer_dies(const RingShape& shape, int publishes, int then_publishes, const Reading& first, const Reading& second) {
+Made writer_dies(const RingShape& shape, int publishes, int then_publishes, const Reading& first,
+                 const Reading& second) {
   auto story = on(shape);
   const int writer = story->writer(publishes);
   story->reader(0, first);
@@ -23,7 +29,8 @@ Made writer_dies(const RingShape& shape, int publishes, int then_publishes, cons
   return story;
 }
 
-Made nobody_dies(const RingShape& shape, int publishes, const Reading& first, const Reading& second) {
+Made nobody_dies(const RingShape& shape, int publishes, const Reading& first,
+                 const Reading& second) {
   auto story = on(shape);
   story->writer(publishes);
   story->reader(0, first);
@@ -55,7 +62,8 @@ Made copying_two_words() {
   return story;
 }
 Made following_in_order() {
-  return nobody_dies({.slots = 3, .keep_history = true, .messages = 2}, 2, copies_in_order(2), copies_in_order(1));
+  return nobody_dies({.slots = 3, .keep_history = true, .messages = 2}, 2, copies_in_order(2),
+                     copies_in_order(1));
 }
 Made looking_back() {
   auto story = on({.slots = 3, .keep_history = true});
@@ -71,11 +79,15 @@ Made abandoning() {
   return story;
 }
 
-Made leasing_with_fewer_slots_than_leases() { return nobody_dies({.slots = 2}, 2 + deeper(), leases(2), leases(1)); }
+Made leasing_with_fewer_slots_than_leases() {
+  return nobody_dies({.slots = 2}, 2 + deeper(), leases(2), leases(1));
+}
 Made leasing() { return nobody_dies({.slots = 3}, 2, leases(2), leases(2)); }
 Made leasing_with_slots_enough() { return nobody_dies({.slots = 4}, 3, leases(1), leases(1)); }
 Made leasing_beside_a_copy() { return nobody_dies({.slots = 3}, 2, leases(2), copies(1)); }
-Made leasing_in_order() { return nobody_dies({.slots = 4, .keep_history = true}, 3, leases_in_order(2), leases_in_order(1)); }
+Made leasing_in_order() {
+  return nobody_dies({.slots = 4, .keep_history = true}, 3, leases_in_order(2), leases_in_order(1));
+}
 Made looking_back_under_leases() {
   auto story = on({.slots = 3, .keep_history = true, .messages = 3});
   story->writer(1);
@@ -107,7 +119,9 @@ Made writer_dies_before_one_copy() {
   return story;
 }
 Made writer_dies_before_copies() { return writer_dies({.slots = 3}, 2, 1, copies(1), copies(1)); }
-Made writer_dies_before_a_lease_and_a_copy() { return writer_dies({.slots = 3}, 2, 1, leases(1), copies(1)); }
+Made writer_dies_before_a_lease_and_a_copy() {
+  return writer_dies({.slots = 3}, 2, 1, leases(1), copies(1));
+}
 Made writer_dies_before_leases() { return writer_dies({.slots = 3}, 2, 1, leases(1), leases(1)); }
 Made writer_dies_on_a_ring_with_history() {
   auto story = on({.slots = 3, .keep_history = true});
@@ -132,7 +146,9 @@ Made leasing_reader_dies() {
   story->reader(1, leases(1));
   return story;
 }
-Made reader_with_two_leases_dies() { return reader_dies({.slots = 4}, 3, two_leases(3), two_leases(2)); }
+Made reader_with_two_leases_dies() {
+  return reader_dies({.slots = 4}, 3, two_leases(3), two_leases(2));
+}
 Made waiting_reader_dies() { return reader_dies({.slots = 3}, 2, sleeps(2), sleeps(1)); }
 Made writer_and_reader_die() {
   auto story = on({.slots = 3});
@@ -145,7 +161,8 @@ Made two_want_the_row_of_the_dead() {
   auto story = on({.slots = 3});
   story->writer(1);
   const int dying = story->reader(0, leases(1));
-  const int one = story->claiming_reader(0, leases(1)), other = story->claiming_reader(0, leases(1));
+  const int one = story->claiming_reader(0, leases(1)),
+            other = story->claiming_reader(0, leases(1));
   story->dies(dying, {one, other});
   return story;
 }
@@ -161,7 +178,8 @@ Made recoverer_dies_half_way() {
   auto story = on({.slots = 3});
   story->writer(1);
   story->dead_reader(0, {0, 1});
-  const int clears = story->recoverer(0), claims = story->claiming_reader(0, leases(1)), last = story->claiming_reader(0, leases(1));
+  const int clears = story->recoverer(0), claims = story->claiming_reader(0, leases(1)),
+            last = story->claiming_reader(0, leases(1));
   story->dies(clears, {claims});
   story->ends(clears, {claims});
   story->dies(claims, {last});
@@ -190,7 +208,9 @@ Made generations_wrap_around() {
   story->claiming_reader(0, leases(1));
   return story;
 }
-Made epochs_wrap_around() { return writer_dies({.slots = 3, .first_epoch = 0x7fff}, 1, 1, leases(1), copies(1)); }
+Made epochs_wrap_around() {
+  return writer_dies({.slots = 3, .first_epoch = 0x7fff}, 1, 1, leases(1), copies(1));
+}
 Made futex_and_lease_sequences_wrap_around() {
   const auto last_of_40_bits = (std::uint64_t{1} << 40) - 1;
   auto story = on({.slots = 3, .first_sequence = last_of_40_bits - 1});

@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 
 #include "tests/ipc/explorer/story.hpp"
 
-/// The stories that are gone through to the end. With HANDCAST_EXPLORE=deep each has a message or a take more.
+/// The stories that are gone through to the end. With HANDCAST_EXPLORE=deep each has a message or a
+/// take more.
 namespace handcast::explorer::stories {
 
 using Made = std::unique_ptr<Story>;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/ipc/explorer/story.hpp"
 
 #include <cstdlib>
@@ -14,14 +15,17 @@ Locals& locals_of(State& state, int thread) {
   return *std::launder(reinterpret_cast<Locals*>(state.threads[thread].locals));
 }
 
-void put(State& state, const ModelAtomics::Word& word, std::uint64_t value) { state.memory.history[word.location][0].value = value; }
+void put(State& state, const ModelAtomics::Word& word, std::uint64_t value) {
+  state.memory.history[word.location][0].value = value;
+}
 
 /// A sequence belongs to one message: one writer, one slot.
 void note_message(Machine& checked, State& state, int location, std::uint64_t word) {
   if (!ipc::holds_message(word)) return;
   const auto index = (ipc::sequence_of(word) - ring->shape().first_sequence) & (kMaxSequences - 1);
   const auto slot = location - ring->words().state(0).location;
-  const auto author = static_cast<std::uint8_t>(1 + static_cast<std::uint64_t>(slot) + kModelSlots * (ipc::epoch_of(word) & 7));
+  const auto author = static_cast<std::uint8_t>(1 + static_cast<std::uint64_t>(slot) +
+                                                kModelSlots * (ipc::epoch_of(word) & 7));
   auto& known = state.published[index];
   checked.check(known == 0 || known == author, "a sequence is given twice");
   known = author;
@@ -42,7 +46,8 @@ Story::Story(const RingShape& shape) : start_(std::make_unique<State>()) {
   for (int row = 0; row < kModelRows; ++row) {
     put(*start_, words.owner(row), ipc::free_word(shape.generation));
     put(*start_, words.wait(row), ipc::free_word(shape.generation));
-    for (int index = 0; index < ipc::kLeasesPerRow; ++index) put(*start_, words.lease(row, index), ipc::free_word(shape.generation));
+    for (int index = 0; index < ipc::kLeasesPerRow; ++index)
+      put(*start_, words.lease(row, index), ipc::free_word(shape.generation));
   }
   machine_.watch(Kind::state, note_message);
 }
@@ -53,7 +58,8 @@ Story::~Story() {
 }
 
 template <class Locals>
-int Story::add(std::string name, bool (*operation)(void*), Role role, const Locals& locals, Set reads, Set writes) {
+int Story::add(std::string name, bool (*operation)(void*), Role role, const Locals& locals,
+               Set reads, Set writes) {
   static_assert(std::is_trivially_copyable_v<Locals> && sizeof(Locals) <= kLocalsBytes);
   Program program;
   program.name = std::move(name);
@@ -71,13 +77,15 @@ int Story::writer(int publishes, int abandons) {
   WriterLocals locals(memory_->words());
   locals.left = static_cast<std::uint8_t>(publishes + memory_->shape().messages);
   abandons_ = abandons;
-  return writer_ = add("writer", run_writer, Role::writer, locals, memory_->everything(), memory_->words_of_writer());
+  return writer_ = add("writer", run_writer, Role::writer, locals, memory_->everything(),
+                       memory_->words_of_writer());
 }
 
 int Story::successor(int publishes) {
   WriterLocals locals(memory_->words());
   locals.left = static_cast<std::uint8_t>(publishes);
-  return add("successor", run_writer, Role::writer, locals, memory_->everything(), memory_->words_of_writer());
+  return add("successor", run_writer, Role::writer, locals, memory_->everything(),
+             memory_->words_of_writer());
 }
 
 int Story::reader(int row, const Reading& reading) {
@@ -85,7 +93,8 @@ int Story::reader(int row, const Reading& reading) {
   ReaderLocals locals(words, row, memory_->shape().generation);
   locals.reading = reading;
   locals.left = static_cast<std::uint8_t>(reading.takes);
-  leases_of_row_[row] = std::max(leases_of_row_[row], reading.hold == Hold::copy ? 0 : reading.leases_at_once);
+  leases_of_row_[row] =
+      std::max(leases_of_row_[row], reading.hold == Hold::copy ? 0 : reading.leases_at_once);
   Set writes = bit(words.owner(row).location);
   if (reading.hold != Hold::copy) writes |= memory_->lease_words(row);
   if (reading.waits) writes |= bit(words.wait(row).location);
@@ -118,13 +127,15 @@ int Story::dead_reader(int row, std::initializer_list<int> leased_slots) {
   const auto generation = memory_->shape().generation;
   int index = 0;
   for (const int slot : leased_slots)
-    put(*start_, words.lease(row, index++), ipc::lease_word(generation, slot, memory_->shape().first_sequence));
+    put(*start_, words.lease(row, index++),
+        ipc::lease_word(generation, slot, memory_->shape().first_sequence));
   put(*start_, words.wait(row), ipc::free_word(generation) | ipc::kWaiting);
   return thread;
 }
 
 int Story::recoverer(int row) {
-  return add("recoverer", run_recoverer, Role::recoverer, RecovererLocals{row}, memory_->words_of_row(row), memory_->words_of_row(row));
+  return add("recoverer", run_recoverer, Role::recoverer, RecovererLocals{row},
+             memory_->words_of_row(row), memory_->words_of_row(row));
 }
 
 void Story::dies(int thread, std::initializer_list<int> then) {
@@ -142,9 +153,12 @@ void Story::ends(int thread, std::initializer_list<int> then) {
   }
 }
 
-int Story::leases_that_may_be_out() const { return std::accumulate(leases_of_row_, leases_of_row_ + kModelRows, 0); }
+int Story::leases_that_may_be_out() const {
+  return std::accumulate(leases_of_row_, leases_of_row_ + kModelRows, 0);
+}
 
-/// The writer attaches and publishes the first messages; then everybody has seen everything, so no history is left.
+/// The writer attaches and publishes the first messages; then everybody has seen everything, so no
+/// history is left.
 void Story::start_in_same_knowledge() {
   auto& memory = start_->memory;
   std::fill_n(memory.length, machine_.locations(), std::uint8_t{1});
@@ -166,31 +180,41 @@ void Story::start_in_same_knowledge() {
 Found Story::explore() {
   const bool enough_slots = memory_->shape().slots >= leases_that_may_be_out() + 2;
   for (int i = 0; i < machine_.threads(); ++i)
-    if (machine_.program(i).operation == run_writer) locals_of<WriterLocals>(*start_, i).never_drops = enough_slots;
+    if (machine_.program(i).operation == run_writer)
+      locals_of<WriterLocals>(*start_, i).never_drops = enough_slots;
   machine_.close();
   start_in_same_knowledge();
-  return explorer::explore(machine_, *start_, [this](const State& state) { return look_at_end(state); });
+  return explorer::explore(machine_, *start_,
+                           [this](const State& state) { return look_at_end(state); });
 }
 
 const char* Story::look_at_end(const State& state) const {
   const auto words = memory_->words();
-  const auto newest = [&](const ModelAtomics::Word& word) { return state.memory.newest_value(word.location); };
+  const auto newest = [&](const ModelAtomics::Word& word) {
+    return state.memory.newest_value(word.location);
+  };
   const auto head = ipc::sequence_of(newest(words.head()));
   bool writer_is_dead = false;
   for (int i = 0; i < machine_.threads(); ++i) {
     const auto& thread = state.threads[i];
     const bool is_writer = machine_.program(i).operation == run_writer;
-    if (thread.status == Status::sleeping && std::launder(reinterpret_cast<const ReaderLocals*>(thread.locals))->core.seen() < head)
+    if (thread.status == Status::sleeping &&
+        std::launder(reinterpret_cast<const ReaderLocals*>(thread.locals))->core.seen() < head)
       return "a wake-up is lost: a reader sleeps for ever, with a message unseen";
-    if (is_writer) writer_is_dead = thread.status == Status::dead || (writer_is_dead && thread.status == Status::absent);
-    if (!is_writer && thread.status == Status::dead && machine_.program(i).starts_on_death == 0) return nullptr;  // nobody cleans up
+    if (is_writer)
+      writer_is_dead =
+          thread.status == Status::dead || (writer_is_dead && thread.status == Status::absent);
+    if (!is_writer && thread.status == Status::dead && machine_.program(i).starts_on_death == 0)
+      return nullptr;  // nobody cleans up
   }
   for (int slot = 0; slot < words.slots() && !writer_is_dead; ++slot)
-    if (const auto word = newest(words.state(slot)); ipc::holds_message(word) && ipc::sequence_of(word) > head)
+    if (const auto word = newest(words.state(slot));
+        ipc::holds_message(word) && ipc::sequence_of(word) > head)
       return "a message was published that no reader will find";
   for (int row = 0; row < kModelRows; ++row)
     for (int index = 0; index < ipc::kLeasesPerRow; ++index)
-      if (ipc::slot_of_lease(newest(words.lease(row, index))) >= 0) return "a lease is leaked: its owner is gone";
+      if (ipc::slot_of_lease(newest(words.lease(row, index))) >= 0)
+        return "a lease is leaked: its owner is gone";
   return nullptr;
 }
 

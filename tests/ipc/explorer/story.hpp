@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
 #include <string>
@@ -11,7 +12,8 @@ namespace handcast::explorer {
 
 /// A ring, who uses it and who is killed: what one exploration goes through to the end.
 ///
-/// It begins with a writer that has attached and published a message or more, which everybody knows, and with readers that own their rows.
+/// It begins with a writer that has attached and published a message or more, which everybody
+/// knows, and with readers that own their rows.
 class Story {
  public:
   explicit Story(const RingShape& shape);
@@ -44,7 +46,8 @@ class Story {
 
  private:
   template <class Locals>
-  int add(std::string name, bool (*operation)(void*), Role role, const Locals& locals, Set reads, Set writes);
+  int add(std::string name, bool (*operation)(void*), Role role, const Locals& locals, Set reads,
+          Set writes);
   void start_in_same_knowledge();
   int leases_that_may_be_out() const;
   const char* look_at_end(const State& state) const;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/ipc/explorer/writer_program.hpp"
 
 namespace handcast::explorer {
@@ -11,7 +12,8 @@ void fill(int slot, std::uint64_t payload) {
 /// False where there was no slot to loan: the message is dropped.
 bool loan(WriterLocals& self) {
   self.slot = static_cast<std::int8_t>(self.core.loan());
-  machine->check(self.slot != ipc::kNoSlot || !self.never_drops, "a loan fails although there are slots enough");
+  machine->check(self.slot != ipc::kNoSlot || !self.never_drops,
+                 "a loan fails although there are slots enough");
   return self.slot != ipc::kNoSlot;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +8,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "tests/renderer/hand/mesh_checks.hpp"
+#include "renderer/hand/maker/glb_write.hpp"
+#include "tests/renderer/hand/maker/mesh_checks.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -18,7 +20,9 @@ using ::testing::HasSubstr;
 
 class HandFile : public ::testing::Test {
  protected:
-  HandFile() : folder_(std::filesystem::temp_directory_path() / ("handcast-hand-" + std::to_string(getpid()))) {
+  HandFile()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("handcast-hand-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
   }
   ~HandFile() override { std::filesystem::remove_all(folder_); }
@@ -32,7 +36,8 @@ class HandFile : public ::testing::Test {
   }
 
   /// The saved hand with its JSON (and, if asked for, its binary part) changed.
-  std::filesystem::path changed(const std::function<void(json&)>& change, std::size_t binary_bytes = ~std::size_t{0}) const {
+  std::filesystem::path changed(const std::function<void(json&)>& change,
+                                std::size_t binary_bytes = ~std::size_t{0}) const {
     std::ifstream in(saved(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(in)), {});
     std::uint32_t length;
@@ -48,7 +53,8 @@ class HandFile : public ::testing::Test {
       out.write(reinterpret_cast<const char*>(&word), 4);
     };
     out << "glTF";
-    for (const std::size_t word : {std::size_t{2}, 28 + text.size() + binary.size(), text.size()}) put(word);
+    for (const std::size_t word : {std::size_t{2}, 28 + text.size() + binary.size(), text.size()})
+      put(word);
     out << "JSON" << text;
     put(binary.size());
     out << std::string("BIN\0", 4) << binary;
@@ -80,14 +86,17 @@ TEST_F(HandFile, ComesBackAsItWasSaved) {
   for (std::size_t v = 0; v < hand.vertex_count(); ++v)
     for (int k = 0; k < 4; ++k) ASSERT_NEAR(read->weights[v][k], hand.weights[v][k], 1e-6);
   for (int j = 0; j < kJoints; ++j)
-    for (int k = 0; k < 16; ++k) ASSERT_NEAR(read->rest[j][k / 4][k % 4], hand.rest[j][k / 4][k % 4], 1e-6);
+    for (int k = 0; k < 16; ++k)
+      ASSERT_NEAR(read->rest[j][k / 4][k % 4], hand.rest[j][k / 4][k % 4], 1e-6);
 }
 
 TEST_F(HandFile, ARefitWorksOnALoadedHand) {
   const auto read = load_hand(saved(), Side::left);
   ASSERT_TRUE(read);
-  const HandMesh direct = refit_hand(mean_hand(Side::left), another_person()), loaded = refit_hand(*read, another_person());
-  for (std::size_t v = 0; v < direct.vertex_count(); ++v) ASSERT_LT(glm::distance(direct.positions[v], loaded.positions[v]), 2e-5f);
+  const HandMesh direct = refit_hand(mean_hand(Side::left), another_person()),
+                 loaded = refit_hand(*read, another_person());
+  for (std::size_t v = 0; v < direct.vertex_count(); ++v)
+    ASSERT_LT(glm::distance(direct.positions[v], loaded.positions[v]), 2e-5f);
 }
 
 TEST_F(HandFile, HandsMadeByTheBuildAreFound) {
@@ -104,7 +113,8 @@ TEST_F(HandFile, AssetsFolderOfTheEnvironmentComesFirst) {
   setenv("HANDCAST_ASSETS", "/somewhere", 1);
   EXPECT_EQ(default_hand_file(Side::right), "/somewhere/hand_right.glb");
   unsetenv("HANDCAST_ASSETS");
-  EXPECT_NE(default_hand_file(Side::right).string().find("share/handcast/hand_right.glb"), std::string::npos);
+  EXPECT_NE(default_hand_file(Side::right).string().find("share/handcast/hand_right.glb"),
+            std::string::npos);
 }
 
 TEST_F(HandFile, NamesMayCarryASideAndUnderscores) {
@@ -128,11 +138,15 @@ TEST_F(HandFile, AMissingMetacarpalIsTakenFromItsParent) {
 }
 
 TEST_F(HandFile, MissingJointsAreNamed) {
-  const auto file = changed([](json& gltf) { gltf["nodes"][8]["name"] = gltf["nodes"][3]["name"] = "bone"; });
-  EXPECT_THAT(refusal(file), HasSubstr("thumb-phalanx-proximal, index-finger-phalanx-intermediate"));
+  const auto file =
+      changed([](json& gltf) { gltf["nodes"][8]["name"] = gltf["nodes"][3]["name"] = "bone"; });
+  EXPECT_THAT(refusal(file),
+              HasSubstr("thumb-phalanx-proximal, index-finger-phalanx-intermediate"));
 }
 
-TEST_F(HandFile, AFileThatIsNotThereIsSaid) { EXPECT_THAT(refusal(path("nothing.glb")), HasSubstr("no such file")); }
+TEST_F(HandFile, AFileThatIsNotThereIsSaid) {
+  EXPECT_THAT(refusal(path("nothing.glb")), HasSubstr("no such file"));
+}
 
 TEST_F(HandFile, AFileThatIsNoGltfIsSaid) {
   for (const std::string content : {"", "plain text", "glTF\2\0\0\0 cut off"}) {
@@ -162,7 +176,8 @@ TEST_F(HandFile, AJointThatIsBoundByNoTurnAndShiftIsNamed) {
 TEST_F(HandFile, AnIndexBeyondTheVerticesIsSaid) {
   const auto file = changed([](json& gltf) {
     for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"})
-      gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"][attribute].get<int>()]["count"] = 100;
+      gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"][attribute].get<int>()]
+          ["count"] = 100;
   });
   EXPECT_THAT(refusal(file), HasSubstr("a triangle names vertex"));
 }
@@ -178,10 +193,13 @@ TEST_F(HandFile, MoreVerticesThanIndicesCanNameAreSaid) {
       gltf["accessors"][k]["bufferView"] = 7;
       gltf["accessors"][k]["count"] = 70000;
     }
-    gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 70100}, {"byteStride", 1}});
+    gltf["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 70100}, {"byteStride", 1}});
   });
   const std::string said = refusal(file);
-  EXPECT_TRUE(said.find("more than 65535") != std::string::npos || said.find("not a glTF") != std::string::npos) << said;
+  EXPECT_TRUE(said.find("more than 65535") != std::string::npos ||
+              said.find("not a glTF") != std::string::npos)
+      << said;
 }
 
 TEST_F(HandFile, AFolderThatCannotBeWrittenIsSaid) {

@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The way from landmarks to light, with each method that moves it.
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <random>
 
-#include "driven_pipeline.hpp"
+#include "tests/renderer/pipeline/driven_pipeline.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -18,15 +19,16 @@ TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
   const auto pipeline = make_pipeline(cascade(GetParam(), "none"));
   const auto hand = pose_of(Side::left);
   feed_still(*pipeline, {hand});
-  const glm::vec2 before = mean_landing(pipeline->render(20 * kMs, 24 * kMs, {}, 0).hands[0]);
-  const int lit_before = lit_pixels(pipeline->render(20 * kMs, 24 * kMs, {}, 0));
+  const glm::vec2 before = mean_landing(pipeline->render(20 * kMs, 24 * kMs, {}).hands[0]);
+  const int lit_before = lit_pixels(pipeline->render(20 * kMs, 24 * kMs, {}));
   feed_landmarks(*pipeline, calibration, hand, {12, -6});
-  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {}, 0);
+  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {});
   EXPECT_TRUE(frame.hands[0].has_landmarks);
   EXPECT_NEAR(frame.hands[0].corrected[8].x - frame.hands[0].tracker[8].x, 12, 0.2);
 
   const glm::dvec2 at = frame.hands[0].tracker[9];
-  const glm::dvec2 moved = calibration.to_projector(at + glm::dvec2(12, -6)) - calibration.to_projector(at);
+  const glm::dvec2 moved =
+      calibration.to_projector(at + glm::dvec2(12, -6)) - calibration.to_projector(at);
   const glm::vec2 landed = mean_landing(frame.hands[0]) - before;
   EXPECT_NEAR(landed.x, moved.x, 0.7);
   EXPECT_NEAR(landed.y, moved.y, 0.7);
@@ -53,7 +55,7 @@ TEST_P(EveryCorrection, AWrongTrackerIsMendedByLandmarksMaskAndFill) {
   const auto image = image_of(calibration, {hand}, {15, 10});
   feed_still(*pipeline, {hand});
   feed_landmarks(*pipeline, calibration, hand, {15, 10});
-  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, image.view(), 102 * kMs);
+  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {image.view(), 102 * kMs});
   const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].corrected[0]));
   const LightCount count = count_light(frame, calibration, image, wrist.y);
   EXPECT_EQ(count.spill_px, 0);
@@ -64,7 +66,8 @@ TEST_P(EveryCorrection, AWrongTrackerIsMendedByLandmarksMaskAndFill) {
 TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
   const auto calibration = rig_above_hand();
   const auto pipeline = make_pipeline(cascade(GetParam(), "reflect"));
-  const auto left = pose_of(Side::left, {-0.085f, 0, 0}), right = pose_of(Side::right, {0.085f, 0, 0});
+  const auto left = pose_of(Side::left, {-0.085f, 0, 0}),
+             right = pose_of(Side::right, {0.085f, 0, 0});
   feed_still(*pipeline, {left, right});
   for (std::int64_t t = 20 * kMs; t <= 100 * kMs; t += 2 * kMs) {
     if (t % (16 * kMs) == 0) {
@@ -76,7 +79,7 @@ TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
     pipeline->track(t, t + 4 * kMs);
   }
   const auto image = image_of(calibration, {left, right});
-  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, image.view(), 102 * kMs);
+  const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {image.view(), 102 * kMs});
   ASSERT_EQ(frame.hands.size(), 2u);
   EXPECT_NEAR(frame.hands[0].corrected[8].x - frame.hands[0].tracker[8].x, 8, 0.2);
   EXPECT_NEAR(frame.hands[1].corrected[8].x - frame.hands[1].tracker[8].x, -8, 0.2);
@@ -92,15 +95,17 @@ TEST(Correction, AGridThatFoldsIsCounted) {
   const auto hand = pose_of(Side::left);
   feed_still(*pipeline, {hand});
   auto torn = landmarks_of(calibration, 80 * kMs, hand, {});
-  std::swap(torn.hands[0].points[8], torn.hands[0].points[20]);  // index and little tip change places
+  std::swap(torn.hands[0].points[8],
+            torn.hands[0].points[20]);  // index and little tip change places
   std::swap(torn.hands[0].points[6], torn.hands[0].points[18]);
   pipeline->track(99 * kMs, 103 * kMs);
   pipeline->push(100 * kMs, torn);
   for (std::int64_t t = 100; t < 140; t += 2) pipeline->track(t * kMs, (t + 4) * kMs);
-  EXPECT_GT(pipeline->render(140 * kMs, 144 * kMs, {}, 0).foldovers, 0);
+  EXPECT_GT(pipeline->render(140 * kMs, 144 * kMs, {}).foldovers, 0);
 }
 
-/// A moving hand with noisy sensors for a quarter of a second; every pixel and landing that was made.
+/// A moving hand with noisy sensors for a quarter of a second; every pixel and landing that was
+/// made.
 std::vector<std::uint32_t> everything(const config::Cascade& settings) {
   const auto calibration = rig_above_hand();
   const auto pipeline = make_pipeline(settings);
@@ -109,15 +114,19 @@ std::vector<std::uint32_t> everything(const config::Cascade& settings) {
   std::vector<std::uint32_t> all;
   for (std::int64_t t = 0; t < 250 * kMs; t += 9 * kMs) {
     const float s = static_cast<float>(t) * 1e-9f;
-    const auto hand = pose_of(Side::right, {0.05f * std::sin(9 * s) + 1e-4f * noise(random), 0, 0.03f * s});
+    const auto hand =
+        pose_of(Side::right, {0.05f * std::sin(9 * s) + 1e-4f * noise(random), 0, 0.03f * s});
     pipeline->push(t, poses_of(t - 9 * kMs, {hand}));
-    if (t % 18 == 0) pipeline->push(t, landmarks_of(calibration, t - 16 * kMs, hand, {6 + noise(random), noise(random)}));
+    if (t % 18 == 0)
+      pipeline->push(
+          t, landmarks_of(calibration, t - 16 * kMs, hand, {6 + noise(random), noise(random)}));
     const auto image = image_of(calibration, {hand}, {6, 0});
-    const Frame frame = pipeline->render(t, t + 4 * kMs, image.view(), t - 2 * kMs);
+    const Frame frame = pipeline->render(t, t + 4 * kMs, {image.view(), t - 2 * kMs});
     for (int y = frame.region.y0; y < frame.region.y1; ++y)
       for (int x = frame.region.x0; x < frame.region.x1; ++x) all.push_back(frame.colour.at(x, y));
     for (const FrameHand& each : frame.hands)
-      for (const glm::vec2& landing : each.landings) all.push_back(std::bit_cast<std::uint32_t>(landing.x));
+      for (const glm::vec2& landing : each.landings)
+        all.push_back(std::bit_cast<std::uint32_t>(landing.x));
   }
   return all;
 }

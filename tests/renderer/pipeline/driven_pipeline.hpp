@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -5,14 +6,14 @@
 #include <memory>
 #include <stdexcept>
 
-#include "renderer/pipeline.hpp"
-#include "stage_set.hpp"
+#include "renderer/pipeline/pipeline.hpp"
+#include "tests/renderer/pipeline/stage_set.hpp"
 
 namespace handcast::renderer {
 
-inline std::unique_ptr<Pipeline> make_pipeline(const config::Cascade& settings = {},
-                                               const calib::Calibration& calibration = rig_above_hand(),
-                                               const config::Content& content = {}) {
+inline std::unique_ptr<Pipeline> make_pipeline(
+    const config::Cascade& settings = {}, const calib::Calibration& calibration = rig_above_hand(),
+    const config::Content& content = {}) {
   auto pipeline = Pipeline::create(settings, content, {}, calibration);
   if (!pipeline) throw std::runtime_error(pipeline.error().what);
   return std::move(*pipeline);
@@ -26,14 +27,18 @@ inline config::Cascade cascade(const char* correct, const char* fill) {
 }
 
 /// Tracker samples of a still hand up to `until_ns`.
-inline void feed_still(Pipeline& pipeline, std::initializer_list<msg::HandPose> hands, std::int64_t until_ns = 100 * kMs) {
-  for (std::int64_t t = 0; t <= until_ns; t += 9 * kMs) pipeline.push(t + 9 * kMs, poses_of(t, hands));
+inline void feed_still(Pipeline& pipeline, std::initializer_list<msg::HandPose> hands,
+                       std::int64_t until_ns = 100 * kMs) {
+  for (std::int64_t t = 0; t <= until_ns; t += 9 * kMs)
+    pipeline.push(t + 9 * kMs, poses_of(t, hands));
 }
 
 /// Detections of it that are `offset_px` off, and the questions between.
-inline void feed_landmarks(Pipeline& pipeline, const calib::Calibration& calibration, const msg::HandPose& hand, glm::vec2 offset_px) {
+inline void feed_landmarks(Pipeline& pipeline, const calib::Calibration& calibration,
+                           const msg::HandPose& hand, glm::vec2 offset_px) {
   for (std::int64_t t = 20 * kMs; t <= 100 * kMs; t += 2 * kMs) {
-    if (t % (16 * kMs) == 0) pipeline.push(t, landmarks_of(calibration, t - 16 * kMs, hand, offset_px));
+    if (t % (16 * kMs) == 0)
+      pipeline.push(t, landmarks_of(calibration, t - 16 * kMs, hand, offset_px));
     pipeline.track(t, t + 4 * kMs);
   }
 }
@@ -43,34 +48,41 @@ inline bool lit(const Frame& frame, int x, int y) {
   return x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1 && (frame.colour.at(x, y) >> 24) > 0;
 }
 
-inline int lit_pixels(const Frame& frame) {
+/// Lit pixels of a frame, or of a part of it.
+inline int lit_pixels(const Frame& frame, const Rect& part = {0, 0, 1 << 20, 1 << 20}) {
+  const Rect region = frame.region.overlap(part);
   int count = 0;
-  for (int y = frame.region.y0; y < frame.region.y1; ++y)
-    for (int x = frame.region.x0; x < frame.region.x1; ++x) count += lit(frame, x, y);
+  for (int y = region.y0; y < region.y1; ++y)
+    for (int x = region.x0; x < region.x1; ++x) count += lit(frame, x, y);
   return count;
 }
 
 /// Grey value of the camera image at a projector pixel, or `aside_px` camera px from there.
-inline int grey_at(const calib::Calibration& calibration, const Image<std::uint8_t>& image, int x, int y, glm::dvec2 aside_px = {}) {
+inline int grey_at(const calib::Calibration& calibration, const Image<std::uint8_t>& image, int x,
+                   int y, glm::dvec2 aside_px = {}) {
   const glm::dvec2 at = calibration.camera.distort(calibration.to_camera({x, y})) + aside_px;
   const int cx = static_cast<int>(std::lround(at.x)), cy = static_cast<int>(std::lround(at.y));
   return cx < 0 || cy < 0 || cx >= image.width() || cy >= image.height() ? 0 : image.at(cx, cy);
 }
 
-/// True where no hand is, not even a tenth of a camera pixel away: so exact is the projector's table.
-inline bool beside_hand(const calib::Calibration& calibration, const Image<std::uint8_t>& image, int x, int y) {
+/// True where no hand is, not even a tenth of a camera pixel away: so exact is the projector's
+/// table.
+inline bool beside_hand(const calib::Calibration& calibration, const Image<std::uint8_t>& image,
+                        int x, int y) {
   int most = 0;
-  for (const glm::dvec2 aside : {glm::dvec2(0.1, 0), glm::dvec2(-0.1, 0), glm::dvec2(0, 0.1), glm::dvec2(0, -0.1)})
+  for (const glm::dvec2 aside :
+       {glm::dvec2(0.1, 0), glm::dvec2(-0.1, 0), glm::dvec2(0, 0.1), glm::dvec2(0, -0.1)})
     most = std::max(most, grey_at(calibration, image, x, y, aside));
   return most < 100;
 }
 
-/// Projector pixels of the hand above its wrist, those of them that are dark, and lit ones where no hand is.
+/// Projector pixels of the hand above its wrist, those of them that are dark, and lit ones where no
+/// hand is.
 struct LightCount {
   int hand_px = 0, dark_px = 0, spill_px = 0;
 };
-inline LightCount count_light(const Frame& frame, const calib::Calibration& calibration, const Image<std::uint8_t>& image,
-                              double wrist_y_px) {
+inline LightCount count_light(const Frame& frame, const calib::Calibration& calibration,
+                              const Image<std::uint8_t>& image, double wrist_y_px) {
   LightCount count;
   for (int y = 0; y < 768; ++y)
     for (int x = 0; x < 1024; ++x) {
@@ -84,7 +96,8 @@ inline LightCount count_light(const Frame& frame, const calib::Calibration& cali
 
 inline glm::vec2 mean_landing(const FrameHand& hand) {
   glm::vec2 sum{0};
-  for (const glm::vec2& landing : hand.landings) sum += landing / static_cast<float>(hand.landings.size());
+  for (const glm::vec2& landing : hand.landings)
+    sum += landing / static_cast<float>(hand.landings.size());
   return sum;
 }
 

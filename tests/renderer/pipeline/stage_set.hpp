@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
 #include <array>
@@ -7,23 +8,28 @@
 
 #include "calib/calibration.hpp"
 #include "renderer/hand/hand_mesh.hpp"
-#include "renderer/hand/hand_shape.hpp"
-#include "renderer/pipeline.hpp"
+#include "renderer/hand/maker/hand_shape.hpp"
+#include "renderer/pipeline/pipeline.hpp"
+#include "renderer/skin/skinning.hpp"
 
-/// A small world for the pipeline's tests: the model's own hand, its poses, its landmarks and its image.
+/// A small world for the pipeline's tests: the model's own hand, its poses, its landmarks and its
+/// image.
 namespace handcast::renderer {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// The paper's rig with a tracker whose axes are the hand's: the camera looks down on its back, 0.55 m away, fingers up.
+/// The paper's rig with a tracker whose axes are the hand's: the camera looks down on its back,
+/// 0.55 m away, fingers up.
 inline calib::Calibration rig_above_hand() {
   calib::Calibration calibration = calib::reference_rig();
-  calibration.camera_from_tracker = glm::dmat4({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0.09, 0.55, 1});
+  calibration.camera_from_tracker =
+      glm::dmat4({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0.09, 0.55, 1});
   return calibration;
 }
 
 inline msg::HandPose pose_of(Side side, glm::vec3 moved_m = {}) {
-  static const std::array<HandMesh, 2> hands{*load_hand_or_default({}, Side::left), *load_hand_or_default({}, Side::right)};
+  static const std::array<HandMesh, 2> hands{*load_hand_or_default({}, Side::left),
+                                             *load_hand_or_default({}, Side::right)};
   msg::HandPose pose;
   pose.side = side;
   pose.confidence = 1;
@@ -48,8 +54,8 @@ inline glm::dvec3 in_camera(const calib::Calibration& calibration, glm::vec3 tra
 }
 
 /// What a perfect detector sees of `pose`, moved by `offset_px`.
-inline msg::Landmarks landmarks_of(const calib::Calibration& calibration, std::int64_t origin_ns, const msg::HandPose& pose,
-                                   glm::vec2 offset_px) {
+inline msg::Landmarks landmarks_of(const calib::Calibration& calibration, std::int64_t origin_ns,
+                                   const msg::HandPose& pose, glm::vec2 offset_px) {
   msg::Landmarks landmarks;
   landmarks.header.origin_ns = origin_ns;
   landmarks.count = 1;
@@ -57,13 +63,15 @@ inline msg::Landmarks landmarks_of(const calib::Calibration& calibration, std::i
   for (int i = 0; i < kLandmarks; ++i) {
     const auto& [x, y, z] = pose.joints[msg::kJointOfLandmark[i]].position_m;
     const glm::dvec2 px = calibration.camera.project(in_camera(calibration, {x, y, z}));
-    landmarks.hands[0].points[i] = {static_cast<float>(px.x) + offset_px.x, static_cast<float>(px.y) + offset_px.y, 1};
+    landmarks.hands[0].points[i] = {static_cast<float>(px.x) + offset_px.x,
+                                    static_cast<float>(px.y) + offset_px.y, 1};
   }
   return landmarks;
 }
 
 /// The camera's image of hands in `poses`, each moved by `offset_px`: 150 on 8.
-inline Image<std::uint8_t> image_of(const calib::Calibration& calibration, std::initializer_list<msg::HandPose> poses,
+inline Image<std::uint8_t> image_of(const calib::Calibration& calibration,
+                                    std::initializer_list<msg::HandPose> poses,
                                     glm::dvec2 offset_px = {}) {
   Image<std::uint8_t> image(calibration.camera.width_px, calibration.camera.height_px, 8);
   for (const auto& pose : poses) {
@@ -72,12 +80,16 @@ inline Image<std::uint8_t> image_of(const calib::Calibration& calibration, std::
     skin(hand, frames_of(pose), skin_m);
     std::vector<glm::dvec2> px;
     for (const auto& point : skin_m)
-      px.push_back(calibration.camera.distort(calibration.camera.project(in_camera(calibration, point)) + offset_px));
+      px.push_back(calibration.camera.distort(
+          calibration.camera.project(in_camera(calibration, point)) + offset_px));
     for (const auto& triangle : hand.triangles) {
       const glm::dvec2 a = px[triangle[0]], b = px[triangle[1]], c = px[triangle[2]];
-      const auto side = [](glm::dvec2 u, glm::dvec2 v, glm::dvec2 w) { return (v.x - u.x) * (w.y - u.y) - (w.x - u.x) * (v.y - u.y); };
+      const auto side = [](glm::dvec2 u, glm::dvec2 v, glm::dvec2 w) {
+        return (v.x - u.x) * (w.y - u.y) - (w.x - u.x) * (v.y - u.y);
+      };
       const glm::dvec2 low = glm::max(glm::min(a, glm::min(b, c)), glm::dvec2(0));
-      const glm::dvec2 high = glm::min(glm::max(a, glm::max(b, c)), glm::dvec2(image.width() - 1, image.height() - 1));
+      const glm::dvec2 high =
+          glm::min(glm::max(a, glm::max(b, c)), glm::dvec2(image.width() - 1, image.height() - 1));
       for (int y = static_cast<int>(low.y); y <= high.y; ++y)
         for (int x = static_cast<int>(low.x); x <= high.x; ++x) {
           const double s = side(a, b, {x, y}), t = side(b, c, {x, y}), u = side(c, a, {x, y});

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
 #include <memory>
 
 #include "ipc/msg/owned.hpp"
+#include "services/evaluation/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/hints.hpp"
-#include "services/twin/twin.hpp"
+#include "services/landmarks/finder/hints.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 /// The twin's images, what its tracker says of them, and what can be done to them.
@@ -36,10 +37,12 @@ class Sights {
     Sight sight{Grey(camera.width_px, camera.height_px), {}, {}, seconds};
     twin_->camera_image(frame, sight.image.view());
     landmarks::TrackerHints tracker(calib::reference_rig());
-    for (auto k = number(seconds - 0.05, twin_->tracker_time_ns(1000)); twin_->tracker_sample(k).arrival_ns <= origin_ns; ++k)
+    for (auto k = number(seconds - 0.05, twin_->tracker_time_ns(1000));
+         twin_->tracker_sample(k).arrival_ns <= origin_ns; ++k)
       tracker.push(twin_->tracker_sample(k).poses);
     sight.tracker_px = tracker.at(origin_ns);
-    sight.truth_px = {twin_->landmarks(msg::Side::left, origin_ns), twin_->landmarks(msg::Side::right, origin_ns)};
+    sight.truth_px = {twin_->landmarks(msg::Side::left, origin_ns),
+                      twin_->landmarks(msg::Side::right, origin_ns)};
     return sight;
   }
 
@@ -51,24 +54,29 @@ class Sights {
 };
 
 /// What a detector says of an image taken at `time_ns`.
-inline msg::Landmarks detect(landmarks::Detector& detector, const Sight& sight, std::int64_t time_ns) {
-  const auto width = static_cast<std::uint32_t>(sight.image.width()), height = static_cast<std::uint32_t>(sight.image.height());
+inline msg::Landmarks detect(landmarks::Detector& detector, const Sight& sight,
+                             std::int64_t time_ns) {
+  const auto width = static_cast<std::uint32_t>(sight.image.width()),
+             height = static_cast<std::uint32_t>(sight.image.height());
   msg::Owned<msg::CameraFrame> frame(msg::CameraFrame::bytes(width, height));
   frame->header = {1, time_ns, time_ns};
   frame->width_px = width;
   frame->height_px = height;
   std::ranges::copy(sight.image.pixels(), frame->pixels());
-  const auto found = detector.detect(*frame, sight.tracker_px, Deadline::in(std::chrono::seconds(5)));
+  const auto found =
+      detector.detect(*frame, sight.tracker_px, Deadline::in(std::chrono::seconds(5)));
   EXPECT_TRUE(found) << found.error().what;
   return found.value_or(msg::Landmarks{});
 }
 
-/// The mean along a line of `length_px` to the right or downwards: a hand that moves while the shutter is open.
+/// The mean along a line of `length_px` to the right or downwards: a hand that moves while the
+/// shutter is open.
 inline Grey smeared(const Grey& image, int length_px, bool down) {
   return blurred(image, down ? 0 : length_px / 2, down ? length_px / 2 : 0);
 }
 
-/// Axes of a hand in the image, in palm lengths from the middle knuckle: towards the fingers, and to the right of that.
+/// Axes of a hand in the image, in palm lengths from the middle knuckle: towards the fingers, and
+/// to the right of that.
 struct PalmAxes {
   glm::vec2 knuckle, along, across;
   explicit PalmAxes(const landmarks::Points& hand_px) : knuckle(hand_px[9]) {
@@ -90,16 +98,20 @@ Grey gloved(const Grey& image, const landmarks::Points& hand_px, Share share) {
   return painted(image.width(), image.height(), [&](int x, int y) {
     const glm::vec2 place = axes(x, y);
     const double grey = image.at(x, y);
-    const bool is_glove = grey >= kSkin && place.x > -1 && place.x < 1.5f && std::abs(place.y) < 1.4f;
+    const bool is_glove =
+        grey >= kSkin && place.x > -1 && place.x < 1.5f && std::abs(place.y) < 1.4f;
     return is_glove ? 0.5 + grey * share(place) : grey;
   });
 }
 
-/// Something dark before all that lies beyond a line: `beyond` palm lengths from the middle knuckle in direction `way` of its axes.
-inline Grey half_covered(const Grey& image, const landmarks::Points& hand_px, glm::vec2 way, float beyond) {
+/// Something dark before all that lies beyond a line: `beyond` palm lengths from the middle knuckle
+/// in direction `way` of its axes.
+inline Grey half_covered(const Grey& image, const landmarks::Points& hand_px, glm::vec2 way,
+                         float beyond) {
   const PalmAxes axes(hand_px);
-  return painted(image.width(), image.height(),
-                 [&](int x, int y) { return glm::dot(axes(x, y), way) > beyond ? 4 : static_cast<int>(image.at(x, y)); });
+  return painted(image.width(), image.height(), [&](int x, int y) {
+    return glm::dot(axes(x, y), way) > beyond ? 4 : static_cast<int>(image.at(x, y));
+  });
 }
 
 /// The camera turned away, so that the image and all in it moves by `by_px`.
@@ -107,7 +119,8 @@ inline Sight shifted(const Sight& sight, glm::ivec2 by_px) {
   Sight moved = sight;
   moved.image = painted(sight.image.width(), sight.image.height(), [&](int x, int y) {
     const glm::ivec2 from = glm::ivec2(x, y) - by_px;
-    const bool is_seen = from.x >= 0 && from.y >= 0 && from.x < sight.image.width() && from.y < sight.image.height();
+    const bool is_seen =
+        from.x >= 0 && from.y >= 0 && from.x < sight.image.width() && from.y < sight.image.height();
     return is_seen ? static_cast<int>(sight.image.at(from.x, from.y)) : 9;
   });
   for (auto* hints : {&moved.tracker_px, &moved.truth_px})

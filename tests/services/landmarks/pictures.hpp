@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <gtest/gtest.h>
 
@@ -10,11 +11,11 @@
 #include <random>
 #include <string>
 
+#include "renderer/base/image.hpp"
 #include "renderer/content/picture.hpp"
-#include "renderer/image.hpp"
-#include "services/detect/picture.hpp"
-#include "services/landmarks/hand_finder.hpp"
-#include "services/landmarks/models.hpp"
+#include "services/landmarks/detect/picture.hpp"
+#include "services/landmarks/finder/hand_finder.hpp"
+#include "services/landmarks/finder/models.hpp"
 
 /// Pictures for the tests of the landmark detector: real captures from outside, and synthetic ones.
 namespace handcast::test {
@@ -25,7 +26,8 @@ using Grey = renderer::Image<std::uint8_t>;
 inline std::filesystem::path models() {
   const char* named = std::getenv("HANDCAST_MODELS");
   const std::filesystem::path folder = named && *named ? named : "../shared/models";
-  const bool here = std::filesystem::exists(folder / landmarks::kHandModel) && std::filesystem::exists(folder / landmarks::kPalmModel);
+  const bool here = std::filesystem::exists(folder / landmarks::kHandModel) &&
+                    std::filesystem::exists(folder / landmarks::kPalmModel);
   return here ? folder : std::filesystem::path();
 }
 
@@ -38,24 +40,30 @@ inline constexpr int kCaptures[] = {1, 3, 6, 8};
 
 inline std::optional<Capture> capture(int number) {
   const char* data = std::getenv("HANDCAST_DATA");
-  const auto name = (std::filesystem::path(data ? data : "../shared/data") / "real" / std::to_string(number)).string();
+  const auto name =
+      (std::filesystem::path(data ? data : "../shared/data") / "real" / std::to_string(number))
+          .string();
   auto image = renderer::read_grey_png(name + "_camera.png");
   if (!image) return std::nullopt;
-  const auto joints = detect::read_joints(name + "_joints_2d_left.npy", image->width(), image->height());
+  const auto joints =
+      detect::read_joints(name + "_joints_2d_left.npy", image->width(), image->height());
   if (!joints) return std::nullopt;
   return Capture{std::move(*image), *joints};
 }
 
-#define SKIP_WITHOUT_MODELS() \
-  if (handcast::test::models().empty()) GTEST_SKIP() << "no networks in ../shared/models (HANDCAST_MODELS names another folder)"
-#define SKIP_WITHOUT_CAPTURES() \
-  if (!handcast::test::capture(1)) GTEST_SKIP() << "no real captures in ../shared/data/real (HANDCAST_DATA names another place)"
+#define SKIP_WITHOUT_MODELS()           \
+  if (handcast::test::models().empty()) \
+  GTEST_SKIP() << "no networks in ../shared/models (HANDCAST_MODELS names another folder)"
+#define SKIP_WITHOUT_CAPTURES()    \
+  if (!handcast::test::capture(1)) \
+  GTEST_SKIP() << "no real captures in ../shared/data/real (HANDCAST_DATA names another place)"
 
 template <class Value>
 Grey painted(int width, int height, Value value) {
   Grey image(width, height);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) image.at(x, y) = static_cast<std::uint8_t>(std::clamp<double>(value(x, y), 0, 255));
+    for (int x = 0; x < width; ++x)
+      image.at(x, y) = static_cast<std::uint8_t>(std::clamp<double>(value(x, y), 0, 255));
   return image;
 }
 
@@ -68,18 +76,24 @@ inline Grey noise(int width, int height) {
 inline Grey face(int width, int height) {
   return painted(width, height, [&](int x, int y) {
     const double u = (x - 0.5 * width) / (0.2 * height), v = (y - 0.5 * height) / (0.28 * height);
-    const auto spot = [&](double cu, double cv, double su, double sv) { return std::hypot((u - cu) / su, (v - cv) / sv) < 1; };
+    const auto spot = [&](double cu, double cv, double su, double sv) {
+      return std::hypot((u - cu) / su, (v - cv) / sv) < 1;
+    };
     if (std::hypot(u, v) > 1) return 9.0;
-    return spot(-0.4, -0.25, 0.15, 0.1) || spot(0.4, -0.25, 0.15, 0.1) || spot(0, 0.5, 0.4, 0.1) ? 40.0 : 150.0 - 50 * std::hypot(u, v);
+    return spot(-0.4, -0.25, 0.15, 0.1) || spot(0.4, -0.25, 0.15, 0.1) || spot(0, 0.5, 0.4, 0.1)
+               ? 40.0
+               : 150.0 - 50 * std::hypot(u, v);
   });
 }
 
 inline Grey mirrored(const Grey& image) {
-  return painted(image.width(), image.height(), [&](int x, int y) { return image.at(image.width() - 1 - x, y); });
+  return painted(image.width(), image.height(),
+                 [&](int x, int y) { return image.at(image.width() - 1 - x, y); });
 }
 
 inline Grey brightened(const Grey& image, double gain) {
-  return painted(image.width(), image.height(), [&](int x, int y) { return image.at(x, y) * gain + 0.5; });
+  return painted(image.width(), image.height(),
+                 [&](int x, int y) { return image.at(x, y) * gain + 0.5; });
 }
 
 /// The mean over (2 reach_x + 1) x (2 reach_y + 1) pixels.
@@ -88,7 +102,8 @@ inline Grey blurred(const Grey& image, int reach_x, int reach_y) {
     return painted(from.width(), from.height(), [&](int x, int y) {
       int sum = reach;
       for (int k = -reach; k <= reach; ++k)
-        sum += from.at(std::clamp(x + k * dx, 0, from.width() - 1), std::clamp(y + k * dy, 0, from.height() - 1));
+        sum += from.at(std::clamp(x + k * dx, 0, from.width() - 1),
+                       std::clamp(y + k * dy, 0, from.height() - 1));
       return sum / (2 * reach + 1);
     });
   };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/command_line.hpp"
 
 #include <gmock/gmock.h>
@@ -27,7 +28,8 @@ TEST(CommandLine, SettingsKeepTheirOrder) {
 TEST(CommandLine, WhatCannotBeUnderstoodIsNamed) {
   EXPECT_THAT(parse({"--config"}).error().what, HasSubstr("--config needs a value"));
   EXPECT_THAT(parse({"--frobnicate"}).error().what, HasSubstr("'--frobnicate'"));
-  EXPECT_THAT(parse({"--config", "rig.toml", "--set", "rate"}).error().what, HasSubstr("path=value"));
+  EXPECT_THAT(parse({"--config", "rig.toml", "--set", "rate"}).error().what,
+              HasSubstr("path=value"));
   EXPECT_THAT(parse({}).error().what, HasSubstr("handcast up"));
   EXPECT_EQ(parse({}).error().code, Errc::bad_config);
 }
@@ -39,7 +41,8 @@ TEST(CommandLine, QuestionsNeedNoConfiguration) {
 }
 
 TEST(Environment, RingsAreReadAndNonsenseIsLeftOut) {
-  EXPECT_THAT(parse_rings("camera.frames=5,pose.hands=61"), ElementsAre(Pair("camera.frames", 5), Pair("pose.hands", 61)));
+  EXPECT_THAT(parse_rings("camera.frames=5,pose.hands=61"),
+              ElementsAre(Pair("camera.frames", 5), Pair("pose.hands", 61)));
   EXPECT_THAT(parse_rings(""), IsEmpty());
   EXPECT_THAT(parse_rings("=5,a,b=,c=x,d=-1,e=7z,f=7"), ElementsAre(Pair("f", 7)));
 }

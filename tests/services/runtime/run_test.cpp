@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Daemons of a few lines, run in a process of their own, judged by their exit codes and last words.
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -29,7 +30,9 @@ class Run : public testing::Test {
     folder_ = name;
     rig_ = (folder_ / "rig.toml").string();
     write_rig("name = \"desk\"\n");
-    for (const auto* variable : {"HANDCAST_RINGS", "HANDCAST_READY_FD", "HANDCAST_EPOCH_NS", "HANDCAST_STANDBY_FD"}) unsetenv(variable);
+    for (const auto* variable :
+         {"HANDCAST_RINGS", "HANDCAST_READY_FD", "HANDCAST_EPOCH_NS", "HANDCAST_STANDBY_FD"})
+      unsetenv(variable);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -39,10 +42,12 @@ class Run : public testing::Test {
     arguments.insert(arguments.begin(), "handcast-pose");
     std::vector<char*> pointers;
     for (auto& argument : arguments) pointers.push_back(argument.data());
-    return run({"pose", "Samples the hand tracker.", {"twin", "replay"}}, static_cast<int>(pointers.size()), pointers.data(), body);
+    return run({"pose", "Samples the hand tracker.", {"twin", "replay"}},
+               static_cast<int>(pointers.size()), pointers.data(), body);
   }
   static void give_rings(const ipc::Segment& poses, const ipc::Segment& marks) {
-    setenv("HANDCAST_RINGS", fmt::format("pose.hands={},marks.pose={}", poses.fd(), marks.fd()).c_str(), 1);
+    setenv("HANDCAST_RINGS",
+           fmt::format("pose.hands={},marks.pose={}", poses.fd(), marks.fd()).c_str(), 1);
   }
 
   std::filesystem::path folder_;
@@ -75,28 +80,39 @@ TEST_F(Run, AWriteIntoAClosedPipeDoesNotEndADaemon) {
 TEST_F(Run, ABrokenRigFileIsExitHundredWithItsLine) {
   write_rig("[camera]\nrate_hz = -5\n");
   EXPECT_EXIT(_exit(daemon(do_nothing)), ExitedWithCode(kExitConfig), "rig.toml:2.*rate_hz");
-  EXPECT_EXIT(_exit(daemon(do_nothing, {"--config", "/nowhere/rig.toml"})), ExitedWithCode(kExitConfig), "/nowhere/rig.toml");
+  EXPECT_EXIT(_exit(daemon(do_nothing, {"--config", "/nowhere/rig.toml"})),
+              ExitedWithCode(kExitConfig), "/nowhere/rig.toml");
 }
 
 TEST_F(Run, SettingsOfTheCommandLineWin) {
-  const auto expect_rate = [](Context& context) { _exit(context.rig().camera.rate_hz == 77 ? 5 : 6); };
-  EXPECT_EXIT(_exit(daemon(expect_rate, {"--config", rig_, "--set", "camera.rate_hz=77"})), ExitedWithCode(5), "");
+  const auto expect_rate = [](Context& context) {
+    _exit(context.rig().camera.rate_hz == 77 ? 5 : 6);
+  };
+  EXPECT_EXIT(_exit(daemon(expect_rate, {"--config", rig_, "--set", "camera.rate_hz=77"})),
+              ExitedWithCode(5), "");
 }
 
 TEST_F(Run, StartedByHandTheSentenceNamesTheCommandThatWorks) {
-  const auto open_ring = [](Context& context) { must(context.writer<msg::HandPoses>("pose.hands")); };
+  const auto open_ring = [](Context& context) {
+    must(context.writer<msg::HandPoses>("pose.hands"));
+  };
   EXPECT_EXIT(_exit(daemon(open_ring)), ExitedWithCode(kExitConfig), "handcast up");
 }
 
 TEST_F(Run, WhatRestartingMayHelpIsExitHundredAndEleven) {
-  const auto fail_with = [](Errc code) { return [code](Context&) { must(Result<int>(fail(code, "the tracker is unplugged"))); }; };
-  EXPECT_EXIT(_exit(daemon(fail_with(Errc::disconnected))), ExitedWithCode(kExitRestart), "the tracker is unplugged");
+  const auto fail_with = [](Errc code) {
+    return [code](Context&) { must(Result<int>(fail(code, "the tracker is unplugged"))); };
+  };
+  EXPECT_EXIT(_exit(daemon(fail_with(Errc::disconnected))), ExitedWithCode(kExitRestart),
+              "the tracker is unplugged");
   EXPECT_EXIT(_exit(daemon(fail_with(Errc::unavailable))), ExitedWithCode(kExitRestart), "");
   EXPECT_EXIT(_exit(daemon(fail_with(Errc::bad_config))), ExitedWithCode(kExitConfig), "");
 }
 
 TEST_F(Run, ADamagedFileAtStartUpIsExitHundredForItStaysDamaged) {
-  const auto open_recording = [](Context&) { must(Result<int>(fail(Errc::bad_data, "joints_left.npy: its header is cut off"))); };
+  const auto open_recording = [](Context&) {
+    must(Result<int>(fail(Errc::bad_data, "joints_left.npy: its header is cut off")));
+  };
   EXPECT_EXIT(_exit(daemon(open_recording)), ExitedWithCode(kExitConfig), "its header is cut off");
 }
 
@@ -156,7 +172,8 @@ TEST_F(Run, MessagesAndMarksArriveInTheRingsHandedOver) {
     msg::HandPoses message;
     message.header = {.frame_id = 7, .origin_ns = 70};
     writer.publish(message);
-    const msg::StageMark sample{.stage = msg::Stage::sample, .detail = 0, .begin_ns = 1, .end_ns = 2};
+    const msg::StageMark sample{
+        .stage = msg::Stage::sample, .detail = 0, .begin_ns = 1, .end_ns = 2};
     context.mark(message.header, {&sample, 1});
   });
   const auto pose = poses.next(Deadline::now());
@@ -183,7 +200,9 @@ TEST_F(Run, AnIdleDaemonBeatsItsHeartAndABusyOneNeedNot) {
 
 TEST_F(Run, ARingOfAnotherTypeIsRefusedWithItsName) {
   setenv("HANDCAST_RINGS", fmt::format("pose.hands={}", marks_.fd()).c_str(), 1);
-  const auto open_ring = [](Context& context) { must(context.writer<msg::HandPoses>("pose.hands")); };
+  const auto open_ring = [](Context& context) {
+    must(context.writer<msg::HandPoses>("pose.hands"));
+  };
   EXPECT_EXIT(_exit(daemon(open_ring)), ExitedWithCode(kExitConfig), "another type of message");
 }
 
@@ -208,7 +227,9 @@ class Spare : public Run {
 
 TEST_F(Spare, PreparesItselfAndTakesWhatOnlyOneMayHaveInItsTurn) {
   give_rings(poses_, marks_);
-  const auto again = [](const ipc::Segment& ring) { return ipc::Segment::open(UniqueFd(dup(ring.fd()))).value(); };
+  const auto again = [](const ipc::Segment& ring) {
+    return ipc::Segment::open(UniqueFd(dup(ring.fd()))).value();
+  };
   std::optional worker_poses(ipc::Writer<msg::HandPoses>::attach(again(poses_)).value());
   std::optional worker_marks(ipc::Writer<msg::StageMarks>::attach(again(marks_)).value());
   auto marks = ipc::Reader<msg::StageMarks>::attach(again(marks_)).value();
@@ -279,7 +300,8 @@ TEST_F(Spare, ThatIsToldToStopWhileItWaitsEndsWithZero) {
 
 TEST_F(Run, ACoreThatIsNotThereIsExitHundred) {
   write_rig("[pose.process]\ncores = [1000]\n");
-  EXPECT_EXIT(_exit(daemon(do_nothing)), ExitedWithCode(kExitConfig), "pose.process.cores: there is no core 1000");
+  EXPECT_EXIT(_exit(daemon(do_nothing)), ExitedWithCode(kExitConfig),
+              "pose.process.cores: there is no core 1000");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each test in a process of its own: what is set cannot always be taken back.
 #include "services/runtime/scheduling.hpp"
 

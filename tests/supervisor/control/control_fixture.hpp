@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -35,7 +36,8 @@ class Control : public testing::Test {
   }
 
   static std::size_t count_descriptors() {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}));
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}));
   }
 
   RuntimeScratch scratch_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <poll.h>
 #include <sys/mman.h>
@@ -26,8 +27,8 @@ TEST(ControlMessage, ARequestComesBackAsItWasSent) {
 }
 
 TEST(ControlMessage, NonsenseIsRefusedWithASentence) {
-  for (const auto* line :
-       {"", "[]", "{", "42", R"({"verb":7})", R"({"verb":"fly"})", R"({"verb":"swap","service":"pose"})", R"({"verb":"restart"})"}) {
+  for (const auto* line : {"", "[]", "{", "42", R"({"verb":7})", R"({"verb":"fly"})",
+                           R"({"verb":"swap","service":"pose"})", R"({"verb":"restart"})"}) {
     const auto request = parse_request(line);
     ASSERT_FALSE(request) << line;
     EXPECT_EQ(request.error().code, Errc::bad_data);
@@ -36,9 +37,15 @@ TEST(ControlMessage, NonsenseIsRefusedWithASentence) {
 }
 
 TEST(ControlMessage, ARequestForThePastSaysHowMuchOfIt) {
-  EXPECT_EQ(parse_request(print_request({.verb = Verb::history, .service = {}, .backend = {}, .seconds = 2.5}))->seconds, 2.5);
-  for (const auto* line : {R"({"verb":"history"})", R"({"verb":"history","seconds":0})", R"({"verb":"history","seconds":-1})",
-                           R"({"verb":"history","seconds":"10"})", R"({"verb":"history","seconds":null})"}) {
+  EXPECT_EQ(
+      parse_request(
+          print_request({.verb = Verb::history, .service = {}, .backend = {}, .seconds = 2.5}))
+          ->seconds,
+      2.5);
+  for (const auto* line :
+       {R"({"verb":"history"})", R"({"verb":"history","seconds":0})",
+        R"({"verb":"history","seconds":-1})", R"({"verb":"history","seconds":"10"})",
+        R"({"verb":"history","seconds":null})"}) {
     const auto request = parse_request(line);
     ASSERT_FALSE(request) << line;
     EXPECT_THAT(request.error().what, HasSubstr("a number above 0"));
@@ -50,7 +57,9 @@ TEST(ControlMessage, EveryVerbHasItsName) {
     EXPECT_EQ(parse_request(print_request({.verb = verb}))->verb, verb);
 }
 
-TEST(ControlMessage, WhatAPersonTypedMayBeAnyBytes) { EXPECT_TRUE(parse_request(print_request({Verb::restart, "pose\xff", ""}))); }
+TEST(ControlMessage, WhatAPersonTypedMayBeAnyBytes) {
+  EXPECT_TRUE(parse_request(print_request({Verb::restart, "pose\xff", ""})));
+}
 
 TEST_F(Control, AClientGetsTheAnswerToItsRequest) {
   serve([](const Request& request, const ControlServer::Reply& reply) {
@@ -92,7 +101,8 @@ TEST_F(Control, AClientThatDoesNotReadIsDroppedAndTheOthersAreServed) {
   });
   const auto lazy = connect_to(socket_of("desk").value()).value();
   const std::string requests = to_line({{"verb", "status"}}) + "\n";
-  for (int i = 0; i < 8; ++i) ASSERT_EQ(send(lazy.get(), requests.data(), requests.size(), MSG_NOSIGNAL), requests.size());
+  for (int i = 0; i < 8; ++i)
+    ASSERT_EQ(send(lazy.get(), requests.data(), requests.size(), MSG_NOSIGNAL), requests.size());
   EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
   EXPECT_LT(answers, 9);  // after what it was sent and what was kept for it
   pollfd hung_up{.fd = lazy.get(), .events = 0, .revents = 0};
@@ -120,7 +130,8 @@ TEST_F(Control, DescriptorsComeWithTheAnswerInTheirOrderAndAreNotInherited) {
     answer["rings"] = {"left", "right"};
     reply(answer, {left.get(), right.get()});
   });
-  const auto answer = while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
+  const auto answer =
+      while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
   ASSERT_TRUE(answer) << answer.error().what;
   ASSERT_EQ(answer->descriptors.size(), 2);
   EXPECT_EQ(content_of(answer->descriptors[0]), 'l');
@@ -134,24 +145,31 @@ TEST_F(Control, AsManyDescriptorsAsTheKernelAllowsArriveAndMoreAreNotSent) {
   serve([&](const Request&, const ControlServer::Reply& reply) {
     auto answer = success();
     answer["rings"] = std::vector<std::string>(count, "ring");
-    answer["text"] = std::string(1'000'000, 'x');  // descriptors also come with an answer that does not fit at once
+    answer["text"] = std::string(
+        1'000'000, 'x');  // descriptors also come with an answer that does not fit at once
     reply(answer, std::vector<int>(count, file.get()));
   });
-  const auto all = while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
+  const auto all =
+      while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
   ASSERT_TRUE(all) << all.error().what;
   EXPECT_EQ(all->descriptors.size(), kMostDescriptors);
   ++count;
-  const auto too_many = while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
+  const auto too_many =
+      while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::rings}); });
   ASSERT_FALSE(too_many);
   EXPECT_THAT(too_many.error().what, HasSubstr("went away"));
 }
 
 TEST_F(Control, DescriptorsThatNobodyAskedForAreClosed) {
   const auto file = memory_with('x');
-  serve([&](const Request&, const ControlServer::Reply& reply) { reply(success(), {file.get(), file.get()}); });
+  serve([&](const Request&, const ControlServer::Reply& reply) {
+    reply(success(), {file.get(), file.get()});
+  });
   const auto before = count_descriptors();
-  const auto answer =
-      while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::history, .service = {}, .backend = {}, .seconds = 1}); });
+  const auto answer = while_it_turns([] {
+    return ask_with_descriptors(
+        "desk", {.verb = Verb::history, .service = {}, .backend = {}, .seconds = 1});
+  });
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->descriptors.size(), 1);
   EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
@@ -182,7 +200,8 @@ TEST_F(Control, WhatTakesLongIsWaitedForWhileTheSupervisorIsAwake) {
     if (request.verb == Verb::status) reply(success());
     if (request.verb == Verb::status && ++asked_meanwhile == 3) later(success());
   });
-  EXPECT_TRUE(while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::down}, 50ms); }));
+  EXPECT_TRUE(
+      while_it_turns([] { return ask_with_descriptors("desk", {.verb = Verb::down}, 50ms); }));
   EXPECT_EQ(asked_meanwhile, 3);
 }
 
@@ -195,7 +214,8 @@ TEST_F(Control, ALivingRigKeepsItsNameAndADeadOneDoesNot) {
 
   const auto path = socket_of("desk").value();
   const auto kept = scratch_.path() / "kept";
-  std::filesystem::rename(path, kept);  // what a supervisor that was killed leaves: a socket file nobody listens at
+  std::filesystem::rename(
+      path, kept);  // what a supervisor that was killed leaves: a socket file nobody listens at
   first->reset();
   std::filesystem::rename(kept, path);
   EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who may come in: the runtime folder, its sockets, and the users at both ends of them.
 #include "supervisor/control/runtime_folder.hpp"
 
@@ -32,7 +33,8 @@ class RuntimeFolder : public Control {
     EXPECT_FALSE(socket_of("desk"));
     EXPECT_FALSE(living_rigs());
   }
-  /// The exit code of `body`, run as another user with every folder on the way to the socket open to everybody.
+  /// The exit code of `body`, run as another user with every folder on the way to the socket open
+  /// to everybody.
   int as_somebody_else(const std::function<int()>& body) const {
     chmod(scratch_.path().c_str(), 0755);
     chmod(place().c_str(), 0755);
@@ -42,7 +44,9 @@ class RuntimeFolder : public Control {
     waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  std::filesystem::path place() const { return scratch_.path() / ("handcast-" + std::to_string(getuid())); }
+  std::filesystem::path place() const {
+    return scratch_.path() / ("handcast-" + std::to_string(getuid()));
+  }
 };
 
 TEST_F(RuntimeFolder, IsForItsUserAlone) {
@@ -103,7 +107,8 @@ TEST_F(RuntimeFolder, AnotherUsersRequestIsNotEvenRead) {
   const auto ask_and_read = [&path] {
     const UniqueFd socket(::socket(AF_UNIX, SOCK_STREAM, 0));
     const auto address = address_of(path);
-    if (connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return 1;
+    if (connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      return 1;
     const std::string_view line = "{\"verb\":\"status\"}\n";
     send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
     char byte = 0;
@@ -111,7 +116,8 @@ TEST_F(RuntimeFolder, AnotherUsersRequestIsNotEvenRead) {
   };
   EXPECT_EQ(while_it_turns([&] { return as_somebody_else(ask_and_read); }), 0);
   EXPECT_EQ(requests, 0);
-  EXPECT_EQ(as_somebody_else([&path] { return access(path.c_str(), W_OK) == 0 ? 0 : 1; }), 0);  // it could get there
+  EXPECT_EQ(as_somebody_else([&path] { return access(path.c_str(), W_OK) == 0 ? 0 : 1; }),
+            0);  // it could get there
 }
 
 TEST_F(RuntimeFolder, WhatListensInARigsNameForAnotherUserIsNotTrusted) {
@@ -128,7 +134,8 @@ TEST_F(RuntimeFolder, WhatListensInARigsNameForAnotherUserIsNotTrusted) {
   const auto answer = ask("desk", {});
   ASSERT_FALSE(answer);
   EXPECT_THAT(answer.error().what, AllOf(HasSubstr("another user"), HasSubstr("desk.sock")));
-  const auto server = ControlServer::listen("desk", loop_, [](const Request&, const ControlServer::Reply&) {});
+  const auto server =
+      ControlServer::listen("desk", loop_, [](const Request&, const ControlServer::Reply&) {});
   ASSERT_FALSE(server);
   EXPECT_THAT(server.error().what, HasSubstr("another user"));
 }

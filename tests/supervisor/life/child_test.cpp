@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/child.hpp"
 
 #include <gmock/gmock.h>
@@ -15,8 +16,12 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-Result<Child> shell(const std::string& script, std::vector<std::pair<std::string, int>> rings = {}) {
-  return Child::spawn({.program = "/bin/bash", .arguments = {"-c", script}, .rings = std::move(rings), .epoch_ns = 42});
+Result<Child> shell(const std::string& script,
+                    std::vector<std::pair<std::string, int>> rings = {}) {
+  return Child::spawn({.program = "/bin/bash",
+                       .arguments = {"-c", script},
+                       .rings = std::move(rings),
+                       .epoch_ns = 42});
 }
 
 Exit wait_for(Child& child) {
@@ -44,7 +49,8 @@ TEST(Child, ExitCodesAndSignalsAreToldApart) {
 }
 
 TEST(Child, AMissingProgramIsASentenceAndNotAProcess) {
-  const auto child = Child::spawn({.program = "/nowhere/handcast-camera", .arguments = {}, .rings = {}});
+  const auto child =
+      Child::spawn({.program = "/nowhere/handcast-camera", .arguments = {}, .rings = {}});
   ASSERT_FALSE(child);
   EXPECT_EQ(child.error().code, Errc::bad_config);
   EXPECT_THAT(child.error().what, HasSubstr("/nowhere/handcast-camera"));
@@ -53,9 +59,10 @@ TEST(Child, AMissingProgramIsASentenceAndNotAProcess) {
 TEST(Child, TheContractStandsInTheEnvironment) {
   const UniqueFd memory(memfd_create("ring", MFD_CLOEXEC));
   ASSERT_EQ(ftruncate(memory.get(), 4096), 0);
-  const auto child =
-      shell("echo $HANDCAST_EPOCH_NS; echo $HANDCAST_RINGS; fd=${HANDCAST_RINGS#*=}; readlink /proc/self/fd/$fd; echo >&$HANDCAST_READY_FD",
-            {{"camera.frames", memory.get()}});
+  const auto child = shell(
+      "echo $HANDCAST_EPOCH_NS; echo $HANDCAST_RINGS; fd=${HANDCAST_RINGS#*=}; readlink "
+      "/proc/self/fd/$fd; echo >&$HANDCAST_READY_FD",
+      {{"camera.frames", memory.get()}});
   ASSERT_TRUE(child);
   pollfd ready{.fd = child->ready_fd(), .events = POLLIN, .revents = 0};
   ASSERT_EQ(poll(&ready, 1, 20000), 1);
@@ -63,7 +70,8 @@ TEST(Child, TheContractStandsInTheEnvironment) {
   ASSERT_EQ(::read(child->ready_fd(), &byte, 1), 1);
   EXPECT_EQ(byte, '\n');
   std::string log(1000, '\0');
-  log.resize(static_cast<std::size_t>(std::max<ssize_t>(::read(child->log_fd(), log.data(), log.size()), 0)));
+  log.resize(static_cast<std::size_t>(
+      std::max<ssize_t>(::read(child->log_fd(), log.data(), log.size()), 0)));
   EXPECT_THAT(log, HasSubstr("42\ncamera.frames="));
   EXPECT_THAT(log, HasSubstr("memfd:ring"));
 }
@@ -73,7 +81,8 @@ TEST(Child, NothingOfTheSupervisorLeaksIntoAService) {
   sigset_t before;
   sigprocmask(SIG_SETMASK, nullptr, &before);
   const auto blocked_here = open_stop_signals();
-  const auto output = output_of("/bin/bash", {"-c", "ls -l /proc/self/fd; grep -i sigblk /proc/self/status"}, 20000);
+  const auto output = output_of(
+      "/bin/bash", {"-c", "ls -l /proc/self/fd; grep -i sigblk /proc/self/status"}, 20000);
   sigprocmask(SIG_SETMASK, &before, nullptr);
   ASSERT_TRUE(output);
   EXPECT_THAT(*output, Not(HasSubstr("secret")));
@@ -93,7 +102,8 @@ TEST(Child, GrandchildrenEndWithTheService) {
     if (FILE* file = fopen(("/proc/" + std::to_string(grandchild) + "/stat").c_str(), "r")) {
       state.resize(fread(state.data(), 1, state.size(), file));
       fclose(file);
-      if (state.find(") Z ") != std::string::npos) return;  // dead; whoever adopted it has not looked yet
+      if (state.find(") Z ") != std::string::npos)
+        return;  // dead; whoever adopted it has not looked yet
     }
     usleep(10000);
   }
@@ -101,11 +111,13 @@ TEST(Child, GrandchildrenEndWithTheService) {
 }
 
 TEST(Child, ASpareGetsItsTurnThroughADescriptorOfItsOwn) {
-  auto child = Child::spawn({.program = "/bin/bash",
-                             .arguments = {"-c", "read -n 1 -u $HANDCAST_STANDBY_FD turn || exit 3; exit $turn"},
-                             .rings = {},
-                             .spare = true})
-                   .value();
+  auto child =
+      Child::spawn(
+          {.program = "/bin/bash",
+           .arguments = {"-c", "read -n 1 -u $HANDCAST_STANDBY_FD turn || exit 3; exit $turn"},
+           .rings = {},
+           .spare = true})
+          .value();
   EXPECT_FALSE(child.try_reap());
   child.give_turn();
   EXPECT_EQ(wait_for(child).code, 1) << "its turn is the byte '1'";
@@ -117,10 +129,15 @@ TEST(Child, ASpareSeesTheEndOfItsSupervisor) {
   ASSERT_EQ(pipe(ends), 0);
   const auto supervisor = fork();
   if (supervisor == 0) {
-    auto child = Child::spawn(
-        {.program = "/bin/bash", .arguments = {"-c", "read -n 1 -u $HANDCAST_STANDBY_FD turn || exit 0"}, .rings = {}, .spare = true});
+    auto child =
+        Child::spawn({.program = "/bin/bash",
+                      .arguments = {"-c", "read -n 1 -u $HANDCAST_STANDBY_FD turn || exit 0"},
+                      .rings = {},
+                      .spare = true});
     const pid_t pid = child ? child->pid() : 0;
-    _exit(write(ends[1], &pid, sizeof pid) == sizeof pid ? 0 : 1);  // without destructors, as by SIGKILL
+    _exit(write(ends[1], &pid, sizeof pid) == sizeof pid
+              ? 0
+              : 1);  // without destructors, as by SIGKILL
   }
   close(ends[1]);
   ASSERT_EQ(read(ends[0], &spare, sizeof spare), static_cast<ssize_t>(sizeof spare));
@@ -167,7 +184,8 @@ TEST(Child, TheEndOfAnAdoptedProcessThatNobodyReportsIsUnknown) {
 }
 
 TEST(Child, AServiceNeverWaitsForItsSupervisorToRead) {
-  auto child = shell("for ((i = 0; i < 20000; ++i)); do echo 0123456789 2>/dev/null; done; exit 7").value();
+  auto child =
+      shell("for ((i = 0; i < 20000; ++i)); do echo 0123456789 2>/dev/null; done; exit 7").value();
   EXPECT_EQ(wait_for(child).code, 7) << "200 KB into a pipe of 64 KB that nobody reads";
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/log_tail.hpp"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/restart_policy.hpp"
 
 #include <gtest/gtest.h>
@@ -10,12 +11,14 @@ using Action = Decision::Action;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr Exit kKilled{.signalled = true, .code = 9};
 
-/// The waits in ms of `count` deaths that follow each other after `apart_ns` each, none of them healthy.
+/// The waits in ms of `count` deaths that follow each other after `apart_ns` each, none of them
+/// healthy.
 std::vector<std::int64_t> waits_of(int count, std::int64_t apart_ns) {
   std::vector<std::int64_t> waits_ms;
   DeathRecord record;
   for (int i = 0; i < count; ++i) {
-    auto decision = decide(record, {.died_ns = i * apart_ns, .ready_ns = std::nullopt, .exit = kKilled});
+    auto decision =
+        decide(record, {.died_ns = i * apart_ns, .ready_ns = std::nullopt, .exit = kKilled});
     waits_ms.push_back(decision.wait_ns / 1'000'000);
     record = decision.record;
   }
@@ -36,7 +39,8 @@ TEST(RestartPolicy, NoWaitIsLongerThanFiveSeconds) {
 TEST(RestartPolicy, ThirtySecondsOfHealthMakeTheNextRestartImmediateAgain) {
   const DeathRecord record{.streak = 5, .recent_ns = {}};
   const auto almost = decide(record, {.died_ns = 30 * kSecond_ns, .ready_ns = 1, .exit = kKilled});
-  const auto healthy = decide(record, {.died_ns = 30 * kSecond_ns + 1, .ready_ns = 1, .exit = kKilled});
+  const auto healthy =
+      decide(record, {.died_ns = 30 * kSecond_ns + 1, .ready_ns = 1, .exit = kKilled});
   EXPECT_EQ(almost.wait_ns, 800'000'000);
   EXPECT_EQ(healthy.wait_ns, 0);
   EXPECT_EQ(healthy.record.streak, 1);
@@ -45,14 +49,17 @@ TEST(RestartPolicy, ThirtySecondsOfHealthMakeTheNextRestartImmediateAgain) {
 TEST(RestartPolicy, TenDeathsWithinAMinuteAreAStormAndNineAreNot) {
   DeathRecord record;
   for (int i = 0; i < 9; ++i) {
-    const auto decision = decide(record, {.died_ns = i * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+    const auto decision =
+        decide(record, {.died_ns = i * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
     EXPECT_EQ(decision.action, Action::restart) << i;
     record = decision.record;
   }
-  const auto tenth = decide(record, {.died_ns = 59 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+  const auto tenth =
+      decide(record, {.died_ns = 59 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
   EXPECT_EQ(tenth.action, Action::degrade);
   EXPECT_EQ(tenth.wait_ns, 5 * kSecond_ns);
-  const auto later = decide(record, {.died_ns = 61 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+  const auto later =
+      decide(record, {.died_ns = 61 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
   EXPECT_EQ(later.action, Action::restart) << "the first deaths are more than a minute ago";
 }
 
@@ -60,7 +67,8 @@ TEST(RestartPolicy, DeathsRightAfterReadyStillAddUpToAStorm) {
   DeathRecord record;
   Decision decision;
   for (std::int64_t i = 1; i <= 10; ++i) {
-    decision = decide(record, {.died_ns = i * kSecond_ns, .ready_ns = i * kSecond_ns - 1, .exit = kKilled});
+    decision = decide(record,
+                      {.died_ns = i * kSecond_ns, .ready_ns = i * kSecond_ns - 1, .exit = kKilled});
     record = decision.record;
   }
   EXPECT_EQ(decision.action, Action::degrade);
@@ -78,7 +86,8 @@ TEST(RestartPolicy, JitterMakesAWaitUpToAQuarterLonger) {
 TEST(RestartPolicy, AStormIsRetriedSlowlyAsLongAsItLasts) {
   DeathRecord record;
   for (std::int64_t i = 0; i < 40; ++i) {
-    const auto decision = decide(record, {.died_ns = i * 5 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+    const auto decision =
+        decide(record, {.died_ns = i * 5 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
     if (i >= 9) {
       EXPECT_EQ(decision.action, Action::degrade) << i;
       EXPECT_EQ(decision.wait_ns, kLongestWait_ns) << i;
@@ -88,21 +97,25 @@ TEST(RestartPolicy, AStormIsRetriedSlowlyAsLongAsItLasts) {
 }
 
 TEST(RestartPolicy, AnUnknownEndIsADeath) {
-  EXPECT_EQ(decide({}, {.died_ns = 1, .ready_ns = std::nullopt, .exit = {.unknown = true}}).action, Action::restart);
+  EXPECT_EQ(decide({}, {.died_ns = 1, .ready_ns = std::nullopt, .exit = {.unknown = true}}).action,
+            Action::restart);
 }
 
 TEST(RestartPolicy, ExitHundredIsNeverRestarted) {
-  const auto decision = decide({}, {.died_ns = 1, .ready_ns = std::nullopt, .exit = {.signalled = false, .code = 100}});
+  const auto decision = decide(
+      {}, {.died_ns = 1, .ready_ns = std::nullopt, .exit = {.signalled = false, .code = 100}});
   EXPECT_EQ(decision.action, Action::fail);
 }
 
 TEST(RestartPolicy, SignalHundredIsNotExitHundred) {
-  const auto decision = decide({}, {.died_ns = 1, .ready_ns = std::nullopt, .exit = {.signalled = true, .code = 100}});
+  const auto decision = decide(
+      {}, {.died_ns = 1, .ready_ns = std::nullopt, .exit = {.signalled = true, .code = 100}});
   EXPECT_EQ(decision.action, Action::restart);
 }
 
 TEST(RestartPolicy, AServiceThatEndsWellByItselfIsLeftAlone) {
-  const auto decision = decide({}, {.died_ns = 1, .ready_ns = 0, .exit = {.signalled = false, .code = 0}});
+  const auto decision =
+      decide({}, {.died_ns = 1, .ready_ns = 0, .exit = {.signalled = false, .code = 0}});
   EXPECT_EQ(decision.action, Action::retire);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/life/service.hpp"
 
 #include <gmock/gmock.h>
@@ -44,9 +45,9 @@ class ServiceTest : public testing::Test {
     const auto program = launch_.program_folder / "handcast-pose";
     std::ofstream(program) << "#!/bin/bash\n" << script << "\n";
     chmod(program.c_str(), 0755);
-    services_.push_back(
-        std::make_unique<Service>(ServiceSpec{.name = "pose", .stream = "pose.hands", .backend = "twin", .process = process_}, launch_,
-                                  loop_, [this](Service&, Service::Event event) { events_.push_back(event); }));
+    services_.push_back(std::make_unique<Service>(
+        ServiceSpec{.name = "pose", .stream = "pose.hands", .backend = "twin", .process = process_},
+        launch_, loop_, [this](Service&, Service::Event event) { events_.push_back(event); }));
     return *services_.back();
   }
   void run_until(const std::function<bool()>& done) {
@@ -116,7 +117,8 @@ TEST_F(ServiceTest, ExitHundredIsFinalAndItsLastWordsAreKept) {
 }
 
 TEST_F(ServiceTest, ABackEndOnTrialThatDiesIsNotTriedAgainAndTheOldOneWorksOn) {
-  auto& pose = service("case \"$*\" in *pose.backend=broken*) exit 111;; esac\n" + std::string(kWorks));
+  auto& pose =
+      service("case \"$*\" in *pose.backend=broken*) exit 111;; esac\n" + std::string(kWorks));
   pose.start();
   run_until([&] { return pose.state() == State::ready; });
   pose.use_backend("broken", true);
@@ -164,7 +166,10 @@ TEST_F(ServiceTest, AnAdoptedServiceGoesOnAsItWasAndIsReplacedWhenItDies) {
   run_until([&] { return first.state() == State::ready; });
   auto reports = ExitReports::from_environment();
   launch_.reports = &reports;
-  AdoptedProcess process{.saved = first.saved(), .pidfd = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, first.pid(), 0))), .log = {}};
+  AdoptedProcess process{
+      .saved = first.saved(),
+      .pidfd = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, first.pid(), 0))),
+      .log = {}};
   process.saved.restarts = 3;
   auto& second = service(kWorks);
   second.inherit(process.saved);
@@ -195,7 +200,11 @@ TEST_F(ServiceTest, OnlyASwapIsInheritedAsASwap) {
 
 TEST_F(ServiceTest, OneThatHadFailedStaysFailedUnderTheNextSupervisor) {
   auto& pose = service(kWorks);
-  pose.inherit({.name = "pose", .state = State::failed, .swapped = {}, .fingerprint = "as it was", .restarts = 2});
+  pose.inherit({.name = "pose",
+                .state = State::failed,
+                .swapped = {},
+                .fingerprint = "as it was",
+                .restarts = 2});
   EXPECT_EQ(pose.state(), State::failed);
   EXPECT_TRUE(pose.first_start_ns()) << "it is not to be begun";
   EXPECT_EQ(pose.restarts(), 2);
@@ -220,7 +229,8 @@ class PublishingService : public ServiceTest {
     run_until([&] { return ticks_ > then + 1; });
   }
 
-  ipc::Segment ring_ = ipc::Segment::create(ipc::RingSpec::of<msg::HandPoses>("pose.hands", 8, true)).value();
+  ipc::Segment ring_ =
+      ipc::Segment::create(ipc::RingSpec::of<msg::HandPoses>("pose.hands", 8, true)).value();
   static constexpr auto kSays = "echo >&$HANDCAST_READY_FD; echo said; exec sleep 1000";
 };
 
@@ -255,7 +265,8 @@ TEST_F(PublishingService, MayBeSilentAsLongAsItsNeedsAreNotReady) {
   run_until([&] { return pose.restarts() > 0; });
 }
 
-/// A service with a spare. Each process that has prepared itself leaves its number in a file of its own.
+/// A service with a spare. Each process that has prepared itself leaves its number in a file of its
+/// own.
 class ServiceWithSpare : public ServiceTest {
  protected:
   void SetUp() override {
@@ -301,7 +312,8 @@ TEST_F(ServiceWithSpare, ASpareThatDiesIsReplacedAndDoesNotCount) {
 TEST_F(ServiceWithSpare, ASpareThatHangsIsReplaced) {
   launch_.silent_s = 0.2;
   auto& pose = ready_service();
-  const auto spare = pose.spare_pid();  // the script says one 's' and then nothing, as if it were stopped
+  const auto spare =
+      pose.spare_pid();  // the script says one 's' and then nothing, as if it were stopped
   run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
   EXPECT_EQ(pose.restarts(), 0);
 }
@@ -320,7 +332,10 @@ TEST_F(ServiceWithSpare, RestartReplacesBoth) {
   auto& pose = ready_service();
   const auto worker = pose.pid(), spare = pose.spare_pid();
   pose.restart();
-  run_until([&] { return pose.state() == State::ready && pose.pid() != worker && pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  run_until([&] {
+    return pose.state() == State::ready && pose.pid() != worker && pose.spare_pid() != 0 &&
+           pose.spare_pid() != spare;
+  });
   EXPECT_NE(pose.pid(), spare) << "a spare of the old settings does not take over";
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/metrics/metrics.hpp"
 
 #include <arpa/inet.h>
@@ -25,8 +26,8 @@ TEST(Metrics, AreNamedAsPrometheusWants) {
 
 TEST(Metrics, ServicesHaveTheirStatesAndWhatTheyUse) {
   const auto text = metrics_text(look_at(10));
-  EXPECT_THAT(text,
-              AllOf(HasSubstr(R"(handcast_service_up{service="camera"} 1)"), HasSubstr(R"(handcast_service_up{service="projector"} 0)")));
+  EXPECT_THAT(text, AllOf(HasSubstr(R"(handcast_service_up{service="camera"} 1)"),
+                          HasSubstr(R"(handcast_service_up{service="projector"} 0)")));
   EXPECT_THAT(text, HasSubstr(R"(handcast_service_state{service="projector",state="degraded"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_service_state{service="projector",state="ready"} 0)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_service_restarts_total{service="projector"} 12)"));
@@ -40,10 +41,20 @@ TEST(Metrics, RingsAndReadersHaveTheirCounts) {
   EXPECT_THAT(text, HasSubstr(R"(handcast_ring_dropped_total{ring="camera.frames"} 0)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_ring_newest_age_seconds{ring="camera.frames"} 0.002)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_ring_epoch{ring="camera.frames"} 3)"));
-  EXPECT_THAT(text, HasSubstr(R"(handcast_reader_received_total{ring="camera.frames",reader="projector",row="0"} 1200)"));
-  EXPECT_THAT(text, HasSubstr(R"(handcast_reader_skipped_total{ring="camera.frames",reader="projector",row="0"} 1200)"));
-  EXPECT_THAT(text, HasSubstr(R"(handcast_reader_lag_messages{ring="camera.frames",reader="projector",row="0"} 1)"));
-  EXPECT_THAT(text, Not(HasSubstr(R"(handcast_ring_newest_age_seconds{ring="marks.camera"})"))) << "nothing was published: no age";
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          R"(handcast_reader_received_total{ring="camera.frames",reader="projector",row="0"} 1200)"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          R"(handcast_reader_skipped_total{ring="camera.frames",reader="projector",row="0"} 1200)"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          R"(handcast_reader_lag_messages{ring="camera.frames",reader="projector",row="0"} 1)"));
+  EXPECT_THAT(text, Not(HasSubstr(R"(handcast_ring_newest_age_seconds{ring="marks.camera"})")))
+      << "nothing was published: no age";
 }
 
 TEST(Metrics, StagesAreInSeconds) {
@@ -56,7 +67,8 @@ TEST(Metrics, OfADeadSupervisorTellThatAndGoOnWithTheRings) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), HasSubstr("handcast_supervisor_up 1"));
   look.missing = "nobody answers";
-  EXPECT_THAT(metrics_text(look), AllOf(HasSubstr("handcast_supervisor_up 0"), HasSubstr("handcast_ring_messages_total")));
+  EXPECT_THAT(metrics_text(look), AllOf(HasSubstr("handcast_supervisor_up 0"),
+                                        HasSubstr("handcast_ring_messages_total")));
   look.status = nullptr;
   EXPECT_THAT(metrics_text(look), HasSubstr("handcast_supervisor_up 0"));
 }

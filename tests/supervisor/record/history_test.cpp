@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/record/history.hpp"
 
 #include <fcntl.h>
@@ -24,7 +25,8 @@ void fill(History& history, double seconds, double hz = 1000, double from_s = 0)
     const double ms = from_s * 1e3 + i * 1e3 / hz;
     history.note("projector",
                  frame(static_cast<std::uint64_t>(i), ms - 3,
-                       {mark(Stage::predict, ms, ms + 0.1), mark(Stage::draw, ms + 0.1, ms + 0.5), mark(Stage::frame, ms, ms + 0.6)}),
+                       {mark(Stage::predict, ms, ms + 0.1), mark(Stage::draw, ms + 0.1, ms + 0.5),
+                        mark(Stage::frame, ms, ms + 0.6)}),
                  0);
   }
 }
@@ -103,7 +105,9 @@ TEST(History, NeedsNoMoreMemoryThanItsSpanAsksFor) {
 
 TEST(History, IsBoundedInBytesWhateverASpanAsksFor) {
   History history(3600);
-  const auto busy = frame(1, 0, {mark(Stage::draw, 1, 2), mark(Stage::warp, 2, 3), mark(Stage::fill, 3, 4), mark(Stage::frame, 1, 4)});
+  const auto busy = frame(1, 0,
+                          {mark(Stage::draw, 1, 2), mark(Stage::warp, 2, 3),
+                           mark(Stage::fill, 3, 4), mark(Stage::frame, 1, 4)});
   for (int i = 0; i < 700'000; ++i) history.note("projector", busy, 0);
   EXPECT_EQ(history.bytes(), History::kMostBlocks * History::kBlockBytes);
   const auto kept = everything_in(history).frames.size();
@@ -125,9 +129,11 @@ TEST(History, MarksThatMakeNoSenseAreLeftOut) {
   History history(60);
   auto wild = frame(1, 0, {mark(Stage::draw, 1, 2)});
   wild.count = 4'000'000'000u;
-  for (std::size_t i = 1; i < wild.marks.size(); ++i) wild.marks[i] = {static_cast<Stage>(77), 0, 5, 9};
+  for (std::size_t i = 1; i < wild.marks.size(); ++i)
+    wild.marks[i] = {static_cast<Stage>(77), 0, 5, 9};
   wild.marks[1] = {Stage::fill, 0, 9, 5};
-  wild.marks[2] = {Stage::fill, 0, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()};
+  wild.marks[2] = {Stage::fill, 0, std::numeric_limits<std::int64_t>::min(),
+                   std::numeric_limits<std::int64_t>::max()};
   history.note("projector", wild, 0);
   const auto seen = everything_in(history);
   ASSERT_EQ(seen.frames.size(), 1u);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/record/ledger.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,8 @@ msg::StageMarks frame_at(std::int64_t time_ns, std::int64_t span_ns = kMs_ns) {
   msg::StageMarks marks;
   marks.header = {.frame_id = 1, .origin_ns = time_ns - 5 * kMs_ns, .published_ns = time_ns};
   marks.count = 1;
-  marks.marks[0] = {.stage = msg::Stage::draw, .detail = 0, .begin_ns = time_ns - span_ns, .end_ns = time_ns};
+  marks.marks[0] = {
+      .stage = msg::Stage::draw, .detail = 0, .begin_ns = time_ns - span_ns, .end_ns = time_ns};
   return marks;
 }
 
@@ -46,7 +48,8 @@ TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
   Ledger ledger;
   auto marks = frame_at(kSecond_ns);
   marks.marks[0].stage = msg::Stage::correct;
-  marks.marks[0].detail = msg::with_rung(msg::with_rung(0, msg::Side::left, msg::Rung::hold), msg::Side::right, msg::Rung::registered);
+  marks.marks[0].detail = msg::with_rung(msg::with_rung(0, msg::Side::left, msg::Rung::hold),
+                                         msg::Side::right, msg::Rung::registered);
   ledger.note("projector", marks);
   marks.marks[0].detail = 0xffff;  // no rungs
   ledger.note("projector", marks);
@@ -56,9 +59,11 @@ TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
 TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
   Ledger ledger;
   const auto start = 100 * kSecond_ns;
-  for (int i = 0; i < 400; ++i) ledger.note("camera", frame_at(start + i * 10 * kMs_ns));  // 100 Hz for 4 s
+  for (int i = 0; i < 400; ++i)
+    ledger.note("camera", frame_at(start + i * 10 * kMs_ns));  // 100 Hz for 4 s
   EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 4 * kSecond_ns), 100, 1);
-  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 5 * kSecond_ns), 50, 1) << "nothing came for a second";
+  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 5 * kSecond_ns), 50, 1)
+      << "nothing came for a second";
   EXPECT_EQ(ledger.frames("camera").recent_hz(start + 9 * kSecond_ns), 0);
   EXPECT_EQ(ledger.frames("nobody").recent_hz(start), 0);
 }
@@ -66,19 +71,24 @@ TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
 TEST(Ledger, TheHeldRateLeavesOutTheFirstSecondAndCountsInterruptions) {
   Ledger ledger;
   const auto start = 100 * kSecond_ns;
-  ledger.note("camera", frame_at(start));                                                               // a slow first second: one frame
-  for (int i = 0; i < 200; ++i) ledger.note("camera", frame_at(start + kSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
+  ledger.note("camera", frame_at(start));  // a slow first second: one frame
+  for (int i = 0; i < 200; ++i)
+    ledger.note("camera", frame_at(start + kSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
   EXPECT_NEAR(ledger.frames("camera").held_hz(start + 3 * kSecond_ns), 100, 0.5);
-  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 5 * kSecond_ns), 50, 0.5) << "silent for the last two of four seconds";
+  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 5 * kSecond_ns), 50, 0.5)
+      << "silent for the last two of four seconds";
 }
 
 TEST(Ledger, FramesWhoseMarksWereOverwrittenAreCounted) {
   Ledger ledger;
   const auto start = 100 * kSecond_ns;
-  for (int i = 0; i <= 40; ++i) ledger.note("projector", frame_at(start + i * 100 * kMs_ns), i > 0 ? 89 : 0);  // 900 Hz, one in 90 seen
+  for (int i = 0; i <= 40; ++i)
+    ledger.note("projector", frame_at(start + i * 100 * kMs_ns),
+                i > 0 ? 89 : 0);  // 900 Hz, one in 90 seen
   EXPECT_EQ(ledger.frames("projector").total(), 40u * 90 + 1);
   EXPECT_NEAR(ledger.frames("projector").recent_hz(start + 4 * kSecond_ns), 900, 10);
-  EXPECT_NEAR(ledger.frames("projector").held_hz(start + 4 * kSecond_ns), 900, 35) << "to within one read";
+  EXPECT_NEAR(ledger.frames("projector").held_hz(start + 4 * kSecond_ns), 900, 35)
+      << "to within one read";
 }
 
 TEST(Ledger, TheNewestAgeIsThatOfTheLastFramesOrigin) {
@@ -91,7 +101,8 @@ TEST(Ledger, TheNewestAgeIsThatOfTheLastFramesOrigin) {
 TEST(Ledger, StageTimesForgetWhatIsOlderThanTenSecondsButTheWholeRunDoesNot) {
   Ledger ledger;
   for (int second = 0; second < 30; ++second)
-    ledger.note("projector", frame_at((100 + second) * kSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
+    ledger.note("projector",
+                frame_at((100 + second) * kSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
   const auto& draw = ledger.stages().at("draw");
   EXPECT_EQ(draw.whole_run().count(), 30u);
   EXPECT_EQ(draw.recent(129 * kSecond_ns).count(), 10u);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <initializer_list>
 
@@ -11,11 +12,13 @@ inline constexpr std::int64_t kStart_ns = 100 * kSecond_ns;
 
 /// A mark between two times in ms after kStart_ns.
 inline msg::StageMark mark(msg::Stage stage, double begin_ms, double end_ms) {
-  return {stage, 0, kStart_ns + static_cast<std::int64_t>(begin_ms * 1e6), kStart_ns + static_cast<std::int64_t>(end_ms * 1e6)};
+  return {stage, 0, kStart_ns + static_cast<std::int64_t>(begin_ms * 1e6),
+          kStart_ns + static_cast<std::int64_t>(end_ms * 1e6)};
 }
 
 /// The marks of one frame as a service publishes them.
-inline msg::StageMarks frame(std::uint64_t id, double origin_ms, std::initializer_list<msg::StageMark> marks) {
+inline msg::StageMarks frame(std::uint64_t id, double origin_ms,
+                             std::initializer_list<msg::StageMark> marks) {
   msg::StageMarks message;
   const auto last_ns = marks.size() > 0 ? (marks.end() - 1)->end_ns : kStart_ns;
   message.header = {id, kStart_ns + static_cast<std::int64_t>(origin_ms * 1e6), last_ns};

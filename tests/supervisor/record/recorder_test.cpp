@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/record/recorder.hpp"
 
 #include <gtest/gtest.h>
@@ -15,13 +16,16 @@ constexpr int kSlots = 32;
 
 /// A service's ring of marks and a recorder that follows it.
 struct Followed : testing::Test {
-  ipc::Segment ring = ipc::Segment::create(ipc::RingSpec::of<msg::StageMarks>("marks.camera", kSlots, true)).value();
+  ipc::Segment ring =
+      ipc::Segment::create(ipc::RingSpec::of<msg::StageMarks>("marks.camera", kSlots, true))
+          .value();
   ipc::Writer<msg::StageMarks> marks = ipc::Writer<msg::StageMarks>::attach(again()).value();
   Recorder recorder{60};
 
   ipc::Segment again() const { return ipc::Segment::open(UniqueFd(dup(ring.fd()))).value(); }
   void publish(int frames) {
-    for (int i = 0; i < frames; ++i) marks.publish(frame(static_cast<std::uint64_t>(i), 0, {mark(Stage::capture, i, i + 1)}));
+    for (int i = 0; i < frames; ++i)
+      marks.publish(frame(static_cast<std::uint64_t>(i), 0, {mark(Stage::capture, i, i + 1)}));
   }
 };
 

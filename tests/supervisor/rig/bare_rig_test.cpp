@@ -1,4 +1,6 @@
-// Whole rigs of daemons that do next to nothing: what a supervisor, and the one after it, makes of their lives.
+// SPDX-License-Identifier: Apache-2.0
+// Whole rigs of daemons that do next to nothing: what a supervisor, and the one after it, makes of
+// their lives.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -20,7 +22,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 const std::vector<std::string> kDaemons{"camera", "pose", "landmarks", "projector"};
-constexpr auto kObserver = "[observer]\nenabled = true\n", kNoObserver = "[observer]\nenabled = false\n";
+constexpr auto kObserver = "[observer]\nenabled = true\n",
+               kNoObserver = "[observer]\nenabled = false\n";
 constexpr auto kNeverReady = "exec sleep 1000";
 
 class BareRig : public testing::Test {
@@ -28,11 +31,15 @@ class BareRig : public testing::Test {
   void SetUp() override {
     const auto built = system_test::program_folder();
     for (const auto* program : {"handcast", "handcast_bare_daemon", "handcast_looping_observer"})
-      if (!std::filesystem::exists(built / program)) GTEST_SKIP() << program << " has not been built";
+      if (!std::filesystem::exists(built / program))
+        GTEST_SKIP() << program << " has not been built";
     std::filesystem::create_directory(programs_);
     std::filesystem::copy_file(built / "handcast", programs_ / "handcast");
-    for (const auto& daemon : kDaemons) std::filesystem::copy_file(built / "handcast_bare_daemon", programs_ / ("handcast-" + daemon));
-    std::filesystem::copy_file(built / "handcast_looping_observer", programs_ / "handcast-observer");
+    for (const auto& daemon : kDaemons)
+      std::filesystem::copy_file(built / "handcast_bare_daemon",
+                                 programs_ / ("handcast-" + daemon));
+    std::filesystem::copy_file(built / "handcast_looping_observer",
+                               programs_ / "handcast-observer");
     write_rig(kNoObserver);
     bin_.emplace("HANDCAST_BIN", programs_.string());
   }
@@ -46,14 +53,20 @@ class BareRig : public testing::Test {
     std::ofstream(program) << "#!/bin/bash\n" << script << "\n";
     chmod(program.c_str(), 0755);
   }
-  void make_daemon(const std::string& name, const std::string& script) const { write_program(programs_ / ("handcast-" + name), script); }
+  void make_daemon(const std::string& name, const std::string& script) const {
+    write_program(programs_ / ("handcast-" + name), script);
+  }
 
-  std::unique_ptr<Command> up() const { return std::make_unique<Command>(scratch_.path(), system_test::Arguments{"up", file_.string()}); }
+  std::unique_ptr<Command> up() const {
+    return std::make_unique<Command>(scratch_.path(), system_test::Arguments{"up", file_.string()});
+  }
   std::unique_ptr<Command> ready_rig() const {
     auto rig = up();
     EXPECT_TRUE(eventually([this] {
       const auto now = services();
-      return now.is_object() && std::ranges::all_of(now, [](const auto& service) { return service["state"] == "ready"; });
+      return now.is_object() && std::ranges::all_of(now, [](const auto& service) {
+               return service["state"] == "ready";
+             });
     })) << rig->log();
     return rig;
   }
@@ -61,21 +74,28 @@ class BareRig : public testing::Test {
     const auto before = rig.supervisor();
     ASSERT_GT(before, 0);
     ASSERT_EQ(kill(before, SIGKILL), 0);
-    ASSERT_TRUE(eventually([&] { return rig.supervisor() > 0 && rig.supervisor() != before && services().is_object(); })) << rig.log();
+    ASSERT_TRUE(eventually([&] {
+      return rig.supervisor() > 0 && rig.supervisor() != before && services().is_object();
+    })) << rig.log();
   }
 
   static json services() {
     const auto answer = ask("desk", {.verb = Verb::status, .service = {}, .backend = {}});
     return answer ? (*answer)["status"]["services"] : json();
   }
-  static pid_t pid_of(const std::string& service) { return services()[service]["pid"].get<pid_t>(); }
-  static Result<json> reload() { return ask("desk", {.verb = Verb::reload, .service = {}, .backend = {}}); }
+  static pid_t pid_of(const std::string& service) {
+    return services()[service]["pid"].get<pid_t>();
+  }
+  static Result<json> reload() {
+    return ask("desk", {.verb = Verb::reload, .service = {}, .backend = {}});
+  }
   static Result<json> restart(const std::string& service) {
     return ask("desk", {.verb = Verb::restart, .service = service, .backend = {}});
   }
 
   RuntimeScratch scratch_;
-  const std::filesystem::path file_ = scratch_.path() / "desk.toml", programs_ = scratch_.path() / "programs";
+  const std::filesystem::path file_ = scratch_.path() / "desk.toml",
+                              programs_ = scratch_.path() / "programs";
   std::optional<Variable> bin_;
 };
 
@@ -87,7 +107,9 @@ TEST_F(BareRig, ASuccessorGoesOnWithTheRigAsItWasAppliedAndTheFileCountsWhenItIs
     replace_supervisor(*rig);
     EXPECT_EQ(pid_of("camera"), camera);
   }
-  EXPECT_THAT(rig->log(), HasSubstr("rig 'desk' goes on as it was applied; `handcast reload` reads " + file_.string()));
+  EXPECT_THAT(
+      rig->log(),
+      HasSubstr("rig 'desk' goes on as it was applied; `handcast reload` reads " + file_.string()));
   write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
   replace_supervisor(*rig);
   EXPECT_EQ(pid_of("camera"), camera);
@@ -113,7 +135,8 @@ TEST_F(BareRig, IsUpAlthoughOneServiceDoesNotGetReady) {
   make_daemon("landmarks", kNeverReady);
   write_rig(std::string("[supervisor]\nready_s = 2\n") + kNoObserver);
   const auto rig = up();
-  EXPECT_TRUE(eventually([&] { return rig->log().find("rig 'desk' is up") != std::string::npos; })) << rig->log();
+  EXPECT_TRUE(eventually([&] { return rig->log().find("rig 'desk' is up") != std::string::npos; }))
+      << rig->log();
 }
 
 TEST_F(BareRig, AServiceThatIsSwitchedOnAgainUnderTheNextSupervisorIsHeard) {
@@ -131,9 +154,10 @@ TEST_F(BareRig, OnlyDaemonsAreEndedAsStraysNotWhateverElseIsAChildOfTheKeeper) {
   const auto notes = scratch_.path() / "notes";
   std::filesystem::create_directory(scratch_.path() / "entry");
   std::filesystem::copy_file("/bin/sleep", programs_ / "handcast-stray");
-  write_program(scratch_.path() / "entry" / "handcast", "sleep 1000 & echo $! > " + notes.string() + "; setsid " + programs_.string() +
-                                                            "/handcast-stray 1000 & echo $! >> " + notes.string() + "; exec " +
-                                                            programs_.string() + "/handcast \"$@\"");
+  write_program(scratch_.path() / "entry" / "handcast",
+                "sleep 1000 & echo $! > " + notes.string() + "; setsid " + programs_.string() +
+                    "/handcast-stray 1000 & echo $! >> " + notes.string() + "; exec " +
+                    programs_.string() + "/handcast \"$@\"");
   bin_.emplace("HANDCAST_BIN", (scratch_.path() / "entry").string());
   const auto rig = ready_rig();
   pid_t other = 0, stray = 0;
@@ -149,7 +173,8 @@ TEST_F(BareRig, AReloadWhoseServiceCannotStartDoesNotStopARigThatIsNotUpYet) {
   std::filesystem::remove(programs_ / "handcast-observer");
   write_rig(std::string("[supervisor]\nready_s = 60\n") + kNoObserver);
   const auto rig = up();
-  ASSERT_TRUE(eventually([] { return services().is_object() && services()["landmarks"]["pid"] != 0; }));
+  ASSERT_TRUE(
+      eventually([] { return services().is_object() && services()["landmarks"]["pid"] != 0; }));
   write_rig(std::string("[supervisor]\nready_s = 60\n") + kObserver);
   const auto reloaded = reload();
   ASSERT_FALSE(reloaded);
@@ -157,7 +182,8 @@ TEST_F(BareRig, AReloadWhoseServiceCannotStartDoesNotStopARigThatIsNotUpYet) {
   EXPECT_EQ(services()["camera"]["state"], "ready");
 }
 
-// What SIGKILL does not end at once: here an orphan whose end nobody reaps, since the keeper stands still.
+// What SIGKILL does not end at once: here an orphan whose end nobody reaps, since the keeper stands
+// still.
 TEST_F(BareRig, ASilentServiceIsSaidToBeKilledOnce) {
   write_rig(std::string("[supervisor]\nsilent_s = 1\n") + kNoObserver);
   const auto rig = ready_rig();
@@ -165,7 +191,8 @@ TEST_F(BareRig, ASilentServiceIsSaidToBeKilledOnce) {
   const auto pose = pid_of("pose");
   rig->signal(SIGSTOP);
   kill(pose, SIGSTOP);
-  EXPECT_TRUE(eventually([&] { return pid_of("pose") != pose && services()["pose"]["state"] == "ready"; }));
+  EXPECT_TRUE(
+      eventually([&] { return pid_of("pose") != pose && services()["pose"]["state"] == "ready"; }));
   rig->signal(SIGCONT);
   const auto log = rig->log();
   const auto first = log.find("pose has given no sign of life");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/rig/fingerprint.hpp"
 
 #include <gmock/gmock.h>
@@ -5,7 +6,7 @@
 #include <fstream>
 #include <set>
 
-#include "config/settings.hpp"
+#include "config/settings/settings.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
@@ -14,7 +15,8 @@ namespace {
 using testing::UnorderedElementsAreArray;
 using Paths = std::set<std::string>;
 
-const std::vector<std::string> kServices{"camera", "pose", "landmarks", "projector", "observer", "exporter"};
+const std::vector<std::string> kServices{"camera",    "pose",     "landmarks",
+                                         "projector", "observer", "exporter"};
 
 /// Every setting of the sections named, and the settings named.
 Paths settings_in(const std::vector<std::string>& names) {
@@ -23,7 +25,8 @@ Paths settings_in(const std::vector<std::string>& names) {
   for (const auto& section : config::list_settings(rig))
     for (const auto& setting : section.settings)
       for (const auto& name : names)
-        if (setting.path == name || setting.path.starts_with(name + ".")) paths.insert(setting.path);
+        if (setting.path == name || setting.path.starts_with(name + "."))
+          paths.insert(setting.path);
   return paths;
 }
 
@@ -68,13 +71,17 @@ config::Rig networks() {
   return rig;
 }
 
-void expect_reads(const std::string& service, const config::Rig& rig, const std::vector<std::string>& names, const Paths& not_these = {}) {
+void expect_reads(const std::string& service, const config::Rig& rig,
+                  const std::vector<std::string>& names, const Paths& not_these = {}) {
   auto all = names;
   all.insert(all.end(), {"calibration"});
-  EXPECT_THAT(read_by(service, rig), UnorderedElementsAreArray(without(settings_in(all), not_these))) << service;
+  EXPECT_THAT(read_by(service, rig),
+              UnorderedElementsAreArray(without(settings_in(all), not_these)))
+      << service;
 }
 
-const std::vector<std::string> kTruth{"twin.motion", "twin.hands", "twin.speed", "twin.seed", "twin.shape", "hand"};
+const std::vector<std::string> kTruth{"twin.motion", "twin.hands", "twin.speed",
+                                      "twin.seed",   "twin.shape", "hand"};
 
 std::vector<std::string> truth_and(std::vector<std::string> more) {
   more.insert(more.end(), kTruth.begin(), kTruth.end());
@@ -83,41 +90,54 @@ std::vector<std::string> truth_and(std::vector<std::string> more) {
 
 TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakesOfThem) {
   const config::Rig rig;
-  expect_reads("camera", rig, truth_and({"camera", "twin.image"}), settings_in({"camera.replay", "camera.process.standby"}));
-  expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}), settings_in({"pose.replay", "pose.process.standby"}));
-  expect_reads(
-      "landmarks", rig, truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}),
-      settings_in({"landmarks.replay", "landmarks.models", "landmarks.hands", "landmarks.definition", "landmarks.process.standby"}));
+  expect_reads("camera", rig, truth_and({"camera", "twin.image"}),
+               settings_in({"camera.replay", "camera.process.standby"}));
+  expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
+               settings_in({"pose.replay", "pose.process.standby"}));
+  expect_reads("landmarks", rig,
+               truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
+                          "camera.exposure_ms"}),
+               settings_in({"landmarks.replay", "landmarks.models", "landmarks.hands",
+                            "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
-  expect_reads("landmarks", networks(), {"landmarks"}, settings_in({"landmarks.replay", "landmarks.process.standby"}));
+  expect_reads("landmarks", networks(), {"landmarks"},
+               settings_in({"landmarks.replay", "landmarks.process.standby"}));
   config::Rig own;
   own.landmarks.backend = "own";
-  expect_reads("landmarks", own, {"landmarks"}, settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
+  expect_reads(
+      "landmarks", own, {"landmarks"},
+      settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
   expect_reads("camera", replay(), {"camera"}, {"camera.process.standby"});
   expect_reads("pose", replay(), {"pose"}, {"pose.process.standby"});
   expect_reads("landmarks", replay(), {"landmarks"},
-               settings_in({"landmarks.models", "landmarks.hands", "landmarks.definition", "landmarks.process.standby"}));
+               settings_in({"landmarks.models", "landmarks.hands", "landmarks.definition",
+                            "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
-  expect_reads("projector", {}, {"projector", "content", "hand", "cascade"}, {"projector.process.standby"});
+  expect_reads("projector", {}, {"projector", "content", "hand", "cascade"},
+               {"projector.process.standby"});
 }
 
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
-  expect_reads("observer", {}, truth_and({"observer", "camera.backend", "pose.backend"}), {"observer.enabled", "observer.process.standby"});
+  expect_reads("observer", {}, truth_and({"observer", "camera.backend", "pose.backend"}),
+               {"observer.enabled", "observer.process.standby"});
 }
 
-TEST(Fingerprint, TheExporterDependsOnItsPort) { expect_reads("exporter", {}, {"supervisor.metrics_port"}); }
+TEST(Fingerprint, TheExporterDependsOnItsPort) {
+  expect_reads("exporter", {}, {"supervisor.metrics_port"});
+}
 
 TEST(Fingerprint, WhatOnlyTheSupervisorReadsIsInNone) {
   for (const auto& service : kServices) {
     const auto paths = read_by(service, {});
-    for (const auto* path : {"name", "supervisor.ready_s", "supervisor.stop_s", "supervisor.silent_s", "supervisor.history_s"})
+    for (const auto* path : {"name", "supervisor.ready_s", "supervisor.stop_s",
+                             "supervisor.silent_s", "supervisor.history_s"})
       EXPECT_FALSE(paths.contains(path)) << service << " " << path;
   }
 }
@@ -133,8 +153,8 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
   for (const auto& section : config::list_settings(rig)) {
     for (const auto& setting : section.settings) {
       const auto& path = setting.path;
-      const bool supervisors =
-          path == "name" || path == "observer.enabled" || path.starts_with("supervisor.") || path.ends_with(".standby");
+      const bool supervisors = path == "name" || path == "observer.enabled" ||
+                               path.starts_with("supervisor.") || path.ends_with(".standby");
       EXPECT_EQ(read.contains(path), !supervisors || path == "supervisor.metrics_port") << path;
     }
   }
@@ -144,7 +164,8 @@ TEST(Fingerprint, ABackEndThatNobodyThoughtOfDependsOnAllButTheSupervisorsSettin
   config::Rig rig;
   rig.camera.backend = "aravis";
   const auto paths = read_by("camera", rig);
-  for (const auto* path : {"camera.rate_hz", "camera.replay.directory", "cascade.fill.method", "twin.tracker.age_ms"})
+  for (const auto* path :
+       {"camera.rate_hz", "camera.replay.directory", "cascade.fill.method", "twin.tracker.age_ms"})
     EXPECT_TRUE(paths.contains(path)) << path;
   EXPECT_FALSE(paths.contains("supervisor.ready_s"));
   EXPECT_TRUE(read_by("content", {}).contains("content.left"));  // a service of another year

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/rig/status.hpp"
 
 #include <gmock/gmock.h>
@@ -11,18 +12,24 @@ using testing::HasSubstr;
 using testing::Not;
 
 json service(json more) {
-  json status{{"state", "ready"},     {"pid", 42},         {"backend", "twin"}, {"uptime_s", 3}, {"restarts", 0},
-              {"last_exit", nullptr}, {"reason", nullptr}, {"retry_s", nullptr}};
+  json status{{"state", "ready"},  {"pid", 42},         {"backend", "twin"},
+              {"uptime_s", 3},     {"restarts", 0},     {"last_exit", nullptr},
+              {"reason", nullptr}, {"retry_s", nullptr}};
   status.update(more);
   return status;
 }
 
 std::string print_with(const json& pose) {
-  return print_status(
-      {{"rig", "desk"}, {"uptime_s", 7}, {"services", {{"pose", pose}}}, {"rings", json::object()}, {"stage_us", json::object()}});
+  return print_status({{"rig", "desk"},
+                       {"uptime_s", 7},
+                       {"services", {{"pose", pose}}},
+                       {"rings", json::object()},
+                       {"stage_us", json::object()}});
 }
 
-TEST(Status, AServiceThatIsWellHasOneLine) { EXPECT_THAT(print_with(service(json::object())), Not(HasSubstr("tried again"))); }
+TEST(Status, AServiceThatIsWellHasOneLine) {
+  EXPECT_THAT(print_with(service(json::object())), Not(HasSubstr("tried again")));
+}
 
 TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {
   const auto text = print_with(service({{"state", "degraded"},
@@ -30,7 +37,8 @@ TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWor
                                         {"reason", "died 10 times within 60 s"},
                                         {"retry_s", 4.2},
                                         {"log", {"the tracker does not answer"}}}));
-  EXPECT_THAT(text, AllOf(HasSubstr("degraded"), HasSubstr("exit 111"), HasSubstr("died 10 times within 60 s; tried again in 4.2 s"),
+  EXPECT_THAT(text, AllOf(HasSubstr("degraded"), HasSubstr("exit 111"),
+                          HasSubstr("died 10 times within 60 s; tried again in 4.2 s"),
                           HasSubstr("the tracker does not answer")));
 }
 
@@ -39,8 +47,9 @@ TEST(Status, AServiceWhoseProgramIsMissingIsToldWithItsReason) {
   Launch launch;
   launch.program_folder = "/nowhere";
   Services services;
-  services.push_back(std::make_unique<Service>(ServiceSpec{.name = "pose", .stream = "", .backend = "twin", .asked_hz = 0}, launch, loop,
-                                               [](Service&, Service::Event) {}));
+  services.push_back(std::make_unique<Service>(
+      ServiceSpec{.name = "pose", .stream = "", .backend = "twin", .asked_hz = 0}, launch, loop,
+      [](Service&, Service::Event) {}));
   services.front()->start();
   const std::string name = "desk";
   const Recorder recorder;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/adoption.hpp"
 
 #include <fcntl.h>
@@ -65,11 +66,13 @@ class AdoptionTest : public testing::Test {
   }
 
   Child& service(const std::string& name, const std::string& script, bool ready = true) {
-    auto child = Child::spawn({.program = "/bin/bash", .arguments = {"-c", script}, .rings = {{"marks.pose", kRingFd}}});
+    auto child = Child::spawn(
+        {.program = "/bin/bash", .arguments = {"-c", script}, .rings = {{"marks.pose", kRingFd}}});
     EXPECT_TRUE(child);
     children_.push_back(std::make_unique<Child>(std::move(*child)));
     const auto pid = children_.back()->pid();
-    saved_.services.push_back({name, pid, start_ticks_of(pid).value_or(0), ready ? State::ready : State::starting, "", "f", 2});
+    saved_.services.push_back({name, pid, start_ticks_of(pid).value_or(0),
+                               ready ? State::ready : State::starting, "", "f", 2});
     return *children_.back();
   }
 
@@ -102,13 +105,15 @@ TEST_F(AdoptionTest, ALivingServiceAndItsRingAreTakenOver) {
   EXPECT_EQ(fcntl(kRingFd, F_GETFD), FD_CLOEXEC);
   EXPECT_NE(fcntl(kRingFd, F_GETFL) & O_RDWR, 0);
 
-  auto reader = ipc::Reader<msg::StageMarks>::attach(ipc::Segment::open(UniqueFd(dup(kRingFd))).value());
+  auto reader =
+      ipc::Reader<msg::StageMarks>::attach(ipc::Segment::open(UniqueFd(dup(kRingFd))).value());
   ASSERT_TRUE(reader);
   EXPECT_EQ((*reader->latest(Deadline::now()))->header.frame_id, 7u);
 }
 
 TEST_F(AdoptionTest, WhatTheServiceSaysIsHeardAgain) {
-  const auto& pose = service("pose", "trap 'echo hello' USR1; echo up; while :; do sleep 0.02; done");
+  const auto& pose =
+      service("pose", "trap 'echo hello' USR1; echo up; while :; do sleep 0.02; done");
   pollfd up{.fd = pose.log_fd(), .events = POLLIN, .revents = 0};
   ASSERT_EQ(poll(&up, 1, 20000), 1);
   drain(pose.log_fd());
@@ -183,7 +188,8 @@ TEST_F(AdoptionTest, ReadersThatDiedGiveTheirRowsBack) {
   service("pose", "exec sleep 1000");
   const pid_t reader = fork();
   if (reader == 0) {
-    const auto attached = ipc::Reader<msg::StageMarks>::attach(ipc::Segment::open(UniqueFd(dup(kRingFd))).value());
+    const auto attached =
+        ipc::Reader<msg::StageMarks>::attach(ipc::Segment::open(UniqueFd(dup(kRingFd))).value());
     _exit(attached ? 0 : 1);  // without a word of farewell
   }
   int status = -1;
@@ -225,8 +231,9 @@ TEST_F(AdoptionTest, RingsThatSystemdKeptComeBackWhenNoServiceLives) {
     setenv("LISTEN_FDS", "1", 1);
     setenv("LISTEN_FDNAMES", "marks.pose", 1);
     const auto adopted = adopt("desk");
-    const bool right = adopted && *adopted && (*adopted)->services.empty() && (*adopted)->rings.size() == 1 &&
-                       (*adopted)->rings[0].fd() == kRingFd && inode_of(kRingFd) == inode_;
+    const bool right = adopted && *adopted && (*adopted)->services.empty() &&
+                       (*adopted)->rings.size() == 1 && (*adopted)->rings[0].fd() == kRingFd &&
+                       inode_of(kRingFd) == inode_;
     _exit(right ? 0 : 1);
   }
   int status = -1;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/exit_reports.hpp"
 
 #include <fcntl.h>
@@ -24,7 +25,9 @@ class ExitReportsTest : public testing::Test {
     setenv(kKeeperVariable, std::to_string(ends[1]).c_str(), 1);
     reports_ = ExitReports::from_environment();
   }
-  void tell(ExitReport report) const { ASSERT_EQ(send(keeper_.get(), &report, sizeof report, 0), static_cast<ssize_t>(sizeof report)); }
+  void tell(ExitReport report) const {
+    ASSERT_EQ(send(keeper_.get(), &report, sizeof report, 0), static_cast<ssize_t>(sizeof report));
+  }
 
   UniqueFd keeper_;
   ExitReports reports_;

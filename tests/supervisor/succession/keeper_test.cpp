@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/keeper.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +30,8 @@ bool eventually(const std::function<bool()>& done) {
   return done();
 }
 
-/// A keeper as a process of its own, whose supervisor is a script of the test. What the script appends to $NOTES is read here.
+/// A keeper as a process of its own, whose supervisor is a script of the test. What the script
+/// appends to $NOTES is read here.
 class KeeperTest : public testing::Test {
  protected:
   void TearDown() override {
@@ -89,14 +91,17 @@ TEST_F(KeeperTest, AProgramThatIsNotThereIsASentence) {
 }
 
 TEST_F(KeeperTest, ASupervisorThatIsKilledIsStartedAgainAndToldThatItIsASuccessor) {
-  keep_script("echo life $HANDCAST_SUCCESSOR >> $NOTES; [ $(wc -l < $NOTES) -ge 3 ] && exit 7; kill -9 $$");
+  keep_script(
+      "echo life $HANDCAST_SUCCESSOR >> $NOTES; [ $(wc -l < $NOTES) -ge 3 ] && exit 7; kill -9 $$");
   EXPECT_EQ(wait(), 7);
   EXPECT_THAT(notes(), ElementsAre("life", "life 1", "life 1"));
   EXPECT_THAT(log(), HasSubstr("signal 9"));
 }
 
 TEST_F(KeeperTest, ASuccessorThatCannotTakeOverNowIsTriedAgain) {
-  keep_script("echo life >> $NOTES; case $(wc -l < $NOTES) in 1) kill -9 $$;; 2) exit 111;; *) exit 7;; esac");
+  keep_script(
+      "echo life >> $NOTES; case $(wc -l < $NOTES) in 1) kill -9 $$;; 2) exit 111;; *) exit 7;; "
+      "esac");
   EXPECT_EQ(wait(), 7);
   EXPECT_THAT(log(), HasSubstr("exit 111"));
 }
@@ -122,10 +127,12 @@ TEST_F(KeeperTest, TheSupervisorRunsInAProcessGroupOfItsOwn) {
 }
 
 constexpr auto kListens =
-    "use POSIX; alarm 60; my $n; $SIG{TERM} = sub { $n .= 'T' }; $SIG{INT} = sub { $n .= 'I' }; $SIG{HUP} = sub { $n .= 'H' };"
+    "use POSIX; alarm 60; my $n; $SIG{TERM} = sub { $n .= 'T' }; $SIG{INT} = sub { $n .= 'I' }; "
+    "$SIG{HUP} = sub { $n .= 'H' };"
     "sub note { open(my $f, '>>', $ENV{NOTES}); print $f \"$_[0]\\n\"; }"
     "note($$); sigprocmask(SIG_UNBLOCK, POSIX::SigSet->new(SIGTERM, SIGINT, SIGHUP));"
-    "for (;;) { select(undef, undef, undef, 0.02); if ($n) { note($n); exit 5 if $n =~ /T/; $n = ''; } }";
+    "for (;;) { select(undef, undef, undef, 0.02); if ($n) { note($n); exit 5 if $n =~ /T/; $n = "
+    "''; } }";
 
 TEST_F(KeeperTest, StopSignalsAreHandedOnOnceEach) {
   keep_script(kListens, "/usr/bin/perl");
@@ -141,7 +148,9 @@ TEST_F(KeeperTest, StopSignalsAreHandedOnOnceEach) {
 }
 
 TEST_F(KeeperTest, AStopSignalReachesTheSuccessorOfASupervisorThatDiedOverIt) {
-  keep_script(std::string("if (!$ENV{HANDCAST_SUCCESSOR}) { note('first'); select(undef, undef, undef, 0.5); kill 9, $$; }") + kListens,
+  keep_script(std::string("if (!$ENV{HANDCAST_SUCCESSOR}) { note('first'); select(undef, undef, "
+                          "undef, 0.5); kill 9, $$; }") +
+                  kListens,
               "/usr/bin/perl");
   ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
   kill(keeper_, SIGTERM);
@@ -149,20 +158,24 @@ TEST_F(KeeperTest, AStopSignalReachesTheSuccessorOfASupervisorThatDiedOverIt) {
   EXPECT_EQ(notes().back(), "T");
 }
 
-// Its services' children, too, come to the keeper when the supervisor dies; their ends are told to the next supervisor.
+// Its services' children, too, come to the keeper when the supervisor dies; their ends are told to
+// the next supervisor.
 TEST_F(KeeperTest, OrphansAreReapedAndTheirEndsToldToTheNextSupervisorEvenThoseThatDiedBetweenTwo) {
   keep_script(
       "if (!$ENV{HANDCAST_SUCCESSOR}) {"
-      "  for my $what ('exit 42', 'kill 9, $$') { my $pid = fork(); if (!$pid) { select(undef, undef, undef, 0.1); eval $what; } "
+      "  for my $what ('exit 42', 'kill 9, $$') { my $pid = fork(); if (!$pid) { select(undef, "
+      "undef, undef, 0.1); eval $what; } "
       "    open(my $f, '>>', $ENV{NOTES}); print $f \"$pid\\n\"; }"
       "  kill 9, $$; }"
       "alarm 20; use Socket; open(my $s, '<&=', $ENV{HANDCAST_KEEPER_FD}) or die;"
-      "for (1..2) { recv($s, my $report, 64, 0); open(my $f, '>>', $ENV{NOTES}); print $f join(' ', unpack('i3', $report)), \"\\n\"; }",
+      "for (1..2) { recv($s, my $report, 64, 0); open(my $f, '>>', $ENV{NOTES}); print $f join(' "
+      "', unpack('i3', $report)), \"\\n\"; }",
       "/usr/bin/perl");
   EXPECT_EQ(wait(), 0);
   const auto lines = notes();
   ASSERT_THAT(lines, SizeIs(4));
-  const auto exited = fmt::format("{} {} 42", lines[0], CLD_EXITED), killed = fmt::format("{} {} 9", lines[1], CLD_KILLED);
+  const auto exited = fmt::format("{} {} 42", lines[0], CLD_EXITED),
+             killed = fmt::format("{} {} 9", lines[1], CLD_KILLED);
   EXPECT_THAT((std::vector{lines[2], lines[3]}), testing::UnorderedElementsAre(exited, killed));
 }
 

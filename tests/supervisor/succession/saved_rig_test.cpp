@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/saved_rig.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +26,8 @@ SavedRig desk() {
           .out = "/tmp/out",
           .epoch_ns = 42,
           .rings = {{"camera.frames", 123456789012345, 64}},
-          .services = {{"pose", 4711, 99887766, State::ready, "replay", "abcdef", 3}, {"camera", 0, 0, State::failed, "", "", 0}}};
+          .services = {{"pose", 4711, 99887766, State::ready, "replay", "abcdef", 3},
+                       {"camera", 0, 0, State::failed, "", "", 0}}};
 }
 
 class SavedRigTest : public testing::Test {

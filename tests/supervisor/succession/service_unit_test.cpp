@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/service_unit.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +16,12 @@ using testing::HasSubstr;
 using testing::Not;
 
 UnitSpec desk(bool system) {
-  return {.rig = "desk", .program = "/bin/true", .rig_file = "/rigs/desk.toml", .settings = {}, .system = system, .user = "root"};
+  return {.rig = "desk",
+          .program = "/bin/true",
+          .rig_file = "/rigs/desk.toml",
+          .settings = {},
+          .system = system,
+          .user = "root"};
 }
 
 class EachUnit : public testing::TestWithParam<bool> {};
@@ -24,61 +30,77 @@ INSTANTIATE_TEST_SUITE_P(ServiceUnit, EachUnit, testing::Values(false, true),
 
 TEST_P(EachUnit, LetsTheServicesOutliveTheirSupervisor) {
   const auto text = unit_text(desk(GetParam()));
-  EXPECT_THAT(text, AllOf(HasSubstr("\nKillMode=process\n"), HasSubstr("\nOOMPolicy=continue\n"), HasSubstr("\nFileDescriptorStoreMax="),
+  EXPECT_THAT(text, AllOf(HasSubstr("\nKillMode=process\n"), HasSubstr("\nOOMPolicy=continue\n"),
+                          HasSubstr("\nFileDescriptorStoreMax="),
                           HasSubstr("\nExecStop=-\"/bin/true\" down --rig desk\n")));
-  // Each would put the next supervisor where it may not take the living services over, or not find them.
-  EXPECT_THAT(text, AllOf(Not(HasSubstr("\nPrivateUsers=")), Not(HasSubstr("\nPrivateTmp=")), Not(HasSubstr("\nProcSubset="))));
+  // Each would put the next supervisor where it may not take the living services over, or not find
+  // them.
+  EXPECT_THAT(text, AllOf(Not(HasSubstr("\nPrivateUsers=")), Not(HasSubstr("\nPrivateTmp=")),
+                          Not(HasSubstr("\nProcSubset="))));
 }
 
 TEST_P(EachUnit, WatchesAndReplacesTheSupervisorUnlessAPersonMustAct) {
   const auto text = unit_text(desk(GetParam()));
-  EXPECT_THAT(text, AllOf(HasSubstr("\nType=notify\nNotifyAccess=main\nExecStart=\"/bin/true\" up --no-keeper \"/rigs/desk.toml\"\n"),
-                          HasSubstr("\nWatchdogSec="), HasSubstr("\nRestart=always\n"), HasSubstr("\nRestartPreventExitStatus=0 100\n")));
+  EXPECT_THAT(text, AllOf(HasSubstr("\nType=notify\nNotifyAccess=main\nExecStart=\"/bin/true\" up "
+                                    "--no-keeper \"/rigs/desk.toml\"\n"),
+                          HasSubstr("\nWatchdogSec="), HasSubstr("\nRestart=always\n"),
+                          HasSubstr("\nRestartPreventExitStatus=0 100\n")));
 }
 
 TEST_P(EachUnit, LeavesCamerasAndRealTimeAlone) {
   const auto text = unit_text(desk(GetParam()));
-  for (const auto* closed :
-       {"PrivateDevices=", "DeviceAllow=", "ProtectClock=", "PrivateNetwork=", "RestrictRealtime=", "MemoryDenyWriteExecute="})
+  for (const auto* closed : {"PrivateDevices=", "DeviceAllow=", "ProtectClock=", "PrivateNetwork=",
+                             "RestrictRealtime=", "MemoryDenyWriteExecute="})
     EXPECT_THAT(text, Not(HasSubstr(std::string("\n") + closed)));
   EXPECT_THAT(text, AllOf(HasSubstr("\nLimitRTPRIO="), HasSubstr("\nLimitMEMLOCK=")));
 }
 
 TEST_P(EachUnit, HasNoMarkLeft) {
-  EXPECT_THAT(unit_text(desk(GetParam())), AllOf(Not(HasSubstr("@")), Not(HasSubstr("#system#")), Not(HasSubstr("#user#"))));
+  EXPECT_THAT(unit_text(desk(GetParam())),
+              AllOf(Not(HasSubstr("@")), Not(HasSubstr("#system#")), Not(HasSubstr("#user#"))));
 }
 
 TEST_P(EachUnit, IsAcceptedBySystemd) {
-  if (!std::filesystem::exists("/usr/bin/systemd-analyze")) GTEST_SKIP() << "systemd-analyze is not installed";
+  if (!std::filesystem::exists("/usr/bin/systemd-analyze"))
+    GTEST_SKIP() << "systemd-analyze is not installed";
   const test::Scratch scratch;
   const auto file = scratch.path() / unit_name(desk(GetParam()));
   std::ofstream(file) << unit_text(desk(GetParam()));
-  const auto verdict = output_of(
-      "/bin/bash", {"-c", "systemd-analyze verify --man=no --recursive-errors=no " + file.string() + " 2>&1; echo exit $?"}, 30000);
+  const auto verdict = output_of("/bin/bash",
+                                 {"-c", "systemd-analyze verify --man=no --recursive-errors=no " +
+                                            file.string() + " 2>&1; echo exit $?"},
+                                 30000);
   ASSERT_TRUE(verdict);
-  EXPECT_THAT(*verdict, AllOf(HasSubstr("exit 0"), Not(HasSubstr("desk.service"))));  // a complaint names the unit
+  EXPECT_THAT(*verdict, AllOf(HasSubstr("exit 0"),
+                              Not(HasSubstr("desk.service"))));  // a complaint names the unit
 }
 
 TEST(ServiceUnit, OfTheMachineIsShutInAndHasARuntimeFolder) {
   const auto text = unit_text(desk(true));
-  EXPECT_THAT(text, AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nReadWritePaths=%t/handcast\n"),
-                          HasSubstr("\nRuntimeDirectory=handcast\n"), HasSubstr("\nRuntimeDirectoryPreserve=yes\n"),
-                          HasSubstr("\nEnvironment=XDG_RUNTIME_DIR=%t/handcast\n"), HasSubstr("\nUser=root\n"),
-                          HasSubstr("\nWantedBy=multi-user.target\n"), Not(HasSubstr("default.target"))));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nReadWritePaths=%t/handcast\n"),
+            HasSubstr("\nRuntimeDirectory=handcast\n"),
+            HasSubstr("\nRuntimeDirectoryPreserve=yes\n"),
+            HasSubstr("\nEnvironment=XDG_RUNTIME_DIR=%t/handcast\n"), HasSubstr("\nUser=root\n"),
+            HasSubstr("\nWantedBy=multi-user.target\n"), Not(HasSubstr("default.target"))));
   EXPECT_EQ(unit_folder(desk(true)), "/etc/systemd/system");
 }
 
 TEST(ServiceUnit, OfAUserAsksForNothingAUserCannotHave) {
   const auto text = unit_text(desk(false));
-  EXPECT_THAT(text, AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")), Not(HasSubstr("\nRuntimeDirectory")),
-                          HasSubstr("\nWantedBy=default.target\n")));
+  EXPECT_THAT(
+      text, AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")),
+                  Not(HasSubstr("\nRuntimeDirectory")), HasSubstr("\nWantedBy=default.target\n")));
 }
 
 TEST(ServiceUnit, PathsAndSettingsReachTheCommandAsTheyAre) {
   auto spec = desk(false);
   spec.rig_file = "/my rigs/100% $HOME/a\"b\\c.toml";
   spec.settings = {"name=\"sofa\""};
-  EXPECT_THAT(unit_text(spec), HasSubstr(R"(up --no-keeper "/my rigs/100%% $$HOME/a\"b\\c.toml" --set "name=\"sofa\"")"));
+  EXPECT_THAT(
+      unit_text(spec),
+      HasSubstr(R"(up --no-keeper "/my rigs/100%% $$HOME/a\"b\\c.toml" --set "name=\"sofa\"")"));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/process_usage.hpp"
 
 #include <gmock/gmock.h>
@@ -12,9 +13,11 @@
 namespace handcast::supervisor {
 namespace {
 
-// utime 700 and stime 50 ticks, nice 5, 9 threads, started at tick 123456, on core 3, priority 50, policy SCHED_FIFO.
+// utime 700 and stime 50 ticks, nice 5, 9 threads, started at tick 123456, on core 3, priority 50,
+// policy SCHED_FIFO.
 constexpr std::string_view kStat =
-    "4711 (handcast-camera) S 1 4711 4711 0 -1 4194304 103 0 0 0 700 50 0 0 -51 5 9 0 123456 3133440 418 18446744073709551615 1 2 3 0 0 0 "
+    "4711 (handcast-camera) S 1 4711 4711 0 -1 4194304 103 0 0 0 700 50 0 0 -51 5 9 0 123456 "
+    "3133440 418 18446744073709551615 1 2 3 0 0 0 "
     "0 0 0 "
     "0 0 0 17 3 50 1 0 0 0 1 2 3 4 5 6 7 0\n";
 
@@ -45,7 +48,8 @@ TEST(ProcessUsage, AProcessMayCallItselfWhateverItLikes) {
 
 TEST(ProcessUsage, TextThatMakesNoSenseIsRefused) {
   ProcessUsage usage;
-  for (const auto* text : {"", "4711", "4711 (x)", "4711 (x) ", ") (", "4711 (x) S 1 2 3", "4711 x S 1 2 3"})
+  for (const auto* text :
+       {"", "4711", "4711 (x)", "4711 (x) ", ") (", "4711 (x) S 1 2 3", "4711 x S 1 2 3"})
     EXPECT_FALSE(read_stat(text, 100, usage)) << text;
   for (const auto* text : {"", "12", "a b c"}) EXPECT_FALSE(read_statm(text, 4096, usage)) << text;
 }

@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "ipc/base/clock.hpp"
 #include "supervisor/top/top_look.hpp"
 
 namespace handcast::supervisor::test {
 
-inline constexpr pid_t kCameraPid = 100, kProjectorPid = 101, kSparePid = 102, kToolPid = 900, kDeadPid = 901;
+inline constexpr pid_t kCameraPid = 100, kProjectorPid = 101, kSparePid = 102, kToolPid = 900,
+                       kDeadPid = 901;
 
 inline ProcessUsage process(std::string program, double cpu_s, std::int64_t taken_ns) {
   return {.program = std::move(program),
@@ -19,10 +21,16 @@ inline ProcessUsage process(std::string program, double cpu_s, std::int64_t take
 }
 
 inline ipc::ReaderView reader(int row, pid_t pid, std::uint64_t received) {
-  return {.row = row, .pid = pid, .received = received, .lag = 1, .age_ns = 4'200'000, .lease_ages_ns = {-1, -1}};
+  return {.row = row,
+          .pid = pid,
+          .received = received,
+          .lag = 1,
+          .age_ns = 4'200'000,
+          .lease_ages_ns = {-1, -1}};
 }
 
-/// A rig made up by hand, `second` seconds into its life: a camera at 240 Hz that the projector reads, a sick projector.
+/// A rig made up by hand, `second` seconds into its life: a camera at 240 Hz that the projector
+/// reads, a sick projector.
 inline RigLook look_at(double second) {
   RigLook look{.rig = "paper", .taken_ns = seconds_to_ns(1000 + second)};
   look.status = nlohmann::json::parse(R"json({
@@ -46,10 +54,13 @@ inline RigLook look_at(double second) {
                            .dropped = 0,
                            .newest_origin_ns = look.taken_ns - 5'000'000,
                            .newest_published_ns = look.taken_ns - 2'000'000};
-  frames.readers = {reader(0, kProjectorPid, count / 2), reader(1, kToolPid, count), reader(4, kDeadPid, 7)};
+  frames.readers = {reader(0, kProjectorPid, count / 2), reader(1, kToolPid, count),
+                    reader(4, kDeadPid, 7)};
   frames.readers[0].skipped = count / 2;
   frames.readers[1].waiting = true;
-  look.rings = {frames, {.stream = "marks.camera", .slots = 254, .epoch = 1, .sequence = 9, .published = count}};
+  look.rings = {
+      frames,
+      {.stream = "marks.camera", .slots = 254, .epoch = 1, .sequence = 9, .published = count}};
   look.processes = {{kCameraPid, process("handcast-camera", 0.25 * second, look.taken_ns)},
                     {kProjectorPid, process("handcast-projec", 3, look.taken_ns)},
                     {kToolPid, process("recorder\x1b", 0, look.taken_ns)}};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -74,7 +75,8 @@ TEST(TopModel, TheSharesOfRungsAreOfTheHandsDrawnBetweenTheLooks) {
   EXPECT_EQ(rungs[0].rung, "landmarks");
   EXPECT_DOUBLE_EQ(rungs[0].share, 0.75);
   EXPECT_EQ(rungs[1].rung, "register");
-  EXPECT_TRUE(compare(look_at(10), look_at(2)).rungs.empty()) << "counted anew: the supervisor was started again";
+  EXPECT_TRUE(compare(look_at(10), look_at(2)).rungs.empty())
+      << "counted anew: the supervisor was started again";
 }
 
 TEST(TopModel, ARingIsLateAfterThreePeriods) {
@@ -112,7 +114,8 @@ TEST(TopModel, ServicesThatWentWithTheirSupervisorAreGone) {
 
 TEST(TopModel, AStatusOfNonsenseIsNotACrash) {
   for (const auto* text :
-       {"[]", "7", R"({"services":7,"rings":[]})", R"({"services":{"camera":7},"rings":{"camera.frames":7},"uptime_s":"x"})",
+       {"[]", "7", R"({"services":7,"rings":[]})",
+        R"({"services":{"camera":7},"rings":{"camera.frames":7},"uptime_s":"x"})",
         R"({"services":{"camera":{"state":1,"pid":"x","log":[1]}}})"}) {
     auto look = look_at(1);
     look.status = nlohmann::json::parse(text);
@@ -125,7 +128,8 @@ TEST(TopModel, AsJsonItHasEveryServiceAndReader) {
   const auto json = json_of(two_seconds());
   EXPECT_EQ(json["services"].size(), 2u);
   EXPECT_EQ(json["services"][0]["cores"], 0.25);
-  EXPECT_EQ(json["services"][1]["trouble"], "died 10 times; again in 2.5 s: projector: no \x1b[31mlamp");
+  EXPECT_EQ(json["services"][1]["trouble"],
+            "died 10 times; again in 2.5 s: projector: no \x1b[31mlamp");
   EXPECT_EQ(json["rungs"]["register"], 0.25);
   EXPECT_EQ(json["rings"][0]["readers"].size(), 3u);
   EXPECT_EQ(json["rings"][0]["readers"][0]["who"], "projector");
@@ -133,11 +137,16 @@ TEST(TopModel, AsJsonItHasEveryServiceAndReader) {
 
 TEST(TopLayout, ShowsWhatAPersonLooksFor) {
   const auto lines = plain(lay_out(two_seconds(), {.columns = 200}));
-  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("camera"), HasSubstr("ready"), HasSubstr("25.0 %"), HasSubstr("38 MiB"), HasSubstr("102"))));
-  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("projector"), HasSubstr("degraded"), HasSubstr("12"), HasSubstr("Segmentation fault"))));
-  EXPECT_THAT(lines, Contains(HasSubstr("└ died 10 times; again in 2.5 s: projector: no ?[31mlamp")));
-  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("camera.frames"), HasSubstr("240 Hz"), HasSubstr("2 ms"), HasSubstr("writer 3"))));
-  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("├ projector"), HasSubstr("120 Hz"), HasSubstr("+120/s"))));
+  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("camera"), HasSubstr("ready"), HasSubstr("25.0 %"),
+                                    HasSubstr("38 MiB"), HasSubstr("102"))));
+  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("projector"), HasSubstr("degraded"), HasSubstr("12"),
+                                    HasSubstr("Segmentation fault"))));
+  EXPECT_THAT(lines,
+              Contains(HasSubstr("└ died 10 times; again in 2.5 s: projector: no ?[31mlamp")));
+  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("camera.frames"), HasSubstr("240 Hz"),
+                                    HasSubstr("2 ms"), HasSubstr("writer 3"))));
+  EXPECT_THAT(lines,
+              Contains(AllOf(HasSubstr("├ projector"), HasSubstr("120 Hz"), HasSubstr("+120/s"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("├ recorder?"), HasSubstr("sleeps"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("└ ?"), HasSubstr("gone"))));
   EXPECT_THAT(lines, Contains("RUNGS  landmarks 75.0 %  register 25.0 %"));
@@ -169,7 +178,8 @@ TEST(TopLayout, NoLineIsWiderThanTheScreen) {
 
 TEST(TopLayout, OnANarrowScreenTheImportantColumnsStay) {
   const auto lines = plain(lay_out(two_seconds(), {.columns = 40}));
-  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("SERVICE"), HasSubstr("STATE"), HasSubstr("CPU"), Not(HasSubstr("THREADS")))));
+  EXPECT_THAT(lines, Contains(AllOf(HasSubstr("SERVICE"), HasSubstr("STATE"), HasSubstr("CPU"),
+                                    Not(HasSubstr("THREADS")))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("RING"), HasSubstr("RATE"), HasSubstr("AGE"))));
 }
 
@@ -181,7 +191,8 @@ TEST(TopLayout, StageMarksAreLeftOutWhereNotAskedFor) {
 }
 
 TEST(TopLayout, ColoursAreOnlyWhereTheyAreAskedFor) {
-  for (const auto& line : lay_out(two_seconds(), {})) EXPECT_THAT(print(line, false), Not(HasSubstr("\x1b")));
+  for (const auto& line : lay_out(two_seconds(), {}))
+    EXPECT_THAT(print(line, false), Not(HasSubstr("\x1b")));
   EXPECT_EQ(print({{"a", Style::bad}, {"b"}}, true), "\x1b[1;31ma\x1b[0mb");
 }
 
@@ -193,9 +204,11 @@ std::vector<Line> numbered(int count) {
 
 TEST(TopScreen, ScrollsUnderItsHeadAndNoFurtherThanTheEnd) {
   std::size_t first = 2;
-  EXPECT_THAT(plain(fit(numbered(10), 80, 6, first)), ElementsAre("0", "1", "4", "5", "6", HasSubstr("2 above, 3 below")));
+  EXPECT_THAT(plain(fit(numbered(10), 80, 6, first)),
+              ElementsAre("0", "1", "4", "5", "6", HasSubstr("2 above, 3 below")));
   first = 100;
-  EXPECT_THAT(plain(fit(numbered(10), 80, 6, first)), ElementsAre("0", "1", "7", "8", "9", HasSubstr("5 above, 0 below")));
+  EXPECT_THAT(plain(fit(numbered(10), 80, 6, first)),
+              ElementsAre("0", "1", "7", "8", "9", HasSubstr("5 above, 0 below")));
   EXPECT_EQ(first, 5u);
 }
 

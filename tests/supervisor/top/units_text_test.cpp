@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/top/units_text.hpp"
 
 #include <gtest/gtest.h>

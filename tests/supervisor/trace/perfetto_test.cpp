@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "supervisor/trace/perfetto.hpp"
 
 #include <gmock/gmock.h>
@@ -18,13 +19,16 @@ using testing::SizeIs;
 
 constexpr ClockReadings kClocks{1'000, 2'000, 3'000};
 
-test::SeenTrace trace_of(const History& history) { return test::decode_trace(perfetto_trace(everything_in(history), "desk", kClocks)); }
+test::SeenTrace trace_of(const History& history) {
+  return test::decode_trace(perfetto_trace(everything_in(history), "desk", kClocks));
+}
 
 /// A frame of the projector that shows the image with this id and origin.
 msg::StageMarks projector_frame(std::uint64_t image, double origin_ms, double at_ms) {
-  return frame(image, origin_ms,
-               {mark(Stage::predict, at_ms, at_ms + 0.1), mark(Stage::draw, at_ms + 0.1, at_ms + 0.6),
-                mark(Stage::frame, at_ms, at_ms + 0.7), mark(Stage::present, at_ms + 0.7, at_ms + 0.8)});
+  return frame(
+      image, origin_ms,
+      {mark(Stage::predict, at_ms, at_ms + 0.1), mark(Stage::draw, at_ms + 0.1, at_ms + 0.6),
+       mark(Stage::frame, at_ms, at_ms + 0.7), mark(Stage::present, at_ms + 0.7, at_ms + 0.8)});
 }
 
 /// Two images, one detected, one tracker sample, four frames.
@@ -54,10 +58,12 @@ TEST(Perfetto, ATraceHasAProcessATrackPerServiceAndItsClock) {
   EXPECT_EQ(trace.pid, static_cast<std::uint64_t>(getpid()));
   std::vector<std::string> tracks;
   for (const auto& [id, name] : trace.tracks) tracks.push_back(name);
-  EXPECT_THAT(tracks, ElementsAre("age of the image in the light", "camera", "pose", "landmarks", "projector"));
+  EXPECT_THAT(tracks, ElementsAre("age of the image in the light", "camera", "pose", "landmarks",
+                                  "projector"));
   constexpr int kRealtime = 1, kMonotonic = 3, kBoottime = 6;
   EXPECT_EQ(trace.primary_clock, kMonotonic);
-  EXPECT_THAT(trace.clocks, ElementsAre(std::pair(kRealtime, 3'000), std::pair(kMonotonic, 1'000), std::pair(kBoottime, 2'000)));
+  EXPECT_THAT(trace.clocks, ElementsAre(std::pair(kRealtime, 3'000), std::pair(kMonotonic, 1'000),
+                                        std::pair(kBoottime, 2'000)));
 }
 
 TEST(Perfetto, EverySliceIsWhereItsMarkSays) {
@@ -146,7 +152,8 @@ TEST(Perfetto, ASampleOfTheTrackerFlowsIntoTheFirstFrameThatKnewIt) {
 
 TEST(Perfetto, AServiceWhoseFramesOverlapGetsAsManyLanesAsItNeeds) {
   History history(60);
-  for (int i = 0; i < 20; ++i) history.note("pose", frame(i, i * 2.0, {mark(Stage::sample, i * 2.0, i * 2.0 + 5)}), 0);
+  for (int i = 0; i < 20; ++i)
+    history.note("pose", frame(i, i * 2.0, {mark(Stage::sample, i * 2.0, i * 2.0 + 5)}), 0);
   const auto trace = trace_of(history);
   ASSERT_EQ(trace.fault, "");
   std::map<std::uint64_t, int> slices_of_lane;
@@ -181,8 +188,11 @@ TEST(Perfetto, FramesWithoutAnOriginAndOfNoImageAreShownWithoutFlowOrAge) {
 
 TEST(Perfetto, ZeroLengthsAndWildMarksStillMakeATrace) {
   History history(60);
-  history.note("projector", frame(1, 0, {mark(Stage::draw, 1, 1), mark(Stage::warp, 1, 1), mark(Stage::frame, 1, 1)}), 0);
-  auto wild = frame(2, 0, {mark(Stage::draw, 1, 2), mark(Stage::warp, 1.5, 9), mark(Stage::frame, 0.5, 3)});
+  history.note(
+      "projector",
+      frame(1, 0, {mark(Stage::draw, 1, 1), mark(Stage::warp, 1, 1), mark(Stage::frame, 1, 1)}), 0);
+  auto wild =
+      frame(2, 0, {mark(Stage::draw, 1, 2), mark(Stage::warp, 1.5, 9), mark(Stage::frame, 0.5, 3)});
   wild.marks[0].begin_ns = 0;
   wild.header.origin_ns = std::numeric_limits<std::int64_t>::min();
   history.note("projector", wild, 0);

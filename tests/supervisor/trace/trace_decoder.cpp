@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/supervisor/trace/trace_decoder.hpp"
 
 #include <algorithm>
@@ -47,7 +48,8 @@ Message parse(std::string_view bytes) {
       case 1: {
         std::uint64_t value = 0;
         const auto little_endian = take_bytes(bytes, 8);
-        for (int i = 7; i >= 0; --i) value = value << 8 | static_cast<unsigned char>(little_endian[i]);
+        for (int i = 7; i >= 0; --i)
+          value = value << 8 | static_cast<unsigned char>(little_endian[i]);
         message.insert({field, {value, {}}});
         break;
       }
@@ -90,12 +92,14 @@ class Reader {
     const auto* flags = find(packet, 13);
     if (flags && flags->number & 1) names_.clear(), annotations_.clear(), state_valid_ = true;
     if (const auto* clocks = find(packet, 6)) read_clocks(parse(clocks->bytes));
-    if (const auto* defaults = find(packet, 59)) default_clock_ = number(parse(defaults->bytes), 58);
+    if (const auto* defaults = find(packet, 59))
+      default_clock_ = number(parse(defaults->bytes), 58);
     if (const auto* interned = find(packet, 12)) read_names(parse(interned->bytes));
     if (const auto* track = find(packet, 60)) read_track(parse(track->bytes));
     const auto* event = find(packet, 11);
     if (!event) return;
-    if (!flags || !(flags->number & 2) || !state_valid_) reject("an event without the state it needs");
+    if (!flags || !(flags->number & 2) || !state_valid_)
+      reject("an event without the state it needs");
     if (!seen_.clocks.contains(default_clock_)) reject("a clock without a reading");
     const auto time_ns = static_cast<std::int64_t>(number(packet, 8));
     if (time_ns < last_ns_) reject("time goes back");
@@ -147,7 +151,10 @@ class Reader {
       return open.pop_back();
     }
     if (type != 1) reject("an event of no known type");
-    SeenSlice slice{.track = seen_.tracks[track], .track_id = track, .begin_ns = time_ns, .parent = open.empty() ? -1 : open.back()};
+    SeenSlice slice{.track = seen_.tracks[track],
+                    .track_id = track,
+                    .begin_ns = time_ns,
+                    .parent = open.empty() ? -1 : open.back()};
     if (!names_.contains(number(event, 10))) reject("a name that was not declared");
     slice.name = names_[number(event, 10)];
     const auto [flow, last_flow] = event.equal_range(47);
@@ -161,7 +168,8 @@ class Reader {
     const auto [begin, end] = event.equal_range(4);
     for (auto each = begin; each != end; ++each) {
       const auto annotation = parse(each->second.bytes);
-      if (!annotations_.contains(number(annotation, 1))) reject("an annotation's name that was not declared");
+      if (!annotations_.contains(number(annotation, 1)))
+        reject("an annotation's name that was not declared");
       if (const auto* text = find(annotation, 6)) {
         slice.texts[annotations_[number(annotation, 1)]] = text->bytes;
         continue;
@@ -185,14 +193,16 @@ class Reader {
 
 std::vector<SeenSlice> SeenTrace::named(std::string_view name) const {
   std::vector<SeenSlice> found;
-  std::ranges::copy_if(slices, std::back_inserter(found), [&](const auto& slice) { return slice.name == name; });
+  std::ranges::copy_if(slices, std::back_inserter(found),
+                       [&](const auto& slice) { return slice.name == name; });
   return found;
 }
 
 std::vector<SeenSlice> SeenTrace::along(std::uint64_t flow) const {
   std::vector<SeenSlice> found;
-  std::ranges::copy_if(slices, std::back_inserter(found),
-                       [&](const auto& slice) { return std::ranges::find(slice.flows, flow) != slice.flows.end(); });
+  std::ranges::copy_if(slices, std::back_inserter(found), [&](const auto& slice) {
+    return std::ranges::find(slice.flows, flow) != slice.flows.end();
+  });
   return found;
 }
 

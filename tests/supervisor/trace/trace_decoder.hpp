@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
 #include <map>
@@ -33,8 +34,9 @@ struct SeenTrace {
   std::vector<SeenSlice> along(std::uint64_t flow) const;
 };
 
-/// Reads a Perfetto trace without the code that wrote it: from the published field numbers and the rules of TrackEvent alone (times
-/// do not go back, every slice ends, the last begun first; every name and track is declared before it is used).
+/// Reads a Perfetto trace without the code that wrote it: from the published field numbers and the
+/// rules of TrackEvent alone (times do not go back, every slice ends, the last begun first; every
+/// name and track is declared before it is used).
 SeenTrace decode_trace(std::string_view bytes);
 
 }  // namespace handcast::supervisor::test

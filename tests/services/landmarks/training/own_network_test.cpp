@@ -1,10 +1,11 @@
-#include "services/landmarks/own_network.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "services/landmarks/finder/own_network.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "services/landmarks/exponential.hpp"
+#include "services/landmarks/finder/exponential.hpp"
 
 namespace handcast::landmarks::own {
 namespace {
@@ -18,7 +19,8 @@ constexpr std::size_t kImageSize = kSide_px * kSide_px;
 Points spots_in(const Region& region) {
   Points spots;
   for (std::size_t i = 0; i < spots.size(); ++i)
-    spots[i] = region.to_image({-0.33f + 0.12f * static_cast<float>(i % 7), -0.3f + 0.3f * static_cast<float>(i / 7)});
+    spots[i] = region.to_image(
+        {-0.33f + 0.12f * static_cast<float>(i % 7), -0.3f + 0.3f * static_cast<float>(i / 7)});
   return spots;
 }
 
@@ -51,7 +53,8 @@ glm::vec2 middle_of_light(std::span<const float> image, glm::vec2 place) {
 }
 
 class EitherSide : public testing::TestWithParam<msg::Side> {};
-INSTANTIATE_TEST_SUITE_P(OwnNetwork, EitherSide, testing::Values(msg::Side::left, msg::Side::right));
+INSTANTIATE_TEST_SUITE_P(OwnNetwork, EitherSide,
+                         testing::Values(msg::Side::left, msg::Side::right));
 
 TEST_P(EitherSide, WhatTheNetworkIsShownLiesWherePlacesSayToATenthOfAPixel) {
   for (const float angle : {0.0f, 0.7f, 3.1415927f})
@@ -64,7 +67,8 @@ TEST_P(EitherSide, WhatTheNetworkIsShownLiesWherePlacesSayToATenthOfAPixel) {
       write_image(crop.pixels(), GetParam(), image);
       const Places places = to_places(region, GetParam(), spots);
       for (const glm::vec2 place : places) {
-        const glm::vec2 off_px = (middle_of_light(image, place) - place) * static_cast<float>(kSide_px);
+        const glm::vec2 off_px =
+            (middle_of_light(image, place) - place) * static_cast<float>(kSide_px);
         EXPECT_NEAR(off_px.x, 0, 0.1f) << "region of " << size << " px turned by " << angle;
         EXPECT_NEAR(off_px.y, 0, 0.1f) << "region of " << size << " px turned by " << angle;
       }
@@ -82,7 +86,8 @@ TEST_P(EitherSide, APeakInAHeatMapLeadsBackToThePixelItStandsFor) {
   const Region region{{300, 200}, 240, 0};
   std::vector<float> output((2 * msg::kLandmarks + 1) * kHeatCells * kHeatCells, 0.0f);
   const int column = 3, row = 7;
-  for (int i = 0; i < msg::kLandmarks; ++i) output[(i * kHeatCells + row) * kHeatCells + column] = 60;
+  for (int i = 0; i < msg::kLandmarks; ++i)
+    output[(i * kHeatCells + row) * kHeatCells + column] = 60;
   const Points points = to_image(region, GetParam(), read_answer(output).places);
   const float across = GetParam() == msg::Side::left ? kHeatCells - 1 - column : column;
   const glm::vec2 expected(180 + 20 * (across + 0.5f), 80 + 20 * (row + 0.5f));  // 20 px a cell
@@ -128,12 +133,14 @@ TEST(OwnNetwork, TheTrackersMapsPeakAtItsJoints) {
 /// Processors are a hundred times slower at numbers too small for a normal float.
 TEST(OwnNetwork, TheTrackersMapsAreGaussiansWithoutDenormalNumbers) {
   Places places;
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] = {0.07f * static_cast<float>(i) - 0.2f, 1.1f - 0.05f * static_cast<float>(i)};
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = {0.07f * static_cast<float>(i) - 0.2f, 1.1f - 0.05f * static_cast<float>(i)};
   std::vector<float> maps(msg::kLandmarks * kMapCells * kMapCells);
   write_tracker(places, maps);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const glm::dvec2 cell(i % kMapCells, i / kMapCells % kMapCells);
-    const glm::dvec2 way = (cell + 0.5 - glm::dvec2(places[i / (kMapCells * kMapCells)]) * double{kMapCells}) / 1.2;
+    const glm::dvec2 way =
+        (cell + 0.5 - glm::dvec2(places[i / (kMapCells * kMapCells)]) * double{kMapCells}) / 1.2;
     ASSERT_NEAR(maps[i], std::exp(-0.5 * glm::dot(way, way)), 1e-6);
     ASSERT_NE(std::fpclassify(maps[i]), FP_SUBNORMAL);
   }
@@ -149,7 +156,8 @@ TEST(OwnNetwork, AJointThatIsNoNumberLeavesItsMapEmpty) {
 
 TEST(OwnNetwork, ALeftHandIsShownMirrored) {
   std::vector<std::uint8_t> pixels(kImageSize);
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * 37 % 251);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = static_cast<std::uint8_t>(i * 37 % 251);
   const auto shown = shown_values(pixels);
   std::vector<float> left(kImageSize), right(kImageSize);
   write_image(pixels, msg::Side::left, left);
@@ -163,7 +171,8 @@ TEST(OwnNetwork, ALeftHandIsShownMirrored) {
 TEST(OwnNetwork, ReadsTheMeansThatItsHeatSays) {
   constexpr int kCells = kHeatCells * kHeatCells;
   std::vector<float> output((2 * msg::kLandmarks + 1) * kCells);
-  for (std::size_t i = 0; i < output.size(); ++i) output[i] = static_cast<float>(static_cast<int>(i * 7919 % 2003) - 1001) * 0.02f;
+  for (std::size_t i = 0; i < output.size(); ++i)
+    output[i] = static_cast<float>(static_cast<int>(i * 7919 % 2003) - 1001) * 0.02f;
   const Answer answer = read_answer(output);
   for (int i = 0; i < msg::kLandmarks; ++i) {
     double weight = 0, log_sigma = 0;
@@ -181,8 +190,10 @@ TEST(OwnNetwork, ReadsTheMeansThatItsHeatSays) {
 }
 
 TEST(Exponential, IsRightToAFloatsRounding) {
-  for (float x = -87; x <= 88; x += 0.01f) ASSERT_NEAR(exponential(x) / std::exp(static_cast<double>(x)), 1, 3e-7) << x;
-  for (const float x : {-88.0f, -1e30f, -INFINITY, NAN}) EXPECT_EQ(exponential(x), exponential(-87.0f)) << x;
+  for (float x = -87; x <= 88; x += 0.01f)
+    ASSERT_NEAR(exponential(x) / std::exp(static_cast<double>(x)), 1, 3e-7) << x;
+  for (const float x : {-88.0f, -1e30f, -INFINITY, NAN})
+    EXPECT_EQ(exponential(x), exponential(-87.0f)) << x;
 }
 
 TEST(OwnNetwork, ItsRegionHoldsEveryLandmarkUpright) {

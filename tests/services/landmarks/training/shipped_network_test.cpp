@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -5,7 +6,8 @@
 
 #include "services/landmarks/training/generator.hpp"
 
-/// What is asked of the network that is shipped, on images of people and poses that it was not trained on.
+/// What is asked of the network that is shipped, on images of people and poses that it was not
+/// trained on.
 namespace handcast::landmarks::training {
 namespace {
 
@@ -24,7 +26,8 @@ class Shipped : public testing::Test {
 
   own::Answer look(const Sample& sample, const std::optional<own::Places>& tracker) {
     const auto image = network_->input(0);
-    for (std::size_t i = 0; i < sample.image.size(); ++i) image[i] = sample.image[i] / Sample::kUnit - own::kShownShift;
+    for (std::size_t i = 0; i < sample.image.size(); ++i)
+      image[i] = sample.image[i] / Sample::kUnit - own::kShownShift;
     own::write_tracker(tracker, network_->input(1));
     EXPECT_TRUE(network_->run());
     return own::read_answer(network_->output(0));
@@ -70,7 +73,9 @@ TEST_F(Shipped, FindsLandmarksAndTheTrackerHelpsIt) {
   for (int n = 0; n < kImages; ++n) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
     if (!sample.has_hand || !sample.has_tracker) continue;
-    const auto off = [&](const own::Places& places) { return distance_px(places, sample.truth) * own::kSide_px; };
+    const auto off = [&](const own::Places& places) {
+      return distance_px(places, sample.truth) * own::kSide_px;
+    };
     errors.tracker.push_back(off(sample.tracker));
     errors.with.push_back(off(look(sample, sample.tracker).places));
     errors.without.push_back(off(look(sample, std::nullopt).places));
@@ -85,10 +90,12 @@ TEST_F(Shipped, ItsSigmasSayHowFarOffItIs) {
   for (int n = 0; n < kImages; ++n) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
     if (!sample.has_hand) continue;
-    const own::Answer answer = look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt);
+    const own::Answer answer =
+        look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt);
     for (int i = 0; i < msg::kLandmarks; ++i)
       for (int axis = 0; axis < 2; ++axis, ++all) {
-        const float off = std::abs(answer.places[i][axis] - sample.truth[i][axis]) / answer.sigma[i];
+        const float off =
+            std::abs(answer.places[i][axis] - sample.truth[i][axis]) / answer.sigma[i];
         inside_half += off < -std::log(1 - 0.5f);
         inside_most += off < -std::log(1 - 0.9f);
       }
@@ -101,7 +108,9 @@ TEST_F(Shipped, TellsAHandFromNone) {
   int hands = 0, seen = 0, others = 0, imagined = 0;
   for (int n = 0; n < 2 * kImages; ++n) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
-    const bool says_hand = look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt).presence > 0.5f;
+    const bool says_hand =
+        look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt).presence >
+        0.5f;
     ++(sample.has_hand ? hands : others);
     if (says_hand) ++(sample.has_hand ? seen : imagined);
   }
@@ -112,7 +121,8 @@ TEST_F(Shipped, TellsAHandFromNone) {
 TEST_F(Shipped, SeesNoHandInBlackWhiteOrNoise) {
   EXPECT_LT(presence_in([](Dice&) { return std::uint8_t{0}; }), 0.5f);
   EXPECT_LT(presence_in([](Dice&) { return std::uint8_t{255}; }), 0.5f);
-  EXPECT_LT(presence_in([](Dice& dice) { return static_cast<std::uint8_t>(dice.pick(256)); }), 0.5f);
+  EXPECT_LT(presence_in([](Dice& dice) { return static_cast<std::uint8_t>(dice.pick(256)); }),
+            0.5f);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -58,7 +59,8 @@ glm::vec2 middle_of_cover(const Scene& scene, const Region& region) {
 glm::vec2 middle_of_far_hand(const Region& region) {
   Dice dice(1, 2);
   const Pose pose = pose_of(people()[0], {});
-  const auto joints = moved(glm::mat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 2, 1), pose.joints);
+  const auto joints =
+      moved(glm::mat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 2, 1), pose.joints);
   const Light light(dice, {0, 0, 2});
   Scene scene(calib::CameraModel{}, region);
   scene.add_hand(dice, people()[0], joints, light);
@@ -67,8 +69,10 @@ glm::vec2 middle_of_far_hand(const Region& region) {
 }
 
 TEST(TrainingImages, AHandIsDrawnAtTheSamePixelHoweverTheRegionIsTurned) {
-  const glm::vec2 upright = middle_of_far_hand({{360, 290}, 500, 0}), over = middle_of_far_hand({{360, 290}, 500, 3.1415927f});
-  EXPECT_LT(glm::distance(upright, over), 0.25f);  // half a pixel of the crop is 2.6 px here, and shows twice
+  const glm::vec2 upright = middle_of_far_hand({{360, 290}, 500, 0}),
+                  over = middle_of_far_hand({{360, 290}, 500, 3.1415927f});
+  EXPECT_LT(glm::distance(upright, over),
+            0.25f);  // half a pixel of the crop is 2.6 px here, and shows twice
 }
 
 TEST(TrainingImages, LabelsLieOnTheHand) {
@@ -88,7 +92,8 @@ TEST(TrainingImages, LabelsLieOnTheHand) {
     const own::Places places = own::to_places(region, msg::Side::right, truth_px);
     for (int i = 0; i < msg::kLandmarks; ++i) {
       if (i > 0 && i % 4 == 0) continue;  // tips lie on the outline
-      const glm::ivec2 px = glm::clamp(glm::ivec2(places[i] * float(own::kSide_px)), 0, own::kSide_px - 1);
+      const glm::ivec2 px =
+          glm::clamp(glm::ivec2(places[i] * float(own::kSide_px)), 0, own::kSide_px - 1);
       on_hand += scene.cover()[px.y * own::kSide_px + px.x] > 0;
       ++all;
     }
@@ -135,7 +140,8 @@ TEST(TrainingImages, TheTrackerIsThereInThreeQuartersAndOffByAFifthOfThePalm) {
     hands += sample.has_hand;
     with_tracker += sample.has_hand && sample.has_tracker;
     const float palm = glm::distance(sample.truth[0], sample.truth[9]);
-    if (sample.has_hand && sample.has_tracker) off.push_back(distance_px(sample.truth, sample.tracker) / palm);
+    if (sample.has_hand && sample.has_tracker)
+      off.push_back(distance_px(sample.truth, sample.tracker) / palm);
   }
   EXPECT_NEAR(static_cast<double>(with_tracker) / hands, 0.75, 0.07);
   std::ranges::nth_element(off, off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2));

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/settings/settings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "config/settings/join.hpp"
+
+namespace handcast::config {
+namespace {
+
+std::string print(bool flag) { return flag ? "true" : "false"; }
+std::string print(int whole) { return fmt::format("{}", whole); }
+std::string print(double number) {
+  return fmt::format("{}", number);
+}  // the shortest text that reads back the same
+
+std::string print(const std::vector<double>& numbers) {
+  std::vector<std::string> texts;
+  for (const double number : numbers) texts.push_back(print(number));
+  return fmt::format("[{}]", join(texts, ", "));
+}
+
+std::string print(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (code < 0x20 || code == 0x7f) {
+      quoted += fmt::format("\\u{:04X}", code);
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + '"';
+}
+
+std::string comment_for(const Setting& setting) {
+  const auto allowed = print_allowed(setting);
+  return fmt::format("# {}{}\n", setting.sentence,
+                     allowed.empty() ? "" : fmt::format(" ({})", allowed));
+}
+
+}  // namespace
+
+const Setting* find_setting(const Listing& listing, std::string_view path) {
+  for (const auto& section : listing)
+    for (const auto& setting : section.settings)
+      if (setting.path == path) return &setting;
+  return nullptr;
+}
+
+std::string print_value(const Setting& setting) {
+  return std::visit([](const auto* value) { return print(*value); }, setting.target);
+}
+
+std::string print_allowed(const Setting& setting) {
+  if (!setting.choices.empty()) return fmt::format("one of: {}", join(setting.choices, ", "));
+  const auto& range = setting.range;
+  const bool low = std::isfinite(range.min), high = std::isfinite(range.max);
+  std::string allowed;
+  if (low && high) allowed = fmt::format("{}..{}", range.min, range.max);
+  if (low && !high) allowed = fmt::format("at least {}", range.min);
+  if (!low && high) allowed = fmt::format("at most {}", range.max);
+  if (!range.unit.empty())
+    allowed += fmt::format("{}{}", allowed.empty() ? "in " : " ", range.unit);
+  return allowed;
+}
+
+std::string print_settings(const Listing& listing, std::string_view title) {
+  std::string toml = fmt::format("# {}\n", title);
+  for (const auto& section : listing) {
+    if (!section.path.empty())
+      toml += fmt::format("\n# {}\n[{}]\n", section.sentence, section.path);
+    for (const auto& setting : section.settings)
+      toml +=
+          fmt::format("{}{} = {}\n", comment_for(setting), setting.name(), print_value(setting));
+  }
+  return toml;
+}
+
+}  // namespace handcast::config

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "renderer/base/similarity.hpp"
+#include "renderer/correct/deform.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+/// How a bone moves, and how far that is to be trusted (0..1).
+struct BoneMove : Similarity {
+  float trust = 1;
+};
+
+/// Which of the 20 bones between landmarks moves a joint's skin. Bone 4 f + k of finger f ends at
+/// landmark 4 f + k + 1; bones with k = 0 start at the wrist and are the palm. The skin of wrist
+/// and palm joint moves with the whole palm: kPalm.
+constexpr int kPalm = 20;
+constexpr std::array<int, kJoints> kBoneOfJoint{kPalm, kPalm, 1,  2,  3,  3,  4,  5,  6,
+                                                7,     7,     8,  9,  10, 11, 11, 12, 13,
+                                                14,    15,    15, 16, 17, 18, 19, 19};
+constexpr std::array<int, 4> kKnuckles{5, 9, 13, 17};
+
+/// A bone seen so long is trusted so much.
+float trust_in(const config::Correct& settings, float length_px) {
+  const auto from = static_cast<float>(settings.bone_short_px),
+             to = static_cast<float>(settings.bone_long_px);
+  if (to <= from) return length_px >= to ? 1.0f : 0.0f;
+  return glm::smoothstep(from, to, length_px);
+}
+
+using Landmarks2d = std::span<const glm::vec2, kLandmarks>;
+
+BoneMove finger_bone(const config::Correct& settings, int bone, Landmarks2d p, Landmarks2d q) {
+  const int end = bone + 1, start = bone % 4 == 0 ? 0 : bone;
+  BoneMove move{fit_similarity(std::array{p[start], p[end]}, std::array{q[start], q[end]})};
+  move.trust = trust_in(settings, glm::distance(p[start], p[end]));
+  return move;
+}
+
+/// From the wrist to the middle of the knuckles, exact at the wrist.
+BoneMove palm_bone(const config::Correct& settings, Landmarks2d p, Landmarks2d q) {
+  glm::vec2 p_knuckles{0}, q_knuckles{0};
+  float longest_px = 0;
+  for (const int knuckle : kKnuckles) {
+    p_knuckles += p[knuckle] / static_cast<float>(kKnuckles.size());
+    q_knuckles += q[knuckle] / static_cast<float>(kKnuckles.size());
+    longest_px = std::max(longest_px, glm::distance(p[knuckle], p[0]));
+  }
+  BoneMove move{fit_similarity(std::array{p[0], p_knuckles}, std::array{q[0], q_knuckles})};
+  move.trust = trust_in(settings, longest_px);
+  return move;
+}
+
+/// Four numbers that are weighed together: cosine, sine, shift x and y, in one register.
+using Four = float __attribute__((vector_size(16)));
+
+/// Each joint's move with its trust multiplied in, so that a weighted sum of moves is a weighted
+/// sum of numbers.
+struct JointMoves {
+  std::array<Four, kJoints> move;
+  std::array<float, kJoints> trust;
+  bool all_trusted = true;
+};
+
+JointMoves joint_moves(const config::Correct& settings, Landmarks2d p, Landmarks2d q) {
+  std::array<BoneMove, kPalm + 1> bones;
+  for (int bone = 0; bone < kPalm; ++bone) bones[bone] = finger_bone(settings, bone, p, q);
+  bones[kPalm] = palm_bone(settings, p, q);
+  JointMoves moves;
+  for (int j = 0; j < kJoints; ++j) {
+    const BoneMove& bone = bones[kBoneOfJoint[j]];
+    moves.move[j] = bone.trust * Four{bone.cosine, bone.sine, bone.shift.x, bone.shift.y};
+    moves.trust[j] = bone.trust;
+    moves.all_trusted &= bone.trust >= 1;
+  }
+  return moves;
+}
+
+/// Every vertex to where the trusted bones would have it: only a share of its place where they do
+/// not hold it wholly.
+void move_by_bones(const HandMesh& hand, const JointMoves& moves, std::span<glm::vec2> vertices) {
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto& joints = hand.joints[v];
+    const auto& weights = hand.weights[v];
+    const Four sum = weights[0] * moves.move[joints[0]] + weights[1] * moves.move[joints[1]] +
+                     weights[2] * moves.move[joints[2]] + weights[3] * moves.move[joints[3]];
+    const glm::vec2 at = vertices[v];
+    vertices[v] = {sum[0] * at.x - sum[1] * at.y + sum[2], sum[1] * at.x + sum[0] * at.y + sum[3]};
+  }
+}
+
+/// What the bones do not hold wholly.
+struct LeftOver {
+  std::vector<std::uint16_t> vertex;
+  std::vector<float> share;
+  std::vector<glm::vec2> place;
+};
+
+void find_left_over(const HandMesh& hand, const JointMoves& moves,
+                    std::span<const glm::vec2> vertices, LeftOver& left) {
+  constexpr float kNothing = 1e-3f;
+  left.vertex.clear();
+  left.share.clear();
+  left.place.clear();
+  if (moves.all_trusted) return;
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    float share = 1;
+    for (int k = 0; k < 4; ++k) share -= hand.weights[v][k] * moves.trust[hand.joints[v][k]];
+    if (share < kNothing) continue;
+    left.vertex.push_back(static_cast<std::uint16_t>(v));
+    left.share.push_back(share);
+    left.place.push_back(vertices[v]);
+  }
+}
+
+}  // namespace
+
+void correct_vertices(const config::Correct& settings, const HandMesh& hand, Landmarks2d p,
+                      Landmarks2d q, std::span<glm::vec2> vertices) {
+  thread_local LeftOver left;  // keeps its memory from frame to frame
+  const JointMoves moves = joint_moves(settings, p, q);
+  find_left_over(hand, moves, vertices, left);
+  move_by_bones(hand, moves, vertices);
+  if (left.vertex.empty()) return;
+  MovingLeastSquares(p, q, static_cast<float>(settings.alpha)).apply(left.place);
+  for (std::size_t k = 0; k < left.vertex.size(); ++k)
+    vertices[left.vertex[k]] += left.share[k] * left.place[k];
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/draw/cpu/nearest_pixel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "renderer/base/clones.hpp"
+
+namespace handcast::renderer::cpu {
+namespace {
+
+constexpr int kBlock = 32;  ///< pixels of a row scanned at once
+constexpr std::uint8_t kNoRow =
+    100;  ///< no seed in the column within reach: the square is beyond it too
+constexpr std::int16_t kFar =
+    16'000;  ///< square of a way that does not exist; sums with squares of the reach still fit
+
+/// Rows to the nearest seed at or before this row, given those of the row before.
+HANDCAST_CLONES void step_rows(const std::uint8_t* __restrict seeds, const std::uint8_t* before,
+                               std::uint8_t* rows, int count) {
+#pragma GCC ivdep
+  for (int x = 0; x < count; ++x) {
+    const auto next = static_cast<std::uint8_t>(before[x] + 1);
+    const std::uint8_t bounded = next < kNoRow ? next : kNoRow;
+    rows[x] = seeds[x] ? std::uint8_t{0} : bounded;
+  }
+}
+
+/// Joins rows above and rows below to one signed offset, the upper where equal.
+HANDCAST_CLONES void join_rows(const std::uint8_t* __restrict below,
+                               std::int8_t* __restrict to_seed, int count) {
+  for (int x = 0; x < count; ++x) {
+    const auto up = static_cast<std::uint8_t>(to_seed[x]);
+    to_seed[x] = static_cast<std::int8_t>(below[x] < up ? below[x] : -up);
+  }
+}
+
+HANDCAST_CLONES void square_row(const std::int8_t* __restrict to_seed,
+                                std::int16_t* __restrict squares, int count) {
+  for (int x = 0; x < count; ++x) squares[x] = static_cast<std::int16_t>(to_seed[x] * to_seed[x]);
+}
+
+inline std::uint64_t eight(const std::uint8_t* pixels) {
+  std::uint64_t word;
+  std::memcpy(&word, pixels, sizeof word);
+  return word;
+}
+
+/// The first column that is set, `count` where none is.
+int first_set(const std::uint8_t* pixels, int count) {
+  int x = 0;
+  while (x + 8 <= count && eight(pixels + x) == 0) x += 8;
+  while (x < count && pixels[x] == 0) ++x;
+  return x;
+}
+
+/// One past the last column that is set; one must be.
+int end_of_set(const std::uint8_t* pixels, int count) {
+  int x = count;
+  while (x >= 8 && eight(pixels + x - 8) == 0) x -= 8;
+  while (pixels[x - 1] == 0) --x;
+  return x;
+}
+
+HANDCAST_CLONES bool any_set(const std::uint8_t* pixels, int count) {
+  std::uint8_t any = 0;
+  for (int x = 0; x < count; ++x) any |= pixels[x];
+  return any != 0;
+}
+
+/// The bounding rectangle of what is set; empty where nothing is.
+Rect bounds_of(View<const std::uint8_t> set) {
+  Rect bounds{set.width, set.height, 0, 0};
+  for (int y = 0; y < set.height; ++y) {
+    const std::uint8_t* row = set.row(y);
+    if (!any_set(row, set.width)) continue;
+    bounds.y0 = std::min(bounds.y0, y);
+    bounds.y1 = y + 1;
+    bounds.x0 = std::min(bounds.x0, first_set(row, set.width));
+    bounds.x1 = std::max(bounds.x1, end_of_set(row, set.width));
+  }
+  return bounds;
+}
+
+struct Block {
+  alignas(64) std::array<std::int16_t, kBlock> best;  ///< square of the way to the best seed so far
+  alignas(64) std::array<std::int16_t, kBlock> shift;  ///< its column, from the pixel's own
+};
+
+/// Looks left and right of all pixels of a block, one column further at a time, until nothing
+/// nearer can come.
+HANDCAST_CLONES void scan_block(const std::int16_t* __restrict squares,
+                                const std::uint8_t* __restrict wanted, int reach, Block& block) {
+  alignas(64) std::int16_t best[kBlock], shift[kBlock], needed[kBlock];
+  for (int i = 0; i < kBlock; ++i) {
+    best[i] = squares[i];
+    shift[i] = 0;
+    needed[i] = wanted[i] ? -1 : 0;
+  }
+  for (int d = 1; d <= reach; ++d) {
+    const auto square = static_cast<std::int16_t>(d * d);
+    const auto step = static_cast<std::int16_t>(d);
+    std::int16_t farthest = 0;
+    for (int i = 0; i < kBlock; ++i) {
+      const auto left = static_cast<std::int16_t>(squares[i - d] + square);
+      const auto right = static_cast<std::int16_t>(squares[i + d] + square);
+      std::int16_t nearest = best[i], towards = shift[i];
+      towards = left < nearest ? static_cast<std::int16_t>(-step) : towards;
+      nearest = left < nearest ? left : nearest;
+      towards = right < nearest ? step : towards;
+      nearest = right < nearest ? right : nearest;
+      best[i] = nearest;
+      shift[i] = towards;
+      const auto open = static_cast<std::int16_t>(nearest & needed[i]);
+      farthest = open > farthest ? open : farthest;
+    }
+    if (farthest <= (d + 1) * (d + 1)) break;
+  }
+  std::copy(best, best + kBlock, block.best.begin());
+  std::copy(shift, shift + kBlock, block.shift.begin());
+}
+
+}  // namespace
+
+void NearestPixel::sweep_columns(View<const std::uint8_t> seeds, Rect area) {
+  const int count = area.width();
+  area_ = area;
+  to_seed_stride_ = (count + 63) / 64 * 64;
+  to_seed_.resize(static_cast<std::size_t>(to_seed_stride_) * area.height());
+  rows_below_.assign(count, kNoRow);
+  const auto line = [&](int y) {
+    return to_seed_.data() + static_cast<std::ptrdiff_t>(y - area.y0) * to_seed_stride_;
+  };
+  const std::uint8_t* above = rows_below_.data();
+  for (int y = area.y0; y < area.y1; ++y) {
+    auto* rows = reinterpret_cast<std::uint8_t*>(line(y));
+    step_rows(seeds.row(y) + area.x0, above, rows, count);
+    above = rows;
+  }
+  for (int y = area.y1 - 1; y >= area.y0; --y) {
+    step_rows(seeds.row(y) + area.x0, rows_below_.data(), rows_below_.data(), count);
+    join_rows(rows_below_.data(), line(y), count);
+  }
+}
+
+void NearestPixel::scan_row(const std::uint8_t* wanted, int y, Rect wanted_area, int reach_px) {
+  const std::int8_t* to_seed =
+      to_seed_.data() + static_cast<std::ptrdiff_t>(y - area_.y0) * to_seed_stride_;
+  std::int16_t* squares = squares_.data() + kLargestReach;
+  const int first = wanted_area.x0 + first_set(wanted + wanted_area.x0, wanted_area.width());
+  if (first == wanted_area.x1) return;
+  square_row(to_seed, squares, area_.width());
+  const int limit = reach_px * reach_px;
+  Block block;
+  for (int x = first; x < wanted_area.x1; x += kBlock) {
+    alignas(64) std::array<std::uint8_t, kBlock> here{};
+    std::memcpy(here.data(), wanted + x, std::min(kBlock, wanted_area.x1 - x));
+    if (first_set(here.data(), kBlock) == kBlock) continue;
+    scan_block(squares + (x - area_.x0), here.data(), reach_px, block);
+    for (int i = 0; i < kBlock; ++i) {
+      if (!here[i] || block.best[i] > limit) continue;
+      const int dx = block.shift[i];
+      const std::int8_t dy = to_seed[x - area_.x0 + i + dx];
+      found_.push_back({static_cast<std::int16_t>(x + i), static_cast<std::int16_t>(y),
+                        static_cast<std::int8_t>(dx), dy, block.best[i]});
+    }
+  }
+}
+
+std::span<const NearestSeed> NearestPixel::find(View<const std::uint8_t> seeds,
+                                                View<const std::uint8_t> wanted, int reach_px) {
+  found_.clear();
+  reach_px = std::clamp(reach_px, 0, kLargestReach);
+  const Rect wanted_area = bounds_of(wanted);
+  if (wanted_area.empty()) return found_;
+  sweep_columns(seeds, wanted_area.grown(reach_px).within(wanted.width, wanted.height));
+  squares_.assign(kLargestReach + area_.width() + kBlock + kLargestReach, kFar);
+  for (int y = wanted_area.y0; y < wanted_area.y1; ++y)
+    scan_row(wanted.row(y), y, wanted_area, reach_px);
+  return found_;
+}
+
+}  // namespace handcast::renderer::cpu

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <new>
+
+#include "renderer/base/image.hpp"
+
+namespace handcast::renderer::cpu {
+
+/// Pixels a pass works on: rows start on cache lines, have room for whole vectors past their end,
+/// and are not a multiple of a page apart, so that the rows of one triangle do not fight for the
+/// same cache sets.
+template <class T>
+class Plane {
+ public:
+  Plane(int width, int height)
+      : width_(width), height_(height), stride_(padded(width)), pixels_(allocate(count())) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int stride() const { return stride_; }
+  T* row(int y) { return pixels_.get() + static_cast<std::ptrdiff_t>(y) * stride_; }
+  const T* row(int y) const { return pixels_.get() + static_cast<std::ptrdiff_t>(y) * stride_; }
+  View<T> view() { return {pixels_.get(), width_, height_, stride_}; }
+  View<const T> view() const { return {pixels_.get(), width_, height_, stride_}; }
+
+ private:
+  static constexpr std::align_val_t kAlignment{64};
+  struct Free {
+    void operator()(T* pixels) const { ::operator delete[](pixels, kAlignment); }
+  };
+
+  static int padded(int width) {
+    const int stride = (width / 64 + 1) * 64;
+    return stride * sizeof(T) % 4096 == 0 ? stride + 64 : stride;
+  }
+  std::size_t count() const { return static_cast<std::size_t>(stride_) * height_; }
+  static std::unique_ptr<T[], Free> allocate(std::size_t count) {
+    auto* pixels = static_cast<T*>(::operator new[](count * sizeof(T), kAlignment));
+    std::uninitialized_value_construct_n(pixels, count);
+    return std::unique_ptr<T[], Free>(pixels);
+  }
+
+  int width_, height_, stride_;
+  std::unique_ptr<T[], Free> pixels_;
+};
+
+}  // namespace handcast::renderer::cpu

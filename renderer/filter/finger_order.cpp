@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/filter/finger_order.hpp"
+
+#include <algorithm>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr int kFingers = 5, kJointsOfFinger = 4;
+constexpr std::int64_t kPatience_ns = 500'000'000;  ///< then the detector is believed
+constexpr float kFar_px = 15;                       ///< a finger this close to its place is in it,
+constexpr float kCloser = 0.3f;  ///< and on another's when it is this much closer to that
+
+constexpr int first_of(int finger) { return 1 + kJointsOfFinger * finger; }
+
+/// Mean distance of the landmarks that `finger` shows from the place of `place`; nothing where none
+/// is known.
+std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected,
+                                 int finger, int place) {
+  float sum = 0;
+  int count = 0;
+  for (int k = 0; k < kJointsOfFinger; ++k) {
+    const int from = first_of(finger) + k, to = first_of(place) + k;
+    if (!was_seen(seen.points[from]) || !expected.known[to]) continue;
+    sum += glm::distance(position_px(seen.points[from]), expected.px[to]);
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / static_cast<float>(count);
+}
+
+bool exchanged(const msg::HandLandmarks& seen, const ExpectedPoints& expected, int a, int b) {
+  const auto a_a = distance_px(seen, expected, a, a), b_b = distance_px(seen, expected, b, b);
+  const auto a_b = distance_px(seen, expected, a, b), b_a = distance_px(seen, expected, b, a);
+  return a_a && b_b && a_b && b_a && std::min(*a_a, *b_b) > kFar_px &&
+         *a_b + *b_a < kCloser * (*a_a + *b_b);
+}
+
+}  // namespace
+
+msg::HandLandmarks FingerOrder::mended(std::int64_t origin_ns, const msg::HandLandmarks& seen,
+                                       const ExpectedPoints& expected) {
+  msg::HandLandmarks mended = seen;
+  bool wrong = false;
+  for (int a = 0; a < kFingers; ++a)
+    for (int b = a + 1; b < kFingers; ++b) {
+      if (!exchanged(mended, expected, a, b)) continue;
+      std::swap_ranges(&mended.points[first_of(a)], &mended.points[first_of(a)] + kJointsOfFinger,
+                       &mended.points[first_of(b)]);
+      wrong = true;
+    }
+  if (!wrong) {
+    wrong_since_ns_.reset();
+    return seen;
+  }
+  if (!wrong_since_ns_) wrong_since_ns_ = origin_ns;
+  return origin_ns - *wrong_since_ns_ < kPatience_ns ? mended : seen;
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/filter/landmark_filter.hpp"
+
+#include "renderer/filter/filters.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+class NoFilter final : public LandmarkFilter {
+ public:
+  void detection(std::int64_t, std::int64_t, const msg::HandLandmarks&, const TrackerAt&) override {
+  }
+  void tracker_sample(std::int64_t) override {}
+  std::optional<LandmarkPoints> at(std::int64_t, std::int64_t, const LandmarkPoints&) override {
+    return std::nullopt;
+  }
+};
+
+/// The floor: what the best filter could reach with these sensors.
+class IdealFilter final : public LandmarkFilter {
+ public:
+  explicit IdealFilter(LandmarkOracle oracle) : oracle_(std::move(oracle)) {}
+  void detection(std::int64_t, std::int64_t, const msg::HandLandmarks&, const TrackerAt&) override {
+  }
+  void tracker_sample(std::int64_t) override {}
+  std::optional<LandmarkPoints> at(std::int64_t, std::int64_t target_ns,
+                                   const LandmarkPoints&) override {
+    return oracle_(target_ns);
+  }
+
+ private:
+  LandmarkOracle oracle_;
+};
+
+}  // namespace
+
+bool moves_with_tracker(const config::Filter& settings) {
+  return settings.method == "paper" || settings.method == "one_euro" ||
+         settings.method == "offset_kalman";
+}
+
+std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& settings,
+                                                     LandmarkOracle oracle) {
+  if (settings.method == "naive") return make_settled_filter(settings, make_naive_filter());
+  if (settings.method == "paper") return make_settled_filter(settings, make_paper_filter(settings));
+  if (settings.method == "kalman")
+    return make_settled_filter(settings, make_kalman_filter(settings));
+  if (settings.method == "one_euro")
+    return make_settled_filter(settings, make_one_euro_filter(settings));
+  if (settings.method == "offset_kalman")
+    return make_settled_filter(settings, make_offset_kalman(settings));
+  if (settings.method == "ideal" && oracle) return std::make_unique<IdealFilter>(std::move(oracle));
+  return std::make_unique<NoFilter>();
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "renderer/filter/filters.hpp"
+#include "renderer/filter/finger_order.hpp"
+#include "renderer/filter/landmarks_alone.hpp"
+#include "renderer/filter/shared_offset.hpp"
+
+namespace handcast::renderer {
+
+/// A filter that follows Q - P of each point at the detection's own time and adds it to P at the
+/// target time. While the tracker is silent the landmarks go on by themselves, and when it is heard
+/// again elsewhere the offset begins anew from where they are. `Track` follows one point: known(),
+/// forget(), and what the functions below do with it.
+template <class Track>
+class OffsetFilter : public CarryFilter {
+ public:
+  explicit OffsetFilter(const config::Filter& settings) : settings_(settings), alone_(settings) {}
+
+  void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& reported,
+                 const TrackerAt& tracker) override {
+    const auto then = tracker_then(tracker, settings_.hindsight ? nullptr : &memory_, origin_ns);
+    const bool with_tracker = then && !silent_ && !jumped_;
+    const auto expected =
+        with_tracker ? expected_with(*then, origin_ns) : expected_alone(origin_ns);
+    const auto seen = fingers_.mended(origin_ns, reported, expected);
+    if (with_tracker && ++compared_ > kGuessed && contradicted(origin_ns, seen, expected)) {
+      doubted_until_ns_ = origin_ns + kDoubt_ns;
+      jumped_ = true;
+    }
+    alone_.detection(origin_ns, seen);
+    sigmas_.detection(seen);
+    if (!then || silent_ || origin_ns < doubted_until_ns_) return;
+    for (int i = 0; i < kLandmarks; ++i)
+      if (was_seen(seen.points[i]))
+        update(tracks_[i], origin_ns, position_px(seen.points[i]) - (*then)[i]);
+  }
+
+  void tracker_is(Tracker state) override { silent_ = state == Tracker::silent; }
+  void tracker_jumped() override { jumped_ = true; }
+
+  std::optional<LandmarkPoints> at(std::int64_t, std::int64_t target_ns,
+                                   const LandmarkPoints& tracker) override {
+    if (!settings_.hindsight) memory_.remember(target_ns, tracker);
+    const bool alone = (silent_ || target_ns < doubted_until_ns_) && alone_.fresh(target_ns);
+    if (!alone && (jumped_ || (silent_ && was_alone_)))
+      begin_anew(target_ns, tracker, alone_.fresh(target_ns) || was_alone_);
+    was_alone_ = alone;
+    std::array<glm::vec2, kLandmarks> offsets{};
+    std::array<bool, kLandmarks> known{};
+    for (int i = 0; i < kLandmarks; ++i) {
+      known[i] = alone ? alone_.known(i) : tracks_[i].known();
+      if (known[i])
+        offsets[i] =
+            alone ? alone_.at(i, target_ns) - tracker[i] : offset_at(tracks_[i], target_ns);
+    }
+    if (!alone) draw_together(offsets, known, sigmas_.px(), tracker);
+    return moved_by(tracker, offsets, known);
+  }
+
+  void forget() override {
+    forget_offsets();
+    alone_.forget();
+    sigmas_.forget();
+  }
+
+ protected:
+  virtual void update(Track& track, std::int64_t time_ns, glm::vec2 offset_px) const = 0;
+  virtual glm::vec2 offset_at(const Track& track, std::int64_t time_ns) const = 0;
+  /// `offset_px` is a guess.
+  virtual void begin(Track& track, std::int64_t time_ns, glm::vec2 offset_px) const = 0;
+  const config::Filter& settings() const { return settings_; }
+
+ private:
+  static constexpr std::int64_t kDoubt_ns =
+      100'000'000;  ///< the tracker is not believed after the landmarks contradicted it
+  static constexpr int kGuessed = 2;  ///< so many detections until an offset is more than a guess
+  static constexpr float kDisagreement_px = 10, kDrift_px_s = 100;
+
+  void forget_offsets() {
+    for (Track& track : tracks_) track.forget();
+  }
+
+  ExpectedPoints expected_with(const LandmarkPoints& then, std::int64_t origin_ns) const {
+    ExpectedPoints expected;
+    for (int i = 0; i < kLandmarks; ++i) {
+      expected.known[i] = tracks_[i].known();
+      if (expected.known[i]) expected.px[i] = then[i] + offset_at(tracks_[i], origin_ns);
+    }
+    return expected;
+  }
+
+  ExpectedPoints expected_alone(std::int64_t origin_ns) const {
+    ExpectedPoints expected;
+    for (int i = 0; i < kLandmarks; ++i) {
+      expected.known[i] = alone_.known(i) && alone_.fresh(origin_ns);
+      if (expected.known[i]) expected.px[i] = alone_.at(i, origin_ns);
+    }
+    return expected;
+  }
+
+  /// The landmarks together went on as before, but not with the tracker: it has moved its hand, or
+  /// stands still.
+  bool contradicted(std::int64_t origin_ns, const msg::HandLandmarks& seen,
+                    const ExpectedPoints& with_tracker) const {
+    const std::int64_t since_ns = origin_ns - alone_.newest_ns();
+    if (!alone_.fresh(origin_ns) || since_ns <= 0) return false;
+    const float with_px = common_error_px(seen, with_tracker),
+                alone_px = common_error_px(seen, expected_alone(origin_ns));
+    const float limit_px = kDisagreement_px + kDrift_px_s * static_cast<float>(since_ns) * 1e-9f;
+    return with_px > limit_px && alone_px < 0.5f * with_px;
+  }
+
+  /// `landmarks_known`: they say where the hand is. Otherwise an offset from before a jump is as
+  /// good as any, but not one against a hand that was held.
+  void begin_anew(std::int64_t target_ns, const LandmarkPoints& tracker, bool landmarks_known) {
+    if (landmarks_known)
+      for (int i = 0; i < kLandmarks; ++i)
+        if (alone_.known(i))
+          begin(tracks_[i], alone_.newest_ns(), alone_.at(i, target_ns) - tracker[i]);
+    if (!landmarks_known && held_) forget_offsets();
+    held_ = silent_;
+    jumped_ = false;
+    compared_ = 0;
+  }
+
+  config::Filter settings_;
+  TrackerMemory memory_;
+  FingerOrder fingers_;
+  LandmarksAlone alone_;
+  LandmarkSigmas sigmas_;
+  bool silent_ = false;
+  std::int64_t doubted_until_ns_ = 0;
+  int compared_ = 0;        ///< detections since the offsets began
+  bool jumped_ = false;     ///< and the offsets are from before
+  bool was_alone_ = false;  ///< at the last question
+  bool held_ = false;       ///< the offsets are those from a hand that is held, not tracked
+  std::array<Track, kLandmarks> tracks_{};
+};
+
+}  // namespace handcast::renderer

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/filter/shared_offset.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "renderer/base/similarity.hpp"
+#include "renderer/filter/filters.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+constexpr float kSmoothing = 0.1f;       ///< share of a new detection's sigma
+constexpr float kLargestSigma_px = 1e3;  ///< what comes from outside may be anything
+constexpr float kLeastSpread_px =
+    7;  ///< of offsets about the shared ones, per axis; chosen on the twin (open_close, wave, fist)
+constexpr float kLeastSpread_px2 = kLeastSpread_px * kLeastSpread_px;
+
+float given_sigma_px(const msg::Landmark& point) {
+  return point.sigma_px > 0 ? std::min(point.sigma_px, kLargestSigma_px) : 0.0f;
+}
+
+/// Of an offset as it was seen against the shared one, 0..1.
+float share_of(float spread_px2, float sigma_px) {
+  return spread_px2 / (spread_px2 + sigma_px * sigma_px);
+}
+
+struct Part {
+  int first, count;  ///< landmarks
+};
+constexpr std::array<Part, 6> kParts{
+    {{0, 1}, {1, 4}, {5, 4}, {9, 4}, {13, 4}, {17, 4}}};  // the wrist, the fingers
+
+/// The hand's own: the weighted similarity of P onto P + offset, less P. Some offset is known.
+LandmarkPoints shared_offsets(const std::array<glm::vec2, kLandmarks>& offsets_px,
+                              const std::array<bool, kLandmarks>& known,
+                              const std::array<float, kLandmarks>& sigma_px,
+                              const LandmarkPoints& tracker) {
+  std::array<float, kLandmarks> weight{};
+  LandmarkPoints seen = tracker;
+  for (int i = 0; i < kLandmarks; ++i) {
+    if (!known[i]) continue;
+    weight[i] = share_of(kLeastSpread_px2, sigma_px[i]);
+    seen[i] += offsets_px[i];
+  }
+  const Similarity hand = fit_similarity(tracker, seen, weight);
+  LandmarkPoints shared;
+  for (int i = 0; i < kLandmarks; ++i) shared[i] = hand(tracker[i]) - tracker[i];
+  return shared;
+}
+
+}  // namespace
+
+void LandmarkSigmas::detection(const msg::HandLandmarks& seen) {
+  for (int i = 0; i < kLandmarks; ++i) {
+    if (!was_seen(seen.points[i])) continue;
+    const float sigma_px = given_sigma_px(seen.points[i]);
+    px_[i] = known_[i] && sigma_px > 0 ? px_[i] + kSmoothing * (sigma_px - px_[i]) : sigma_px;
+    known_[i] = true;
+  }
+}
+
+void draw_together(std::array<glm::vec2, kLandmarks>& offsets_px,
+                   const std::array<bool, kLandmarks>& known,
+                   const std::array<float, kLandmarks>& sigma_px, const LandmarkPoints& tracker) {
+  if (std::ranges::none_of(sigma_px, [](float sigma) { return sigma > 0; }) ||
+      std::ranges::none_of(known, std::identity()))
+    return;
+  const auto shared_px = shared_offsets(offsets_px, known, sigma_px, tracker);
+  for (const auto& [first, count] : kParts) {
+    float spread_px2 = 0, members = 0;
+    for (int i = first; i < first + count; ++i) {
+      if (!known[i]) continue;
+      const glm::vec2 off = offsets_px[i] - shared_px[i];
+      spread_px2 += 0.5f * glm::dot(off, off) - sigma_px[i] * sigma_px[i];
+      members += 1;
+    }
+    spread_px2 = std::max(spread_px2 / std::max(members, 1.0f), kLeastSpread_px2);
+    for (int i = first; i < first + count; ++i)
+      if (known[i])
+        offsets_px[i] = glm::mix(shared_px[i], offsets_px[i], share_of(spread_px2, sigma_px[i]));
+  }
+}
+
+}  // namespace handcast::renderer

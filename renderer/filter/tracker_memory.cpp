@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/filter/filters.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+constexpr std::int64_t kKept_ns = 150'000'000;
+constexpr std::size_t kMostEntries = 512;
+
+}  // namespace
+
+void TrackerMemory::remember(std::int64_t target_ns, const LandmarkPoints& tracker) {
+  while (!entries_.empty() && entries_.back().target_ns >= target_ns) entries_.pop_back();
+  entries_.push_back({target_ns, tracker});
+  while (entries_.size() > kMostEntries || entries_.front().target_ns < target_ns - kKept_ns)
+    entries_.pop_front();
+}
+
+std::optional<LandmarkPoints> TrackerMemory::at(std::int64_t time_ns) const {
+  const auto after = std::lower_bound(
+      entries_.begin(), entries_.end(), time_ns,
+      [](const Entry& entry, std::int64_t wanted_ns) { return entry.target_ns < wanted_ns; });
+  if (after == entries_.end()) return std::nullopt;
+  if (after->target_ns == time_ns) return after->tracker;
+  if (after == entries_.begin()) return std::nullopt;
+  const auto before = std::prev(after);
+  const auto t = static_cast<float>(static_cast<double>(time_ns - before->target_ns) /
+                                    static_cast<double>(after->target_ns - before->target_ns));
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i)
+    points[i] = glm::mix(before->tracker[i], after->tracker[i], t);
+  return points;
+}
+
+std::optional<LandmarkPoints> tracker_then(const TrackerAt& tracker, const TrackerMemory* memory,
+                                           std::int64_t origin_ns) {
+  if (memory)
+    if (const auto then = memory->at(origin_ns)) return then;
+  return tracker(origin_ns);
+}
+
+void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets,
+                  const std::array<bool, kLandmarks>& known) {
+  glm::vec2 sum{0};
+  int count = 0;
+  for (int i = 0; i < kLandmarks; ++i) {
+    if (!known[i]) continue;
+    sum += offsets[i];
+    ++count;
+  }
+  for (int i = 0; i < kLandmarks && count > 0; ++i)
+    if (!known[i]) offsets[i] = sum / static_cast<float>(count);
+}
+
+std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker,
+                                       std::array<glm::vec2, kLandmarks> offsets,
+                                       const std::array<bool, kLandmarks>& known) {
+  if (std::ranges::find(known, true) == known.end()) return std::nullopt;
+  lend_offsets(offsets, known);
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i) points[i] = tracker[i] + offsets[i];
+  return points;
+}
+
+float common_error_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected) {
+  std::array<float, kLandmarks> x, y;
+  int count = 0;
+  for (int i = 0; i < kLandmarks; ++i) {
+    if (!was_seen(seen.points[i]) || !expected.known[i]) continue;
+    const glm::vec2 error = position_px(seen.points[i]) - expected.px[i];
+    x[count] = error.x;
+    y[count++] = error.y;
+  }
+  if (count == 0) return 0;
+  std::nth_element(x.begin(), x.begin() + count / 2, x.begin() + count);
+  std::nth_element(y.begin(), y.begin() + count / 2, y.begin() + count);
+  return glm::length(glm::vec2(x[count / 2], y[count / 2]));
+}
+
+}  // namespace handcast::renderer

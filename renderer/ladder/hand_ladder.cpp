@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/ladder/hand_ladder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr float kInnovationGain =
+    0.1f;  ///< of each detection: some tenths of a second are remembered
+/// As a share of its square: so much of a detection's noise the offset filter lets through in its
+/// steady state.
+constexpr float kLeastLandmark = 0.35f;
+constexpr std::array kModelled{Rung::shift, Rung::similarity, Rung::fingers};
+
+float mean_square(const LandmarkPoints& p, const LandmarkPoints& q) {
+  return residual_px2({}, p, q);
+}
+
+/// Mean square of what a detection is off by, were there no outliers and no wrong fingers; nothing
+/// where nothing was seen.
+std::optional<float> square_px2(const msg::HandLandmarks& seen, const LandmarkPoints& expected) {
+  std::array<float, kLandmarks> squares;
+  int count = 0;
+  for (int i = 0; i < kLandmarks; ++i) {
+    const glm::vec2 off = position_px(seen.points[i]) - expected[i];
+    if (was_seen(seen.points[i]) && std::isfinite(off.x) && std::isfinite(off.y))
+      squares[count++] = glm::dot(off, off);
+  }
+  if (count == 0) return std::nullopt;
+  std::nth_element(squares.begin(), squares.begin() + count / 2, squares.begin() + count);
+  return squares[count / 2] / std::numbers::ln2_v<float>;
+}
+
+void follow(std::optional<float>& smooth, std::optional<float> value) {
+  if (value) smooth = smooth ? *smooth + kInnovationGain * (*value - *smooth) : *value;
+}
+
+}  // namespace
+
+HandLadder::HandLadder(const config::Cascade& settings)
+    : settings_(settings),
+      automatic_(settings.ladder.rung == "auto"),
+      fixed_(rung_named(settings.ladder.rung)),
+      with_tracker_(moves_with_tracker(settings.filter)),
+      gate_(settings.ladder) {}
+
+void HandLadder::detection(const HandTrack& track, std::int64_t origin_ns,
+                           const msg::HandLandmarks& seen) {
+  if (!automatic_ || !offset_) return;
+  const auto then = track.landmarks_at(origin_ns);
+  if (then && with_tracker_) follow(innovation_px2_, square_px2(seen, sum(*then, *offset_)));
+  if (!with_tracker_) {
+    const auto lit = lit_.at(origin_ns);
+    if (then && lit) follow(tracker_px2_, square_px2(seen, *then));
+    if (then && lit) follow(innovation_px2_, square_px2(seen, *lit));
+  }
+}
+
+void HandLadder::judge_landmarks(Evidence& evidence) const {
+  const auto noise_px = static_cast<float>(settings_.filter.noise_px);
+  const float detection_px2 = 2 * noise_px * noise_px;
+  const float off_px2 = std::max(innovation_px2_.value_or(2 * detection_px2) - detection_px2,
+                                 kLeastLandmark * detection_px2);
+  if (settings_.filter.method == "ideal") {
+    evidence.landmark_px2 = 0;
+    evidence.lag_px2 = 0;
+  } else if (with_tracker_) {
+    evidence.landmark_px2 = off_px2;
+  } else {  // off by noise and by lag, most of it common to all landmarks: fewer numbers follow no
+            // less of it, and P has no part in it
+    evidence.landmark_px2 = kLeastLandmark * detection_px2;
+    evidence.lag_px2 = off_px2;
+    if (tracker_px2_)
+      evidence.left_px2[0] = evidence.left_px2[1] = std::max(*tracker_px2_ - detection_px2, 0.0f);
+  }
+}
+
+std::optional<HandLadder::Newest> HandLadder::newest(const HandTrack& track) const {
+  const auto pose = track.pose_at(track.newest_ns());
+  const auto tracker = track.landmarks_at(track.newest_ns());
+  return pose && tracker ? std::optional(Newest{*pose, *tracker}) : std::nullopt;
+}
+
+Corrected HandLadder::take(const HandTrack& track, std::int64_t target_ns,
+                           std::optional<std::int64_t> camera_ns, const Predicted& predicted,
+                           const Filtered& filtered) {
+  Corrected hand{.pose = predicted.pose,
+                 .tracker = predicted.landmarks,
+                 .landmarks = filtered.landmarks,
+                 .has_landmarks = filtered.has_landmarks,
+                 .is_alone = filtered.is_alone,
+                 .has_news = filtered.has_news,
+                 .registered = 0};
+  if (hand.is_alone) {
+    *this = HandLadder(settings_);  // what it has learned was of another tracker
+    return hand;
+  }
+  if (!automatic_ && fixed_ >= Rung::landmarks) {
+    hand.rung = fixed_;
+    hand.registered = fixed_ == Rung::registered ? 1.0f : 0.0f;
+    return hand;
+  }
+  const auto newest_sample = newest(track);
+  if (!newest_sample) return hand;
+  hand.rung = automatic_ ? choose(track, target_ns, camera_ns, hand, *newest_sample) : fixed_;
+  if (!automatic_ && hand.has_landmarks)
+    models_[static_cast<std::size_t>(hand.rung)] =
+        fit_rung(hand.rung, hand.tracker, hand.landmarks);
+  blend_.turn_to(hand.rung, target_ns, automatic_ ? settings_.filter.blend_ms : 0);
+  apply(*newest_sample, hand);
+  const Rung least =
+      hand.has_landmarks ? Rung::shift : Rung::hold;  // else what is blended in would not be drawn
+  if (blend_.is_pure(hand.rung)) hand.moves = std::clamp(hand.rung, least, Rung::landmarks);
+  hand.registered = blend_.share(Rung::registered);
+  return hand;
+}
+
+Rung HandLadder::choose(const HandTrack& track, std::int64_t target_ns,
+                        std::optional<std::int64_t> camera_ns, const Corrected& hand,
+                        const Newest& newest) {
+  hindsight_.look_back(track);
+  if (hindsight_.wants(target_ns)) {
+    const auto seen = camera_ns ? track.landmarks_at(*camera_ns) : std::nullopt;
+    hindsight_.remember({target_ns, camera_ns.value_or(track.newest_ns()), track.newest_ns(),
+                         newest.tracker, seen.value_or(hand.tracker), hand.tracker});
+  }
+  const auto& [hold_px, predict_px, register_px] = hindsight_.motion();
+  Evidence evidence{std::max(hold_px * hold_px, mean_square(newest.tracker, hand.tracker)),
+                    predict_px * predict_px, register_px * register_px};
+  evidence.has_landmarks = hand.has_landmarks;
+  evidence.can_register = camera_ns.has_value();
+  if (!hand.has_landmarks) {
+    models_ = {};
+    offset_.reset();
+    innovation_px2_.reset();
+    tracker_px2_.reset();
+    return gate_.choose(target_ns, evidence);
+  }
+  offset_ = hand.offset_px();
+  if (!with_tracker_) lit_.remember(target_ns, hand.landmarks);
+  evidence.left_px2.fill(0);
+  evidence.left_px2[0] = evidence.left_px2[1] = mean_square(hand.tracker, hand.landmarks);
+  judge_landmarks(evidence);
+  for (const Rung rung : kModelled) {
+    auto& model = models_[static_cast<std::size_t>(rung)] =
+        fit_rung(rung, hand.tracker, hand.landmarks);
+    evidence.left_px2[static_cast<std::size_t>(rung)] =
+        residual_px2(model, hand.tracker, hand.landmarks);
+  }
+  return gate_.choose(target_ns, evidence);
+}
+
+void HandLadder::apply(const Newest& newest, Corrected& hand) const {
+  // Where a lower rung is not set but chosen, landmarks that are known go on: the tracker's jumps
+  // are blended in with them.
+  const bool goes_on = automatic_ && hand.has_landmarks;
+  if (blend_.is_pure(Rung::hold)) {
+    if (!goes_on) hand.pose = newest.pose, hand.tracker = newest.tracker;
+    hand.landmarks = newest.tracker;
+    hand.has_landmarks = goes_on;
+    return;
+  }
+  if (blend_.is_pure(Rung::predict)) {
+    hand.landmarks = hand.tracker;
+    hand.has_landmarks = goes_on;
+    return;
+  }
+  const float held = blend_.share(Rung::hold), predicted = blend_.share(Rung::predict);
+  const float full = blend_.share(Rung::landmarks) + blend_.share(Rung::registered);
+  if (full == 1) return;
+  LandmarkPoints mixed{};
+  for (int i = 0; i < kLandmarks; ++i) {
+    const glm::vec2 p = hand.tracker[i];
+    mixed[i] = held * newest.tracker[i] + predicted * p + full * hand.landmarks[i];
+    for (const Rung rung : kModelled)
+      if (blend_.share(rung) > 0)
+        mixed[i] += blend_.share(rung) * models_[static_cast<std::size_t>(rung)].moved(i, p);
+  }
+  if (!hand.has_landmarks && held == 0) return;
+  hand.landmarks = mixed;
+  hand.has_landmarks = true;
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/ladder/rung.hpp"
+
+#include <algorithm>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr int kFingers = 5;
+constexpr std::array<int, kRungs> kFreeNumbers{
+    0, 0, 2, 4, 4 + 2 * kFingers, 2 * kLandmarks, 2 * kLandmarks};
+
+/// Landmarks 4 f + 1 to 4 f + 4 are finger f's; the wrist's is nobody's: -1.
+constexpr int finger_of_landmark(int landmark) { return (landmark + 3) / 4 - 1; }
+
+glm::vec2 mean_shift(const LandmarkPoints& p, const LandmarkPoints& q) {
+  glm::vec2 sum{0};
+  for (int i = 0; i < kLandmarks; ++i) sum += q[i] - p[i];
+  return sum / static_cast<float>(kLandmarks);
+}
+
+}  // namespace
+
+Rung rung_named(std::string_view name) {
+  const auto found = std::ranges::find(msg::kRungNames, name);
+  return found == msg::kRungNames.end() ? Rung::landmarks
+                                        : static_cast<Rung>(found - msg::kRungNames.begin());
+}
+
+int degrees_of_freedom(Rung rung) { return kFreeNumbers[static_cast<std::size_t>(rung)]; }
+
+glm::vec2 RungModel::moved(int landmark, const glm::vec2& at) const {
+  const int finger = finger_of_landmark(landmark);
+  return finger < 0 ? whole(at) : whole(at) + fingers[finger];
+}
+
+LandmarkPoints RungModel::moved(const LandmarkPoints& p) const {
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i) points[i] = moved(i, p[i]);
+  return points;
+}
+
+RungModel fit_rung(Rung rung, const LandmarkPoints& p, const LandmarkPoints& q) {
+  RungModel model;
+  if (rung == Rung::shift) model.whole.shift = mean_shift(p, q);
+  if (rung > Rung::shift) model.whole = fit_similarity(p, q);
+  if (rung < Rung::fingers) return model;
+  constexpr float kShare = 0.25f;  // four landmarks a finger
+  for (int i = 1; i < kLandmarks; ++i)
+    model.fingers[finger_of_landmark(i)] += kShare * (q[i] - model.whole(p[i]));
+  return model;
+}
+
+float residual_px2(const RungModel& model, const LandmarkPoints& p, const LandmarkPoints& q) {
+  float sum = 0;
+  for (int i = 0; i < kLandmarks; ++i) {
+    const glm::vec2 off = q[i] - model.moved(i, p[i]);
+    sum += glm::dot(off, off);
+  }
+  return sum / static_cast<float>(kLandmarks);
+}
+
+}  // namespace handcast::renderer

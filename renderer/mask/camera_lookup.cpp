@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/mask/camera_lookup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr int kStep = 8;  ///< projector px between two entries, and the side of a block
+constexpr int kUnitBits = 6;
+constexpr int kUnits = 1 << kUnitBits;  ///< per camera px
+constexpr int kFineBits = 12;  ///< a place between four corners has 64 * 8 * 8 units per camera px
+constexpr int kFine = 1 << kFineBits;
+constexpr float kFar_px = 1e5f;  ///< off any image
+static_assert(kFine == kUnits * kStep * kStep);
+
+std::uint64_t load8(const std::uint8_t* bytes) {
+  std::uint64_t word;
+  std::memcpy(&word, bytes, sizeof word);
+  return word;
+}
+
+/// Bounds of `map` over the outline of `region`, grown by a pixel. Infinite and absurd places are
+/// held to `limit`.
+template <class Map>
+Rect bounds_of(Rect region, double limit, Map map) {
+  constexpr int kSteps = 8;
+  double x0 = limit, y0 = limit, x1 = -limit, y1 = -limit;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double x = region.x0 + (region.width() - 1.0) * i / kSteps,
+                 y = region.y0 + (region.height() - 1.0) * i / kSteps;
+    for (const glm::dvec2 edge : {glm::dvec2(x, region.y0), glm::dvec2(x, region.y1 - 1.0),
+                                  glm::dvec2(region.x0, y), glm::dvec2(region.x1 - 1.0, y)}) {
+      const glm::dvec2 there = glm::clamp(map(edge), glm::dvec2(-limit), glm::dvec2(limit));
+      x0 = std::min(x0, there.x);
+      y0 = std::min(y0, there.y);
+      x1 = std::max(x1, there.x);
+      y1 = std::max(y1, there.y);
+    }
+  }
+  const auto low = [](double v) { return static_cast<int>(std::floor(v)) - 1; };
+  const auto high = [](double v) { return static_cast<int>(std::ceil(v)) + 2; };
+  return {low(x0), low(y0), high(x1), high(y1)};
+}
+
+}  // namespace
+
+CameraLookup::CameraLookup(const calib::Calibration& calibration)
+    : width_(calibration.projector_width_px),
+      height_(calibration.projector_height_px),
+      columns_((width_ + kStep - 1) / kStep + 1),
+      calibration_(calibration) {
+  const int rows = (height_ + kStep - 1) / kStep + 1;
+  table_.reserve(static_cast<std::size_t>(columns_) * rows);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns_; ++column) {
+      const glm::dvec2 camera =
+          calibration.camera.distort(calibration.to_camera({kStep * column, kStep * row}));
+      table_.push_back(glm::vec2(glm::clamp(camera, glm::dvec2(-kFar_px), glm::dvec2(kFar_px))));
+    }
+}
+
+/// Corners of the blocks of one row, as the image had them.
+void CameraLookup::find_corners(int row, int first, std::vector<glm::ivec2>& corners,
+                                const Similarity& then_from_now) const {
+  const glm::vec2* place_px = &table_[static_cast<std::size_t>(row) * columns_ + first];
+  for (glm::ivec2& corner : corners) {
+    const glm::vec2 moved_px = glm::clamp(then_from_now(*place_px++), -kFar_px, kFar_px);
+    corner = glm::ivec2(glm::floor(moved_px * static_cast<float>(kUnits) + 0.5f));
+  }
+}
+
+void CameraLookup::resample(View<const std::uint8_t> mask, Rect region, View<std::uint8_t> out,
+                            const Similarity& then_from_now) const {
+  region = region.within(width_, height_);
+  if (region.empty()) return;
+  const int first = region.x0 / kStep, last = (region.x1 - 1) / kStep;
+  std::vector<glm::ivec2> upper(static_cast<std::size_t>(last - first) + 2), lower(upper.size());
+  find_corners(region.y0 / kStep, first, lower, then_from_now);
+  for (int y = region.y0 / kStep * kStep; y < region.y1; y += kStep) {
+    upper.swap(lower);
+    find_corners(y / kStep + 1, first, lower, then_from_now);
+    for (int column = first; column <= last; ++column) {
+      const std::size_t i = static_cast<std::size_t>(column - first);
+      const Block block{column * kStep, y, upper[i], upper[i + 1], lower[i], lower[i + 1]};
+      const Rect whole{block.x, y, block.x + kStep, y + kStep};
+      const Rect part = whole.overlap(region);
+      if (part.width() == kStep && part.height() == kStep && resample_uniform(mask, block, out))
+        continue;
+      resample_block(mask, block, part, out);
+    }
+  }
+}
+
+/// Most blocks are all hand or all background: eight wide loads tell. False where this one is not,
+/// or where it is unclear.
+bool CameraLookup::resample_uniform(View<const std::uint8_t> mask, const Block& block,
+                                    View<std::uint8_t> out) const {
+  const auto [left, right] =
+      std::minmax({block.top_left.x, block.top_right.x, block.bottom_left.x, block.bottom_right.x});
+  const auto [up, down] =
+      std::minmax({block.top_left.y, block.top_right.y, block.bottom_left.y, block.bottom_right.y});
+  // Half a pixel for rounding to the nearest; the far corners are a pixel beyond the block, which
+  // is room for its bend.
+  const int x0 = (left + kUnits * 3 / 8) >> kUnitBits, x1 = (right + kUnits / 2) >> kUnitBits;
+  const int y0 = (up + kUnits * 3 / 8) >> kUnitBits, y1 = (down + kUnits / 2) >> kUnitBits;
+  if (x0 < 0 || y0 < 0 || y1 >= mask.height || x1 - x0 >= 8 || x0 + 8 > mask.width) return false;
+
+  std::uint64_t any = 0, all = ~0ull;
+  for (int cy = y0; cy <= y1; ++cy) {
+    const std::uint64_t eight = load8(mask.row(cy) + x0);
+    any |= eight;
+    all &= eight;
+  }
+  const std::uint64_t used = ~0ull >> (8 * (7 - (x1 - x0)));
+  const bool dark = (any & used) == 0, lit = (all & used) == used;
+  if (!dark && !lit) return false;
+  const std::uint64_t value = lit ? ~0ull : 0;
+  for (int line = block.y; line < block.y + kStep; ++line)
+    std::memcpy(out.row(line) + block.x, &value, sizeof value);
+  return true;
+}
+
+void CameraLookup::resample_block(View<const std::uint8_t> mask, const Block& block, Rect part,
+                                  View<std::uint8_t> out) const {
+  constexpr int kHalf = kFine / 2;
+  for (int y = part.y0; y < part.y1; ++y) {
+    const int down = y - block.y;
+    const glm::ivec2 left = block.top_left * kStep + (block.bottom_left - block.top_left) * down;
+    const glm::ivec2 right =
+        block.top_right * kStep + (block.bottom_right - block.top_right) * down;
+    const glm::ivec2 step = right - left;
+    glm::ivec2 at = left * kStep + step * (part.x0 - block.x) + kHalf;
+    std::uint8_t* line = out.row(y);
+    for (int x = part.x0; x < part.x1; ++x, at += step) {
+      const int cx = at.x >> kFineBits, cy = at.y >> kFineBits;
+      const bool inside = cx >= 0 && cy >= 0 && cx < mask.width && cy < mask.height;
+      line[x] = inside ? mask.at(cx, cy) : 0;
+    }
+  }
+}
+
+Rect CameraLookup::to_projector(Rect camera_region) const {
+  if (camera_region.empty()) return {};
+  return bounds_of(camera_region, 1e5, [&](glm::dvec2 image_px) {
+    return calibration_.to_projector(calibration_.camera.undistort(image_px));
+  });
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/mask/hand_mask.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "renderer/base/similarity.hpp"
+#include "renderer/predict/project_landmarks.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+constexpr int kMargin_px = 2;
+constexpr int kGoodPart = 4;  ///< of what was seen before: a quarter of its bounds' area
+
+int area_of(const Rect& bounds) { return bounds.empty() ? 0 : bounds.width() * bounds.height(); }
+
+void fill_rect(Image<std::uint8_t>& image, const Rect& region, std::uint8_t value) {
+  for (int y = region.y0; y < region.y1; ++y)
+    std::memset(image.row(y) + region.x0, value, static_cast<std::size_t>(region.width()));
+}
+
+/// Bounds of what a similarity takes into `region`.
+Rect moved_back(const Rect& region, const Similarity& move) {
+  const glm::mat2 turn(glm::vec2(move.cosine, move.sine), glm::vec2(-move.sine, move.cosine));
+  const glm::mat2 back = glm::inverse(turn);
+  glm::vec2 low(1e6f), high(-1e6f);
+  for (const glm::vec2 corner :
+       {glm::vec2(region.x0, region.y0), glm::vec2(region.x1, region.y0),
+        glm::vec2(region.x0, region.y1), glm::vec2(region.x1, region.y1)}) {
+    const glm::vec2 there = back * (corner - move.shift);
+    low = glm::min(low, there);
+    high = glm::max(high, there);
+  }
+  return {static_cast<int>(std::floor(low.x)), static_cast<int>(std::floor(low.y)),
+          static_cast<int>(std::ceil(high.x)), static_cast<int>(std::ceil(high.y))};
+}
+
+}  // namespace
+
+HandMask::HandMask(const config::Mask& settings, const calib::Calibration& calibration)
+    : settings_(settings),
+      calibration_(calibration),
+      finder_(settings),
+      lookup_(calibration),
+      projector_mask_(calibration.projector_width_px, calibration.projector_height_px) {}
+
+void HandMask::clear_camera_mask(int width, int height) {
+  if (camera_mask_.width() != width || camera_mask_.height() != height) {
+    camera_mask_ = Image<std::uint8_t>(width, height);
+    written_ = {};
+  }
+  fill_rect(camera_mask_, written_, 0);
+}
+
+void HandMask::find(const TimedImage& camera, std::span<const Expected> hands) {
+  clear_camera_mask(camera.view.width, camera.view.height);
+  owned_hints_.clear();
+  hints_.clear();
+  std::vector<std::optional<std::size_t>> hint_of(hands.size());
+  for (std::size_t h = 0; h < hands.size(); ++h) {
+    auto hint = hands[h].then ? make_hint(calibration_, settings_, *hands[h].then, *hands[h].hand)
+                              : std::nullopt;
+    if (!hint) continue;
+    hint_of[h] = owned_hints_.size();
+    owned_hints_.push_back(std::move(*hint));
+  }
+  for (const OwnedHint& owned : owned_hints_) hints_.push_back(owned.hint);
+  written_ = finder_.find(camera.view, hints_, camera_mask_.view());
+  found_.clear();
+  shown_.clear();
+  for (std::size_t h = 0; h < hands.size(); ++h) {
+    const auto& hint = hint_of[h];
+    found_.push_back(hint ? finder_.hand_bounds(*hint) : Rect{});
+    shown_.push_back(
+        hint && is_shown(found_[h], memory_of(hands[h].side).found, owned_hints_[*hint].seeds_px));
+    if (shown_[h]) remember(hands[h], found_[h]);
+  }
+}
+
+bool HandMask::is_shown(const Rect& found, const Rect& before,
+                        std::span<const glm::vec2> seeds_px) const {
+  if (found.empty()) return false;
+  if (area_of(found) * kGoodPart >= area_of(before)) return true;
+  return std::ranges::any_of(seeds_px, [&](const glm::vec2& seed) {
+    const auto x = static_cast<int>(std::lround(seed.x)), y = static_cast<int>(std::lround(seed.y));
+    return x >= found.x0 && x < found.x1 && y >= found.y0 && y < found.y1 &&
+           camera_mask_.at(x, y) != 0;
+  });
+}
+
+void HandMask::remember(const Expected& hand, const Rect& found) {
+  Memory& memory = memory_of(hand.side);
+  if (memory.mask.width() != camera_mask_.width() ||
+      memory.mask.height() != camera_mask_.height()) {
+    memory.mask = Image<std::uint8_t>(camera_mask_.width(), camera_mask_.height());
+    memory.found = {};
+  }
+  fill_rect(memory.mask, memory.found, 0);
+  memory.found = found.within(camera_mask_.width(), camera_mask_.height());
+  for (int y = memory.found.y0; y < memory.found.y1; ++y)
+    std::memcpy(memory.mask.row(y) + memory.found.x0, camera_mask_.row(y) + memory.found.x0,
+                static_cast<std::size_t>(memory.found.width()));
+  memory.landmarks =
+      in_image(sum(*project_landmarks(calibration_, *hand.then), hand.hand->offset_px()));
+}
+
+LandmarkPoints HandMask::in_image(LandmarkPoints undistorted_px) const {
+  for (glm::vec2& point : undistorted_px) point = calibration_.camera.distort(point);
+  return undistorted_px;
+}
+
+/// How the hand has moved in the image, undone: from where it will be at the target time to where
+/// it was at the exposure.
+Similarity HandMask::since_exposure(const Expected& hand) const {
+  const auto then =
+      hand.then && settings_.advance ? project_landmarks(calibration_, *hand.then) : std::nullopt;
+  if (!then) return {};
+  return fit_similarity(in_image(sum(hand.hand->tracker, hand.moved_now)),
+                        in_image(sum(*then, hand.moved_then)));
+}
+
+/// Likewise, from the target time to when it was seen last. Registration knows of no image since:
+/// the landmarks themselves are followed.
+Similarity HandMask::since_seen(const Expected& hand) const {
+  return settings_.advance
+             ? fit_similarity(in_image(hand.hand->landmarks), memory_of(hand.side).landmarks)
+             : Similarity{};
+}
+
+Rect HandMask::advance(std::span<const Expected> hands) {
+  const Rect screen{0, 0, projector_mask_.width(), projector_mask_.height()};
+  Rect all;
+  std::vector<Rect> regions;
+  std::vector<Similarity> moves;
+  for (std::size_t h = 0; h < hands.size(); ++h) {
+    moves.push_back(shown_[h] ? since_exposure(hands[h]) : since_seen(hands[h]));
+    const Rect found = shown_[h] ? found_[h] : memory_of(hands[h].side).found;
+    const bool dark = found.empty() || hands[h].presence <= 0;
+    const Rect moved = dark ? Rect{} : moved_back(found, moves.back()).grown(kMargin_px);
+    regions.push_back(lookup_.to_projector(moved).within(screen.x1, screen.y1));
+    all = all.joined(regions.back());
+  }
+  if (regions.size() > 1) fill_rect(projector_mask_, all, 0);
+  for (const bool shown : {false, true})
+    for (std::size_t h = 0; h < regions.size(); ++h) {
+      if (shown_[h] != shown) continue;
+      const GreyView mask = shown ? camera_mask_.view() : memory_of(hands[h].side).mask.view();
+      lookup_.resample(mask, regions[h], projector_mask_.view(), moves[h]);
+    }
+  return all;
+}
+
+}  // namespace handcast::renderer

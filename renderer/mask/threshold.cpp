@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/mask/threshold.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr double kRimShare = 0.25;  ///< of the way from the dark mean to the bright one: skin that
+                                    ///< turns away from the lamp is hand too
+constexpr double kLeastContrast = 10;  ///< grey values between the means of the parts
+constexpr double kLeastSeparation =
+    0.7;  ///< share of the variance between the parts: one bell of noise has 0.64
+constexpr int kLeastNoise = 2, kNoises = 4;  ///< nothing is hand that is not this many standard
+                                             ///< deviations of the ground above it
+
+using Histogram = std::array<std::uint32_t, 256>;
+
+/// Two histograms in turn, so that equal neighbours do not wait for each other's count.
+Histogram histogram_of(GreyView image, Rect region) {
+  Histogram even{}, odd{};
+  for (int y = region.y0; y < region.y1; y += 4) {
+    const std::uint8_t* row = image.row(y);
+    int x = region.x0;
+    for (; x + 2 < region.x1; x += 4) {
+      ++even[row[x]];
+      ++odd[row[x + 2]];
+    }
+    if (x < region.x1) ++even[row[x]];
+  }
+  for (int grey = 0; grey < 256; ++grey) even[grey] += odd[grey];
+  return even;
+}
+
+/// Where the histogram's lower `share` ends.
+int percentile(const Histogram& histogram, double count, double share) {
+  int grey = 0;
+  for (double below = histogram[0]; below < share * count && grey < 255; below += histogram[grey])
+    ++grey;
+  return grey;
+}
+
+}  // namespace
+
+int choose_threshold(GreyView image, Rect region) {
+  const Histogram histogram = histogram_of(image, region);
+  double count = 0, sum = 0, squares = 0;
+  for (int grey = 0; grey < 256; ++grey) {
+    const double n = histogram[grey];
+    count += n;
+    sum += n * grey;
+    squares += n * grey * grey;
+  }
+  if (count == 0) return 0;
+  const double variance = squares / count - (sum / count) * (sum / count);
+
+  double dark_count = 0, dark_sum = 0, best = 0, dark_share = 0, dark_mean = 0, bright_mean = 0;
+  for (int grey = 0; grey < 255; ++grey) {
+    dark_count += histogram[grey];
+    dark_sum += static_cast<double>(histogram[grey]) * grey;
+    const double bright_count = count - dark_count;
+    if (dark_count == 0 || bright_count == 0) continue;
+    const double dark = dark_sum / dark_count, bright = (sum - dark_sum) / bright_count;
+    const double between =
+        dark_count * bright_count / (count * count) * (bright - dark) * (bright - dark);
+    if (between <= best) continue;
+    best = between;
+    dark_share = dark_count;
+    dark_mean = dark;
+    bright_mean = bright;
+  }
+  if (bright_mean - dark_mean < kLeastContrast || best < kLeastSeparation * variance) return 0;
+  const int ground = percentile(histogram, dark_share, 0.5);
+  const int noise = std::max(kLeastNoise, ground - percentile(histogram, dark_share, 0.16));
+  const double clear_of_noise =
+      std::min<double>(ground + kNoises * noise, 0.5 * (dark_mean + bright_mean));
+  return static_cast<int>(
+      std::lround(std::max(clear_of_noise, dark_mean + kRimShare * (bright_mean - dark_mean))));
+}
+
+}  // namespace handcast::renderer

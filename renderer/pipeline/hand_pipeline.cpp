@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/pipeline/hand_pipeline.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ipc/base/log.hpp"
+#include "ipc/msg/projection.hpp"
+#include "renderer/content/textures.hpp"
+#include "renderer/correct/deform.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+/// With late registration, jumps are blended after it and not in the filter.
+config::Filter filter_of(const config::Cascade& settings) {
+  config::Filter filter = settings.filter;
+  if (registration_of(settings).method != "none") filter.blend_ms = 0;
+  return filter;
+}
+
+}  // namespace
+
+config::Registration registration_of(const config::Cascade& settings) {
+  config::Registration registration = settings.registration;
+  if (!moves_with_tracker(settings.filter)) registration.method = "none";
+  if (settings.ladder.rung != "auto" && settings.ladder.rung != "register")
+    registration.method = "none";
+  return registration;
+}
+
+HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
+                           const calib::Calibration& calibration, HandSurface surface,
+                           Texture texture, LandmarkOracle oracle)
+    : side_(side),
+      settings_(settings),
+      calibration_(calibration),
+      track_(settings.predict, calibration),
+      landmarks_(filter_of(settings), std::move(oracle)),
+      ladder_(settings),
+      surface_(std::move(surface)),
+      mover_(surface_.mesh()),
+      untangler_(surface_.mesh()),
+      texture_(std::move(texture)) {}
+
+Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settings,
+                                        const std::string& content, const std::string& hand_file,
+                                        const calib::Calibration& calibration,
+                                        LandmarkOracle oracle) {
+  auto mesh = load_hand_or_default(hand_file, side);
+  if (!mesh) return tl::make_unexpected(mesh.error());
+  auto texture = load_content(content, *mesh);
+  if (!texture) return tl::make_unexpected(texture.error());
+  if (mesh->vertex_count() > msg::kMaxVertices)
+    log::warning("the hand has {} vertices: observers are told where the first {} land",
+                 mesh->vertex_count(), msg::kMaxVertices);
+  HandSurface surface(std::move(*mesh), settings.mask.forearm_mm);
+  return HandPipeline(side, settings, calibration, std::move(surface), std::move(*texture),
+                      std::move(oracle));
+}
+
+void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
+  landmarks_.tracker_sample(now_ns, track_.push(now_ns, origin_ns, pose));
+  surface_.learn(origin_ns, pose);
+}
+
+void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
+                        const msg::HandLandmarks& seen) {
+  if (!landmarks_.is_alone()) ladder_.detection(track_, origin_ns, seen);
+  landmarks_.detection(now_ns, origin_ns, seen, track_);
+}
+
+std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
+                                               std::optional<std::int64_t> image_ns) {
+  const auto predicted = track_.predict(now_ns, target_ns);
+  if (!predicted) {
+    presence_.gone(target_ns);
+    sight_.gone(target_ns);
+    return std::nullopt;
+  }
+  const Filtered filtered = landmarks_.filter(now_ns, target_ns, *predicted);
+  HandFrame frame;
+  frame.presence = presence_.at(target_ns, track_.newest_ns(), filtered.seen_ns);
+  if (frame.presence == 0) {
+    sight_.gone(target_ns);
+    return std::nullopt;
+  }
+  frame.corrected = ladder_.take(track_, target_ns, image_ns, *predicted, filtered);
+  frame.registered.landmarks = frame.corrected.landmarks;
+  return frame;
+}
+
+HandMask::Expected HandPipeline::expected(const HandFrame& frame, std::int64_t image_ns) const {
+  return {side_,          track_.pose_at(image_ns),    &frame.corrected,
+          frame.presence, frame.registered.moved_then, frame.registered.moved_now};
+}
+
+void HandPipeline::dim(HandFrame& frame, std::int64_t target_ns) {
+  frame.presence = std::min(frame.presence, sight_.at(target_ns, is_shown_));
+}
+
+std::optional<LateRegistration::Hand> HandPipeline::to_register(const HandFrame& frame) const {
+  const bool is_needed = frame.corrected.has_landmarks && frame.corrected.registered > 0;
+  return is_needed ? std::optional(late_hand(frame)) : std::nullopt;
+}
+
+LateRegistration::Hand HandPipeline::late_hand(const HandFrame& frame) const {
+  const Corrected& corrected = frame.corrected;
+  return {side_, &track_, corrected.tracker, corrected.offset_px(), corrected.is_alone};
+}
+
+void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
+                                   std::int64_t target_ns) {
+  const Corrected& corrected = frame.corrected;
+  if (!corrected.has_landmarks) return;
+  if (corrected.is_alone) {
+    frame.registered.landmarks = late.follow(late_hand(frame), target_ns, corrected.has_news);
+    return;
+  }
+  frame.registered = late.correct(late_hand(frame), target_ns, corrected.registered);
+  if (corrected.registered == 1) ladder_.registered(target_ns, frame.registered.moved_now);
+}
+
+void HandPipeline::skin(HandFrame& frame, float shading) {
+  frame.skinned =
+      surface_.pose(frame.corrected.pose, settings_.skin, calibration_, shading, frame.presence);
+}
+
+LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px) const {
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i) points[i] = calibration_.to_projector(camera_px[i]);
+  return points;
+}
+
+int HandPipeline::correct(HandFrame& frame) {
+  const Corrected& corrected = frame.corrected;
+  if (!corrected.has_landmarks) return 0;
+  const Skinned& skinned = *frame.skinned;
+  if (corrected.moves < Rung::landmarks) {
+    mover_.move(fit_rung(corrected.moves, from_px(frame), to_px(frame)), skinned.landings_px);
+  } else {
+    correct_vertices(settings_.correct, surface_.mesh(), from_px(frame), to_px(frame),
+                     skinned.landings_px);
+  }
+  if (corrected.moves < Rung::fingers) return 0;
+  return untangler_.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
+}
+
+void HandPipeline::learn_widths(const HandFrame& frame, std::int64_t target_ns, GreyView mask) {
+  if (settings_.skin.fit && settings_.skin.widths && frame.corrected.has_landmarks)
+    surface_.learn_widths(target_ns, to_px(frame), mask);
+}
+
+DrawnHand HandPipeline::drawn(const Skinned& skinned,
+                              std::span<const glm::vec2> position_px) const {
+  return {&surface_.mesh(), &texture_, position_px, skinned.depth_m, skinned.light};
+}
+
+FrameHand HandPipeline::described(const HandFrame& frame) const {
+  const Corrected& corrected = frame.corrected;
+  FrameHand hand{side_, corrected.tracker, frame.registered.landmarks, corrected.has_landmarks,
+                 {},    corrected.rung};
+  if (frame.skinned) hand.landings = frame.skinned->landings_px;
+  return hand;
+}
+
+}  // namespace handcast::renderer

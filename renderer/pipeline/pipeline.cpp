@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/pipeline/pipeline.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "renderer/correct/deform.hpp"
+#include "renderer/draw/cpu/cpu_painter.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+using msg::Stage;
+
+LandmarkOracle of_side(const Pipeline::Oracle& oracle, Side side) {
+  if (!oracle) return {};
+  return [oracle, side](std::int64_t time_ns) { return oracle(side, time_ns); };
+}
+
+/// From after it was heard of: believed, it would outdate all that comes until that time.
+bool is_early(std::int64_t now_ns, std::int64_t origin_ns) {
+  constexpr std::int64_t kMost_ns = 50'000'000;  // clocks are mapped to the host's, and not exactly
+  return origin_ns > now_ns + kMost_ns;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascade,
+                                                   const config::Content& content,
+                                                   const config::Hand& hand,
+                                                   const calib::Calibration& calibration,
+                                                   const Oracle& oracle) {
+  if (cascade.filter.method == "ideal" && !oracle)
+    return fail(
+        Errc::bad_config,
+        "cascade.filter.method = \"ideal\" needs the truth, which only `handcast simulate` knows");
+  auto left = HandPipeline::load(Side::left, cascade, content.left, hand.left, calibration,
+                                 of_side(oracle, Side::left));
+  if (!left) return fail_in("left hand", left.error());
+  auto right = HandPipeline::load(Side::right, cascade, content.right, hand.right, calibration,
+                                  of_side(oracle, Side::right));
+  if (!right) return fail_in("right hand", right.error());
+  return std::unique_ptr<Pipeline>(
+      new Pipeline(cascade, content, calibration, std::move(*left), std::move(*right)));
+}
+
+Pipeline::Pipeline(const config::Cascade& settings, const config::Content& content,
+                   const calib::Calibration& calibration, HandPipeline left, HandPipeline right)
+    : settings_(settings),
+      shading_(static_cast<float>(content.shading)),
+      screen_{0, 0, calibration.projector_width_px, calibration.projector_height_px},
+      both_{std::move(left), std::move(right)},
+      mask_(settings.mask, calibration),
+      late_(registration_of(settings), settings.filter, calibration),
+      painter_(make_cpu_painter(calibration.projector_width_px, calibration.projector_height_px)) {}
+
+void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
+  const std::int64_t origin_ns = reported.header.origin_ns;
+  if (is_early(now_ns, origin_ns)) return;
+  const auto poses = sides_.named(
+      reported, {both_[0].expected_pose(origin_ns), both_[1].expected_pose(origin_ns)});
+  for (HandPipeline& hand : both_)
+    if (const msg::HandPose* pose = poses.find(hand.side())) hand.push(now_ns, origin_ns, *pose);
+}
+
+void Pipeline::push(std::int64_t now_ns, const msg::Landmarks& reported) {
+  const std::int64_t origin_ns = reported.header.origin_ns;
+  if (is_early(now_ns, origin_ns)) return;
+  const auto landmarks = sides_.named(
+      reported, {both_[0].expected_landmarks(origin_ns), both_[1].expected_landmarks(origin_ns)});
+  for (HandPipeline& hand : both_)
+    if (const msg::HandLandmarks* seen = landmarks.find(hand.side()))
+      hand.push(now_ns, origin_ns, *seen);
+}
+
+std::span<const FrameHand> Pipeline::track(std::int64_t now_ns, std::int64_t target_ns) {
+  predict(now_ns, target_ns, expected_image_ns(target_ns));
+  if (last_image_) dim(target_ns);
+  register_motion(target_ns);
+  return frame_hands();
+}
+
+void Pipeline::look(const TimedImage& camera) {
+  if (!late_.on() || !camera || !late_.is_new(camera) || is_early(now_ns_, camera.origin_ns))
+    return;
+  find_masks(camera);
+  register_late(camera);
+}
+
+Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera) {
+  stages_.start();
+  const bool is_masked =
+      settings_.fill.method != "none" && camera && !is_early(now_ns, camera.origin_ns);
+  last_image_ = is_masked ? std::optional(ImageUse{target_ns, camera.origin_ns}) : std::nullopt;
+  predict(now_ns, target_ns, expected_image_ns(target_ns));
+  stages_.mark(Stage::predict);
+
+  if (is_masked) {
+    find_masks(camera);
+    dim(target_ns);
+    stages_.mark(Stage::mask);
+    register_late(camera);
+  }
+  register_motion(target_ns);
+  if (late_.on()) stages_.mark(Stage::registration);
+  Rect region;
+  if (is_masked) {
+    region = advance_masks(camera);
+    stages_.mark(Stage::advance);
+  }
+  for (auto& [hand, frame] : hands_) hand->skin(frame, shading_);
+  stages_.mark(Stage::skin);
+  const int foldovers = correct();
+  stages_.mark(Stage::correct, rungs());
+  if (is_masked) learn_widths(target_ns);
+  if (!is_masked) region = landing_bounds();
+
+  const FillCounts counts = paint(region, is_masked);
+  stages_.finish();
+  return {target_ns,          region.empty() ? Rect{} : region,
+          painter_->colour(), frame_hands(),
+          foldovers,          counts,
+          stages_.marks()};
+}
+
+/// When the image is exposed that a frame for `target_ns` can be registered to: it is as old as the
+/// last frame's was.
+std::optional<std::int64_t> Pipeline::expected_image_ns(std::int64_t target_ns) const {
+  if (!last_image_ || !late_.on()) return std::nullopt;
+  return target_ns - (last_image_->target_ns - last_image_->origin_ns);
+}
+
+void Pipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
+                       std::optional<std::int64_t> image_ns) {
+  now_ns_ = now_ns;
+  hands_.clear();
+  for (HandPipeline& hand : both_)
+    if (auto frame = hand.predict(now_ns, target_ns, image_ns))
+      hands_.push_back({&hand, std::move(*frame)});
+}
+
+void Pipeline::expect(std::int64_t image_ns) {
+  expected_.clear();
+  for (const auto& [hand, frame] : hands_) expected_.push_back(hand->expected(frame, image_ns));
+}
+
+void Pipeline::find_masks(const TimedImage& camera) {
+  expect(camera.origin_ns);
+  mask_.find(camera, expected_);
+  for (std::size_t h = 0; h < hands_.size(); ++h) hands_[h].hand->set_shown(mask_.shows(h));
+}
+
+void Pipeline::dim(std::int64_t target_ns) {
+  for (auto& [hand, frame] : hands_) hand->dim(frame, target_ns);
+}
+
+/// Takes in a new image, whose masks were found.
+void Pipeline::register_late(const TimedImage& camera) {
+  if (!late_.on()) return;
+  late_hands_.clear();
+  for (const auto& [hand, frame] : hands_)
+    if (const auto late = hand->to_register(frame)) late_hands_.push_back(*late);
+  late_.look(mask_.silhouette(camera), late_hands_);
+}
+
+void Pipeline::register_motion(std::int64_t target_ns) {
+  if (!late_.on()) return;
+  for (auto& [hand, frame] : hands_) hand->register_motion(frame, late_, target_ns);
+}
+
+Rect Pipeline::advance_masks(const TimedImage& camera) {
+  expect(camera.origin_ns);
+  return mask_.advance(expected_);
+}
+
+/// Moves the landings, and makes the grid if the drawing is to be warped. Returns what was turned
+/// over.
+int Pipeline::correct() {
+  grid_.reset();
+  if (settings_.correct.method == "grid") return correct_by_grid();
+  int foldovers = 0;
+  if (settings_.correct.method == "vertices")
+    for (auto& [hand, frame] : hands_) foldovers += hand->correct(frame);
+  return foldovers;
+}
+
+/// One grid for all hands; a hand without landmarks holds its place in it.
+int Pipeline::correct_by_grid() {
+  if (std::ranges::none_of(
+          hands_, [](const HandInFrame& each) { return each.frame.corrected.has_landmarks; }))
+    return 0;
+  std::vector<glm::vec2> p, q;
+  for (const auto& [hand, frame] : hands_) {
+    const LandmarkPoints from = hand->from_px(frame), to = hand->to_px(frame);
+    p.insert(p.end(), from.begin(), from.end());
+    q.insert(q.end(), to.begin(), to.end());
+  }
+  grid_ = make_warp_grid(settings_.correct, screen_,
+                         MovingLeastSquares(p, q, static_cast<float>(settings_.correct.alpha)));
+  for (auto& [hand, frame] : hands_)
+    for (glm::vec2& landing : frame.skinned->landings_px) landing = (*grid_)(landing);
+  return grid_->foldovers();
+}
+
+std::uint32_t Pipeline::rungs() const {
+  std::uint32_t detail = 0;
+  for (const auto& [hand, frame] : hands_)
+    detail = msg::with_rung(detail, hand->side(), frame.corrected.rung);
+  return detail;
+}
+
+void Pipeline::learn_widths(std::int64_t target_ns) {
+  for (std::size_t h = 0; h < hands_.size(); ++h)
+    if (mask_.shows(h))
+      hands_[h].hand->learn_widths(hands_[h].frame, target_ns, mask_.in_projector());
+}
+
+Rect Pipeline::landing_bounds() const {
+  Rect bounds;
+  for (const auto& [hand, frame] : hands_)
+    bounds = bounds.joined(hand->bounds(frame.skinned->landings_px));
+  return on_screen(bounds);
+}
+
+FillCounts Pipeline::paint(const Rect& region, bool is_masked) {
+  if (region.empty()) return {};
+  drawn_.clear();
+  Rect source;
+  for (const auto& [hand, frame] : hands_) {
+    if (frame.presence <= 0) continue;
+    const Skinned& skinned = *frame.skinned;
+    drawn_.push_back(hand->drawn(skinned, grid_ ? skinned.seen_px : skinned.landings_px));
+    source = source.joined(hand->bounds(skinned.seen_px));
+  }
+  source = on_screen(source);
+  const bool is_warped = grid_ && !source.empty();
+  painter_->draw(drawn_, is_warped ? source : region);
+  stages_.mark(Stage::draw);
+  if (is_warped) {
+    painter_->warp(*grid_, source, region);
+    stages_.mark(Stage::warp);
+  }
+  if (!is_masked) return {};
+  const FillCounts counts = painter_->fill(mask_.in_projector(), settings_.fill, region);
+  stages_.mark(Stage::fill);
+  return counts;
+}
+
+std::span<const FrameHand> Pipeline::frame_hands() {
+  frame_hands_.clear();
+  for (const auto& [hand, frame] : hands_) frame_hands_.push_back(hand->described(frame));
+  return frame_hands_;
+}
+
+}  // namespace handcast::renderer

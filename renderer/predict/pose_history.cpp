@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/predict/pose_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "ipc/base/clock.hpp"
+#include "renderer/base/noise.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+using msg::Joint;
+
+constexpr std::int64_t kShortestBase_ns =
+    2'000'000;  ///< samples closer than this give no velocity, only noise
+constexpr std::int64_t kStillWindow_ns =
+    50'000'000;  ///< over which a joint is judged still, and averaged if it is
+constexpr float kTurnLever_m =
+    0.05f;  ///< turns a rotation into the movement of skin this far from the joint
+constexpr float kMostTurn_rad = 1.0f;  ///< an orientation is never extrapolated further
+
+glm::vec3 position(const Joint& joint) {
+  return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};
+}
+
+glm::quat orientation(const Joint& joint) {
+  const auto& [x, y, z, w] = joint.orientation_xyzw;
+  return {w, x, y, z};
+}
+
+void place(Joint& joint, const glm::vec3& at, const glm::quat& turned) {
+  joint.position_m = {at.x, at.y, at.z};
+  joint.orientation_xyzw = {turned.x, turned.y, turned.z, turned.w};
+}
+
+glm::quat on_side_of(const glm::quat& reference, const glm::quat& q) {
+  return glm::dot(reference, q) < 0 ? -q : q;
+}
+
+glm::quat blend(const glm::quat& a, const glm::quat& b, float t) {
+  return glm::normalize(a * (1 - t) + on_side_of(a, b) * t);
+}
+
+msg::HandPose between(const msg::HandPose& before, const msg::HandPose& after, float t) {
+  msg::HandPose pose = after;
+  for (int j = 0; j < msg::kJoints; ++j) {
+    const Joint &a = before.joints[j], &b = after.joints[j];
+    place(pose.joints[j], glm::mix(position(a), position(b), t),
+          blend(orientation(a), orientation(b), t));
+  }
+  return pose;
+}
+
+/// Angle from `a` to `b`, radians. The chord, not the arc cosine, which is noise for small turns.
+float angle_between(const glm::quat& a, const glm::quat& b) {
+  const glm::quat chord = on_side_of(a, b) - a;
+  return 4 * std::asin(std::min(1.0f, 0.5f * glm::length(chord)));
+}
+
+/// `newest` turned on by `share` times the turn from `earlier` to it.
+glm::quat turned_on(const glm::quat& earlier, const glm::quat& newest, float share) {
+  const glm::quat turn = on_side_of({1, 0, 0, 0}, newest * glm::conjugate(earlier));
+  const glm::vec3 sine_axis{turn.x, turn.y, turn.z};
+  const float sine = glm::length(sine_axis);
+  if (sine < 1e-7f) return newest;
+  const float angle =
+      std::clamp(2 * std::atan2(sine, turn.w) * share, -kMostTurn_rad, kMostTurn_rad);
+  return glm::normalize(glm::angleAxis(angle, sine_axis / sine) * newest);
+}
+
+bool is_finite(const msg::HandPose& pose) {
+  return std::all_of(pose.joints.begin(), pose.joints.end(), [](const Joint& joint) {
+    float sum = 0;
+    for (const float x : joint.position_m) sum += x;
+    for (const float x : joint.orientation_xyzw) sum += x;
+    return std::isfinite(sum);
+  });
+}
+
+constexpr float kHandNoise_m_s2 =
+    10;  ///< acceleration that tracker noise alone makes: of the mean of all joints
+constexpr float kJointNoise_m_s2 = 40;  ///< of one joint against that mean
+constexpr float kMostBend_m = 0.02f;    ///< acceleration never moves a joint further
+
+glm::vec3 beyond_noise(const glm::vec3& acceleration, float noise) {
+  return acceleration * share_beyond_noise(glm::dot(acceleration, acceleration), noise);
+}
+
+/// Accelerations of the joints from three samples, oldest first, `first_s` and `second_s` apart.
+std::array<glm::vec3, msg::kJoints> accelerations(const msg::HandPose& a, const msg::HandPose& b,
+                                                  const msg::HandPose& c, float first_s,
+                                                  float second_s) {
+  std::array<glm::vec3, msg::kJoints> result;
+  glm::vec3 mean{0};
+  for (int j = 0; j < msg::kJoints; ++j) {
+    const glm::vec3 before = (position(b.joints[j]) - position(a.joints[j])) / first_s;
+    const glm::vec3 after = (position(c.joints[j]) - position(b.joints[j])) / second_s;
+    result[j] = (after - before) * (2 / (first_s + second_s));
+    mean += result[j] / static_cast<float>(msg::kJoints);
+  }
+  const glm::vec3 whole_hand = beyond_noise(mean, kHandNoise_m_s2);
+  for (glm::vec3& joint : result) joint = whole_hand + beyond_noise(joint - mean, kJointNoise_m_s2);
+  return result;
+}
+
+}  // namespace
+
+PoseHistory::PoseHistory(const config::Predict& settings, std::int64_t span_ns)
+    : settings_(settings), span_ns_(span_ns) {}
+
+PoseHistory::Pushed PoseHistory::push(std::int64_t origin_ns, const msg::HandPose& pose) {
+  if (!is_finite(pose) || origin_ns < begins_ns_) return Pushed::not_measured;
+  if (!samples_.empty() && origin_ns > newest_ns()) {
+    if (Continuity::frozen(earlier_than(samples_.back()), samples_.back(), pose))
+      return Pushed::not_measured;
+    if (breaks({origin_ns, pose})) return Pushed::begins_anew;
+  }
+  const auto after = std::upper_bound(
+      samples_.begin(), samples_.end(), origin_ns,
+      [](std::int64_t time_ns, const Sample& sample) { return time_ns < sample.origin_ns; });
+  if (after != samples_.begin() && std::prev(after)->origin_ns == origin_ns) {
+    std::prev(after)->pose = pose;
+  } else {
+    samples_.insert(after, Sample{origin_ns, pose});
+    since_jump_ = std::min(since_jump_ + 1, kSettled);
+  }
+  while (samples_.front().origin_ns < newest_ns() - span_ns_) samples_.pop_front();
+  judge_stillness();
+  return Pushed::goes_on;
+}
+
+bool PoseHistory::breaks(const Sample& sample) {
+  if (!continuity_.broken(earlier_than(samples_.back()), samples_.back(), sample)) return false;
+  samples_.assign(1, sample);
+  begins_ns_ = sample.origin_ns;
+  since_jump_ = 1;
+  judge_stillness();
+  return true;
+}
+
+PoseHistory::Stillness PoseHistory::stillness(int joint) const {
+  const Sample& newest = samples_.back();
+  const glm::vec3 here = position(newest.pose.joints[joint]);
+  const glm::quat turn = orientation(newest.pose.joints[joint]);
+  glm::vec3 sum{0};
+  glm::quat turn_sum{0, 0, 0, 0};
+  float furthest_m = 0;
+  int count = 0;
+  for (auto sample = samples_.rbegin();
+       sample != samples_.rend() && newest.origin_ns - sample->origin_ns <= kStillWindow_ns;
+       ++sample) {
+    const glm::vec3 there = position(sample->pose.joints[joint]);
+    const glm::quat then = orientation(sample->pose.joints[joint]);
+    furthest_m = std::max(
+        {furthest_m, glm::distance(here, there), kTurnLever_m * angle_between(turn, then)});
+    sum += there;
+    turn_sum = turn_sum + on_side_of(turn, then);
+    ++count;
+  }
+  const auto window_s = static_cast<float>(ns_to_seconds(kStillWindow_ns));
+  return {furthest_m / window_s, sum / static_cast<float>(count), glm::normalize(turn_sum)};
+}
+
+void PoseHistory::judge_stillness() {
+  for (int j = 0; j < msg::kJoints; ++j) stillness_[j] = stillness(j);
+}
+
+std::int64_t PoseHistory::newest_ns() const {
+  return samples_.empty() ? 0 : samples_.back().origin_ns;
+}
+
+std::optional<msg::HandPose> PoseHistory::at(std::int64_t time_ns, std::int64_t lost_ns) const {
+  if (samples_.empty() || time_ns - newest_ns() > lost_ns) return std::nullopt;
+  if (time_ns <= samples_.front().origin_ns) return samples_.front().pose;
+  if (time_ns > newest_ns()) return predicted(time_ns);
+
+  const auto after = std::lower_bound(
+      samples_.begin(), samples_.end(), time_ns,
+      [](const Sample& sample, std::int64_t wanted_ns) { return sample.origin_ns < wanted_ns; });
+  const auto before = std::prev(after);
+  const double t = static_cast<double>(time_ns - before->origin_ns) /
+                   static_cast<double>(after->origin_ns - before->origin_ns);
+  return between(before->pose, after->pose, static_cast<float>(t));
+}
+
+const PoseHistory::Sample* PoseHistory::earlier_than(const Sample& sample) const {
+  for (auto earlier = samples_.rbegin(); earlier != samples_.rend(); ++earlier)
+    if (sample.origin_ns - earlier->origin_ns >= kShortestBase_ns) return &*earlier;
+  return nullptr;
+}
+
+/// Two-point velocity is that of the middle between the points: against it a constant acceleration
+/// a bends the way by a h (h + dt) / 2.
+std::array<glm::vec3, msg::kJoints> PoseHistory::bends_m(const Sample& newest, const Sample& base,
+                                                         std::int64_t ahead_ns) const {
+  std::array<glm::vec3, msg::kJoints> bends{};
+  const Sample* first = settings_.method == "acceleration" ? earlier_than(base) : nullptr;
+  if (!first) return bends;
+  const auto first_s = static_cast<float>(ns_to_seconds(base.origin_ns - first->origin_ns));
+  const auto second_s = static_cast<float>(ns_to_seconds(newest.origin_ns - base.origin_ns));
+  const auto ahead_s = static_cast<float>(ns_to_seconds(ahead_ns));
+  bends = accelerations(first->pose, base.pose, newest.pose, first_s, second_s);
+  for (glm::vec3& bend : bends) {
+    bend *= 0.5f * ahead_s * (ahead_s + second_s);
+    bend *= std::min(1.0f, kMostBend_m / std::max(glm::length(bend), 1e-9f));
+  }
+  return bends;
+}
+
+msg::HandPose PoseHistory::predicted(std::int64_t time_ns) const {
+  const Sample& newest = samples_.back();
+  if (settings_.method == "hold") return newest.pose;
+  const Sample* base = earlier_than(newest);
+  if (!base) return newest.pose;
+
+  const std::int64_t ahead_ns = std::min(time_ns - newest.origin_ns, ms_to_ns(settings_.limit_ms));
+  const auto share = static_cast<float>(static_cast<double>(ahead_ns) /
+                                        static_cast<double>(newest.origin_ns - base->origin_ns));
+  const auto still_m_s = static_cast<float>(settings_.still_mm_s * 1e-3);
+  const auto bends = bends_m(newest, *base, ahead_ns);
+  msg::HandPose pose = newest.pose;
+  for (int j = 0; j < msg::kJoints; ++j) {
+    const Joint &a = base->pose.joints[j], &b = newest.pose.joints[j];
+    const Stillness& recent = stillness_[j];
+    const float moving =
+        still_m_s > 0 ? glm::smoothstep(still_m_s, 2 * still_m_s, recent.speed_m_s) : 1.0f;
+    const glm::vec3 moved = position(b) + share * (position(b) - position(a)) + bends[j];
+    place(pose.joints[j], glm::mix(recent.mean_m, moved, moving),
+          blend(recent.mean_turn, turned_on(orientation(a), orientation(b), share), moving));
+  }
+  return pose;
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/skin/bone_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr int kPalm = 0, kWrist = 1;
+constexpr int kMemory = 600;  ///< samples of a tracker, about five seconds
+constexpr std::int64_t kForget_ns = 1'000'000'000;
+constexpr std::array<int, 4> kKnuckles{7, 12, 17, 22};  ///< proximal joints, index to little finger
+constexpr float kLeast = 0.5f, kMost = 2.0f;            ///< a wild joint must not blow a bone up
+constexpr float kShortest_m = 1e-4f;
+
+glm::vec3 origin(const glm::mat4& frame) { return glm::vec3(frame[3]); }
+
+/// The joint at a bone's far end; -1 where the joint begins none. A finger's joints follow one
+/// another.
+int far_joint(int joint) {
+  const int next = joint + 1;
+  return joint > kWrist && next < kJoints && kJointParent[static_cast<std::size_t>(next)] == joint
+             ? next
+             : -1;
+}
+
+float bone_length(const JointFrames& frames, int joint) {
+  return glm::distance(origin(frames[joint]), origin(frames[far_joint(joint)]));
+}
+
+/// How much larger the posed skeleton is: the sums of all its bones' lengths compared.
+float size_ratio(const JointFrames& rest, const JointFrames& posed) {
+  float rest_m = 0, posed_m = 0;
+  for (int joint = 0; joint < kJoints; ++joint) {
+    if (far_joint(joint) < 0) continue;
+    rest_m += bone_length(rest, joint);
+    posed_m += bone_length(posed, joint);
+  }
+  return rest_m > kShortest_m ? std::clamp(posed_m / rest_m, kLeast, kMost) : 1.0f;
+}
+
+/// The least rotation that turns unit vector `from` to `to`.
+glm::mat3 aim(const glm::vec3& from, const glm::vec3& to) {
+  const float cosine = glm::dot(from, to);
+  if (cosine < -0.99f)
+    return glm::mat3(1);  // turned right around: the frame makes no sense, keep it
+  const glm::vec3 axis = glm::cross(from, to);
+  return glm::mat3_cast(glm::normalize(glm::quat(1 + cosine, axis.x, axis.y, axis.z)));
+}
+
+/// `along` times in direction `axis` (unit), `across` times at right angles to it.
+glm::mat3 stretch(const glm::vec3& axis, float along, float across) {
+  return glm::mat3(across) + (along - across) * glm::outerProduct(axis, axis);
+}
+
+/// What a joint's skin is held between.
+struct Span {
+  glm::vec3 start, end;
+};
+
+Span span(const JointFrames& frames, int start, int end) {
+  return {origin(frames[start]), origin(frames[end])};
+}
+
+/// The turn of a joint from rest to pose.
+glm::mat3 turn_of(const JointFrames& rest, const JointFrames& posed, int joint) {
+  return glm::mat3(posed[joint]) * glm::transpose(glm::mat3(rest[joint]));
+}
+
+/// Turns and stretches a rest span onto a posed one; `width` at right angles to it.
+glm::mat4 onto(const Span& rest, const Span& posed, const glm::mat3& turn, float width) {
+  const glm::vec3 rest_way = rest.end - rest.start, posed_way = posed.end - posed.start;
+  const float rest_m = glm::length(rest_way), posed_m = glm::length(posed_way);
+  glm::mat3 whole = turn * width;
+  if (rest_m > kShortest_m && posed_m > kShortest_m) {
+    const glm::vec3 axis = rest_way / rest_m;
+    whole = aim(turn * axis, posed_way / posed_m) * turn *
+            stretch(axis, std::clamp(posed_m / rest_m, kLeast, kMost), width);
+  }
+  glm::mat4 posed_from_rest(whole);
+  posed_from_rest[3] = glm::vec4(posed.start - whole * rest.start, 1);
+  return posed_from_rest;
+}
+
+/// The turn of the palm that takes the middle of the learned knuckles to that of the seen ones.
+glm::mat3 turn_between(const std::array<glm::vec3, 4>& learned,
+                       const std::array<glm::vec3, 4>& seen) {
+  const glm::vec3 from = learned[0] + learned[1] + learned[2] + learned[3],
+                  to = seen[0] + seen[1] + seen[2] + seen[3];
+  if (glm::length(from) < kShortest_m || glm::length(to) < kShortest_m) return glm::mat3(1);
+  return aim(glm::normalize(from), glm::normalize(to));
+}
+
+bool is_finite(const JointFrames& frames) {
+  float sum = 0;
+  for (const glm::mat4& frame : frames)
+    for (int column = 0; column < 4; ++column)
+      sum += frame[column].x + frame[column].y + frame[column].z;
+  return std::isfinite(sum);
+}
+
+}  // namespace
+
+BoneFit::Person BoneFit::person_in(const JointFrames& posed) const {
+  const glm::mat4 wrist_from_space = glm::inverse(posed[kWrist]);
+  Person person;
+  for (std::size_t finger = 0; finger < person.base.size(); ++finger) {
+    person.base[finger] = glm::vec3(wrist_from_space * posed[kKnuckles[finger] - 1][3]);
+    person.knuckle[finger] = glm::vec3(wrist_from_space * posed[kKnuckles[finger]][3]);
+  }
+  person.size = size_ratio(rest_, posed);
+  return person;
+}
+
+void BoneFit::learn(std::int64_t origin_ns, const JointFrames& posed) {
+  if (!is_finite(posed)) return;
+  if (origin_ns - last_ns_ > kForget_ns) learned_ = 0;
+  last_ns_ = origin_ns;
+  learned_ = std::min(learned_ + 1, kMemory);
+  const Person seen = person_in(posed);
+  const float share = 1 / static_cast<float>(learned_);
+  for (std::size_t finger = 0; finger < seen.base.size(); ++finger) {
+    person_.base[finger] += share * (seen.base[finger] - person_.base[finger]);
+    person_.knuckle[finger] += share * (seen.knuckle[finger] - person_.knuckle[finger]);
+  }
+  person_.size += share * (seen.size - person_.size);
+}
+
+JointFrames BoneFit::operator()(const JointFrames& posed) const {
+  const Person seen = person_in(posed);
+  const Person& person = learned_ > 0 ? person_ : seen;
+  const float width = person.size * width_;
+  JointFrames fitted = posed;
+  const auto reach = [&](int joint, const Span& to) {
+    fitted[joint] =
+        onto(span(rest_, joint, joint + 1), to, turn_of(rest_, posed, joint), width) * rest_[joint];
+  };
+  for (int joint = kWrist + 1; joint < kJoints; ++joint)
+    if (far_joint(joint) > 0) reach(joint, span(posed, joint, joint + 1));
+  for (std::size_t finger = 0; finger < seen.base.size(); ++finger) {
+    const glm::mat4 seen_from_person = onto({glm::vec3(0), person.knuckle[finger]},
+                                            {glm::vec3(0), seen.knuckle[finger]}, glm::mat3(1), 1);
+    const glm::vec3 base(posed[kWrist] * seen_from_person * glm::vec4(person.base[finger], 1));
+    reach(kKnuckles[finger] - 1, {base, origin(posed[kKnuckles[finger]])});
+  }
+  // Wrist and forearm turn with the knuckles, but are not stretched: they end nowhere.
+  const glm::mat3 turn = turn_between(person.knuckle, seen.knuckle);
+  for (const int joint : {kPalm, kWrist}) {
+    const glm::mat3 whole =
+        glm::mat3(posed[kWrist]) * turn * glm::transpose(glm::mat3(rest_[kWrist])) * width;
+    glm::mat4 posed_from_rest(whole);
+    posed_from_rest[3] = glm::vec4(origin(posed[kWrist]) - whole * origin(rest_[kWrist]), 1);
+    fitted[joint] = posed_from_rest * rest_[joint];
+  }
+  return fitted;
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+# What handcast is built with. scripts/setup installs all of it.
+
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+pkg_check_modules(eigen3 REQUIRED IMPORTED_TARGET eigen3)
+find_package(TinyGLTF REQUIRED)
+
+# Debian's targets of OpenCV do not know where their headers are.
+find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs videoio)
+foreach(part core imgproc imgcodecs videoio)
+  target_include_directories(opencv_${part} SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+endforeach()
+
+# oneDNN's own CMake file asks for OpenCL's headers as well.
+find_library(DNNL_LIBRARY dnnl REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to keep oneDNN to one thread
+
+if(HANDCAST_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
+endif()
+
+# handcast_feature(NAME "what is absent without it" FOUND): the option HANDCAST_WITH_NAME, on where it was found.
+# Each absence is said once here and by `handcast --version`.
+set(HANDCAST_ABSENT "")
+function(handcast_feature name sentence found)
+  option(HANDCAST_WITH_${name} "${sentence}" ${found})
+  if(HANDCAST_WITH_${name} AND NOT found)
+    message(FATAL_ERROR "HANDCAST_WITH_${name} is ON and what it needs was not found; scripts/setup installs it")
+  endif()
+  if(NOT HANDCAST_WITH_${name})
+    message(STATUS "without ${name}: no ${sentence}")
+    set(HANDCAST_ABSENT "${HANDCAST_ABSENT}without ${name}: no ${sentence}\\n" PARENT_SCOPE)
+  endif()
+endfunction()
+
+function(handcast_found result)
+  set(${result} OFF PARENT_SCOPE)
+  foreach(variable ${ARGN})
+    if(NOT ${variable})
+      return()
+    endif()
+  endforeach()
+  set(${result} ON PARENT_SCOPE)
+endfunction()
+
+find_package(OpenCV QUIET COMPONENTS dnn)
+handcast_found(found OpenCV_dnn_FOUND)
+handcast_feature(OPENCV_DNN "executor \"opencv\" of the landmark networks (libopencv-dev)" ${found})
+if(HANDCAST_WITH_OPENCV_DNN)
+  target_include_directories(opencv_dnn SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+endif()
+
+find_package(prometheus-cpp QUIET)
+handcast_found(found prometheus-cpp_FOUND)
+handcast_feature(PROMETHEUS "figures for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})
+
+pkg_check_modules(ZeroMQ QUIET IMPORTED_TARGET libzmq)
+handcast_found(found ZeroMQ_FOUND)
+handcast_feature(ZEROMQ "comparison with ZeroMQ in scripts/bench rings (libzmq3-dev)" ${found})
+
+find_program(GNUPLOT gnuplot)
+handcast_found(found GNUPLOT)
+handcast_feature(GNUPLOT "drawing of charts, handcast chart (gnuplot-nox)" ${found})

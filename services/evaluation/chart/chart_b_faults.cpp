@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "services/evaluation/chart/chart.hpp"
+#include "services/evaluation/chart/fault.hpp"
+#include "services/evaluation/chart/methods.hpp"
+#include "services/evaluation/chart/script.hpp"
+
+namespace handcast::chart {
+namespace {
+
+constexpr int kWidth_px = 980;
+constexpr double kRow_px = 24, kNames_px = 262, kDots_px = 620, kTop_px = 96;
+
+/// One block of rows: what its dots measure, and what its right-hand columns say.
+struct Block {
+  std::string title, axis, columns_title;
+  std::vector<const Failure*> rows;
+  std::optional<double> Damage::*dot;
+};
+
+const Damage* damage_of(const Failure& failure, std::string_view variant) {
+  const auto found = failure.damage.find(std::string(variant));
+  return found == failure.damage.end() ? nullptr : &found->second;
+}
+
+std::vector<Block> blocks_of(const std::vector<Failure>& failures) {
+  const auto error = "interior error p95, mm", lit = "hand lit, %";
+  std::vector<Block> blocks{
+      {"For a moment", "worst landmark error, mm", "good again after, ms", {}, &Damage::worst_mm},
+      {"For good", error, lit, {}, &Damage::p95_mm},
+      {"Motions that are hard, and a wave to compare with", error, lit, {}, &Damage::p95_mm},
+  };
+  for (const auto& failure : failures)
+    blocks[static_cast<std::size_t>(failure.kind)].rows.push_back(&failure);
+  std::erase_if(blocks, [](const Block& block) { return block.rows.empty(); });
+  return blocks;
+}
+
+double height_px(const Block& block) {
+  return kTop_px + kRow_px * static_cast<double>(block.rows.size()) + 34;
+}
+
+std::string words_of(const Damage& damage, FailureKind kind) {
+  if (kind != FailureKind::passing)
+    return damage.coverage ? fmt::format("{:.1f}", 100 * *damage.coverage) : "–";
+  if (damage.never_good > 0) return "never";
+  return damage.recovery_ms ? fmt::format("{:.0f}", *damage.recovery_ms) : "–";
+}
+
+Range range_of_dots(const Block& block) {
+  std::vector<double> values;
+  for (const auto* failure : block.rows)
+    for (const auto& [variant, damage] : failure->damage)
+      if (const auto value = damage.*block.dot; value && *value > 0) values.push_back(*value);
+  return range_of(values, true);
+}
+
+void draw_row(Script& script, const Block& block, std::size_t row, double y_px) {
+  const auto& failure = *block.rows[row];
+  script.text(kNames_px - 12, y_px, failure.name, {kInk, "right", 12});
+  script.stroke({kNames_px, y_px}, {kDots_px, y_px}, kLine);
+  for (std::size_t i = 0; i < std::size(kCompared); ++i) {
+    const auto method = method_of(kCompared[i]);
+    const auto* damage = damage_of(failure, method.variant);
+    if (!damage) continue;
+    const Point dot{(damage->*block.dot).value_or(0),
+                    static_cast<double>(block.rows.size() - row) - 0.5};
+    if (dot.x > 0)
+      script.series({&dot, 1},
+                    fmt::format("points pt 7 ps {} lc rgb \"{}\"",
+                                method.variant == "handcast" ? 1.0 : 0.75, method.colour.value));
+    script.text(kDots_px + 110 + 95 * static_cast<double>(i), y_px, words_of(*damage, failure.kind),
+                {method.colour, "right", 12, method.variant == "handcast"});
+  }
+}
+
+void draw(Script& script, const Block& block, double top_px) {
+  const double first_px = top_px + kTop_px, count = static_cast<double>(block.rows.size());
+  script.panel({kNames_px, first_px, kDots_px, first_px + kRow_px * count}, range_of_dots(block),
+               {0, count});
+  script.line("unset ytics\nset border 0\nset grid noytics");
+  script.text(20, top_px + 24, block.title, {kInk, "left", 15, true});
+  script.text(kNames_px, first_px - 34, block.axis, {kQuiet, "left", 12});
+  script.text(kDots_px + 300, first_px - 34, block.columns_title, {kQuiet, "right", 12});
+  for (std::size_t i = 0; i < std::size(kCompared); ++i) {
+    const auto method = method_of(kCompared[i]);
+    script.text(kDots_px + 110 + 95 * static_cast<double>(i), first_px - 14, kCompared[i],
+                {method.colour, "right", 12, true});
+  }
+  for (std::size_t row = 0; row < block.rows.size(); ++row)
+    draw_row(script, block, row, first_px + kRow_px * (static_cast<double>(row) + 0.5));
+  script.plot();
+}
+
+std::string script_of(const std::vector<Block>& blocks) {
+  double whole_px = 0;
+  for (const auto& block : blocks) whole_px += height_px(block);
+  Script script("chart_b_faults", kWidth_px, static_cast<int>(whole_px));
+  double top_px = 0;
+  for (const auto& block : blocks) {
+    draw(script, block, top_px);
+    top_px += height_px(block);
+  }
+  return script.finish();
+}
+
+constexpr const char* kKindNames[] = {"for a moment", "for good", "motion"};
+
+NumberTable table_of(const std::vector<Failure>& failures) {
+  NumberTable table{"chart_b_faults",
+                    "Worst and recovery are of the landmarks, the worst of the sweep's motions; "
+                    "recovery from the fault's end until for 100 ms the "
+                    "error is no more than half the usual one above that of the same run without "
+                    "the fault. The others are of the whole "
+                    "run, means over motions. Simulated: the same on every machine.",
+                    {{"failure", "failure"},
+                     {"kind", "kind"},
+                     {"method", "method"},
+                     {"worst_mm", "worst, mm", 1},
+                     {"recovery_ms", "good again after, ms", 0},
+                     {"dark_ms", "without light, ms", 0},
+                     {"interior_mm_p95", "interior p95, mm", 2},
+                     {"coverage", "coverage", 3},
+                     {"spill", "spill", 3},
+                     {"foldovers", "fold-overs", 0}},
+                    {}};
+  for (const auto& failure : failures)
+    for (const auto variant : kCompared) {
+      const auto* damage = damage_of(failure, variant);
+      if (!damage) continue;
+      const Cell recovery =
+          damage->never_good > 0 ? Cell("not within the run") : Cell(damage->recovery_ms);
+      table.rows.push_back({failure.name, kKindNames[static_cast<int>(failure.kind)],
+                            std::string(variant), damage->worst_mm, recovery, damage->dark_ms,
+                            damage->p95_mm, damage->coverage, damage->spill, damage->foldovers});
+    }
+  return table;
+}
+
+}  // namespace
+
+Chart chart_b_faults(const Results& results) {
+  Chart chart{"chart_b_faults",
+              "B. The failure atlas",
+              "What goes wrong at a rig, how far the light is off while it does, and how long "
+              "until it is good again.",
+              {},
+              {},
+              {}};
+  const auto failures = failures_of(results);
+  if (failures.empty()) {
+    chart.lacking =
+        "needs runs that were drawn and in which something fails: sweep "
+        "config/sweeps/failures.toml";
+    return chart;
+  }
+  chart.script = script_of(blocks_of(failures));
+  chart.tables.push_back(table_of(failures));
+  return chart;
+}
+
+}  // namespace handcast::chart

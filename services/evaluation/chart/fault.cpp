@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/chart/fault.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace handcast::chart {
+namespace {
+
+struct Kind {
+  std::string_view setting, name;  ///< the name takes the setting, times the scale
+  bool passes = false;
+  double scale = 1;
+};
+
+constexpr std::array kKinds{
+    Kind{"twin.tracker.lost_s", "tracker gives nothing, {:g} ms", true, 1e3},
+    Kind{"twin.tracker.frozen_s", "tracker frozen, {:g} ms", true, 1e3},
+    Kind{"twin.tracker.wrong_finger_s", "tracker: wrong finger, {:g} ms", true, 1e3},
+    Kind{"twin.tracker.swapped_s", "tracker: hands swapped, {:g} ms", true, 1e3},
+    Kind{"twin.detector.lost_s", "landmarks gone, {:g} ms", true, 1e3},
+    Kind{"twin.detector.wrong_finger_s", "landmarks: wrong finger, {:g} ms", true, 1e3},
+    Kind{"twin.tracker.clock_skew_ms", "tracker's clock {:+g} ms"},
+    Kind{"twin.detector.clock_skew_ms", "landmarks' clock {:+g} ms"},
+    Kind{"twin.detector.outliers", "landmarks thrown off, {:g} %", false, 100},
+    Kind{"twin.image.dark", "image dark: {:g} % of the light", false, 100},
+    Kind{"twin.image.saturated", "image saturated: {:g} times the light"},
+    Kind{"twin.image.holes", "image with holes, {:g} % of the hand", false, 100},
+    Kind{"twin.image.covered", "image covered, {:g} %", false, 100},
+    Kind{"twin.image.face", "a face behind the hands"},
+};
+
+bool is_beside(const std::string& path) { return path.ends_with("_at_s"); }
+
+/// The one failure that a run's settings name; null where there is none.
+const Kind* kind_of(const Run& run) {
+  for (const auto& path : run.turned())
+    if (const auto kind = std::ranges::find(kKinds, path, &Kind::setting);
+        kind != kKinds.end() && !is_beside(path))
+      return &*kind;
+  return nullptr;
+}
+
+std::string name_of(const Run& run, const Kind& kind) {
+  const double value = number_of(run.setting(std::string(kind.setting))).value_or(0) * kind.scale;
+  return fmt::format(fmt::runtime(kind.name), value);
+}
+
+std::string motion_of(const Run& run) {
+  auto motion = run.setting("twin.motion");
+  motion.erase(0, motion.find_last_of(":/") + 1);
+  std::ranges::replace(motion, '_', ' ');
+  return motion;
+}
+
+std::optional<double> most_of(const Runs& runs, const std::string& column) {
+  std::optional<double> most;
+  for (const auto* run : runs)
+    if (const auto value = run->metric(column)) most = std::max(most.value_or(*value), *value);
+  return most;
+}
+
+Damage damage_of(const Runs& runs) {
+  Damage damage{most_of(runs, "fault_worst_mm"),
+                most_of(runs, "fault_recovery_ms"),
+                most_of(runs, "fault_dark_ms"),
+                mean_of(runs, "interior_mm_p95"),
+                mean_of(runs, "coverage"),
+                mean_of(runs, "spill"),
+                most_of(runs, "foldovers"),
+                runs.size(),
+                0};
+  for (const auto* run : runs)
+    damage.never_good += run->metric("fault_worst_mm") && !run->metric("fault_recovery_ms");
+  return damage;
+}
+
+/// Runs of the plans that make things fail: those that turn more than a ladder does.
+Runs laboratory(const Results& results) {
+  std::map<std::string, bool> ladder;
+  for (const auto& source : results.sources) ladder[source.plan] = source.ladder;
+  return results.select(
+      [&](const Run& run) { return !ladder[run.plan] && run.metric("interior_mm_p95"); });
+}
+
+}  // namespace
+
+std::vector<Failure> failures_of(const Results& results) {
+  std::vector<Failure> failures;
+  std::vector<Runs> runs_of;
+  for (const auto* run : laboratory(results)) {
+    const auto* kind = kind_of(*run);
+    if (kind && kind->setting == "twin.image.holes" &&
+        number_of(run->setting("twin.image.holes")) == 0)
+      continue;
+    if (!kind && (!run->turned().empty() || !run->setting("twin.speed").empty())) continue;
+    const auto name = kind ? name_of(*run, *kind) : motion_of(*run);
+    const auto found = std::ranges::find(failures, name, &Failure::name);
+    const auto at = static_cast<std::size_t>(found - failures.begin());
+    if (found == failures.end()) {
+      failures.push_back({name,
+                          !kind          ? FailureKind::motion
+                          : kind->passes ? FailureKind::passing
+                                         : FailureKind::lasting,
+                          {}});
+      runs_of.emplace_back();
+    }
+    runs_of[at].push_back(run);
+  }
+  for (std::size_t i = 0; i < failures.size(); ++i)
+    for (const auto& variant : variants_of(runs_of[i]))
+      failures[i].damage[variant] = damage_of(of_variant(runs_of[i], variant));
+  std::ranges::stable_sort(failures, {}, &Failure::kind);
+  return failures;
+}
+
+}  // namespace handcast::chart

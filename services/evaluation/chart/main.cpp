@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast chart: what sweeps found, as charts on one page.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+
+#include "ipc/base/version.hpp"
+#include "services/evaluation/chart/write.hpp"
+#include "services/evaluation/page/machine.hpp"
+
+using namespace handcast;
+
+static const char* const kFooter =
+    R"(A: speed against accuracy. B: where methods fail, and the failure atlas. C: error against degrees of freedom and time.
+Each needs the results of a plan in config/sweeps: A and C of ladder.toml (times from times.toml), B of stress.toml and failures.toml.
+scripts/charts runs them all.)";
+
+int main(int argc, char** argv) try {
+  CLI::App app(
+      "Draws what sweeps found: one page that needs no network, with the charts as SVG and the "
+      "numbers behind them as CSV.",
+      "handcast chart");
+  app.footer(kFooter);
+  chart::Order order;
+  order.imprint = {"handcast: speed against accuracy", page::this_machine(),
+                   fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
+  app.add_option("RESULTS.csv", order.results, "Files of `handcast sweep`")->required();
+  app.add_option("--out", order.folder,
+                 "Folder for charts.html, *.svg and *.csv (default: out/charts)")
+      ->default_val("out/charts");
+  app.add_option("--title", order.imprint.title, "Heading of the page");
+  app.add_option("--gnuplot", order.gnuplot, "The gnuplot that draws");
+  app.set_version_flag("--version", fmt::format("handcast chart {}", version()));
+  CLI11_PARSE(app, argc, argv);
+
+  const auto written = chart::write_charts(order);
+  if (!written) {
+    fmt::print(stderr, "handcast chart: {}\n", written.error().what);
+    return written.error().code == Errc::unavailable ? 111 : 100;
+  }
+  for (const auto& sentence : written->lacking)
+    fmt::print(stderr, "handcast chart: {}\n", sentence);
+  fmt::print("{}\n", written->page.string());
+  return 0;
+} catch (const std::exception& problem) {
+  std::fprintf(stderr, "handcast chart: %s\n", problem.what());
+  return 111;
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/report/inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace handcast::report {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+Source read_source(const fs::path& folder, const std::string& name) {
+  Source source{name, std::nullopt, ""};
+  std::ifstream stream(folder / name, std::ios::binary);
+  if (!stream) {
+    source.problem = fmt::format("{} is missing", name);
+    return source;
+  }
+  auto content = json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (content.is_object())
+    source.content = std::move(content);
+  else
+    source.problem = fmt::format("{} is not a JSON object", name);
+  return source;
+}
+
+std::vector<fs::path> list_pictures(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder, missing))
+    if (entry.path().extension() == ".png") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Run read_run(const fs::path& folder, const std::string& stem, const std::string& name,
+             const std::string& sentence) {
+  return {name, sentence, read_source(folder, stem + ".json"),
+          list_pictures(folder / "frames" / stem)};
+}
+
+bool is_empty(const Inputs& inputs) {
+  const auto has_nothing = [](const Run& run) {
+    return !run.metrics.content && run.pictures.empty();
+  };
+  return std::all_of(inputs.runs.begin(), inputs.runs.end(), has_nothing) && !inputs.live.content &&
+         !inputs.observer.content;
+}
+
+}  // namespace
+
+std::optional<double> Source::number(const json::json_pointer& place) const {
+  if (!content || !content->contains(place) || !content->at(place).is_number()) return std::nullopt;
+  return content->at(place).get<double>();
+}
+
+Result<Inputs> read_inputs(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    return fail(Errc::bad_config, fmt::format("'{}' is not a folder", folder.string()));
+  Inputs inputs{{read_run(folder, "baseline", "baseline",
+                          "The tracker's hand where it is predicted to be; nothing corrects it."),
+                 read_run(folder, "paper", "paper", "The cascade as the paper describes it."),
+                 read_run(folder, "twin", "handcast", "The cascade of this software.")},
+                read_source(folder, "equal_legs.json"),
+                read_source(folder, "live.json"),
+                read_source(folder, "observer.json")};
+  if (is_empty(inputs))
+    return fail(Errc::bad_config, fmt::format("'{}' holds nothing to report: none of "
+                                              "baseline.json, paper.json, twin.json, live.json, "
+                                              "observer.json, and no pictures in frames/",
+                                              folder.string()));
+  return inputs;
+}
+
+}  // namespace handcast::report

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "services/evaluation/page/html.hpp"
+#include "services/evaluation/report/tables.hpp"
+
+namespace handcast::report {
+namespace {
+
+using nlohmann::json;
+
+std::string text_at(const json& object, const char* key) {
+  if (!object.is_object() || !object.contains(key)) return "–";
+  const auto& value = object.at(key);
+  if (value.is_string())
+    return value.get<std::string>().empty() ? "–" : page::escape(value.get<std::string>());
+  return value.is_number() ? fmt::format("{}", value.get<double>()) : "–";
+}
+
+std::optional<double> rate_of(const Source& live, const std::string& service, const char* which) {
+  return live.number(json::json_pointer("/rates") / service / std::string(which));
+}
+
+std::string held_share(const Source& live, const std::string& service) {
+  const auto asked_hz = rate_of(live, service, "asked_hz"),
+             held_hz = rate_of(live, service, "held_hz");
+  if (!asked_hz || !held_hz || *asked_hz <= 0) return "–";
+  return fmt::format("{:.0f} %", 100 * *held_hz / *asked_hz);
+}
+
+/// Along the way of the data, then whatever else ran.
+std::vector<std::string> names_in_order(const json& services) {
+  std::vector<std::string> names;
+  for (const char* name : {"camera", "pose", "landmarks", "projector", "observer"})
+    if (services.contains(name)) names.push_back(name);
+  for (const auto& service : services.items())
+    if (std::find(names.begin(), names.end(), service.key()) == names.end())
+      names.push_back(service.key());
+  return names;
+}
+
+std::string services_table(const Source& live) {
+  const json services = live.content->value("services", json::object());
+  if (!services.is_object()) return "";
+  std::string table =
+      "<div class=\"wide\"><table>\n<thead><tr><th>service</th><th>back end</th><th>asked, "
+      "Hz</th><th>held, Hz</th><th>held</th>"
+      "<th>restarts</th></tr></thead>\n<tbody>\n";
+  for (const auto& name : names_in_order(services)) {
+    const auto& service = services.at(name);
+    table += fmt::format(
+        "<tr><th "
+        "scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        page::escape(name), text_at(service, "backend"),
+        page::figure(rate_of(live, name, "asked_hz"), 1),
+        page::figure(rate_of(live, name, "held_hz"), 1), held_share(live, name),
+        text_at(service, "restarts"));
+  }
+  return table + "</tbody></table></div>\n";
+}
+
+std::string score_sentence(const Source& observer) {
+  if (!observer.content)
+    return page::missing(fmt::format("The live light was not scored: {}.", observer.problem));
+  const auto percent = [&](const char* pointer) {
+    const auto share = observer.number(pointer);
+    return page::figure(share ? std::optional(*share * 100) : std::nullopt, 1);
+  };
+  return fmt::format(
+      "<p>The observer scored {} frames of the live light against the twin's truth: interior error "
+      "<b>{} mm</b> mean, <b>{} mm</b> p95; "
+      "<b>{} %</b> of the hand lit, {} % spill.</p>\n",
+      page::figure(observer.number("/frames"), 0),
+      page::figure(observer.number("/interior_mm/mean"), 2),
+      page::figure(observer.number("/interior_mm/p95"), 2), percent("/coverage"),
+      percent("/spill"));
+}
+
+}  // namespace
+
+std::string live_table(const Inputs& inputs) {
+  const auto& live = inputs.live;
+  if (!live.content)
+    return page::missing(fmt::format("There was no live run: {}.", live.problem)) +
+           (inputs.observer.content ? score_sentence(inputs.observer) : "");
+  return fmt::format("<p>The rig <b>{}</b> ran live for {} s, one process a service.</p>\n",
+                     text_at(*live.content, "rig"), page::figure(live.number("/seconds"), 1)) +
+         services_table(live) + score_sentence(inputs.observer);
+}
+
+}  // namespace handcast::report

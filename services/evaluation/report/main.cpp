@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+
+#include "services/evaluation/page/machine.hpp"
+#include "services/evaluation/report/report.hpp"
+
+using namespace handcast;
+
+int main(int argc, char** argv) try {
+  CLI::App app(
+      "Makes report.html, metrics.json and preview.mp4 from what a demonstration left in a folder.",
+      "handcast report");
+  std::string folder;
+  report::Imprint imprint{"handcast: light that stays on moving hands", page::this_machine(),
+                          fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
+  app.add_option("--out", folder,
+                 "Folder with baseline.json, paper.json, twin.json, live.json, observer.json and "
+                 "frames/; gets the report")
+      ->required();
+  app.add_option("--title", imprint.title, "Heading of the page");
+  CLI11_PARSE(app, argc, argv);
+
+  const auto page = report::write_report(folder, imprint);
+  if (!page) {
+    fmt::print(stderr, "handcast report: {}\n", page.error().what);
+    return page.error().code == Errc::bad_config ? 100 : 111;
+  }
+  fmt::print("{}\n", page->string());
+  return 0;
+} catch (const std::exception& problem) {
+  std::fprintf(stderr, "handcast report: %s\n", problem.what());
+  return 111;
+}

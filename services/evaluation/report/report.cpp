@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace handcast::report {
+namespace fs = std::filesystem;
+
+/// The figures of all runs in one object: baseline, paper, handcast, and live with the observer's
+/// score in it. What is missing is left out.
+static nlohmann::json gather_metrics(const Inputs& inputs) {
+  auto metrics = nlohmann::json::object();
+  for (const auto& run : inputs.runs)
+    if (run.metrics.content) metrics[run.name] = *run.metrics.content;
+  if (inputs.equal_legs.content) metrics["handcast_equal_legs"] = *inputs.equal_legs.content;
+  if (inputs.live.content) metrics["live"] = *inputs.live.content;
+  if (inputs.observer.content) metrics["live"]["observer"] = *inputs.observer.content;
+  return metrics;
+}
+
+static Result<void> write(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) return fail(Errc::unavailable, fmt::format("'{}' cannot be written", file.string()));
+  return {};
+}
+
+Result<fs::path> write_report(const fs::path& folder, const Imprint& imprint) {
+  const auto inputs = read_inputs(folder);
+  if (!inputs) return tl::make_unexpected(inputs.error());
+  const Film film = make_film(*inputs, folder / "preview.mp4");
+  if (auto written = write(folder / "metrics.json", gather_metrics(*inputs).dump(2) + "\n");
+      !written)
+    return tl::make_unexpected(written.error());
+  const fs::path page = folder / "report.html";
+  if (auto written = write(page, make_page(*inputs, film, imprint)); !written)
+    return tl::make_unexpected(written.error());
+  return page;
+}
+
+}  // namespace handcast::report

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "services/evaluation/report/inputs.hpp"
+
+namespace handcast::report {
+
+/// What each stage took, live and simulated: median and 99th percentile, as bars and figures.
+std::string time_sheet(const Inputs& inputs);
+
+}  // namespace handcast::report

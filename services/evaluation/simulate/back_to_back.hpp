@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "services/evaluation/simulate/frame_detector.hpp"
+#include "services/evaluation/simulate/sensor_feed.hpp"
+
+namespace handcast::simulate {
+
+/// A detector in virtual time: it takes the newest frame whenever it is free, and sleeps until
+/// there is a newer one.
+class BackToBack {
+ public:
+  BackToBack(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector,
+             OnDetection on_detection)
+      : twin_(twin), detector_(std::move(detector)), on_detection_(std::move(on_detection)) {}
+
+  /// Adds the runs that are done by `now_ns` to `events`: the tracker's samples that have arrived
+  /// since the last call, in that order.
+  void until(std::int64_t now_ns, std::vector<SensorEvent>& events);
+
+ private:
+  struct Run {
+    std::int64_t done_ns;
+    std::optional<msg::Landmarks> landmarks;
+  };
+  std::uint64_t next_frame() const;
+  Run begin(std::uint64_t frame, std::int64_t begin_ns);
+  void tell(std::int64_t begin_ns);
+
+  const twin::Twin& twin_;
+  std::unique_ptr<FrameDetector> detector_;
+  OnDetection on_detection_;
+  std::vector<SensorEvent>
+      untold_;  ///< samples of the tracker that arrived after the last run was begun
+  std::optional<Run> under_way_;
+  std::uint64_t runs_ = 0;
+  std::int64_t last_frame_ = -1;
+  std::int64_t free_ns_ = 0;
+};
+
+}  // namespace handcast::simulate

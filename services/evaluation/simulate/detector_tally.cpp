@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/simulate/detector_tally.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::simulate {
+namespace {
+
+const msg::HandLandmarks* hand_of(msg::Side side, const Detection& detection) {
+  if (!detection.landmarks) return nullptr;
+  const auto& landmarks = *detection.landmarks;
+  const auto end = landmarks.hands.begin() + landmarks.count;
+  const auto found =
+      std::find_if(landmarks.hands.begin(), end,
+                   [side](const msg::HandLandmarks& hand) { return hand.side == side; });
+  return found == end ? nullptr : &*found;
+}
+
+}  // namespace
+
+void DetectorTally::add(const Exposure& exposure, const Detection& detection) {
+  ++runs_;
+  if (detection.work_ns > 0) work_ms_.add(ns_to_ms(detection.work_ns));
+  for (const auto side : {msg::Side::left, msg::Side::right})
+    add_hand(side, exposure.origin_ns, hand_of(side, detection));
+}
+
+void DetectorTally::add_hand(msg::Side side, std::int64_t time_ns,
+                             const msg::HandLandmarks* found) {
+  const auto truth = twin_.landmarks(side, time_ns);
+  if (!truth) {
+    invented_ += found != nullptr;
+    return;
+  }
+  const auto seen =
+      std::ranges::count_if(*truth, [this](glm::vec2 point) { return in_image(point); });
+  if (2 * seen < msg::kLandmarks) return;
+  ++hands_;
+  missed_ += found == nullptr;
+  if (!found) return;
+  for (std::size_t i = 0; i < truth->size(); ++i)
+    if (in_image((*truth)[i]))
+      error_px_.add(
+          glm::distance(glm::vec2(found->points[i].x_px, found->points[i].y_px), (*truth)[i]));
+}
+
+bool DetectorTally::in_image(glm::vec2 undistorted_px) const {
+  const auto at = camera_.distort(undistorted_px);
+  return at.x > -0.5 && at.y > -0.5 && at.x < camera_.width_px - 0.5 &&
+         at.y < camera_.height_px - 0.5;
+}
+
+nlohmann::json DetectorTally::to_json() const {
+  return {{"runs", runs_},
+          {"hands", hands_},
+          {"missed", missed_},
+          {"invented", invented_},
+          {"error_px",
+           {{"mean", error_px_.mean()},
+            {"p50", error_px_.percentile(0.5)},
+            {"p95", error_px_.percentile(0.95)}}},
+          {"ms_p50", work_ms_.percentile(0.5)}};
+}
+
+void DetectorTally::Histogram::add(double value) {
+  const auto bin = static_cast<std::size_t>(
+      std::clamp(value * kSteps, 0.0, static_cast<double>(counts_.size() - 1)));
+  ++counts_[bin];
+  ++count_;
+  sum_ += value;
+}
+
+nlohmann::json DetectorTally::Histogram::mean() const {
+  return count_ > 0 ? nlohmann::json(sum_ / static_cast<double>(count_)) : nlohmann::json();
+}
+
+nlohmann::json DetectorTally::Histogram::percentile(double share) const {
+  if (count_ == 0) return {};
+  std::size_t bin = 0, below = counts_[0];
+  while (static_cast<double>(below) < share * static_cast<double>(count_)) below += counts_[++bin];
+  return static_cast<double>(2 * bin + 1) / kSteps / 2;
+}
+
+}  // namespace handcast::simulate

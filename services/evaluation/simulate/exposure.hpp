@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+namespace handcast::simulate {
+
+/// A frame of the twin's camera.
+struct Exposure {
+  std::uint64_t frame_id = 0;
+  std::int64_t origin_ns = 0;
+};
+
+}  // namespace handcast::simulate

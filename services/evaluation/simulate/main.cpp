@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "ipc/base/version.hpp"
+#include "services/evaluation/simulate/run.hpp"
+
+int main(int argc, char** argv) try {
+  using namespace handcast;
+  const auto options = simulate::parse_options(argc, argv);
+  if (!options) {
+    fmt::print(stderr, "handcast simulate: {}\n", options.error().what);
+    return 2;
+  }
+  if (options->help) {
+    fmt::print("{}", simulate::kHelp);
+    return 0;
+  }
+  if (options->version) {
+    fmt::print("handcast simulate {}\n", version());
+    return 0;
+  }
+  if (const auto done = simulate::run(*options); !done) {
+    fmt::print(stderr, "handcast simulate: {}\n", done.error().what);
+    return done.error().code == Errc::bad_config ? 100 : 111;
+  }
+  return 0;
+} catch (const std::exception& problem) {
+  std::fprintf(stderr, "handcast simulate: %s\n", problem.what());
+  return 111;
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/simulate/options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <functional>
+#include <map>
+#include <string_view>
+
+namespace handcast::simulate {
+
+const char* const kHelp =
+    R"(handcast simulate RIG.toml [options]: runs a rig's cascade on its digital twin in virtual time and scores the light.
+
+  --motion DIR|builtin:NAME  what the true hand does (sets twin.motion)
+  --speed K                  plays the motion K times as fast (sets twin.speed)
+  --seed N                   draws everything random anew (sets twin.seed)
+  --set path=value           changes any setting; may be repeated (config/REFERENCE.md lists them)
+  --seconds S                time that is scored (default 5)
+  --warm-up S                time before it that is not (default 0.5)
+  --draw-every N             draws and scores every N-th projector frame (default 8); the others are only tracked
+  --joints-only              draws nothing: scores the 21 landmarks alone, some hundred times as fast
+  --json FILE                the metrics
+  --frames DIR               pictures of the true hand with the light on it, of every --picture-every N drawn frames (default 4)
+  --trace FILE.csv           per projector frame and landmark: time, truth, tracker P and corrected Q in camera pixels
+  --record DIR               writes the sensors' messages and images as a recording that the replay back ends play
+  --quiet                    no progress line
+  --help, --version
+
+Landmarks come from the twin's model of a detector, or from a detector itself that looks at the twin's images:
+  --set landmarks.backend=onednn|opencv|own
+Its points are its own; how old they are when they arrive is set: twin.detector.age_ms and age_sd_ms, for every back end alike, so
+that a slow machine simulates a fast one. "detector" in --json says what it took here (ms_p50) and what it missed.
+
+The same seed gives the same figures; only the times in frame_us, stage_us and detector.ms_p50 are this machine's.
+)";
+
+namespace {
+
+Result<double> number(std::string_view option, std::string_view text, double min, double max) {
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc{} || end != text.data() + text.size() || !(value >= min && value <= max))
+    return fail(Errc::bad_config,
+                fmt::format("{}: '{}' is not a number from {} to {}", option, text, min, max));
+  return value;
+}
+
+using Setter = std::function<Result<void>(std::string_view)>;
+
+Setter text_into(std::string& target) {
+  return [&target](std::string_view value) -> Result<void> {
+    target = value;
+    return {};
+  };
+}
+
+template <class T>
+Setter number_into(T& target, std::string_view option, double min, double max) {
+  return [&target, option, min, max](std::string_view value) -> Result<void> {
+    const auto parsed = number(option, value, min, max);
+    if (!parsed) return tl::make_unexpected(parsed.error());
+    target = static_cast<T>(*parsed);
+    return {};
+  };
+}
+
+Setter setting(Options& options, std::string_view path) {
+  return [&options, path](std::string_view value) -> Result<void> {
+    options.settings.push_back(path.empty() ? std::string(value)
+                                            : fmt::format("{}={}", path, value));
+    return {};
+  };
+}
+
+std::map<std::string_view, Setter> setters(Options& options) {
+  return {
+      {"--motion", setting(options, "twin.motion")},
+      {"--speed", setting(options, "twin.speed")},
+      {"--seed", setting(options, "twin.seed")},
+      {"--set", setting(options, "")},
+      {"--seconds", number_into(options.seconds, "--seconds", 0.01, 86400)},
+      {"--warm-up", number_into(options.warm_up_s, "--warm-up", 0, 3600)},
+      {"--draw-every", number_into(options.draw_every, "--draw-every", 0, 100000)},
+      {"--picture-every", number_into(options.picture_every, "--picture-every", 1, 100000)},
+      {"--json", text_into(options.json_file)},
+      {"--frames", text_into(options.frames_directory)},
+      {"--trace", text_into(options.trace_file)},
+      {"--record", text_into(options.record_directory)},
+  };
+}
+
+}  // namespace
+
+Result<Options> parse_options(int argc, const char* const* argv) {
+  Options options;
+  const auto with_value = setters(options);
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--help" || word == "-h") {
+      options.help = true;
+    } else if (word == "--version") {
+      options.version = true;
+    } else if (word == "--joints-only") {
+      options.draw_every = 0;
+    } else if (word == "--quiet") {
+      options.quiet = true;
+    } else if (const auto setter = with_value.find(word); setter != with_value.end()) {
+      if (++i >= argc)
+        return fail(Errc::bad_config,
+                    fmt::format("{} needs a value; see handcast simulate --help", word));
+      if (auto set = setter->second(argv[i]); !set) return tl::make_unexpected(set.error());
+    } else if (word.starts_with("-")) {
+      return fail(Errc::bad_config,
+                  fmt::format("unknown option {}; see handcast simulate --help", word));
+    } else if (options.rig_file.empty()) {
+      options.rig_file = word;
+    } else {
+      return fail(Errc::bad_config, fmt::format("one rig file, please: '{}' comes after '{}'", word,
+                                                options.rig_file));
+    }
+  }
+  if (options.rig_file.empty() && !options.help && !options.version)
+    return fail(
+        Errc::bad_config,
+        "which rig? e.g. handcast simulate config/rigs/twin.toml; see handcast simulate --help");
+  return options;
+}
+
+}  // namespace handcast::simulate

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "calib/calibration.hpp"
+#include "ipc/msg/projection.hpp"
+#include "renderer/draw/painter.hpp"
+#include "services/evaluation/twin/twin.hpp"
+
+namespace handcast::simulate {
+
+/// What a bystander would see from the projector's place: the true hand in dim light, and the
+/// projector's light on it and on the table behind it.
+class Photographer {
+ public:
+  Photographer(const twin::Twin& twin, const calib::Calibration& calibration);
+
+  /// The scene while `projection` is lit. Valid until the next picture.
+  renderer::View<const std::uint32_t> take(const msg::Projection& projection);
+
+ private:
+  struct Surface {
+    std::vector<glm::vec3> position_m, normal;
+    std::vector<glm::vec2> position_px;
+    std::vector<float> depth_m, light;
+  };
+  renderer::Rect draw_truth(std::int64_t time_ns);
+  void pose(const renderer::HandMesh& hand, const twin::JointFrames& joints,
+            Surface& surface) const;
+
+  const twin::Twin& twin_;
+  calib::Calibration calibration_;
+  std::unique_ptr<renderer::Painter> painter_;
+  renderer::Texture white_;
+  std::array<Surface, msg::kMaxHands> surfaces_;
+  renderer::Image<std::uint32_t> picture_;
+};
+
+}  // namespace handcast::simulate

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/simulate/score.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "ipc/base/clock.hpp"
+#include "services/evaluation/simulate/counting_feed.hpp"
+#include "services/evaluation/simulate/detector_tally.hpp"
+#include "services/evaluation/simulate/hand_speed.hpp"
+#include "services/evaluation/simulate/jitter.hpp"
+#include "services/evaluation/simulate/photograph.hpp"
+#include "services/evaluation/simulate/png.hpp"
+#include "services/evaluation/simulate/recorder.hpp"
+#include "services/evaluation/simulate/recovery.hpp"
+#include "services/evaluation/simulate/trace.hpp"
+
+namespace handcast::simulate {
+namespace {
+
+/// Everything that is made of the ticks of one run.
+class Products {
+ public:
+  static Result<std::unique_ptr<Products>> create(const Options& options, const config::Rig& rig,
+                                                  const calib::Calibration& calibration,
+                                                  const twin::Twin& twin) {
+    auto products = std::unique_ptr<Products>(new Products(options, rig, calibration, twin));
+    if (!options.trace_file.empty()) {
+      auto trace = Trace::open(options.trace_file);
+      if (!trace) return tl::make_unexpected(trace.error());
+      products->trace_ = std::move(*trace);
+    }
+    if (!options.frames_directory.empty()) {
+      std::error_code failed;
+      std::filesystem::create_directories(options.frames_directory, failed);
+      if (failed)
+        return fail(Errc::bad_config,
+                    fmt::format("{}: {}", options.frames_directory, failed.message()));
+      if (auto removed = remove_numbered_pngs(options.frames_directory); !removed)
+        return tl::make_unexpected(removed.error());
+      products->photographer_.emplace(twin, calibration);
+    }
+    return products;
+  }
+
+  /// `detections` of a hand had arrived before it.
+  Result<void> add(const Tick& tick, int detections) {
+    add_speeds(tick.lit_ns);
+    for (const auto& hand : tick.hands) {
+      const auto truth = twin_.landmarks(hand.side, tick.lit_ns);
+      if (!truth) continue;
+      jitter_.add(hand, *truth, tick.index, metrics_);
+      add_landmarks(hand, tick.lit_ns);
+      if (trace_) trace_->add(tick.lit_ns, hand, *truth);
+    }
+    if (fault_) moments_.push_back(moment_of(tick, detections, twin_, calibration_));
+    if (!tick.projection) return {};
+    metrics_.add(judge_->score(*tick.projection));
+    metrics_.add_stages(tick.frame->stages);
+    metrics_.add_foldovers(tick.frame->foldovers);
+    for (const auto& hand : tick.hands) metrics_.add_rung(hand.rung);
+    if (const auto origin_ns = tick.projection->header.origin_ns; origin_ns > 0) {
+      motion_to_photon_ms_ += ns_to_ms(tick.lit_ns - origin_ns);
+      ++with_exposure_;
+    }
+    return picture(drawn_++, *tick.projection);
+  }
+
+  /// After the last tick.
+  Result<void> finish() { return trace_ ? trace_->close() : Result<void>(); }
+
+  bool has_fault() const { return fault_.has_value(); }
+
+  /// `clean`: the light of the same run without the fault, where there is one.
+  nlohmann::json to_json(const config::Rig& rig, std::span<const LightMoment> clean) const {
+    auto json = metrics_.to_json();
+    if (drawn_ == 0) json["foldovers"] = nullptr;
+    json["rig"] = rig.name;
+    json["motion"] = rig.twin.motion;
+    json["speed"] = rig.twin.speed;
+    json["seed"] = rig.twin.seed;
+    json["seconds"] = options_.seconds;
+    json["hand_speed_m_s"] = hand_speed_.to_json();
+    json["fault"] = simulate::to_json(fault_, moments_, clean);
+    json["software_ms"] = rig.projector.software_ms;
+    json["motion_to_photon_ms"] =
+        with_exposure_ > 0
+            ? nlohmann::json(motion_to_photon_ms_ / static_cast<double>(with_exposure_))
+            : nlohmann::json();
+    return json;
+  }
+
+ private:
+  Products(const Options& options, const config::Rig& rig, const calib::Calibration& calibration,
+           const twin::Twin& twin)
+      : options_(options),
+        calibration_(calibration),
+        twin_(twin),
+        fault_(fault_time(rig.twin)),
+        judge_(options.draw_every > 0 ? twin::Judge::create(twin, calibration, rig.observer.step_px)
+                                      : nullptr) {}
+
+  void add_landmarks(const renderer::FrameHand& hand, std::int64_t lit_ns) {
+    const auto errors = landmark_errors(hand, lit_ns, twin_, calibration_);
+    if (!errors) return;
+    for (std::size_t i = 0; i < errors->px.size(); ++i)
+      metrics_.add_landmark(errors->px[i], errors->mm[i]);
+  }
+
+  void add_speeds(std::int64_t lit_ns) {
+    for (const auto side : {msg::Side::left, msg::Side::right}) {
+      const auto joints = twin_.joints(side, lit_ns);
+      if (!joints) continue;
+      std::array<glm::dvec3, msg::kLandmarks> places_m;
+      for (std::size_t i = 0; i < places_m.size(); ++i)
+        places_m[i] = (*joints)[msg::kJointOfLandmark[i]][3];
+      hand_speed_.add(side, places_m, lit_ns);
+    }
+  }
+
+  Result<void> picture(std::int64_t frame, const msg::Projection& projection) {
+    if (!photographer_ || frame % options_.picture_every != 0) return {};
+    return write_png(numbered_png(options_.frames_directory, pictures_++),
+                     photographer_->take(projection));
+  }
+
+  const Options& options_;
+  const calib::Calibration& calibration_;
+  const twin::Twin& twin_;
+  std::optional<FaultTime> fault_;
+  std::unique_ptr<twin::Judge>
+      judge_;  ///< null where nothing is drawn: it makes the whole true hand
+  twin::Metrics metrics_;
+  JitterMeter jitter_;
+  HandSpeed hand_speed_;
+  std::vector<LightMoment> moments_;  ///< kept where there is a fault
+  std::optional<Trace> trace_;
+  std::optional<Photographer> photographer_;
+  std::int64_t drawn_ = 0, with_exposure_ = 0;
+  std::size_t pictures_ = 0;
+  double motion_to_photon_ms_ = 0;  ///< summed over the frames that show an exposure
+};
+
+/// What is scored begins at `start_ns`.
+OnDetection from(std::int64_t start_ns, DetectorTally& tally) {
+  return [start_ns, &tally](const Exposure& exposure, const Detection& detection) {
+    if (exposure.origin_ns >= start_ns) tally.add(exposure, detection);
+  };
+}
+
+nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig) {
+  auto json = tally.to_json();
+  json["backend"] = simulated_backend(rig);
+  json["age_ms"] = rig.twin.detector.age_ms;
+  return json;
+}
+
+}  // namespace
+
+double simulated_s(const config::Rig& rig, const Options& options) {
+  return (fault_time(rig.twin) ? 2 : 1) * (options.warm_up_s + options.seconds);
+}
+
+Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration,
+                             const Options& options, const OnProgress& on_progress) {
+  auto parts = open_virtual_rig(rig, calibration);
+  if (!parts) return tl::make_unexpected(parts.error());
+  const auto& twin = *parts->twin;
+  auto products = Products::create(options, rig, calibration, twin);
+  if (!products) return tl::make_unexpected(products.error());
+
+  DetectorTally tally(twin, calibration.camera);
+  auto feed = make_twin_feed(twin, std::move(parts->detector),
+                             from(seconds_to_ns(options.warm_up_s), tally));
+  RecordingFeed* recording = nullptr;
+  if (!options.record_directory.empty()) {
+    auto recorder = std::make_unique<RecordingFeed>(std::move(feed), calibration.camera,
+                                                    options.record_directory);
+    recording = recorder.get();
+    feed = std::move(recorder);
+  }
+  CountingFeed counted(std::move(feed));
+  Simulation simulation(rig, calibration, *parts->pipeline, counted, options.draw_every);
+  const auto add = [&](const Tick& tick) { return (*products)->add(tick, counted.detections()); };
+  if (auto done = run_ticks(options, simulation, add, on_progress); !done)
+    return tl::make_unexpected(done.error());
+  if (auto finished = (*products)->finish(); !finished)
+    return tl::make_unexpected(finished.error());
+  if (recording)
+    if (auto saved = recording->save(); !saved) return tl::make_unexpected(saved.error());
+  Result<std::vector<LightMoment>> clean;
+  const auto go_on = [&](double done_s) {
+    if (on_progress) on_progress(options.warm_up_s + options.seconds + done_s);
+  };
+  if ((*products)->has_fault()) clean = moments_without_fault(rig, calibration, options, go_on);
+  if (!clean) return tl::make_unexpected(clean.error());
+  auto json = (*products)->to_json(rig, *clean);
+  json["detector"] = to_json(tally, rig);
+  return json;
+}
+
+}  // namespace handcast::simulate

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "services/evaluation/simulate/back_to_back.hpp"
+#include "services/evaluation/simulate/sensor_feed.hpp"
+
+namespace handcast::simulate {
+namespace {
+
+class TwinFeed : public SensorFeed {
+ public:
+  TwinFeed(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector,
+           OnDetection on_detection)
+      : twin_(twin), detector_(twin, std::move(detector), std::move(on_detection)) {}
+
+  std::vector<SensorEvent> until(std::int64_t now_ns) override {
+    std::vector<SensorEvent> events;
+    take_tracker_samples(now_ns, events);
+    std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
+    detector_.until(now_ns, events);
+    std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
+    return events;
+  }
+
+  std::optional<Exposure> newest_exposure(std::int64_t now_ns) override {
+    while (twin_.camera_arrival_ns(next_frame_) <= now_ns) ++next_frame_;
+    if (next_frame_ == 0) return std::nullopt;
+    return Exposure{next_frame_ - 1, twin_.camera_origin_ns(next_frame_ - 1)};
+  }
+
+  void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override {
+    twin_.camera_image(exposure.frame_id, pixels);
+  }
+
+ private:
+  /// Samples may overtake one another: every sample taken before `now_ns` that has not arrived
+  /// stays pending.
+  void take_tracker_samples(std::int64_t now_ns, std::vector<SensorEvent>& events) {
+    for (; twin_.tracker_time_ns(next_sample_) <= now_ns; ++next_sample_)
+      pending_.push_back(twin_.tracker_sample(next_sample_));
+    std::erase_if(pending_, [&](const twin::Twin::TrackerSample& sample) {
+      if (sample.arrival_ns > now_ns) return false;
+      if (sample.poses.count > 0) events.push_back({sample.arrival_ns, sample.poses});
+      return true;
+    });
+  }
+
+  const twin::Twin& twin_;
+  BackToBack detector_;
+  std::vector<twin::Twin::TrackerSample> pending_;
+  std::uint64_t next_sample_ = 0;
+  std::uint64_t next_frame_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin,
+                                           std::unique_ptr<FrameDetector> detector,
+                                           OnDetection on_detection) {
+  return std::make_unique<TwinFeed>(twin, std::move(detector), std::move(on_detection));
+}
+
+std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin) {
+  return make_twin_feed(twin, make_twin_detector(twin));
+}
+
+}  // namespace handcast::simulate

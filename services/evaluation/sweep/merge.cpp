@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/sweep/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "config/settings/join.hpp"
+#include "services/evaluation/sweep/table.hpp"
+
+namespace handcast::sweep {
+namespace {
+
+struct Source {
+  Row row;
+  std::string file;
+};
+
+/// The first column in which two rows of one run differ and may not; "" where they agree.
+std::string disagreement(const Heading& heading, const Row& a, const Row& b) {
+  for (std::size_t i = 0; i < heading.columns.size(); ++i)
+    if (a[i] != b[i] && !is_machine_time(heading.columns[i])) return heading.columns[i];
+  return {};
+}
+
+Result<void> take(const Table& table, const std::string& file,
+                  std::map<std::size_t, Source>& rows) {
+  for (const auto& row : table.rows) {
+    const auto [known, added] = rows.try_emplace(Table::index_of(row), Source{row, file});
+    if (added || Table::failed(row)) continue;
+    auto& source = known->second;
+    const auto column = Table::failed(source.row) || source.file == file
+                            ? ""
+                            : disagreement(table.heading, source.row, row);
+    if (!column.empty())
+      return fail(Errc::bad_data, fmt::format("run {}: {} and {} disagree on {}", known->first,
+                                              source.file, file, column));
+    if (Table::failed(source.row) || source.file == file) source = {row, file};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Merged> merge(const std::vector<std::filesystem::path>& files,
+                     const std::filesystem::path& into) {
+  std::map<std::size_t, Source> rows;
+  Table whole;
+  for (const auto& file : files) {
+    const auto table = read_table(file);
+    if (!table) return tl::make_unexpected(table.error());
+    if (&file == &files.front()) whole.heading = table->heading;
+    if (table->heading != whole.heading)
+      return fail(Errc::bad_data,
+                  fmt::format("{} and {} are of different plans, rigs or versions ({}; {})",
+                              files.front().string(), file.string(), whole.heading.stamp,
+                              table->heading.stamp));
+    if (auto taken = take(*table, file.string(), rows); !taken)
+      return tl::make_unexpected(taken.error());
+  }
+  Merged merged;
+  for (std::size_t index = 0; index < whole.heading.runs(); ++index) {
+    const auto found = rows.find(index);
+    if (found == rows.end()) {
+      merged.missing.push_back(index);
+      continue;
+    }
+    merged.failed += Table::failed(found->second.row);
+    whole.rows.push_back(found->second.row);
+  }
+  merged.rows = whole.rows.size();
+  if (auto written = write_table(into, whole); !written)
+    return tl::make_unexpected(written.error());
+  return merged;
+}
+
+std::string print_indices(const std::vector<std::size_t>& ascending) {
+  std::vector<std::string> texts;
+  for (std::size_t first = 0; first < ascending.size();) {
+    auto last = first;
+    while (last + 1 < ascending.size() && ascending[last + 1] == ascending[last] + 1) ++last;
+    texts.push_back(last == first ? fmt::format("{}", ascending[first])
+                                  : fmt::format("{}-{}", ascending[first], ascending[last]));
+    first = last + 1;
+  }
+  return config::join(texts, ", ");
+}
+
+}  // namespace handcast::sweep

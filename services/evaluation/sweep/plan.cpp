@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/sweep/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/rig.hpp"
+#include "config/settings/document.hpp"
+#include "config/settings/files.hpp"
+#include "config/settings/join.hpp"
+#include "config/settings/load.hpp"
+
+namespace handcast::sweep {
+
+/// A section that is read by hand; declared so that a mistyped name is told of it.
+struct ReadByHand {};
+template <class Visitor>
+void describe(Visitor&, ReadByHand&) {}
+
+/// The single settings of a plan file.
+struct Head {
+  std::string rig = "../rigs/twin.toml";
+  double seconds = Plan().seconds;
+  double warm_up_s = Plan().warm_up_s;
+  int draw_every = Plan().draw_every;
+  bool joints_only = false;
+  ReadByHand settings, variant, grid;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Head& head) {
+  visitor.field("rig", head.rig, config::Choices{},
+                "Rig file of the variants that name none, relative to the plan.");
+  visitor.field("seconds", head.seconds, config::between(0.01, 86400, "s"),
+                "Time that is scored in every run.");
+  visitor.field("warm_up_s", head.warm_up_s, config::between(0, 3600, "s"),
+                "Time before it that is not.");
+  visitor.field("draw_every", head.draw_every, config::between(1, 100000),
+                "Draws and scores every N-th projector frame.");
+  visitor.field("joints_only", head.joints_only, "Draws nothing and scores the landmarks alone.");
+  visitor.section("settings", head.settings, "Settings of every run.");
+  visitor.section("variant", head.variant, "Rungs.");
+  visitor.section("grid", head.grid,
+                  "Lists of values: every combination is run. Several as [[grid]].");
+}
+
+/// The single settings of a [[variant]].
+struct VariantHead {
+  std::string name, rig;
+  ReadByHand settings;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, VariantHead& head) {
+  visitor.field("name", head.name, config::Choices{}, "Names the rung.");
+  visitor.field("rig", head.rig, config::Choices{}, "Its rig file, relative to the plan.");
+  visitor.section("settings", head.settings, "Settings of its runs.");
+}
+
+namespace {
+
+using config::Value;
+
+/// As an assignment writes it: text without quotes.
+std::string print(const Value& value) {
+  if (const auto* flag = std::get_if<bool>(&value.data)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *whole);
+  if (const auto* number = std::get_if<double>(&value.data)) return fmt::format("{}", *number);
+  if (const auto* text = std::get_if<std::string>(&value.data)) return *text;
+  std::vector<std::string> texts;
+  if (const auto* array = std::get_if<config::Array>(&value.data))
+    for (const auto& element : *array) texts.push_back(print(element));
+  return fmt::format("[{}]", config::join(texts, ", "));
+}
+
+/// The document that sets one path, so that the loader of rigs can judge it.
+Value nested(std::string_view path, Value value) {
+  const auto dot = path.rfind('.');
+  Value table{config::Table{{std::string(path.substr(dot == path.npos ? 0 : dot + 1)), value}},
+              value.line};
+  return dot == path.npos ? table : nested(path.substr(0, dot), std::move(table));
+}
+
+/// The values of a section by their whole paths: "a.b" = 1, a.b = 1 and [a] b = 1 are the same.
+void flatten(const config::Table& table, const std::string& outer, config::Table& flat) {
+  for (const auto& [name, value] : table) {
+    const auto path = outer.empty() ? name : fmt::format("{}.{}", outer, name);
+    if (const auto* members = std::get_if<config::Table>(&value.data)) {
+      flatten(*members, path, flat);
+    } else {
+      flat.push_back({path, value});
+    }
+  }
+}
+
+/// One pass over a plan file.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file)
+      : file_(file),
+        folder_(std::filesystem::absolute(file).parent_path()),
+        listing_(config::list_settings(scratch_)) {}
+
+  Result<Plan> read(const Value& document) {
+    Head head;
+    const auto rest = take_sections(document, {"settings", "variant", "grid"});
+    config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
+
+    Plan plan{file_.stem().string(),
+              file_,
+              head.seconds,
+              head.warm_up_s,
+              head.joints_only ? 0 : head.draw_every,
+              fixed(section("settings")),
+              {},
+              grids()};
+    variants(head, plan);
+    check_fixed_once(plan);
+    if (!faults_.empty()) return tl::make_unexpected(faults_.to_error());
+    return plan;
+  }
+
+ private:
+  void complain(int line, std::string_view path, std::string_view sentence) {
+    faults_.add(fmt::format("{}:{}: {}: {}", file_.string(), line, path, sentence));
+  }
+
+  /// Lays the named members aside and gives what is left.
+  Value take_sections(const Value& document, const std::vector<std::string_view>& names) {
+    taken_.clear();
+    config::Table rest;
+    for (const auto& member : std::get<config::Table>(document.data))
+      (std::ranges::find(names, member.name) == names.end() ? rest : taken_).push_back(member);
+    return {std::move(rest), document.line};
+  }
+
+  const Value* section(std::string_view name) const {
+    const auto found = std::ranges::find(taken_, name, &config::Member::name);
+    return found == taken_.end() ? nullptr : &found->value;
+  }
+
+  config::Table members(const Value* section, std::string_view name) {
+    config::Table flat;
+    if (!section) return flat;
+    if (const auto* table = std::get_if<config::Table>(&section->data)) {
+      flatten(*table, "", flat);
+    } else {
+      complain(section->line, name,
+               fmt::format("must be a section, not {}", config::kind_of(*section)));
+    }
+    return flat;
+  }
+
+  Choice choice(const std::string& path, const Value& value) {
+    config::apply_document(nested(path, value), file_.string(), listing_, faults_);
+    const auto text = print(value);
+    const bool file = config::names_a_file(path) && !text.empty() && !text.starts_with("builtin:");
+    return {text, file ? (folder_ / text).lexically_normal().string() : text, value.line};
+  }
+
+  std::vector<Axis> fixed(const Value* settings) {
+    std::vector<Axis> axes;
+    for (const auto& [path, value] : members(settings, "settings"))
+      axes.push_back({path, {choice(path, value)}});
+    return axes;
+  }
+
+  std::vector<Grid> grids() {
+    const auto* listed = section("grid");
+    const auto* array = listed ? std::get_if<config::Array>(&listed->data) : nullptr;
+    if (!array) return {grid(listed)};
+    std::vector<Grid> read;
+    for (const auto& element : *array) read.push_back(grid(&element));
+    return read;
+  }
+
+  Grid grid(const Value* section) {
+    Grid axes;
+    for (const auto& [path, value] : members(section, "grid")) {
+      const auto* values = std::get_if<config::Array>(&value.data);
+      if (!values || values->empty()) {
+        complain(value.line, path, "must be a list of the values to try");
+        continue;
+      }
+      if (std::ranges::find(axes, path, &Axis::path) != axes.end())
+        complain(value.line, path, "is twice in the grid");
+      axes.push_back({path, {}});
+      for (const auto& each : *values) axes.back().choices.push_back(choice(path, each));
+    }
+    return axes;
+  }
+
+  void variants(const Head& head, Plan& plan) {
+    const auto* listed = section("variant");
+    const auto* array = listed ? std::get_if<config::Array>(&listed->data) : nullptr;
+    if (listed && !array)
+      complain(listed->line, "variant", "must be a list of sections: write [[variant]]");
+    if (!array) {
+      const auto file = (folder_ / head.rig).lexically_normal();
+      plan.variants.push_back({file.stem().string(), file, rig_text(file, 1), {}});
+      return;
+    }
+    const auto elements = *array;
+    for (const auto& element : elements) {
+      if (!std::holds_alternative<config::Table>(element.data)) {
+        complain(element.line, "variant", "must be a section: write [[variant]]");
+        continue;
+      }
+      auto read = variant(element, head.rig);
+      if (std::ranges::find(plan.variants, read.name, &Variant::name) != plan.variants.end())
+        complain(element.line, "variant.name", fmt::format("there are two '{}'", read.name));
+      plan.variants.push_back(std::move(read));
+    }
+  }
+
+  Variant variant(const Value& element, const std::string& default_rig) {
+    VariantHead head;
+    const auto rest = take_sections(element, {"settings"});
+    config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
+    if (head.name.empty()) complain(element.line, "variant.name", "is missing");
+    const auto file = (folder_ / (head.rig.empty() ? default_rig : head.rig)).lexically_normal();
+    return {head.name, file, rig_text(file, element.line), fixed(section("settings"))};
+  }
+
+  /// A rig file is judged once, however many variants name it.
+  std::string rig_text(const std::filesystem::path& rig, int line) {
+    auto text = config::read_text(rig);
+    const bool new_here = std::ranges::find(judged_, rig) == judged_.end();
+    judged_.push_back(rig);
+    if (!text) {
+      if (new_here) complain(line, "rig", text.error().what);
+      return {};
+    }
+    if (const auto parsed = config::parse_rig(*text, rig); !parsed && new_here)
+      faults_.add(parsed.error().what);
+    return *text;
+  }
+
+  void check_fixed_once(const Plan& plan) {
+    const auto check = [&](const std::vector<Axis>& settings) {
+      for (const auto& setting : settings)
+        for (const auto& grid : plan.grids)
+          if (const auto axis = std::ranges::find(grid, setting.path, &Axis::path);
+              axis != grid.end())
+            complain(setting.choices.front().line, setting.path,
+                     fmt::format("is fixed here, and in the grid too (line {})",
+                                 axis->choices.front().line));
+    };
+    check(plan.settings);
+    for (const auto& variant : plan.variants) check(variant.settings);
+  }
+
+  std::filesystem::path file_, folder_;
+  config::Rig scratch_;  ///< takes the values, so that each is judged where it stands
+  config::Listing listing_;
+  config::Faults faults_;
+  config::Table taken_;
+  std::vector<std::filesystem::path> judged_;
+};
+
+}  // namespace
+
+std::vector<std::string> Plan::axes() const {
+  std::vector<std::string> paths;
+  for (const auto& grid : grids)
+    for (const auto& axis : grid)
+      if (std::ranges::find(paths, axis.path) == paths.end()) paths.push_back(axis.path);
+  return paths;
+}
+
+Result<Plan> parse_plan(const std::string& toml, const std::filesystem::path& file) {
+  const auto document = config::parse_document(toml, file.string());
+  if (!document) return tl::make_unexpected(document.error());
+  return Reader(file).read(*document);
+}
+
+Result<Plan> load_plan(const std::filesystem::path& file) {
+  const auto text = config::read_text(file);
+  if (!text) return tl::make_unexpected(text.error());
+  return parse_plan(*text, file);
+}
+
+}  // namespace handcast::sweep

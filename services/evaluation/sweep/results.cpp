@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/sweep/results.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace handcast::sweep {
+
+Result<std::unique_ptr<Results>> Results::open(const std::filesystem::path& file,
+                                               const Heading& heading, bool fresh) {
+  std::error_code ignored;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  UniqueFd fd(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
+  if (!fd)
+    return fail(Errc::bad_config, fmt::format("{}: {}", file.string(), std::strerror(errno)));
+  if (flock(fd.get(), LOCK_EX | LOCK_NB) != 0)
+    return fail(Errc::unavailable, fmt::format("{}: another sweep is writing it", file.string()));
+  auto results = std::unique_ptr<Results>(new Results(file, std::move(fd)));
+  if (fresh && ftruncate(results->fd_.get(), 0) != 0)
+    return fail(Errc::bad_config, fmt::format("{}: {}", file.string(), std::strerror(errno)));
+  if (auto ready = results->go_on(heading); !ready) return tl::make_unexpected(ready.error());
+  return results;
+}
+
+Result<void> Results::go_on(const Heading& heading) {
+  const auto table = read_table(file_);
+  if (!table)
+    return fail(Errc::bad_config,
+                table.error().what + "; give another file with -o, or --fresh to write over it");
+  const bool no_columns = table->heading.columns.empty() && table->rows.empty();
+  const bool begun = !table->heading.stamp.empty();
+  if (begun &&
+      (table->heading.stamp != heading.stamp || (!no_columns && table->heading != heading)))
+    return fail(Errc::bad_config, fmt::format("{}: holds results of another plan, rig or version "
+                                              "({}; this is {}); give another file with -o, "
+                                              "or --fresh to write over it",
+                                              file_.string(), table->heading.stamp, heading.stamp));
+  if (!begun && !heading.print().starts_with(table->torn))
+    return fail(
+        Errc::bad_config,
+        fmt::format("{}: holds no results of a sweep; give another file with -o", file_.string()));
+  const auto whole_bytes = no_columns ? 0 : table->whole_bytes;
+  if (ftruncate(fd_.get(), static_cast<off_t>(whole_bytes)) != 0)
+    return fail(Errc::bad_config, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+  for (const auto& row : table->rows) {
+    if (Table::failed(row)) continue;
+    done_.insert(Table::index_of(row));
+  }
+  return whole_bytes == 0 ? write(heading.print()) : Result<void>();
+}
+
+Result<void> Results::append(const Row& row) {
+  const std::lock_guard lock(one_line_at_a_time_);
+  if (sound_) sound_ = write(print_row(row));
+  return sound_;
+}
+
+Result<void> Results::sort() {
+  auto table = read_table(file_);
+  if (!table) return tl::make_unexpected(table.error());
+  return write_table(file_, *table);
+}
+
+Result<void> Results::write(const std::string& text) {
+  for (std::size_t written = 0; written < text.size();) {
+    const auto now = ::write(fd_.get(), text.data() + written, text.size() - written);
+    if (now < 0 && errno == EINTR) continue;
+    if (now < 0)
+      return fail(Errc::unavailable, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+    written += static_cast<std::size_t>(now);
+  }
+  return {};
+}
+
+}  // namespace handcast::sweep

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/sweep/runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <string_view>
+
+#include "config/settings/load.hpp"
+#include "config/settings/settings.hpp"
+
+namespace handcast::sweep {
+namespace {
+
+constexpr std::size_t kMostRuns = 1'000'000;
+
+/// FNV-1a, 64 bits.
+class Hash {
+ public:
+  void add(std::string_view text) {
+    for (const char c : text) byte(static_cast<unsigned char>(c));
+    byte(0xff);  // in no UTF-8 text: where one ends and the next begins counts too
+  }
+  std::string print() const { return fmt::format("{:016x}", state_); }
+
+ private:
+  void byte(unsigned char value) { state_ = (state_ ^ value) * 0x100000001b3u; }
+  std::uint64_t state_ = 0xcbf29ce484222325u;
+};
+
+std::string without_machine(config::Rig rig, const std::filesystem::path& folder) {
+  for (const auto& section : config::list_settings(rig))
+    for (const auto& setting : section.settings) {
+      if (!config::names_a_file(setting.path)) continue;
+      auto& text = *std::get<std::string*>(setting.target);
+      if (std::filesystem::path(text).is_absolute())
+        text = std::filesystem::path(text).lexically_relative(folder).string();
+    }
+  return config::print_rig(rig);
+}
+
+/// False after the last.
+bool next_choices(const Grid& grid, std::vector<std::size_t>& choices) {
+  for (std::size_t axis = grid.size(); axis-- > 0;) {
+    if (++choices[axis] < grid[axis].choices.size()) return true;
+    choices[axis] = 0;
+  }
+  return false;
+}
+
+Result<std::vector<Run>> all_runs(const Plan& plan) {
+  std::vector<Run> runs;
+  for (std::size_t variant = 0; variant < plan.variants.size(); ++variant)
+    for (std::size_t grid = 0; grid < plan.grids.size(); ++grid) {
+      std::vector<std::size_t> choices(plan.grids[grid].size(), 0);
+      do {
+        if (runs.size() == kMostRuns)
+          return fail(Errc::bad_config,
+                      fmt::format("{}: more than {} runs", plan.file.string(), kMostRuns));
+        runs.push_back({runs.size(), variant, grid, choices});
+      } while (next_choices(plan.grids[grid], choices));
+    }
+  return runs;
+}
+
+}  // namespace
+
+const Choice* Run::choice(const Plan& plan, const std::string& path) const {
+  const auto& axes = plan.grids[grid];
+  const auto axis = std::ranges::find(axes, path, &Axis::path);
+  return axis == axes.end()
+             ? nullptr
+             : &axis->choices[choices[static_cast<std::size_t>(axis - axes.begin())]];
+}
+
+Result<config::Rig> rig_of(const Plan& plan, const Run& run) {
+  const auto& variant = plan.variants[run.variant];
+  std::vector<std::string> settings;
+  const auto set = [&](const std::string& path, const Choice& choice) {
+    settings.push_back(path + "=" + choice.assigned);
+  };
+  for (const auto& setting : plan.settings) set(setting.path, setting.choices.front());
+  for (const auto& setting : variant.settings) set(setting.path, setting.choices.front());
+  for (const auto& axis : plan.grids[run.grid]) set(axis.path, *run.choice(plan, axis.path));
+  return config::parse_rig(variant.rig_text, variant.rig_file, settings);
+}
+
+Result<Expansion> expand(const Plan& plan) {
+  auto runs = all_runs(plan);
+  if (!runs) return tl::make_unexpected(runs.error());
+  const auto folder = std::filesystem::absolute(plan.file).parent_path().lexically_normal();
+  Hash hash;
+  hash.add(fmt::format("{} {} {}", plan.seconds, plan.warm_up_s, plan.draw_every));
+  config::Faults faults;
+  std::vector<std::string> known;
+  for (const auto& run : *runs) {
+    const auto rig = rig_of(plan, run);
+    if (rig) {
+      hash.add(describe_run(plan, run));
+      hash.add(without_machine(*rig, folder));
+    } else if (std::ranges::find(known, rig.error().what) == known.end()) {
+      known.push_back(rig.error().what);
+      faults.add(fmt::format("{}: run {} ({}): {}", plan.file.string(), run.index,
+                             describe_run(plan, run), rig.error().what));
+    }
+  }
+  if (!faults.empty()) return tl::make_unexpected(faults.to_error());
+  return Expansion{std::move(*runs), hash.print()};
+}
+
+std::string describe_run(const Plan& plan, const Run& run) {
+  auto text = plan.variants[run.variant].name;
+  for (const auto& axis : plan.grids[run.grid])
+    text += fmt::format(", {}={}", axis.path, run.choice(plan, axis.path)->shown);
+  return text;
+}
+
+std::optional<std::string> why_absent(const config::Rig& rig) {
+  const auto& motion = rig.twin.motion;
+  std::error_code unknown;
+  const auto kind = std::filesystem::status(motion, unknown).type();
+  const bool hidden = kind == std::filesystem::file_type::none;  // the run itself says why
+  if (motion.starts_with("builtin:") || kind == std::filesystem::file_type::directory || hidden)
+    return std::nullopt;
+  return fmt::format("twin.motion: the folder {} is not there", motion);
+}
+
+Result<Shard> parse_shard(const std::string& text) {
+  Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto index = std::from_chars(text.data(), end, shard.index);
+  const bool slash = index.ec == std::errc{} && index.ptr != end && *index.ptr == '/';
+  const auto count = std::from_chars(slash ? index.ptr + 1 : end, end, shard.count);
+  if (!slash || count.ec != std::errc{} || count.ptr != end || shard.index >= shard.count)
+    return fail(Errc::bad_config,
+                fmt::format("--shard {}: must be I/N with I from 0 to N-1, e.g. 0/4", text));
+  return shard;
+}
+
+}  // namespace handcast::sweep

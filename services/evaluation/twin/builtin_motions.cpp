@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "services/evaluation/twin/articulation.hpp"
+#include "services/evaluation/twin/motions.hpp"
+#include "services/evaluation/twin/person.hpp"
+
+namespace handcast::twin {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kView_m =
+    0.452;  ///< what the camera sees across at the hand's distance: 0.73 m on the reference rig
+constexpr double kForearm_m = 0.25;  ///< wrist to elbow
+
+/// What a hand does at one time. Camera axes (x right, y down, z away), metres and radians, from
+/// where the hand is held up: fingers up in the image, its back to the camera.
+struct Posture {
+  glm::dvec3 shift{0};
+  double sway = 0;  ///< of the whole forearm about the elbow, in the image's plane, clockwise
+  double turn = 0;  ///< about the forearm
+  double nod = 0;   ///< of the wrist, fingers away from the camera
+  double over = 0;  ///< share of the way to the other hand's place, the left hand nearer to the
+                    ///< camera than the right
+  bool gone = false;
+  Bend bend;
+};
+
+double wave_at(double hz, double t, double phase = 0) { return std::sin(kTurn * (hz * t + phase)); }
+/// 0..1..0, starting at 0.
+double pulse_at(double hz, double t) { return 0.5 - 0.5 * std::cos(kTurn * hz * t); }
+
+/// From 0 to 1 between two times, as hands go: with the least jerk (Flash and Hogan 1985).
+double step_at(double begin_s, double end_s, double t) {
+  const double x = std::clamp((t - begin_s) / (end_s - begin_s), 0.0, 1.0);
+  return x * x * x * (10 + x * (6 * x - 15));
+}
+/// The time within the round of `period_s` that is under way.
+double within(double period_s, double t) { return t - period_s * std::floor(t / period_s); }
+
+/// Nobody holds a hand quite still while it does something.
+void breathe(Posture& posture, double t) {
+  posture.shift += glm::dvec3(0.008 * wave_at(0.23, t), 0.006 * wave_at(0.31, t, 0.2),
+                              0.006 * wave_at(0.17, t, 0.4));
+  posture.sway += 0.03 * wave_at(0.19, t, 0.1);
+  posture.nod += 0.04 * wave_at(0.27, t, 0.3);
+}
+
+void curl(Bend& bend, int finger, double amount) {
+  bend.flexion[finger] = {1.25 * amount, 1.65 * amount, 0.95 * amount};
+}
+
+/// Lays the thumb over the fingers: 0 open, 1 shut.
+void close_thumb(Bend& bend, double shut) {
+  bend.flexion[0] = {0.6 * shut, 0.9 * shut, 0};
+  bend.thumb_flexion = 0.25 * shut;
+  bend.thumb_opposition = -0.2 * shut;
+}
+
+Posture open_close(double t) {
+  Posture posture;
+  for (int f = 1; f < 5; ++f) {
+    curl(posture.bend, f, pulse_at(0.45, t - 0.05 * (f - 1)));
+    posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - pulse_at(0.45, t));
+  }
+  close_thumb(posture.bend, pulse_at(0.45, t - 0.12));
+  breathe(posture, t);
+  return posture;
+}
+
+Posture wave(double t) {
+  Posture posture;
+  posture.sway = 0.2 * wave_at(0.8, t);
+  posture.turn = 0.25 * wave_at(0.8, t, -0.1);
+  for (int f = 1; f < 5; ++f)
+    posture.bend.flexion[f] = {0.12 + 0.1 * wave_at(0.8, t, -0.2),
+                               0.1 + 0.08 * wave_at(0.8, t, -0.25), 0.05};
+  breathe(posture, t);
+  return posture;
+}
+
+Posture rotate(double t) {
+  Posture posture;
+  posture.turn = std::numbers::pi * pulse_at(0.125, t);
+  for (int f = 1; f < 5; ++f) posture.bend.flexion[f][0] = 0.1 * pulse_at(0.3, t - 0.2 * f);
+  breathe(posture, t);
+  return posture;
+}
+
+/// The angles at amount 1 bring the tips of thumb and index together on the mean hand.
+Posture pinch(double t) {
+  Posture posture;
+  const double amount = pulse_at(0.6, t);
+  posture.bend.flexion[1] = {0.75 * amount, 0.80 * amount, 0.35 * amount};
+  posture.bend.flexion[0] = {0.25 * amount, 0.35 * amount, 0};
+  posture.bend.thumb_opposition = 0.1 * amount;
+  posture.bend.thumb_flexion = 0.2 * amount;
+  for (int f = 2; f < 5; ++f) curl(posture.bend, f, 0.12 + 0.08 * pulse_at(0.6, t - 0.1 * f));
+  breathe(posture, t);
+  return posture;
+}
+
+/// Bursts of fast shaking: the palm's peak speed swells from 0.3 to 1.3 m/s and back every 4 s.
+Posture shake(double t) {
+  Posture posture;
+  const double burst = 0.25 + 0.75 * pulse_at(0.25, t);
+  posture.shift = burst * glm::dvec3(0.052 * wave_at(3.2, t), 0.012 * wave_at(2.3, t),
+                                     0.01 * wave_at(1.7, t, 0.3));
+  posture.sway = 0.05 * burst * wave_at(3.2, t, -0.08);
+  for (int f = 1; f < 5; ++f)
+    posture.bend.flexion[f] = {0.1 + 0.08 * burst * wave_at(3.2, t, -0.15), 0.15, 0.08};
+  breathe(posture, t);
+  return posture;
+}
+
+Posture two_hands(double t) {
+  Posture posture;
+  posture.shift = {0.022 * wave_at(0.5, t), 0.03 * wave_at(0.37, t), 0.02 * wave_at(0.21, t)};
+  posture.sway = 0.06 * wave_at(0.5, t, -0.1);
+  posture.turn = 0.2 * wave_at(0.29, t);
+  for (int f = 1; f < 5; ++f) curl(posture.bend, f, 0.55 * pulse_at(0.4, t - 0.06 * f));
+  posture.bend.flexion[0] = {0.3 * pulse_at(0.4, t), 0.4 * pulse_at(0.4, t), 0};
+  return posture;
+}
+
+/// Physiological tremor: 0.1 mm at about 8 Hz.
+Posture still(double t) {
+  Posture posture;
+  posture.shift = 0.0001 * glm::dvec3(wave_at(8.0, t), wave_at(7.3, t, 0.3), wave_at(8.6, t, 0.6));
+  return posture;
+}
+
+/// Two hands pass before one another and swap places, there and back.
+Posture crossing(double t) {
+  Posture posture;
+  posture.over = pulse_at(0.4, t);
+  posture.shift = {0.004 * wave_at(0.5, t), 0.006 * wave_at(0.37, t), 0};
+  for (int f = 1; f < 5; ++f) curl(posture.bend, f, 0.12 + 0.08 * wave_at(0.45, t, 0.1 * f));
+  return posture;
+}
+
+/// The hand is turned over in 0.4 s, and back.
+Posture flip(double t) {
+  Posture posture;
+  const double round = within(2, t);
+  posture.turn = std::numbers::pi * (step_at(0.5, 0.9, round) - step_at(1.4, 1.8, round));
+  for (int f = 1; f < 5; ++f) posture.bend.flexion[f] = {0.08, 0.1, 0.05};
+  breathe(posture, t);
+  return posture;
+}
+
+/// Shut in 0.25 s, held, opened.
+Posture fist(double t) {
+  Posture posture;
+  const auto shut_at = [&](double later_s) {
+    const double round = within(2, t - later_s);
+    return step_at(0.4, 0.65, round) - step_at(1.3, 1.6, round);
+  };
+  for (int f = 1; f < 5; ++f) {
+    curl(posture.bend, f, 1.05 * shut_at(0.012 * (f - 1)));
+    posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - shut_at(0));
+  }
+  close_thumb(posture.bend, shut_at(0.08));
+  breathe(posture, t);
+  return posture;
+}
+
+/// The palm to the camera, the fingers bend at their roots until they point into the lens.
+Posture point_at_camera(double t) {
+  Posture posture;
+  const double round = within(2.4, t);
+  const double pointing = step_at(0.4, 0.9, round) - step_at(1.5, 2, round);
+  posture.turn = std::numbers::pi;
+  for (int f = 1; f < 5; ++f) {
+    posture.bend.flexion[f] = {1.4 * pointing, 0.06 * pointing, 0.04};
+    posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - pointing);
+  }
+  breathe(posture, t);
+  return posture;
+}
+
+/// The middle finger over the index finger's back and beyond.
+Posture cross_fingers(double t) {
+  Posture posture;
+  const double round = within(2.4, t);
+  const double crossed = step_at(0.4, 0.8, round) - step_at(1.5, 1.9, round);
+  // First out of each other's way in depth, then across; and back in the other order.
+  const double apart = step_at(0.3, 0.6, round) - step_at(1.7, 2.1, round);
+  posture.bend.flexion[1] = {0.08 + 0.5 * apart, 0.1, 0.05};
+  posture.bend.flexion[2] = {0.08 - 0.1 * apart, 0.1, 0.05};
+  posture.bend.flexion[3] = posture.bend.flexion[4] = {0.15, 0.2, 0.1};
+  posture.bend.splay[1] = 0.08 - 0.36 * crossed;
+  posture.bend.splay[2] = 0.3 * crossed;
+  breathe(posture, t);
+  return posture;
+}
+
+/// Down out of the image, away for a while, and back.
+Posture enter_leave(double t) {
+  Posture posture;
+  const double round = within(3, t);
+  const double out = step_at(1, 1.5, round) - step_at(2.1, 2.6, round);
+  posture.shift.y = 0.31 * out;
+  posture.gone = round > 1.5 && round < 2.1;
+  for (int f = 1; f < 5; ++f) posture.bend.flexion[f] = {0.1, 0.12, 0.06};
+  breathe(posture, t);
+  return posture;
+}
+
+/// To and fro with hardly a warning: an even speed (up to 2 m/s, swelling) and short turns.
+Posture reverse(double t) {
+  Posture posture;
+  constexpr double kHz = 3.6, kSharpness = 0.9;  // 0: a sine; 1: straight lines and corners
+  const auto zigzag = [&](double phase) {
+    return std::asin(kSharpness * wave_at(kHz, t, phase)) / std::asin(kSharpness);
+  };
+  const double burst = 0.3 + 0.7 * pulse_at(0.25, t);
+  posture.shift = burst * glm::dvec3(0.1 * zigzag(0), 0.012 * wave_at(2.3, t), 0);
+  posture.sway = 0.03 * burst * wave_at(kHz, t, -0.08);
+  for (int f = 1; f < 5; ++f)
+    posture.bend.flexion[f] = {0.1 + 0.05 * burst * wave_at(kHz, t, -0.15), 0.15, 0.08};
+  breathe(posture, t);
+  return posture;
+}
+
+struct Choreography {
+  std::string_view name;
+  Posture (*at)(double seconds);
+  bool both_hands = false;
+  double right_ahead_s = 0;  ///< the right hand is this far ahead of the left
+};
+
+constexpr std::array<Choreography, 14> kChoreographies{{
+    {"open_close", open_close},
+    {"wave", wave},
+    {"rotate", rotate},
+    {"pinch", pinch},
+    {"shake", shake},
+    {"two_hands", two_hands, true, 1.3},
+    {"still", still},
+    {"crossing", crossing, true},
+    {"flip", flip},
+    {"fist", fist},
+    {"point_at_camera", point_at_camera},
+    {"enter_leave", enter_leave},
+    {"reverse", reverse},
+    {"cross_fingers", cross_fingers},
+}};
+
+class BuiltinMotion final : public Motion {
+ public:
+  BuiltinMotion(const Choreography& choreography, const config::Twin& settings,
+                const calib::Calibration& calibration)
+      : choreography_(choreography),
+        speed_(settings.speed),
+        camera_(calibration.camera),
+        tracker_from_camera_(glm::inverse(calibration.camera_from_tracker)),
+        shape_(draw_person(settings.shape, settings.seed)),
+        articulation_(shape_) {}
+
+  std::optional<JointFrames> at(Side side, double seconds) const override {
+    const bool right = side == Side::right;
+    if (right && !choreography_.both_hands) return std::nullopt;
+    const Posture posture =
+        choreography_.at(seconds * speed_ + (right ? choreography_.right_ahead_s : 0));
+    if (posture.gone) return std::nullopt;
+    return articulation_.frames(side, tracker_from_camera_ * camera_from_wrist(side, posture),
+                                posture.bend);
+  }
+
+  const renderer::HandShape& shape() const override { return shape_; }
+
+ private:
+  /// Where the wrist is when nothing moves: below the image's middle, or side by side with the
+  /// other hand.
+  glm::dvec3 home(Side side) const {
+    const double z = kView_m * camera_.fx_px / camera_.width_px;
+    double across = 0.49;
+    if (choreography_.both_hands) across = side == Side::left ? 0.235 : 0.765;
+    const glm::dvec2 px(across * camera_.width_px, 0.82 * camera_.height_px);
+    return {(px.x - camera_.cx_px) / camera_.fx_px * z, (px.y - camera_.cy_px) / camera_.fy_px * z,
+            z};
+  }
+
+  /// Where the wrist is on its way from its own place to the other hand's.
+  glm::dvec3 way(Side side, double over) const {
+    if (over == 0) return home(side);
+    constexpr double kApart_m = 0.1;  // at the meeting, along the camera's axis
+    const Side other = side == Side::left ? Side::right : Side::left;
+    const double aside_m = 4 * over * (1 - over) * kApart_m / 2 * (side == Side::left ? -1 : 1);
+    return glm::mix(home(side), home(other), over) + glm::dvec3(0, 0, aside_m);
+  }
+
+  glm::dmat4 camera_from_wrist(Side side, const Posture& posture) const {
+    const double mirror = side == Side::left ? 1 : -1;
+    glm::dmat4 m = glm::translate(glm::dmat4(1), way(side, posture.over) + posture.shift);
+    m = glm::translate(m, {0, kForearm_m, 0});
+    m = glm::rotate(m, posture.sway, {0, 0, 1});
+    m = glm::translate(m, {0, -kForearm_m, 0});
+    constexpr double kElbowNearer =
+        0.15;  // the forearm comes from somewhat in front of the hand, as on the reference rig
+    m = glm::rotate(m, posture.nod + kElbowNearer, {-1, 0, 0});
+    m = glm::rotate(m, mirror * posture.turn, {0, 1, 0});
+    return m * glm::dmat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0,
+                          1);  // hand axes: y to the camera, z down the image
+  }
+
+  const Choreography& choreography_;
+  double speed_;
+  calib::CameraModel camera_;
+  glm::dmat4 tracker_from_camera_;
+  renderer::HandShape shape_;
+  Articulation articulation_;
+};
+
+}  // namespace
+
+std::string builtin_motion_names() {
+  std::string names;
+  for (const auto& choreography : kChoreographies) {
+    if (!names.empty()) names += ", ";
+    names += choreography.name;
+  }
+  return names;
+}
+
+std::unique_ptr<Motion> make_builtin_motion(std::string_view name, const config::Twin& settings,
+                                            const calib::Calibration& calibration) {
+  for (const auto& choreography : kChoreographies)
+    if (choreography.name == name)
+      return std::make_unique<BuiltinMotion>(choreography, settings, calibration);
+  return nullptr;
+}
+
+}  // namespace handcast::twin

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "calib/calibration.hpp"
+#include "config/sections/twin.hpp"
+#include "renderer/base/image.hpp"
+#include "renderer/hand/hand_mesh.hpp"
+#include "services/evaluation/twin/image_faults.hpp"
+#include "services/evaluation/twin/random.hpp"
+#include "services/evaluation/twin/surface.hpp"
+
+namespace handcast::twin {
+
+using msg::Side;
+using renderer::JointFrames;
+
+/// Where the true joints of a hand are (tracker space) at a time since the epoch.
+using TruthAt = std::function<std::optional<JointFrames>(Side side, std::int64_t time_ns)>;
+
+/// The twin's infrared camera: hands, forearms and sleeves lit by a lamp beside the lens, blurred
+/// over the exposure, with vignetting and noise. Keeps buffers; one thread.
+class CameraScene {
+ public:
+  CameraScene(const config::TwinImage& settings, int seed, const calib::Calibration& calibration);
+
+  /// The hand of one side; `mesh` must outlive the scene.
+  void set_hand(Side side, const renderer::HandMesh& mesh);
+
+  /// Frame k, exposed for `exposure_ns` around `origin_ns`. `image` has the camera's size.
+  void draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exposure_ns, const TruthAt& truth,
+            renderer::View<std::uint8_t> image);
+
+ private:
+  struct Hand {
+    const renderer::HandMesh* mesh = nullptr;
+    Forearm forearm;
+    std::vector<float> holes;  ///< brightness of its vertices; empty: there are none
+  };
+  /// One lit surface on the screen of one instant.
+  struct Shot {
+    const std::vector<std::array<std::uint16_t, 3>>* triangles = nullptr;
+    ScreenVertices screen;
+    std::vector<float> grey;
+  };
+
+  Shot& next_shot(std::size_t& count);
+  void shoot(Shot& shot, std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
+             glm::vec2 within_pixel);
+  /// The instant's shots into shots_[0 .. count); their joint bounds.
+  renderer::Rect shoot_hands(std::int64_t time_ns, const TruthAt& truth, glm::vec2 within_pixel,
+                             std::size_t& count);
+  renderer::Rect shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count);
+  void start_sum(const renderer::Rect& region, const renderer::Rect& done, int instants);
+  void expose(std::size_t shots, const renderer::Rect& region);
+  void develop(std::uint64_t k, const renderer::Rect& region, int instants,
+               renderer::View<std::uint8_t> image) const;
+  float vignette(float x_px, float y_px) const;
+  void make_noise(int seed);
+
+  config::TwinImage settings_;
+  int seed_;
+  calib::CameraModel camera_;
+  glm::mat4 camera_from_tracker_;
+  Random image_noise_;
+  std::array<Hand, 2> hands_;
+  Face face_;            ///< empty: there is none
+  bool faulty_ = false;  ///< the frame that is drawn
+
+  renderer::Image<std::uint8_t> empty_scene_;
+  std::vector<std::int8_t> noise_;  ///< kNoiseSize values, read from anywhere
+  std::vector<Shot> shots_;
+  std::vector<glm::vec3> positions_, normals_;
+  renderer::Image<float> inverse_depth_, instant_, sum_;
+};
+
+}  // namespace handcast::twin

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/twin/detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ipc/base/clock.hpp"
+#include "services/evaluation/twin/random.hpp"
+
+namespace handcast::twin {
+namespace {
+
+constexpr int kIndexKnuckle = 5, kMiddleKnuckle = 9;
+constexpr double kNearestOutlier_px = 40, kFarthestOutlier_px = 200;
+
+}  // namespace
+
+DetectorModel::DetectorModel(const config::TwinDetector& settings, int seed,
+                             const calib::CameraModel& camera)
+    : settings_(settings), seed_(seed), camera_(camera) {}
+
+std::int64_t DetectorModel::age_ns(std::uint64_t run) const {
+  const double age_ms =
+      settings_.age_ms + settings_.age_sd_ms * Random(seed_, Stream::detector_age).normal(run);
+  return ms_to_ns(std::max(age_ms, std::min(1.0, settings_.age_ms)));
+}
+
+bool DetectorModel::lost(std::uint64_t run, std::int64_t origin_ns) const {
+  return settings_.lost.holds(ns_to_seconds(origin_ns)) ||
+         Random(seed_, Stream::detector_loss).uniform(run) < settings_.dropout;
+}
+
+std::int64_t DetectorModel::stamp_ns(std::int64_t origin_ns) const {
+  return origin_ns + ms_to_ns(settings_.clock_skew_ms);
+}
+
+/// How far one landmark is thrown: zero for most.
+glm::dvec2 DetectorModel::outlier_px(std::uint64_t run, std::uint64_t draw) const {
+  const Random random(seed_, Stream::detector_outlier);
+  if (settings_.outliers <= random.uniform(run, 2 * draw)) return glm::dvec2(0);
+  const double angle = std::numbers::pi * random.spread(run, 2 * draw + 1);
+  const double far_px = kNearestOutlier_px + (kFarthestOutlier_px - kNearestOutlier_px) *
+                                                 random.uniform(run, 2 * draw + 2);
+  return {far_px * std::cos(angle), far_px * std::sin(angle)};
+}
+
+msg::HandLandmarks DetectorModel::report(std::uint64_t run, msg::Side side,
+                                         const std::array<glm::vec2, msg::kLandmarks>& truth,
+                                         std::int64_t origin_ns) const {
+  const Random random(seed_, Stream::detector_noise);
+  msg::HandLandmarks hand;
+  hand.side = side;
+  hand.presence = 0.95f;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const std::uint64_t draw = (static_cast<std::uint64_t>(side) * msg::kLandmarks + i) * 2;
+    const glm::dvec2 noise(random.normal(run, draw), random.normal(run, draw + 1));
+    const glm::dvec2 seen =
+        glm::dvec2(truth[i]) + noise * settings_.noise_px + outlier_px(run, draw);
+    const glm::dvec2 image = camera_.distort(truth[i]);
+    const bool inside = image.x > -0.5 && image.y > -0.5 && image.x < camera_.width_px - 0.5 &&
+                        image.y < camera_.height_px - 0.5;
+    hand.points[i] = {static_cast<float>(seen.x), static_cast<float>(seen.y), inside ? 1.0f : 0.0f};
+  }
+  if (settings_.wrong_finger.holds(ns_to_seconds(origin_ns)))
+    std::swap_ranges(&hand.points[kIndexKnuckle], &hand.points[kMiddleKnuckle],
+                     &hand.points[kMiddleKnuckle]);
+  return hand;
+}
+
+}  // namespace handcast::twin

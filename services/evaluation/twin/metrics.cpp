@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/twin/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace handcast::twin {
+namespace {
+
+constexpr std::size_t kMostKept = 1 << 17;
+constexpr std::array<double, 4> kSpeedSteps_m_s{0.1, 0.3, 0.6, 1.0};
+constexpr std::array<const char*, 5> kSpeedNames{"0-0.1", "0.1-0.3", "0.3-0.6", "0.6-1.0", ">1.0"};
+constexpr std::array<const char*, 2> kSideNames{"left", "right"};
+
+nlohmann::json ratio(double part, double whole) {
+  return whole > 0 ? nlohmann::json(part / whole) : nlohmann::json();
+}
+
+}  // namespace
+
+void Metrics::Samples::add(float value) {
+  if (count_ % stride_ == 0) kept_.push_back(value);
+  ++count_;
+  sum_ += value;
+  if (kept_.size() < kMostKept) return;
+  for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
+  kept_.resize((kept_.size() + 1) / 2);
+  stride_ *= 2;
+}
+
+double Metrics::Samples::percentile(double share) const {
+  std::vector<float> values = kept_;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(rank, 1, values.size()) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+void Metrics::Bin::add(const FrameScore::Hand& hand) {
+  ++frames;
+  for (const float error : hand.interior_px) px.add(error);
+  for (const float error : hand.interior_mm) mm.add(error);
+  hand_px += hand.hand_px;
+  lit_px += hand.lit_px;
+  spill_px += hand.spill_px;
+  union_px += hand.union_px;
+  seam_px += hand.seam_px;
+  lag_px_s += hand.lag_px_s;
+  speed2_px_s2 += hand.speed2_px_s2;
+}
+
+void Metrics::write_spread(nlohmann::json& json, const Samples& samples, bool with_mean) {
+  json = nlohmann::json::object();
+  if (with_mean) json["mean"] = samples.empty() ? nlohmann::json() : nlohmann::json(samples.mean());
+  if (!with_mean)
+    json["p50"] = samples.empty() ? nlohmann::json() : nlohmann::json(samples.percentile(0.5));
+  if (with_mean)
+    json["p95"] = samples.empty() ? nlohmann::json() : nlohmann::json(samples.percentile(0.95));
+  json["p99"] = samples.empty() ? nlohmann::json() : nlohmann::json(samples.percentile(0.99));
+}
+
+void Metrics::Bin::write(nlohmann::json& json) const {
+  json["frames"] = frames;
+  write_spread(json["interior_px"], px, true);
+  write_spread(json["interior_mm"], mm, true);
+  json["coverage"] = ratio(double(lit_px), double(hand_px));
+  json["spill"] = ratio(double(spill_px), double(hand_px));
+  json["iou"] = ratio(double(lit_px), double(union_px));
+  json["seam_px"] = ratio(seam_px, double(frames));
+  json["equivalent_latency_ms"] = ratio(1e3 * lag_px_s, speed2_px_s2);
+}
+
+void Metrics::add(const FrameScore& score) {
+  ++frames_;
+  for (const auto& hand : score.hands) {
+    const auto speed =
+        std::lower_bound(kSpeedSteps_m_s.begin(), kSpeedSteps_m_s.end(), hand.speed_m_s) -
+        kSpeedSteps_m_s.begin();
+    all_.add(hand);
+    by_speed_[static_cast<std::size_t>(speed)].add(hand);
+    by_side_[static_cast<std::size_t>(hand.side)].add(hand);
+  }
+}
+
+void Metrics::add_stages(std::span<const msg::StageMark> stages) {
+  for (const auto& mark : stages)
+    stage_us_[mark.stage].add(
+        static_cast<float>(static_cast<double>(mark.end_ns - mark.begin_ns) * 1e-3));
+}
+
+void Metrics::add_foldovers(int count) { foldovers_ += count; }
+
+void Metrics::add_rung(msg::Rung rung) { ++rungs_[static_cast<std::size_t>(rung)]; }
+
+void Metrics::add_jitter(double square_px, int samples) {
+  jitter_square_ += square_px;
+  jitter_samples_ += samples;
+}
+
+void Metrics::add_landmark(double error_px, double error_mm) {
+  landmark_px_.add(static_cast<float>(error_px));
+  landmark_mm_.add(static_cast<float>(error_mm));
+}
+
+nlohmann::json Metrics::to_json() const {
+  nlohmann::json json;
+  all_.write(json);
+  json["frames"] = frames_;
+  json["jitter_px"] =
+      jitter_samples_ > 0
+          ? nlohmann::json(std::sqrt(jitter_square_ / static_cast<double>(jitter_samples_)))
+          : nlohmann::json();
+  json["foldovers"] = foldovers_;
+  write_spread(json["landmark_px"], landmark_px_, true);
+  write_spread(json["landmark_mm"], landmark_mm_, true);
+
+  const auto hands = std::accumulate(rungs_.begin(), rungs_.end(), std::int64_t{0});
+  for (std::size_t r = 0; r < msg::kRungs; ++r)
+    json["rungs"][std::string(msg::kRungNames[r])] = ratio(double(rungs_[r]), double(hands));
+
+  const auto frame = stage_us_.find(msg::Stage::frame);
+  write_spread(json["frame_us"], frame == stage_us_.end() ? Samples() : frame->second, false);
+  json["stage_us"] = nlohmann::json::object();
+  for (const auto& [stage, spent] : stage_us_) {
+    if (stage < msg::Stage::count)
+      write_spread(json["stage_us"][std::string(msg::kStageNames[static_cast<std::size_t>(stage)])],
+                   spent, false);
+  }
+  for (std::size_t b = 0; b < by_speed_.size(); ++b)
+    by_speed_[b].write(json["bins"][kSpeedNames[b]]);
+  for (std::size_t s = 0; s < by_side_.size(); ++s) by_side_[s].write(json["hands"][kSideNames[s]]);
+  return json;
+}
+
+}  // namespace handcast::twin

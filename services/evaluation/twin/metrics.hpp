@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <vector>
+
+#include "ipc/msg/rung.hpp"
+#include "ipc/msg/stage_mark.hpp"
+#include "services/evaluation/twin/twin.hpp"
+
+namespace handcast::twin {
+
+/// Gathers frame scores and stage times into the metrics of `simulate --json` and the observer:
+/// overall, per speed bin (0-0.1, -0.3, -0.6, -1.0, >1 m/s) and per hand.
+class Metrics {
+ public:
+  void add(const FrameScore& score);
+  void add_stages(std::span<const msg::StageMark> stages);
+  void add_foldovers(int count);
+  /// One hand of one drawn frame.
+  void add_rung(msg::Rung rung);
+  /// Landings of a fixed set of surface points in successive frames; jitter is the RMS of what
+  /// remains after the truth's own motion.
+  void add_jitter(double square_px, int samples);
+  /// Distance of one corrected landmark from the true one at photon time: undistorted camera px,
+  /// and mm at its distance.
+  void add_landmark(double error_px, double error_mm);
+
+  /// What was never measured is null; every bin and both hands are always there.
+  /// {"frames","interior_mm":{mean,p95,p99},"interior_px":{...},"coverage","spill","iou","seam_px","jitter_px","foldovers",
+  ///  "landmark_px":{mean,p95,p99},"landmark_mm":{...},"rungs":{rung: its share of the hands of
+  ///  drawn frames},
+  ///  "equivalent_latency_ms","frame_us":{p50,p99},"stage_us":{stage:{p50,p99}},"bins":{...},"hands":{"left":{...}}}
+  nlohmann::json to_json() const;
+
+ private:
+  /// Numbers of which the mean is exact and percentiles are close: beyond a fixed count every
+  /// second one is forgotten, by their place in the row and not by chance.
+  class Samples {
+   public:
+    void add(float value);
+    bool empty() const { return count_ == 0; }
+    double mean() const { return sum_ / static_cast<double>(count_); }
+    double percentile(double share) const;
+
+   private:
+    std::vector<float> kept_;
+    std::uint64_t stride_ = 1, count_ = 0;
+    double sum_ = 0;
+  };
+  struct Bin {
+    Samples px, mm;
+    std::int64_t frames = 0, hand_px = 0, lit_px = 0, spill_px = 0, union_px = 0;
+    double seam_px = 0, lag_px_s = 0, speed2_px_s2 = 0;
+
+    void add(const FrameScore::Hand& hand);
+    void write(nlohmann::json& json) const;
+  };
+  static void write_spread(nlohmann::json& json, const Samples& samples, bool with_mean);
+
+  Bin all_;
+  std::array<Bin, 5> by_speed_;
+  std::array<Bin, 2> by_side_;
+  std::map<msg::Stage, Samples> stage_us_;
+  Samples landmark_px_, landmark_mm_;
+  std::int64_t foldovers_ = 0, frames_ = 0;
+  std::array<std::int64_t, msg::kRungs> rungs_{};  ///< hands of drawn frames
+  double jitter_square_ = 0;
+  std::int64_t jitter_samples_ = 0;
+};
+
+}  // namespace handcast::twin

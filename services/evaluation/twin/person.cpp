@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/twin/person.hpp"
+
+#include <algorithm>
+#include <glm/gtc/quaternion.hpp>
+
+#include "services/evaluation/twin/random.hpp"
+
+namespace handcast::twin {
+namespace {
+
+using renderer::HandShape;
+
+constexpr std::array<int, 5> kMetacarpal{2, 6, 11, 16, 21};
+constexpr std::uint64_t kPalmDraw = 5, kWidthDraw = 6;
+
+float width_factor(const config::TwinShape& settings, int seed) {
+  return static_cast<float>(1 + settings.width_spread *
+                                    Random(seed, Stream::person).spread(kWidthDraw));
+}
+
+float median(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+glm::vec3 place_m(const msg::HandPose& pose, int joint) {
+  const auto& p = pose.joints[joint].position_m;
+  return {p[0], p[1], p[2]};
+}
+
+/// A joint seen from the wrist, millimetres, as if of a left hand.
+glm::vec3 from_wrist_mm(const msg::HandPose& pose, int joint) {
+  const auto& q = pose.joints[1].orientation_xyzw;
+  glm::vec3 place =
+      glm::inverse(glm::quat(q[3], q[0], q[1], q[2])) * (place_m(pose, joint) - place_m(pose, 1));
+  if (pose.side == msg::Side::right) place.x = -place.x;
+  return place * 1e3f;
+}
+
+glm::vec3 median_place_mm(const std::vector<msg::HandPose>& poses, int joint) {
+  std::array<std::vector<float>, 3> axes;
+  for (const auto& pose : poses) {
+    const glm::vec3 place = from_wrist_mm(pose, joint);
+    for (int c = 0; c < 3; ++c) axes[c].push_back(place[c]);
+  }
+  return {median(axes[0]), median(axes[1]), median(axes[2])};
+}
+
+float median_length_mm(const std::vector<msg::HandPose>& poses, int joint) {
+  std::vector<float> lengths;
+  for (const auto& pose : poses)
+    lengths.push_back(1e3f * glm::distance(place_m(pose, joint), place_m(pose, joint + 1)));
+  return median(lengths);
+}
+
+/// From the index's to the little finger's MCP.
+float breadth_mm(const HandShape& shape) {
+  return glm::distance(shape.proximal_mm[1], shape.proximal_mm[4]);
+}
+
+}  // namespace
+
+HandShape draw_person(const config::TwinShape& settings, int seed) {
+  const Random random(seed, Stream::person);
+  std::array<float, 5> length;
+  for (std::size_t f = 0; f < length.size(); ++f)
+    length[f] = static_cast<float>(1 + settings.length_spread * random.spread(f));
+  const auto palm = static_cast<float>(1 + settings.length_spread * random.spread(kPalmDraw));
+  return HandShape::mean().scaled(length, palm, width_factor(settings, seed));
+}
+
+HandShape fit_person(const Recording& recording, const config::TwinShape& settings, int seed) {
+  const auto& poses = recording.hands[0].empty() ? recording.hands[1] : recording.hands[0];
+  const HandShape mean = HandShape::mean();
+  HandShape fitted = mean;
+  for (int f = 0; f < 5; ++f) {
+    fitted.metacarpal_mm[f] = median_place_mm(poses, kMetacarpal[f]);
+    fitted.proximal_mm[f] = median_place_mm(poses, kMetacarpal[f] + 1);
+    for (int k = 0; k < (f == 0 ? 2 : 3); ++k)
+      fitted.phalanx_mm[f][k] = median_length_mm(poses, kMetacarpal[f] + 1 + k);
+  }
+  const float width = breadth_mm(fitted) / breadth_mm(mean) * width_factor(settings, seed);
+  return fitted.scaled({1, 1, 1, 1, 1}, 1, width);
+}
+
+}  // namespace handcast::twin

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "ipc/base/clock.hpp"
+#include "services/evaluation/twin/motions.hpp"
+#include "services/evaluation/twin/person.hpp"
+#include "services/evaluation/twin/spline.hpp"
+
+namespace handcast::twin {
+namespace {
+
+using msg::kJoints;
+
+constexpr std::size_t kJointChannels = 7;  ///< x y z, then the quaternion x y z w
+constexpr double kTurn_s =
+    0.15;  ///< on either side of an end of the recording, the hand brakes and turns back
+
+/// How far from a turning point the hand is after `s` seconds: at full speed beyond kTurn_s, twice
+/// differentiable everywhere. Against a hand that never brakes it lags 3/8 kTurn_s behind.
+double way_from_turn(double s) {
+  const double u = s / kTurn_s;
+  return u < 1 ? kTurn_s * (0.75 * u * u - 0.125 * u * u * u * u) : s - 0.375 * kTurn_s;
+}
+
+/// There and back through a recording of `duration_s`.
+double there_and_back(double duration_s, double time_s) {
+  const double leg_s = duration_s + 0.75 * kTurn_s;
+  const double phase = time_s - 2 * leg_s * std::floor(time_s / (2 * leg_s));
+  const double from_start = std::min(phase, 2 * leg_s - phase);
+  return from_start < leg_s / 2 ? way_from_turn(from_start)
+                                : duration_s - way_from_turn(leg_s - from_start);
+}
+
+Spline spline_of(const std::vector<std::int64_t>& time_ns,
+                 const std::vector<msg::HandPose>& poses) {
+  constexpr std::size_t kChannels = kJoints * kJointChannels;
+  std::vector<double> times_s, values;
+  values.reserve(poses.size() * kChannels);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    times_s.push_back(ns_to_seconds(time_ns[i]));
+    for (int j = 0; j < kJoints; ++j) {
+      const auto& joint = poses[i].joints[j];
+      values.insert(values.end(), joint.position_m.begin(), joint.position_m.end());
+      double along = 1;  // a quaternion and its negative are one rotation: keep to the side of the
+                         // sample before
+      if (i > 0) {
+        const double* before = values.data() + values.size() - kChannels;
+        along = 0;
+        for (int c = 0; c < 4; ++c) along += before[c] * joint.orientation_xyzw[c];
+      }
+      for (const float q : joint.orientation_xyzw) values.push_back(along < 0 ? -q : q);
+    }
+  }
+  return Spline(std::move(times_s), std::move(values), kChannels);
+}
+
+class RecordedMotion final : public Motion {
+ public:
+  RecordedMotion(const Recording& recording, const config::Twin& settings)
+      : speed_(settings.speed), shape_(fit_person(recording, settings.shape, settings.seed)) {
+    for (std::size_t side = 0; side < 2; ++side)
+      if (!recording.hands[side].empty())
+        hands_[side] = spline_of(recording.time_ns, recording.hands[side]);
+  }
+
+  std::optional<JointFrames> at(Side side, double seconds) const override {
+    const auto& hand = hands_[static_cast<std::size_t>(side)];
+    if (!hand) return std::nullopt;
+    std::array<double, kJoints * kJointChannels> values;
+    hand->at(there_and_back(hand->duration_s(), seconds * speed_), values.data());
+    JointFrames frames;
+    for (int j = 0; j < kJoints; ++j) {
+      const double* v = &values[j * kJointChannels];
+      frames[j] = glm::mat4(glm::mat4_cast(glm::normalize(glm::dquat(v[6], v[3], v[4], v[5]))));
+      frames[j][3] = {v[0], v[1], v[2], 1};
+    }
+    return frames;
+  }
+
+  const renderer::HandShape& shape() const override { return shape_; }
+
+ private:
+  double speed_;
+  renderer::HandShape shape_;
+  std::array<std::optional<Spline>, 2> hands_;
+};
+
+}  // namespace
+
+std::unique_ptr<Motion> make_recorded_motion(const Recording& recording,
+                                             const config::Twin& settings) {
+  return std::make_unique<RecordedMotion>(recording, settings);
+}
+
+}  // namespace handcast::twin

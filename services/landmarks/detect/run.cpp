@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/landmarks/detect/run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+
+#include "renderer/content/picture.hpp"
+#include "services/landmarks/detect/draw.hpp"
+#include "services/landmarks/detect/picture.hpp"
+#include "services/landmarks/detect/result.hpp"
+#include "services/landmarks/finder/models.hpp"
+#include "services/landmarks/finder/own_finder.hpp"
+
+namespace handcast::detect {
+namespace {
+
+namespace fs = std::filesystem;
+using Times = landmarks::HandFinder::Times;
+
+Times median_of(std::vector<Times>& runs) {
+  Times median = runs.front();
+  for (const auto field : {&Times::all_ns, &Times::crop_ns, &Times::network_ns, &Times::palm_ns}) {
+    std::ranges::nth_element(runs, runs.begin() + static_cast<std::ptrdiff_t>(runs.size() / 2), {},
+                             field);
+    median.*field = runs[runs.size() / 2].*field;
+  }
+  return median;
+}
+
+/// Where each picture's drawing goes, no two to the same file.
+std::vector<fs::path> drawings_of(const Options& options) {
+  std::vector<fs::path> drawings;
+  std::set<std::string> taken;
+  for (const auto& image : options.images) {
+    const auto stem = image.stem().string();
+    auto name = stem + ".png";
+    for (int number = 2; !taken.insert(name).second; ++number)
+      name = fmt::format("{}_{}.png", stem, number);
+    drawings.push_back(options.output / name);
+  }
+  return drawings;
+}
+
+handcast::Result<void> save(const fs::path& file, const renderer::Texture& drawing) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error)
+    return fail(Errc::unavailable, fmt::format("the folder '{}' cannot be made: {}",
+                                               file.parent_path().string(), error.message()));
+  return renderer::write_png(file, drawing.view());
+}
+
+handcast::Result<Result> look_at(landmarks::HandFinder& finder, const Options& options,
+                                 std::size_t i, const fs::path& drawing) {
+  const auto picture = read_grey(options.images[i]);
+  if (!picture) return tl::make_unexpected(picture.error());
+  landmarks::Hints hints;
+  if (!options.joints.empty()) {
+    const auto joints = read_joints(options.joints[i], picture->width(), picture->height());
+    if (!joints) return tl::make_unexpected(joints.error());
+    hints[static_cast<std::size_t>(options.joints_side)] = *joints;
+  }
+  Result result{options.images[i], {}, {}};
+  std::vector<Times> runs;
+  for (int k = 0; k < options.repeat; ++k) {
+    finder.forget();
+    const auto found = finder.find(picture->view(), hints, 0);
+    if (!found) return tl::make_unexpected(found.error());
+    result.hands.assign(found->begin(), found->end());
+    runs.push_back(finder.times());
+  }
+  result.times = median_of(runs);
+  if (!options.output.empty())
+    if (const auto saved = save(drawing, draw(picture->view(), result.hands, hints)); !saved)
+      return tl::make_unexpected(saved.error());
+  return result;
+}
+
+}  // namespace
+
+handcast::Result<std::string> run(const Options& options) {
+  if (!options.joints.empty() && options.joints.size() != options.images.size())
+    return fail(
+        Errc::bad_config,
+        fmt::format(
+            "{} pictures, but {} files of joints; give one --joints a picture, in the same order",
+            options.images.size(), options.joints.size()));
+  const fs::path models = landmarks::models_folder(options.models);
+  auto finder = options.backend == "own"
+                    ? landmarks::own::open_finder(models, options.hands)
+                    : landmarks::HandFinder::open(options.backend, models, options.hands);
+  if (!finder) return tl::make_unexpected(finder.error());
+  const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
+  const auto drawings = drawings_of(options);
+  std::vector<Result> results;
+  std::string text;
+  for (std::size_t i = 0; i < options.images.size(); ++i) {
+    if (shows_progress)
+      fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(),
+                 options.images[i].filename().string());
+    auto result = look_at(*finder, options, i, drawings[i]);
+    if (!result) return fail_in(options.images[i].string(), result.error());
+    if (!options.json) text += print_text(*result);
+    results.push_back(std::move(*result));
+  }
+  if (shows_progress) fmt::print(stderr, "\r\033[K");
+  return options.json ? print_json(results) : text;
+}
+
+}  // namespace handcast::detect

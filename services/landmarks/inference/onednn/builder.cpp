@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/landmarks/inference/onednn/builder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+namespace handcast::landmarks::onednn {
+
+using dnnl::memory;
+
+dnnl::primitive_attr own_scratchpad() {
+  dnnl::primitive_attr attributes;
+  attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
+  return attributes;
+}
+
+void refuse(const Node& node, const std::string& why) {
+  throw Refused{fmt::format("{} {}", node.title(), why)};
+}
+
+namespace {
+
+void check_size(const Shape& shape) {
+  if (onnx::elements(shape) == 0)
+    throw Refused{fmt::format("a value of {} is empty or too large", onnx::to_string(shape))};
+}
+
+}  // namespace
+
+memory::desc plain_desc(const Shape& shape) {
+  check_size(shape);
+  Shape strides(shape.size(), 1);
+  for (std::size_t i = shape.size(); i-- > 1;) strides[i - 1] = strides[i] * shape[i];
+  return {shape, memory::data_type::f32, strides};
+}
+
+memory::desc desc_like(const memory::desc& like, const Shape& shape) {
+  const dnnl_blocking_desc_t& layout = like.data.format_desc.blocking;
+  if (like.data.format_kind != dnnl_blocked || layout.inner_nblks > 0) return plain_desc(shape);
+  check_size(shape);
+  std::vector<std::size_t> order(shape.size());
+  std::iota(order.rbegin(), order.rend(),
+            std::size_t{0});  // of axes that lie alike, the last one innermost
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return layout.strides[a] < layout.strides[b];
+  });
+  Shape strides(shape.size());
+  std::int64_t stride = 1;
+  for (const std::size_t axis : order) strides[axis] = std::exchange(stride, stride * shape[axis]);
+  return {shape, memory::data_type::f32, strides};
+}
+
+memory::desc any_desc(const Shape& shape) {
+  check_size(shape);
+  return {shape, memory::data_type::f32, memory::format_tag::any};
+}
+
+Builder::Builder(const onnx::Model& model, const std::vector<Group>& groups) : model_(model) {
+  const auto note = [&](const Node& node, int group) {
+    for (const std::string& input : node.inputs) users_[input].push_back(group);
+  };
+  for (int i = 0; i < static_cast<int>(groups.size()); ++i) {
+    note(groups[i].head, i);
+    for (const Node& node : groups[i].tail) note(node, i);
+  }
+  for (const onnx::Port& port : model.outputs)
+    users_[port.name].push_back(static_cast<int>(groups.size()));
+}
+
+Value Builder::operand(const Node& node, std::size_t input) {
+  if (!node.has_input(input)) refuse(node, fmt::format("has no input {}", input));
+  const std::string& name = node.inputs[input];
+  if (const auto found = values_.find(name); found != values_.end()) return found->second;
+  const onnx::Tensor* tensor = constant(node, input);
+  if (!tensor || tensor->floats.empty())
+    refuse(node, fmt::format("cannot calculate with '{}'", name));
+  const memory::desc desc = plain_desc(tensor->shape.empty() ? Shape{1} : tensor->shape);
+  return values_[name] = weights(tensor->floats, desc, desc);
+}
+
+const Value& Builder::value(const std::string& name) const {
+  const auto found = values_.find(name);
+  if (found == values_.end()) throw Refused{fmt::format("nothing calculates '{}'", name)};
+  return found->second;
+}
+
+const onnx::Tensor* Builder::constant(const Node& node, std::size_t input) const {
+  if (!node.has_input(input)) return nullptr;
+  const auto found = model_.constants.find(node.inputs[input]);
+  if (found == model_.constants.end())
+    refuse(node, fmt::format("needs '{}' to be a constant", node.inputs[input]));
+  return &found->second;
+}
+
+std::optional<std::vector<std::int64_t>> Builder::integers(const Node& node,
+                                                           std::size_t input) const {
+  const onnx::Tensor* tensor = constant(node, input);
+  if (!tensor) return std::nullopt;
+  if (!tensor->floats.empty())
+    refuse(node, fmt::format("needs whole numbers in '{}'", node.inputs[input]));
+  return tensor->integers;
+}
+
+Value Builder::make(const memory::desc& desc) {
+  return {desc, program_.add_buffer(desc.get_size())};
+}
+
+Value Builder::in_layout(const Value& value, const memory::desc& desc) {
+  if (value.desc == desc) return value;
+  const Value result = make(desc);
+  const dnnl::reorder::primitive_desc reorder(engine(), value.desc, engine(), desc);
+  program_.add_step(dnnl::reorder(reorder), {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, result}});
+  return result;
+}
+
+/// No name of the buffer is used after this group, and this group uses it once: not as its input as
+/// well.
+bool Builder::may_overwrite(int buffer) const {
+  if (program_.is_fixed(buffer)) return false;
+  int uses = 0;
+  for (const auto& [name, value] : values_) {
+    if (value.buffer != buffer) continue;
+    const auto users = users_.find(name);
+    if (users == users_.end()) continue;
+    for (const int group : users->second) {
+      if (group > now_) return false;
+      if (group == now_) ++uses;
+    }
+  }
+  return uses <= 1;
+}
+
+Value Builder::to_overwrite(const Value& value, const memory::desc& desc) {
+  if (value.desc != desc) return in_layout(value, desc);
+  if (may_overwrite(value.buffer)) return value;
+  const Value copy = make(desc);
+  const dnnl::reorder::primitive_desc reorder(engine(), desc, engine(), desc);
+  program_.add_step(dnnl::reorder(reorder), {{DNNL_ARG_FROM, value}, {DNNL_ARG_TO, copy}});
+  return copy;
+}
+
+Value Builder::weights(const std::vector<float>& numbers, const memory::desc& given,
+                       const memory::desc& desc) {
+  if (given.get_size() != numbers.size() * sizeof(float))
+    throw Refused{"weights of another size than the graph's"};
+  const Value result{desc, program_.add_fixed_buffer(desc.get_size())};
+  const bool as_given = given == desc;
+  const Value source =
+      as_given ? result : Value{given, program_.add_fixed_buffer(given.get_size())};
+  std::memcpy(program_.data(source.buffer), numbers.data(), given.get_size());
+  if (!as_given) {
+    program_.reorder_now(source, result);
+    program_.drop(source.buffer);
+  }
+  return result;
+}
+
+}  // namespace handcast::landmarks::onednn

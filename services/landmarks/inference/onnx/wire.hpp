@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace handcast::landmarks::onnx {
+
+using Bytes = std::span<const std::uint8_t>;
+
+/// One field of a message in protobuf's wire format.
+struct Field {
+  std::uint32_t number = 0;
+  std::uint64_t value = 0;  ///< of a varint or a fixed-size number
+  Bytes bytes;              ///< of a string, a message or a packed list
+  bool is_bytes = false;
+
+  std::string text() const { return {bytes.begin(), bytes.end()}; }
+  std::int64_t integer() const { return static_cast<std::int64_t>(value); }
+  float number32() const {
+    const auto bits = static_cast<std::uint32_t>(value);
+    float result;
+    std::memcpy(&result, &bits, sizeof(result));
+    return result;
+  }
+};
+
+/// Walks the fields of a message. Never reads beyond its bytes, whatever they hold.
+class WireReader {
+ public:
+  explicit WireReader(Bytes bytes) : rest_(bytes) {}
+
+  /// Nothing at the end and where the bytes make no sense; broken() tells the two apart.
+  std::optional<Field> next();
+  bool broken() const { return broken_; }
+
+  /// Reads one bare varint: the element of a packed list.
+  std::optional<std::uint64_t> varint();
+  bool at_end() const { return rest_.empty(); }
+
+ private:
+  std::optional<std::uint64_t> fixed(std::size_t size);
+  std::optional<Bytes> take(std::uint64_t size);
+
+  Bytes rest_;
+  bool broken_ = false;
+};
+
+/// Appends fields to a message.
+class WireWriter {
+ public:
+  void varint(std::uint32_t field, std::uint64_t value);
+  void number32(std::uint32_t field, float value);
+  void bytes(std::uint32_t field, Bytes content);
+  void text(std::uint32_t field, const std::string& content);
+  void message(std::uint32_t field, const WireWriter& content) { bytes(field, content.bytes_); }
+
+  std::vector<std::uint8_t> take() && { return std::move(bytes_); }
+
+ private:
+  void raw_varint(std::uint64_t value);
+  void key(std::uint32_t field, unsigned wire) { raw_varint(std::uint64_t{field} << 3 | wire); }
+
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace handcast::landmarks::onnx

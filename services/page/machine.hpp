@@ -1,9 +1,0 @@
-#pragma once
-#include <string>
-
-namespace handcast::page {
-
-/// This machine: processor, cores, system.
-std::string this_machine();
-
-}  // namespace handcast::page

@@ -1,6 +1,0 @@
-find_package(nlohmann_json REQUIRED)
-add_executable(bench_cascade cascade.cpp cascade_runs.cpp frame_pipeline.cpp)
-target_link_libraries(bench_cascade PRIVATE handcast_simulation fmt::fmt nlohmann_json::nlohmann_json)
-if(TARGET handcast_hands)
-  add_dependencies(bench_cascade handcast_hands)
-endif()

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/settings/document.hpp"
+
+#include <gtest/gtest.h>
+
+#include "config/settings/load.hpp"
+
+namespace handcast::config {
+namespace {
+
+struct Lens {
+  std::vector<double> coefficients{1, 2, 3};
+  std::vector<double> free;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Lens& lens) {
+  visitor.field("coefficients", lens.coefficients, between(-10, 10), "Three numbers.");
+  visitor.field("free", lens.free, at_least(0, "mm"), "Any numbers.");
+}
+
+std::string faults_of(const std::string& toml, Lens& lens) {
+  const auto document = parse_document(toml, "lens.toml");
+  EXPECT_TRUE(document) << document.error().what;
+  Faults faults;
+  apply_document(*document, "lens.toml", list_settings(lens), faults);
+  return faults.to_error().what;
+}
+
+TEST(Document, KeepsTheOrderAndLinesOfTheFile) {
+  const auto document = parse_document("z = 1\n\na = 'x'\n[t]\nb = [1, 2.5]\n", "f");
+  ASSERT_TRUE(document);
+  const auto& table = std::get<Table>(document->data);
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[0].name, "z");
+  EXPECT_EQ(table[1].value.line, 3);
+  EXPECT_EQ(table[2].name, "t");
+  EXPECT_EQ(std::get<Table>(table[2].value.data)[0].value.line, 5);
+}
+
+TEST(Document, AListOfNumbersTakesWholeOnesToo) {
+  Lens lens;
+  EXPECT_EQ(faults_of("coefficients = [1, 2.5, -3]\nfree = [4]\n", lens), "");
+  EXPECT_EQ(lens.coefficients, (std::vector<double>{1, 2.5, -3}));
+  EXPECT_EQ(lens.free, (std::vector<double>{4}));
+}
+
+TEST(Document, AListThatIsBornWithElementsKeepsTheirNumber) {
+  Lens lens;
+  EXPECT_EQ(faults_of("coefficients = [1, 2]\n", lens),
+            "lens.toml:1: coefficients: must be a list of 3 numbers, not of 2");
+}
+
+TEST(Document, AnElementOutsideTheRangeLeavesTheListAsItWas) {
+  Lens lens;
+  EXPECT_EQ(faults_of("coefficients = [1, 20, 3]\nfree = [-1]\n", lens),
+            "lens.toml:1: coefficients: 20 is outside -10..10\nlens.toml:2: free: -1 is outside at "
+            "least 0 mm");
+  EXPECT_EQ(lens.coefficients, (std::vector<double>{1, 2, 3}));
+}
+
+TEST(Document, WhatIsInfiniteIsRefusedAlsoWhereTheRangeHasNoEnd) {
+  Lens lens;
+  EXPECT_EQ(faults_of("free = [inf]\n", lens), "lens.toml:1: free: inf is not a finite number");
+}
+
+TEST(Document, BothEndsOfARangeAreAllowed) {
+  Lens lens;
+  EXPECT_EQ(faults_of("coefficients = [-10, 10, 10.0]\n", lens), "");
+}
+
+TEST(Document, AnAssignedListMayGoWithoutBrackets) {
+  Lens lens;
+  Faults faults;
+  apply_assignment("coefficients=4,5,6", list_settings(lens), faults);
+  EXPECT_TRUE(faults.empty()) << faults.to_error().what;
+  EXPECT_EQ(lens.coefficients, (std::vector<double>{4, 5, 6}));
+}
+
+TEST(Suggest, FindsTheNearestNameButNotAFarOne) {
+  EXPECT_EQ(suggest("rate", {"rate_hz", "age_ms"}), "");
+  EXPECT_EQ(suggest("rate_h", {"rate_hz", "age_ms"}), " (did you mean 'rate_hz'?)");
+  EXPECT_EQ(suggest("qqqqqqqq", {"rate_hz", "age_ms"}), "");
+}
+
+}  // namespace
+}  // namespace handcast::config

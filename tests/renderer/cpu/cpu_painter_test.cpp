@@ -1,7 +1,0 @@
-#include "tests/renderer/painter_contract.hpp"
-
-namespace handcast::renderer::test {
-
-INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&make_cpu_painter), [](const auto&) { return "one_core"; });
-
-}  // namespace handcast::renderer::test

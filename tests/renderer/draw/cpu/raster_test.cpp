@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/draw/cpu/raster.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace handcast::renderer::cpu {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 80;
+constexpr Rect kWhole{0, 0, kWidth, kHeight};
+
+struct Sheet {
+  std::vector<Corner> corners;
+  std::vector<TriangleIndices> triangles;
+  std::vector<std::int64_t> areas;
+  std::vector<std::uint8_t> ids;
+
+  TriangleList list(Facing facing) {
+    facing_of(corners, triangles, areas);
+    ids.assign(corners.size(), 1);
+    return {corners, triangles, areas, ids, facing};
+  }
+};
+
+/// A grid whose nodes stand on random half or whole pixels: its edges run through many pixel
+/// centres.
+Sheet jittered_grid(unsigned seed) {
+  std::mt19937 random(seed);
+  const int coarse = seed % 2 == 0 ? 16 : 8, most = seed % 2 == 0 ? 1 : 3;
+  std::uniform_int_distribution<int> step(-most, most);
+  Sheet sheet;
+  constexpr int kNodes = 12, kPitch = 8 * 16;
+  for (int row = 0; row < kNodes; ++row) {
+    for (int column = 0; column < kNodes; ++column) {
+      sheet.corners.push_back({column * kPitch + step(random) * coarse,
+                               row * kPitch + step(random) * coarse, 1, 0, 0, 256});
+    }
+  }
+  for (int row = 0; row + 1 < kNodes; ++row) {
+    for (int column = 0; column + 1 < kNodes; ++column) {
+      const auto node = [&](int c, int r) {
+        return static_cast<std::uint16_t>((row + r) * kNodes + column + c);
+      };
+      sheet.triangles.push_back({node(0, 0), node(1, 0), node(1, 1)});
+      sheet.triangles.push_back({node(0, 0), node(1, 1), node(0, 1)});
+    }
+  }
+  return sheet;
+}
+
+TEST(Raster, EveryPixelOfASheetBelongsToExactlyOneTriangle) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Sheet sheet = jittered_grid(seed);
+    std::vector<int> hits(kWidth * kHeight);
+    const std::vector<TriangleIndices> all = sheet.triangles;
+    for (const TriangleIndices& one : all) {
+      sheet.triangles = {one};
+      RasterTarget target(kWidth, kHeight);
+      rasterise(sheet.list(Facing::both), kWhole, target);
+      for (int i = 0; i < kWidth * kHeight; ++i)
+        hits[i] += std::isfinite(target.at(i % kWidth, i / kWidth).depth);
+    }
+    for (int y = 4; y < kHeight; ++y) {
+      for (int x = 4; x < 80; ++x)
+        ASSERT_EQ(hits[y * kWidth + x], 1) << "seed " << seed << " at " << x << ' ' << y;
+    }
+  }
+}
+
+TEST(Raster, TheSidesOfAClosedSurfaceAreToldApartWhicheverWayItIsWound) {
+  // A tetrahedron with its near corner in the middle: three near faces.
+  const std::vector<Corner> corners{{0, 0, 2}, {1600, 0, 2}, {800, 1600, 2}, {800, 600, 1}};
+  const std::vector<TriangleIndices> near_is_positive{{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 2, 1}};
+  std::vector<std::int64_t> areas;
+  EXPECT_EQ(facing_of(corners, near_is_positive, areas), Facing::positive);
+  std::vector<TriangleIndices> turned = near_is_positive;
+  for (TriangleIndices& triangle : turned) std::swap(triangle[0], triangle[1]);
+  EXPECT_EQ(facing_of(corners, turned, areas), Facing::negative);
+  EXPECT_EQ(facing_of(corners, std::vector<TriangleIndices>{near_is_positive[0]}, areas),
+            Facing::both);
+}
+
+TEST(Raster, OnlyTheAskedForSideIsDrawn) {
+  Sheet sheet = jittered_grid(3);
+  RasterTarget target(kWidth, kHeight);
+  rasterise(sheet.list(Facing::negative), kWhole, target);
+  EXPECT_TRUE(std::isinf(target.at(40, 40).depth));
+  rasterise(sheet.list(Facing::positive), kWhole, target);
+  EXPECT_TRUE(std::isfinite(target.at(40, 40).depth));
+}
+
+TEST(Raster, ClearingForgetsEverythingDrawn) {
+  Sheet sheet = jittered_grid(5);
+  RasterTarget target(kWidth, kHeight);
+  rasterise(sheet.list(Facing::both), kWhole, target);
+  target.clear();
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x)
+      ASSERT_TRUE(std::isinf(target.at(x, y).depth)) << x << ' ' << y;
+  }
+}
+
+TEST(Raster, OfEquallyNearTrianglesTheLaterIsSeen) {
+  Sheet sheet;
+  sheet.corners = {{0, 0, 1, 0, 0, 0}, {640, 0, 1, 0, 0, 0}, {0, 640, 1, 0, 0, 0},
+                   {0, 0, 1, 1, 0, 0}, {640, 0, 1, 1, 0, 0}, {0, 640, 1, 1, 0, 0}};
+  sheet.triangles = {{0, 1, 2}, {3, 4, 5}};
+  RasterTarget target(kWidth, kHeight);
+  rasterise(sheet.list(Facing::both), kWhole, target);
+  EXPECT_EQ(target.at(10, 10).u, 1);
+}
+
+}  // namespace
+}  // namespace handcast::renderer::cpu

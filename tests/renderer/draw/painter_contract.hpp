@@ -1,0 +1,489 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gtest/gtest.h>
+
+#include "tests/renderer/draw/painter_scene.hpp"
+
+/// What every back end of Painter must do. A back end's test includes this file and instantiates
+/// the suite:
+///   INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&make_cpu_painter));
+namespace handcast::renderer::test {
+
+using MakePainter = std::unique_ptr<Painter> (*)(int width_px, int height_px);
+
+class PainterContract : public testing::TestWithParam<MakePainter> {
+ protected:
+  static constexpr int kWidth = 200, kHeight = 150;
+  static constexpr Rect kWhole{0, 0, kWidth, kHeight};
+
+  std::uint32_t colour(int x, int y) { return painter_->colour().at(x, y); }
+  std::uint32_t alpha(int x, int y) { return colour(x, y) >> 24; }
+  SurfaceId surface(int x, int y) { return painter_->surface().at(x, y); }
+  glm::vec2 uv(int x, int y) { return painter_->uv().at(x, y); }
+
+  int lit_pixels(Rect region = kWhole) {
+    int lit = 0;
+    for (int y = region.y0; y < region.y1; ++y) {
+      for (int x = region.x0; x < region.x1; ++x) lit += surface(x, y) != 0;
+    }
+    return lit;
+  }
+  /// Colour and surface id must tell the same story.
+  void expect_consistent(Rect region = kWhole) {
+    for (int y = region.y0; y < region.y1; ++y) {
+      for (int x = region.x0; x < region.x1; ++x)
+        ASSERT_EQ(surface(x, y) != 0, alpha(x, y) != 0) << x << ' ' << y;
+    }
+  }
+  FillCounts fill(const Image<std::uint8_t>& mask, Rect region = kWhole) {
+    return painter_->fill(mask.view(), settings_, region);
+  }
+
+  std::unique_ptr<Painter> painter_ = GetParam()(kWidth, kHeight);
+  config::Fill settings_{.method = "reflect", .reach_px = 32, .fade_px = 0, .seam_uv = 0.04};
+};
+
+// ---- draw
+
+TEST_P(PainterContract, DrawsWhatASlowRasteriserInDoublePrecisionDraws) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> x(-40, kWidth + 40), y(-40, kHeight + 40), unit(0, 1),
+      depth(0.5f, 1.5f);
+  constexpr double kSlackPx = 1e-4;
+  const auto sixteenths = [](float px) {
+    return std::round(px * 16) / 16;
+  };  // what back ends may snap to
+  for (int scene = 0; scene < 20; ++scene) {
+    Shape shape;
+    for (int t = 0; t < 12; ++t) {
+      const auto chart = static_cast<std::uint8_t>(1 + t % 5);
+      const auto corner = [&] {
+        return shape.vertex({sixteenths(x(random)), sixteenths(y(random))},
+                            {unit(random), unit(random)}, depth(random), chart);
+      };
+      const int a = corner(), b = corner(), c = corner();
+      const glm::vec2 ab = shape.position_px()[b] - shape.position_px()[a],
+                      ac = shape.position_px()[c] - shape.position_px()[a];
+      ab.x* ac.y > ab.y* ac.x ? shape.triangle(a, b, c)
+                              : shape.triangle(a, c, b);  // all seen from one side, as a sheet
+    }
+    draw(*painter_, shape, kWhole);
+    for (int py = 0; py < kHeight; ++py) {
+      for (int px = 0; px < kWidth; ++px) {
+        std::vector<Seen> seen = seen_at(shape, px, py, kSlackPx);
+        const bool sure = std::all_of(seen.begin(), seen.end(),
+                                      [&](const Seen& s) { return s.margin_px > kSlackPx; });
+        if (!sure) continue;  // a tie with an edge: either is right
+        std::sort(seen.begin(), seen.end(),
+                  [](const Seen& a, const Seen& b) { return a.depth_m < b.depth_m; });
+        ASSERT_EQ(surface(px, py) != 0, !seen.empty()) << px << ' ' << py;
+        if (seen.empty() || (seen.size() > 1 && seen[1].depth_m - seen[0].depth_m < 1e-4)) continue;
+        ASSERT_EQ(surface(px, py), seen[0].surface) << px << ' ' << py;
+        ASSERT_NEAR(uv(px, py).x, seen[0].uv.x, 1e-3) << px << ' ' << py;
+        ASSERT_NEAR(uv(px, py).y, seen[0].uv.y, 1e-3) << px << ' ' << py;
+        ASSERT_EQ(colour(px, py), texel_at(shape.texture(), uv(px, py))) << px << ' ' << py;
+      }
+    }
+  }
+}
+
+TEST_P(PainterContract, TextureCoordinatesAreExactToAThousandthOnASmoothSurface) {
+  Shape shape;
+  shape.rectangle({20.3f, 15.7f}, {170.2f, 130.9f});
+  draw(*painter_, shape, kWhole);
+  for (int y = 17; y < 130; ++y) {
+    for (int x = 22; x < 169; ++x) {
+      ASSERT_NEAR(uv(x, y).x, x / 256.f, 1e-3);
+      ASSERT_NEAR(uv(x, y).y, y / 256.f, 1e-3);
+    }
+  }
+}
+
+TEST_P(PainterContract, NeighbouringTrianglesLeaveNoGap) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> sixteenths(-96, 96);
+  Shape shape;
+  constexpr int kColumns = 15, kRows = 11, kPitch = 14;
+  for (int row = 0; row <= kRows; ++row) {
+    for (int column = 0; column <= kColumns; ++column) {
+      const bool border = row == 0 || row == kRows || column == 0 || column == kColumns;
+      const glm::vec2 jitter =
+          border ? glm::vec2{0} : glm::vec2{sixteenths(random), sixteenths(random)} / 16.f;
+      shape.vertex(glm::vec2{column * kPitch - 5, row * kPitch - 2} + jitter, {0.5f, 0.5f});
+    }
+  }
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const int a = row * (kColumns + 1) + column, below = a + kColumns + 1;
+      shape.triangle(a, a + 1, below + 1);
+      shape.triangle(a, below + 1, below);
+    }
+  }
+  draw(*painter_, shape, kWhole);
+  EXPECT_EQ(lit_pixels(), kWidth * kHeight);
+}
+
+TEST_P(PainterContract, ARectangleBetweenPixelCentresLightsExactlyThoseInside) {
+  Shape shape;
+  shape.rectangle({9.5f, 19.5f}, {29.5f, 49.5f});
+  draw(*painter_, shape, kWhole);
+  EXPECT_EQ(lit_pixels(), 20 * 30);
+  EXPECT_NE(surface(10, 20), 0);
+  EXPECT_NE(surface(29, 49), 0);
+  EXPECT_EQ(surface(9, 20), 0);
+  EXPECT_EQ(surface(29, 50), 0);
+}
+
+TEST_P(PainterContract, OfTwoHandsTheNearerIsSeenInEitherOrder) {
+  Shape near, far(Texture(1, 1, 0xff123456));
+  near.rectangle({40, 40}, {90, 90}, 0.5f, 2);
+  far.rectangle({10, 10}, {150, 120}, 0.8f, 3);
+  for (const bool near_first : {true, false}) {
+    const std::array<DrawnHand, 2> hands =
+        near_first ? std::array{near.drawn(), far.drawn()} : std::array{far.drawn(), near.drawn()};
+    painter_->draw(hands, kWhole);
+    EXPECT_EQ(surface(60, 60), surface_id(near_first ? 0 : 1, 2));
+    EXPECT_EQ(surface(20, 20), surface_id(near_first ? 1 : 0, 3));
+    EXPECT_EQ(colour(60, 60), texel_at(near.texture(), uv(60, 60)));
+    EXPECT_EQ(colour(20, 20), 0xff123456u);
+  }
+}
+
+TEST_P(PainterContract, LightScalesTheColourAndNotWhetherItIsLit) {
+  Shape shape(Texture(1, 1, 0xff80c040));
+  shape.rectangle({10, 10}, {50, 50});
+  shape.dim(0.5f);
+  const DrawnHand shaded = shape.drawn(true);
+  painter_->draw({&shaded, 1}, kWhole);
+  EXPECT_EQ(alpha(20, 20), 255u);
+  EXPECT_NEAR(colour(20, 20) & 0xff, 0x20, 1);
+  EXPECT_NEAR(colour(20, 20) >> 8 & 0xff, 0x60, 1);
+  EXPECT_NEAR(colour(20, 20) >> 16 & 0xff, 0x40, 1);
+}
+
+TEST_P(PainterContract, TheNearSideOfAClosedSurfaceIsSeenAlsoInAMirror) {
+  for (const float mirror : {1.f, -1.f}) {
+    Shape shape;  // a tetrahedron whose near face (chart 1) hides the three others
+    const auto corner = [&](float x, float y, float depth, std::uint8_t chart) {
+      return shape.vertex({100 + mirror * x, 75 + y}, {0.5f, 0.5f}, depth, chart);
+    };
+    const auto face = [&](std::uint8_t chart, glm::vec3 a, glm::vec3 b, glm::vec3 c) {
+      const int first = corner(a.x, a.y, a.z, chart), second = corner(b.x, b.y, b.z, chart),
+                third = corner(c.x, c.y, c.z, chart);
+      shape.triangle(first, second, third);
+    };
+    const glm::vec3 a{-50, -40, 1}, b{50, -40, 1}, c{0, 50, 1}, back{0, 0, 2};
+    face(1, a, b, c);
+    face(2, b, a, back);
+    face(3, c, b, back);
+    face(4, a, c, back);
+    draw(*painter_, shape, kWhole);
+    EXPECT_EQ(surface(100, 75), 1) << mirror;
+    EXPECT_GT(lit_pixels(), 4000) << mirror;
+  }
+}
+
+TEST_P(PainterContract, DrawingTouchesItsRegionOnly) {
+  Shape first, second;
+  first.rectangle({0, 0}, {199, 149}, 1, 1);
+  second.rectangle({0, 0}, {199, 149}, 1, 2);
+  draw(*painter_, first, kWhole);
+  const Rect region{37, 29, 101, 90};
+  draw(*painter_, second, region);
+  for (int y = 0; y < kHeight - 1; ++y) {
+    for (int x = 0; x < kWidth - 1; ++x) {
+      const bool inside = x >= region.x0 && x < region.x1 && y >= region.y0 && y < region.y1;
+      ASSERT_EQ(surface(x, y), inside ? 2 : 1) << x << ' ' << y;
+    }
+  }
+  expect_consistent();
+}
+
+TEST_P(PainterContract, DrawingClearsItsRegionAndNothingElse) {
+  Shape shape;
+  shape.rectangle({0, 0}, {199, 149});
+  draw(*painter_, shape, kWhole);
+  painter_->draw({}, {50, 40, 120, 100});
+  EXPECT_EQ(lit_pixels({50, 40, 120, 100}), 0);
+  EXPECT_EQ(lit_pixels({0, 0, 50, 149}), 50 * 149);
+  EXPECT_EQ(lit_pixels({120, 0, 199, 149}), 79 * 149);
+  painter_->draw({}, kWhole);
+  EXPECT_EQ(lit_pixels(), 0);
+  expect_consistent();
+}
+
+TEST_P(PainterContract, ARegionBeyondTheImageIsClipped) {
+  Shape shape;
+  shape.rectangle({-500, -400}, {900, 800});
+  draw(*painter_, shape, {-100, -100, 1000, 1000});
+  EXPECT_EQ(lit_pixels(), kWidth * kHeight);
+  EXPECT_NEAR(uv(100, 75).x, 100 / 256.f, 1e-3);
+  draw(*painter_, shape, {5000, 10, 6000, 20});  // nowhere: nothing happens
+  fill(mask_of(kWidth, kHeight, kWhole), {-10, -10, 1000, 1000});
+  EXPECT_EQ(lit_pixels(), kWidth * kHeight);
+}
+
+TEST_P(PainterContract, CornersFarBeyondTheImageDoNoHarm) {
+  Shape shape;
+  const int a = shape.vertex({-25'000, 75}, {0, 0}), b = shape.vertex({25'000, -20'000}, {1, 0}),
+            c = shape.vertex({25'000, 20'000}, {1, 1});
+  shape.triangle(a, b, c);
+  const int nan = shape.vertex({std::nanf(""), 1e30f}, {0, 0});
+  shape.triangle(nan, nan, nan);
+  draw(*painter_, shape, kWhole);
+  EXPECT_EQ(lit_pixels(), kWidth * kHeight);
+}
+
+// ---- fill
+
+TEST_P(PainterContract, WithoutAHandInTheMaskEverythingIsDark) {
+  Shape shape;
+  shape.rectangle({20, 20}, {120, 100});
+  draw(*painter_, shape, kWhole);
+  const FillCounts counts = fill(mask_of(kWidth, kHeight, {}));
+  EXPECT_EQ(lit_pixels(), 0);
+  expect_consistent();
+  EXPECT_EQ(counts.lit + counts.filled + counts.dark, 0);
+}
+
+TEST_P(PainterContract, WithoutADrawingThereIsNothingToFillFrom) {
+  painter_->draw({}, kWhole);
+  const FillCounts counts = fill(mask_of(kWidth, kHeight, {10, 10, 60, 60}));
+  EXPECT_EQ(lit_pixels(), 0);
+  EXPECT_EQ(counts.dark, 50 * 50);
+}
+
+TEST_P(PainterContract, AHandThatIsLitAlreadyStaysAsItIs) {
+  Shape shape;
+  shape.rectangle({19.5f, 19.5f}, {119.5f, 99.5f});
+  draw(*painter_, shape, kWhole);
+  const std::uint32_t before = colour(70, 60);
+  const FillCounts counts = fill(mask_of(kWidth, kHeight, {20, 20, 120, 100}));
+  EXPECT_EQ(counts.lit, 100 * 80);
+  EXPECT_EQ(counts.filled, 0);
+  EXPECT_EQ(colour(70, 60), before);
+  EXPECT_EQ(lit_pixels(), 100 * 80);
+}
+
+TEST_P(PainterContract, AfterTheFillThereIsLightOnTheHandOnlyAndAllOverIt) {
+  Shape shape;
+  shape.rectangle({19.5f, 19.5f}, {119.5f, 99.5f});
+  draw(*painter_, shape, kWhole);
+  const Image<std::uint8_t> mask = mask_of(kWidth, kHeight, {32, 25, 132, 105});
+  const FillCounts counts = fill(mask);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x)
+      ASSERT_EQ(surface(x, y) != 0, mask.at(x, y) != 0) << x << ' ' << y;
+  }
+  expect_consistent();
+  EXPECT_EQ(counts.lit, 88 * 75);
+  EXPECT_EQ(counts.filled, 100 * 80 - 88 * 75);
+  EXPECT_EQ(counts.dark, 0);
+}
+
+TEST_P(PainterContract, TheFillContinuesALinearTextureExactly) {
+  Shape shape;
+  shape.rectangle({19.5f, 19.5f}, {119.5f, 99.5f});
+  draw(*painter_, shape, kWhole);
+  fill(mask_of(kWidth, kHeight, {32, 25, 140, 112}));
+  for (int y = 25; y < 112; ++y) {
+    for (int x = 32; x < 140; ++x) {
+      ASSERT_NEAR(uv(x, y).x, x / 256.f, 2e-5) << x << ' ' << y;
+      ASSERT_NEAR(uv(x, y).y, y / 256.f, 2e-5) << x << ' ' << y;
+      ASSERT_EQ(colour(x, y), texel_at(shape.texture(), uv(x, y))) << x << ' ' << y;
+    }
+  }
+}
+
+TEST_P(PainterContract, AtTheSeamBetweenTwoChartsTheFillKeepsTheSeedsOwnColour) {
+  Shape shape;  // a narrow strip of chart 2 at the right of chart 1: the reflection of far pixels
+                // lands on chart 1, though its texture coordinates go on smoothly
+  shape.rectangle({19.5f, 19.5f}, {99.5f, 99.5f}, 1, 1);
+  shape.rectangle({99.5f, 19.5f}, {104.5f, 99.5f}, 1, 2);
+  draw(*painter_, shape, kWhole);
+  fill(mask_of(kWidth, kHeight, {20, 20, 124, 100}));
+  const float own = 104 / 256.f;
+  for (int x = 105; x < 124; ++x) {
+    EXPECT_EQ(surface(x, 60), 2) << x;
+    const bool within_strip = 2 * 104 - x >= 100;
+    EXPECT_NEAR(uv(x, 60).x, within_strip ? x / 256.f : own, 2e-5) << x;
+  }
+}
+
+TEST_P(PainterContract, AJumpInTheTextureOfOneChartIsASeamToo) {
+  Shape shape;
+  shape.rectangle({19.5f, 19.5f}, {99.5f, 99.5f}, 1, 1);
+  shape.rectangle({99.5f, 19.5f}, {104.5f, 99.5f}, 1, 1, {0.3f, 0});
+  draw(*painter_, shape, kWhole);
+  fill(mask_of(kWidth, kHeight, {20, 20, 124, 100}));
+  EXPECT_NEAR(uv(107, 60).x, 107 / 256.f + 0.3f, 2e-5);
+  EXPECT_NEAR(uv(115, 60).x, 104 / 256.f + 0.3f, 2e-5);
+}
+
+TEST_P(PainterContract, BeyondTheReachItStaysDarkAndBeforeThatItFades) {
+  Shape shape(Texture(1, 1, 0xffc8c8c8));
+  shape.rectangle({-10, -10}, {49.5f, 160});
+  draw(*painter_, shape, kWhole);
+  settings_.reach_px = 20;
+  settings_.fade_px = 8;
+  const FillCounts counts = fill(mask_of(kWidth, kHeight, kWhole));
+  const auto red = [&](int px_away) { return colour(49 + px_away, 70) & 0xff; };
+  EXPECT_EQ(red(12), 0xc8u);
+  for (int away = 13; away < 20; ++away) {
+    EXPECT_LT(red(away), red(away - 1)) << away;
+    EXPECT_GT(alpha(49 + away, 70), 0u) << away;
+  }
+  EXPECT_EQ(alpha(49 + 20, 70), 0u);
+  EXPECT_EQ(surface(49 + 20, 70), 0);
+  EXPECT_EQ(counts.lit, 50 * kHeight);
+  EXPECT_EQ(counts.filled, 19 * kHeight);
+  EXPECT_EQ(counts.dark, (kWidth - 50 - 19) * kHeight);
+}
+
+TEST_P(PainterContract, AHandAtTheImagesBorderIsFilledUpToIt) {
+  Shape shape;
+  shape.rectangle({-60, -60}, {9.5f, 9.5f});
+  draw(*painter_, shape, kWhole);
+  const FillCounts counts = fill(mask_of(kWidth, kHeight, {0, 0, 25, 25}));
+  EXPECT_EQ(counts.lit, 100);
+  EXPECT_EQ(counts.filled, 25 * 25 - 100);
+  EXPECT_EQ(lit_pixels(), 25 * 25);
+  // Reflections beyond the border do not exist: the seed's own. (20, 5) reflects at (9, 5) to (-2,
+  // 5).
+  EXPECT_NEAR(uv(20, 5).x, 9 / 256.f, 2e-5);
+  EXPECT_NEAR(uv(15, 5).x, 15 / 256.f, 2e-5);
+}
+
+TEST_P(PainterContract, ShadingGoesOnIntoTheFill) {
+  Shape shape(Texture(1, 1, 0xffc8c8c8));
+  shape.rectangle({10, 10}, {50, 50});
+  shape.dim(0.5f);
+  const DrawnHand shaded = shape.drawn(true);
+  painter_->draw({&shaded, 1}, kWhole);
+  fill(mask_of(kWidth, kHeight, {10, 10, 60, 50}));
+  EXPECT_NEAR(colour(55, 30) & 0xff, colour(40, 30) & 0xff, 2);
+}
+
+TEST_P(PainterContract, FillingTouchesItsRegionOnly) {
+  Shape shape;
+  shape.rectangle({0, 0}, {199, 149});
+  draw(*painter_, shape, kWhole);
+  fill(mask_of(kWidth, kHeight, {}), {37, 29, 101, 90});
+  EXPECT_EQ(lit_pixels({37, 29, 101, 90}), 0);
+  EXPECT_EQ(lit_pixels({0, 0, 199, 149}), 199 * 149 - 64 * 61);
+  expect_consistent();
+}
+
+TEST_P(PainterContract, MethodNoneLeavesTheDrawingAsItIs) {
+  Shape shape;
+  shape.rectangle({19.5f, 19.5f}, {119.5f, 99.5f});
+  draw(*painter_, shape, kWhole);
+  settings_.method = "none";
+  fill(mask_of(kWidth, kHeight, {}));
+  EXPECT_EQ(lit_pixels(), 100 * 80);
+}
+
+// ---- warp
+
+inline WarpGrid grid_of(int columns, int rows, Rect area,
+                        const std::function<glm::vec2(glm::vec2)>& move) {
+  WarpGrid grid{columns, rows, area, {}};
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const glm::vec2 part{static_cast<float>(column) / (columns - 1),
+                           static_cast<float>(row) / (rows - 1)};
+      grid.nodes.push_back(move(glm::vec2{area.x0, area.y0} +
+                                part * glm::vec2{area.width() - 1, area.height() - 1}));
+    }
+  }
+  return grid;
+}
+
+TEST_P(PainterContract, TheGridAtRestMovesNothingAndLosesNothing) {
+  Shape shape;
+  shape.rectangle({-10, -10}, {300, 300});
+  draw(*painter_, shape, kWhole);
+  painter_->warp(grid_of(21, 21, kWhole, [](glm::vec2 p) { return p; }), kWhole, kWhole);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      ASSERT_EQ(surface(x, y), 1) << x << ' ' << y;
+      ASSERT_NEAR(uv(x, y).x, x / 256.f, 1e-4) << x << ' ' << y;
+      ASSERT_NEAR(uv(x, y).y, y / 256.f, 1e-4) << x << ' ' << y;
+    }
+  }
+  expect_consistent();
+}
+
+TEST_P(PainterContract, AShiftedGridShiftsTheDrawing) {
+  Shape shape;
+  shape.rectangle({39.5f, 29.5f}, {89.5f, 69.5f});
+  draw(*painter_, shape, kWhole);
+  painter_->warp(grid_of(11, 9, kWhole,
+                         [](glm::vec2 p) {
+                           return p + glm::vec2{17, -6};
+                         }),
+                 kWhole, kWhole);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const bool inside = x >= 57 && x < 107 && y >= 24 && y < 64;
+      ASSERT_EQ(surface(x, y) != 0, inside) << x << ' ' << y;
+      if (!inside) continue;
+      ASSERT_NEAR(uv(x, y).x, (x - 17) / 256.f, 1e-4);
+      ASSERT_EQ(colour(x, y), texel_at(shape.texture(), uv(x, y)));
+    }
+  }
+  expect_consistent();
+}
+
+TEST_P(PainterContract, AWarpTakesFromOneRegionAndLightsAnother) {
+  Shape shape;
+  shape.rectangle({-10, -10}, {300, 300});
+  draw(*painter_, shape, kWhole);
+  const Rect from{40, 30, 90, 70}, region{50, 20, 120, 60};
+  painter_->warp(grid_of(11, 9, kWhole,
+                         [](glm::vec2 p) {
+                           return p + glm::vec2{17, -6};
+                         }),
+                 from, region);
+  for (int y = region.y0; y < region.y1; ++y) {
+    for (int x = region.x0; x < region.x1; ++x) {
+      const bool inside = x >= 57 && x < 107 && y >= 24 && y < 64;
+      ASSERT_EQ(surface(x, y) != 0, inside) << x << ' ' << y;
+    }
+  }
+  expect_consistent(region);
+}
+
+TEST_P(PainterContract, WhereCellsOverlapTheLaterOneIsSeen) {
+  Shape shape;
+  shape.rectangle({-10, -10}, {300, 300});
+  draw(*painter_, shape, kWhole);
+  // Three columns of nodes: the right cells are folded back over the left ones.
+  painter_->warp(grid_of(3, 3, kWhole,
+                         [](glm::vec2 p) {
+                           return p.x > 150 ? glm::vec2{0, p.y} : p;
+                         }),
+                 kWhole, kWhole);
+  for (const int x : {20, 50, 80}) EXPECT_GT(uv(x, 60).x, 99 / 256.f) << x;
+}
+
+TEST_P(PainterContract, DrawWarpAndFillGoTogether) {
+  Shape shape;
+  shape.rectangle({39.5f, 29.5f}, {89.5f, 69.5f});
+  for (int frame = 0; frame < 3; ++frame) {  // what a frame leaves behind must not show in the next
+    draw(*painter_, shape, {20, 10, 150, 120});
+    painter_->warp(grid_of(11, 9, kWhole,
+                           [](glm::vec2 p) {
+                             return p + glm::vec2{17, -6};
+                           }),
+                   {20, 10, 150, 120}, {20, 10, 150, 120});
+    const FillCounts counts = fill(mask_of(kWidth, kHeight, {57, 24, 115, 70}), {20, 10, 150, 120});
+    EXPECT_EQ(counts.lit, 50 * 40);
+    EXPECT_EQ(counts.filled, 58 * 46 - 50 * 40);
+    EXPECT_EQ(lit_pixels({20, 10, 150, 120}), 58 * 46);
+    EXPECT_NEAR(uv(112, 40).x, (112 - 17) / 256.f, 1e-4);
+    expect_consistent({20, 10, 150, 120});
+  }
+}
+
+}  // namespace handcast::renderer::test

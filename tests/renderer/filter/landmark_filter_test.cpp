@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/filter/landmark_filter.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+config::Filter settings(const char* method, double blend_ms = 0) {
+  config::Filter filter;
+  filter.method = method;
+  filter.blend_ms = blend_ms;
+  filter.blend_px = 100;  // more than any jump here: the bound has a test of its own
+  return filter;
+}
+
+/// A tracker whose landmarks all move at `velocity_px_s`.
+struct Line {
+  glm::vec2 velocity_px_s{0};
+  LandmarkPoints at(std::int64_t time_ns) const {
+    LandmarkPoints points;
+    for (int i = 0; i < kLandmarks; ++i)
+      points[i] =
+          glm::vec2(300 + 3 * i, 200 + 5 * i) + velocity_px_s * static_cast<float>(time_ns * 1e-9);
+    return points;
+  }
+  TrackerAt function() const {
+    return [*this](std::int64_t time_ns) { return std::optional(at(time_ns)); };
+  }
+};
+
+msg::HandLandmarks seen(const LandmarkPoints& tracker, glm::vec2 offset_px) {
+  msg::HandLandmarks hand;
+  hand.presence = 1;
+  for (int i = 0; i < kLandmarks; ++i)
+    hand.points[i] = {tracker[i].x + offset_px.x, tracker[i].y + offset_px.y, 1.0f};
+  return hand;
+}
+
+/// Feeds detections of `offset_px` every 16 ms, 16 ms late, and asks every 2 ms. Returns the time
+/// of the last question.
+std::int64_t run(LandmarkFilter& filter, const Line& line, glm::vec2 offset_px,
+                 std::int64_t from_ms, std::int64_t to_ms) {
+  for (std::int64_t now_ms = from_ms; now_ms <= to_ms; now_ms += 2) {
+    if (now_ms % 16 == 0)
+      filter.detection(now_ms * kMs, (now_ms - 16) * kMs,
+                       seen(line.at((now_ms - 16) * kMs), offset_px), line.function());
+    filter.at(now_ms * kMs, (now_ms + 4) * kMs, line.at((now_ms + 4) * kMs));
+  }
+  return to_ms * kMs;
+}
+
+glm::vec2 offset_at(LandmarkFilter& filter, const Line& line, std::int64_t now_ns,
+                    int landmark = 7) {
+  const auto points = filter.at(now_ns, now_ns + 4 * kMs, line.at(now_ns + 4 * kMs));
+  return points ? (*points)[landmark] - line.at(now_ns + 4 * kMs)[landmark] : glm::vec2(0);
+}
+
+class EveryFilter : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Filters, EveryFilter,
+                         ::testing::Values("naive", "kalman", "paper", "one_euro", "offset_kalman"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(EveryFilter, SaysNothingBeforeTheFirstDetection) {
+  const auto filter = make_landmark_filter(settings(GetParam(), 6));
+  EXPECT_FALSE(filter->at(0, 4 * kMs, Line{}.at(0)));
+}
+
+TEST_P(EveryFilter, FindsAConstantOffsetOfAStillHand) {
+  const auto filter = make_landmark_filter(settings(GetParam(), 6));
+  const Line still;
+  const auto now_ns = run(*filter, still, {12, -7}, 0, 400);
+  EXPECT_NEAR(offset_at(*filter, still, now_ns).x, 12, 0.1);
+  EXPECT_NEAR(offset_at(*filter, still, now_ns).y, -7, 0.1);
+}
+
+TEST_P(EveryFilter, AMissingPointKeepsWhatIsKnownOfIt) {
+  const auto filter = make_landmark_filter(settings(GetParam()));
+  const Line still;
+  run(*filter, still, {12, -7}, 0, 200);
+  auto without_seven = seen(still.at(0), {20, 0});
+  without_seven.points[7].confidence = 0;
+  filter->detection(202 * kMs, 200 * kMs, without_seven, still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 202 * kMs, 7).x, 12, 0.5);
+  EXPECT_GT(offset_at(*filter, still, 202 * kMs, 8).x, 13.5);
+}
+
+TEST_P(EveryFilter, APointNeverSeenGoesWithTheOthers) {
+  const auto filter = make_landmark_filter(settings(GetParam()));
+  const Line still;
+  auto without_seven = seen(still.at(0), {10, 4});
+  without_seven.points[7].confidence = 0;
+  filter->detection(2 * kMs, 0, without_seven, still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 2 * kMs, 7).x, 10, 0.1);
+}
+
+TEST_P(EveryFilter, ADetectionWithoutAnyPointChangesNothing) {
+  const auto filter = make_landmark_filter(settings(GetParam()));
+  filter->detection(2 * kMs, 0, msg::HandLandmarks{}, Line{}.function());
+  EXPECT_FALSE(filter->at(4 * kMs, 8 * kMs, Line{}.at(0)));
+}
+
+TEST_P(EveryFilter, AnOlderDetectionThatComesLaterIsNotTakenForTheNewest) {
+  const auto filter = make_landmark_filter(settings(GetParam()));
+  const Line still;
+  run(*filter, still, {12, 0}, 0, 160);
+  filter->detection(162 * kMs, 100 * kMs, seen(still.at(0), {-30, 0}), still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 162 * kMs).x, 12, 0.1);
+}
+
+TEST_P(EveryFilter, FadesOutSmoothlyWhenDetectionsStayAway) {
+  const auto filter = make_landmark_filter(settings(GetParam()));  // lost_ms 300
+  const Line still;
+  const auto lost_ns = run(*filter, still, {20, 0}, 0, 320);  // the last one was seen at 304 ms
+  EXPECT_NEAR(offset_at(*filter, still, lost_ns + 270 * kMs).x, 20, 0.1);
+  float before = 20;
+  for (int ms = 272; ms < 420; ms += 2) {
+    const float now = offset_at(*filter, still, lost_ns + ms * kMs).x;
+    EXPECT_LE(now, before + 1e-4f);
+    EXPECT_GT(now, before - 1.0f);
+    before = now;
+  }
+  EXPECT_FALSE(filter->at(lost_ns + 420 * kMs, lost_ns + 424 * kMs, still.at(0)));
+}
+
+TEST_P(EveryFilter, BlendsItsFirstCorrectionIn) {
+  const auto filter = make_landmark_filter(settings(GetParam(), 8));
+  const Line still;
+  for (int ms = 0; ms < 20; ms += 1) filter->at(ms * kMs, (ms + 4) * kMs, still.at(0));
+  filter->detection(20 * kMs, 4 * kMs, seen(still.at(0), {40, 0}), still.function());
+  float before = 0;
+  for (int ms = 20; ms < 100; ms += 1) {
+    const float now = offset_at(*filter, still, ms * kMs).x;
+    EXPECT_LT(std::abs(now - before), 40 * (1 - std::exp(-1 / 8.0f)) + 0.01f) << ms;
+    before = now;
+  }
+  EXPECT_NEAR(before, 40, 0.1);
+}
+
+class OffsetFilter : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Filters, OffsetFilter,
+                         ::testing::Values("paper", "one_euro", "offset_kalman"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(OffsetFilter, DelayedDetectionsOfAMovingHandAreCarriedToTheLight) {
+  const auto filter = make_landmark_filter(settings(GetParam()));
+  const Line fast{{800, -300}};
+  const auto now_ns = run(*filter, fast, {12, -7}, 0, 400);
+  EXPECT_NEAR(offset_at(*filter, fast, now_ns).x, 12, 0.1);
+  EXPECT_NEAR(offset_at(*filter, fast, now_ns).y, -7, 0.1);
+}
+
+TEST(NaiveFilter, TrailsAMovingHandByTheAgeOfItsLandmarks) {
+  const auto filter = make_landmark_filter(settings("naive"));
+  const Line fast{{1000, 0}};
+  const auto now_ns = run(*filter, fast, {0, 0}, 0, 400);
+  EXPECT_NEAR(offset_at(*filter, fast, now_ns).x, -20, 0.5);  // 16 ms old and drawn 4 ms ahead
+}
+
+TEST(IdealFilter, SaysWhatTheOracleSaysAtTheTimeOfTheLight) {
+  const Line truth{{700, 0}};
+  const auto filter = make_landmark_filter(
+      settings("ideal"), [&](std::int64_t time_ns) { return std::optional(truth.at(time_ns)); });
+  const auto points = filter->at(100 * kMs, 104 * kMs, Line{}.at(0));
+  ASSERT_TRUE(points);
+  EXPECT_EQ(*points, truth.at(104 * kMs));
+}
+
+TEST(IdealFilter, CorrectsNothingWithoutAnOracle) {
+  EXPECT_FALSE(make_landmark_filter(settings("ideal"))->at(100 * kMs, 104 * kMs, Line{}.at(0)));
+}
+
+TEST(NoFilter, NeverCorrects) {
+  const auto filter = make_landmark_filter(settings("none"));
+  run(*filter, Line{}, {10, 10}, 0, 100);
+  EXPECT_FALSE(filter->at(100 * kMs, 104 * kMs, Line{}.at(0)));
+}
+
+TEST(PaperFilter, WithoutHindsightTakesTheTrackerAsItWasDrawnThen) {
+  config::Filter without = settings("paper");
+  without.hindsight = false;
+  const auto filter = make_landmark_filter(without);
+  const Line
+      drawn;  // what was drawn for every time; by hindsight the tracker was 30 px to the right
+  for (int ms = 0; ms < 40; ms += 1) filter->at(ms * kMs, (ms + 4) * kMs, drawn.at(0));
+  const TrackerAt hindsight = [&](std::int64_t) {
+    auto points = drawn.at(0);
+    for (auto& point : points) point.x += 30;
+    return std::optional(points);
+  };
+  filter->detection(40 * kMs, 24 * kMs, seen(drawn.at(0), {5, 0}), hindsight);
+  EXPECT_NEAR(offset_at(*filter, drawn, 40 * kMs).x, 5, 1e-3);
+}
+
+TEST(PaperFilter, WithHindsightTakesTheTrackerAsItIsKnownNow) {
+  const auto filter = make_landmark_filter(settings("paper"));
+  const Line drawn;
+  const TrackerAt hindsight = [&](std::int64_t) {
+    auto points = drawn.at(0);
+    for (auto& point : points) point.x += 30;
+    return std::optional(points);
+  };
+  filter->detection(40 * kMs, 24 * kMs, seen(drawn.at(0), {5, 0}), hindsight);
+  EXPECT_NEAR(offset_at(*filter, drawn, 40 * kMs).x, -25, 1e-3);
+}
+
+TEST(OffsetKalman, LeavesOutAWildPointButFollowsAJumpThatStays) {
+  const auto filter = make_landmark_filter(settings("offset_kalman"));
+  const Line still;
+  run(*filter, still, {3, 0}, 0, 320);
+  for (int n = 1; n <= 4; ++n) {
+    auto wild = seen(still.at(0), {3, 0});
+    wild.points[7].x_px += 80;
+    filter->detection((320 + 16 * n) * kMs, (304 + 16 * n) * kMs, wild, still.function());
+    EXPECT_NEAR(offset_at(*filter, still, (320 + 16 * n) * kMs, 7).x, n <= 3 ? 3 : 83, 0.5) << n;
+    EXPECT_NEAR(offset_at(*filter, still, (320 + 16 * n) * kMs, 8).x, 3, 0.5);
+  }
+}
+
+TEST(OffsetKalman, SmoothsTheNoiseThatNaivePassesOn) {
+  const Line still;
+  std::array<double, 2> square{};
+  for (const int which : {0, 1}) {
+    const auto filter = make_landmark_filter(settings(which ? "offset_kalman" : "naive"));
+    std::mt19937 random(7);
+    std::normal_distribution<float> noise(0, 1);
+    for (int n = 1; n <= 400; ++n) {
+      auto hand = seen(still.at(0), {5, 5});
+      for (auto& point : hand.points) {
+        point.x_px += noise(random);
+        point.y_px += noise(random);
+      }
+      filter->detection(16 * n * kMs, 16 * (n - 1) * kMs, hand, still.function());
+      if (n > 40) square[which] += std::pow(offset_at(*filter, still, 16 * n * kMs).x - 5, 2);
+    }
+  }
+  EXPECT_LT(std::sqrt(square[1]), 0.75 * std::sqrt(square[0]));
+}
+
+TEST(OffsetKalman, FollowsADriftingOffsetWithoutLag) {
+  const auto filter = make_landmark_filter(settings("offset_kalman"));
+  const Line still;
+  for (int n = 1; n <= 60; ++n)
+    filter->detection(16 * n * kMs, 16 * (n - 1) * kMs,
+                      seen(still.at(0), {20 * 0.016f * static_cast<float>(n - 1), 0}),
+                      still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 960 * kMs).x, 20 * 0.964, 0.15);
+}
+
+TEST(Blending, ATrackerThatJumpsMovesTheLightOnlyBitByBit) {
+  const auto filter = make_landmark_filter(settings("offset_kalman", 8));
+  const Line fast{{500, 0}};
+  run(*filter, fast, {10, 0}, 0, 320);
+  float before = 0;
+  for (int ms = 322; ms < 380; ++ms) {
+    LandmarkPoints tracker = fast.at((ms + 4) * kMs);
+    if (ms == 350) filter->tracker_sample(ms * kMs);
+    if (ms >= 350)
+      for (auto& point : tracker) point.x += 16;
+    const float now =
+        (*filter->at(ms * kMs, (ms + 4) * kMs, tracker))[3].x - fast.at((ms + 4) * kMs)[3].x;
+    if (ms > 322) {
+      EXPECT_LT(std::abs(now - before), 16 * (1 - std::exp(-1 / 8.0f)) + 0.1f) << ms;
+    }
+    if (ms == 350) {
+      EXPECT_NEAR(now, before, 0.1);  // in the very frame of the jump nothing moves
+    }
+    before = now;
+  }
+  EXPECT_NEAR(before, 26, 0.6);
+}
+
+TEST(Blending, NoMoreThanItsBoundIsHeldBack) {
+  config::Filter bounded = settings("offset_kalman", 8);
+  bounded.blend_px = 1.5;
+  const auto filter = make_landmark_filter(bounded);
+  const Line still;
+  const auto now_ns = run(*filter, still, {10, 0}, 0, 320);
+  auto jumped = still.at(0);
+  for (auto& point : jumped) point.x += 16;
+  filter->tracker_sample(now_ns + kMs);
+  EXPECT_NEAR((*filter->at(now_ns + kMs, now_ns + 5 * kMs, jumped))[3].x - still.at(0)[3].x,
+              26 - 1.5, 0.1);
+}
+
+TEST(Blending, AHandThatComesBackIsNotDraggedFromWhereItLeft) {
+  const auto filter = make_landmark_filter(settings("offset_kalman", 8));
+  const Line still;
+  run(*filter, still, {10, 0}, 0, 320);
+  LandmarkPoints elsewhere = still.at(0);
+  for (auto& point : elsewhere) point += glm::vec2(200, 100);
+  filter->tracker_sample(480 * kMs);
+  EXPECT_NEAR((*filter->at(480 * kMs, 484 * kMs, elsewhere))[3].x - elsewhere[3].x, 10, 0.5);
+}
+
+TEST_P(OffsetFilter, AFingerTakenForAnotherIsPutRightButBelievedInTheEnd) {
+  if (std::string(GetParam()) == "paper")
+    GTEST_SKIP() << "the paper's filter takes detections as they come";
+  const auto filter = make_landmark_filter(settings(GetParam()));
+  Line still;
+  const auto apart = [&] {  // fingers 60 px from each other
+    auto hand = seen(still.at(0), {3, 0});
+    for (int i = 1; i < kLandmarks; ++i)
+      hand.points[i].x_px += 60.0f * static_cast<float>((i - 1) / 4);
+    return hand;
+  };
+  auto wrong = apart();
+  std::swap_ranges(&wrong.points[5], &wrong.points[9], &wrong.points[9]);
+  for (int ms = 0; ms <= 320; ms += 16)
+    filter->detection(ms * kMs, (ms - 16) * kMs, apart(), still.function());
+  const float right = offset_at(*filter, still, 320 * kMs, 6).x;
+  for (int ms = 336; ms < 800; ms += 16) {
+    filter->detection(ms * kMs, (ms - 16) * kMs, wrong, still.function());
+    ASSERT_NEAR(offset_at(*filter, still, ms * kMs, 6).x, right, 0.5) << ms;
+  }
+  for (int ms = 800; ms < 2000; ms += 16)
+    filter->detection(ms * kMs, (ms - 16) * kMs, wrong, still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 2000 * kMs, 6).x, right + 72, 3);
+}
+
+TEST(OffsetKalman, WhenTheTrackerMovesItsHandUnnoticedTheNextDetectionIsBelieved) {
+  const auto filter = make_landmark_filter(settings("offset_kalman"));
+  const Line still;
+  run(*filter, still, {3, 0}, 0, 320);
+  const TrackerAt moved = [&](std::int64_t) {
+    auto points = still.at(0);
+    for (auto& point : points) point.x += 50;
+    return std::optional(points);
+  };
+  for (int ms = 336; ms < 700; ms += 2) {
+    if (ms % 16 == 0)
+      filter->detection(ms * kMs, (ms - 16) * kMs, seen(still.at(0), {3, 0}), moved);
+    ASSERT_NEAR((*filter->at(ms * kMs, (ms + 4) * kMs, *moved(0)))[7].x - still.at(0)[7].x, 3, 0.5)
+        << ms;
+  }
+}
+
+TEST(OffsetKalman, ADetectionThatIsElsewhereAltogetherIsNotBelievedAtOnce) {
+  const auto filter = make_landmark_filter(settings("offset_kalman"));
+  const Line still;
+  run(*filter, still, {3, 0}, 0, 320);
+  filter->detection(336 * kMs, 320 * kMs, seen(still.at(0), {150, 40}), still.function());
+  EXPECT_NEAR(offset_at(*filter, still, 336 * kMs).x, 3, 0.5);
+}
+
+}  // namespace
+}  // namespace handcast::renderer

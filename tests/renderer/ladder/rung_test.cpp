@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/ladder/rung.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/renderer/open_hand.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+float left_px(Rung rung, const LandmarkPoints& p, const LandmarkPoints& q) {
+  return std::sqrt(residual_px2(fit_rung(rung, p, q), p, q));
+}
+
+TEST(Rung, EachReachesTheFieldsThatItsNumbersCanMake) {
+  const LandmarkPoints p = open_hand();
+  const LandmarkPoints shifted = moved(p, {1, 0, {7, -4}}),
+                       turned = moved(p, {1.05f, 0.08f, {7, -4}});
+  EXPECT_GT(left_px(Rung::predict, p, shifted), 8);
+  EXPECT_LT(left_px(Rung::shift, p, shifted), 1e-3f);
+  EXPECT_GT(left_px(Rung::shift, p, turned), 3);
+  EXPECT_LT(left_px(Rung::similarity, p, turned), 1e-3f);
+  LandmarkPoints bent = turned;
+  for (int i = 5; i <= 8; ++i) bent[i] += glm::vec2(10, 0);
+  EXPECT_LT(left_px(Rung::fingers, p, bent), 0.5f * left_px(Rung::similarity, p, bent));
+}
+
+TEST(Rung, ADearerOneNeverLeavesMore) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const LandmarkPoints p = with_noise(open_hand(), seed),
+                         q = with_noise(moved(p, {1.02f, 0.05f, {9, 3}}), seed + 1000);
+    float before = left_px(Rung::hold, p, q);
+    for (const Rung rung : {Rung::predict, Rung::shift, Rung::similarity, Rung::fingers}) {
+      const float left = left_px(rung, p, q);
+      EXPECT_LE(left, before + 1e-3f) << msg::name_of(rung) << ", seed " << seed;
+      before = left;
+    }
+  }
+}
+
+TEST(Rung, TheNamesAreThoseOfTheSettings) {
+  for (std::size_t r = 0; r < kRungs; ++r)
+    EXPECT_EQ(rung_named(msg::kRungNames[r]), static_cast<Rung>(r));
+  for (std::size_t r = 1; r < kRungs; ++r)
+    EXPECT_GE(degrees_of_freedom(static_cast<Rung>(r)),
+              degrees_of_freedom(static_cast<Rung>(r - 1)));
+}
+
+TEST(Rung, AMarkTellsTheRungOfEachHandAndNothingOfOneThatIsNotThere) {
+  const auto detail = msg::with_rung(0, msg::Side::right, Rung::hold);
+  EXPECT_EQ(msg::rung_in(detail, msg::Side::right), Rung::hold);
+  EXPECT_EQ(msg::rung_in(detail, msg::Side::left), std::nullopt);
+  EXPECT_EQ(
+      msg::rung_in(msg::with_rung(detail, msg::Side::left, Rung::registered), msg::Side::left),
+      Rung::registered);
+  EXPECT_EQ(msg::rung_in(0xf, msg::Side::left), std::nullopt)
+      << "shared memory: nothing read from it is trusted";
+}
+
+}  // namespace
+}  // namespace handcast::renderer

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/mask/hint.hpp"
+
+#include <gtest/gtest.h>
+
+#include "renderer/predict/project_landmarks.hpp"
+#include "tests/renderer/pipeline/stage_set.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+TEST(Hint, AHandFarOutsideTheImageIsNotLookedForEvenWhereTheLensWouldFoldItIn) {
+  auto calibration = rig_above_hand();
+  calibration.camera.k1 = -0.8;  // turns back some way outside the image
+  calibration.camera.k2 = calibration.camera.k3 = 0;
+  ASSERT_FALSE(calibration.camera.folds());
+  const auto hint_at = [&](float x_m) {
+    Corrected hand{.pose = pose_of(Side::left, {x_m, 0, 0})};
+    hand.tracker = hand.landmarks = *project_landmarks(calibration, hand.pose);
+    return make_hint(calibration, {}, hand.pose, hand);
+  };
+  EXPECT_TRUE(hint_at(0));
+  EXPECT_TRUE(hint_at(0.2f));    // a part of it is seen
+  EXPECT_FALSE(hint_at(0.55f));  // the polynomial lays it into the image
+}
+
+}  // namespace
+}  // namespace handcast::renderer

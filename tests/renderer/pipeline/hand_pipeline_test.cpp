@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/pipeline/hand_pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "renderer/predict/project_landmarks.hpp"
+#include "tests/renderer/pipeline/stage_set.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+/// A left hand that sways, a tracker 9 ms old that is 5 mm off, a detector 16 ms old that is right;
+/// what goes wrong is set by the test.
+class Rig {
+ public:
+  std::function<glm::vec3(std::int64_t ms)> way = [](std::int64_t ms) {
+    return glm::vec3(0.06f * static_cast<float>(std::sin(2 * std::numbers::pi * 1.2 *
+                                                         static_cast<double>(ms) * 1e-3)),
+                     0, 0);
+  };
+  std::function<std::optional<glm::vec3>(std::int64_t ms)> tracker = [](std::int64_t) {
+    return glm::vec3(0);
+  };  ///< its error
+  std::function<std::int64_t(std::int64_t ms)> sampled = [](std::int64_t ms) {
+    return ms;
+  };  ///< whose pose it gives
+  std::function<bool(std::int64_t ms)> detects = [](std::int64_t) { return true; };
+
+  /// Runs to `until_ms`; calls `each` with the time of the light and what is known for it.
+  template <class Each>
+  void run(int until_ms, Each each) {
+    for (std::int64_t ms = 0; ms < until_ms; ++ms) {
+      const std::int64_t sampled_ms = ms - 9, seen_ms = ms - 16;
+      if (ms % 9 == 0 && sampled_ms >= 0)
+        if (const auto error = tracker(sampled_ms))
+          hand_.push(ms * kMs, sampled_ms * kMs,
+                     pose_of(Side::left, way(sampled(sampled_ms)) + *error + kBias));
+      if (ms % 16 == 0 && seen_ms >= 0 && detects(seen_ms)) {
+        const auto seen =
+            landmarks_of(calibration_, seen_ms * kMs, pose_of(Side::left, way(seen_ms)), {0, 0});
+        hand_.push(ms * kMs, seen_ms * kMs, seen.hands[0]);
+      }
+      each(ms, hand_.predict(ms * kMs, (ms + 4) * kMs, std::nullopt));
+    }
+  }
+
+  /// Mean error of the corrected landmarks, px.
+  double error_px(std::int64_t ms, const HandFrame& frame) const {
+    const auto truth = *project_landmarks(calibration_, pose_of(Side::left, way(ms + 4)));
+    double sum = 0;
+    for (int i = 0; i < kLandmarks; ++i)
+      sum += glm::distance(truth[i], frame.corrected.landmarks[i]);
+    return sum / kLandmarks;
+  }
+
+  /// The largest from 300 ms on.
+  double worst_px(int until_ms) {
+    double worst = 0;
+    run(until_ms, [&](std::int64_t ms, const auto& tracked) {
+      if (ms > 300) worst = std::max(worst, tracked ? error_px(ms, *tracked) : 1e3);
+    });
+    return worst;
+  }
+
+ private:
+  /// Without late registration: jumps are blended by the filter.
+  static config::Cascade on_landmarks() {
+    config::Cascade settings;
+    settings.ladder.rung = "landmarks";
+    return settings;
+  }
+
+  static constexpr glm::vec3 kBias{0.005f, 0, 0};
+  calib::Calibration calibration_ = rig_above_hand();
+  HandPipeline hand_ =
+      *HandPipeline::load(Side::left, on_landmarks(), "builtin:white", {}, calibration_, {});
+};
+
+TEST(HandPipeline, AHandThatIsTrackedAndSeenIsExact) { EXPECT_LT(Rig().worst_px(600), 3); }
+
+TEST(HandPipeline, ATrackerThatReplacesItsHandDoesNotMoveTheLight) {
+  Rig rig;
+  rig.tracker = [](std::int64_t ms) {
+    return glm::vec3(ms < 400 ? 0 : 0.05f, 0, ms < 400 ? 0 : -0.03f);
+  };
+  EXPECT_LT(rig.worst_px(700), 6);
+}
+
+TEST(HandPipeline, AWildSampleOfTheTrackerDoesNotMoveTheLight) {
+  for (const float far_m : {0.03f, 0.05f, 0.2f}) {
+    Rig rig;
+    rig.tracker = [far_m](std::int64_t ms) {
+      return glm::vec3(ms >= 400 && ms < 409 ? far_m : 0, 0, 0);
+    };
+    EXPECT_LT(rig.worst_px(700), 6) << far_m;
+  }
+}
+
+TEST(HandPipeline, AFrozenTrackerIsNotFollowed) {
+  Rig rig;
+  rig.sampled = [](std::int64_t ms) { return ms >= 405 && ms < 700 ? 396 : ms; };
+  EXPECT_LT(rig.worst_px(1000), 8);
+}
+
+TEST(HandPipeline, ATrackerThatStandsStillBesideAMovingHandIsNotBelieved) {
+  Rig rig;
+  rig.sampled = [](std::int64_t ms) { return ms >= 405 && ms < 700 ? 396 : ms; };
+  rig.tracker = [](std::int64_t ms) {
+    return glm::vec3(0, 1e-5f * static_cast<float>(ms % 7), 0);
+  };  // never twice the same
+  EXPECT_LT(rig.worst_px(1000), 60);
+}
+
+TEST(HandPipeline, WhileTheTrackerIsSilentTheLandmarksGoOnAlone) {
+  Rig rig;
+  rig.tracker = [](std::int64_t ms) {
+    return ms >= 400 && ms < 700 ? std::nullopt : std::optional(glm::vec3(0));
+  };
+  bool was_alone = false;
+  rig.run(1000, [&](std::int64_t ms, const auto& tracked) {
+    if (ms < 300) return;
+    ASSERT_TRUE(tracked) << ms;
+    EXPECT_LT(rig.error_px(ms, *tracked), 8) << ms;
+    EXPECT_EQ(tracked->presence, 1) << ms;
+    was_alone = was_alone || tracked->corrected.is_alone;
+    if (ms > 760) {
+      EXPECT_FALSE(tracked->corrected.is_alone) << ms;
+    }
+  });
+  EXPECT_TRUE(was_alone);
+}
+
+TEST(HandPipeline, WhenTrackerAndDetectorAreLostTheLightStaysAndFades) {
+  Rig rig;
+  rig.way = [](std::int64_t) { return glm::vec3(0); };
+  rig.tracker = [](std::int64_t ms) {
+    return ms >= 400 ? std::nullopt : std::optional(glm::vec3(0));
+  };
+  rig.detects = [](std::int64_t ms) { return ms < 400; };
+  float before = 1;
+  rig.run(800, [&](std::int64_t ms, const auto& tracked) {
+    if (ms < 300) return;
+    const float level = tracked ? tracked->presence : 0;
+    EXPECT_LE(level, before);
+    EXPECT_GT(level, before - 0.03f) << ms;
+    if (tracked) {
+      EXPECT_LT(rig.error_px(ms, *tracked), 2) << ms;
+    }
+    before = level;
+  });
+  EXPECT_EQ(before, 0);
+}
+
+TEST(HandPipeline, FastMotionAndReversalsAreNotTakenForJumps) {
+  for (const bool zigzag : {false, true}) {
+    Rig rig;
+    rig.way =
+        [zigzag](
+            std::int64_t ms) {  // to 2 m/s in 100 ms; or to and fro at 2 m/s, turning within 20 ms
+          const double s = static_cast<double>(ms) * 1e-3, sharp = 0.97;
+          const double x = zigzag
+                               ? 0.1 * std::asin(sharp * std::sin(2 * std::numbers::pi * 5 * s)) /
+                                     (std::numbers::pi / 2)
+                               : (s < 0.35 ? 0
+                                           : 10 * std::pow(std::min(s - 0.35, 0.1), 2) +
+                                                 2 * std::max(0.0, s - 0.45));
+          return glm::vec3(static_cast<float>(x), 0, 0);
+        };
+    rig.run(550, [&](std::int64_t ms, const auto& tracked) {
+      if (ms > 300 && tracked) {
+        EXPECT_FALSE(tracked->corrected.is_alone) << ms << zigzag;
+      }
+    });
+  }
+}
+
+TEST(HandPipeline, AStillHandOfAFlawlessTrackerIsNotTakenForFrozen) {
+  Rig rig;
+  rig.way = [](std::int64_t) { return glm::vec3(0); };
+  rig.run(600, [&](std::int64_t ms, const auto& tracked) {
+    if (ms > 50) {
+      EXPECT_TRUE(tracked && !tracked->corrected.is_alone && tracked->presence == 1) << ms;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace handcast::renderer

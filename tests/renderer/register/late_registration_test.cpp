@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/register/late_registration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "renderer/predict/project_landmarks.hpp"
+#include "tests/renderer/pipeline/stage_set.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+constexpr std::int64_t kPeriod_ns = 9 * kMs, kAge_ns = 9 * kMs, kFrame_ns = 2 * kMs,
+                       kLeg_ns = 5 * kMs;
+
+/// One hand on its way: the tracker samples it every 9 ms and says so 9 ms later, the camera sees
+/// it every 2 ms.
+class Scene {
+ public:
+  explicit Scene(std::function<glm::vec3(double)> moved_m, glm::vec2 image_off_px = {})
+      : moved_m_(std::move(moved_m)),
+        image_off_px_(image_off_px),
+        track_({}, calibration_),
+        late_({}, {}, calibration_) {}
+
+  msg::HandPose pose_at(std::int64_t time_ns) const {
+    return pose_of(Side::left, moved_m_(static_cast<double>(time_ns) * 1e-9));
+  }
+  LandmarkPoints truth(std::int64_t time_ns) const {
+    return *project_landmarks(calibration_, pose_at(time_ns));
+  }
+
+  /// Up to `now_ns`; `seen` is what the camera has in place of the hand, where it is set.
+  RegisteredHand run(std::int64_t now_ns, const Image<std::uint8_t>* seen = nullptr) {
+    RegisteredHand corrected;
+    for (; now_ns_ <= now_ns; now_ns_ += kMs) {
+      if (now_ns_ % kPeriod_ns == 0)
+        track_.push(now_ns_, now_ns_ - kAge_ns, pose_at(now_ns_ - kAge_ns));
+      const auto predicted = track_.predict(now_ns_, now_ns_ + kLeg_ns);
+      if (!predicted) continue;
+      tracker_ = predicted->landmarks;
+      const LateRegistration::Hand hand{Side::left, &track_, predicted->landmarks, {}};
+      if (now_ns_ % kFrame_ns == 0 && now_ns_ > now_ns - 30 * kMs)
+        look(now_ns_ - kFrame_ns, hand, now_ns_ > now_ns - 12 * kMs ? seen : nullptr);
+      corrected = late_.correct(hand, now_ns_ + kLeg_ns);
+    }
+    return corrected;
+  }
+  const LandmarkPoints& tracker() const { return tracker_; }
+  const Registered& last() const { return late_.last(Side::left); }
+
+ private:
+  void look(std::int64_t camera_ns, const LateRegistration::Hand& hand,
+            const Image<std::uint8_t>* seen) {
+    const auto image = seen ? *seen : image_of(calibration_, {pose_at(camera_ns)}, image_off_px_);
+    Image<std::uint8_t> mask(image.width(), image.height());
+    for (std::size_t i = 0; i < mask.pixels().size(); ++i)
+      mask.pixels()[i] = image.pixels()[i] > 79 ? 255 : 0;
+    late_.look({image.view(), camera_ns, mask.view(), {0, 0, image.width(), image.height()}, 79},
+               std::span(&hand, 1));
+  }
+
+  calib::Calibration calibration_ = rig_above_hand();
+  std::function<glm::vec3(double)> moved_m_;
+  glm::vec2 image_off_px_;
+  HandTrack track_;
+  LateRegistration late_;
+  std::int64_t now_ns_ = 9 * kMs;
+  LandmarkPoints tracker_{};
+};
+
+double mean_distance(const LandmarkPoints& a, const LandmarkPoints& b) {
+  double sum = 0;
+  for (int i = 0; i < kLandmarks; ++i) sum += glm::distance(a[i], b[i]) / kLandmarks;
+  return sum;
+}
+
+constexpr std::int64_t kNow_ns = 151 * kMs;  // some time after a sample: the prediction is long
+
+/// Rests, and starts so late that no sample shows it yet.
+glm::vec3 starting(double s) {
+  return {s > 0.138 ? static_cast<float>(30 * (s - 0.138) * (s - 0.138)) : 0, 0, 0};
+}
+
+TEST(LateRegistration, AMotionThatTheTrackerHasNotSeenYetIsFollowed) {
+  Scene scene(starting);
+  const auto corrected = scene.run(kNow_ns);
+  const LandmarkPoints truth = scene.truth(kNow_ns + kLeg_ns);
+  ASSERT_TRUE(scene.last().found);
+  EXPECT_GT(mean_distance(scene.tracker(), truth), 9);
+  EXPECT_LT(mean_distance(corrected.landmarks, truth),
+            0.65 * mean_distance(scene.tracker(), truth));
+  EXPECT_GT(corrected.moved_now[9].x,
+            corrected.moved_then[9].x);  // the error grows on the way to the light
+}
+
+TEST(LateRegistration, AStillHandStaysWhereTheTrackerHasItHoweverFarOffTheMaskIs) {
+  Scene scene([](double) { return glm::vec3(0); }, {9, -5});
+  for (std::int64_t now_ns = 60 * kMs; now_ns < 400 * kMs; now_ns += 40 * kMs) {
+    const auto corrected = scene.run(now_ns);
+    EXPECT_LT(mean_distance(corrected.landmarks, scene.tracker()), 0.01) << now_ns;
+    EXPECT_TRUE(scene.last().found);
+  }
+}
+
+TEST(LateRegistration, ASteadyMotionLeavesNothingBehindHoweverLong) {
+  Scene scene([](double s) { return glm::vec3(0.25f * static_cast<float>(s) - 0.05f, 0, 0); });
+  for (std::int64_t now_ns = 60 * kMs; now_ns < 400 * kMs; now_ns += 50 * kMs) {
+    const auto corrected = scene.run(now_ns);
+    EXPECT_LT(mean_distance(corrected.landmarks, scene.truth(now_ns + kLeg_ns)), 0.25) << now_ns;
+  }
+}
+
+TEST(LateRegistration, AnImageOfSomethingElseCorrectsNothing) {
+  Image<std::uint8_t> noise(720, 540, 8), dark(720, 540, 8), bright(720, 540, 200);
+  unsigned state = 1;
+  for (std::uint8_t& pixel : noise.pixels())
+    pixel = (state = state * 1664525u + 1013904223u) >> 31 ? 200 : 8;
+  for (const Image<std::uint8_t>* garbage : {&noise, &dark, &bright}) {
+    Scene scene(starting);
+    const auto corrected = scene.run(kNow_ns, garbage);
+    EXPECT_FALSE(scene.last().found);
+    EXPECT_LT(mean_distance(corrected.landmarks, scene.tracker()), 0.6);
+  }
+}
+
+TEST(LateRegistration, SwitchedOffItLeavesTheLandmarksAlone) {
+  const auto calibration = rig_above_hand();
+  config::Registration none;
+  none.method = "none";
+  EXPECT_FALSE(LateRegistration(none, {}, calibration).on());
+}
+
+}  // namespace
+}  // namespace handcast::renderer

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "services/evaluation/page/html.hpp"
+#include "tests/scratch.hpp"
+#include "tests/services/evaluation/report/demonstration.hpp"
+
+namespace handcast::report {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Report : public testing::Test {
+ protected:
+  const std::filesystem::path& folder() const { return scratch_.path(); }
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder() / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  std::string page() {
+    const auto written = write_report(folder(), imprint_);
+    EXPECT_TRUE(written) << written.error().what;
+    return read("report.html");
+  }
+  nlohmann::json metrics() const { return nlohmann::json::parse(read("metrics.json")); }
+
+  test::Scratch scratch_;
+  Imprint imprint_{"a title", "a machine", "a date"};
+};
+
+TEST_F(Report, GathersTheFiguresOfAllRunsInOneFile) {
+  test::write_demonstration(folder(), 6);
+  page();
+  const auto json = metrics();
+  EXPECT_EQ(json.at("baseline").at("interior_mm").at("mean"), 7.6);
+  EXPECT_EQ(json.at("paper").at("rig"), "paper");
+  EXPECT_EQ(json.at("handcast").at("rig"), "twin");
+  EXPECT_EQ(json.at("live").at("rates").at("camera").at("held_hz"), 498.21);
+  EXPECT_EQ(json.at("live").at("observer").at("interior_mm").at("mean"), 1.3);
+}
+
+TEST_F(Report, ShowsTheFiguresFilmTimesAndRates) {
+  test::write_demonstration(folder(), 6);
+  const std::string html = page();
+  EXPECT_THAT(html, AllOf(HasSubstr("16.72"), HasSubstr("4.03"), HasSubstr("2.66")))
+      << "p95 in mm of the three";
+  EXPECT_THAT(
+      html, AllOf(HasSubstr("data:image/jpeg;base64,/9j/"), HasSubstr("498.2"), HasSubstr("95 %")))
+      << "strip, rate, share";
+  EXPECT_THAT(html, AllOf(HasSubstr("0.6-1.0"), Not(HasSubstr("&gt;1.0"))))
+      << "bins with frames, none without";
+  EXPECT_THAT(html,
+              AllOf(HasSubstr("builtin:open_close"), HasSubstr("a machine"), HasSubstr("a date")));
+  EXPECT_THAT(html, Not(HasSubstr("class=\"missing\"")));
+}
+
+TEST_F(Report, MakesAVideoOfThePicturesItHas) {
+  test::write_frames(folder() / "frames" / "twin", 6, 0);
+  const std::string html = page();
+  EXPECT_THAT(read("preview.mp4").substr(0, 12), HasSubstr("ftyp"));
+  EXPECT_THAT(html, AllOf(HasSubstr("no pictures of baseline"), HasSubstr("no pictures of paper"),
+                          Not(HasSubstr("no pictures of handcast"))));
+}
+
+TEST_F(Report, NeedsNothingFromOutside) {
+  test::write_demonstration(folder(), 3);
+  const std::string html = page();
+  for (const char* reference :
+       {"http://", "https://", "src=\"//", "@import", "<script", "<link", "url("})
+    EXPECT_THAT(html, Not(HasSubstr(reference)));
+}
+
+TEST_F(Report, SaysWhatIsMissingAndShowsTheRest) {
+  test::write_json(folder() / "twin.json", test::metrics_of("twin", 1.21));
+  std::ofstream(folder() / "paper.json") << "{ \"interior";
+  const std::string html = page();
+  EXPECT_THAT(html, AllOf(HasSubstr("baseline.json is missing"),
+                          HasSubstr("paper.json is not a JSON object"),
+                          HasSubstr("live.json is missing"), HasSubstr("2.66")));
+  EXPECT_FALSE(metrics().contains("baseline"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "preview.mp4"));
+}
+
+TEST_F(Report, SurvivesFiguresOfTheWrongKind) {
+  test::write_json(
+      folder() / "twin.json",
+      {{"interior_mm", "none"}, {"bins", {1, 2}}, {"motion", 5}, {"stage_us", nullptr}});
+  test::write_json(folder() / "live.json",
+                   {{"rig", 7}, {"services", {{"ca~mera/1", nullptr}}}, {"rates", "fast"}});
+  EXPECT_THAT(page(), HasSubstr("ca~mera/1"));
+}
+
+TEST_F(Report, EscapesWhatItDidNotWriteItself) {
+  auto metrics = test::metrics_of("<b>rig</b>", 1);
+  metrics["motion"] = "\"><script>alert(1)</script>{{style}}";
+  test::write_json(folder() / "twin.json", metrics);
+  imprint_.title = "R&D <report>";
+  const std::string html = page();
+  EXPECT_THAT(html, AllOf(HasSubstr("<title>R&amp;D &lt;report&gt;</title>"),
+                          HasSubstr("&lt;b&gt;rig"), Not(HasSubstr("<script"))));
+  EXPECT_THAT(html, HasSubstr("&lt;/script&gt;{{style}}")) << "values are not filled again";
+}
+
+TEST_F(Report, AnEmptyFolderIsAnErrorThatSaysWhatBelongsThere) {
+  const auto written = write_report(folder(), imprint_);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, Errc::bad_config);
+  EXPECT_THAT(written.error().what,
+              AllOf(HasSubstr(folder().string()), HasSubstr("twin.json"), HasSubstr("live.json")));
+  EXPECT_EQ(write_report(folder() / "nowhere", imprint_).error().code, Errc::bad_config);
+}
+
+TEST(Base64, IsPaddedToGroupsOfFour) {
+  const auto encoded = [](const std::string& text) {
+    return page::base64(
+        std::span(reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+  };
+  EXPECT_EQ(encoded(""), "");
+  EXPECT_EQ(encoded("f"), "Zg==");
+  EXPECT_EQ(encoded("fo"), "Zm8=");
+  EXPECT_EQ(encoded("foo"), "Zm9v");
+  EXPECT_EQ(encoded("foob"), "Zm9vYg==");
+}
+
+TEST(Fill, LeavesOutPlacesWithoutAValue) {
+  EXPECT_EQ(page::fill("a{{x}}b{{y}}c{{", {{"x", "1"}}), "a1bc{{");
+}
+
+}  // namespace
+}  // namespace handcast::report

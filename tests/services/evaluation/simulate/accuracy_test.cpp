@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "tests/services/evaluation/simulate/run_rig.hpp"
+
+namespace handcast::simulate {
+namespace {
+
+/// METHOD's promise, motion by motion: the paper's cascade beats drawing alone, ours beats the
+/// paper's. Coverage alone flatters the baseline, whose hand is too large and lights up to a fifth
+/// of a hand beside the hand: it is compared by the intersection over union of light and hand,
+/// which counts both.
+class Accuracy : public testing::TestWithParam<std::string> {
+ protected:
+  static void expect_ordering(const std::string& motion) {
+    const auto baseline = run_rig("baseline", motion, 2);
+    const auto paper = run_rig("paper", motion, 2);
+    const auto handcast = run_rig("twin", motion, 2);
+    EXPECT_GE(baseline["interior_mm"]["p95"], paper["interior_mm"]["p95"]);
+    EXPECT_GE(paper["interior_mm"]["p95"], handcast["interior_mm"]["p95"]);
+    EXPECT_LE(paper["coverage"], handcast["coverage"]);
+    EXPECT_LE(paper["iou"], handcast["iou"]);
+    EXPECT_EQ(handcast["foldovers"], 0);
+    constexpr double kTie =
+        0.01;  // shaken at 1.3 m/s the paper's mask is as far behind as the baseline's hand
+    EXPECT_LE(baseline["iou"].get<double>(), paper["iou"].get<double>() + kTie);
+  }
+};
+
+TEST_P(Accuracy, BaselinePaperHandcast) {
+  auto motion = GetParam();
+  if (!motion.starts_with("builtin:")) {
+    motion = (data_root() / "lmc" / motion).string();
+    if (!std::filesystem::exists(motion))
+      GTEST_SKIP() << "the recording " << motion << " is not here (set HANDCAST_DATA)";
+  }
+  expect_ordering(motion);
+}
+
+INSTANTIATE_TEST_SUITE_P(Motions, Accuracy,
+                         testing::Values("builtin:open_close", "builtin:wave", "builtin:rotate",
+                                         "builtin:pinch", "builtin:shake", "builtin:two_hands",
+                                         "translation", "rotation", "deformation", "all_5s"),
+                         [](const auto& test) {
+                           auto name = test.param;
+                           std::replace_if(
+                               name.begin(), name.end(),
+                               [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); },
+                               '_');
+                           return name;
+                         });
+
+TEST(TwoHands, AreNoMoreThanATenthWorseThanOne) {
+  const auto both = run_rig("twin", "builtin:two_hands", 2);
+  for (const std::string side : {"left", "right"}) {
+    const auto alone = run_rig("twin", "builtin:two_hands", 2, {"twin.hands=" + side});
+    EXPECT_LE(both["hands"][side]["interior_mm"]["p95"].get<double>(),
+              1.1 * alone["interior_mm"]["p95"].get<double>())
+        << side;
+    EXPECT_GE(both["hands"][side]["coverage"].get<double>(), alone["coverage"].get<double>() - 0.01)
+        << side;
+  }
+}
+
+/// The paper's stated limitation: the drawn hand is not the person's. Bones reach the tracker's
+/// joints, widths come from the mask.
+TEST(HandShape, FittedToThePersonIsNeverWorseThanTheDefaultOne) {
+  for (const std::string person : {"1", "2", "3"})
+    for (const std::string spread : {"0", "0.1"}) {
+      const std::vector<std::string> hand{"twin.seed=" + person,
+                                          "twin.shape.length_spread=" + spread,
+                                          "twin.shape.width_spread=" + spread};
+      auto stiff = hand;
+      stiff.emplace_back("cascade.skin.fit=false");
+      const auto fitted_mm =
+          run_rig("twin", "builtin:open_close", 1, hand)["interior_mm"]["p95"].get<double>();
+      const auto default_mm =
+          run_rig("twin", "builtin:open_close", 1, stiff)["interior_mm"]["p95"].get<double>();
+      EXPECT_LT(fitted_mm, 0.75 * default_mm) << "person " << person << ", spread " << spread;
+    }
+}
+
+}  // namespace
+}  // namespace handcast::simulate

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "ipc/base/clock.hpp"
+#include "services/evaluation/simulate/detector_tally.hpp"
+#include "services/evaluation/simulate/simulation.hpp"
+#include "tests/services/evaluation/simulate/run_rig.hpp"
+
+namespace handcast::simulate {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The folder of MediaPipe's files; empty where they are not here.
+std::filesystem::path models() {
+  const char* named = std::getenv("HANDCAST_MODELS");
+  const auto folder =
+      named && *named ? std::filesystem::path(named) : source_root() / "../shared/models";
+  const bool here = std::filesystem::exists(folder / "hand_landmark_lite.onnx") &&
+                    std::filesystem::exists(folder / "palm_detection_lite.onnx");
+  return here ? folder : std::filesystem::path();
+}
+
+#define SKIP_WITHOUT_MODELS() \
+  if (models().empty())       \
+  GTEST_SKIP() << "no networks in ../shared/models (HANDCAST_MODELS names another folder)"
+
+constexpr std::int64_t kAge_ns = 7'000'000;
+
+class Blind : public FrameDetector {
+ public:
+  explicit Blind(bool can_use_the_frame) : can_use_the_frame_(can_use_the_frame) {}
+  Detection detect(std::uint64_t, const Exposure& exposure) override {
+    if (!can_use_the_frame_) return {std::nullopt, kAge_ns, 1};
+    msg::Landmarks nothing;
+    nothing.header = {exposure.frame_id, exposure.origin_ns, 0};
+    return {nothing, kAge_ns, 1};
+  }
+
+ private:
+  bool can_use_the_frame_;
+};
+
+/// Writes down what it was told before each frame.
+class Diary : public FrameDetector {
+ public:
+  struct Page {
+    Exposure exposure;
+    std::vector<std::uint64_t> samples;  ///< all so far
+  };
+  explicit Diary(std::vector<Page>& pages) : pages_(pages) {}
+  void tell(const msg::HandPoses& poses) override { samples_.push_back(poses.header.frame_id); }
+  Detection detect(std::uint64_t, const Exposure& exposure) override {
+    pages_.push_back({exposure, samples_});
+    return {std::nullopt, kAge_ns, 0};
+  }
+
+ private:
+  std::vector<Page>& pages_;
+  std::vector<std::uint64_t> samples_;
+};
+
+/// What became of the hands of a run without a picture.
+struct Outcome {
+  int hands = 0;           ///< one a projector frame and hand
+  double error_px = 0;     ///< mean over their landmarks
+  int with_landmarks = 0;  ///< of the hands
+};
+
+Outcome outcome_of(const std::string& rung, const twin::Twin& world, SensorFeed& feed) {
+  const auto rig = rig_with({"cascade.ladder.rung=" + rung});
+  auto pipeline =
+      renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, calib::reference_rig());
+  EXPECT_TRUE(pipeline) << pipeline.error().what;
+  Simulation simulation(rig, calib::reference_rig(), **pipeline, feed, 0);
+  Outcome outcome;
+  while (simulation.now_ns() < 600'000'000)
+    simulation.step([&](const Tick& tick) {
+      for (const auto& hand : tick.hands) {
+        const auto truth = *world.landmarks(hand.side, tick.lit_ns);
+        for (std::size_t i = 0; i < truth.size(); ++i)
+          outcome.error_px += glm::distance(hand.corrected[i], truth[i]) / msg::kLandmarks;
+        outcome.with_landmarks += hand.rung > msg::Rung::predict;
+        ++outcome.hands;
+      }
+    });
+  outcome.error_px /= outcome.hands;
+  return outcome;
+}
+
+TEST(SimulatedDetector, OneThatNeverFindsAnythingLeavesTheTrackersLight) {
+  const auto world = twin_of(rig_with({"twin.motion=builtin:wave"}));
+  const auto alone = outcome_of("predict", *world, *make_twin_feed(*world));
+  const auto seeing = outcome_of("auto", *world, *make_twin_feed(*world));
+  ASSERT_GT(alone.hands, 100);
+  EXPECT_GT(seeing.with_landmarks, seeing.hands / 2);
+  EXPECT_LT(seeing.error_px, alone.error_px / 3);
+  for (const bool can_use_the_frame : {true, false}) {
+    const auto blind = outcome_of(
+        "auto", *world, *make_twin_feed(*world, std::make_unique<Blind>(can_use_the_frame)));
+    EXPECT_EQ(blind.hands, alone.hands);
+    EXPECT_EQ(blind.with_landmarks, 0);
+    EXPECT_NEAR(blind.error_px, alone.error_px, 0.1 * alone.error_px);
+  }
+}
+
+TEST(SimulatedDetector, KnowsTheTrackersSamplesThatHaveArrivedAndNoOthers) {
+  const auto world = twin_of(rig_with({"twin.tracker.age_sd_ms=4"}));
+  std::vector<Diary::Page> pages;
+  const auto feed = make_twin_feed(*world, std::make_unique<Diary>(pages));
+  for (std::int64_t now_ns = 0; now_ns < 500'000'000; now_ns += 20'000'000)
+    feed->until(now_ns);  // several runs a call
+  ASSERT_GT(pages.size(), 50u);
+  std::int64_t free_ns = 0;
+  for (const auto& [exposure, samples] : pages) {
+    const auto begin_ns = std::max(free_ns, world->camera_arrival_ns(exposure.frame_id));
+    std::vector<std::pair<std::int64_t, std::uint64_t>> arrived;
+    for (std::uint64_t k = 0; world->tracker_time_ns(k) <= begin_ns; ++k)
+      if (const auto at_ns = world->tracker_sample(k).arrival_ns; at_ns <= begin_ns)
+        arrived.emplace_back(at_ns, k);
+    std::ranges::sort(arrived);
+    std::vector<std::uint64_t> expected;
+    for (const auto& sample : arrived) expected.push_back(sample.second);
+    ASSERT_EQ(samples, expected) << "frame " << exposure.frame_id;
+    free_ns = exposure.origin_ns + kAge_ns;
+  }
+}
+
+TEST(SimulatedDetector, TakesTheNewestFrameWhenItIsFree) {
+  const auto world = twin_of(rig_with({}));
+  std::vector<Diary::Page> pages;
+  const auto feed = make_twin_feed(*world, std::make_unique<Diary>(pages));
+  for (std::int64_t now_ns = 0; now_ns < 200'000'000; now_ns += 1'000'000) feed->until(now_ns);
+  for (std::size_t i = 1; i < pages.size(); ++i) {
+    const auto free_ns = pages[i - 1].exposure.origin_ns + kAge_ns;
+    EXPECT_LE(world->camera_arrival_ns(pages[i].exposure.frame_id), free_ns);
+    EXPECT_GT(world->camera_arrival_ns(pages[i].exposure.frame_id + 1), free_ns);
+  }
+}
+
+TEST(DetectorTally, CountsMissedAndInventedHandsAndTheErrorOfTheOthers) {
+  const auto world = twin_of(
+      rig_with({"twin.motion=builtin:two_hands", "twin.hands=left", "twin.detector.noise_px=2"}));
+  const auto model = make_twin_detector(*world);
+  DetectorTally tally(*world, calib::reference_rig().camera);
+  for (std::uint64_t frame = 0; frame < 200; ++frame) {
+    const Exposure exposure{frame, world->camera_origin_ns(frame)};
+    auto detection = model->detect(frame, exposure);
+    ASSERT_EQ(detection.landmarks->count, 1u);
+    if (frame < 10) detection.landmarks->count = 0;
+    if (frame >= 10 && frame < 15) detection.landmarks->hands[0].side = msg::Side::right;
+    tally.add(exposure, detection);
+  }
+  const auto json = tally.to_json();
+  EXPECT_EQ(json["runs"], 200);
+  EXPECT_EQ(json["hands"], 200);
+  EXPECT_EQ(json["missed"], 15);
+  EXPECT_EQ(json["invented"], 5);
+  EXPECT_NEAR(json["error_px"]["p50"], 2 * 1.177, 0.1);  // the median of a Rayleigh distribution
+  EXPECT_TRUE(json["ms_p50"].is_null());
+}
+
+TEST(SimulatedDetector, AMissingModelIsOneSentence) {
+  const test::Scratch empty;
+  Options options = options_of("twin", 1);
+  options.settings = {"landmarks.backend=onednn", "landmarks.models=" + empty.path().string()};
+  const auto done = run(options);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, Errc::bad_config);
+  EXPECT_THAT(done.error().what,
+              AllOf(HasSubstr((empty.path() / "hand_landmark_lite.onnx").string()),
+                    HasSubstr("scripts/get-models"), Not(HasSubstr("\n"))));
+}
+
+TEST(SimulatedDetector, ABackEndThatIsNotThereIsNamedBesideThoseThatAre) {
+  Options options = options_of("twin", 1);
+  options.settings = {"landmarks.backend=eagle"};
+  const auto done = run(options);
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error().what,
+              AllOf(HasSubstr("eagle"), HasSubstr("onednn"), Not(HasSubstr("\n"))));
+}
+
+TEST(SimulatedDetector, ARecordingsLandmarksAreOfOtherImagesSoTheTwinsModelStandsIn) {
+  EXPECT_EQ(
+      run_rig("twin", "builtin:wave", 0.05, {"landmarks.backend=replay"})["detector"]["backend"],
+      "twin");
+}
+
+TEST(SimulatedDetector, TheSameSeedGivesTheSameFiguresTwice) {
+  SKIP_WITHOUT_MODELS();
+  const auto figures = [](const std::string& seed) {
+    auto json = run_rig(
+        "twin", "builtin:open_close", 0.1,
+        {"landmarks.backend=onednn", "landmarks.models=" + models().string(), "twin.seed=" + seed});
+    for (const char* time : {"frame_us", "stage_us"}) json.erase(time);
+    EXPECT_TRUE(json["detector"]["ms_p50"].is_number());
+    json["detector"].erase("ms_p50");
+    return json;
+  };
+  const auto first = figures("1");
+  EXPECT_EQ(first, figures("1"));
+  EXPECT_NE(first["detector"], figures("2")["detector"]);
+}
+
+TEST(SimulatedDetector, ARealOneFollowsTheTwinsHandAndItsAgeIsTheOneThatIsSet) {
+  SKIP_WITHOUT_MODELS();
+  const auto json = run_rig("twin", "builtin:wave", 0.5,
+                            {"landmarks.backend=onednn", "landmarks.models=" + models().string(),
+                             "twin.detector.age_ms=8", "twin.detector.age_sd_ms=0"});
+  const auto& detector = json["detector"];
+  EXPECT_EQ(detector["backend"], "onednn");
+  EXPECT_EQ(detector["missed"], 0);
+  EXPECT_LT(detector["error_px"]["p50"], 15);
+  EXPECT_NEAR(detector["runs"], 500 / 5.7,
+              3);  // every third frame: the newest one is 1.2 to 3.1 ms old when it is taken
+}
+
+}  // namespace
+}  // namespace handcast::simulate

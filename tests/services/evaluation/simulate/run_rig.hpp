@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "services/evaluation/simulate/run.hpp"
+#include "services/evaluation/twin/twin.hpp"
+#include "tests/scratch.hpp"
+
+namespace handcast::simulate {
+
+inline std::filesystem::path source_root() {
+  const char* root = std::getenv("HANDCAST_SOURCE");
+  return root ? root : ".";
+}
+
+inline std::filesystem::path data_root() {
+  const char* root = std::getenv("HANDCAST_DATA");
+  return root ? std::filesystem::path(root) : source_root() / "../shared/data";
+}
+
+/// twin.toml with settings of a test, and its world.
+inline config::Rig rig_with(const std::vector<std::string>& settings) {
+  auto rig = config::load_rig(source_root() / "config/rigs/twin.toml", settings);
+  EXPECT_TRUE(rig) << rig.error().what;
+  return *rig;
+}
+
+inline std::unique_ptr<twin::Twin> twin_of(const config::Rig& rig) {
+  auto twin = twin::Twin::create(rig, calib::reference_rig());
+  EXPECT_TRUE(twin) << twin.error().what;
+  return std::move(*twin);
+}
+
+/// A short, quiet run of one of config/rigs.
+inline Options options_of(const std::string& rig, double seconds) {
+  Options options;
+  options.rig_file = (source_root() / "config/rigs" / (rig + ".toml")).string();
+  options.seconds = seconds;
+  options.quiet = true;
+  return options;
+}
+
+/// Runs one of config/rigs and returns its metrics.
+inline nlohmann::json run_rig(const std::string& rig, const std::string& motion, double seconds,
+                              std::vector<std::string> settings = {}) {
+  const test::Scratch folder;
+  Options options = options_of(rig, seconds);
+  options.settings = std::move(settings);
+  options.settings.push_back("twin.motion=" + motion);
+  options.draw_every = 24;
+  options.json_file = (folder.path() / "metrics.json").string();
+  const auto done = run(options);
+  EXPECT_TRUE(done) << done.error().what;
+  return done ? nlohmann::json::parse(std::ifstream(options.json_file)) : nlohmann::json();
+}
+
+}  // namespace handcast::simulate

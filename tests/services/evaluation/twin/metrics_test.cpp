@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/twin/metrics.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+namespace handcast::twin {
+namespace {
+
+FrameScore::Hand hand_at(double speed_m_s, float error_px, Side side = Side::left) {
+  FrameScore::Hand hand;
+  hand.side = side;
+  hand.speed_m_s = speed_m_s;
+  hand.interior_px.assign(100, error_px);
+  hand.interior_mm.assign(100, error_px / 2);
+  hand.hand_px = 1000;
+  hand.lit_px = 900;
+  hand.spill_px = 50;
+  hand.union_px = 1050;
+  hand.seam_px = 12;
+  hand.lag_px_s = 40;
+  hand.speed2_px_s2 = 10'000;
+  return hand;
+}
+
+TEST(Metrics, TheRungsAreSharesOfTheHandsThatWereDrawn) {
+  Metrics metrics;
+  for (int i = 0; i < 3; ++i) metrics.add_rung(msg::Rung::landmarks);
+  metrics.add_rung(msg::Rung::hold);
+  const auto rungs = metrics.to_json()["rungs"];
+  EXPECT_EQ(rungs.size(), msg::kRungs);
+  EXPECT_DOUBLE_EQ(rungs["landmarks"], 0.75);
+  EXPECT_DOUBLE_EQ(rungs["hold"], 0.25);
+  EXPECT_DOUBLE_EQ(rungs["register"], 0);
+}
+
+TEST(Metrics, EveryFigureComesOutUnderItsName) {
+  Metrics metrics;
+  FrameScore score;
+  score.hands = {hand_at(0.05, 1), hand_at(0.8, 3, Side::right)};
+  metrics.add(score);
+  const std::vector<msg::StageMark> stages{{msg::Stage::frame, 0, 1000, 901'000},
+                                           {msg::Stage::draw, 0, 0, 250'000}};
+  metrics.add_stages(stages);
+  metrics.add_foldovers(2);
+  metrics.add_foldovers(1);
+  metrics.add_jitter(0.5, 20);
+  metrics.add_jitter(0.5, 80);
+  const auto json = metrics.to_json();
+  EXPECT_EQ(json["frames"], 1);
+  EXPECT_DOUBLE_EQ(json["interior_px"]["mean"], 2);
+  EXPECT_DOUBLE_EQ(json["interior_px"]["p95"], 3);
+  EXPECT_DOUBLE_EQ(json["interior_mm"]["p99"], 1.5);
+  EXPECT_DOUBLE_EQ(json["coverage"], 0.9);
+  EXPECT_DOUBLE_EQ(json["spill"], 0.05);
+  EXPECT_DOUBLE_EQ(json["iou"], 900.0 / 1050);
+  EXPECT_DOUBLE_EQ(json["seam_px"], 12);
+  EXPECT_DOUBLE_EQ(json["jitter_px"], 0.1);
+  EXPECT_EQ(json["foldovers"], 3);
+  EXPECT_DOUBLE_EQ(json["equivalent_latency_ms"], 4);
+  EXPECT_DOUBLE_EQ(json["frame_us"]["p50"], 900);
+  EXPECT_DOUBLE_EQ(json["stage_us"]["draw"]["p99"], 250);
+  EXPECT_EQ(json["bins"].size(), 5u);
+  EXPECT_EQ(json["bins"]["0-0.1"]["frames"], 1);
+  EXPECT_DOUBLE_EQ(json["bins"]["0.6-1.0"]["interior_px"]["mean"], 3);
+  EXPECT_EQ(json["bins"][">1.0"]["frames"], 0);
+  EXPECT_TRUE(json["bins"][">1.0"]["interior_mm"]["mean"].is_null());
+  EXPECT_DOUBLE_EQ(json["hands"]["left"]["interior_px"]["mean"], 1);
+  EXPECT_DOUBLE_EQ(json["hands"]["right"]["interior_px"]["p95"], 3);
+}
+
+TEST(Metrics, NothingMeasuredIsNullAndNotZero) {
+  const auto json = Metrics().to_json();
+  for (const char* key :
+       {"coverage", "spill", "iou", "seam_px", "jitter_px", "equivalent_latency_ms"})
+    EXPECT_TRUE(json[key].is_null()) << key;
+  EXPECT_TRUE(json["frame_us"]["p50"].is_null());
+  EXPECT_EQ(json["frames"], 0);
+}
+
+TEST(Metrics, PercentilesStayRightOverMoreSamplesThanAreKept) {
+  Metrics metrics;
+  constexpr int kFrames = 3000;
+  for (int i = 0; i < kFrames; ++i) {
+    FrameScore score;
+    score.hands = {hand_at(0.2, 0)};
+    score.hands[0].interior_px.assign(1000, static_cast<float>((i * 7919) % kFrames) / kFrames);
+    metrics.add(score);
+  }
+  const auto json = metrics.to_json();
+  EXPECT_NEAR(json["interior_px"]["mean"], 0.5, 0.001);
+  EXPECT_NEAR(json["interior_px"]["p95"], 0.95, 0.003);
+  EXPECT_NEAR(json["interior_px"]["p99"], 0.99, 0.003);
+}
+
+TEST(Metrics, SpeedsFallIntoTheirBins) {
+  Metrics metrics;
+  for (const double speed : {0.05, 0.1, 0.2, 0.5, 0.9, 1.0, 2.0}) {
+    FrameScore score;
+    score.hands = {hand_at(speed, 1)};
+    metrics.add(score);
+  }
+  const auto bins = metrics.to_json()["bins"];
+  EXPECT_EQ(bins["0-0.1"]["frames"], 2);
+  EXPECT_EQ(bins["0.1-0.3"]["frames"], 1);
+  EXPECT_EQ(bins["0.3-0.6"]["frames"], 1);
+  EXPECT_EQ(bins["0.6-1.0"]["frames"], 2);
+  EXPECT_EQ(bins[">1.0"]["frames"], 1);
+}
+
+}  // namespace
+}  // namespace handcast::twin

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/projector/inputs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "ipc/ring/writer.hpp"
+
+namespace handcast::projector {
+namespace {
+
+/// Stands in for the cascade and only notes what it is told.
+struct Listener {
+  void push(std::int64_t, const msg::HandPoses& message) {
+    poses.push_back(message.header.frame_id);
+  }
+  void push(std::int64_t, const msg::Landmarks& message) {
+    landmarks.push_back(message.header.frame_id);
+  }
+
+  std::vector<std::uint64_t> poses, landmarks;
+};
+
+/// Both ends of a ring.
+template <class Message>
+struct Ring {
+  static ipc::Segment make(std::size_t payload_bytes) {
+    return *ipc::Segment::create(
+        ipc::RingSpec::of<Message>("ring", 16, /*keep_history=*/true, payload_bytes));
+  }
+  explicit Ring(std::size_t payload_bytes = sizeof(Message))
+      : segment(make(payload_bytes)),
+        writer(*ipc::Writer<Message>::attach(again())),
+        reader(*ipc::Reader<Message>::attach(again())) {}
+  ipc::Segment again() const { return *ipc::Segment::open(UniqueFd(::dup(segment.fd()))); }
+
+  void publish(std::uint64_t id) {
+    Message message;
+    message.header.frame_id = id;
+    writer.publish(message);
+  }
+  ipc::Segment segment;
+  ipc::Writer<Message> writer;
+  ipc::Reader<Message> reader;
+};
+
+class InputsTest : public testing::Test {
+ protected:
+  void publish_image(std::uint64_t id) {
+    auto slot = frames_.writer.loan();
+    slot->header.frame_id = id;
+    slot->header.origin_ns = 100 + static_cast<std::int64_t>(id);
+    slot->width_px = 4;
+    slot->height_px = 2;
+    std::fill_n(slot->pixels(), 8, static_cast<std::uint8_t>(id));
+    frames_.writer.publish(std::move(slot));
+  }
+
+  Ring<msg::CameraFrame> frames_{msg::CameraFrame::bytes(4, 2)};
+  Ring<msg::HandPoses> poses_;
+  Ring<msg::Landmarks> landmarks_;
+  Inputs inputs_{std::move(frames_.reader), std::move(poses_.reader), std::move(landmarks_.reader)};
+  Listener pipeline_;
+};
+
+TEST_F(InputsTest, EveryPoseAndDetectionIsDeliveredOnceAndInOrder) {
+  for (const std::uint64_t id : {1, 2, 3}) poses_.publish(id);
+  landmarks_.publish(7);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  poses_.publish(4);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  EXPECT_THAT(pipeline_.poses, testing::ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(pipeline_.landmarks, testing::ElementsAre(7));
+}
+
+TEST_F(InputsTest, OfTheImagesTheNewestIsKeptUntilANewerComes) {
+  publish_image(1);
+  publish_image(2);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  EXPECT_EQ(inputs_.image_header().frame_id, 2u);
+  EXPECT_EQ(inputs_.image_header().origin_ns, 102);
+  const auto image = inputs_.image();
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image.origin_ns, 102);
+  EXPECT_EQ(image.view.width, 4);
+  EXPECT_EQ(image.view.height, 2);
+  EXPECT_EQ(image.view.at(3, 1), 2);
+}
+
+TEST_F(InputsTest, WithoutAnySensorThereIsNoImageAndNoError) {
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  EXPECT_FALSE(inputs_.image());
+  EXPECT_EQ(inputs_.image_header().origin_ns, 0);
+  EXPECT_THAT(pipeline_.poses, testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace handcast::projector

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contract of every projector back end, and what is special to one.
+#include "services/projector/projector.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/scratch.hpp"
+
+namespace handcast::projector {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A dark 32 x 24 frame with a 4 x 4 region at (8, 6); the region's first pixel is red, the rest of
+/// it has alpha 0.
+struct SmallFrame {
+  SmallFrame() {
+    pixels.at(8, 6) = 0xFF0000FF;
+    pixels.at(9, 6) = 0x00FFFFFF;
+    frame.region = {8, 6, 12, 10};
+    frame.colour = pixels.view();
+  }
+  renderer::Image<std::uint32_t> pixels{32, 24, 0};
+  renderer::Frame frame;
+};
+
+class ProjectorContract : public testing::TestWithParam<std::string_view> {
+ protected:
+  void SetUp() override {
+    ::setenv("HANDCAST_OUT", scratch_.path().c_str(), 1);
+    rig_.projector.backend = GetParam();
+    rig_.projector.rate_hz = 100;
+    rig_.projector.latency_ms = 4;
+    auto opened = open_projector(rig_);
+    ASSERT_TRUE(opened) << opened.error().what;
+    projector_ = std::move(*opened);
+  }
+  void TearDown() override { ::unsetenv("HANDCAST_OUT"); }
+
+  test::Scratch scratch_;
+  config::Rig rig_;
+  SmallFrame small_;
+  std::unique_ptr<Projector> projector_;
+};
+
+TEST_P(ProjectorContract, LightComesTheLatencyAndHalfAPeriodAfterTheFrameWasHandedOver) {
+  const std::int64_t before_ns = now_ns();
+  const auto times = projector_->present(small_.frame, 1, Deadline::in(5s));
+  ASSERT_TRUE(times) << times.error().what;
+  EXPECT_GE(times->handed_ns, before_ns);
+  EXPECT_LE(times->handed_ns, now_ns());
+  EXPECT_EQ(times->lit_ns - times->handed_ns, to_ns(9ms));
+}
+
+TEST_P(ProjectorContract, TakesNoMoreThanOneFrameAPeriod) {
+  const std::int64_t begin_ns = now_ns();
+  for (int i = 0; i < 8; ++i)
+    ASSERT_TRUE(projector_->present(small_.frame, i + 1, Deadline::in(5s)));
+  EXPECT_GE(now_ns() - begin_ns, 6 * to_ns(10ms));
+}
+
+TEST_P(ProjectorContract, ADeadlineInThePastIsATimeoutNotAHang) {
+  ASSERT_TRUE(projector_->present(small_.frame, 1, Deadline::in(5s)));
+  ASSERT_TRUE(projector_->present(small_.frame, 2, Deadline::in(5s)));
+  const auto busy = projector_->present(small_.frame, 3, Deadline::now());
+  ASSERT_FALSE(busy);
+  EXPECT_EQ(busy.error().code, Errc::timeout);
+  EXPECT_TRUE(projector_->present(small_.frame, 4, Deadline::in(5s)));
+}
+
+std::vector<std::string_view> all() { return service::names_of(projector_backends()); }
+INSTANTIATE_TEST_SUITE_P(Backends, ProjectorContract, testing::ValuesIn(all()),
+                         [](const auto& named) { return std::string(named.param); });
+
+TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
+  test::Scratch scratch;
+  ::setenv("HANDCAST_OUT", scratch.path().c_str(), 1);
+  config::Rig rig;
+  rig.projector.backend = "file";
+  const auto projector = open_projector(rig);
+  ::unsetenv("HANDCAST_OUT");
+  ASSERT_TRUE(projector) << projector.error().what;
+  SmallFrame small;
+  small.pixels.at(0, 0) = 0xFFFFFFFF;  // outside the region: left over from an older frame
+  ASSERT_TRUE((*projector)->present(small.frame, 0, Deadline::in(5s)));
+
+  const cv::Mat picture = cv::imread((scratch.path() / "light" / "light_000.png").string());
+  ASSERT_EQ(picture.size(), cv::Size(32, 24));
+  EXPECT_EQ(picture.at<cv::Vec3b>(6, 8), cv::Vec3b(0, 0, 255)) << "red, in OpenCV's order";
+  EXPECT_EQ(picture.at<cv::Vec3b>(6, 9), cv::Vec3b(0, 0, 0));
+  EXPECT_EQ(picture.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 0));
+}
+
+TEST(FileProjector, SaysWhenItsFolderCannotBeMade) {
+  ::setenv("HANDCAST_OUT", "/dev/null", 1);
+  config::Rig rig;
+  rig.projector.backend = "file";
+  const auto projector = open_projector(rig);
+  ::unsetenv("HANDCAST_OUT");
+  ASSERT_FALSE(projector);
+  EXPECT_EQ(projector.error().code, Errc::bad_config);
+  EXPECT_THAT(projector.error().what, testing::HasSubstr("/dev/null/light"));
+}
+
+}  // namespace
+}  // namespace handcast::projector
