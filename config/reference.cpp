@@ -30,7 +30,8 @@ std::string cell(std::string_view text) {
 }
 
 std::string allowed_without_unit(const Setting& setting) {
-  if (!setting.choices.empty()) return fmt::format("`{}`", join(setting.choices, "` `"));
+  if (const auto words = setting.words(); !words.empty())
+    return fmt::format("`{}`", join(words, "` `"));
   auto bare = setting;
   bare.range.unit = "";
   return print_allowed(bare);

@@ -33,10 +33,9 @@ struct Rig {
 
 template <class Visitor>
 void describe(Visitor& visitor, Rig& rig) {
-  visitor.field("name", rig.name, Choices{},
-                "Names the rig in messages, the report and its control socket.");
+  visitor.field("name", rig.name, "Names the rig in messages, the report and its control socket.");
   visitor.field(
-      "calibration", rig.calibration, Choices{},
+      "calibration", rig.calibration,
       "Calibration file, relative to the rig file. Empty: the reference rig of the paper.");
   visitor.section("camera", rig.camera, "The infrared camera.");
   visitor.section("pose", rig.pose, "The hand tracker.");

@@ -1,21 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string>
+#include <array>
+#include <string_view>
 
 #include "config/settings/field.hpp"
 
 /// The settings of the cascade: one section per step, in the order the steps run.
 namespace handcast::config {
 
+/// How a pose is taken to the time of the photons.
+enum class PredictMethod {
+  hold,          ///< the newest pose as it is
+  velocity,      ///< constant velocity of the two newest samples
+  acceleration,  ///< and as much of the acceleration as stands out of the noise
+};
+constexpr std::array<std::string_view, 3> words_of(PredictMethod) {
+  return {"hold", "velocity", "acceleration"};
+}
+
 struct Predict {
-  std::string method = "acceleration";
+  PredictMethod method = PredictMethod::acceleration;
   double limit_ms = 40;
   double still_mm_s = 8;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Predict& predict) {
-  visitor.field("method", predict.method, Choices{"hold", "velocity", "acceleration"},
+  visitor.field("method", predict.method,
                 "hold: the newest pose as it is. velocity: two-point constant velocity to the time "
                 "of the photons. acceleration: the same "
                 "and as much "
@@ -41,8 +52,22 @@ void describe(Visitor& visitor, Skin& skin) {
                 "With fit: learn how wide the person's fingers are from the camera's mask.");
 }
 
+/// How old landmarks Q become landmarks at the time of the photons. P: the tracker's.
+enum class FilterMethod {
+  none,           ///< not at all
+  naive,          ///< as they were seen
+  kalman,         ///< a constant-velocity Kalman filter on Q
+  paper,          ///< Q + P_now - P_then per joint
+  one_euro,       ///< a one-euro filter on the offset Q - P
+  offset_kalman,  ///< a constant-velocity Kalman filter on that offset
+  ideal,          ///< where they truly are; the simulator only
+};
+constexpr std::array<std::string_view, 7> words_of(FilterMethod) {
+  return {"none", "naive", "kalman", "paper", "one_euro", "offset_kalman", "ideal"};
+}
+
 struct Filter {
-  std::string method = "offset_kalman";
+  FilterMethod method = FilterMethod::offset_kalman;
   double process = 3e3;
   double motion_process = 3e6;
   double noise_px = 1.14;
@@ -57,7 +82,6 @@ struct Filter {
 template <class Visitor>
 void describe(Visitor& visitor, Filter& filter) {
   visitor.field("method", filter.method,
-                Choices{"none", "naive", "kalman", "paper", "one_euro", "offset_kalman", "ideal"},
                 "How old landmarks Q become landmarks now. none: not at all. naive: as they were "
                 "seen. kalman: a constant-velocity Kalman filter on "
                 "Q, "
@@ -87,8 +111,18 @@ void describe(Visitor& visitor, Filter& filter) {
                 "Landmarks older than this fade out and the tracker alone is used.");
 }
 
+/// How the drawing is moved onto the landmarks.
+enum class CorrectMethod {
+  none,      ///< not at all
+  grid,      ///< moving least squares on a grid over the image
+  vertices,  ///< per-bone similarities at the vertices
+};
+constexpr std::array<std::string_view, 3> words_of(CorrectMethod) {
+  return {"none", "grid", "vertices"};
+}
+
 struct Correct {
-  std::string method = "vertices";
+  CorrectMethod method = CorrectMethod::vertices;
   double alpha = 1.0;
   int grid_columns = 21;
   int grid_rows = 21;
@@ -98,7 +132,7 @@ struct Correct {
 
 template <class Visitor>
 void describe(Visitor& visitor, Correct& correct) {
-  visitor.field("method", correct.method, Choices{"none", "grid", "vertices"},
+  visitor.field("method", correct.method,
                 "How the drawing is moved onto the landmarks. grid: similarity moving least "
                 "squares on a grid over the whole image, as in the paper. "
                 "vertices: per-bone similarities blended by skin weights, handing over to moving "
@@ -133,14 +167,21 @@ void describe(Visitor& visitor, Mask& mask) {
       "Move the mask on with the hand, from the image's exposure to the time of the photons.");
 }
 
+/// Late registration.
+enum class RegisterMethod {
+  none,  ///< not at all
+  mask,  ///< the hand's outline is found again in the newest image
+};
+constexpr std::array<std::string_view, 2> words_of(RegisterMethod) { return {"none", "mask"}; }
+
 struct Registration {
-  std::string method = "mask";
+  RegisterMethod method = RegisterMethod::mask;
   double limit_px = 24;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Registration& registration) {
-  visitor.field("method", registration.method, Choices{"none", "mask"},
+  visitor.field("method", registration.method,
                 "Late registration: none: not at all. mask: the outline of the hand at the "
                 "tracker's newest time is found again in the newest "
                 "image, and what it moved beyond the tracker's motion moves the landmarks.");
@@ -148,8 +189,23 @@ void describe(Visitor& visitor, Registration& registration) {
                 "An outline that moved further than this is not believed.");
 }
 
+/// The rung a frame is given: chosen frame by frame, or one that is held (ipc/msg/rung.hpp).
+enum class RungChoice {
+  automatic,
+  hold,
+  predict,
+  shift,
+  similarity,
+  fingers,
+  landmarks,
+  registered,
+};
+constexpr std::array<std::string_view, 8> words_of(RungChoice) {
+  return {"auto", "hold", "predict", "shift", "similarity", "fingers", "landmarks", "register"};
+}
+
 struct Ladder {
-  std::string rung = "auto";
+  RungChoice rung = RungChoice::automatic;
   double margin_percent = 5;
   double dwell_ms = 50;
 };
@@ -158,7 +214,6 @@ template <class Visitor>
 void describe(Visitor& visitor, Ladder& ladder) {
   visitor.field(
       "rung", ladder.rung,
-      Choices{"auto", "hold", "predict", "shift", "similarity", "fingers", "landmarks", "register"},
       "How much of the cascade a frame is given. auto: the cheapest rung whose expected error is "
       "near the best. Others hold it there.");
   visitor.field(
@@ -168,8 +223,15 @@ void describe(Visitor& visitor, Ladder& ladder) {
                 "auto: a cheaper rung must have been enough for this long before it is taken.");
 }
 
+/// What is done about light beside the hand and hand without light.
+enum class FillMethod {
+  none,     ///< nothing; the drawing is not masked either
+  reflect,  ///< filled from the nearest lit pixel, its texture coordinates reflected
+};
+constexpr std::array<std::string_view, 2> words_of(FillMethod) { return {"none", "reflect"}; }
+
 struct Fill {
-  std::string method = "reflect";
+  FillMethod method = FillMethod::reflect;
   int reach_px = 32;
   double fade_px = 8;
   double seam_uv = 0.04;
@@ -177,7 +239,7 @@ struct Fill {
 
 template <class Visitor>
 void describe(Visitor& visitor, Fill& fill) {
-  visitor.field("method", fill.method, Choices{"none", "reflect"},
+  visitor.field("method", fill.method,
                 "none: the drawing as it is, not even masked by the camera image. reflect: light "
                 "off the hand is removed and hand without "
                 "light is filled from the "

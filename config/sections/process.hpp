@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string>
 #include <vector>
 
 #include "config/settings/field.hpp"
+#include "ipc/base/wait.hpp"
 
 namespace handcast::config {
 
 /// How one service runs as a process: the same settings for each of them.
 struct Process {
-  std::string wait = "predictive";
+  ipc::Wait wait = ipc::Wait::predictive;
   bool standby = false;
   int priority = 0;
   std::vector<double> cores;
@@ -18,7 +18,7 @@ struct Process {
 
 template <class Visitor>
 void describe(Visitor& visitor, Process& process) {
-  visitor.field("wait", process.wait, Choices{"spin", "predictive", "futex", "eventfd"},
+  visitor.field("wait", process.wait,
                 "How it waits for its inputs: spin (a core for 1 us), predictive (some 5 % of a "
                 "core for 1 us on a regular stream), futex "
                 "(30 to 60 us), eventfd (as futex, by epoll).");

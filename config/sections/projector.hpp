@@ -18,7 +18,7 @@ struct Projector {
 
 template <class Visitor>
 void describe(Visitor& visitor, Projector& projector) {
-  visitor.field("backend", projector.backend, Choices{},
+  visitor.field("backend", projector.backend,
                 "Where light goes; `handcast-projector --backends` lists what this build has.");
   visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"),
                 "Frames a second asked of the projector.");
@@ -41,11 +41,11 @@ struct Content {
 
 template <class Visitor>
 void describe(Visitor& visitor, Content& content) {
-  visitor.field("left", content.left, Choices{},
+  visitor.field("left", content.left,
                 "What the left hand wears: a PNG picture in the hand's texture layout, or "
                 "builtin:atlas, builtin:checker, "
                 "builtin:skeleton, builtin:white.");
-  visitor.field("right", content.right, Choices{}, "What the right hand wears.");
+  visitor.field("right", content.right, "What the right hand wears.");
   visitor.field("shading", content.shading, between(0, 1),
                 "How much a light from the projector's side shades the drawing. 0: not at all.");
 }
@@ -57,10 +57,10 @@ struct Hand {
 
 template <class Visitor>
 void describe(Visitor& visitor, Hand& hand) {
-  visitor.field("left", hand.left, Choices{},
+  visitor.field("left", hand.left,
                 "A skinned glTF hand with WebXR joint names to draw as the left hand. Empty: the "
                 "one made by handcast.");
-  visitor.field("right", hand.right, Choices{}, "The same for the right hand.");
+  visitor.field("right", hand.right, "The same for the right hand.");
 }
 
 }  // namespace handcast::config

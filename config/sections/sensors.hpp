@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <string>
+#include <string_view>
 
 #include "config/sections/process.hpp"
 #include "config/settings/field.hpp"
@@ -14,7 +16,7 @@ struct Replay {
 
 template <class Visitor>
 void describe(Visitor& visitor, Replay& replay) {
-  visitor.field("directory", replay.directory, Choices{},
+  visitor.field("directory", replay.directory,
                 "Folder of the recording; relative to the rig file.");
   visitor.field("loop", replay.loop, "Start again at the end of the recording.");
 }
@@ -29,7 +31,7 @@ struct Camera {
 
 template <class Visitor>
 void describe(Visitor& visitor, Camera& camera) {
-  visitor.field("backend", camera.backend, Choices{},
+  visitor.field("backend", camera.backend,
                 "Where frames come from; `handcast-camera --backends` lists what this build has.");
   visitor.field("rate_hz", camera.rate_hz, between(1, 2000, "Hz"),
                 "Frames a second asked of the camera.");
@@ -50,7 +52,7 @@ struct Pose {
 template <class Visitor>
 void describe(Visitor& visitor, Pose& pose) {
   visitor.field(
-      "backend", pose.backend, Choices{},
+      "backend", pose.backend,
       "Where hand poses come from; `handcast-pose --backends` lists what this build has.");
   visitor.section("replay", pose.replay,
                   "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and "
@@ -58,24 +60,33 @@ void describe(Visitor& visitor, Pose& pose) {
   visitor.section("process", pose.process, "How the service runs.");
 }
 
+/// How MediaPipe's landmarks are defined.
+enum class LandmarkDefinition {
+  tracker,  ///< wrist and knuckles moved to where the tracker's joints are
+  network,  ///< as the network defines them
+};
+constexpr std::array<std::string_view, 2> words_of(LandmarkDefinition) {
+  return {"tracker", "network"};
+}
+
 struct Landmarks {
   std::string backend = "twin";
   std::string models;
   int hands = 2;
-  std::string definition = "tracker";
+  LandmarkDefinition definition = LandmarkDefinition::tracker;
   Replay replay;
   Process process;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Landmarks& landmarks) {
-  visitor.field("backend", landmarks.backend, Choices{},
+  visitor.field("backend", landmarks.backend,
                 "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build "
                 "has. onednn, opencv: MediaPipe Hands on the "
                 "camera's images, run by oneDNN or by OpenCV. own: handcast's own network, which "
                 "also looks at the tracker's joints and needs no "
                 "file from outside. twin: the twin's model of a detector. replay: recorded ones.");
-  visitor.field("models", landmarks.models, Choices{},
+  visitor.field("models", landmarks.models,
                 "onednn, opencv: folder of the networks' files, which scripts/get-models fetches; "
                 "relative to the rig file. Empty: the folder "
                 "HANDCAST_MODELS names, else share/handcast/models of the installation, else "
@@ -83,7 +94,7 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
                 "network there, if any, finds hands that the tracker does not see.");
   visitor.field("hands", landmarks.hands, between(1, 2),
                 "onednn, opencv, own: how many hands are looked for.");
-  visitor.field("definition", landmarks.definition, Choices{"tracker", "network"},
+  visitor.field("definition", landmarks.definition,
                 "onednn, opencv: network: points as the network defines them. tracker: wrist and "
                 "knuckles moved to where the tracker's joints "
                 "are defined, which is what the cascade compares them with.");

@@ -11,7 +11,7 @@ struct Observer {
   bool enabled = true;
   double rate_hz = 20;
   int step_px = 3;
-  Process process{.wait = "futex"};
+  Process process{.wait = ipc::Wait::futex};
 };
 
 template <class Visitor>

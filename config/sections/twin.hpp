@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -162,9 +163,17 @@ void describe(Visitor& visitor, TwinShape& shape) {
   visitor.field("width_spread", shape.width_spread, between(0, 0.3), "The same for widths.");
 }
 
+/// Which of the motion's hands there are.
+enum class TwinHands {
+  both,
+  left,
+  right,
+};
+constexpr std::array<std::string_view, 3> words_of(TwinHands) { return {"both", "left", "right"}; }
+
 struct Twin {
   std::string motion = "builtin:open_close";
-  std::string hands = "both";
+  TwinHands hands = TwinHands::both;
   double speed = 1;
   int seed = 1;
   TwinShape shape;
@@ -175,12 +184,11 @@ struct Twin {
 
 template <class Visitor>
 void describe(Visitor& visitor, Twin& twin) {
-  visitor.field("motion", twin.motion, Choices{},
+  visitor.field("motion", twin.motion,
                 "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, "
                 "still, crossing, flip, fist, point_at_camera, "
                 "enter_leave, reverse, cross_fingers; or a folder with a recording.");
-  visitor.field("hands", twin.hands, Choices{"both", "left", "right"},
-                "Which of the motion's hands are there.");
+  visitor.field("hands", twin.hands, "Which of the motion's hands are there.");
   visitor.field("speed", twin.speed, between(0.01, 20), "Plays the motion faster or slower.");
   visitor.field("seed", twin.seed, between(0, 1e9), "Everything random is drawn from this number.");
   visitor.section("shape", twin.shape, "How the true hand differs from the model.");

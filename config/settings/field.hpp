@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
 #include <limits>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace handcast::config {
 
@@ -23,21 +20,18 @@ constexpr Range at_least(double min, std::string_view unit = "") {
   return {min, std::numeric_limits<double>::infinity(), unit};
 }
 
-/// The words a text setting may be. Empty: any text.
-using Choices = std::vector<std::string_view>;
-
 /// A visitor over the settings of a struct. A settings struct `X` is declared once, by a free
 /// function
 ///
 ///     template <class Visitor> void describe(Visitor& visitor, X& x) {
-///       visitor.field("rate_hz", x.rate_hz, between(1, 2000, "Hz"), "Frames a second asked of the
-///       camera."); visitor.section("replay", x.replay, "Frames from a folder instead of a
-///       camera.");
+///       visitor.field("rate_hz", x.rate_hz, between(1, 2000, "Hz"),
+///                     "Frames a second asked of the camera.");
+///       visitor.section("replay", x.replay, "Frames from a folder instead of a camera.");
 ///     }
 ///
 /// The loader, the printer (commented TOML), `--set path=value` and REFERENCE.md are visitors; the
 /// default of a setting is what the struct is born with. Field types: bool, int, double,
-/// std::string (with Choices), std::vector<double>. `section` calls describe() of the member found
-/// by argument-dependent lookup.
+/// std::string, std::vector<double>, and enums with words (choice.hpp). `section` calls describe()
+/// of the member, found by argument-dependent lookup.
 
 }  // namespace handcast::config

@@ -23,8 +23,8 @@ Complaint outside(double number, const Setting& setting) {
 
 /// "must be a number, 1..2000 Hz".
 Complaint expected(const Setting& setting) {
-  constexpr std::string_view kKinds[] = {"true or false", "a whole number", "a number",
-                                         "text in quotes", "a list of numbers"};
+  constexpr std::string_view kKinds[] = {"true or false",  "a whole number",    "a number",
+                                         "text in quotes", "a list of numbers", "a word in quotes"};
   const auto allowed = print_allowed(setting);
   return fmt::format("must be {}{}{}", kKinds[setting.target.index()], allowed.empty() ? "" : ", ",
                      allowed);
@@ -70,10 +70,18 @@ Complaint store(double& target, const Value& value, const Setting& setting) {
 Complaint store(std::string& target, const Value& value, const Setting& setting) {
   const auto* text = std::get_if<std::string>(&value.data);
   if (!text) return wrong_kind(value, setting);
-  const auto& choices = setting.choices;
-  if (!choices.empty() && std::find(choices.begin(), choices.end(), *text) == choices.end())
-    return fmt::format("'{}' is not {}{}", *text, print_allowed(setting), suggest(*text, choices));
   target = *text;
+  return {};
+}
+
+Complaint store(const ChoiceTarget& target, const Value& value, const Setting& setting) {
+  const auto* text = std::get_if<std::string>(&value.data);
+  if (!text) return wrong_kind(value, setting);
+  const auto found = std::ranges::find(target.words, *text);
+  if (found == target.words.end())
+    return fmt::format("'{}' is not {}{}", *text, print_allowed(setting),
+                       suggest(*text, target.words));
+  target.assign(target.value, static_cast<std::size_t>(found - target.words.begin()));
   return {};
 }
 
@@ -91,8 +99,14 @@ Complaint store(std::vector<double>& target, const Value& value, const Setting& 
   return {};
 }
 
+template <class T>
+Complaint store(T* target, const Value& value, const Setting& setting) {
+  return store(*target, value, setting);
+}
+
 Complaint store(const Value& value, const Setting& setting) {
-  return std::visit([&](auto* target) { return store(*target, value, setting); }, setting.target);
+  return std::visit([&](const auto& target) { return store(target, value, setting); },
+                    setting.target);
 }
 
 const Section* find_section(const Listing& listing, std::string_view path) {
@@ -176,7 +190,9 @@ std::string unknown_path(const Listing& listing, std::string_view path) {
 /// it cannot.
 std::optional<Value> read_assigned(std::string_view text, const Target& target) {
   const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
-  if (std::holds_alternative<std::string*>(target) && !quoted) return Value{std::string(text), 1};
+  const bool is_text =
+      std::holds_alternative<std::string*>(target) || std::holds_alternative<ChoiceTarget>(target);
+  if (is_text && !quoted) return Value{std::string(text), 1};
   const bool bare_list =
       std::holds_alternative<std::vector<double>*>(target) && !text.starts_with('[');
   const auto document = parse_document(

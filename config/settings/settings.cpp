@@ -38,6 +38,13 @@ std::string print(const std::string& text) {
   return quoted + '"';
 }
 
+std::string print_target(const ChoiceTarget& choice) { return print(std::string(choice.word())); }
+
+template <class Value>
+std::string print_target(const Value* value) {
+  return print(*value);
+}
+
 std::string comment_for(const Setting& setting) {
   const auto allowed = print_allowed(setting);
   return fmt::format("# {}{}\n", setting.sentence,
@@ -54,11 +61,12 @@ const Setting* find_setting(const Listing& listing, std::string_view path) {
 }
 
 std::string print_value(const Setting& setting) {
-  return std::visit([](const auto* value) { return print(*value); }, setting.target);
+  return std::visit([](const auto& target) { return print_target(target); }, setting.target);
 }
 
 std::string print_allowed(const Setting& setting) {
-  if (!setting.choices.empty()) return fmt::format("one of: {}", join(setting.choices, ", "));
+  if (const auto words = setting.words(); !words.empty())
+    return fmt::format("one of: {}", join(words, ", "));
   const auto& range = setting.range;
   const bool low = std::isfinite(range.min), high = std::isfinite(range.max);
   std::string allowed;

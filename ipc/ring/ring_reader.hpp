@@ -6,11 +6,11 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/base/wait.hpp"
 #include "ipc/ring/held.hpp"
 #include "ipc/ring/message.hpp"
 #include "ipc/ring/reader_attachment.hpp"
 #include "ipc/ring/rhythm.hpp"
-#include "ipc/ring/wait.hpp"
 #include "ipc/ring/wake_bridge.hpp"
 #include "ipc/shm/segment.hpp"
 

@@ -6,6 +6,8 @@
 namespace handcast::renderer {
 namespace {
 
+using config::FilterMethod;
+
 class NoFilter final : public LandmarkFilter {
  public:
   void detection(std::int64_t, std::int64_t, const msg::HandLandmarks&, const TrackerAt&) override {
@@ -35,21 +37,34 @@ class IdealFilter final : public LandmarkFilter {
 }  // namespace
 
 bool moves_with_tracker(const config::Filter& settings) {
-  return settings.method == "paper" || settings.method == "one_euro" ||
-         settings.method == "offset_kalman";
+  switch (settings.method) {
+    case FilterMethod::paper:
+    case FilterMethod::one_euro:
+    case FilterMethod::offset_kalman:
+      return true;
+    default:
+      return false;
+  }
 }
 
 std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& settings,
                                                      LandmarkOracle oracle) {
-  if (settings.method == "naive") return make_settled_filter(settings, make_naive_filter());
-  if (settings.method == "paper") return make_settled_filter(settings, make_paper_filter(settings));
-  if (settings.method == "kalman")
-    return make_settled_filter(settings, make_kalman_filter(settings));
-  if (settings.method == "one_euro")
-    return make_settled_filter(settings, make_one_euro_filter(settings));
-  if (settings.method == "offset_kalman")
-    return make_settled_filter(settings, make_offset_kalman(settings));
-  if (settings.method == "ideal" && oracle) return std::make_unique<IdealFilter>(std::move(oracle));
+  switch (settings.method) {
+    case FilterMethod::none:
+      break;
+    case FilterMethod::naive:
+      return make_settled_filter(settings, make_naive_filter());
+    case FilterMethod::paper:
+      return make_settled_filter(settings, make_paper_filter(settings));
+    case FilterMethod::kalman:
+      return make_settled_filter(settings, make_kalman_filter(settings));
+    case FilterMethod::one_euro:
+      return make_settled_filter(settings, make_one_euro_filter(settings));
+    case FilterMethod::offset_kalman:
+      return make_settled_filter(settings, make_offset_kalman(settings));
+    case FilterMethod::ideal:
+      if (oracle) return std::make_unique<IdealFilter>(std::move(oracle));
+  }
   return std::make_unique<NoFilter>();
 }
 

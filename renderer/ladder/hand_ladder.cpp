@@ -42,8 +42,8 @@ void follow(std::optional<float>& smooth, std::optional<float> value) {
 
 HandLadder::HandLadder(const config::Cascade& settings)
     : settings_(settings),
-      automatic_(settings.ladder.rung == "auto"),
-      fixed_(rung_named(settings.ladder.rung)),
+      automatic_(settings.ladder.rung == config::RungChoice::automatic),
+      fixed_(held_rung(settings.ladder.rung)),
       with_tracker_(moves_with_tracker(settings.filter)),
       gate_(settings.ladder) {}
 
@@ -64,7 +64,7 @@ void HandLadder::judge_landmarks(Evidence& evidence) const {
   const float detection_px2 = 2 * noise_px * noise_px;
   const float off_px2 = std::max(innovation_px2_.value_or(2 * detection_px2) - detection_px2,
                                  kLeastLandmark * detection_px2);
-  if (settings_.filter.method == "ideal") {
+  if (settings_.filter.method == config::FilterMethod::ideal) {
     evidence.landmark_px2 = 0;
     evidence.lag_px2 = 0;
   } else if (with_tracker_) {

@@ -2,6 +2,7 @@
 #include "renderer/ladder/rung.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace handcast::renderer {
 namespace {
@@ -19,12 +20,18 @@ glm::vec2 mean_shift(const LandmarkPoints& p, const LandmarkPoints& q) {
   return sum / static_cast<float>(kLandmarks);
 }
 
+/// The words of the setting are "auto" and the names of the rungs, in their order.
+constexpr bool words_are_rungs() {
+  const auto words = words_of(config::RungChoice{});
+  return std::ranges::equal(std::span(words).subspan(1), msg::kRungNames);
+}
+static_assert(words_are_rungs());
+
 }  // namespace
 
-Rung rung_named(std::string_view name) {
-  const auto found = std::ranges::find(msg::kRungNames, name);
-  return found == msg::kRungNames.end() ? Rung::landmarks
-                                        : static_cast<Rung>(found - msg::kRungNames.begin());
+Rung held_rung(config::RungChoice choice) {
+  if (choice == config::RungChoice::automatic) return Rung::landmarks;
+  return static_cast<Rung>(static_cast<int>(choice) - 1);
 }
 
 int degrees_of_freedom(Rung rung) { return kFreeNumbers[static_cast<std::size_t>(rung)]; }

@@ -2,8 +2,8 @@
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
-#include <string_view>
 
+#include "config/sections/cascade.hpp"
 #include "ipc/msg/rung.hpp"
 #include "renderer/base/landmark_points.hpp"
 #include "renderer/base/similarity.hpp"
@@ -26,8 +26,8 @@ namespace handcast::renderer {
 using msg::kRungs;
 using msg::Rung;
 
-/// The rung of this name; landmarks for any other.
-Rung rung_named(std::string_view name);
+/// The rung that a setting holds; landmarks if it holds none.
+Rung held_rung(config::RungChoice choice);
 /// Free numbers of the field that carries P onto Q.
 int degrees_of_freedom(Rung rung);
 

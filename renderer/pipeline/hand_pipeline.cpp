@@ -15,7 +15,7 @@ namespace {
 /// With late registration, jumps are blended after it and not in the filter.
 config::Filter filter_of(const config::Cascade& settings) {
   config::Filter filter = settings.filter;
-  if (registration_of(settings).method != "none") filter.blend_ms = 0;
+  if (registration_of(settings).method != config::RegisterMethod::none) filter.blend_ms = 0;
   return filter;
 }
 
@@ -23,9 +23,10 @@ config::Filter filter_of(const config::Cascade& settings) {
 
 config::Registration registration_of(const config::Cascade& settings) {
   config::Registration registration = settings.registration;
-  if (!moves_with_tracker(settings.filter)) registration.method = "none";
-  if (settings.ladder.rung != "auto" && settings.ladder.rung != "register")
-    registration.method = "none";
+  const bool may_register = settings.ladder.rung == config::RungChoice::automatic ||
+                            settings.ladder.rung == config::RungChoice::registered;
+  if (!may_register || !moves_with_tracker(settings.filter))
+    registration.method = config::RegisterMethod::none;
   return registration;
 }
 

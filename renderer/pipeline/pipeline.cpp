@@ -30,7 +30,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascad
                                                    const config::Hand& hand,
                                                    const calib::Calibration& calibration,
                                                    const Oracle& oracle) {
-  if (cascade.filter.method == "ideal" && !oracle)
+  if (cascade.filter.method == config::FilterMethod::ideal && !oracle)
     return fail(
         Errc::bad_config,
         "cascade.filter.method = \"ideal\" needs the truth, which only `handcast simulate` knows");
@@ -89,8 +89,8 @@ void Pipeline::look(const TimedImage& camera) {
 
 Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera) {
   stages_.start();
-  const bool is_masked =
-      settings_.fill.method != "none" && camera && !is_early(now_ns, camera.origin_ns);
+  const bool is_masked = settings_.fill.method != config::FillMethod::none && camera &&
+                         !is_early(now_ns, camera.origin_ns);
   last_image_ = is_masked ? std::optional(ImageUse{target_ns, camera.origin_ns}) : std::nullopt;
   predict(now_ns, target_ns, expected_image_ns(target_ns));
   stages_.mark(Stage::predict);
@@ -177,9 +177,9 @@ Rect Pipeline::advance_masks(const TimedImage& camera) {
 /// over.
 int Pipeline::correct() {
   grid_.reset();
-  if (settings_.correct.method == "grid") return correct_by_grid();
+  if (settings_.correct.method == config::CorrectMethod::grid) return correct_by_grid();
   int foldovers = 0;
-  if (settings_.correct.method == "vertices")
+  if (settings_.correct.method == config::CorrectMethod::vertices)
     for (auto& [hand, frame] : hands_) foldovers += hand->correct(frame);
   return foldovers;
 }

@@ -197,7 +197,8 @@ const PoseHistory::Sample* PoseHistory::earlier_than(const Sample& sample) const
 std::array<glm::vec3, msg::kJoints> PoseHistory::bends_m(const Sample& newest, const Sample& base,
                                                          std::int64_t ahead_ns) const {
   std::array<glm::vec3, msg::kJoints> bends{};
-  const Sample* first = settings_.method == "acceleration" ? earlier_than(base) : nullptr;
+  const Sample* first =
+      settings_.method == config::PredictMethod::acceleration ? earlier_than(base) : nullptr;
   if (!first) return bends;
   const auto first_s = static_cast<float>(ns_to_seconds(base.origin_ns - first->origin_ns));
   const auto second_s = static_cast<float>(ns_to_seconds(newest.origin_ns - base.origin_ns));
@@ -212,7 +213,7 @@ std::array<glm::vec3, msg::kJoints> PoseHistory::bends_m(const Sample& newest, c
 
 msg::HandPose PoseHistory::predicted(std::int64_t time_ns) const {
   const Sample& newest = samples_.back();
-  if (settings_.method == "hold") return newest.pose;
+  if (settings_.method == config::PredictMethod::hold) return newest.pose;
   const Sample* base = earlier_than(newest);
   if (!base) return newest.pose;
 

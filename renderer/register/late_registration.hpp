@@ -40,7 +40,7 @@ class LateRegistration {
   LateRegistration(const config::Registration& settings, const config::Filter& filter,
                    const calib::Calibration& calibration);
 
-  bool on() const { return settings_.method == "mask"; }
+  bool on() const { return settings_.method == config::RegisterMethod::mask; }
 
   bool is_new(const TimedImage& image) const { return image.origin_ns > newest_ns_; }
   /// Takes in an image, once; an image that is not newer than the last is not looked at.

@@ -81,8 +81,9 @@ Result<std::unique_ptr<Detector>> open_with(const char* backend, const config::R
   const auto& settings = rig.landmarks;
   auto finder = HandFinder::open(backend, models_folder(settings.models), settings.hands);
   if (!finder) return fail_in(fmt::format("landmarks '{}'", backend), finder.error());
-  return std::make_unique<NetworkDetector>(std::move(*finder), calibration.camera,
-                                           settings.definition == "tracker");
+  return std::make_unique<NetworkDetector>(
+      std::move(*finder), calibration.camera,
+      settings.definition == config::LandmarkDefinition::tracker);
 }
 
 }  // namespace

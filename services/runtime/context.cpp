@@ -41,7 +41,7 @@ Context::Context(std::string name, config::Rig rig, calib::Calibration calibrati
   ready_fd_ = static_cast<int>(number_from_environment("HANDCAST_READY_FD").value_or(-1));
   epoch_ns_ = number_from_environment("HANDCAST_EPOCH_NS").value_or(now_ns());
   standby_fd_ = static_cast<int>(number_from_environment("HANDCAST_STANDBY_FD").value_or(-1));
-  wait_ = must(ipc::parse_wait(config::process_of(rig_, name_).wait));
+  wait_ = config::process_of(rig_, name_).wait;
   if (standby_fd_ < 0) open_marks();
 }
 

@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 
+#include "config/settings/choice.hpp"
 #include "ipc/msg/rung.hpp"
 #include "tests/bench/cascade_runs.hpp"
 #include "tests/bench/frame_pipeline.hpp"
@@ -119,7 +120,7 @@ std::map<std::string, double> frame_times_us() {
   for (int turn = 0; turn < kTurns; ++turn) {
     for (const auto& rung : rung_names()) {
       config::Cascade cascade;
-      cascade.ladder.rung = rung;
+      cascade.ladder.rung = *config::choice_named<config::RungChoice>(rung);
       const FrameTimes times = time_frames(cascade, 0.9, kFrames);
       auto& all = samples[rung];
       all.insert(all.end(), times.frame_us.begin(), times.frame_us.end());

@@ -95,8 +95,8 @@ void print_comparison(const char* title, const NearestComparison& c) {
 
 std::vector<Goal> measure_goals() {
   config::Cascade ours, paper;
-  paper.filter.method = "paper";
-  paper.correct.method = "grid";
+  paper.filter.method = config::FilterMethod::paper;
+  paper.correct.method = config::CorrectMethod::grid;
   constexpr double kUsual_m = 0.9, kNear_m = 0.55;
   const FrameTimes frame = time_frames(ours, kUsual_m, 3000);
   print_frame("cpu frame, vertices corrected", frame);

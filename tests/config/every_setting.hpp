@@ -30,19 +30,21 @@ inline std::vector<std::string> differences(Rig a, Rig b) {
 /// such.
 inline void change(const Setting& setting) {
   std::visit(
-      [&](auto* value) {
-        using T = std::decay_t<decltype(*value)>;
-        if constexpr (std::is_same_v<T, bool>) *value = !*value;
-        if constexpr (std::is_same_v<T, int>) *value += *value + 1 <= setting.range.max ? 1 : -1;
-        if constexpr (std::is_same_v<T, double>)
-          *value = (*value + setting.range.min) / 2 + (setting.range.max - setting.range.min) / 3e6;
-        if constexpr (std::is_same_v<T, std::vector<double>>) value->push_back(0.1);
-        if constexpr (std::is_same_v<T, std::string>) {
-          if (setting.choices.empty())
+      [&](const auto& target) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(target)>, ChoiceTarget>) {
+          target.assign(target.value, (target.index(target.value) + 1) % target.words.size());
+          return;
+        } else {
+          auto* value = target;
+          using T = std::decay_t<decltype(*value)>;
+          if constexpr (std::is_same_v<T, bool>) *value = !*value;
+          if constexpr (std::is_same_v<T, int>) *value += *value + 1 <= setting.range.max ? 1 : -1;
+          if constexpr (std::is_same_v<T, double>)
+            *value =
+                (*value + setting.range.min) / 2 + (setting.range.max - setting.range.min) / 3e6;
+          if constexpr (std::is_same_v<T, std::vector<double>>) value->push_back(0.1);
+          if constexpr (std::is_same_v<T, std::string>)
             *value = "/a \"quoted\" \\ path\twith a tab and a hä\x01";
-          else
-            *value = *value == setting.choices.front() ? setting.choices.back()
-                                                       : setting.choices.front();
         }
       },
       setting.target);

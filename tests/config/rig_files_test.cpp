@@ -41,18 +41,18 @@ TEST(ShippedRigs, PaperAndBaselineDifferFromTwinInSoftwareAlone) {
 TEST(ShippedRigs, PaperIsThePapersCascade) {
   const auto rig = shipped("paper");
   EXPECT_EQ(rig.projector.software_ms, 3.19);
-  EXPECT_EQ(rig.cascade.filter.method, "paper");
-  EXPECT_EQ(rig.cascade.correct.method, "grid");
+  EXPECT_EQ(rig.cascade.filter.method, FilterMethod::paper);
+  EXPECT_EQ(rig.cascade.correct.method, CorrectMethod::grid);
   EXPECT_EQ(rig.cascade.correct.grid_columns * rig.cascade.correct.grid_rows, 21 * 21);
   EXPECT_EQ(rig.cascade.fill.reach_px, 10);
 }
 
 TEST(ShippedRigs, BaselinePredictsAndDrawsOnly) {
   const auto rig = shipped("baseline");
-  EXPECT_EQ(rig.cascade.predict.method, "velocity");
-  EXPECT_EQ(rig.cascade.filter.method, "none");
-  EXPECT_EQ(rig.cascade.correct.method, "none");
-  EXPECT_EQ(rig.cascade.fill.method, "none");
+  EXPECT_EQ(rig.cascade.predict.method, PredictMethod::velocity);
+  EXPECT_EQ(rig.cascade.filter.method, FilterMethod::none);
+  EXPECT_EQ(rig.cascade.correct.method, CorrectMethod::none);
+  EXPECT_EQ(rig.cascade.fill.method, FillMethod::none);
 }
 
 TEST(ShippedRigs, ReplayReadsOneRecordingWithAllSensors) {

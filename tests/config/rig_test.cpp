@@ -123,7 +123,7 @@ TEST(Assignment, IsTypedByItsSetting) {
   EXPECT_EQ(rig.camera.rate_hz, 240);
   EXPECT_EQ(rig.twin.seed, 7);
   EXPECT_FALSE(rig.observer.enabled);
-  EXPECT_EQ(rig.cascade.filter.method, "paper");
+  EXPECT_EQ(rig.cascade.filter.method, FilterMethod::paper);
   EXPECT_EQ(rig.name, "5");
 }
 

@@ -30,17 +30,6 @@ Reader<Note> bridged(const Segment& segment) {
   return must(Reader<Note>::attach(again(segment), Wait::eventfd));
 }
 
-TEST(WaitNames, AreThoseOfTheFourWaysAndAnotherIsRefusedWithThem) {
-  EXPECT_EQ(must(parse_wait("spin")), Wait::spin);
-  EXPECT_EQ(must(parse_wait("predictive")), Wait::predictive);
-  EXPECT_EQ(must(parse_wait("futex")), Wait::futex);
-  EXPECT_EQ(must(parse_wait("eventfd")), Wait::eventfd);
-  const auto other = parse_wait("sleep");
-  ASSERT_FALSE(other);
-  EXPECT_EQ(other.error().code, Errc::bad_config);
-  EXPECT_THAT(other.error().what, HasSubstr("'sleep': there are spin, predictive, futex, eventfd"));
-}
-
 TEST(Wakeups, NoneIsLostBetweenAFlagAndAHead) {
   constexpr std::uint64_t kMessages = 20'000;
   SmallRing ring(3, false);

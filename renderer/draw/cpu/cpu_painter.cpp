@@ -38,7 +38,7 @@ class CpuPainter final : public Painter {
   FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings,
                   Rect region) override {
     region = region.within(width_, height_);
-    if (region.empty() || settings.method == "none") return {};
+    if (region.empty() || settings.method == config::FillMethod::none) return {};
     return filler_.fill(mask, settings, region, textures_, frame_);
   }
 

@@ -30,8 +30,7 @@ struct Head {
 
 template <class Visitor>
 void describe(Visitor& visitor, Head& head) {
-  visitor.field("rig", head.rig, config::Choices{},
-                "Rig file of the variants that name none, relative to the plan.");
+  visitor.field("rig", head.rig, "Rig file of the variants that name none, relative to the plan.");
   visitor.field("seconds", head.seconds, config::between(0.01, 86400, "s"),
                 "Time that is scored in every run.");
   visitor.field("warm_up_s", head.warm_up_s, config::between(0, 3600, "s"),
@@ -53,8 +52,8 @@ struct VariantHead {
 
 template <class Visitor>
 void describe(Visitor& visitor, VariantHead& head) {
-  visitor.field("name", head.name, config::Choices{}, "Names the rung.");
-  visitor.field("rig", head.rig, config::Choices{}, "Its rig file, relative to the plan.");
+  visitor.field("name", head.name, "Names the rung.");
+  visitor.field("rig", head.rig, "Its rig file, relative to the plan.");
   visitor.section("settings", head.settings, "Settings of its runs.");
 }
 

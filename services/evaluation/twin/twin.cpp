@@ -83,9 +83,9 @@ class RigTwin final : public Twin {
         camera_rate_hz_(rig.camera.rate_hz),
         exposure_ns_(ms_to_ns(rig.camera.exposure_ms)),
         delivery_ns_(ms_to_ns(rig.twin.image.delivery_ms)),
-        absent_(rig.twin.hands == "left"    ? std::optional(Side::right)
-                : rig.twin.hands == "right" ? std::optional(Side::left)
-                                            : std::nullopt),
+        absent_(rig.twin.hands == config::TwinHands::left    ? std::optional(Side::right)
+                : rig.twin.hands == config::TwinHands::right ? std::optional(Side::left)
+                                                             : std::nullopt),
         motion_(std::move(parts.motion)),
         hands_(std::move(parts.models), parts.made_by_handcast,
                {moves(Side::left), moves(Side::right)}, motion_->shape()),

@@ -25,7 +25,9 @@ class TrackerHints {
   std::array<renderer::PoseHistory, msg::kMaxHands> histories_{renderer::PoseHistory(prediction()),
                                                                renderer::PoseHistory(prediction())};
 
-  static config::Predict prediction() { return {.method = "velocity", .limit_ms = 40}; }
+  static config::Predict prediction() {
+    return {.method = config::PredictMethod::velocity, .limit_ms = 40};
+  }
 };
 
 /// The 21 landmarks' joints of a pose; nothing where one is behind the camera.

@@ -40,7 +40,8 @@ class PainterContract : public testing::TestWithParam<MakePainter> {
   }
 
   std::unique_ptr<Painter> painter_ = GetParam()(kWidth, kHeight);
-  config::Fill settings_{.method = "reflect", .reach_px = 32, .fade_px = 0, .seam_uv = 0.04};
+  config::Fill settings_{
+      .method = config::FillMethod::reflect, .reach_px = 32, .fade_px = 0, .seam_uv = 0.04};
 };
 
 // ---- draw
@@ -378,7 +379,7 @@ TEST_P(PainterContract, MethodNoneLeavesTheDrawingAsItIs) {
   Shape shape;
   shape.rectangle({19.5f, 19.5f}, {119.5f, 99.5f});
   draw(*painter_, shape, kWhole);
-  settings_.method = "none";
+  settings_.method = config::FillMethod::none;
   fill(mask_of(kWidth, kHeight, {}));
   EXPECT_EQ(lit_pixels(), 100 * 80);
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "config/settings/choice.hpp"
 #include "renderer/filter/landmark_filter.hpp"
 
 /// The discrete simulation of the paper (figure "Discrete Simulation") on a made-up motion: truth,
@@ -110,7 +111,7 @@ Score simulate(const World& world, const config::Filter& settings) {
 
 config::Filter method(const char* name, double blend_ms, bool hindsight) {
   config::Filter settings;
-  settings.method = name;
+  settings.method = *config::choice_named<config::FilterMethod>(name);
   settings.blend_ms = blend_ms;
   settings.hindsight = hindsight;
   return settings;

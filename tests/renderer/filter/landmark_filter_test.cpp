@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "config/settings/choice.hpp"
+
 namespace handcast::renderer {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr std::int64_t kMs = 1'000'000;
 
 config::Filter settings(const char* method, double blend_ms = 0) {
   config::Filter filter;
-  filter.method = method;
+  filter.method = *config::choice_named<config::FilterMethod>(method);
   filter.blend_ms = blend_ms;
   filter.blend_px = 100;  // more than any jump here: the bound has a test of its own
   return filter;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "config/settings/choice.hpp"
+
 namespace handcast::renderer {
 namespace {
 
@@ -27,7 +29,7 @@ class SharedOffset : public testing::TestWithParam<const char*> {
   /// The offsets a filter makes of these detections.
   Offsets carried(LandmarkFilter::Tracker tracker = LandmarkFilter::Tracker::heard) const {
     config::Filter settings;
-    settings.method = GetParam();
+    settings.method = *config::choice_named<config::FilterMethod>(GetParam());
     settings.blend_ms = 0;
     const auto filter = make_landmark_filter(settings);
     LandmarkPoints still;

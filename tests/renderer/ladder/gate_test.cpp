@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "config/settings/choice.hpp"
 #include "renderer/filter/landmark_track.hpp"
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/ladder/hindsight.hpp"
@@ -216,7 +217,7 @@ struct Ride {
   bool registered = false;
 };
 
-Ride ride(const char* filter, Rung rung, glm::vec2 off_px) {
+Ride ride(config::FilterMethod filter, Rung rung, glm::vec2 off_px) {
   const auto calibration = rig_above_hand();
   config::Cascade settings;
   settings.filter.method = filter;
@@ -255,14 +256,14 @@ Ride ride(const char* filter, Rung rung, glm::vec2 off_px) {
 }
 
 TEST(Ladder, WhatAnOracleSaysIsTakenAsItIs) {
-  const Ride ideal = ride("ideal", Rung::predict, {0, 0});
+  const Ride ideal = ride(config::FilterMethod::ideal, Rung::predict, {0, 0});
   EXPECT_LT(ideal.share, 0.3);
   EXPECT_LT(ideal.worst_px, 1.5) << "a prediction that is as good is enough";
   EXPECT_FALSE(ideal.registered);
 }
 
 TEST(Ladder, LandmarksThatComeLateAreNotPreferredToATrackerThatIsRight) {
-  const Ride naive = ride("naive", Rung::predict, {8, 0});
+  const Ride naive = ride(config::FilterMethod::naive, Rung::predict, {8, 0});
   EXPECT_GT(naive.share, 0.9);
   EXPECT_FALSE(naive.registered);
 }
@@ -298,7 +299,8 @@ TEST(Ladder, OnTheLowestRungsTheTrackersJumpsAreBlendedInToo) {
 
 TEST(Ladder, ALowerRungThatIsSetIsKept) {
   const auto calibration = rig_above_hand();
-  for (const char* rung : {"hold", "similarity", "landmarks"}) {
+  using enum config::RungChoice;
+  for (const config::RungChoice rung : {hold, similarity, landmarks}) {
     config::Cascade settings;
     settings.ladder.rung = rung;
     const auto pipeline = *Pipeline::create(settings, {}, {}, calibration);
@@ -311,9 +313,9 @@ TEST(Ladder, ALowerRungThatIsSetIsKept) {
     const Frame frame = pipeline->render(101 * kMs, 105 * kMs, {});
     ASSERT_EQ(frame.hands.size(), 1u);
     const auto& hand = frame.hands[0];
-    EXPECT_EQ(msg::name_of(hand.rung), rung);
+    EXPECT_EQ(hand.rung, held_rung(rung));
     EXPECT_NEAR(hand.corrected[9].x - hand.tracker[9].x, hand.rung < Rung::shift ? 0 : 6, 0.1f)
-        << rung;
+        << config::word_of(rung);
     const auto mark = std::ranges::find(frame.stages, msg::Stage::correct, &msg::StageMark::stage);
     ASSERT_NE(mark, frame.stages.end());
     EXPECT_EQ(msg::rung_in(mark->detail, Side::left), hand.rung);

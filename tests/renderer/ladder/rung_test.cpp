@@ -38,9 +38,9 @@ TEST(Rung, ADearerOneNeverLeavesMore) {
   }
 }
 
-TEST(Rung, TheNamesAreThoseOfTheSettings) {
+TEST(Rung, ThoseOfTheSettingsAreTheRungsInTheirOrder) {
   for (std::size_t r = 0; r < kRungs; ++r)
-    EXPECT_EQ(rung_named(msg::kRungNames[r]), static_cast<Rung>(r));
+    EXPECT_EQ(held_rung(static_cast<config::RungChoice>(r + 1)), static_cast<Rung>(r));
   for (std::size_t r = 1; r < kRungs; ++r)
     EXPECT_GE(degrees_of_freedom(static_cast<Rung>(r)),
               degrees_of_freedom(static_cast<Rung>(r - 1)));

@@ -47,7 +47,7 @@ using Pixels = Image<std::uint32_t>;  ///< of the projector, 0 where dark
 
 Pixels light_of(const Scene& scene, bool advance) {
   config::Cascade settings;
-  settings.correct.method = "none";
+  settings.correct.method = config::CorrectMethod::none;
   settings.mask.advance = advance;
   const auto pipeline = Pipeline::create(settings, {}, {}, scene.calibration);
   if (!pipeline) throw std::runtime_error(pipeline.error().what);

@@ -5,18 +5,21 @@
 #include <bit>
 #include <random>
 
+#include "config/settings/choice.hpp"
 #include "tests/renderer/pipeline/driven_pipeline.hpp"
 
 namespace handcast::renderer {
 namespace {
 
-class EveryCorrection : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, EveryCorrection, ::testing::Values("vertices", "grid"),
-                         [](const auto& each) { return std::string(each.param); });
+class EveryCorrection : public ::testing::TestWithParam<config::CorrectMethod> {};
+INSTANTIATE_TEST_SUITE_P(Methods, EveryCorrection,
+                         ::testing::Values(config::CorrectMethod::vertices,
+                                           config::CorrectMethod::grid),
+                         [](const auto& each) { return std::string(config::word_of(each.param)); });
 
 TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
   const auto calibration = rig_above_hand();
-  const auto pipeline = make_pipeline(cascade(GetParam(), "none"));
+  const auto pipeline = make_pipeline(cascade(GetParam(), config::FillMethod::none));
   const auto hand = pose_of(Side::left);
   feed_still(*pipeline, {hand});
   const glm::vec2 before = mean_landing(pipeline->render(20 * kMs, 24 * kMs, {}).hands[0]);
@@ -50,7 +53,7 @@ TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
 
 TEST_P(EveryCorrection, AWrongTrackerIsMendedByLandmarksMaskAndFill) {
   const auto calibration = rig_above_hand();
-  const auto pipeline = make_pipeline(cascade(GetParam(), "reflect"));
+  const auto pipeline = make_pipeline(cascade(GetParam(), config::FillMethod::reflect));
   const auto hand = pose_of(Side::left);
   const auto image = image_of(calibration, {hand}, {15, 10});
   feed_still(*pipeline, {hand});
@@ -65,7 +68,7 @@ TEST_P(EveryCorrection, AWrongTrackerIsMendedByLandmarksMaskAndFill) {
 
 TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
   const auto calibration = rig_above_hand();
-  const auto pipeline = make_pipeline(cascade(GetParam(), "reflect"));
+  const auto pipeline = make_pipeline(cascade(GetParam(), config::FillMethod::reflect));
   const auto left = pose_of(Side::left, {-0.085f, 0, 0}),
              right = pose_of(Side::right, {0.085f, 0, 0});
   feed_still(*pipeline, {left, right});
@@ -91,7 +94,8 @@ TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
 
 TEST(Correction, AGridThatFoldsIsCounted) {
   const auto calibration = rig_above_hand();
-  const auto pipeline = make_pipeline(cascade("grid", "none"));
+  const auto pipeline =
+      make_pipeline(cascade(config::CorrectMethod::grid, config::FillMethod::none));
   const auto hand = pose_of(Side::left);
   feed_still(*pipeline, {hand});
   auto torn = landmarks_of(calibration, 80 * kMs, hand, {});
@@ -132,9 +136,9 @@ std::vector<std::uint32_t> everything(const config::Cascade& settings) {
 }
 
 TEST_P(EveryCorrection, TheSameMessagesGiveTheSameLightBitByBit) {
-  const auto once = everything(cascade(GetParam(), "reflect"));
+  const auto once = everything(cascade(GetParam(), config::FillMethod::reflect));
   EXPECT_GT(once.size(), 100000u);
-  EXPECT_TRUE(once == everything(cascade(GetParam(), "reflect")));
+  EXPECT_TRUE(once == everything(cascade(GetParam(), config::FillMethod::reflect)));
 }
 
 }  // namespace

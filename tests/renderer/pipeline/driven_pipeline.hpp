@@ -19,7 +19,7 @@ inline std::unique_ptr<Pipeline> make_pipeline(
   return std::move(*pipeline);
 }
 
-inline config::Cascade cascade(const char* correct, const char* fill) {
+inline config::Cascade cascade(config::CorrectMethod correct, config::FillMethod fill) {
   config::Cascade settings;
   settings.correct.method = correct;
   settings.fill.method = fill;

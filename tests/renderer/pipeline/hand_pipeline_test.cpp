@@ -69,7 +69,7 @@ class Rig {
   /// Without late registration: jumps are blended by the filter.
   static config::Cascade on_landmarks() {
     config::Cascade settings;
-    settings.ladder.rung = "landmarks";
+    settings.ladder.rung = config::RungChoice::landmarks;
     return settings;
   }
 

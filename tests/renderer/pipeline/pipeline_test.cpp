@@ -29,7 +29,7 @@ TEST(Pipeline, AMissingHandFileIsAConfigurationError) {
 
 TEST(Pipeline, TheIdealFilterNeedsATruthThatOnlyASimulatorHas) {
   config::Cascade ideal;
-  ideal.filter.method = "ideal";
+  ideal.filter.method = config::FilterMethod::ideal;
   const auto alone = Pipeline::create(ideal, {}, {}, rig_above_hand());
   ASSERT_FALSE(alone);
   EXPECT_EQ(alone.error().code, Errc::bad_config);
@@ -40,14 +40,14 @@ TEST(Pipeline, TheIdealFilterNeedsATruthThatOnlyASimulatorHas) {
 TEST(Pipeline, ImagesOfFramesThatAreNotDrawnAreAskedForOnlyWhereTheyAreRegistered) {
   EXPECT_TRUE(make_pipeline()->looks());
   config::Cascade settings;
-  settings.ladder.rung = "landmarks";
+  settings.ladder.rung = config::RungChoice::landmarks;
   EXPECT_FALSE(make_pipeline(settings)->looks());
-  settings.ladder.rung = "register";
+  settings.ladder.rung = config::RungChoice::registered;
   EXPECT_TRUE(make_pipeline(settings)->looks());
-  settings.filter.method = "kalman";
+  settings.filter.method = config::FilterMethod::kalman;
   EXPECT_FALSE(make_pipeline(settings)->looks());
   settings = {};
-  settings.registration.method = "none";
+  settings.registration.method = config::RegisterMethod::none;
   EXPECT_FALSE(make_pipeline(settings)->looks());
 }
 
@@ -78,7 +78,8 @@ TEST_P(EverySide, LightCoversTheHandAndNothingElse) {
 
 TEST(Pipeline, WithoutMaskingTheArmBeyondTheWristIsNotDrawnEither) {
   const auto calibration = rig_above_hand();
-  const auto pipeline = make_pipeline(cascade("none", "none"));
+  const auto pipeline =
+      make_pipeline(cascade(config::CorrectMethod::none, config::FillMethod::none));
   feed_still(*pipeline, {pose_of(Side::left)});
   const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {});
   const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].tracker[0]));
@@ -147,8 +148,8 @@ TEST(Pipeline, AHandTheTrackerLostGoesDark) {
 
 TEST(Pipeline, AHandLeavingTheViewIsFollowedToTheEdgeAndBeyond) {
   const auto calibration = rig_above_hand();
-  for (const char* method : {"vertices", "grid"}) {
-    const auto pipeline = make_pipeline(cascade(method, "reflect"));
+  for (const auto method : {config::CorrectMethod::vertices, config::CorrectMethod::grid}) {
+    const auto pipeline = make_pipeline(cascade(method, config::FillMethod::reflect));
     std::int64_t t = 0;
     for (float x = 0; x < 0.5f; x += 0.01f, t += 9 * kMs) {
       const auto hand = pose_of(Side::left, {x, 0, 0.3f * x});
@@ -220,7 +221,8 @@ TEST(Pipeline, AHandBehindTheCameraIsNotDrawn) {
 TEST(Pipeline, EveryStageIsMarkedInOrder) {
   using msg::Stage;
   const auto calibration = rig_above_hand();
-  const auto pipeline = make_pipeline(cascade("grid", "reflect"));
+  const auto pipeline =
+      make_pipeline(cascade(config::CorrectMethod::grid, config::FillMethod::reflect));
   const auto hand = pose_of(Side::left);
   feed_still(*pipeline, {hand});
   feed_landmarks(*pipeline, calibration, hand, {5, 5});
@@ -240,9 +242,11 @@ TEST(Pipeline, EveryStageIsMarkedInOrder) {
 TEST(Pipeline, ShadingDarkensWhatTurnsAway) {
   config::Content white;
   white.left = "builtin:white";
-  const auto plain = make_pipeline(cascade("none", "none"), rig_above_hand(), white);
+  const auto plain = make_pipeline(cascade(config::CorrectMethod::none, config::FillMethod::none),
+                                   rig_above_hand(), white);
   white.shading = 1;
-  const auto shaded = make_pipeline(cascade("none", "none"), rig_above_hand(), white);
+  const auto shaded = make_pipeline(cascade(config::CorrectMethod::none, config::FillMethod::none),
+                                    rig_above_hand(), white);
   const auto sum_of = [](Pipeline& pipeline) {
     feed_still(pipeline, {pose_of(Side::left)});
     const Frame frame = pipeline.render(104 * kMs, 108 * kMs, {});

@@ -32,7 +32,7 @@ float angle_of(const std::optional<msg::HandPose>& pose) {
 
 config::Predict by_velocity() {
   config::Predict settings;
-  settings.method = "velocity";
+  settings.method = config::PredictMethod::velocity;
   return settings;
 }
 
@@ -72,7 +72,7 @@ TEST(PoseHistory, BeyondTheNewestSampleTheMotionGoesOn) {
 
 TEST(PoseHistory, HoldKeepsTheNewestPose) {
   config::Predict hold;
-  hold.method = "hold";
+  hold.method = config::PredictMethod::hold;
   EXPECT_NEAR(x_of(moving(1.0f, 0, hold).at(105 * kMs)), 0.090f, 1e-6f);
 }
 
@@ -86,7 +86,7 @@ TEST(PoseHistory, AnAcceleratingHandIsFollowedBetterWithItsAcceleration) {
   config::Predict settings = by_velocity();
   std::array<float, 2> error_m{};
   for (const int which : {0, 1}) {
-    if (which) settings.method = "acceleration";
+    if (which) settings.method = config::PredictMethod::acceleration;
     PoseHistory history(settings);
     const auto place = [](float t) { return 0.5f * 25 * t * t; };  // 25 m/s^2: a hand shaken hard
     for (int i = 0; i <= 10; ++i)

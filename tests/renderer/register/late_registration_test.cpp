@@ -128,7 +128,7 @@ TEST(LateRegistration, AnImageOfSomethingElseCorrectsNothing) {
 TEST(LateRegistration, SwitchedOffItLeavesTheLandmarksAlone) {
   const auto calibration = rig_above_hand();
   config::Registration none;
-  none.method = "none";
+  none.method = config::RegisterMethod::none;
   EXPECT_FALSE(LateRegistration(none, {}, calibration).on());
 }
 

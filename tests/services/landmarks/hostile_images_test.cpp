@@ -28,7 +28,7 @@ const std::vector<Sight>& good() {
     for (const char* motion : {"builtin:open_close", "builtin:rotate", "builtin:pinch"}) {
       config::Twin settings;
       settings.motion = motion;
-      settings.hands = "left";
+      settings.hands = config::TwinHands::left;
       const test::Sights world(settings);
       for (const double seconds : {0.3, 1.4, 2.5}) sights.push_back(world.at(seconds));
     }
@@ -214,7 +214,7 @@ TEST_P(HostileImages, AFaceIsNoHand) {
 TEST_P(HostileImages, AFaceBehindAHandDoesNotDisturbIt) {
   config::Twin settings;
   settings.motion = "builtin:wave";
-  settings.hands = "left";
+  settings.hands = config::TwinHands::left;
   const Sight plain = test::Sights(settings).at(0.4);
   settings.image.face = true;
   const Verdict alone = read(plain), before_a_face = read(test::Sights(settings).at(0.4));

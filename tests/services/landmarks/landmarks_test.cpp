@@ -182,7 +182,7 @@ TEST_F(NetworkDetector, LandmarksAreFreeOfTheLensesDistortion) {
 
 TEST_F(NetworkDetector, MovesTheThumbsKnuckleToTheTrackersJointUnlessToldNotTo) {
   const auto as_tracker = detect();
-  rig_.landmarks.definition = "network";
+  rig_.landmarks.definition = config::LandmarkDefinition::network;
   const auto as_network = detect();
   const auto moved_px = [&](int i) {
     return std::hypot(as_tracker.points[i].x_px - as_network.points[i].x_px,

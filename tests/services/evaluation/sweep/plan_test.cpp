@@ -45,8 +45,8 @@ TEST(Plan, ARunHasTheSettingsOfThePlanItsVariantAndItsPlaceInTheGrid) {
   const auto rig = rig_of(*plan, runs[10]);
   ASSERT_TRUE(rig);
   EXPECT_EQ(rig->twin.tracker.age_ms, 15);
-  EXPECT_EQ(rig->cascade.filter.method, "paper");
-  EXPECT_EQ(rig->cascade.predict.method, "hold");
+  EXPECT_EQ(rig->cascade.filter.method, config::FilterMethod::paper);
+  EXPECT_EQ(rig->cascade.predict.method, config::PredictMethod::hold);
   EXPECT_EQ(rig->twin.motion, "builtin:still");
   EXPECT_EQ(rig->twin.speed, 2.5);
   EXPECT_EQ(rig_of(*plan, runs[0])->cascade.filter.method, config::Rig().cascade.filter.method);

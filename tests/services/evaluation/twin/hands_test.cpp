@@ -10,14 +10,15 @@ namespace {
 /// A rig's twin in which one hand of two is there.
 class OnlyOneHand : public testing::TestWithParam<Side> {
  protected:
-  static config::Rig rig(const std::string& hands) {
+  static config::Rig rig(config::TwinHands hands) {
     auto rig = rig_with("builtin:two_hands");
     rig.twin.hands = hands;
     return rig;
   }
   const Side there = GetParam(), away = there == Side::left ? Side::right : Side::left;
-  const std::unique_ptr<Twin> both = twin_of(rig("both")),
-                              one = twin_of(rig(there == Side::left ? "left" : "right"));
+  const std::unique_ptr<Twin> both = twin_of(rig(config::TwinHands::both)),
+                              one = twin_of(rig(there == Side::left ? config::TwinHands::left
+                                                                    : config::TwinHands::right));
 };
 INSTANTIATE_TEST_SUITE_P(Sides, OnlyOneHand, testing::Values(Side::left, Side::right),
                          [](const auto& each) {
