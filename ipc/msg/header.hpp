@@ -5,12 +5,13 @@
 
 namespace handcast::msg {
 
-/// The first member of every message. The origin travels unchanged through every message derived
-/// from it.
+/// The first member of every message.
 struct Header {
-  std::uint64_t frame_id = 0;     ///< counts up at the source; a derived message keeps its source's
+  std::uint64_t frame_id = 0;     ///< counts up at its source: a camera, a tracker, a projector.
+                                  ///< Landmarks have the number of the image they were found in
   std::int64_t origin_ns = 0;     ///< CLOCK_MONOTONIC: the middle of the exposure, or the sensor's
-                                  ///< sample time on the host's clock
+                                  ///< sample time on the host's clock. What is derived from a
+                                  ///< message keeps its origin
   std::int64_t published_ns = 0;  ///< when this message was published (set by the ring's writer)
 };
 

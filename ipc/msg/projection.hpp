@@ -6,6 +6,7 @@
 
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/header.hpp"
+#include "ipc/msg/made_from.hpp"
 #include "ipc/msg/tail.hpp"
 
 namespace handcast::msg {
@@ -29,9 +30,10 @@ struct ProjectedHand {
 /// for a hand) follow the struct row by row without padding; everything outside the region is dark.
 /// Published by: services/projector ("projection.frames").  Read by: services/observer, previews.
 struct Projection {
-  static constexpr std::string_view layout = "Projection/1";
+  static constexpr std::string_view layout = "Projection/2";
 
-  Header header;               ///< origin: that of the newest camera frame used
+  Header header;  ///< frame_id: the projector's own; origin: made_from.image_ns
+  MadeFrom made_from;
   std::int64_t target_ns = 0;  ///< the middle of the time the frame was drawn for
   std::int64_t lit_ns = 0;     ///< the middle of the time it was lit, as the projector reports it
   std::uint32_t width_px = 0;  ///< of the projector

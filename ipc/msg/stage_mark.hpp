@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "ipc/msg/header.hpp"
+#include "ipc/msg/made_from.hpp"
 
 namespace handcast::msg {
 
@@ -44,9 +45,10 @@ struct StageMark {
 /// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's
 /// recorder, the observer.
 struct StageMarks {
-  static constexpr std::string_view layout = "StageMarks/3";
+  static constexpr std::string_view layout = "StageMarks/4";
 
   Header header;
+  MadeFrom made_from;  ///< of a projector frame; nothing in all others
   std::uint32_t count = 0;
   std::uint32_t reserved = 0;
   std::array<StageMark, 16> marks{};

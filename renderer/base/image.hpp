@@ -70,6 +70,7 @@ using GreyView = View<const std::uint8_t>;
 struct TimedImage {
   GreyView view;               ///< data is null: there is no image
   std::int64_t origin_ns = 0;  ///< CLOCK_MONOTONIC
+  std::uint64_t id = 0;        ///< the camera's number of it
 
   explicit operator bool() const { return view.data != nullptr; }
 };

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "ipc/msg/made_from.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/base/landmark_points.hpp"
@@ -26,6 +27,7 @@ struct FrameHand {
 /// One finished frame. Everything it points to is valid until the next render().
 struct Frame {
   std::int64_t target_ns = 0;
+  msg::MadeFrom made_from;
   Rect region;  ///< all light is inside
   View<const std::uint32_t>
       colour;  ///< the projector's size; defined inside `region`; alpha 0: dark

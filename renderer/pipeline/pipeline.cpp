@@ -57,6 +57,7 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
 void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
   const std::int64_t origin_ns = reported.header.origin_ns;
   if (is_early(now_ns, origin_ns)) return;
+  newest_.pose_ns = std::max(newest_.pose_ns, origin_ns);
   const auto poses = sides_.named(
       reported, {both_[0].expected_pose(origin_ns), both_[1].expected_pose(origin_ns)});
   for (HandPipeline& hand : both_)
@@ -66,6 +67,7 @@ void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
 void Pipeline::push(std::int64_t now_ns, const msg::Landmarks& reported) {
   const std::int64_t origin_ns = reported.header.origin_ns;
   if (is_early(now_ns, origin_ns)) return;
+  newest_.landmarks_ns = std::max(newest_.landmarks_ns, origin_ns);
   const auto landmarks = sides_.named(
       reported, {both_[0].expected_landmarks(origin_ns), both_[1].expected_landmarks(origin_ns)});
   for (HandPipeline& hand : both_)
@@ -89,8 +91,10 @@ void Pipeline::look(const TimedImage& camera) {
 
 Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera) {
   stages_.start();
-  const bool is_masked = settings_.fill.method != config::FillMethod::none && camera &&
-                         !is_early(now_ns, camera.origin_ns);
+  const bool has_image = camera && !is_early(now_ns, camera.origin_ns);
+  newest_.image_id = has_image ? camera.id : 0;
+  newest_.image_ns = has_image ? camera.origin_ns : 0;
+  const bool is_masked = has_image && settings_.fill.method != config::FillMethod::none;
   last_image_ = is_masked ? std::optional(ImageUse{target_ns, camera.origin_ns}) : std::nullopt;
   predict(now_ns, target_ns, expected_image_ns(target_ns));
   stages_.mark(Stage::predict);
@@ -117,9 +121,13 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
 
   const FillCounts counts = paint(region, is_masked);
   stages_.finish();
-  return {target_ns,          region.empty() ? Rect{} : region,
-          painter_->colour(), frame_hands(),
-          foldovers,          counts,
+  return {target_ns,
+          newest_,
+          region.empty() ? Rect{} : region,
+          painter_->colour(),
+          frame_hands(),
+          foldovers,
+          counts,
           stages_.marks()};
 }
 

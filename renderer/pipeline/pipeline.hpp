@@ -100,6 +100,7 @@ class Pipeline {
   LateRegistration late_;
   std::unique_ptr<Painter> painter_;
   StageClock stages_;
+  msg::MadeFrom newest_;                ///< the newest inputs; of images the last frame's
   std::int64_t now_ns_ = 0;             ///< of the last frame
   std::optional<ImageUse> last_image_;  ///< of the last drawn frame, if it had an image
 

@@ -30,6 +30,8 @@ void copy_landings(const FrameHand& hand, msg::ProjectedHand& projected) {
 }  // namespace
 
 void write_projection(const Frame& frame, msg::Projection& projection, std::size_t tail_bytes) {
+  projection.header.origin_ns = frame.made_from.image_ns;
+  projection.made_from = frame.made_from;
   projection.target_ns = frame.target_ns;
   projection.width_px = static_cast<std::uint32_t>(frame.colour.width);
   projection.height_px = static_cast<std::uint32_t>(frame.colour.height);

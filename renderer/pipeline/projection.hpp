@@ -8,9 +8,9 @@
 
 namespace handcast::renderer {
 
-/// Writes a finished frame as the message that observers read: its lit region's pixels into the
-/// tail, its landings, its times. `tail_bytes` is the room after the struct; a region that does not
-/// fit is left out. The header's frame_id and origin, and lit_ns, are the caller's to set.
+/// Writes a finished frame as the message that observers read: the pixels of its lit region into
+/// the tail, its landings, its times and origins. `tail_bytes` is the room after the struct; a
+/// region that does not fit is left out. header.frame_id and lit_ns are the caller's to set.
 void write_projection(const Frame& frame, msg::Projection& projection, std::size_t tail_bytes);
 
 }  // namespace handcast::renderer

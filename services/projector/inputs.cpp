@@ -15,7 +15,8 @@ renderer::TimedImage Inputs::image() const {
   const msg::CameraFrame& frame = **image_;
   const auto width = static_cast<int>(frame.width_px);
   return {{frame.pixels(), width, static_cast<int>(frame.height_px), width},
-          frame.header.origin_ns};
+          frame.header.origin_ns,
+          frame.header.frame_id};
 }
 
 }  // namespace handcast::projector

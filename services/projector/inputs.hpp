@@ -33,7 +33,6 @@ class Inputs {
 
   /// The newest; none before the first.
   renderer::TimedImage image() const;
-  msg::Header image_header() const { return image_ ? (*image_)->header : msg::Header{}; }
 
  private:
   template <class Message, class Pipeline>

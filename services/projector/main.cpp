@@ -42,14 +42,13 @@ static void run_projector(service::Context& context) {
 
   context.ready();
   const auto running = [&] { return context.running(); };
-  for (std::int64_t frame_id = 0; projector::sleep_while(running, pacer.next_ns(now_ns()));
+  for (std::uint64_t frame_id = 0; projector::sleep_while(running, pacer.next_ns(now_ns()));
        ++frame_id) {
     const Deadline image_deadline =
         Deadline::at_ns(now_ns() + ms_to_ns(rig.projector.frame_wait_ms));
     if (const auto delivered = inputs.deliver(*pipeline, image_deadline); !delivered)
       context.tolerate(delivered.error());
 
-    const msg::Header image = inputs.image_header();
     const std::int64_t begin_ns = now_ns();
     const auto frame = pipeline->render(begin_ns, horizon.target_ns(begin_ns), inputs.image());
     const std::int64_t drawn_ns = now_ns();
@@ -59,8 +58,9 @@ static void run_projector(service::Context& context) {
       continue;
     }
     horizon.learn(times->handed_ns - begin_ns);
-    projector::publish_projection(frame, image, *times, projections);
-    context.mark(image, time_sheet(frame, begin_ns, drawn_ns, *times));
+    projector::publish_projection(frame, frame_id, *times, projections);
+    context.mark({frame_id, frame.made_from.image_ns},
+                 time_sheet(frame, begin_ns, drawn_ns, *times), frame.made_from);
   }
 }
 

@@ -5,19 +5,19 @@
 
 namespace handcast::projector {
 
-void write_projection(const renderer::Frame& frame, const msg::Header& image,
+void write_projection(const renderer::Frame& frame, std::uint64_t frame_id,
                       const PresentTimes& times, msg::Projection& projection,
                       std::size_t tail_bytes) {
   renderer::write_projection(frame, projection, tail_bytes);
-  projection.header = image;
+  projection.header.frame_id = frame_id;
   projection.lit_ns = times.lit_ns;
 }
 
-void publish_projection(const renderer::Frame& frame, const msg::Header& image,
+void publish_projection(const renderer::Frame& frame, std::uint64_t frame_id,
                         const PresentTimes& times, ipc::Writer<msg::Projection>& projections) {
   auto slot = projections.loan();
   if (!slot) return;
-  write_projection(frame, image, times, *slot, slot.tail_bytes());
+  write_projection(frame, frame_id, times, *slot, slot.tail_bytes());
   projections.publish(std::move(slot));
 }
 

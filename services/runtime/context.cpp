@@ -135,11 +135,13 @@ void Context::tolerate(const Error& error) {
   last_complaint_ns_ = now;
 }
 
-void Context::mark(const msg::Header& frame, std::span<const msg::StageMark> stages) {
+void Context::mark(const msg::Header& frame, std::span<const msg::StageMark> stages,
+                   const msg::MadeFrom& made_from) {
   last_beat_ns_ = now_ns();
   if (!marks_) return;
   msg::StageMarks marks;
   marks.header = frame;
+  marks.made_from = made_from;
   marks.count = static_cast<std::uint32_t>(std::min(stages.size(), marks.marks.size()));
   std::copy_n(stages.begin(), marks.count, marks.marks.begin());
   marks_->publish(marks);

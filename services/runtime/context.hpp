@@ -88,7 +88,9 @@ class Context {
   /// a second); a lost device or a bad configuration ends the process for the supervisor to act on.
   void tolerate(const Error& error);
   /// Publishes what one frame's stages took, for traces, the report and `handcast status`.
-  void mark(const msg::Header& frame, std::span<const msg::StageMark> stages);
+  /// `made_from`: of a projector frame.
+  void mark(const msg::Header& frame, std::span<const msg::StageMark> stages,
+            const msg::MadeFrom& made_from = {});
 
   Context(std::string name, config::Rig rig, calib::Calibration calibration);
 

@@ -85,7 +85,8 @@ History::Block& History::block_with_room(std::size_t bytes, std::int64_t time_ns
 }
 
 void History::note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed) {
-  FrameHead head{.service = index_of(service), .header = marks.header};
+  FrameHead head{
+      .service = index_of(service), .header = marks.header, .made_from = marks.made_from};
   auto& untold = services_[head.service].missed;
   untold += missed;
   std::array<msg::StageMark, kMostMarks> kept;

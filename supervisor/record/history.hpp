@@ -24,6 +24,7 @@ struct FrameRecord {
   std::uint32_t missed = 0;   ///< frames of this service before this one whose marks were
                               ///< overwritten before they were read
   msg::Header header;
+  msg::MadeFrom made_from;            ///< of a projector frame
   std::vector<msg::StageMark> marks;  ///< in the order of their making; none ends before it begins
 };
 

@@ -12,7 +12,7 @@
 namespace handcast::supervisor {
 
 struct FileHead {
-  static constexpr std::uint64_t kMagic = 0x31'5453'4948'4348;  ///< "HCHIST1"
+  static constexpr std::uint64_t kMagic = 0x32'5453'4948'4348;  ///< "HCHIST2"
   std::uint64_t magic = kMagic;
   std::uint64_t bytes = 0;  ///< of the whole file
   std::int64_t taken_ns = 0;
@@ -25,6 +25,7 @@ struct FrameHead {
   std::uint32_t service = 0;
   std::uint32_t missed = 0;
   msg::Header header;
+  msg::MadeFrom made_from;
   std::uint32_t marks = 0;
   std::uint32_t reserved = 0;
 };

@@ -60,7 +60,7 @@ Result<FrameRecord> take_frame(Rest& rest, std::size_t services) {
   const auto head = rest.take<FrameHead>();
   if (!head) return nonsense("a frame ends early");
   if (head->service >= services) return nonsense("a frame of no service");
-  FrameRecord frame{head->service, head->missed, head->header, {}};
+  FrameRecord frame{head->service, head->missed, head->header, head->made_from, {}};
   for (std::uint32_t i = 0; i < head->marks; ++i) {
     const auto mark = rest.take<msg::StageMark>();
     if (!mark) return nonsense("a frame ends early");

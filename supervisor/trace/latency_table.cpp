@@ -57,22 +57,15 @@ std::vector<StageLatency> stage_latencies(const HistorySnapshot& history) {
   return stages;
 }
 
-/// How old something was when a mark of the same or another frame ended.
-std::optional<std::int64_t> age_at(const HistorySnapshot& history,
-                                   std::optional<std::size_t> ingredient,
-                                   const msg::StageMark& mark) {
-  return ingredient ? age_of(history.frames[*ingredient], mark) : std::nullopt;
-}
-
 std::vector<WayLatency> way_latencies(const HistorySnapshot& history) {
   Ways ways;
   for (const auto& frame : history.frames) {
     if (const auto* capture = find_mark(frame, Stage::capture))
-      ways.add("exposure", "image delivered", age_of(frame, *capture));
+      ways.add("exposure", "image delivered", age_of(frame.header.origin_ns, *capture));
   }
   for (const auto& frame : history.frames)
     if (const auto* detect = find_mark(frame, Stage::detect))
-      ways.add("exposure", "landmarks found", age_of(frame, *detect));
+      ways.add("exposure", "landmarks found", age_of(frame.header.origin_ns, *detect));
 
   std::set<std::size_t> shown;
   for (const auto& made : made_frames(history)) {
@@ -81,10 +74,10 @@ std::vector<WayLatency> way_latencies(const HistorySnapshot& history) {
     const auto* light = find_light(frame);
     if (!light) continue;
     const msg::StageMark begin{Stage::frame, 0, begun->begin_ns, begun->begin_ns};
-    ways.add("exposure", "frame begun", age_of(frame, begin));
-    ways.add("exposure", "light", age_of(frame, *light));
-    ways.add("landmarks' exposure", "light", age_at(history, made.detection, *light));
-    ways.add("pose sample", "light", age_at(history, made.sample, *light));
+    ways.add("exposure", "frame begun", age_of(frame.made_from.image_ns, begin));
+    ways.add("exposure", "light", age_of(frame.made_from.image_ns, *light));
+    ways.add("landmarks' exposure", "light", age_of(frame.made_from.landmarks_ns, *light));
+    ways.add("pose sample", "light", age_of(frame.made_from.pose_ns, *light));
     if (!made.image || !shown.insert(*made.image).second) continue;
     ways.add("image delivered", "first light",
              light->end_ns - find_mark(history.frames[*made.image], Stage::capture)->end_ns);

@@ -15,38 +15,38 @@ const msg::StageMark* find_mark(const FrameRecord& frame, msg::Stage stage);
 /// for what is not a projector's.
 const msg::StageMark* find_light(const FrameRecord& frame);
 
-/// How old the frame's origin was when `mark` ended; empty where the frame has no origin before
-/// that.
-std::optional<std::int64_t> age_of(const FrameRecord& frame, const msg::StageMark& mark);
+/// The time from `origin_ns` to the end of `mark`. Empty if there is no origin before that.
+std::optional<std::int64_t> age_of(std::int64_t origin_ns, const msg::StageMark& mark);
 
-/// A projector frame and what it was made of, as indices into the snapshot's frames; empty: not in
-/// the snapshot.
+/// A projector frame and the records of its inputs, as indices into the snapshot's frames. An input
+/// that is not in the snapshot is empty.
 struct MadeFrame {
   std::size_t frame = 0;
-  std::optional<std::size_t> image;      ///< the camera frame it showed
-  std::optional<std::size_t> detection;  ///< the newest that was done when it was begun
-  std::optional<std::size_t> sample;     ///< the tracker's, likewise
+  std::optional<std::size_t> image;      ///< the camera frame it shows
+  std::optional<std::size_t> detection;  ///< the newest landmarks it knew
+  std::optional<std::size_t> sample;     ///< the tracker's newest sample it knew
 };
 
-/// Every frame of the projector, in the order in which they were begun. Marks say which image a
-/// frame used; that it used the newest detection and sample there were is how the projector works
-/// (services/projector/inputs.cpp).
+/// Every frame of the projector, in the order in which they were begun.
 std::vector<MadeFrame> made_frames(const HistorySnapshot& history);
 
-/// The camera frame each of the others was derived from, by its id and origin.
-class Images {
+/// The records of one kind, by the time of their origin.
+class Records {
  public:
-  explicit Images(const HistorySnapshot& history);
-  std::optional<std::size_t> of(const msg::Header& derived) const;
+  /// Those that have a mark of `stage`.
+  Records(const HistorySnapshot& history, msg::Stage stage);
+  /// The first with this origin, and with this number if one is given; empty if there is none.
+  std::optional<std::size_t> of(std::int64_t origin_ns,
+                                std::optional<std::uint64_t> frame_id = std::nullopt) const;
 
  private:
-  struct Image {
+  struct Record {
     std::int64_t origin_ns;
     std::uint64_t frame_id;
     std::size_t index;
-    auto operator<=>(const Image&) const = default;
+    auto operator<=>(const Record&) const = default;
   };
-  std::vector<Image> sorted_;
+  std::vector<Record> sorted_;
 };
 
 }  // namespace handcast::supervisor

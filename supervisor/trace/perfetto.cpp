@@ -22,9 +22,9 @@ namespace {
 using namespace perfetto;
 
 constexpr std::uint64_t kSequence = 1, kProcessTrack = 1, kAgeTrack = 2, kFirstServiceTrack = 3;
-constexpr std::array<std::string_view, 5> kAnnotations{"frame_id", "age_ms", "marks_lost",
-                                                       "left_hand", "right_hand"};
-enum Annotation { frame_id, age_ms, marks_lost, left_hand, right_hand };
+constexpr std::array<std::string_view, 6> kAnnotations{"frame_id",   "image_id",  "age_ms",
+                                                       "marks_lost", "left_hand", "right_hand"};
+enum Annotation { frame_id, image_id, age_ms, marks_lost, left_hand, right_hand };
 
 constexpr std::uint64_t name_id(msg::Stage stage) {
   return static_cast<std::uint64_t>(stage) + 1;
@@ -173,7 +173,11 @@ class TraceWriter {
     annotate(frame_id, [&](Protobuf& value) {
       value.number(event::annotation_number, frame.header.frame_id);
     });
-    if (const auto age_ns = age_of(frame, slice.mark))
+    if (frame.made_from.image_ns > 0)
+      annotate(image_id, [&](Protobuf& value) {
+        value.number(event::annotation_number, frame.made_from.image_id);
+      });
+    if (const auto age_ns = age_of(frame.header.origin_ns, slice.mark))
       annotate(age_ms,
                [&](Protobuf& value) { value.real(event::annotation_real, ns_to_ms(*age_ns)); });
     if (frame.missed > 0)
@@ -185,7 +189,7 @@ class TraceWriter {
   void add_ages() {
     for (const auto& frame : history_.frames) {
       const auto* light = find_light(frame);
-      const auto age_ns = light ? age_of(frame, *light) : std::nullopt;
+      const auto age_ns = light ? age_of(frame.header.origin_ns, *light) : std::nullopt;
       if (!age_ns) continue;
       events_.push_back({light->end_ns, Protobuf()
                                             .number(event::type, event::counter)

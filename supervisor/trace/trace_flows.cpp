@@ -50,11 +50,12 @@ std::vector<std::vector<std::uint64_t>> flows_of(const HistorySnapshot& history)
     flows.connect({sample, known.front()});
 
   const auto informed = users_of(frames, &MadeFrame::detection);
-  const Images images(history);
+  const Records images(history, msg::Stage::capture);
   for (std::size_t i = 0; i < history.frames.size(); ++i) {
     if (!find_mark(history.frames[i], msg::Stage::detect)) continue;
     std::vector<std::size_t> way;
-    if (const auto image = images.of(history.frames[i].header)) way.push_back(*image);
+    const auto& seen_in = history.frames[i].header;
+    if (const auto image = images.of(seen_in.origin_ns, seen_in.frame_id)) way.push_back(*image);
     way.push_back(i);
     if (const auto known = informed.find(i); known != informed.end())
       way.push_back(known->second.front());

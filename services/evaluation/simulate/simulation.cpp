@@ -56,7 +56,8 @@ renderer::TimedImage Simulation::newest_image(std::int64_t now_ns) {
   if (newest && (!shown_ || shown_->frame_id != newest->frame_id))
     feed_.image(*newest, image_.view());
   shown_ = newest;
-  return newest ? renderer::TimedImage{image_.view(), newest->origin_ns} : renderer::TimedImage{};
+  return newest ? renderer::TimedImage{image_.view(), newest->origin_ns, newest->frame_id}
+                : renderer::TimedImage{};
 }
 
 renderer::Frame Simulation::draw(std::int64_t now_ns, std::int64_t lit_ns) {
@@ -64,7 +65,6 @@ renderer::Frame Simulation::draw(std::int64_t now_ns, std::int64_t lit_ns) {
   auto frame = pipeline_.render(now_ns, lit_ns, camera);
   renderer::write_projection(frame, *projection_, projection_.tail_bytes());
   projection_->header.frame_id = static_cast<std::uint64_t>(next_tick_);
-  projection_->header.origin_ns = camera.origin_ns;
   projection_->lit_ns = lit_ns;
   return frame;
 }

@@ -14,6 +14,7 @@ class WriteProjection : public testing::Test {
     for (int y = 0; y < 6; ++y)
       for (int x = 0; x < 8; ++x) pixels_.at(x, y) = static_cast<std::uint32_t>(10 * y + x);
     frame_.target_ns = 77;
+    frame_.made_from = {.image_id = 4, .image_ns = 6, .pose_ns = 7, .landmarks_ns = 3};
     frame_.colour = pixels_.view();
     frame_.region = {2, 1, 5, 4};
     hand_.side = renderer::Side::right;
@@ -23,7 +24,7 @@ class WriteProjection : public testing::Test {
   }
   msg::Projection& write(std::size_t tail_bytes) {
     auto& projection = *new (memory_.data()) msg::Projection;
-    write_projection(frame_, msg::Header{5, 6, 0}, PresentTimes{80, 90}, projection, tail_bytes);
+    write_projection(frame_, 5, PresentTimes{80, 90}, projection, tail_bytes);
     return projection;
   }
 
@@ -44,10 +45,14 @@ TEST_F(WriteProjection, HoldsTheRegionRowByRowWithoutPadding) {
   EXPECT_EQ(copied, (std::vector<std::uint32_t>{12, 13, 14, 22, 23, 24, 32, 33, 34}));
 }
 
-TEST_F(WriteProjection, CarriesTheImagesHeaderTheTimesAndTheLandings) {
+TEST_F(WriteProjection, CarriesItsOwnNumberItsOriginsItsTimesAndItsLandings) {
   const auto& projection = write(8 * 6 * 4);
   EXPECT_EQ(projection.header.frame_id, 5u);
   EXPECT_EQ(projection.header.origin_ns, 6);
+  EXPECT_EQ(projection.made_from.image_id, 4u);
+  EXPECT_EQ(projection.made_from.image_ns, 6);
+  EXPECT_EQ(projection.made_from.pose_ns, 7);
+  EXPECT_EQ(projection.made_from.landmarks_ns, 3);
   EXPECT_EQ(projection.target_ns, 77);
   EXPECT_EQ(projection.lit_ns, 90);
   EXPECT_EQ(projection.width_px, 8u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <initializer_list>
+#include <optional>
 
 #include "supervisor/record/history.hpp"
 
@@ -23,6 +24,25 @@ inline msg::StageMarks frame(std::uint64_t id, double origin_ms,
   const auto last_ns = marks.size() > 0 ? (marks.end() - 1)->end_ns : kStart_ns;
   message.header = {id, kStart_ns + static_cast<std::int64_t>(origin_ms * 1e6), last_ns};
   for (const auto& each : marks) message.marks[message.count++] = each;
+  return message;
+}
+
+/// The origins of a projector frame's inputs, in ms after kStart_ns; empty: it had none.
+struct Inputs {
+  std::uint64_t image_id = 0;
+  std::optional<double> image_ms, pose_ms{}, landmarks_ms{};
+};
+
+/// The marks of a projector frame.
+inline msg::StageMarks projector_frame(std::uint64_t id, const Inputs& inputs,
+                                       std::initializer_list<msg::StageMark> marks) {
+  auto message = frame(id, 0, marks);
+  const auto at_ns = [](std::optional<double> ms) {
+    return ms ? kStart_ns + static_cast<std::int64_t>(*ms * 1e6) : 0;
+  };
+  message.made_from = {inputs.image_id, at_ns(inputs.image_ms), at_ns(inputs.pose_ms),
+                       at_ns(inputs.landmarks_ms)};
+  message.header.origin_ns = message.made_from.image_ns;
   return message;
 }
 

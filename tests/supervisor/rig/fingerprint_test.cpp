@@ -41,6 +41,8 @@ void alter(const config::Target& target) {
   if (auto* const* number = std::get_if<double*>(&target)) **number += 0.125;
   if (auto* const* text = std::get_if<std::string*>(&target)) **text += "x";
   if (auto* const* list = std::get_if<std::vector<double>*>(&target)) (*list)->push_back(3);
+  if (const auto* choice = std::get_if<config::ChoiceTarget>(&target))
+    choice->assign(choice->value, (choice->index(choice->value) + 1) % choice->words.size());
 }
 
 /// The settings that change the service's fingerprint when they change, one at a time.

@@ -23,10 +23,10 @@ test::SeenTrace trace_of(const History& history) {
   return test::decode_trace(perfetto_trace(everything_in(history), "desk", kClocks));
 }
 
-/// A frame of the projector that shows the image with this id and origin.
-msg::StageMarks projector_frame(std::uint64_t image, double origin_ms, double at_ms) {
-  return frame(
-      image, origin_ms,
+/// A frame of the projector, begun at `at_ms`.
+msg::StageMarks projector_frame(std::uint64_t id, const test::Inputs& inputs, double at_ms) {
+  return test::projector_frame(
+      id, inputs,
       {mark(Stage::predict, at_ms, at_ms + 0.1), mark(Stage::draw, at_ms + 0.1, at_ms + 0.6),
        mark(Stage::frame, at_ms, at_ms + 0.7), mark(Stage::present, at_ms + 0.7, at_ms + 0.8)});
 }
@@ -38,10 +38,10 @@ History small_rig() {
   history.note("camera", frame(2, 2, {mark(Stage::capture, 2, 3)}), 0);
   history.note("pose", frame(40, 0.5, {mark(Stage::sample, 0.5, 3.2)}), 0);
   history.note("landmarks", frame(1, 0, {mark(Stage::detect, 1.1, 4.5)}), 0);
-  history.note("projector", projector_frame(1, 0, 1.2), 0);
-  history.note("projector", projector_frame(1, 0, 2.2), 0);
-  history.note("projector", projector_frame(2, 2, 3.3), 0);
-  history.note("projector", projector_frame(2, 2, 4.6), 0);
+  history.note("projector", projector_frame(11, {1, 0}, 1.2), 0);
+  history.note("projector", projector_frame(12, {1, 0}, 2.2), 0);
+  history.note("projector", projector_frame(13, {2, 2, 0.5}, 3.3), 0);
+  history.note("projector", projector_frame(14, {2, 2, 0.5, 0}, 4.6), 0);
   return history;
 }
 
@@ -105,7 +105,10 @@ TEST(Perfetto, AnImageFlowsIntoEveryFrameThatShowedIt) {
   ASSERT_THAT(second.flows, SizeIs(1)) << "it was not detected";
   const auto way = trace.along(second.flows[0]);
   EXPECT_THAT(names_of(way), ElementsAre("capture", "frame", "present", "frame", "present"));
-  for (const auto& slice : way) EXPECT_EQ(slice.annotations.at("frame_id"), 2);
+  EXPECT_EQ(way[0].annotations.at("frame_id"), 2);
+  for (const auto& slice : std::span(way).subspan(1))
+    EXPECT_EQ(slice.annotations.at("image_id"), 2);
+  EXPECT_EQ(way[1].annotations.at("frame_id"), 13);
 }
 
 TEST(Perfetto, ADetectionFlowsFromItsImageIntoTheFirstFrameThatKnewIt) {
@@ -120,7 +123,7 @@ TEST(Perfetto, ADetectionFlowsFromItsImageIntoTheFirstFrameThatKnewIt) {
 
 TEST(Perfetto, OnlyTheFirstOfTheFramesThatKnewADetectionIsOnItsWay) {
   auto history = small_rig();
-  history.note("projector", projector_frame(2, 2, 5.6), 0);
+  history.note("projector", projector_frame(15, {2, 2, 0.5, 0}, 5.6), 0);
   const auto trace = trace_of(history);
   const auto way = trace.along(trace.named("detect")[0].flows[0]);
   EXPECT_THAT(names_of(way), ElementsAre("capture", "detect", "frame", "present"));
@@ -130,7 +133,7 @@ TEST(Perfetto, OnlyTheFirstOfTheFramesThatKnewADetectionIsOnItsWay) {
 TEST(Perfetto, AnImageOfTheSameTimeButAnotherNumberIsAnother) {
   History history(60);
   history.note("camera", frame(2, 0, {mark(Stage::capture, 0, 1)}), 0);
-  history.note("projector", projector_frame(1, 0, 1.2), 0);
+  history.note("projector", projector_frame(11, {1, 0}, 1.2), 0);
   EXPECT_THAT(trace_of(history).named("capture")[0].flows, IsEmpty());
 }
 
@@ -175,10 +178,8 @@ TEST(Perfetto, TheAgeOfTheImageInTheLightIsACounter) {
 
 TEST(Perfetto, FramesWithoutAnOriginAndOfNoImageAreShownWithoutFlowOrAge) {
   History history(60);
-  auto blind = projector_frame(0, 0, 1);
-  blind.header.origin_ns = 0;
-  history.note("projector", blind, 0);
-  history.note("projector", projector_frame(99, -5, 3), 2);
+  history.note("projector", projector_frame(1, {}, 1), 0);
+  history.note("projector", projector_frame(2, {99, -5}, 3), 2);
   const auto trace = trace_of(history);
   ASSERT_EQ(trace.fault, "");
   EXPECT_THAT(trace.ages_ms, SizeIs(1));
