@@ -2,6 +2,7 @@
 #include <array>
 
 #include "services/camera/camera.hpp"
+#include "services/evaluation/twin/settings.hpp"
 
 namespace handcast::camera {
 
@@ -11,8 +12,14 @@ Result<std::unique_ptr<Camera>> open_replay(const config::Rig&, const calib::Cal
                                             const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
-    CameraBackend{"twin", open_twin},
-    CameraBackend{"replay", open_replay},
+    CameraBackend{.name = "twin",
+                  .sentence = "Draws the twin's hand as an infrared camera would see it.",
+                  .open = open_twin,
+                  .reads = twin::kWorldSettings + config::SettingList{"twin.image"}},
+    CameraBackend{.name = "replay",
+                  .sentence = "Plays grey pictures from a folder, at the times they were taken.",
+                  .open = open_replay,
+                  .reads = {"camera.replay"}},
 };
 
 std::span<const CameraBackend> camera_backends() { return kBackends; }

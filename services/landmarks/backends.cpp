@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "services/evaluation/twin/settings.hpp"
 #include "services/landmarks/detector.hpp"
 
 namespace handcast::landmarks {
@@ -17,9 +18,28 @@ Result<std::unique_ptr<Detector>> open_replay(const config::Rig&, const calib::C
                                               const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
-    DetectorBackend{"onednn", open_onednn}, DetectorBackend{"opencv", open_opencv},
-    DetectorBackend{"own", open_own},       DetectorBackend{"twin", open_twin},
-    DetectorBackend{"replay", open_replay},
+    DetectorBackend{.name = "onednn",
+                    .sentence = "MediaPipe Hands lite, run by oneDNN.",
+                    .open = open_onednn,
+                    .reads = {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
+    DetectorBackend{.name = "opencv",
+                    .sentence = "MediaPipe Hands lite, run by OpenCV.",
+                    .open = open_opencv,
+                    .reads = {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
+    DetectorBackend{.name = "own",
+                    .sentence = "handcast's own network, which also takes the tracker's joints.",
+                    .open = open_own,
+                    .reads = {"landmarks.models", "landmarks.hands"}},
+    DetectorBackend{.name = "twin",
+                    .sentence = "Models a landmark detector that sees the twin's hand.",
+                    .open = open_twin,
+                    .reads = twin::kWorldSettings +
+                             config::SettingList{"twin.detector", "twin.image.delivery_ms",
+                                                 "camera.rate_hz", "camera.exposure_ms"}},
+    DetectorBackend{.name = "replay",
+                    .sentence = "Plays recorded landmarks.",
+                    .open = open_replay,
+                    .reads = {"landmarks.replay"}},
 };
 
 std::span<const DetectorBackend> detector_backends() { return kBackends; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "services/evaluation/twin/settings.hpp"
 #include "services/pose/pose_source.hpp"
 
 namespace handcast::pose {
@@ -11,8 +12,14 @@ Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig&, const calib:
                                                 const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
-    PoseBackend{"twin", open_twin},
-    PoseBackend{"replay", open_replay},
+    PoseBackend{.name = "twin",
+                .sentence = "Models a hand tracker that watches the twin's hand.",
+                .open = open_twin,
+                .reads = twin::kWorldSettings + config::SettingList{"twin.tracker"}},
+    PoseBackend{.name = "replay",
+                .sentence = "Plays a recording of hand poses.",
+                .open = open_replay,
+                .reads = {"pose.replay"}},
 };
 
 std::span<const PoseBackend> pose_backends() { return kBackends; }

@@ -9,8 +9,12 @@ Result<std::unique_ptr<Projector>> open_twin(const config::Rig&);
 Result<std::unique_ptr<Projector>> open_file(const config::Rig&);
 
 static constexpr std::array kBackends{
-    ProjectorBackend{"twin", open_twin},
-    ProjectorBackend{"file", open_file},
+    ProjectorBackend{.name = "twin",
+                     .sentence = "Models a projector: takes frames at its rate, shows none.",
+                     .open = open_twin},
+    ProjectorBackend{.name = "file",
+                     .sentence = "Writes the light as PNG pictures into the folder of `up --out`.",
+                     .open = open_file},
 };
 
 std::span<const ProjectorBackend> projector_backends() { return kBackends; }

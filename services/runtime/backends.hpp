@@ -9,35 +9,60 @@
 #include <vector>
 
 #include "config/settings/join.hpp"
+#include "config/settings/setting_list.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::service {
 
-/// One line of a table of back ends: its name and how it is opened. `Interface` is the seam (a
-/// camera, a pose source, …), `Args` what every back end of the seam is opened with.
+/// One row of a table of back ends: all that is known of a back end outside its own file.
+/// `--backends`, the settings reference, what a reload restarts and how a spare starts follow from
+/// it. `Interface`: the seam (a camera, a pose source, …). `Args`: what every back end of the seam
+/// is opened with.
 template <class Interface, class... Args>
 struct Backend {
-  std::string_view name;
+  std::string_view name;      ///< in the rig file
+  std::string_view sentence;  ///< what it is, for people
+  /// Opens it. Errors: bad_config, unavailable, disconnected.
   Result<std::unique_ptr<Interface>> (*open)(const Args&...);
-  bool exclusive = false;  ///< only one process at a time may have it open (a device): a spare
-                           ///< opens it in its turn
+  /// The sections and settings it reads, besides those that its service reads with every back end.
+  /// A reload restarts the service if one of them changes.
+  config::SettingList reads{};
+  /// Only one process at a time can have it open (a device): a spare opens it in its turn.
+  bool exclusive = false;
 };
 
-template <class Entry>
-std::vector<std::string_view> names_of(std::span<const Entry> table) {
+/// A row without its code: what a program tells about itself.
+struct BackendInfo {
+  std::string_view name;      ///< Backend::name
+  std::string_view sentence;  ///< Backend::sentence
+  config::SettingList reads;  ///< Backend::reads
+  bool exclusive = false;     ///< Backend::exclusive
+};
+
+/// The rows of a table without their code, in its order.
+template <class Row>
+std::vector<BackendInfo> describe_rows(std::span<const Row> table) {
+  std::vector<BackendInfo> rows;
+  for (const Row& row : table) rows.push_back({row.name, row.sentence, row.reads, row.exclusive});
+  return rows;
+}
+
+/// The names in a table, in its order.
+template <class Row>
+std::vector<std::string_view> names_of(std::span<const Row> table) {
   std::vector<std::string_view> names;
-  for (const auto& entry : table) names.push_back(entry.name);
+  for (const Row& row : table) names.push_back(row.name);
   return names;
 }
 
-/// Opens the back end called `name`. An unknown name is bad_config, with the known ones in the
-/// sentence.
+/// Opens the back end called `name`. Errors: bad_config with the known names if there is none of
+/// this name; those of the back end.
 template <class Interface, class... Args>
 Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::string_view name,
                                                 std::span<const Backend<Interface, Args...>> table,
                                                 const Args&... args) {
-  for (const auto& entry : table)
-    if (entry.name == name) return entry.open(args...);
+  for (const auto& row : table)
+    if (row.name == name) return row.open(args...);
   return fail(Errc::bad_config, fmt::format("{}: no back end '{}'; this build has: {}", what, name,
                                             config::join(names_of(table), ", ")));
 }
@@ -45,8 +70,8 @@ Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::stri
 /// Whether a spare must not open this back end before its turn.
 template <class Interface, class... Args>
 bool is_exclusive(std::string_view name, std::span<const Backend<Interface, Args...>> table) {
-  for (const auto& entry : table)
-    if (entry.name == name) return entry.exclusive;
+  for (const auto& row : table)
+    if (row.name == name) return row.exclusive;
   return false;
 }
 

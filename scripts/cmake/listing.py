@@ -1,0 +1,16 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the listing that a Markdown page marks with ```cpp NAME into a file.
+
+usage: listing.py PAGE.md NAME FILE
+"""
+import pathlib
+import re
+import sys
+
+page, name, file = sys.argv[1:]
+text = pathlib.Path(page).read_text(encoding="utf-8")
+found = re.search(r"^```cpp " + re.escape(name) + r"\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+if not found:
+    sys.exit(f"{page}: there is no listing '{name}'")
+pathlib.Path(file).write_text(found[1], encoding="utf-8")

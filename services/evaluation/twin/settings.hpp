@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "config/settings/setting_list.hpp"
+
+namespace handcast::twin {
+
+/// The settings that Twin::create reads: the true person and its motion. Every back end on the twin
+/// depends on them.
+inline constexpr config::SettingList kWorldSettings{"twin.motion", "twin.hands", "twin.speed",
+                                                    "twin.seed",   "twin.shape", "hand"};
+
+}  // namespace handcast::twin

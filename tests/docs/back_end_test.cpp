@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The back end that docs/writing-a-back-end.md writes, held against the contract of all cameras.
+#include "tests/services/camera/camera_contract.hpp"
+
+namespace handcast::camera {
+
+Result<std::unique_ptr<Camera>> open_noise(const config::Rig&, const calib::Calibration&,
+                                           const std::int64_t& epoch_ns);
+
+namespace {
+
+constexpr std::array kDocumented{
+#include "back_end_row.inc"
+};
+
+INSTANTIATE_TEST_SUITE_P(Documentation, CameraContract, testing::ValuesIn(kDocumented),
+                         name_of_row);
+
+}  // namespace
+}  // namespace handcast::camera
