@@ -22,20 +22,20 @@ endforeach()
 find_library(DNNL_LIBRARY dnnl REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to keep oneDNN to one thread
 
-if(HANDCAST_BUILD_TESTS)
-  find_package(GTest REQUIRED)
-  find_package(benchmark REQUIRED)
-endif()
-
-# handcast_feature(NAME "what is absent without it" FOUND): the option HANDCAST_WITH_NAME, on where it was found.
-# Each absence is said once here and by `handcast --version`.
+# handcast_feature(NAME "what is absent without it" FOUND): HANDCAST_WITH_NAME is AUTO (on if it was
+# found), ON (an error if it was not found) or OFF. Each absence is said once here and by
+# `handcast --version`.
 set(HANDCAST_ABSENT "")
 function(handcast_feature name sentence found)
-  option(HANDCAST_WITH_${name} "${sentence}" ${found})
-  if(HANDCAST_WITH_${name} AND NOT found)
-    message(FATAL_ERROR "HANDCAST_WITH_${name} is ON and what it needs was not found; scripts/setup installs it")
+  set(HANDCAST_WITH_${name} AUTO CACHE STRING "AUTO, ON or OFF: ${sentence}")
+  set(with ${HANDCAST_WITH_${name}})
+  if(with STREQUAL "AUTO")
+    set(with ${found})
+  elseif(with AND NOT found)
+    message(FATAL_ERROR "HANDCAST_WITH_${name} is ON and what it needs was not found; scripts/setup --tests installs it")
   endif()
-  if(NOT HANDCAST_WITH_${name})
+  set(HANDCAST_WITH_${name} ${with} PARENT_SCOPE)
+  if(NOT with)
     message(STATUS "without ${name}: no ${sentence}")
     set(HANDCAST_ABSENT "${HANDCAST_ABSENT}without ${name}: no ${sentence}\\n" PARENT_SCOPE)
   endif()
@@ -53,7 +53,7 @@ endfunction()
 
 find_package(OpenCV QUIET COMPONENTS dnn)
 handcast_found(found OpenCV_dnn_FOUND)
-handcast_feature(OPENCV_DNN "executor \"opencv\" of the landmark networks (libopencv-dev)" ${found})
+handcast_feature(OPENCV_DNN "executor opencv of the landmark networks (libopencv-dev)" ${found})
 if(HANDCAST_WITH_OPENCV_DNN)
   target_include_directories(opencv_dnn SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 endif()
@@ -69,3 +69,8 @@ handcast_feature(ZEROMQ "comparison with ZeroMQ in scripts/bench rings (libzmq3-
 find_program(GNUPLOT gnuplot)
 handcast_found(found GNUPLOT)
 handcast_feature(GNUPLOT "drawing of charts, handcast chart (gnuplot-nox)" ${found})
+
+find_package(GTest QUIET)
+find_package(benchmark QUIET)
+handcast_found(found GTest_FOUND benchmark_FOUND)
+handcast_feature(TESTS "tests and benchmarks (libgtest-dev libgmock-dev libbenchmark-dev)" ${found})

@@ -227,6 +227,34 @@ Posture reverse(double t) {
   return posture;
 }
 
+/// Four seconds for a demonstration: waves (up to 1.3 m/s), turns, folds, pinches and turns back.
+Posture show(double t) {
+  Posture posture;
+  const double round = within(4, t);
+  const auto during = [&](double begin_s, double rise_s, double end_s, double fall_s) {
+    return step_at(begin_s, begin_s + rise_s, round) - step_at(end_s - fall_s, end_s, round);
+  };
+  const double waving = during(0.2, 0.4, 1.5, 0.4), turned = during(1.5, 0.6, 3.9, 0.5),
+               folded = during(2.1, 0.3, 2.75, 0.25), pinched = during(2.75, 0.3, 3.4, 0.25);
+  posture.sway = 0.3 * waving * wave_at(1.6, round - 0.2);
+  posture.turn = 0.2 * waving * wave_at(1.6, round - 0.2, -0.1) + std::numbers::pi * turned;
+  for (int f = 1; f < 5; ++f) {
+    curl(posture.bend, f, folded + (f > 1 ? 0.15 * pinched : 0));
+    posture.bend.flexion[f][0] += 0.1 + 0.1 * waving * wave_at(1.6, round - 0.2, -0.2);
+    posture.bend.splay[f] = (2.4 - f) * 0.07 * (1 - folded);
+  }
+  posture.bend.flexion[1][0] += 0.75 * pinched;
+  posture.bend.flexion[1][1] += 0.80 * pinched;
+  posture.bend.flexion[1][2] += 0.35 * pinched;
+  close_thumb(posture.bend, folded);
+  posture.bend.flexion[0][0] += 0.25 * pinched;
+  posture.bend.flexion[0][1] += 0.35 * pinched;
+  posture.bend.thumb_opposition += 0.1 * pinched;
+  posture.bend.thumb_flexion += 0.2 * pinched;
+  breathe(posture, t);
+  return posture;
+}
+
 struct Choreography {
   std::string_view name;
   Posture (*at)(double seconds);
@@ -234,7 +262,8 @@ struct Choreography {
   double right_ahead_s = 0;  ///< the right hand is this far ahead of the left
 };
 
-constexpr std::array<Choreography, 14> kChoreographies{{
+constexpr std::array<Choreography, 15> kChoreographies{{
+    {"show", show},
     {"open_close", open_close},
     {"wave", wave},
     {"rotate", rotate},
