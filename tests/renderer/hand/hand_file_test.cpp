@@ -179,7 +179,7 @@ TEST_F(HandFile, AnIndexBeyondTheVerticesIsSaid) {
       gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"][attribute].get<int>()]
           ["count"] = 100;
   });
-  EXPECT_THAT(refusal(file), HasSubstr("a triangle names vertex"));
+  EXPECT_THAT(refusal(file), HasSubstr("a triangle refers to vertex"));
 }
 
 TEST_F(HandFile, AnAccessorBeyondItsBufferIsSaid) {
