@@ -19,7 +19,7 @@ struct Predicted {
 };
 
 /// Step "predict" and its state: the recent tracker samples of one hand, from which a pose is
-/// computed for any time. See docs/method.md#predict. One thread.
+/// computed for any time. See `docs/method.md#predict`. One thread.
 class HandTrack {
  public:
   /// Without samples. Copies both arguments.
