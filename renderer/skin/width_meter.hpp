@@ -14,7 +14,7 @@ namespace handcast::renderer {
 
 /// Measures how much wider a person's fingers are than the drawn ones, from the camera's mask:
 /// across the middle of each middle phalanx that is seen from the side, the mask is as wide as the
-/// finger. (The paper names errors of the hand's shape as a limitation.) The factor is the lower
+/// finger. (The paper names the variation between users as a limitation.) The factor is the lower
 /// third of the bones' medians over the last seconds, so that neither a finger that touches another
 /// now and then nor two that touch for long disturb it. After a second without measure() it is
 /// learned anew; it is kept until enough is measured again, so the light does not jump. One thread.
