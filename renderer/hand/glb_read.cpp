@@ -311,7 +311,8 @@ Result<HandMesh> load_hand(const std::filesystem::path& file, Side side) {
   tinygltf::Model model;
   std::string error;
   if (!parse(file, model, error))
-    return refuse(fmt::format("it cannot be read as glTF ({})", error.substr(0, error.find('\n'))));
+    return refuse(
+        fmt::format("it is not a valid glTF file ({})", error.substr(0, error.find('\n'))));
   const tinygltf::Node* node = first_skinned_node(model);
   if (!node) return refuse("it contains no skinned mesh");
 
