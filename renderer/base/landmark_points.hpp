@@ -11,7 +11,7 @@ namespace handcast::renderer {
 using msg::kLandmarks;
 
 /// One position or displacement per landmark, in MediaPipe's order. Undistorted camera px, x right
-/// and y down, unless another unit is stated.
+/// and y down, unless another unit is stated. P, Q and Q̂ (`docs/method.md#symbols`) have this type.
 using LandmarkPoints = std::array<glm::vec2, kLandmarks>;
 
 /// a - b, point by point.

@@ -43,8 +43,9 @@ class HandMask {
   /// Finds the hands in an image.
   void find(const TimedImage& camera, std::span<const Expected> hands);
 
-  /// True if the image of the last find() shows its hand `h`: one of its joints is lit, or what was
-  /// found of it has bounds of at least a quarter of the area that it had when it was last shown.
+  /// True if the image of the last find() shows its hand `h`: one of its joints is lit, or the
+  /// bounds of its mask have at least a quarter of the area that they had when the hand was last
+  /// shown.
   bool shows(std::size_t h) const { return shown_[h]; }
   /// The masks in `camera`, which must be the image of the last find(). Valid until the next
   /// find().

@@ -51,8 +51,8 @@ class HandMaskBounds {
   Rect region_;
   RowSpans sure_, most_;
   std::vector<Wrist> wrists_;
-  RunMap
-      around_;  ///< lit parts outside the inner bound; owner 0: it continues beyond the outer one
+  /// Lit parts outside the inner bound. Owner 0: the part continues beyond the outer bound.
+  RunMap around_;
 };
 
 }  // namespace handcast::renderer

@@ -33,9 +33,8 @@ struct HandFrame {
 };
 
 /// The steps for one hand, with their states. The pipeline does a step for all hands before the
-/// next step, because the hands share the camera's image. The functions after predict() are called
-/// in the order of their declaration, with the frame that it returned; each may be left out. One
-/// thread.
+/// next step, because the hands share the camera's image. The steps after predict() are done in the
+/// order of their declaration, on the frame that it returned; each may be left out. One thread.
 class HandPipeline {
  public:
   /// Loads the mesh and the content of a hand. `content`: see load_content(). `hand_file`: see

@@ -29,8 +29,8 @@ struct Registered {
 /// Finds the contour of a hand again in a newer image. Its points are carried along with the
 /// nearest bone by the tracker's motion; each searches the edge along its normal. Robust
 /// Gauss-Newton steps find the translation and rotation of the hand and the rotation and stretch of
-/// each finger that bring the points to the edge. Priors hold what too few points determine. See
-/// `docs/method.md#register`. Calls are independent of each other. One thread.
+/// each finger that bring the points to the edge. Priors limit the unknowns that too few points
+/// determine. See `docs/method.md#register`. Calls are independent of each other. One thread.
 class Registration {
  public:
   /// `limit_px`: the farthest an edge is searched and a landmark may be moved.

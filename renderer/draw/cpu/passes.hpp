@@ -51,9 +51,13 @@ class Warper {
 };
 
 /// Fills hand without light (paper, "Perceptual Boundary Reduction"; `docs/method.md#fill`). A
-/// pixel p_C without light takes the surface of the nearest lit pixel p_D, with uv(p_C) = 2 uv(p_D)
-/// - uv(p'_D), where p'_D is p_C reflected at p_D. uv(p_C) = uv(p_D) if p'_D is not lit, is on
-///   another surface, or if the step from uv(p'_D) to uv(p_D) is longer than seam_limit_uv().
+/// pixel p_C without light takes the surface of the nearest lit pixel p_D. With p'_D, p_C reflected
+/// at p_D:
+///
+///     uv(p_C) = 2 uv(p_D) - uv(p'_D)
+///
+/// or uv(p_D), if p'_D is not lit, is on another surface, or if the step from uv(p'_D) to uv(p_D)
+/// is longer than seam_limit_uv().
 class Filler {
  public:
   /// For drawings of the given size in pixels.
