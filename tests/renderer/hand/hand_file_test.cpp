@@ -198,7 +198,7 @@ TEST_F(HandFile, MoreVerticesThanIndicesCanNameAreSaid) {
   });
   const std::string said = refusal(file);
   EXPECT_TRUE(said.find("more than 65535") != std::string::npos ||
-              said.find("not a glTF") != std::string::npos)
+              said.find("not a valid glTF") != std::string::npos)
       << said;
 }
 
