@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Before the definition of a free function with plain loops: the compiler makes one version per
-/// instruction set and the loader picks the best the processor has. Off under sanitizers, whose
-/// runtime is not up yet when the loader picks.
+/// Precedes the definition of a free function with plain loops: the compiler makes one version per
+/// instruction set, and the loader picks the best one that the processor supports. Empty under
+/// sanitizers, whose runtime is not initialised when the loader picks, and on other processors than
+/// x86-64.
 #if defined(HANDCAST_WITH_SANITIZER) || !defined(__x86_64__)
 #define HANDCAST_CLONES
 #else

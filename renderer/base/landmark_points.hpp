@@ -9,8 +9,10 @@
 namespace handcast::renderer {
 
 using msg::kLandmarks;
-using LandmarkPoints =
-    std::array<glm::vec2, kLandmarks>;  ///< undistorted camera px, MediaPipe's order
+
+/// One position or displacement per landmark, in MediaPipe's order. Undistorted camera px, x right
+/// and y down, unless another unit is stated. P, Q and Q̂ (`docs/method.md#symbols`) have this type.
+using LandmarkPoints = std::array<glm::vec2, kLandmarks>;
 
 /// a - b, point by point.
 inline LandmarkPoints difference(const LandmarkPoints& a, const LandmarkPoints& b) {
@@ -26,9 +28,10 @@ inline LandmarkPoints sum(const LandmarkPoints& a, const LandmarkPoints& b) {
   return points;
 }
 
+/// The position of a detected landmark as a vector.
 inline glm::vec2 position_px(const msg::Landmark& point) { return {point.x_px, point.y_px}; }
 
-/// Its confidence is above 0 and its position finite.
+/// True if the landmark has a confidence above 0 and a finite position.
 inline bool was_seen(const msg::Landmark& point) {
   return point.confidence > 0 && std::isfinite(point.x_px) && std::isfinite(point.y_px);
 }

@@ -3,8 +3,9 @@
 
 namespace handcast::renderer {
 
-/// Of something whose square is `square`: lets through what stands out of the noise, and of the
-/// rest little (the shrinkage of a Wiener filter).
+/// The factor, 0..1, by which a Wiener filter shrinks a value: near 1 if the value is well above
+/// the noise, near 0 if it is well below. `square`: the value squared; `noise`: its standard
+/// deviation if there is no signal, in the unit of the value.
 inline float share_beyond_noise(float square, float noise) {
   return square / (square + noise * noise);
 }

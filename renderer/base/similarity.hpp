@@ -7,20 +7,25 @@
 
 namespace handcast::renderer {
 
-/// A turn, a scale and a shift of the plane: v' = (cosine x - sine y, sine x + cosine y) + shift,
-/// the scale in cosine and sine.
+/// A similarity of the plane: rotation by an angle a, scale s, and translation.
+///
+///     v' = (cosine x - sine y, sine x + cosine y) + shift,  cosine = s cos a, sine = s sin a
 struct Similarity {
+  /// Cosine and sine of the angle, both times the scale.
+  /// @{
   float cosine = 1, sine = 0;
-  glm::vec2 shift{0};
+  /// @}
+  glm::vec2 shift{0};  ///< the image of the origin
 
+  /// The image of `v`.
   glm::vec2 operator()(const glm::vec2& v) const {
     return glm::vec2(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y) + shift;
   }
 };
 
-/// The least-squares similarity of points `p` onto `q` (as many), its scale held between 1/2 and 2:
-/// wild points must not blow anything up. A shift where the points coincide. `weight` of each, with
-/// a sum above 0; without it all count alike.
+/// The least-squares similarity that maps the points `p` onto the points `q`, of the same number.
+/// Its scale is clamped to 1/2..2, which limits the effect of outliers. A translation if all `p`
+/// coincide. `weight`: one number per point, with a sum above 0; empty: all are equal.
 inline Similarity fit_similarity(std::span<const glm::vec2> p, std::span<const glm::vec2> q,
                                  std::span<const float> weight = {}) {
   constexpr float kLeastScale = 0.5f, kMostScale = 2.0f;

@@ -28,24 +28,23 @@ std::uint32_t packed(Colour colour) {
   return 0xff000000u | byte(colour.b) << 16 | byte(colour.g) << 8 | byte(colour.r);
 }
 
-/// How much of a line of half width `half` a point `away` from its middle sees, over a ramp of
-/// `soft`.
+/// Coverage of a line of half width `half` at a distance `away` from its middle, with an edge of
+/// width `soft`.
 float line(float away, float half, float soft) {
   return std::clamp((half + soft - away) / soft, 0.f, 1.f);
 }
 
-/// 0 thumb to 4 little finger; -1 for palm, wrist and metacarpals.
+/// The finger of a joint, 0 thumb to 4 little finger; -1 for palm, wrist and metacarpals.
 int finger_of(int joint) {
   if (joint < 2) return -1;                   // palm, wrist
   if (joint < 6) return joint == 2 ? -1 : 0;  // thumb: metacarpal, proximal, distal, tip
   return (joint - 6) % 5 == 0 ? -1 : 1 + (joint - 6) / 5;
 }
 
-/// Which bone of its finger: 0 next to the palm.
+/// The number of a joint's bone in its finger, 0 next to the palm.
 int bone_of(int joint) { return joint < 6 ? joint - 3 : (joint - 7) % 5; }
 
-/// Fields over the back and the palm, numbered; bands on the fingers; a fine grid; the charts'
-/// outline.
+/// Numbered fields on the back and the palm, bands on the fingers, and a fine grid.
 class Atlas {
  public:
   explicit Atlas(const ChartMap& charts) : charts_(charts) {}
@@ -60,8 +59,8 @@ class Atlas {
     colour = glm::mix(colour, kPaper, 0.45f * line(std::min(fine.x, fine.y), 0.15f, 0.25f));
     const glm::vec2 to_border = kFieldMm / 2 - glm::abs(from_centre);
     colour = glm::mix(colour, kInk, 0.8f * line(std::min(to_border.x, to_border.y), 0.3f, 0.3f));
-    const glm::vec2 right_up{facing * from_centre.x,
-                             -from_centre.y};  // as one who looks at this side reads it, fingers up
+    // As seen when looking at this side with the fingers up.
+    const glm::vec2 right_up{facing * from_centre.x, -from_centre.y};
     return glm::mix(colour, kInk, coverage(label(texel, field, facing), right_up));
   }
 
@@ -79,8 +78,8 @@ class Atlas {
     return dark ? Colour{238, 176, 140} : Colour{250, 212, 180};
   }
 
-  /// Columns A, B, ... on the back and P, Q, ... on the palm, rows numbered from the forearm up.
-  /// Fingers: 1 (thumb) to 5.
+  /// The letter of the column (A, B, ... on the back, P, Q, ... on the palm) and the number of the
+  /// row from the forearm up. On fingers: 1 (thumb) to 5.
   static std::string label(const ChartTexel& texel, glm::ivec2 field, float facing) {
     const int finger = finger_of(texel.joint);
     if (finger >= 0) return std::to_string(finger + 1);
@@ -88,7 +87,7 @@ class Atlas {
     return fmt::format("{}{}", column, std::clamp(6 - field.y, 0, 99));
   }
 
-  /// Of the letters at a point, in mm from the middle of the field.
+  /// Coverage by the letters of `text` at a point, in mm from the middle of the field.
   float coverage(const std::string& text, glm::vec2 right_up_mm) {
     auto known = letters_.find(text);
     if (known == letters_.end()) known = letters_.emplace(text, lettering(text, kLetterPx)).first;
@@ -104,7 +103,7 @@ class Atlas {
   std::map<std::string, Image<std::uint8_t>> letters_;
 };
 
-/// Bones and joints as they lie under the skin, seen from the back or from the palm.
+/// Bones and joints where they lie under the skin, seen from the back or from the palm.
 class Skeleton {
  public:
   explicit Skeleton(const HandMesh& hand) {
@@ -138,7 +137,8 @@ class Skeleton {
 
 using PaintTexel = std::function<Colour(const ChartTexel&, int x, int y)>;
 
-/// The outline comes last: what is carried outwards for the fill is the content, not its frame.
+/// Paints all texels, pads the charts outwards, and draws their outlines last, so that the fill
+/// finds the content outside a chart and not its outline.
 Texture paint(const ChartMap& charts, const PaintTexel& colour_of) {
   Image<Colour> colours(kWidth, kHeight, kInk);
   for (int y = 0; y < kHeight; ++y) {
@@ -159,7 +159,7 @@ Texture paint(const ChartMap& charts, const PaintTexel& colour_of) {
   return texture;
 }
 
-/// Squares of 32 texels: what the texture layout does to lengths.
+/// Squares of 32 texels, which show how the texture layout distorts lengths.
 Colour checker(const ChartTexel& texel, int x, int y) {
   const Colour light = texel.chart % 2 == 1 ? Colour{250, 240, 210} : Colour{214, 236, 250};
   return (x / 32 + y / 32) % 2 == 0 ? light : Colour{32, 60, 96};

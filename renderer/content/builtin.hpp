@@ -8,10 +8,10 @@
 
 namespace handcast::renderer {
 
-/// "atlas", "checker", "skeleton" or "white" for this hand; nothing for any other name.
+/// Paints one of kBuiltinNames over the charts of `hand`. Empty if there is no such name.
 std::optional<Texture> paint_builtin(std::string_view name, const HandMesh& hand);
 
-/// The names, as a person reads them in an error.
+/// The names of the built-in contents, for messages.
 constexpr std::string_view kBuiltinNames = "atlas, checker, skeleton, white";
 
 }  // namespace handcast::renderer

@@ -8,24 +8,26 @@
 
 namespace handcast::renderer {
 
-/// What of the hand a texel's centre shows.
+/// The part of the hand at the centre of a texel.
 struct ChartTexel {
   std::uint8_t chart = 0;    ///< 0: none
-  std::uint8_t joint = 0;    ///< the joint that moves it most
-  std::uint8_t edge_px = 0;  ///< distance to the chart's outline, 32 and more: far
-  glm::vec3 rest_mm{};       ///< on the hand at rest: +x right, +y out of the back, -z to the tips
+  std::uint8_t joint = 0;    ///< the joint with the largest skin weight
+  std::uint8_t edge_px = 0;  ///< distance to the outline of the chart, at most 32 texels
+  glm::vec3 rest_mm{};       ///< position on the hand at rest, axes of HandMesh
 };
 
-/// The hand's charts drawn into a texture of the given size.
+/// The charts of a hand, drawn into a texture.
 class ChartMap {
  public:
+  /// Draws the charts of `hand` into a texture of the given size in texels.
   ChartMap(const HandMesh& hand, int width, int height);
 
+  /// The texel (x, y).
   const ChartTexel& at(int x, int y) const { return texels_.at(x, y); }
-  /// +1 where the chart shows the back of the hand, -1 where it shows the palm.
+  /// +1 if the chart shows the back of the hand, -1 if it shows the palm.
   float facing(std::uint8_t chart) const { return facing_[chart]; }
-  /// Carries the colours of the charts outwards (32 px), each texel taking its nearest one on a
-  /// chart.
+  /// Gives each texel within 32 texels of a chart the colour of the nearest texel on a chart.
+  /// `colours` has the size of the texture.
   void pad(Image<glm::vec3>& colours) const;
 
  private:

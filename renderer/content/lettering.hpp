@@ -7,8 +7,8 @@
 
 namespace handcast::renderer {
 
-/// Black-on-nothing lettering as coverage (0..255), trimmed to a box `height` pixels high. By
-/// OpenCV's strokes.
+/// The coverage (0..255) of a line of text, in an image `height` pixels high. In OpenCV's stroke
+/// font.
 Image<std::uint8_t> lettering(const std::string& text, int height);
 
 }  // namespace handcast::renderer

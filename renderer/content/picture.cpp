@@ -9,9 +9,9 @@
 #include <cstdio>
 #include <memory>
 #include <vector>
-// jpeglib.h relies on cstdio
+// needs cstdio
 #include <jpeglib.h>
-// and jerror.h on jpeglib.h
+// needs jpeglib.h
 #include <jerror.h>
 
 namespace handcast::renderer {
@@ -23,11 +23,11 @@ constexpr std::uint32_t kOpaque = 0xff000000u;
 tl::unexpected<Error> too_large(const std::filesystem::path& file, std::uint32_t width,
                                 std::uint32_t height) {
   return fail(Errc::bad_config,
-              fmt::format("The picture '{}' is {}x{} px; {} px a side are allowed.", file.string(),
-                          width, height, kLargestSide));
+              fmt::format("The picture '{}' is {}x{} px; at most {} px per side are allowed.",
+                          file.string(), width, height, kLargestSide));
 }
 
-/// libpng's short way in: it frees what it holds when it goes.
+/// libpng's simplified interface; the destructor releases its memory.
 struct PngFile {
   png_image png{};
   explicit PngFile(const std::filesystem::path& file) {
@@ -38,7 +38,7 @@ struct PngFile {
   bool is_well() const { return !PNG_IMAGE_FAILED(png) && png.width > 0; }
 };
 
-/// The pixels as `format`. Empty: not a PNG, or a broken one.
+/// The pixels as `format`. An error if the file is not a PNG or is broken.
 template <class Pixel>
 Result<Image<Pixel>> read_png(const std::filesystem::path& file, std::uint32_t format) {
   PngFile opened(file);
@@ -69,10 +69,10 @@ struct JpegErrors {
 }
 void say_nothing(j_common_ptr) {}
 
-/// libjpeg would go on in grey where a file ends early, and only warn.
+/// Ends decoding if the file is truncated. libjpeg itself only warns and fills the rest with grey.
 void heed_warning(j_common_ptr jpeg, int level) {
   if (level >= 0 || jpeg->err->msg_code != JWRN_JPEG_EOF) return;
-  reinterpret_cast<JpegErrors*>(jpeg->err)->trouble = "ends before its picture does";
+  reinterpret_cast<JpegErrors*>(jpeg->err)->trouble = "is truncated";
   leave(jpeg);
 }
 
@@ -80,7 +80,8 @@ struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// libjpeg ends a broken file by a longjmp to here: nothing with a destructor may be made between.
+/// libjpeg leaves a broken file by a longjmp to here, so no object with a destructor may be created
+/// after setjmp.
 bool decode_jpeg(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::FILE* file,
                  Texture& texture) {
   if (setjmp(errors.way_out) != 0) return false;
@@ -89,7 +90,8 @@ bool decode_jpeg(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::FILE* fi
   if (std::max(jpeg.image_width, jpeg.image_height) > kLargestSide) return true;
   if (jpeg.jpeg_color_space != JCS_GRAYSCALE && jpeg.jpeg_color_space != JCS_YCbCr &&
       jpeg.jpeg_color_space != JCS_RGB) {
-    errors.trouble = "is a JPEG in CMYK or another colour space; grey, RGB and YCbCr are read";
+    errors.trouble =
+        "is a JPEG in CMYK or another unsupported colour space; grey, RGB and YCbCr are supported";
     return false;
   }
   jpeg.out_color_space = JCS_EXT_RGBA;
@@ -162,7 +164,7 @@ Result<void> write_png(const std::filesystem::path& file, View<const std::uint32
   png.flags = PNG_IMAGE_FLAG_FAST;
   if (png_image_write_to_file(&png, file.c_str(), 0, rgb.data(), 0, nullptr)) return {};
   return fail(Errc::unavailable,
-              fmt::format("'{}' cannot be written: {}", file.string(), png.message));
+              fmt::format("The picture '{}' cannot be written: {}.", file.string(), png.message));
 }
 
 }  // namespace handcast::renderer

@@ -6,18 +6,21 @@
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
 
-/// Picture files by libpng and libjpeg alone. (OpenCV's image library loads 120 others: 80 ms in
-/// the life of every daemon that links it.)
+/// @file
+/// Reads and writes picture files with libpng and libjpeg alone. (OpenCV's image library loads 120
+/// others, which takes 80 ms at the start of every daemon that links it.)
+
 namespace handcast::renderer {
 
-/// A PNG or JPEG file as RGBA8, opaque. Errors (bad_config): no such file, not a picture, cut off,
-/// in CMYK, larger than 8192 px.
+/// Reads a PNG or JPEG file as RGBA8, opaque. Errors (bad_config): no such file, not a picture,
+/// truncated, a JPEG in CMYK, larger than 8192 px on a side.
 Result<Texture> read_picture(const std::filesystem::path& file);
 
-/// A PNG file as grey. Errors (bad_config): as above.
+/// Reads a PNG file as grey values. Errors (bad_config): not a readable PNG file, larger than 8192
+/// px on a side.
 Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file);
 
-/// Writes RGBA8 as a PNG without its alpha. Errors: unavailable.
+/// Writes RGBA8 as a PNG file without alpha. Errors: unavailable if the file cannot be written.
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture);
 
 }  // namespace handcast::renderer

@@ -13,8 +13,8 @@ Result<Texture> load_content(const std::string& what, const HandMesh& hand) {
   if (!what.starts_with(kBuiltin)) return read_picture(what);
   const std::string name = what.substr(kBuiltin.size());
   if (auto texture = paint_builtin(name, hand)) return std::move(*texture);
-  return fail(Errc::bad_config,
-              fmt::format("There is no built-in content '{}'; there are {}.", name, kBuiltinNames));
+  return fail(Errc::bad_config, fmt::format("There is no built-in content '{}'; the names are {}.",
+                                            name, kBuiltinNames));
 }
 
 }  // namespace handcast::renderer

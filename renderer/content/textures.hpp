@@ -8,10 +8,11 @@
 
 namespace handcast::renderer {
 
-/// What a hand wears: a PNG/JPEG file in the hand's texture layout, or "builtin:NAME" painted over
-/// the mesh's own charts: atlas (numbered fields, finger bands, an outline: shows every mistake of
-/// alignment), checker, skeleton, white. 1024x640 for the built-in ones. Colours are padded past
-/// the charts' outline so that the fill finds them there.
+/// Loads the content of a hand. `what`: a PNG or JPEG file in the texture layout of the hand, or
+/// "builtin:NAME", painted over the charts of the mesh in 1024x640 texels: atlas (numbered fields,
+/// bands on the fingers, outlines; shows errors of alignment), checker, skeleton or white. Built-in
+/// colours continue outside the charts, because the fill looks up texels there. Errors
+/// (bad_config): see read_picture(), or no such name.
 Result<Texture> load_content(const std::string& what, const HandMesh& hand);
 
 }  // namespace handcast::renderer

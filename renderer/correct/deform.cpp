@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kChunk = 16;          ///< points moved at once
 constexpr float kNear_px2 = 1e-4f;  ///< keeps the weight of a control point at itself finite
-constexpr float kSpot_px = 0.5f;    ///< control points closer together than this are one spot
+constexpr float kSpot_px = 0.5f;    ///< control points closer to their mean than this coincide
 constexpr float kStandIn_px = 1000;
 constexpr float kSpread_px2 = 1e-6f;  ///< keeps the division by the control points' spread finite
 
@@ -22,7 +22,7 @@ glm::vec2 mean(const std::vector<glm::vec2>& points) {
   return sum / static_cast<float>(points.size());
 }
 
-/// Sixteen points at once; the compiler splits it into what registers the processor has.
+/// Sixteen points at once; the compiler splits them over the registers of the processor.
 using Lanes = float __attribute__((vector_size(4 * kChunk)));
 
 enum class Power { half, one, any };
@@ -39,8 +39,8 @@ inline __attribute__((always_inline)) void weigh(const Lanes& distance2, float a
   }
 }
 
-/// Schaefer et al. 2006, equations 5 to 7, with every position taken relative to the point v that
-/// is moved: f(v) = q* + M (v - p*), M a similarity.
+/// Schaefer et al. 2006, equations 5 to 7, with all positions relative to the point v that is
+/// moved: f(v) = q* + M (v - p*), M a similarity.
 template <Power power>
 inline __attribute__((always_inline)) void move_chunk(const glm::vec2* p, const glm::vec2* q,
                                                       int controls, float alpha, float* x,
@@ -101,7 +101,7 @@ MovingLeastSquares::MovingLeastSquares(std::span<const glm::vec2> p, std::span<c
     return glm::distance(point, p_mean) < kSpot_px;
   });
   if (!on_one_spot) return;
-  // One spot says nothing of rotation and scale: two points that keep them stand in.
+  // Coinciding points do not determine rotation and scale. Two points that keep both replace them.
   p_ = {p_mean - glm::vec2(kStandIn_px, 0), p_mean + glm::vec2(kStandIn_px, 0)};
   q_ = {q_mean - glm::vec2(kStandIn_px, 0), q_mean + glm::vec2(kStandIn_px, 0)};
 }

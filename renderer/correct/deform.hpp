@@ -9,16 +9,23 @@
 #include "renderer/base/landmark_points.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 
-/// Moving the drawing onto the landmarks. All points here are projector pixels.
+/// @file
+/// Step "correct": moves the drawing from P onto Q̂. All points are in projector px. See
+/// `docs/method.md#correct`.
+
 namespace handcast::renderer {
 
-/// Similarity moving least squares (Schaefer et al. 2006, section 2.2) from points `p` to points
-/// `q`, weights |p - v|^(-2 alpha).
+/// Moving least squares with similarities (Schaefer et al. 2006, section 2.2): a smooth deformation
+/// that maps the control points p to q, with weights |p - v|^(-2 alpha) at a point v. See also
+/// paper, "Moving Least Squares Deformation".
 class MovingLeastSquares {
  public:
+  /// Copies the control points, of the same number. Without any, nothing is moved; if all `p` are
+  /// within half a pixel of their mean, everything is translated.
   MovingLeastSquares(std::span<const glm::vec2> p, std::span<const glm::vec2> q, float alpha);
+  /// The image of `v`.
   glm::vec2 operator()(glm::vec2 v) const;
-  /// Moves every point of `points` in place (vectorised).
+  /// Moves all `points` in place; vectorised.
   void apply(std::span<glm::vec2> points) const;
 
  private:
@@ -26,26 +33,33 @@ class MovingLeastSquares {
   float alpha_;
 };
 
-/// A regular grid over an image, each node moved: a piecewise linear warp, each cell split along
-/// its diagonal (0,0)-(1,1).
+/// A regular grid over an image, with moved nodes: a piecewise linear warp. Each cell is split
+/// along its diagonal from the top left to the bottom right.
 struct WarpGrid {
-  int columns = 0, rows = 0;  ///< nodes
-  Rect area;  ///< the image area the undeformed grid spans, corner nodes on its corner pixels
+  /// Number of nodes, at least 2 x 2.
+  /// @{
+  int columns = 0, rows = 0;
+  /// @}
+  Rect area;                     ///< area of the grid at rest, corner nodes at its corner pixels
   std::vector<glm::vec2> nodes;  ///< moved positions, row by row
 
-  glm::vec2 source(int column, int row) const;  ///< where a node stood
-  glm::vec2 operator()(
-      glm::vec2 v) const;  ///< the warp at any point (outside the area: of the nearest cell)
-  int foldovers() const;   ///< triangles turned over
+  /// The position of a node at rest.
+  glm::vec2 source(int column, int row) const;
+  /// The image of `v`. Outside the area: by the nearest cell.
+  glm::vec2 operator()(glm::vec2 v) const;
+  /// The number of triangles that are turned over.
+  int foldovers() const;
 };
 
-/// The paper's correction: `settings.grid_columns x grid_rows` nodes over the whole image.
+/// The grid of the paper's correction: grid_columns x grid_rows nodes over `area`, moved by
+/// `field`.
 WarpGrid make_warp_grid(const config::Correct& settings, Rect area,
                         const MovingLeastSquares& field);
 
-/// Our correction: the vertices of one drawn hand, moved in place by per-bone similarities P -> Q
-/// blended with the skin weights, handing over to moving least squares where a bone is
-/// foreshortened (METHOD section 2).
+/// The default correction: moves the vertices of one drawn hand in place, by one similarity per
+/// bone from `p` (P) to `q` (Q̂), blended with the skin weights. A bone seen shorter than
+/// bone_long_px hands over to moving least squares, completely at bone_short_px. `vertices`: one
+/// per vertex of `hand`.
 void correct_vertices(const config::Correct& settings, const HandMesh& hand,
                       std::span<const glm::vec2, kLandmarks> p,
                       std::span<const glm::vec2, kLandmarks> q, std::span<glm::vec2> vertices);

@@ -10,8 +10,7 @@ namespace {
 
 constexpr int kFingers = 5;
 
-/// The joints from the knuckle on; palm, wrist and the metacarpals of the four fingers belong to no
-/// finger.
+/// The finger of a joint, thumb 0; -1 for palm, wrist and the metacarpals of the four fingers.
 int finger_of_joint(int joint) {
   constexpr int kThumb = 2, kIndex = 6, kJointsOfFinger = 5;
   if (joint < kThumb) return -1;
@@ -29,7 +28,7 @@ HANDCAST_CLONES void move_wholly(const float* m, float* xy, int count) {
   }
 }
 
-/// `share`: `count` numbers of the first finger, of the second, ...; `shift`: x y of each finger.
+/// `share`: `count` numbers per finger, finger after finger; `shift`: x y of each finger.
 HANDCAST_CLONES void add_fingers(const float* share, const float* shift, float* xy, int count) {
   const float *a = share, *b = a + count, *c = b + count, *d = c + count, *e = d + count;
   for (int v = 0; v < count; ++v) {

@@ -9,16 +9,19 @@
 
 namespace handcast::renderer {
 
-/// Whose skin is whose: moves a mesh's vertices with a model, some ten times cheaper than
-/// correct_vertices.
+/// Moves the vertices of a mesh by the model of a rung, about ten times faster than
+/// correct_vertices().
 class RungMover {
  public:
+  /// Computes the share of each finger in each vertex of `mesh`.
   explicit RungMover(const HandMesh& mesh);
+  /// Moves `vertices`, one per vertex of the mesh, in place. `model`: in the same unit.
   void move(const RungModel& model, std::span<glm::vec2> vertices) const;
 
  private:
-  std::vector<float> share_;  ///< five per vertex, finger by finger: how much of its skin hangs on
-                              ///< that finger, 0..1
+  /// Skin weight of a finger in a vertex, 0..1: all vertices for the thumb, then for the index
+  /// finger, and so on.
+  std::vector<float> share_;
 };
 
 }  // namespace handcast::renderer

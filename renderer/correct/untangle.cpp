@@ -9,10 +9,9 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr float kInvisible_px2 =
-    0.02f;  ///< twice an area that no pixel shows; also more than rounding makes
-
-constexpr int kMostMoves = 200;  ///< before a knot is seen as one
+/// Twice an area that is not visible; also larger than rounding errors.
+constexpr float kInvisible_px2 = 0.02f;
+constexpr int kMostMoves = 200;  ///< of smooth(); then clusters are formed
 
 /// Twice the signed area.
 float area(std::span<const glm::vec2> px, const std::array<std::uint16_t, 3>& triangle) {
@@ -50,7 +49,7 @@ void Untangler::shift(std::uint16_t place, const glm::vec2& moved,
   waiting_.insert(waiting_.end(), around_[place].begin(), around_[place].end());
 }
 
-/// Every place a cluster of its own.
+/// Makes each place a cluster.
 void Untangler::start(std::span<const glm::vec2> before, std::span<const glm::vec2> after) {
   clusters_.resize(at_place_.size());
   for (std::size_t place = 0; place < at_place_.size(); ++place) {
@@ -89,8 +88,8 @@ void Untangler::move(std::uint16_t root, std::span<const glm::vec2> before,
   } while (place != root);
 }
 
-/// The cheap way, which mends all but knots: the corners of a triangle get one displacement, its
-/// neighbours are looked at again. True where that was enough.
+/// Gives the corners of each turned-over triangle their mean displacement and examines its
+/// neighbours again. Returns true if nothing remains turned over.
 bool Untangler::smooth(std::span<const glm::vec2> before, std::span<glm::vec2> after,
                        float facing_sign) {
   int moves = 0;

@@ -9,28 +9,30 @@
 
 namespace handcast::renderer {
 
-/// Turns back what a correction turned over. The corners of such a triangle get one common
-/// displacement and its neighbours are looked at again; the mesh has slivers that a tenth of a
-/// pixel turns over, and this mends them. Knots that it does not mend are joined into clusters that
-/// move as one, with the mean of their displacements: inside a cluster nothing is turned over, and
-/// clusters only grow, so this ends. Vertices that share a place (UV seams) stay together. One
-/// thread.
+/// Removes fold-overs: triangles that a correction has turned over. The corners of such a triangle
+/// get their mean displacement, and its neighbours are examined again. This repairs the slivers of
+/// the mesh, which a tenth of a pixel turns over. If it does not end soon, turned-over triangles
+/// are joined into clusters that move with the mean of their displacements. Inside a cluster
+/// nothing is turned over, and clusters only grow, so this ends. Vertices at the same position (UV
+/// seams) move together. One thread.
 class Untangler {
  public:
+  /// For the triangles of `mesh`.
   explicit Untangler(const HandMesh& mesh);
 
-  /// `facing_sign`: of the area of triangles that face the camera (y down); only those are looked
-  /// at. Moves `after`; returns how many triangles stay turned over: none, or the promise above is
-  /// broken. A hundredth of a pixel is no area.
+  /// Repairs `after`, the vertices after a correction; `before`: the same before it, px. Only
+  /// triangles that face the camera are examined: those whose area has the sign `facing_sign` (y
+  /// down). An area of up to 0.01 px^2 does not count as turned over. Returns the number of
+  /// triangles that remain turned over, which should be 0.
   int untangle(std::span<const glm::vec2> before, std::span<glm::vec2> after, float facing_sign);
 
  private:
   using Triangle = std::array<std::uint16_t, 3>;
   struct Cluster {
-    std::uint16_t parent;  ///< towards the root, which is its own parent
-    std::uint16_t next;    ///< the places of a cluster form a ring
-    glm::vec2 moved;       ///< a root's: sum over the cluster
-    float count;           ///< a root's
+    std::uint16_t parent;  ///< a place nearer to the root; its own if it is the root
+    std::uint16_t next;    ///< next place of the cluster, in a ring
+    glm::vec2 moved;       ///< in the root: sum of the displacements of the cluster
+    float count;           ///< in the root: places of the cluster
   };
 
   bool turned_over(std::size_t triangle, std::span<const glm::vec2> before,
@@ -46,11 +48,12 @@ class Untangler {
   void move(std::uint16_t root, std::span<const glm::vec2> before, std::span<glm::vec2> after);
 
   std::vector<Triangle> triangles_;
-  std::vector<std::uint16_t> place_of_;               ///< of each vertex
-  std::vector<std::vector<std::uint16_t>> at_place_;  ///< the vertices that share it
-  std::vector<std::vector<std::uint32_t>> around_;    ///< the triangles that touch it
-  std::vector<Cluster> clusters_;                     ///< of each place
-  std::vector<std::uint32_t> waiting_;                ///< triangles to look at again
+  // A place is a position at rest that one or more vertices have.
+  std::vector<std::uint16_t> place_of_;               ///< per vertex
+  std::vector<std::vector<std::uint16_t>> at_place_;  ///< per place: its vertices
+  std::vector<std::vector<std::uint32_t>> around_;    ///< per place: the triangles that touch it
+  std::vector<Cluster> clusters_;                     ///< per place
+  std::vector<std::uint32_t> waiting_;                ///< triangles to be examined
 };
 
 }  // namespace handcast::renderer

@@ -10,21 +10,21 @@
 namespace handcast::renderer {
 namespace {
 
-/// How a bone moves, and how far that is to be trusted (0..1).
+/// The motion of a bone, and its weight against moving least squares (0..1).
 struct BoneMove : Similarity {
   float trust = 1;
 };
 
-/// Which of the 20 bones between landmarks moves a joint's skin. Bone 4 f + k of finger f ends at
-/// landmark 4 f + k + 1; bones with k = 0 start at the wrist and are the palm. The skin of wrist
-/// and palm joint moves with the whole palm: kPalm.
+/// The bone between landmarks that moves the skin of each joint. Bone 4 f + k of finger f ends at
+/// landmark 4 f + k + 1; bones with k = 0 start at the wrist and belong to the palm. The skin of
+/// the joints wrist and palm moves with the whole palm, kPalm.
 constexpr int kPalm = 20;
 constexpr std::array<int, kJoints> kBoneOfJoint{kPalm, kPalm, 1,  2,  3,  3,  4,  5,  6,
                                                 7,     7,     8,  9,  10, 11, 11, 12, 13,
                                                 14,    15,    15, 16, 17, 18, 19, 19};
 constexpr std::array<int, 4> kKnuckles{5, 9, 13, 17};
 
-/// A bone seen so long is trusted so much.
+/// The weight of a bone that is seen `length_px` long: 0 if it is foreshortened, 1 if not.
 float trust_in(const config::Correct& settings, float length_px) {
   const auto from = static_cast<float>(settings.bone_short_px),
              to = static_cast<float>(settings.bone_long_px);
@@ -41,7 +41,7 @@ BoneMove finger_bone(const config::Correct& settings, int bone, Landmarks2d p, L
   return move;
 }
 
-/// From the wrist to the middle of the knuckles, exact at the wrist.
+/// The bone from the wrist to the middle of the knuckles. It is exact at the wrist.
 BoneMove palm_bone(const config::Correct& settings, Landmarks2d p, Landmarks2d q) {
   glm::vec2 p_knuckles{0}, q_knuckles{0};
   float longest_px = 0;
@@ -55,11 +55,10 @@ BoneMove palm_bone(const config::Correct& settings, Landmarks2d p, Landmarks2d q
   return move;
 }
 
-/// Four numbers that are weighed together: cosine, sine, shift x and y, in one register.
+/// Cosine, sine, shift x and shift y in one register.
 using Four = float __attribute__((vector_size(16)));
 
-/// Each joint's move with its trust multiplied in, so that a weighted sum of moves is a weighted
-/// sum of numbers.
+/// The moves of the joints, multiplied by their trust: a weighted sum of them is a sum of numbers.
 struct JointMoves {
   std::array<Four, kJoints> move;
   std::array<float, kJoints> trust;
@@ -80,8 +79,8 @@ JointMoves joint_moves(const config::Correct& settings, Landmarks2d p, Landmarks
   return moves;
 }
 
-/// Every vertex to where the trusted bones would have it: only a share of its place where they do
-/// not hold it wholly.
+/// Moves every vertex by its bones, weighted by their trust. If the weights sum to less than 1, the
+/// result is that share of a position, and the rest must be added.
 void move_by_bones(const HandMesh& hand, const JointMoves& moves, std::span<glm::vec2> vertices) {
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const auto& joints = hand.joints[v];
@@ -93,7 +92,7 @@ void move_by_bones(const HandMesh& hand, const JointMoves& moves, std::span<glm:
   }
 }
 
-/// What the bones do not hold wholly.
+/// The vertices whose bones have a total weight below 1, and the share that remains.
 struct LeftOver {
   std::vector<std::uint16_t> vertex;
   std::vector<float> share;
@@ -121,7 +120,7 @@ void find_left_over(const HandMesh& hand, const JointMoves& moves,
 
 void correct_vertices(const config::Correct& settings, const HandMesh& hand, Landmarks2d p,
                       Landmarks2d q, std::span<glm::vec2> vertices) {
-  thread_local LeftOver left;  // keeps its memory from frame to frame
+  thread_local LeftOver left;  // its memory is reused
   const JointMoves moves = joint_moves(settings, p, q);
   find_left_over(hand, moves, vertices, left);
   move_by_bones(hand, moves, vertices);

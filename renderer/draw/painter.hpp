@@ -15,55 +15,60 @@
 
 namespace handcast::renderer {
 
-/// One hand as the painter gets it: topology from the mesh, everything else per vertex in projector
-/// space.
+/// One hand to be drawn: topology from the mesh, everything else per vertex. Borrowed for the call
+/// of draw(), the texture until the last fill() of the drawing.
 struct DrawnHand {
-  const HandMesh* mesh = nullptr;
-  const Texture* texture = nullptr;
+  const HandMesh* mesh = nullptr;          ///< triangles, texture coordinates and charts
+  const Texture* texture = nullptr;        ///< nullptr: white
   std::span<const glm::vec2> position_px;  ///< projector px
   std::span<const float> depth_m;          ///< distance along the camera's axis; nearer wins
-  std::span<const float> light;            ///< 0..1 factor per vertex; empty: unshaded
+  std::span<const float> light;            ///< factor 0..1; empty: 1 everywhere
 };
 
-/// Which surface a pixel shows. 0: none. Otherwise hand index * 64 + chart, so that a step between
-/// charts or hands is seen.
+/// The surface that a pixel shows. 0: none. Otherwise hand index * 64 + chart, so that a step
+/// between charts or hands can be detected.
 using SurfaceId = std::uint8_t;
+/// The id of a chart (1..60, see number_charts()) of the hand with the given index (0..3).
 constexpr SurfaceId surface_id(int hand_index, std::uint8_t chart) {
   return static_cast<SurfaceId>(hand_index * 64 + chart);
 }
 
+/// Numbers of pixels after a fill, by region (paper, "Perceptual Boundary Reduction").
 struct FillCounts {
-  int lit = 0;     ///< region D: render and hand
-  int filled = 0;  ///< region C that got light
-  int dark = 0;    ///< region C that stayed dark: nothing within reach
+  int lit = 0;     ///< region D: drawing and hand
+  int filled = 0;  ///< region C, hand without drawing: filled
+  int dark = 0;    ///< region C: not filled, no light within reach
 };
 
-/// A back end: the same passes over the same buffers, compared by tests. Buffers have the
-/// projector's size; each pass touches the given region only and leaves the rest undefined. One
-/// thread.
+/// A back end that draws. All back ends do the same passes on the same buffers and are compared by
+/// tests. Buffers have the projector's size. Each pass changes only the given region, clipped to
+/// the screen; the rest is undefined. One thread.
 class Painter {
  public:
   virtual ~Painter() = default;
 
   /// Clears `region` and draws the hands into it with a depth test: texture coordinates, surface
-  /// ids and colour. The far side of a closed surface may be left out; at equal depth the later
+  /// ids and colour. The far side of a closed surface may be left out. At equal depth the later
   /// triangle wins.
   virtual void draw(std::span<const DrawnHand> hands, Rect region) = 0;
 
-  /// Moves what was drawn by a warp grid (the paper's correction): the drawing in `from` appears
+  /// Moves the drawing by a warp grid (the paper's correction): the drawing in `from` appears
   /// warped in `region`.
   virtual void warp(const WarpGrid& grid, Rect from, Rect region) = 0;
 
-  /// Removes light where `mask` is 0 and fills hand without light (METHOD section 1, "fill").
-  /// `mask` has the projector's size.
+  /// Removes light where `mask` is 0 and fills the parts of the hand that have no light. `mask` has
+  /// the projector's size. Does nothing if the method is none. See `docs/method.md#fill`.
   virtual FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings,
                           Rect region) = 0;
 
-  /// The image as it stands: RGBA8, alpha 0 where dark. Valid until the next pass.
+  /// The image after the last pass: RGBA8, alpha 0 where it is dark. Valid until the next pass.
   virtual View<const std::uint32_t> colour() = 0;
-  /// Texture coordinates and surface ids as they stand (undefined where the id is 0).
+  /// Texture coordinates and surface ids after the last pass. Texture coordinates are undefined
+  /// where the id is 0. Valid until the next pass.
+  /// @{
   virtual View<const glm::vec2> uv() = 0;
   virtual View<const SurfaceId> surface() = 0;
+  /// @}
 };
 
 }  // namespace handcast::renderer

@@ -8,37 +8,45 @@
 
 #include "renderer/filter/landmark_filter.hpp"
 
-/// The filters behind make_landmark_filter, one file each. Only landmark_filter.cpp, their tests
-/// and who needs a TrackerMemory include this.
+/// @file
+/// The filters behind make_landmark_filter(), one file each, and what they share. Included by the
+/// filters, by their tests and by users of TrackerMemory.
+
 namespace handcast::renderer {
 
-/// A filter that can start afresh.
+/// A filter that can be reset.
 class CarryFilter : public LandmarkFilter {
  public:
   void tracker_sample(std::int64_t) override {}
-  /// Drops what detections have taught it; what it remembers of the tracker stays.
+  /// Drops what was learned from detections. What is remembered of the tracker is kept.
   virtual void forget() = 0;
 };
 
+/// Q̂ = Q: the landmarks as they were seen.
 std::unique_ptr<CarryFilter> make_naive_filter();
+/// The newest offset Q - P of each point, added to P (paper, "Moving Least Squares Deformation").
 std::unique_ptr<CarryFilter> make_paper_filter(const config::Filter& settings);
+/// A constant-velocity Kalman filter on Q, without the tracker.
 std::unique_ptr<CarryFilter> make_kalman_filter(const config::Filter& settings);
+/// A constant-velocity Kalman filter on Q - P.
 std::unique_ptr<CarryFilter> make_offset_kalman(const config::Filter& settings);
+/// A one-euro filter on Q - P.
 std::unique_ptr<CarryFilter> make_one_euro_filter(const config::Filter& settings);
 
-/// Around another filter: fades it out when detections stay away, and blends the jumps of its
-/// output in.
+/// Wraps `inner`: its correction fades out within 100 ms once the newest detection is older than
+/// lost_ms, and the jumps of its output are smoothed (JumpBlend).
 std::unique_ptr<LandmarkFilter> make_settled_filter(const config::Filter& settings,
                                                     std::unique_ptr<CarryFilter> inner);
 
-/// P as it was when light was drawn for a time: "as it was predicted then". Without hindsight, the
-/// P that belongs to an image is the one drawn for the moment the image was taken, known only from
-/// what the tracker had said until then.
+/// The landmarks that recent frames were drawn with, by target time; the last 150 ms. A filter
+/// without hindsight takes P at the time of an image from here: as it was predicted for the frame
+/// of that time, from the tracker samples that had arrived by then.
 class TrackerMemory {
  public:
+  /// Adds the landmarks of the frame for `target_ns`. Entries at or after that time are dropped.
   void remember(std::int64_t target_ns, const LandmarkPoints& tracker);
-  std::optional<LandmarkPoints> at(
-      std::int64_t time_ns) const;  ///< nothing outside what is remembered
+  /// The landmarks at `time_ns`, interpolated linearly. Empty outside the remembered times.
+  std::optional<LandmarkPoints> at(std::int64_t time_ns) const;
 
  private:
   struct Entry {
@@ -48,26 +56,26 @@ class TrackerMemory {
   std::deque<Entry> entries_;  ///< by target time
 };
 
-/// P at a detection's time: by hindsight, or (where `memory` is given and reaches back that far) as
-/// it was predicted then.
+/// P at the time of a detection: as it was predicted then if `memory` is given (not nullptr) and
+/// has it, else by hindsight from `tracker`. Empty if neither has it.
 std::optional<LandmarkPoints> tracker_then(const TrackerAt& tracker, const TrackerMemory* memory,
                                            std::int64_t origin_ns);
 
-/// Offsets of points that were never seen: the mean of the others'.
+/// Sets the unknown offsets to the mean of the known ones. Does nothing if none is known.
 void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets,
                   const std::array<bool, kLandmarks>& known);
-/// P moved by these offsets, those that are not known lent; nothing where none is.
+/// P plus the offsets, the unknown ones from lend_offsets(). Empty if no offset is known.
 std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker,
                                        std::array<glm::vec2, kLandmarks> offsets,
                                        const std::array<bool, kLandmarks>& known);
 
-/// Where landmarks should be.
+/// Where landmarks are expected.
 struct ExpectedPoints {
-  std::array<glm::vec2, kLandmarks> px{};
-  std::array<bool, kLandmarks> known{};
+  std::array<glm::vec2, kLandmarks> px{};  ///< undistorted camera px
+  std::array<bool, kLandmarks> known{};    ///< false: `px` of this landmark is not valid
 };
-/// How far all together were seen from there: the length of the median. 0 where nothing can be
-/// compared.
+/// The displacement of the seen landmarks from the expected ones that all have in common: the
+/// length of the vector of the medians in x and in y. 0 if no landmark is both seen and expected.
 float common_error_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected);
 
 }  // namespace handcast::renderer

@@ -7,14 +7,16 @@ namespace handcast::renderer {
 namespace {
 
 constexpr int kFingers = 5, kJointsOfFinger = 4;
-constexpr std::int64_t kPatience_ns = 500'000'000;  ///< then the detector is believed
-constexpr float kFar_px = 15;                       ///< a finger this close to its place is in it,
-constexpr float kCloser = 0.3f;  ///< and on another's when it is this much closer to that
+constexpr std::int64_t kPatience_ns = 500'000'000;
+/// Fingers closer to their expected places than this are left as they are.
+constexpr float kFar_px = 15;
+/// Fingers are exchanged if this share of the distance remains with the fingers exchanged.
+constexpr float kCloser = 0.3f;
 
 constexpr int first_of(int finger) { return 1 + kJointsOfFinger * finger; }
 
-/// Mean distance of the landmarks that `finger` shows from the place of `place`; nothing where none
-/// is known.
+/// Mean distance of the seen landmarks of `finger` from the expected ones of the finger `place`.
+/// Empty if there is none to compare.
 std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected,
                                  int finger, int place) {
   float sum = 0;

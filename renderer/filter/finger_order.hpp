@@ -7,12 +7,13 @@
 
 namespace handcast::renderer {
 
-/// A detector may take one finger for another for a while. Where two fingers' landmarks lie on each
-/// other's places they are exchanged back; a detector that goes on saying so is believed in the
-/// end.
+/// Corrects exchanged fingers: a detector may mistake one finger for another for a while. Fingers
+/// whose landmarks lie at each other's expected places are exchanged. A detector that contradicts
+/// the expectation for 500 ms is accepted as it is. One thread.
 class FingerOrder {
  public:
-  /// `expected`: where the landmarks should have been at `origin_ns`; unknown ones are not judged.
+  /// The landmarks with the fingers in the right order. `expected`: the landmarks at `origin_ns`.
+  /// Fingers without known landmarks are left as they are.
   msg::HandLandmarks mended(std::int64_t origin_ns, const msg::HandLandmarks& seen,
                             const ExpectedPoints& expected);
 

@@ -5,11 +5,11 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kStartSpeed2 = 1e6;  ///< a hand may be moving when it is first seen: (px/s)^2
+constexpr double kStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when it is first seen
 
-/// A constant-velocity Kalman filter on the landmarks themselves, without the tracker: what the
-/// paper compares itself with, but with each detection at its own time. A point that was never seen
-/// goes with the others.
+/// A constant-velocity Kalman filter on the landmarks themselves, without the tracker: the method
+/// that the paper compares its own with ("Temporal Filtering"), but with the time of each
+/// detection. A point that was never seen gets the mean offset of the others.
 class Kalman final : public CarryFilter {
  public:
   explicit Kalman(const config::Filter& settings)

@@ -18,7 +18,7 @@ class NoFilter final : public LandmarkFilter {
   }
 };
 
-/// The floor: what the best filter could reach with these sensors.
+/// The true landmarks: a lower bound for the error of every filter.
 class IdealFilter final : public LandmarkFilter {
  public:
   explicit IdealFilter(LandmarkOracle oracle) : oracle_(std::move(oracle)) {}

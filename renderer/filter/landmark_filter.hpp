@@ -13,46 +13,51 @@
 
 namespace handcast::renderer {
 
-/// Where the tracker says the 21 landmarks are (P) at a time, with what is known by now.
+/// P at a time, as it is known at the moment of the call. Empty if there is none.
 using TrackerAt = std::function<std::optional<LandmarkPoints>(std::int64_t time_ns)>;
 
-/// Where the 21 landmarks of one hand truly are: what only a simulator can say.
+/// The true positions of the 21 landmarks of one hand at a time. Only a simulator has them.
 using LandmarkOracle = std::function<std::optional<LandmarkPoints>(std::int64_t time_ns)>;
 
-/// Carries old landmarks Q of one hand to the present (paper section "Temporal filtering"; METHOD
-/// section 2).
+/// Carries the detected landmarks Q of one hand to the time of the photons: Q̂. See
+/// `docs/method.md#filter` and paper, "Temporal Filtering". One thread.
 class LandmarkFilter {
  public:
   virtual ~LandmarkFilter() = default;
 
-  /// A detection arrived now; it was seen at `origin_ns`. Detections may come late or out of order;
-  /// points may be missing (confidence 0).
+  /// Adds a detection that was seen at `origin_ns` and arrived at `now_ns`. Detections may arrive
+  /// late or out of order; points may be missing (confidence 0). `tracker` is not called after the
+  /// function has returned.
   virtual void detection(std::int64_t now_ns, std::int64_t origin_ns,
                          const msg::HandLandmarks& seen, const TrackerAt& tracker) = 0;
 
-  /// A tracker sample arrived: outputs may jump, and the jump is to be blended in.
+  /// A tracker sample arrived at `now_ns`: P may jump before the next at().
   virtual void tracker_sample(std::int64_t now_ns) = 0;
 
-  /// How far P can be believed from now on. A filter that takes P as it comes does not ask.
+  /// Whether the tracker reports the hand.
   enum class Tracker {
-    heard,
-    silent,  ///< P stays where the hand was last seen; the hand may not
+    heard,   ///< samples arrive
+    silent,  ///< no samples arrive: P is held where the hand was last seen, even if the hand moves
   };
+  /// Sets the state of the tracker from now on. Filters that use every P alike ignore it.
   virtual void tracker_is(Tracker) {}
-  /// P is not where it would be had the hand moved there: what was known of Q - P is over.
+  /// P jumped although the hand did not: the offsets Q - P measured so far no longer hold. Filters
+  /// that use every P alike ignore it.
   virtual void tracker_jumped() {}
 
-  /// Q̂ for the photons at `target_ns`, given P at that time; nothing when there is nothing to
-  /// correct with.
+  /// Q̂ for the photons at `target_ns`. `tracker`: P at that time. Empty if there is nothing to
+  /// correct P with. Call it once per frame: filters remember their output.
   virtual std::optional<LandmarkPoints> at(std::int64_t now_ns, std::int64_t target_ns,
                                            const LandmarkPoints& tracker) = 0;
 };
 
-/// Q̂ goes on from a detection as P does, and shares the error of P's prediction; late registration
-/// mends that. Otherwise (naive, kalman, ideal) Q̂ knows nothing of P; none has no Q̂.
+/// True if Q̂ is P plus an offset (methods paper, one_euro, offset_kalman). Such a Q̂ shares the
+/// error of P's prediction, which late registration corrects. The Q̂ of naive, kalman and ideal does
+/// not depend on P; none has no Q̂.
 bool moves_with_tracker(const config::Filter& settings);
 
-/// `oracle` is asked by method "ideal" alone, which corrects nothing where there is none.
+/// The filter of config::Filter::method. `oracle` is used by "ideal" only, which corrects nothing
+/// without it.
 std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& settings,
                                                      LandmarkOracle oracle = {});
 

@@ -6,7 +6,7 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kSeenAgain = 2;  ///< detections until a tracker that comes back is trusted again
+constexpr int kSeenAgain = 2;  ///< detections until a tracker that returns is used again
 
 }  // namespace
 

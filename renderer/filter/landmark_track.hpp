@@ -12,34 +12,37 @@
 
 namespace handcast::renderer {
 
-/// The landmarks of one hand at the time of the photons.
+/// The landmarks of one hand at the time of the photons (T).
 struct Filtered {
   LandmarkPoints landmarks{};  ///< Q̂, or P if nothing corrects it
-  bool has_landmarks = false;  ///< landmarks are Q̂
-  bool is_alone = false;  ///< the tracker is silent, or was a moment ago: Q̂ goes on without it
-  bool has_news = true;   ///< an input arrived since the last frame: Q̂ may jump against it
+  bool has_landmarks = false;  ///< `landmarks` are Q̂
+  /// The tracker is silent, or returned fewer than two detections ago: Q̂ is computed without it.
+  bool is_alone = false;
+  bool has_news = true;                 ///< an input arrived since the last frame, so Q̂ may jump
   std::optional<std::int64_t> seen_ns;  ///< origin of the newest detection behind Q̂
 };
 
-/// Step "filter" of the cascade and its state: the detections of one hand, carried to the time of
-/// the photons. One thread.
+/// Step "filter" and its state: the detections of one hand, carried to the time of the photons. See
+/// `docs/method.md#filter`. One thread.
 class LandmarkTrack {
  public:
-  /// `oracle`: for the filter "ideal", in a simulator.
+  /// Without detections. `oracle`: see make_landmark_filter().
   explicit LandmarkTrack(const config::Filter& settings, LandmarkOracle oracle = {})
       : filter_(make_landmark_filter(settings, std::move(oracle))) {}
 
-  /// `track` took a sample in at `now_ns`.
+  /// Reports the result of HandTrack::push() for a sample that arrived at `now_ns`.
   void tracker_sample(std::int64_t now_ns, PoseHistory::Pushed pushed);
-  /// A detection in the image of `origin_ns` arrived at `now_ns`.
+  /// Adds a detection in the image exposed at `origin_ns`, which arrived at `now_ns`. `track`: the
+  /// same hand.
   void detection(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandLandmarks& seen,
                  const HandTrack& track);
 
-  /// Q̂ for `target_ns`. Call it once per frame: filters remember their output.
+  /// Q̂ for `target_ns`. `predicted`: the hand at that time. Call it once per frame: filters
+  /// remember their output.
   Filtered filter(std::int64_t now_ns, std::int64_t target_ns, const Predicted& predicted);
 
-  /// Where the landmarks should be seen at `time_ns`: P moved as in the last frame. Empty if the
-  /// hand is not in sight.
+  /// Where the landmarks are expected at `time_ns`: P plus Q̂ - P of the last frame. Empty if there
+  /// is no P (HandTrack::recent_landmarks()).
   std::optional<LandmarkPoints> expected_at(std::int64_t time_ns, const HandTrack& track) const;
   /// Filtered::is_alone of the last frame.
   bool is_alone() const { return is_alone_; }
@@ -48,7 +51,7 @@ class LandmarkTrack {
   std::unique_ptr<LandmarkFilter> filter_;
   bool is_alone_ = false, was_silent_ = false;
   bool has_news_ = false;
-  int seen_again_ = 0;                   ///< detections since the tracker is heard again
+  int seen_again_ = 0;                   ///< detections since the tracker was last silent
   std::optional<std::int64_t> seen_ns_;  ///< origin of the newest detection
   LandmarkPoints moved_px_{};            ///< Q̂ - P of the last frame
 };

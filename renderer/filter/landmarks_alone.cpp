@@ -6,7 +6,7 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kStartSpeed2 = 1e6;  ///< a hand may be moving when it is first seen: (px/s)^2
+constexpr double kStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when it is first seen
 constexpr std::int64_t kFresh_ns = 80'000'000;
 
 }  // namespace

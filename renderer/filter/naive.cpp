@@ -4,7 +4,7 @@
 namespace handcast::renderer {
 namespace {
 
-/// Q as it was seen. A point missing in the newest detection stays where it was seen last.
+/// Q as it was seen. A point missing from the newest detection keeps its last position.
 class NaiveFilter final : public CarryFilter {
  public:
   void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& seen,

@@ -7,13 +7,14 @@
 
 namespace handcast::renderer {
 
-/// A filter that follows Q - P of each point at the detection's own time and adds it to P at the
-/// target time. While the tracker is silent the landmarks go on by themselves, and when it is heard
-/// again elsewhere the offset begins anew from where they are. `Track` follows one point: known(),
-/// forget(), and what the functions below do with it.
+/// A filter that tracks the offset Q - P of each point at the time of the detection and adds it to
+/// P at the target time. While the tracker is silent, Q̂ is that of LandmarksAlone; after the
+/// tracker has jumped or returned, the offsets restart from there. `Track` is the state of one
+/// point: it has known() and forget(), and is used by the virtual functions below.
 template <class Track>
 class OffsetFilter : public CarryFilter {
  public:
+  /// Without detections. Copies the settings.
   explicit OffsetFilter(const config::Filter& settings) : settings_(settings), alone_(settings) {}
 
   void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& reported,
@@ -64,16 +65,22 @@ class OffsetFilter : public CarryFilter {
   }
 
  protected:
+  /// Adds an offset measured at `time_ns`.
   virtual void update(Track& track, std::int64_t time_ns, glm::vec2 offset_px) const = 0;
+  /// The offset at `time_ns`, camera px.
   virtual glm::vec2 offset_at(const Track& track, std::int64_t time_ns) const = 0;
-  /// `offset_px` is a guess.
+  /// Restarts the track from an offset that is a guess.
   virtual void begin(Track& track, std::int64_t time_ns, glm::vec2 offset_px) const = 0;
+  /// The settings given to the constructor.
   const config::Filter& settings() const { return settings_; }
 
  private:
-  static constexpr std::int64_t kDoubt_ns =
-      100'000'000;  ///< the tracker is not believed after the landmarks contradicted it
-  static constexpr int kGuessed = 2;  ///< so many detections until an offset is more than a guess
+  /// The tracker is not used for this long after the landmarks contradicted it.
+  static constexpr std::int64_t kDoubt_ns = 100'000'000;
+  /// An offset is a guess until this many detections have been compared with it.
+  static constexpr int kGuessed = 2;
+  /// The landmarks contradict the tracker beyond this error, plus the drift since the last
+  /// detection.
   static constexpr float kDisagreement_px = 10, kDrift_px_s = 100;
 
   void forget_offsets() {
@@ -98,8 +105,8 @@ class OffsetFilter : public CarryFilter {
     return expected;
   }
 
-  /// The landmarks together went on as before, but not with the tracker: it has moved its hand, or
-  /// stands still.
+  /// Returns true if the landmarks as a whole continue their own motion but not that of the
+  /// tracker: the tracker has jumped or is frozen.
   bool contradicted(std::int64_t origin_ns, const msg::HandLandmarks& seen,
                     const ExpectedPoints& with_tracker) const {
     const std::int64_t since_ns = origin_ns - alone_.newest_ns();
@@ -110,8 +117,9 @@ class OffsetFilter : public CarryFilter {
     return with_px > limit_px && alone_px < 0.5f * with_px;
   }
 
-  /// `landmarks_known`: they say where the hand is. Otherwise an offset from before a jump is as
-  /// good as any, but not one against a hand that was held.
+  /// Restarts the offsets after a jump of P. `landmarks_known`: LandmarksAlone has the position of
+  /// the hand. Otherwise the offsets from before the jump are kept, unless they are relative to a
+  /// hand that was held while the tracker was silent.
   void begin_anew(std::int64_t target_ns, const LandmarkPoints& tracker, bool landmarks_known) {
     if (landmarks_known)
       for (int i = 0; i < kLandmarks; ++i)
@@ -130,10 +138,10 @@ class OffsetFilter : public CarryFilter {
   LandmarkSigmas sigmas_;
   bool silent_ = false;
   std::int64_t doubted_until_ns_ = 0;
-  int compared_ = 0;        ///< detections since the offsets began
-  bool jumped_ = false;     ///< and the offsets are from before
-  bool was_alone_ = false;  ///< at the last question
-  bool held_ = false;       ///< the offsets are those from a hand that is held, not tracked
+  int compared_ = 0;        ///< detections since the offsets were restarted
+  bool jumped_ = false;     ///< the tracker has jumped; the offsets are from before
+  bool was_alone_ = false;  ///< the last at() used LandmarksAlone
+  bool held_ = false;       ///< the offsets are relative to a hand that was held, not tracked
   std::array<Track, kLandmarks> tracks_{};
 };
 

@@ -5,11 +5,11 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kStartSpeed2 = 100;  ///< an offset hardly moves: (px/s)^2
-constexpr double kGuess_px =
-    4;  ///< standard deviation of an offset that was begun from the landmarks alone
+constexpr double kStartSpeed2 = 100;  ///< (px/s)^2; an offset changes slowly
+constexpr double kGuess_px = 4;       ///< standard deviation of an offset that is a guess
 
-/// A constant-velocity Kalman filter on Q - P (METHOD section 2). A missing point's variance grows.
+/// A constant-velocity Kalman filter on Q - P. See `docs/method.md#filter`. The variance of a point
+/// grows while it is missing.
 class OffsetKalman final : public OffsetFilter<PointTrack> {
  public:
   using OffsetFilter::OffsetFilter;

@@ -8,9 +8,9 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr float kSpeedCutoff_hz = 1;  ///< of the low-pass on the offset's speed
+constexpr float kSpeedCutoff_hz = 1;  ///< of the low-pass on the speed of the offset
 
-/// One landmark's offset through a low-pass whose cutoff rises with the offset's speed.
+/// A low-pass on the offset of one landmark. Its cutoff rises with the speed of the offset.
 class OneEuroTrack {
  public:
   bool known() const { return known_; }
@@ -18,7 +18,7 @@ class OneEuroTrack {
   glm::vec2 offset_px() const { return offset_px_; }
 
   void update(std::int64_t time_ns, glm::vec2 measured_px, float least_hz, float per_speed) {
-    if (known_ && time_ns <= time_ns_) return;  // late: the newer one is in already
+    if (known_ && time_ns <= time_ns_) return;  // arrived late
     if (!known_) {
       *this = OneEuroTrack();
       offset_px_ = measured_px;
@@ -34,7 +34,7 @@ class OneEuroTrack {
   }
 
  private:
-  /// Of the way to a new value that a first-order low-pass goes in one step.
+  /// The share of a new value in a first-order low-pass.
   static float share(float cutoff_hz, float step_s) {
     const float turn = 2 * std::numbers::pi_v<float> * cutoff_hz * step_s;
     return turn / (1 + turn);
@@ -45,7 +45,7 @@ class OneEuroTrack {
   glm::vec2 offset_px_{0}, speed_px_s_{0};
 };
 
-/// The one-euro filter (Casiez, Roussel, Vogel 2012) on Q - P.
+/// The one-euro filter (Casiez, Roussel and Vogel 2012) on Q - P.
 class OneEuro final : public OffsetFilter<OneEuroTrack> {
  public:
   using OffsetFilter::OffsetFilter;

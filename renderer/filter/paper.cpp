@@ -4,8 +4,8 @@
 namespace handcast::renderer {
 namespace {
 
-/// Q̂_T = Q_{T-tL} + P_T - P_{T-tL}, point by point (the paper, "Temporal filtering"). A missing
-/// point keeps its last offset.
+/// Q̂_T = Q_{T-t_L} + P_T - P_{T-t_L}, point by point (paper, "Moving Least Squares Deformation"). A
+/// missing point keeps its last offset.
 class PaperFilter final : public CarryFilter {
  public:
   explicit PaperFilter(bool hindsight) : hindsight_(hindsight) {}

@@ -51,7 +51,7 @@ void PointTrack::start(std::int64_t time_ns, glm::vec2 position_px, double sigma
   vv_ = model.start_speed2;
 }
 
-/// x += v dt; P = F P F' + q [dt^3/3 dt^2/2; dt^2/2 dt].
+/// x += v dt; covariance C = F C F' + q [dt^3/3 dt^2/2; dt^2/2 dt], F = [1 dt; 0 1].
 void PointTrack::advance(std::int64_t time_ns, double process) {
   const double dt = ns_to_seconds(time_ns - time_ns_);
   time_ns_ = time_ns;

@@ -5,24 +5,29 @@
 
 namespace handcast::renderer {
 
-/// A constant-velocity Kalman filter of one point in the image (white-noise acceleration); x and y
-/// share one covariance. A measurement beyond 6 sigma and 25 px is left out, up to three in a row:
-/// then it was no outlier but a jump.
+/// A constant-velocity Kalman filter of one point in the image, with white-noise acceleration. x
+/// and y share one covariance. A measurement that is off by more than 6 sigma and 25 px is an
+/// outlier and left out; the fourth in a row is a jump and restarts the track.
 class PointTrack {
  public:
+  /// True if there is a measurement.
   bool known() const { return known_; }
+  /// Drops all measurements.
   void forget() { known_ = false; }
 
-  /// `start_speed2`: variance of the speed of a track that begins, (px/s)^2. `process`: px^2/s^3. A
-  /// measurement older than what is already in adds nothing.
+  /// The parameters of the filter.
   struct Model {
-    double process = 0, noise_px = 1, start_speed2 = 0;
+    double process = 0;       ///< spectral density of the acceleration, px^2/s^3
+    double noise_px = 1;      ///< standard deviation of a measurement, per axis
+    double start_speed2 = 0;  ///< variance of the speed when a track starts, (px/s)^2
   };
+  /// Adds a measurement. One that is older than the newest is ignored.
   void update(std::int64_t time_ns, glm::vec2 measured_px, const Model& model);
-  /// Begins anew at a position known to `sigma_px`.
+  /// Restarts the track at a position with standard deviation `sigma_px`.
   void start(std::int64_t time_ns, glm::vec2 position_px, double sigma_px, const Model& model);
 
-  /// Extrapolated no further than 60 ms.
+  /// The position at `time_ns`, extrapolated by at most 60 ms. Before the newest measurement: the
+  /// position at that one.
   glm::vec2 at(std::int64_t time_ns) const;
 
  private:
@@ -31,7 +36,7 @@ class PointTrack {
   bool known_ = false;
   std::int64_t time_ns_ = 0;
   glm::vec2 position_px_{0}, velocity_px_s_{0};
-  double pp_ = 0, pv_ = 0, vv_ = 0;  ///< covariance: position, position with velocity, velocity
+  double pp_ = 0, pv_ = 0, vv_ = 0;  ///< covariance: position, position-velocity, velocity
   int outliers_ = 0;
 };
 

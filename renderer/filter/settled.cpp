@@ -9,7 +9,7 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kFade_ns = 100'000'000;  ///< how long fading out takes
+constexpr std::int64_t kFade_ns = 100'000'000;
 
 class SettledFilter final : public LandmarkFilter {
  public:
@@ -50,12 +50,12 @@ class SettledFilter final : public LandmarkFilter {
     if (carried && !correcting) start_afresh();
     points = blend_.follow(target_ns, points, something_new_);
     something_new_ = false;
-    if (!correcting) blend_.let_in();  // the tracker went out as it was
+    if (!correcting) blend_.let_in();  // the output was P itself
     return correcting ? std::optional(points) : std::nullopt;
   }
 
  private:
-  /// 1 while detections are fresh, then smoothly to 0.
+  /// Weight of the correction: 1 while detections are fresh, then smoothly to 0.
   float trust(std::int64_t target_ns) const {
     if (!newest_ns_) return 0;
     const std::int64_t overdue_ns = target_ns - *newest_ns_ - ms_to_ns(settings_.lost_ms);

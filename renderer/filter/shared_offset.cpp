@@ -10,17 +10,18 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr float kSmoothing = 0.1f;       ///< share of a new detection's sigma
-constexpr float kLargestSigma_px = 1e3;  ///< what comes from outside may be anything
-constexpr float kLeastSpread_px =
-    7;  ///< of offsets about the shared ones, per axis; chosen on the twin (open_close, wave, fist)
+constexpr float kSmoothing = 0.1f;       ///< share of a new detection
+constexpr float kLargestSigma_px = 1e3;  ///< limit of the values accepted from a detector
+/// Least standard deviation of the offsets about the shared ones, per axis. Chosen on the motions
+/// open_close, wave and fist of the twin.
+constexpr float kLeastSpread_px = 7;
 constexpr float kLeastSpread_px2 = kLeastSpread_px * kLeastSpread_px;
 
 float given_sigma_px(const msg::Landmark& point) {
   return point.sigma_px > 0 ? std::min(point.sigma_px, kLargestSigma_px) : 0.0f;
 }
 
-/// Of an offset as it was seen against the shared one, 0..1.
+/// Weight of a measured offset against the shared one, 0..1.
 float share_of(float spread_px2, float sigma_px) {
   return spread_px2 / (spread_px2 + sigma_px * sigma_px);
 }
@@ -31,7 +32,8 @@ struct Part {
 constexpr std::array<Part, 6> kParts{
     {{0, 1}, {1, 4}, {5, 4}, {9, 4}, {13, 4}, {17, 4}}};  // the wrist, the fingers
 
-/// The hand's own: the weighted similarity of P onto P + offset, less P. Some offset is known.
+/// The offsets of the whole hand: the weighted similarity of P onto P + offset, minus P. At least
+/// one offset must be known.
 LandmarkPoints shared_offsets(const std::array<glm::vec2, kLandmarks>& offsets_px,
                               const std::array<bool, kLandmarks>& known,
                               const std::array<float, kLandmarks>& sigma_px,

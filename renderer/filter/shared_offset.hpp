@@ -7,12 +7,15 @@
 
 namespace handcast::renderer {
 
-/// How far off the detector says each landmark is, smoothed: standard deviation per axis in px, 0
-/// where it does not say.
+/// The standard deviation that the detector reports for each landmark, smoothed over the
+/// detections.
 class LandmarkSigmas {
  public:
+  /// Adds a detection. Landmarks that were not seen keep their value.
   void detection(const msg::HandLandmarks& seen);
+  /// Standard deviations per axis, camera px; 0 if the detector reports none.
   const std::array<float, kLandmarks>& px() const { return px_; }
+  /// Drops all detections.
   void forget() { *this = LandmarkSigmas(); }
 
  private:
@@ -20,9 +23,10 @@ class LandmarkSigmas {
   std::array<bool, kLandmarks> known_{};
 };
 
-/// A tracker misplaces a hand more than the joints within it, so offsets lie near a similarity of
-/// `tracker` (P). Draws each known one towards that, the more the larger its sigma is against how
-/// far its finger's lie from there (empirical Bayes). One whose sigma is 0 stays.
+/// Shrinks the offsets Q - P towards the offsets of one similarity of `tracker` (P), because a
+/// tracker misplaces the whole hand more than the joints in it. A known offset is moved the more,
+/// the larger its sigma is compared with the spread of its finger's offsets about the similarity
+/// (empirical Bayes). An offset whose sigma is 0 is not moved.
 void draw_together(std::array<glm::vec2, kLandmarks>& offsets_px,
                    const std::array<bool, kLandmarks>& known,
                    const std::array<float, kLandmarks>& sigma_px, const LandmarkPoints& tracker);

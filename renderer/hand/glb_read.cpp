@@ -12,20 +12,21 @@
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/hand/mesh_charts.hpp"
 
-// The one file that knows tinygltf. Its loader checks the JSON but not that accessors stay inside
-// their buffers: that is done here.
+// The only file that includes tinygltf. The loader of tinygltf checks the JSON but not that
+// accessors stay inside their buffers: ArrayReader does.
 namespace handcast::renderer {
 namespace {
 
 constexpr std::size_t kMaxVertices = 65535;
 
-/// Reads accessors as rows of `width` numbers; the first trouble is kept and everything after it
-/// reads as nothing.
+/// Reads accessors as rows of `width` numbers. An accessor that cannot be read gives an empty
+/// vector; the reason of the first failure is kept.
 class ArrayReader {
  public:
   explicit ArrayReader(const tinygltf::Model& model) : model_(model) {}
 
-  /// `count * width` numbers; integers flagged as normalised become 0..1.
+  /// All numbers of an accessor, row by row; integers flagged as normalised become 0..1. `what`
+  /// names them in messages.
   template <class T>
   std::vector<T> read(int accessor_index, int width, const char* what) {
     std::vector<T> numbers;
@@ -37,7 +38,7 @@ class ArrayReader {
       for (int k = 0; k < width; ++k) {
         const double value = number(accessor, bytes->data + row * bytes->stride, k);
         if (!std::isfinite(value))
-          return complain(fmt::format("its {} hold a number that is not finite", what)),
+          return complain(fmt::format("its {} contain a number that is not finite", what)),
                  std::vector<T>{};
         numbers.push_back(static_cast<T>(value));
       }
@@ -114,7 +115,7 @@ class ArrayReader {
   std::optional<std::string> trouble_;
 };
 
-/// "Left_Index-Finger-Tip", "r-little-finger-tip" -> WebXR's own spelling.
+/// The spelling of WebXR for names such as "Left_Index-Finger-Tip" and "r-little-finger-tip".
 std::string plain_name(std::string name) {
   for (char& c : name)
     c = c == '_' || c == ' ' || c == '.'
@@ -129,14 +130,14 @@ std::string plain_name(std::string name) {
   return name;
 }
 
-/// The palm, the tips and the metacarpals of the fingers may be missing: they carry little or no
-/// skin.
+/// True for the palm, the tips and the metacarpals of the fingers, which move little or no skin.
 bool may_be_missing(int joint) {
   const std::string_view name = kJointNames[joint];
   return name == "palm" || name.ends_with("-tip") || name.ends_with("finger-metacarpal");
 }
 
-/// A turn and a shift. (A number that is not finite is not: every comparison with it is false.)
+/// True for a rotation and a translation. False if a number is not finite: comparisons with NaN are
+/// false.
 bool is_rigid(const glm::mat4& transform) {
   constexpr float kTolerance = 1e-2f;
   const glm::mat3 axes(transform);
@@ -146,19 +147,19 @@ bool is_rigid(const glm::mat4& transform) {
   return glm::determinant(axes) > 0 && std::isfinite(glm::dot(transform[3], transform[3]));
 }
 
-/// Fills hand.rest and returns our joint for each joint of the skin; those with names we do not
-/// know count as the wrist.
+/// Fills hand.rest. Returns the index into kJointNames of each joint of the skin; joints with
+/// unknown names become the wrist.
 std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Model& model,
                                         const tinygltf::Skin& skin, HandMesh& hand) {
   std::vector<std::uint8_t> ours(skin.joints.size(), 1);
   std::array<bool, kJoints> found{};
   const auto inverse = reader.read<float>(skin.inverseBindMatrices, 16, "inverse bind matrices");
   if (inverse.size() < skin.joints.size() * 16)
-    return reader.complain("its inverse bind matrices are too few"), ours;
+    return reader.complain("it has fewer inverse bind matrices than joints"), ours;
   for (std::size_t k = 0; k < skin.joints.size(); ++k) {
     const int node = skin.joints[k];
     if (node < 0 || node >= std::ssize(model.nodes))
-      return reader.complain("its skin names a node that is not there"), ours;
+      return reader.complain("its skin refers to a node that does not exist"), ours;
     const auto known =
         std::find(kJointNames.begin(), kJointNames.end(), plain_name(model.nodes[node].name));
     if (known == kJointNames.end()) continue;
@@ -166,7 +167,7 @@ std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Mod
     hand.rest[joint] = glm::inverse(glm::make_mat4(inverse.data() + k * 16));
     if (!is_rigid(hand.rest[joint]))
       reader.complain(
-          fmt::format("the inverse bind matrix of its joint {} is not a turn and a shift", *known));
+          fmt::format("the inverse bind matrix of its joint {} is not a rigid transform", *known));
     ours[k] = static_cast<std::uint8_t>(joint);
     found[joint] = true;
   }
@@ -176,7 +177,7 @@ std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Mod
       missing += fmt::format("{}{}", missing.empty() ? "" : ", ", kJointNames[j]);
   if (!missing.empty()) reader.complain(fmt::format("its skin lacks the joints {}", missing));
   for (int k = 1; k <= kJoints; ++k) {
-    const int j = k % kJoints;  // from the wrist on and the palm last: parents first
+    const int j = k % kJoints;  // the wrist first, the palm last: parents come before children
     if (!found[j] && kJointParent[j] >= 0) hand.rest[j] = hand.rest[kJointParent[j]];
   }
   return ours;
@@ -193,7 +194,7 @@ void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive,
       reader.read<std::uint32_t>(attribute(primitive, "JOINTS_0"), 4, "joint indices");
   const auto weights = reader.read<float>(attribute(primitive, "WEIGHTS_0"), 4, "weights");
   if (joints.size() != weights.size())
-    return reader.complain("it has not one set of joints per set of weights");
+    return reader.complain("its joint indices and weights differ in number");
   for (std::size_t v = 0; v < joints.size(); v += 4) {
     std::array<std::uint8_t, 4> joint{};
     std::array<float, 4> weight{};
@@ -201,7 +202,7 @@ void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive,
     for (int k = 0; k < 4; ++k) {
       if (!(weights[v + k] > 0)) continue;
       if (joints[v + k] >= ours.size())
-        return reader.complain("it binds a vertex to a joint that is not there");
+        return reader.complain("it binds a vertex to a joint that its skin does not have");
       joint[k] = ours[joints[v + k]];
       sum += weight[k] = weights[v + k];
     }
@@ -223,8 +224,8 @@ void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, s
     std::array<std::uint16_t, 3> triangle;
     for (int c = 0; c < 3; ++c) {
       if (indices[k + c] >= count)
-        return reader.complain(
-            fmt::format("a triangle names vertex {} of {}", indices[k + c], count));
+        return reader.complain(fmt::format("a triangle refers to vertex {}, but there are only {}",
+                                           indices[k + c], count));
       triangle[c] = static_cast<std::uint16_t>(first + indices[k + c]);
     }
     hand.triangles.push_back(triangle);
@@ -255,7 +256,7 @@ void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive,
   read_triangles(reader, primitive, first, count, hand);
 }
 
-/// For a file without normals: the mean of the triangles around a vertex.
+/// Vertices without a normal get the mean normal of their triangles, weighted by area.
 void fill_missing_normals(HandMesh& hand) {
   std::vector<glm::vec3> sum(hand.vertex_count());
   for (const auto& t : hand.triangles) {
@@ -268,7 +269,7 @@ void fill_missing_normals(HandMesh& hand) {
       hand.normals[v] = sum[v] / std::max(glm::length(sum[v]), 1e-20f);
 }
 
-/// Pictures in the file are not needed, so they are not decoded.
+/// Keeps tinygltf from decoding pictures, which are not used.
 bool ignore_picture(tinygltf::Image*, int, std::string*, std::string*, int, int,
                     const unsigned char*, int, void*) {
   return true;
@@ -310,10 +311,10 @@ Result<HandMesh> load_hand(const std::filesystem::path& file, Side side) {
   tinygltf::Model model;
   std::string error;
   if (!parse(file, model, error))
-    return refuse(fmt::format("it is not a glTF file that can be read ({})",
-                              error.substr(0, error.find('\n'))));
+    return refuse(
+        fmt::format("it is not a valid glTF file ({})", error.substr(0, error.find('\n'))));
   const tinygltf::Node* node = first_skinned_node(model);
-  if (!node) return refuse("it holds no skinned mesh");
+  if (!node) return refuse("it contains no skinned mesh");
 
   HandMesh hand;
   hand.side = side;

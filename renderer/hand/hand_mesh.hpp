@@ -18,44 +18,47 @@ using msg::Side;
 
 /// WebXR's joint names in the order of XR_EXT_hand_tracking.
 extern const std::array<std::string_view, kJoints> kJointNames;
-/// The joint each hangs from; -1 for the wrist, the root.
+/// The parent of each joint; -1 for the wrist, which is the root.
 extern const std::array<int, kJoints> kJointParent;
 
-/// A skinned hand at rest. Space: metres, OpenXR hand axes (+x right, +y out of the back, -z to the
-/// tips), wrist at the origin in the hands handcast makes. Texture coordinates: u right, v down,
-/// 0..1.
+/// A skinned hand at rest. Model space: metres, OpenXR hand axes (+x right, +y out of the back, -z
+/// towards the tips). The wrist is at the origin in the hands made by renderer/hand/maker.
 struct HandMesh {
-  Side side = Side::left;
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;
-  std::vector<glm::vec2> uv;
-  std::vector<std::array<std::uint8_t, 4>>
-      joints;  ///< up to four joints a vertex, unused ones have weight 0
-  std::vector<std::array<float, 4>> weights;  ///< sum to 1
-  std::vector<std::uint8_t>
-      chart;  ///< connected part of the UV layout: 1 back, 2 palm, ... (0 is never used)
+  Side side = Side::left;            ///< which hand it is
+  std::vector<glm::vec3> positions;  ///< per vertex, model space
+  std::vector<glm::vec3> normals;    ///< per vertex, unit length, outwards
+  std::vector<glm::vec2> uv;         ///< per vertex, texture coordinates 0..1, u right, v down
+  /// Per vertex: the joints that move it. Unused entries have weight 0.
+  std::vector<std::array<std::uint8_t, 4>> joints;
+  /// Per vertex: the weights of these joints, with sum 1.
+  std::vector<std::array<float, 4>> weights;
+  /// Per vertex: the connected part of the UV layout, see number_charts(). 0 is not used. In the
+  /// hands made by renderer/hand/maker 1 is the back and 2 the palm.
+  std::vector<std::uint8_t> chart;
   std::vector<std::array<std::uint16_t, 3>> triangles;  ///< counter-clockwise seen from outside
-  std::array<glm::mat4, kJoints> rest{};                ///< joint to model space at rest
+  std::array<glm::mat4, kJoints> rest{};                ///< joint space to model space, rigid
 
+  /// Number of vertices: the size of every array per vertex.
   std::size_t vertex_count() const { return positions.size(); }
 };
 
-/// Reads a skinned glTF/GLB hand whose joints bear WebXR's names (with or without the prefix of a
-/// side); the first skinned mesh of the file. The metacarpals of the little finger and others a
-/// file lacks are taken from their parents. Errors (bad_config): no file, no glTF, no skin, joints
-/// missing (named), more than 65,535 vertices, index out of range.
+/// Reads the first skinned mesh of a glTF or GLB file. Its joints must have the names of WebXR,
+/// with or without the prefix of a side. The palm, the tips and the metacarpals of the fingers may
+/// be missing: they get the frame of their parent. Errors (bad_config): no such file, not glTF, no
+/// skinned mesh, other joints missing (the message names them), more than 65,535 vertices, an index
+/// out of range, a number that is not finite.
 Result<HandMesh> load_hand(const std::filesystem::path& file, Side side);
 
-/// The hands made at build time: HANDCAST_ASSETS or beside the program or the installed share
-/// folder.
+/// The hand that is made at build time: in the folder named by the environment variable
+/// HANDCAST_ASSETS if it is set, else in ../share/handcast as seen from the program's folder.
 std::filesystem::path default_hand_file(Side side);
-/// load_hand of `file`, or of the default where it is empty.
+/// load_hand() of `file`, or of default_hand_file() if `file` is empty.
 Result<HandMesh> load_hand_or_default(const std::filesystem::path& file, Side side);
 
-/// A joint's place: rotation and position, to the space the poses are given in.
+/// Per joint: the transform from joint space to the space of the pose, rigid.
 using JointFrames = std::array<glm::mat4, kJoints>;
 
-/// The frames a pose message holds, in tracker space.
+/// The frames of a pose message, in tracker space. Quaternions are normalised.
 JointFrames frames_of(const msg::HandPose& pose);
 
 }  // namespace handcast::renderer

@@ -10,8 +10,7 @@ namespace {
 
 constexpr int kMaxCharts = 60;
 
-/// Union-find whose roots are the lowest members, so that numbering follows the order of the
-/// vertices.
+/// Union-find. The root of a set is its lowest member, so charts are numbered in vertex order.
 class Parts {
  public:
   explicit Parts(std::size_t count) : parent_(count) {

@@ -4,9 +4,9 @@
 
 namespace handcast::renderer {
 
-/// The UV charts are the parts of the mesh that hang together by triangles, or by vertices equal in
-/// place and texture coordinate. Numbered from 1 by their first vertex; what goes beyond 60 parts
-/// shares the last number.
+/// Fills HandMesh::chart. A UV chart is a part of the mesh that is connected by triangles, or by
+/// vertices with the same position and texture coordinates. Charts are numbered from 1 in the order
+/// of their first vertices; all charts from the 60th on get number 60.
 void number_charts(HandMesh& hand);
 
 }  // namespace handcast::renderer

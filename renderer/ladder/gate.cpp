@@ -10,12 +10,12 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr float kFloor_px = 0.8f;  ///< skin between the landmarks, which no rung places better
+constexpr float kFloor_px = 0.8f;  ///< error of the skin between the landmarks, equal on all rungs
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kLongGap_ns =
-    100'000'000;  ///< after this long without light there is nothing to blend with
-constexpr float kNearlyAll = 0.98f;
-constexpr float kOutOfReach_px = 1e6f;
+/// A last frame farther away than this is not blended with.
+constexpr std::int64_t kLongGap_ns = 100'000'000;
+constexpr float kNearlyAll = 0.98f;     ///< a share above this becomes 1
+constexpr float kOutOfReach_px = 1e6f;  ///< expected error of a rung that is not possible
 
 constexpr std::size_t index_of(Rung rung) { return static_cast<std::size_t>(rung); }
 constexpr Rung rung_at(std::size_t index) { return static_cast<Rung>(index); }
@@ -72,14 +72,14 @@ Rung Gate::choose(std::int64_t target_ns, const Evidence& evidence) {
   if (!started_) rung = 0;
   started_ = true;
   const std::size_t present = rung;
-  while (rung + 1 < kRungs && !enough(rung)) ++rung;  // up at once
-  if (!enough(rung)) rung = present;  // only cheaper ones are: they must prove it first
+  while (rung + 1 < kRungs && !enough(rung)) ++rung;  // a more expensive rung is taken at once
+  if (!enough(rung)) rung = present;  // only cheaper rungs qualify, and not for long enough
   for (std::size_t r = 0; r < present; ++r)
     if (dwelt(r)) {
       rung = r;
       break;
     }
-  while (rung > 0 && errors[rung] >= kOutOfReach_px) --rung;  // what it stands on is gone
+  while (rung > 0 && errors[rung] >= kOutOfReach_px) --rung;  // its input is gone
   return rung_ = rung_at(rung);
 }
 

@@ -9,72 +9,79 @@
 
 namespace handcast::renderer {
 
-/// What is known of one hand in one frame, to judge the rungs by. Squares are means over the
+/// The evidence by which the rungs of one hand are judged in one frame: mean squares over the
 /// landmarks, undistorted camera px^2.
 struct Evidence {
-  float hold_px2 = 0;      ///< the newest sample was off by, because the hand moved (hindsight.hpp)
-  float predict_px2 = 0;   ///< its prediction was off by
-  float register_px2 = 0;  ///< and is, registered to the newest image
-  std::array<float, kRungs> left_px2{};  ///< of the field from P to Q̂ a rung's model does not reach
-  float landmark_px2 = 0;  ///< Q̂ itself is off by: detector noise that its filter let through,
-                           ///< drift since the detection
-  std::optional<float>
-      lag_px2;  ///< where Q̂ does not move with P: it is off by, because the hand moved
-  bool has_landmarks = false;  ///< else Q̂ is P
-  bool can_register = false;   ///< there is an image
+  // Errors caused by motion of the hand, see Hindsight::Motion.
+  float hold_px2 = 0;      ///< of the newest sample
+  float predict_px2 = 0;   ///< of its prediction
+  float register_px2 = 0;  ///< of the prediction after registration to the newest image
+  /// Per rung: the part of Q̂ - P that the model of the rung does not reproduce.
+  std::array<float, kRungs> left_px2{};
+  /// Error of Q̂ itself: detector noise that passes the filter, and drift since the detection.
+  float landmark_px2 = 0;
+  /// Error of Q̂ caused by motion, if Q̂ does not move with P; else empty.
+  std::optional<float> lag_px2;
+  bool has_landmarks = false;  ///< false: Q̂ is P
+  bool can_register = false;   ///< there is an image to register to
 };
 
-/// The error to expect of each rung, camera px RMS:
+/// The expected error of each rung r, camera px RMS; 1e6 for a rung that is not possible (no
+/// landmarks, no image). See `docs/method.md#ladder`.
 ///
-///     E(r)^2 = floor^2 + model(r)^2 + motion(r)^2
+///     E(r)^2     = floor^2 + model(r)^2 + motion(r)^2
+///     model(r)^2 = max(left(r) - landmark^2 (1 - 2 f), landmark^2 f)
+///     f          = degrees_of_freedom(r) / 42
 ///
-/// | rung       | model(r)^2: the part of Q̂ - P not followed, and Q̂'s error | motion(r)^2 |
-/// |            | followed                                                  |             |
-/// |------------|-----------------------------------------------------------|-------------|
-/// | hold       | left(0 dof) - landmark^2, at least 0                      | hold^2      |
-/// | predict    | the same                                                  | predict^2   |
-/// | shift      | left(r) - landmark^2 (1 - 2 dof / 42),                    | predict^2   |
-/// |            | at least landmark^2 dof / 42                              |             |
-/// | similarity | likewise                                                  | predict^2   |
-/// | fingers    | likewise                                                  | predict^2   |
-/// | landmarks  | landmark^2                                                | predict^2   |
-/// | register   | landmark^2                                                | register^2  |
+/// | rung                       | f                 | motion(r)^2 |
+/// |----------------------------|-------------------|-------------|
+/// | hold                       | 0                 | hold^2      |
+/// | predict                    | 0                 | predict^2   |
+/// | shift, similarity, fingers | 2/42, 4/42, 14/42 | predict^2   |
+/// | landmarks                  | 1                 | predict^2   |
+/// | register                   | 1                 | register^2  |
 ///
-/// Where Q̂ does not move with P (filters naive, kalman, ideal) it has no part in the prediction's
-/// error but lags by itself: lag^2 is the motion's term of shift to landmarks.
+/// model(r)^2 is the part of Q̂ - P that the rung does not follow plus the error of Q̂ that it does
+/// follow: Mallows's C_p (Mallows 1973). A rung with fewer free numbers follows less of the truth,
+/// and less of the noise. It is 0 without landmarks.
 ///
-/// The model's term is Mallows's C_p (Mallows 1973): with fewer free numbers a rung follows less of
-/// the truth, and less of the noise.
+/// If Q̂ does not move with P (filters naive, kalman and ideal), it does not share the error of the
+/// prediction but lags: then the motion term of shift to landmarks is lag^2.
 std::array<float, kRungs> expected_errors_px(const Evidence& evidence);
 
-/// Chooses the rung of one hand, frame by frame: the cheapest whose expected error is within
-/// `margin_percent` of the least. A dearer one is taken at once where the present one is no longer
-/// enough; a cheaper one when it has been enough for `dwell_ms`.
+/// Chooses the rung of one hand in each frame: the cheapest whose expected error is within
+/// `margin_percent` of the least. A more expensive rung is taken at once if the present one no
+/// longer qualifies, a cheaper one after it has qualified for `dwell_ms`. One thread.
 class Gate {
  public:
+  /// Copies the settings.
   explicit Gate(const config::Ladder& settings) : settings_(settings) {}
 
+  /// The rung for the frame at `target_ns`. Call it once per frame.
   Rung choose(std::int64_t target_ns, const Evidence& evidence);
 
  private:
   config::Ladder settings_;
   Rung rung_ = Rung::hold;
-  std::array<std::int64_t, kRungs> enough_since_ns_{};  ///< kNever where it is not
+  std::array<std::int64_t, kRungs> enough_since_ns_{};  ///< kNever if the rung does not qualify
   bool started_ = false;
 };
 
-/// How much of each rung is in the light: a switch is blended in with exp(-t / blend_ms), and no
-/// frame moves further than that share of the step between two rungs.
+/// The share of each rung in the light. A change of rung is a cross-fade with exp(-t / blend_ms),
+/// so that no frame moves by more than that share of the step between two rungs. One thread.
 class RungBlend {
  public:
-  /// Towards `rung`; at once where `blend_ms` is 0 or nothing was lit lately.
+  /// Moves the shares towards `rung` for the frame at `target_ns`; at once if `blend_ms` is 0 or
+  /// the last frame is more than 100 ms older.
   void turn_to(Rung rung, std::int64_t target_ns, double blend_ms);
 
+  /// The share of `rung`, 0..1.
   float share(Rung rung) const { return shares_[static_cast<std::size_t>(rung)]; }
+  /// True if `rung` has the whole share.
   bool is_pure(Rung rung) const { return share(rung) == 1; }
 
  private:
-  std::array<float, kRungs> shares_{};  ///< sum to 1, or nothing was lit yet
+  std::array<float, kRungs> shares_{};  ///< sum to 1; all 0 before the first frame
   std::int64_t last_ns_ = 0;
   bool started_ = false;
 };

@@ -8,10 +8,9 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr float kInnovationGain =
-    0.1f;  ///< of each detection: some tenths of a second are remembered
-/// As a share of its square: so much of a detection's noise the offset filter lets through in its
-/// steady state.
+/// Share of a new detection in the means: they reach back some tenths of a second.
+constexpr float kInnovationGain = 0.1f;
+/// Share of the variance of a detection that passes the offset filter in its steady state.
 constexpr float kLeastLandmark = 0.35f;
 constexpr std::array kModelled{Rung::shift, Rung::similarity, Rung::fingers};
 
@@ -19,8 +18,9 @@ float mean_square(const LandmarkPoints& p, const LandmarkPoints& q) {
   return residual_px2({}, p, q);
 }
 
-/// Mean square of what a detection is off by, were there no outliers and no wrong fingers; nothing
-/// where nothing was seen.
+/// Mean square error of a detection, without its outliers and wrong fingers: estimated from the
+/// median, which for normal errors in the plane is ln 2 times the mean square. Empty if nothing was
+/// seen.
 std::optional<float> square_px2(const msg::HandLandmarks& seen, const LandmarkPoints& expected) {
   std::array<float, kLandmarks> squares;
   int count = 0;
@@ -69,8 +69,9 @@ void HandLadder::judge_landmarks(Evidence& evidence) const {
     evidence.lag_px2 = 0;
   } else if (with_tracker_) {
     evidence.landmark_px2 = off_px2;
-  } else {  // off by noise and by lag, most of it common to all landmarks: fewer numbers follow no
-            // less of it, and P has no part in it
+  } else {
+    // The error is noise and lag. Most of it is common to all landmarks, so a rung with fewer
+    // numbers follows as much of it; P does not share it.
     evidence.landmark_px2 = kLeastLandmark * detection_px2;
     evidence.lag_px2 = off_px2;
     if (tracker_px2_)
@@ -95,7 +96,7 @@ Corrected HandLadder::take(const HandTrack& track, std::int64_t target_ns,
                  .has_news = filtered.has_news,
                  .registered = 0};
   if (hand.is_alone) {
-    *this = HandLadder(settings_);  // what it has learned was of another tracker
+    *this = HandLadder(settings_);  // its means hold for the tracker before the silence
     return hand;
   }
   if (!automatic_ && fixed_ >= Rung::landmarks) {
@@ -111,8 +112,8 @@ Corrected HandLadder::take(const HandTrack& track, std::int64_t target_ns,
         fit_rung(hand.rung, hand.tracker, hand.landmarks);
   blend_.turn_to(hand.rung, target_ns, automatic_ ? settings_.filter.blend_ms : 0);
   apply(*newest_sample, hand);
-  const Rung least =
-      hand.has_landmarks ? Rung::shift : Rung::hold;  // else what is blended in would not be drawn
+  // Landmarks that are blended must move the drawing, which takes at least a shift.
+  const Rung least = hand.has_landmarks ? Rung::shift : Rung::hold;
   if (blend_.is_pure(hand.rung)) hand.moves = std::clamp(hand.rung, least, Rung::landmarks);
   hand.registered = blend_.share(Rung::registered);
   return hand;
@@ -154,8 +155,8 @@ Rung HandLadder::choose(const HandTrack& track, std::int64_t target_ns,
 }
 
 void HandLadder::apply(const Newest& newest, Corrected& hand) const {
-  // Where a lower rung is not set but chosen, landmarks that are known go on: the tracker's jumps
-  // are blended in with them.
+  // On a low rung that was chosen, not set, the landmarks stay valid: through them the jumps of the
+  // tracker are blended.
   const bool goes_on = automatic_ && hand.has_landmarks;
   if (blend_.is_pure(Rung::hold)) {
     if (!goes_on) hand.pose = newest.pose, hand.tracker = newest.tracker;

@@ -11,31 +11,33 @@
 
 namespace handcast::renderer {
 
-/// The ladder of one hand: gathers the evidence, asks the gate (or holds the rung that is set) and
-/// takes the hand back to that rung.
+/// The ladder of one hand: collects the evidence, lets the gate choose the rung (or uses the one
+/// that is set), and reduces the hand to that rung. See `docs/method.md#ladder`. One thread.
 class HandLadder {
  public:
+  /// Without evidence. Copies the settings.
   explicit HandLadder(const config::Cascade& settings);
 
-  /// Before the hand's track hears of it: what Q̂ is off by shows in what the next detection says.
+  /// Measures the error of Q̂ by a detection. Call it before LandmarkTrack::detection(), while Q̂
+  /// does not depend on this detection.
   void detection(const HandTrack& track, std::int64_t origin_ns, const msg::HandLandmarks& seen);
 
-  /// Once a frame. `camera_ns`: when the image was taken that the frame can be registered to; empty
-  /// if there is none.
+  /// The hand for the frame at `target_ns`. `camera_ns`: exposure of the image that the frame can
+  /// be registered to; empty if there is none. Call it once per frame.
   Corrected take(const HandTrack& track, std::int64_t target_ns,
                  std::optional<std::int64_t> camera_ns, const Predicted& predicted,
                  const Filtered& filtered);
-  /// Late registration, wholly in the light, moved the landmarks of the frame for `target_ns` by so
-  /// much.
+  /// Late registration moved the landmarks of the frame for `target_ns` by `moved_px`, with its
+  /// whole share (Corrected::registered == 1).
   void registered(std::int64_t target_ns, const LandmarkPoints& moved_px) {
     hindsight_.registered(target_ns, moved_px);
   }
 
  private:
-  /// The newest tracker sample, as it is.
+  /// The newest tracker sample.
   struct Newest {
     msg::HandPose pose;
-    LandmarkPoints tracker;
+    LandmarkPoints tracker;  ///< P of `pose`
   };
   void judge_landmarks(Evidence& evidence) const;
   std::optional<Newest> newest(const HandTrack& track) const;
@@ -52,10 +54,12 @@ class HandLadder {
   Hindsight hindsight_;
   std::array<RungModel, kRungs> models_{};  ///< of this frame; shift, similarity and fingers only
   std::optional<LandmarkPoints> offset_;    ///< Q̂ - P of the last frame
-  std::optional<float>
-      innovation_px2_;  ///< what detections differed by from P + offset, or from lit_; smoothed
-  TrackerMemory lit_;   ///< Q̂ as it was lit, where it does not move with P
-  std::optional<float> tracker_px2_;  ///< likewise: what detections differed by from P
+  /// Mean square difference of detections from P + offset_, or from lit_; smoothed.
+  std::optional<float> innovation_px2_;
+  /// Q̂ of recent frames, if Q̂ does not move with P.
+  TrackerMemory lit_;
+  /// Mean square difference of detections from P, if Q̂ does not move with P; smoothed.
+  std::optional<float> tracker_px2_;
 };
 
 }  // namespace handcast::renderer

@@ -10,13 +10,14 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kApart_ns =
-    3'000'000;  ///< between frames that are kept: some three for every tracker sample
+/// Least time between frames that are kept: about three per tracker sample.
+constexpr std::int64_t kApart_ns = 3'000'000;
 constexpr std::size_t kMostWaiting = 32;
-constexpr float kRise_s = 0.1f,
-                kFall_s = 0.3f;  ///< over which errors that grow, and that fall, are averaged
-constexpr float kTrust_s = 1.0f;
-constexpr float kRegisterNoise_px = 0.15f;  ///< what registration alone is off by in an image
+/// Time constants of the means of errors that grow, and that fall.
+constexpr float kRise_s = 0.1f, kFall_s = 0.3f;
+constexpr float kRegistration_s = 1.0f;
+/// Error of registration alone at the time of the image.
+constexpr float kRegisterNoise_px = 0.15f;
 
 float rms(const LandmarkPoints& a, const LandmarkPoints& b) {
   float sum = 0;
@@ -28,9 +29,9 @@ float share_left(std::int64_t span_ns, float span_s) {
   return std::exp(-static_cast<float>(ns_to_seconds(span_ns)) / span_s);
 }
 
-/// A prediction's error grows as the square of the time it reaches ahead: what it is at the light,
-/// for 1 px at the exposure. Held back where the exposure is hardly ahead of the newest sample, for
-/// then it tells little.
+/// The error of a prediction at the target time for 1 px of error at the exposure. It grows with
+/// the square of the time since the newest sample. The factor is reduced if the exposure is not
+/// much later than that sample, because then its error is mostly noise.
 float carried_on(const Hindsight::Frame& frame) {
   constexpr float kTelling_ms = 5;
   const auto ahead_ms = [&](std::int64_t time_ns) {
@@ -70,29 +71,32 @@ void Hindsight::compare(const Frame& frame, const LandmarkPoints& at_camera,
   const std::int64_t since_ns = std::max<std::int64_t>(0, frame.target_ns - compared_ns_);
   compared_ns_ = frame.target_ns;
   const float rise_left = share_left(since_ns, kRise_s), fall_left = share_left(since_ns, kFall_s),
-              trust_left = share_left(since_ns, kTrust_s);
+              registration_left = share_left(since_ns, kRegistration_s);
 
   const float carried = carried_on(frame);
   const Similarity seen = fit_similarity(frame.at_camera, at_camera);
-  LandmarkPoints reckoned, measured;
+  LandmarkPoints estimated, measured;
   for (int i = 0; i < kLandmarks; ++i) {
-    reckoned[i] = glm::mix(frame.at_target[i], seen(frame.at_target[i]), carried);
-    measured[i] = frame.registered ? frame.at_target[i] + (*frame.registered)[i] : reckoned[i];
+    estimated[i] = glm::mix(frame.at_target[i], seen(frame.at_target[i]), carried);
+    measured[i] = frame.registered ? frame.at_target[i] + (*frame.registered)[i] : estimated[i];
   }
   const float noise_px = carried * kRegisterNoise_px;
-  const float reckoned_px = std::hypot(rms(reckoned, at_target), noise_px);
+  const float estimated_px = std::hypot(rms(estimated, at_target), noise_px);
   const float measured_px = rms(measured, at_target);
   if (frame.registered) {
-    trust_.measured_px = std::lerp(measured_px, trust_.measured_px, trust_left);
-    trust_.reckoned_px = std::lerp(reckoned_px, trust_.reckoned_px, trust_left);
+    registration_errors_.measured_px =
+        std::lerp(measured_px, registration_errors_.measured_px, registration_left);
+    registration_errors_.estimated_px =
+        std::lerp(estimated_px, registration_errors_.estimated_px, registration_left);
   }
   const auto follow = [=](float& followed, float now) {
     followed = std::lerp(now, followed, now > followed ? rise_left : fall_left);
   };
   follow(motion_.hold_px, rms(frame.newest, at_target));
   follow(motion_.predict_px, rms(frame.at_target, at_target));
-  follow(motion_.register_px,
-         frame.registered ? measured_px : reckoned_px * trust_.measured_px / trust_.reckoned_px);
+  follow(motion_.register_px, frame.registered ? measured_px
+                                               : estimated_px * registration_errors_.measured_px /
+                                                     registration_errors_.estimated_px);
 }
 
 }  // namespace handcast::renderer

@@ -11,7 +11,7 @@ constexpr int kFingers = 5;
 constexpr std::array<int, kRungs> kFreeNumbers{
     0, 0, 2, 4, 4 + 2 * kFingers, 2 * kLandmarks, 2 * kLandmarks};
 
-/// Landmarks 4 f + 1 to 4 f + 4 are finger f's; the wrist's is nobody's: -1.
+/// Finger f has the landmarks 4 f + 1 to 4 f + 4; -1 for the wrist.
 constexpr int finger_of_landmark(int landmark) { return (landmark + 3) / 4 - 1; }
 
 glm::vec2 mean_shift(const LandmarkPoints& p, const LandmarkPoints& q) {
@@ -20,7 +20,7 @@ glm::vec2 mean_shift(const LandmarkPoints& p, const LandmarkPoints& q) {
   return sum / static_cast<float>(kLandmarks);
 }
 
-/// The words of the setting are "auto" and the names of the rungs, in their order.
+/// The words of the setting must be "auto" and the names of the rungs, in their order.
 constexpr bool words_are_rungs() {
   const auto words = words_of(config::RungChoice{});
   return std::ranges::equal(std::span(words).subspan(1), msg::kRungNames);
@@ -52,7 +52,7 @@ RungModel fit_rung(Rung rung, const LandmarkPoints& p, const LandmarkPoints& q) 
   if (rung == Rung::shift) model.whole.shift = mean_shift(p, q);
   if (rung > Rung::shift) model.whole = fit_similarity(p, q);
   if (rung < Rung::fingers) return model;
-  constexpr float kShare = 0.25f;  // four landmarks a finger
+  constexpr float kShare = 0.25f;  // of each of four landmarks
   for (int i = 1; i < kLandmarks; ++i)
     model.fingers[finger_of_landmark(i)] += kShare * (q[i] - model.whole(p[i]));
   return model;

@@ -8,44 +8,48 @@
 #include "renderer/base/landmark_points.hpp"
 #include "renderer/base/similarity.hpp"
 
-/// The ladder (METHOD section 3): model no more than a scene needs. Each rung does what the one
-/// before it does, and more.
+/// @file
+/// The rungs of the ladder: a frame models no more than its scene needs. Each rung does what the
+/// one before it does, and more. See `docs/method.md#ladder`.
 ///
-/// | rung       | numbers | what moves the tracker's hand                            |
-/// |------------|---------|----------------------------------------------------------|
-/// | hold       | 0       | nothing: the newest sample as it is                      |
-/// | predict    | 0       | its own motion, on to the time of the light              |
-/// | shift      | 2       | and one shift towards the landmarks                      |
-/// | similarity | 4       | and one turn and scale                                   |
-/// | fingers    | 14      | and a shift of each finger                               |
-/// | landmarks  | 42      | each landmark onto its own place (deform.hpp)            |
-/// | register   | 42 +    | and what the newest image shows of its motion since      |
-/// |            |         | (late_registration.hpp)                                  |
+/// | rung       | free numbers | how the hand is placed                                      |
+/// |------------|--------------|-------------------------------------------------------------|
+/// | hold       | 0            | the newest tracker sample                                   |
+/// | predict    | 0            | extrapolated to the time of the photons                     |
+/// | shift      | 2            | and translated towards the landmarks                        |
+/// | similarity | 4            | and rotated and scaled                                      |
+/// | fingers    | 14           | and each finger translated                                  |
+/// | landmarks  | 42           | each landmark moved to its own position (deform.hpp)        |
+/// | register   | 42 +         | and moved as the newest image shows (late_registration.hpp) |
+
 namespace handcast::renderer {
 
 using msg::kRungs;
 using msg::Rung;
 
-/// The rung that a setting holds; landmarks if it holds none.
+/// The rung that `choice` sets; landmarks if it is automatic.
 Rung held_rung(config::RungChoice choice);
-/// Free numbers of the field that carries P onto Q.
+/// Free numbers of the rung's model of Q̂ - P.
 int degrees_of_freedom(Rung rung);
 
-/// The field of the rungs shift, similarity and fingers.
+/// The model of Q̂ - P on the rungs shift, similarity and fingers. In the unit of the points that it
+/// was fitted to.
 struct RungModel {
-  Similarity whole;
-  std::array<glm::vec2, 5> fingers{};  ///< on top of it, thumb first
+  Similarity whole;                    ///< of the whole hand
+  std::array<glm::vec2, 5> fingers{};  ///< displacement added to each finger, thumb first
 
+  /// The point `at`, moved as the given landmark is.
   glm::vec2 moved(int landmark, const glm::vec2& at) const;
+  /// All landmarks `p`, moved.
   LandmarkPoints moved(const LandmarkPoints& p) const;
 };
 
-/// Least squares from `p` to `q`: a shift, a similarity, a similarity and what each finger's
-/// landmarks are then off by in the mean. The identity for hold and predict; dearer rungs are
-/// modelled as fingers.
+/// The least-squares model of a rung that maps `p` to `q`: a translation; a similarity; a
+/// similarity and the mean displacement that remains for each finger. The identity for hold and
+/// predict. The rungs above fingers are modelled like fingers.
 RungModel fit_rung(Rung rung, const LandmarkPoints& p, const LandmarkPoints& q);
 
-/// Mean square over the landmarks of what the model leaves, px^2.
+/// Mean square distance over the landmarks between `p`, moved by the model, and `q`, px^2.
 float residual_px2(const RungModel& model, const LandmarkPoints& p, const LandmarkPoints& q);
 
 }  // namespace handcast::renderer

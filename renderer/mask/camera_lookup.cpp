@@ -11,10 +11,10 @@ namespace {
 
 constexpr int kStep = 8;  ///< projector px between two entries, and the side of a block
 constexpr int kUnitBits = 6;
-constexpr int kUnits = 1 << kUnitBits;  ///< per camera px
-constexpr int kFineBits = 12;  ///< a place between four corners has 64 * 8 * 8 units per camera px
+constexpr int kUnits = 1 << kUnitBits;  ///< per camera px, in corners
+constexpr int kFineBits = 12;           ///< 64 * 8 * 8 units per camera px, between the corners
 constexpr int kFine = 1 << kFineBits;
-constexpr float kFar_px = 1e5f;  ///< off any image
+constexpr float kFar_px = 1e5f;  ///< outside any image
 static_assert(kFine == kUnits * kStep * kStep);
 
 std::uint64_t load8(const std::uint8_t* bytes) {
@@ -23,8 +23,8 @@ std::uint64_t load8(const std::uint8_t* bytes) {
   return word;
 }
 
-/// Bounds of `map` over the outline of `region`, grown by a pixel. Infinite and absurd places are
-/// held to `limit`.
+/// Bounds of what `map` makes of the outline of `region`, sampled at nine points per side and grown
+/// by a pixel. Positions beyond +-`limit` and infinite ones are clamped.
 template <class Map>
 Rect bounds_of(Rect region, double limit, Map map) {
   constexpr int kSteps = 8;
@@ -63,7 +63,8 @@ CameraLookup::CameraLookup(const calib::Calibration& calibration)
     }
 }
 
-/// Corners of the blocks of one row, as the image had them.
+/// Image positions, at the exposure, of the block corners in row `row` of the table, from column
+/// `first` on.
 void CameraLookup::find_corners(int row, int first, std::vector<glm::ivec2>& corners,
                                 const Similarity& then_from_now) const {
   const glm::vec2* place_px = &table_[static_cast<std::size_t>(row) * columns_ + first];
@@ -95,16 +96,16 @@ void CameraLookup::resample(View<const std::uint8_t> mask, Rect region, View<std
   }
 }
 
-/// Most blocks are all hand or all background: eight wide loads tell. False where this one is not,
-/// or where it is unclear.
+/// Fills a block that is all hand or all background, as most blocks are, from a few 8-byte loads.
+/// Returns false if the block is mixed, or if the loads cannot decide.
 bool CameraLookup::resample_uniform(View<const std::uint8_t> mask, const Block& block,
                                     View<std::uint8_t> out) const {
   const auto [left, right] =
       std::minmax({block.top_left.x, block.top_right.x, block.bottom_left.x, block.bottom_right.x});
   const auto [up, down] =
       std::minmax({block.top_left.y, block.top_right.y, block.bottom_left.y, block.bottom_right.y});
-  // Half a pixel for rounding to the nearest; the far corners are a pixel beyond the block, which
-  // is room for its bend.
+  // Rounds to the nearest pixel, with 1/8 px of margin at the near corners. The far corners are a
+  // pixel beyond the block, which is margin enough for the curvature of the map.
   const int x0 = (left + kUnits * 3 / 8) >> kUnitBits, x1 = (right + kUnits / 2) >> kUnitBits;
   const int y0 = (up + kUnits * 3 / 8) >> kUnitBits, y1 = (down + kUnits / 2) >> kUnitBits;
   if (x0 < 0 || y0 < 0 || y1 >= mask.height || x1 - x0 >= 8 || x0 + 8 > mask.width) return false;

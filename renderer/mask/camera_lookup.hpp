@@ -10,22 +10,24 @@
 
 namespace handcast::renderer {
 
-/// Projector pixel -> camera image pixel (homography and lens distortion), as a table once per
-/// calibration.
+/// The map from projector pixels to camera image pixels (homography and lens distortion), as a
+/// table that is computed once per calibration.
 class CameraLookup {
  public:
+  /// Computes the table.
   explicit CameraLookup(const calib::Calibration& calibration);
-  /// `out(x, y) = mask(then_from_now(camera pixel of projector pixel (x, y)))` for the pixels of
-  /// `region`; 0 where the camera sees nothing. `then_from_now` takes a camera pixel back to where
-  /// the hand's same spot was when the image was exposed.
+  /// Resamples a mask from the camera's image to the projector, nearest pixel: out(x, y) =
+  /// mask(then_from_now(c)), where c is the camera image pixel of projector pixel (x, y); 0 outside
+  /// `mask`. Writes the pixels of `region` (projector px, clipped to the screen). `then_from_now`
+  /// maps the image position of a spot on the hand at the target time to the one at the exposure.
   void resample(View<const std::uint8_t> mask, Rect region, View<std::uint8_t> out,
                 const Similarity& then_from_now = {}) const;
-  /// A bounding rectangle of `camera_region` (image px) in projector px.
+  /// Bounds of `camera_region` (image px) in projector px, not clipped to the screen.
   Rect to_projector(Rect camera_region) const;
 
  private:
-  /// Eight by eight projector pixels and where their corners are seen (the right and lower ones a
-  /// pixel beyond), camera px * 64.
+  /// 8 x 8 projector pixels, and the image positions of its corners in 1/64 camera px. The right
+  /// and lower corners are those of the neighbours, a pixel beyond the block.
   struct Block {
     int x, y;
     glm::ivec2 top_left, top_right, bottom_left, bottom_right;
@@ -39,8 +41,8 @@ class CameraLookup {
 
   int width_ = 0, height_ = 0, columns_ = 0;
   calib::Calibration calibration_;
-  std::vector<glm::vec2>
-      table_;  ///< of every 8th projector pixel of every 8th row; bilinear in between
+  /// Image positions of every 8th projector pixel of every 8th row; bilinear in between.
+  std::vector<glm::vec2> table_;
 };
 
 }  // namespace handcast::renderer

@@ -12,7 +12,7 @@ namespace handcast::renderer {
 namespace {
 
 constexpr int kMargin_px = 2;
-constexpr int kGoodPart = 4;  ///< of what was seen before: a quarter of its bounds' area
+constexpr int kGoodPart = 4;  ///< a hand is shown if 1/4 of the area of its bounds remains
 
 int area_of(const Rect& bounds) { return bounds.empty() ? 0 : bounds.width() * bounds.height(); }
 
@@ -21,7 +21,7 @@ void fill_rect(Image<std::uint8_t>& image, const Rect& region, std::uint8_t valu
     std::memset(image.row(y) + region.x0, value, static_cast<std::size_t>(region.width()));
 }
 
-/// Bounds of what a similarity takes into `region`.
+/// Bounds of the points that `move` maps into `region`.
 Rect moved_back(const Rect& region, const Similarity& move) {
   const glm::mat2 turn(glm::vec2(move.cosine, move.sine), glm::vec2(-move.sine, move.cosine));
   const glm::mat2 back = glm::inverse(turn);
@@ -111,8 +111,7 @@ LandmarkPoints HandMask::in_image(LandmarkPoints undistorted_px) const {
   return undistorted_px;
 }
 
-/// How the hand has moved in the image, undone: from where it will be at the target time to where
-/// it was at the exposure.
+/// Maps image positions on the hand at the target time to those at the exposure.
 Similarity HandMask::since_exposure(const Expected& hand) const {
   const auto then =
       hand.then && settings_.advance ? project_landmarks(calibration_, *hand.then) : std::nullopt;
@@ -121,8 +120,8 @@ Similarity HandMask::since_exposure(const Expected& hand) const {
                         in_image(sum(*then, hand.moved_then)));
 }
 
-/// Likewise, from the target time to when it was seen last. Registration knows of no image since:
-/// the landmarks themselves are followed.
+/// Maps image positions on the hand at the target time to those when it was last shown. No image
+/// has been registered since, so the motion is that of the landmarks.
 Similarity HandMask::since_seen(const Expected& hand) const {
   return settings_.advance
              ? fit_similarity(in_image(hand.hand->landmarks), memory_of(hand.side).landmarks)

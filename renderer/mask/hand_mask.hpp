@@ -19,46 +19,53 @@ namespace handcast::renderer {
 
 using msg::Side;
 
-/// The hands in the camera's image: found where they are expected, and carried on to where they
-/// will be when the light arrives. A hand that the image does not show (any more) keeps the mask it
-/// had when it was seen last, moved on with it.
+/// Step "mask" and its state: the masks of the hands, found in the camera's image where the hands
+/// are expected, and moved to where the hands will be at the target time. A hand that the image no
+/// longer shows keeps the mask it had when it was last shown, moved with it. See
+/// `docs/method.md#mask`. One thread.
 class HandMask {
  public:
   /// Where one hand is expected.
   struct Expected {
-    Side side;
-    std::optional<msg::HandPose>
-        then;                         ///< when the image was exposed; empty: it is not searched for
-    const Corrected* hand = nullptr;  ///< at the time of the photons
-    float presence = 1;               ///< 0: it is given no light
-    LandmarkPoints moved_then{},
-        moved_now{};  ///< by late registration, at the exposure and at the time of the photons
+    Side side;                          ///< which hand it is
+    std::optional<msg::HandPose> then;  ///< its pose at the exposure; empty: do not search for it
+    const Corrected* hand = nullptr;    ///< the hand at the target time; borrowed
+    float presence = 1;                 ///< share of its light; 0: it gets no mask
+    /// Displacement of its landmarks by late registration, at the exposure and at the target time.
+    /// @{
+    LandmarkPoints moved_then{}, moved_now{};
+    /// @}
   };
 
+  /// Without an image. Copies the settings and the calibration.
   HandMask(const config::Mask& settings, const calib::Calibration& calibration);
 
-  /// Finds the hands in the image.
+  /// Finds the hands in an image.
   void find(const TimedImage& camera, std::span<const Expected> hands);
 
-  /// The image shows hand `h`: a joint of it is lit, or at least something as large as a good part
-  /// of it where it is expected.
+  /// True if the image of the last find() shows its hand `h`: one of its joints is lit, or the
+  /// bounds of its mask have at least a quarter of the area that they had when the hand was last
+  /// shown.
   bool shows(std::size_t h) const { return shown_[h]; }
-  /// The edge of all hands in `camera`, the image of the last find().
+  /// The masks in `camera`, which must be the image of the last find(). Valid until the next
+  /// find().
   Silhouette silhouette(const TimedImage& camera) const {
     return {camera.view, camera.origin_ns, camera_mask_.view(), written_, finder_.threshold()};
   }
 
-  /// The mask in the projector's pixels, each hand moved on; none of a hand without presence. Where
-  /// the bounds of two hands overlap, both move as the second does, or as the one that is shown.
-  /// Returns the part that has any mask; the view is defined there.
+  /// Moves the masks of the last find() to the target time, in projector pixels. `hands`: the same
+  /// hands. Returns the region that contains the masks. Where the bounds of two hands overlap, both
+  /// masks move as the second hand does, or as the one that is shown.
   Rect advance(std::span<const Expected> hands);
+  /// The masks of the last advance(), in the projector's size: 255 hand, 0 not. Defined inside the
+  /// returned region only.
   GreyView in_projector() const { return projector_mask_.view(); }
 
  private:
-  /// One hand as it was seen last.
+  /// One hand as it was last shown.
   struct Memory {
-    Image<std::uint8_t> mask;    ///< the camera's size, 0 outside `found`
-    Rect found;                  ///< empty: never seen
+    Image<std::uint8_t> mask;    ///< of the camera's size, 0 outside `found`
+    Rect found;                  ///< empty if it was never shown
     LandmarkPoints landmarks{};  ///< image px
   };
 
@@ -76,12 +83,11 @@ class HandMask {
   MaskFinder finder_;
   CameraLookup lookup_;
   Image<std::uint8_t> camera_mask_, projector_mask_;
-  Rect written_;  ///< of the camera mask; the rest is 0
+  Rect written_;  ///< part of camera_mask_ that is not 0
   std::vector<OwnedHint> owned_hints_;
   std::vector<HandHint> hints_;
-  std::vector<Rect>
-      found_;  ///< of the hands of find(): holds all that was found of it; empty where nothing was
-  std::vector<bool> shown_;                      ///< likewise
+  std::vector<Rect> found_;  ///< per hand of find(): bounds of its mask; empty if there is none
+  std::vector<bool> shown_;  ///< per hand of find(): see shows()
   std::array<Memory, msg::kMaxHands> memories_;  ///< by side
 };
 

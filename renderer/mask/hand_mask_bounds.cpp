@@ -8,11 +8,12 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kBeside_px = 2;  ///< this much beyond the outer bound is looked at: does light go on?
+constexpr int kBeside_px = 2;  ///< width beyond the outer bound in which light counts as continuing
 constexpr float kWristMargin_px = 12;
-constexpr double kFits = 0.85;  ///< share of the inner bound that is lit where the bones are right
+constexpr double kFits =
+    0.85;  ///< if more than this share of the inner bound is lit, the bones fit
 
-/// Calls `part(x0, x1)` for what of [x0, x1) no span covers.
+/// Calls `part(x0, x1)` for each part of [x0, x1) that no span covers.
 template <class Part>
 void for_each_gap(std::span<const RowSpan> spans, int x0, int x1, Part part) {
   for (const RowSpan& span : spans) {
@@ -81,7 +82,7 @@ void HandMaskBounds::read_around(View<const std::uint8_t> mask) {
   }
 }
 
-/// How much of what the inner bound holds is lit, by every fourth row.
+/// The share of the inner bound that is lit, from every fourth row.
 double HandMaskBounds::filled(View<const std::uint8_t> mask) const {
   int lit = 0, all = 0;
   for (int y = region_.y0; y < region_.y1; y += 4)

@@ -10,30 +10,37 @@
 
 namespace handcast::renderer {
 
-/// How far the hands reach in the image, in two bounds: where they are if the bones are where they
-/// are thought to be (sure), and where they may be with what the bones may be wrong by (most).
-/// Light between the two is hand, unless it goes on beyond both: then some other thing is behind
-/// the hand, or there is too much light, and only the inner bound can be trusted; unless much of
-/// that is dark: then the bones are off.
+/// Bounds of the hands in the image, from the flesh around their bones. The inner bound is where
+/// the hands are if the bones are where they are expected; the outer bound is where they may be if
+/// the bones are off. Lit pixels between the two are hand, unless they continue beyond the outer
+/// bound: then something else is lit behind the hand, or the image is too bright, and only the
+/// inner bound counts. If no more than 85 % of the inner bound is lit, the bones are off, and
+/// everything up to the outer bound counts. One thread.
 class HandMaskBounds {
  public:
-  /// The line between a hand and its forearm: light that goes on beyond it says nothing.
+  /// The line between a hand and its forearm. Lit pixels beyond it are the arm and do not count as
+  /// continuing beyond the outer bound.
   struct Wrist {
-    glm::vec2 px, to_elbow;
+    glm::vec2 px;        ///< a point of the line, image px
+    glm::vec2 to_elbow;  ///< unit, at right angles to the line
   };
 
-  /// `shapes`: as many as will be added at most.
+  /// Removes all hands. `region`: image px. `shapes`: the number of shapes that will be added, at
+  /// most.
   void reset(Rect region, std::size_t shapes);
+  /// Adds a hand by its flesh, which grows by `sure_px` for the inner and by `most_px` for the
+  /// outer bound.
   void add(std::span<const Flesh> flesh, float sure_px, float most_px, const Wrist& wrist);
-  /// The hand may be anywhere in here.
+  /// Adds a rectangle that a hand may fill, to both bounds.
   void add(Rect rect);
+  /// Ends the additions: call it after the last add() and before the functions below.
   void settle();
 
-  /// Where row `y` is to be looked at, and a little more.
+  /// The part of row `y` inside the outer bound, and 2 px on either side.
   RowSpan row(int y) const;
-  /// All of a run is within the inner bound.
+  /// True if the whole run is inside the inner bound.
   bool surely_holds(const RunMap::Run& run) const;
-  /// Darkens what no hand can be.
+  /// Sets the pixels of `mask` (0 or 255) to 0 that cannot be hand.
   void confine(View<std::uint8_t> mask);
 
  private:
@@ -44,8 +51,8 @@ class HandMaskBounds {
   Rect region_;
   RowSpans sure_, most_;
   std::vector<Wrist> wrists_;
-  RunMap
-      around_;  ///< what is lit outside the inner bound; owner 0: it goes on beyond the outer one
+  /// Lit parts outside the inner bound. Owner 0: the part continues beyond the outer bound.
+  RunMap around_;
 };
 
 }  // namespace handcast::renderer

@@ -11,10 +11,11 @@ namespace {
 
 constexpr int kWrist = 1;
 constexpr double kAlongArm_m = 0.04;
-constexpr float kSure_px = 1, kMost_px = 24;  ///< what landmarks are usually off by, and at most;
-constexpr float kTrackerSure_px = 20, kTrackerMost_px = 50;  ///< and the tracker alone
+// Usual and largest error of the expected flesh.
+constexpr float kSure_px = 1, kMost_px = 24;                 ///< with landmarks
+constexpr float kTrackerSure_px = 20, kTrackerMost_px = 50;  ///< with the tracker alone
 
-/// Of a mean hand, seen from any side: how far the skin is from the bone at either end.
+/// Distance of the skin from the bone at either end, of an average hand, seen from any side.
 struct Bone {
   int from, to;
   float from_mm, to_mm;
@@ -28,7 +29,7 @@ constexpr Bone kBones[] = {
     {2, 5, 11, 11},  {5, 9, 11, 11},        {9, 13, 11, 11},      {13, 17, 11, 11}};
 constexpr float kWrist_mm = 28;
 
-/// A tracker point as the camera's image shows it, moved by `offset_px` before the lens.
+/// The image position of a point in tracker space, moved by `offset_px` before the lens distortion.
 glm::dvec2 image_of(const calib::Calibration& calibration, const glm::dvec3& tracker_m,
                     const glm::dvec2& offset_px) {
   const glm::dvec3 in_camera =
@@ -38,15 +39,15 @@ glm::dvec2 image_of(const calib::Calibration& calibration, const glm::dvec3& tra
       offset_px);
 }
 
-/// No further than half an image outside it: beyond that the lens's polynomial may turn back into
-/// the image.
+/// True up to half an image outside the image. Beyond that, the polynomial of the lens may map a
+/// point back into the image.
 bool is_in_reach(const calib::CameraModel& camera, const glm::dvec2& undistorted_px) {
   const glm::dvec2 size(camera.width_px, camera.height_px),
       off = glm::abs(undistorted_px - 0.5 * size);
   return off.x < size.x && off.y < size.y;
 }
 
-/// Camera px of one mm at each landmark's distance.
+/// Camera px per mm at the distance of each landmark.
 std::array<float, kLandmarks> scale_of(const calib::Calibration& calibration,
                                        const msg::HandPose& pose) {
   std::array<float, kLandmarks> px_per_mm;
@@ -65,8 +66,8 @@ std::vector<Flesh> flesh_of(const std::vector<glm::vec2>& landmarks_px, glm::vec
   for (const auto& [from, to, from_mm, to_mm] : kBones) {
     const glm::vec2 along = landmarks_px[to] - landmarks_px[from];
     const float radius_px = to_mm * px_per_mm[to], length_px = glm::length(along);
-    const bool tip = to % 4 == 0 &&
-                     length_px > 0;  // it is the end of the finger, not the middle of its last disc
+    // The landmark of a tip is the end of the finger, not the centre of its last disc.
+    const bool tip = to % 4 == 0 && length_px > 0;
     const glm::vec2 end_px =
         tip ? landmarks_px[to] - along * (std::min(1.0f, radius_px / length_px)) : landmarks_px[to];
     flesh.push_back({landmarks_px[from], end_px, from_mm * px_per_mm[from], radius_px});
@@ -112,9 +113,8 @@ std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
   const glm::dvec2 end = image_of(calibration, wrist + forearm_m * to_elbow, offset);
   glm::dvec2 along =
       image_of(calibration, wrist + (forearm_m + kAlongArm_m) * to_elbow, offset) - end;
-  if (glm::length(along) < 2)
-    along = owned.seeds_px[0] -
-            owned.seeds_px[9];  // the arm points at the camera: from middle knuckle to wrist
+  // If the arm points at the camera, its direction is that from the middle knuckle to the wrist.
+  if (glm::length(along) < 2) along = owned.seeds_px[0] - owned.seeds_px[9];
   if (glm::length(along) < 1e-3) along = {0, 1};
 
   owned.flesh = flesh_of(owned.seeds_px, end, scale_of(calibration, then));

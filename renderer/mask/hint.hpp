@@ -9,16 +9,15 @@
 
 namespace handcast::renderer {
 
-/// What the mask finder is told of one hand; owns the seeds and the flesh that the hint points to.
+/// A hint with the seeds and the flesh that it refers to.
 struct OwnedHint {
-  HandHint hint;
-  std::vector<glm::vec2> seeds_px;
-  std::vector<Flesh> flesh;
+  HandHint hint;                    ///< refers to the members below
+  std::vector<glm::vec2> seeds_px;  ///< HandHint::inside_px
+  std::vector<Flesh> flesh;         ///< HandHint::flesh
 };
 
-/// Where a hand is expected in an image: its pose when the image was taken, moved by what the
-/// landmarks know (Q̂ - P of `hand`). Nothing of a hand that is behind the camera or far outside the
-/// image.
+/// Where a hand is expected in an image: `then`, its pose at the exposure, moved by Q̂ - P of
+/// `hand`. Empty if the hand has no P or is more than half an image outside the image.
 std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
                                    const config::Mask& settings, const msg::HandPose& then,
                                    const Corrected& hand);

@@ -12,13 +12,15 @@ namespace handcast::renderer {
 namespace {
 
 constexpr double kLeastThreshold = 6, kMostThreshold = 200, kStartThreshold = 40;
-constexpr double kThresholdShare =
-    0.2;  ///< of a new threshold that is taken at once: it must not flicker with the image's noise
-constexpr double kJump = 5, kJumpShare = 0.2;  ///< a new threshold farther off than this means
-                                               ///< other light, and is taken whole
-constexpr int kLeastArea_px = 150;     ///< smaller things are no hand, unless a seed is on them
-constexpr int kHole_px = 400;          ///< a larger hole is some other thing before the hand
-constexpr float kFingerReach_px = 16;  ///< a finger's skin is at most this far from its joints
+/// Share of a new threshold in the mean, which keeps the noise of the images out of the threshold.
+constexpr double kThresholdShare = 0.2;
+/// A change larger than both (kJumpShare: of the present threshold) is a change of the light and is
+/// taken at once.
+constexpr double kJump = 5, kJumpShare = 0.2;
+constexpr int kLeastArea_px = 150;  ///< smaller parts are not hand, unless a seed is on them
+constexpr int kHole_px = 400;       ///< a larger hole is something in front of the hand
+constexpr float kFingerReach_px =
+    16;  ///< distance of the skin of a finger from its joints, at most
 constexpr float kArmMargin_px = 12;
 
 HANDCAST_CLONES void brighter_than(const std::uint8_t* image, int count, std::uint8_t threshold,
@@ -30,10 +32,11 @@ void clear(View<std::uint8_t> mask, int y, int x0, int x1) {
   if (x1 > x0) std::memset(mask.row(y) + x0, 0, static_cast<std::size_t>(x1 - x0));
 }
 
-/// The part of row `y` where `value(x) = at_zero + slope x` is positive, within [x0, x1).
+/// Pixels [x0, x1) of a row.
 struct Span {
   int x0, x1;
 };
+/// The part of `within` in which at_zero + slope x is positive.
 Span positive(Span within, float at_zero, float slope) {
   if (std::abs(slope) < 1e-6f) return at_zero > 0 ? within : Span{within.x0, within.x0};
   const float root = std::clamp(-at_zero / slope, static_cast<float>(within.x0) - 1,
@@ -42,8 +45,8 @@ Span positive(Span within, float at_zero, float slope) {
   return {within.x0, std::min(within.x1, static_cast<int>(std::ceil(root)))};
 }
 
-/// The forearm of one hand: beyond the wrist's line, in a band as wide as the hand. Joints beyond
-/// the line keep their surroundings.
+/// The forearm of one hand: the area beyond the line at the wrist, in a band as wide as the hand.
+/// Joints of any hand in this area keep their surroundings.
 class Forearm {
  public:
   Forearm(const HandHint& hint, std::span<const HandHint> all)
@@ -58,7 +61,7 @@ class Forearm {
           kept_.push_back(joint);
   }
 
-  /// False where nothing of the run is left.
+  /// Removes the forearm from a run. Returns false if nothing is left of the run.
   bool cut(View<std::uint8_t> mask, const RunMap::Run& run) const {
     if (beyond({run.x0, run.y}) <= 0 && beyond({run.x1, run.y}) <= 0) return true;
     const glm::vec2 row_start{0, run.y};
@@ -142,7 +145,7 @@ Rect MaskFinder::find(GreyView image, std::span<const HandHint> hints, View<std:
   return region;
 }
 
-/// Dark spots where the hand surely is, where what is around them was taken for hand.
+/// Fills small dark parts that are inside the inner bound and surrounded by hand.
 void MaskFinder::close_holes(View<std::uint8_t> mask) {
   constexpr int kOpen = 0;
   rest_.build_rest(runs_);

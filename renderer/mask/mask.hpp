@@ -14,41 +14,45 @@
 
 namespace handcast::renderer {
 
-/// Where a hand is expected in the camera image (image px, distorted): picks its component and cuts
-/// the forearm off.
+/// Where a hand is expected in the camera image (image px, distorted). Selects its connected part
+/// and cuts the forearm off. The spans are borrowed.
 struct HandHint {
-  Rect region;         ///< of the hand, with a margin for what the prediction may be wrong by
-  glm::vec2 wrist_px;  ///< where the hand ends on the forearm (already moved by Mask::forearm_mm)
-  glm::vec2 to_elbow;  ///< unit, from there along the forearm
-  std::span<const glm::vec2>
-      inside_px;  ///< points that are on the hand (joints): seeds of its component
-  std::span<const Flesh>
-      flesh{};  ///< all that is hand lies in it; empty: the hand may fill its region
-  float sure_px = 0, most_px = 0;  ///< what the flesh is usually off by, and at most
+  Rect region;         ///< bounds of the hand, with a margin for errors of the prediction
+  glm::vec2 wrist_px;  ///< where the hand ends on the forearm, config::Mask::forearm_mm included
+  glm::vec2 to_elbow;  ///< unit, from `wrist_px` along the forearm
+  /// Points on the hand (its joints): the seeds of its connected part.
+  std::span<const glm::vec2> inside_px;
+  /// Contains the whole hand. Empty: the hand may fill its region.
+  std::span<const Flesh> flesh{};
+  /// Usual and largest error of the flesh.
+  /// @{
+  float sure_px = 0, most_px = 0;
+  /// @}
 };
 
-/// The hand in the camera image: 255 hand, 0 not. Threshold (fixed, or chosen from the image by
-/// Otsu on the region's histogram and held between sane bounds), the components that hold the
-/// hints' seeds, the forearm cut.
+/// Finds the hands in a camera image: pixels above a threshold, inside the bounds of the hands, in
+/// a connected part that contains a seed, without the forearm, small holes closed. The threshold is
+/// fixed or chosen from each image (choose_threshold()), limited and smoothed. One thread.
 class MaskFinder {
  public:
+  /// Copies the settings.
   explicit MaskFinder(const config::Mask& settings) : settings_(settings) {}
 
-  /// `mask` has the image's size and is written inside the returned rectangle only (the union of
-  /// the hints' regions, clipped); no hints, or nothing above the threshold: an empty mask there. A
-  /// hint none of whose seeds is on something bright takes the largest bright thing in its region.
+  /// Writes the mask of all hands: 255 hand, 0 not. `mask` has the size of the image; only the
+  /// returned rectangle is written, the joined regions of the hints, clipped to the image. A hint
+  /// without a seed on a bright part takes the largest bright part in its region. At most eight
+  /// hints are used.
   Rect find(GreyView image, std::span<const HandHint> hints, View<std::uint8_t> mask);
 
-  /// Holds all that is lit of one hint's hand in the last mask; empty where nothing is.
+  /// Bounds of the hand of one hint in the last mask; empty if there is none.
   Rect hand_bounds(std::size_t hint) const {
     return hint < kMostHints ? hand_bounds_[hint] : Rect{};
   }
-  int threshold() const {
-    return threshold_;
-  }  ///< used for the last image: a pixel above it may be hand
+  /// The threshold of the last image: only pixels above it may be hand.
+  int threshold() const { return threshold_; }
 
  private:
-  static constexpr std::size_t kMostHints = 8;  ///< more are ignored
+  static constexpr std::size_t kMostHints = 8;
 
   void choose(GreyView image, Rect region);
   void bound(std::span<const HandHint> hints, Rect region);
@@ -56,9 +60,9 @@ class MaskFinder {
 
   config::Mask settings_;
   int threshold_ = 0;
-  double smooth_threshold_ = 0;  ///< 0: none chosen yet
+  double smooth_threshold_ = 0;  ///< 0 until one is chosen
   HandMaskBounds reach_;
-  RunMap runs_, rest_;  ///< what is bright, and what is not
+  RunMap runs_, rest_;  ///< the bright and the dark parts
   std::array<Rect, kMostHints> hand_bounds_{};
 };
 

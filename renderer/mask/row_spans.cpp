@@ -16,14 +16,14 @@ struct Extent {
   }
 };
 
-/// Where a row cuts a disc, and where it cuts one of the two long sides between the discs of a
-/// capsule.
+/// Extends `extent` to the part of row `y` inside a disc.
 void cut_disc(glm::vec2 middle, float radius, float y, Extent& extent) {
   const float squared_half = radius * radius - (y - middle.y) * (y - middle.y);
   if (squared_half <= 0) return;
   const float half = std::sqrt(squared_half);
   extent.take(middle.x - half, middle.x + half);
 }
+/// Extends `extent` to the point of row `y` on a side from `from` to `to`.
 void cut_side(glm::vec2 from, glm::vec2 to, float y, Extent& extent) {
   if ((y - from.y) * (to.y - y) < 0 || from.y == to.y) return;
   const float x = from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y);

@@ -9,30 +9,40 @@
 
 namespace handcast::renderer {
 
-/// What a bone of the hand is wrapped in, as the image shows it: a disc at either end, and what
-/// lies between them.
+/// The flesh around one bone in the image: a disc at either end and the convex area between them.
 struct Flesh {
+  /// Centres of the discs, image px.
+  /// @{
   glm::vec2 from_px, to_px;
+  /// @}
+  /// Radii of the discs.
+  /// @{
   float from_radius_px, to_radius_px;
+  /// @}
 };
 
 /// Pixels [x0, x1) of a row.
 struct RowSpan {
+  /// First column, and one past the last.
+  /// @{
   int x0, x1;
+  /// @}
 };
 
-/// For every row of a region the parts that a union of shapes covers. Eight rows in a row share
-/// theirs.
+/// The parts of each row of a region that a union of shapes covers. Each group of eight rows shares
+/// the spans at its middle.
 class RowSpans {
  public:
-  /// Empties all rows; no row is given more than `most` spans.
+  /// Removes all shapes. `most`: spans per row, at most; more are ignored.
   void reset(Rect region, std::size_t most);
+  /// Adds the flesh of a bone, grown by `margin_px`.
   void add(const Flesh& flesh, float margin_px);
+  /// Adds a rectangle.
   void add(Rect rect);
-  /// Sorts and joins the spans of each row: after the last add(), before row().
+  /// Sorts and joins the spans of each row: call it after the last add() and before row().
   void settle();
 
-  /// From left to right, apart from each other, within the region.
+  /// The spans of row `y` of the region, from left to right, with gaps between them.
   std::span<const RowSpan> row(int y) const;
 
  private:
@@ -40,8 +50,8 @@ class RowSpans {
 
   Rect region_;
   std::size_t most_ = 0;
-  std::vector<RowSpan> spans_;  ///< `most_` places for every eight rows,
-  std::vector<int> counts_;     ///< so many of them in use
+  std::vector<RowSpan> spans_;  ///< `most_` entries per group of rows
+  std::vector<int> counts_;     ///< entries in use, per group of rows
 };
 
 }  // namespace handcast::renderer

@@ -79,7 +79,7 @@ void RunMap::own_edges(int owner) {
   }
 }
 
-/// `above_end` is also where the newest row begins.
+/// The runs from `above_end` on are those of the newest row.
 void RunMap::join_with_row_above(int above_first, int above_end) {
   int above = above_first;
   for (int here = above_end; here < static_cast<int>(runs_.size()); ++here) {

@@ -9,24 +9,24 @@
 
 namespace handcast::renderer {
 
-/// A mask and the image it was made from. Its edge is where the grey value falls through the
-/// threshold; where the mask ends for another reason (the cut through the forearm, the image's
-/// border) it has none.
+/// A mask and the image it was made from, both borrowed. The edge of the silhouette is where the
+/// grey value falls below the threshold. There is no edge where the mask ends for another reason
+/// (the cut at the forearm, the border of the image).
 struct Silhouette {
-  GreyView image;
-  std::int64_t origin_ns = 0;  ///< of the image
-  GreyView mask;               ///< of the image's size; 255 hand
-  Rect region;                 ///< holds all of the mask
-  int threshold = 0;
+  GreyView image;              ///< the camera's image
+  std::int64_t origin_ns = 0;  ///< middle of its exposure
+  GreyView mask;               ///< of the size of the image; 255 hand, 0 not
+  Rect region;                 ///< contains all hand pixels of the mask
+  int threshold = 0;           ///< pixels above it are bright
 
-  /// The nearest pixel is hand; none outside the image is.
+  /// True if the pixel nearest to `at` (image px) is hand. False outside the image.
   bool lit(glm::vec2 at) const {
     const int x = static_cast<int>(std::floor(at.x + 0.5f)),
               y = static_cast<int>(std::floor(at.y + 0.5f));
     return x >= 0 && y >= 0 && x < mask.width && y < mask.height && mask.at(x, y) != 0;
   }
 
-  /// Grey value between the pixels, bilinear; the border goes on beyond the image.
+  /// Grey value at `at` (image px), bilinear between the pixels; clamped to the image.
   float grey(glm::vec2 at) const {
     const glm::vec2 held =
         glm::clamp(at, glm::vec2(0), glm::vec2(image.width - 1, image.height - 1));

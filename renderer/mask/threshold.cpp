@@ -9,17 +9,19 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kRimShare = 0.25;  ///< of the way from the dark mean to the bright one: skin that
-                                    ///< turns away from the lamp is hand too
-constexpr double kLeastContrast = 10;  ///< grey values between the means of the parts
-constexpr double kLeastSeparation =
-    0.7;  ///< share of the variance between the parts: one bell of noise has 0.64
-constexpr int kLeastNoise = 2, kNoises = 4;  ///< nothing is hand that is not this many standard
-                                             ///< deviations of the ground above it
+/// Position between the dark and the bright mean: skin that faces away from the lamp is hand too.
+constexpr double kRimShare = 0.25;
+/// Least difference between the means of the two classes.
+constexpr double kLeastContrast = 10;
+/// Least share of the variance between the classes. A single normal distribution has 0.64.
+constexpr double kLeastSeparation = 0.7;
+/// Hand is at least kNoises standard deviations of the background above it; a standard deviation
+/// counts as at least kLeastNoise.
+constexpr int kLeastNoise = 2, kNoises = 4;
 
 using Histogram = std::array<std::uint32_t, 256>;
 
-/// Two histograms in turn, so that equal neighbours do not wait for each other's count.
+/// Two histograms are filled alternately: equal neighbours do not wait for each other's count.
 Histogram histogram_of(GreyView image, Rect region) {
   Histogram even{}, odd{};
   for (int y = region.y0; y < region.y1; y += 4) {
@@ -35,7 +37,7 @@ Histogram histogram_of(GreyView image, Rect region) {
   return even;
 }
 
-/// Where the histogram's lower `share` ends.
+/// The grey value at which the lower `share` of `count` pixels ends.
 int percentile(const Histogram& histogram, double count, double share) {
   int grey = 0;
   for (double below = histogram[0]; below < share * count && grey < 255; below += histogram[grey])

@@ -4,10 +4,10 @@
 
 namespace handcast::renderer {
 
-/// A grey value between the dark and the bright part of `region` (Otsu 1979), from every second
-/// pixel of every fourth row: a quarter of the way from the dark part's mean to the bright one's,
-/// because a hand is darker at its rim, but clear of the ground's noise. 0 where the region has no
-/// two parts.
+/// A threshold between the dark and the bright pixels of `region`, which must be inside the image.
+/// The two classes are separated by Otsu's method (Otsu 1979) on every second pixel of every fourth
+/// row. The threshold is a quarter of the way from the dark mean to the bright mean, because a hand
+/// is darker at its edge, but above the noise of the dark pixels. 0 if there are not two classes.
 int choose_threshold(GreyView image, Rect region);
 
 }  // namespace handcast::renderer

@@ -15,26 +15,26 @@ namespace handcast::renderer {
 
 /// One hand of a finished frame, for scores and traces.
 struct FrameHand {
-  Side side = Side::left;
-  LandmarkPoints tracker{};    ///< P at the target time, undistorted camera px
-  LandmarkPoints corrected{};  ///< Q̂ (P if nothing corrects)
-  bool has_landmarks =
-      false;  ///< corrected follows what the filter knows, even if P is best left alone
+  Side side = Side::left;               ///< which hand it is
+  LandmarkPoints tracker{};             ///< P at the target time
+  LandmarkPoints corrected{};           ///< Q̂ at the target time, or P if nothing corrects it
+  bool has_landmarks = false;           ///< `corrected` is Q̂, even if the rung leaves it at P
   std::span<const glm::vec2> landings;  ///< per vertex: where its light lands, projector px
-  Rung rung = Rung::landmarks;
+  Rung rung = Rung::landmarks;          ///< the rung of this frame
 };
 
-/// One finished frame. Everything it points to is valid until the next render().
+/// One finished frame. Everything it refers to is valid until the next Pipeline::render() or
+/// Pipeline::track().
 struct Frame {
-  std::int64_t target_ns = 0;
-  msg::MadeFrom made_from;
-  Rect region;  ///< all light is inside
-  View<const std::uint32_t>
-      colour;  ///< the projector's size; defined inside `region`; alpha 0: dark
-  std::span<const FrameHand> hands;
-  int foldovers = 0;
-  FillCounts fill;
-  std::span<const msg::StageMark> stages;  ///< of this frame, on the host's clock
+  std::int64_t target_ns = 0;  ///< the time of its photons (T), CLOCK_MONOTONIC
+  msg::MadeFrom made_from;     ///< the newest inputs of this frame
+  Rect region;                 ///< contains all light
+  /// RGBA8 in the projector's size, alpha 0 where it is dark. Defined inside `region` only.
+  View<const std::uint32_t> colour;
+  std::span<const FrameHand> hands;        ///< the hands of this frame
+  int foldovers = 0;                       ///< triangles that the correction turned over
+  FillCounts fill;                         ///< pixels of the fill; 0 without an image
+  std::span<const msg::StageMark> stages;  ///< of this frame, CLOCK_MONOTONIC
 };
 
 }  // namespace handcast::renderer

@@ -12,7 +12,8 @@
 namespace handcast::renderer {
 namespace {
 
-/// With late registration, jumps are blended after it and not in the filter.
+/// The settings of the filter. With late registration, jumps are smoothed after it and not in the
+/// filter.
 config::Filter filter_of(const config::Cascade& settings) {
   config::Filter filter = settings.filter;
   if (registration_of(settings).method != config::RegisterMethod::none) filter.blend_ms = 0;
@@ -53,7 +54,7 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
   auto texture = load_content(content, *mesh);
   if (!texture) return tl::make_unexpected(texture.error());
   if (mesh->vertex_count() > msg::kMaxVertices)
-    log::warning("the hand has {} vertices: observers are told where the first {} land",
+    log::warning("the hand has {} vertices: observers receive the landings of the first {} only",
                  mesh->vertex_count(), msg::kMaxVertices);
   HandSurface surface(std::move(*mesh), settings.mask.forearm_mm);
   return HandPipeline(side, settings, calibration, std::move(surface), std::move(*texture),

@@ -20,76 +20,91 @@
 
 namespace handcast::renderer {
 
-/// What late registration does in a rig: nothing if a lower rung is set, or if the landmarks do not
-/// move with the tracker, whose prediction it corrects.
+/// The settings of late registration that take effect. The method is none if a lower rung is set,
+/// or if Q̂ does not move with P, whose prediction late registration corrects.
 config::Registration registration_of(const config::Cascade& settings);
 
-/// What the steps of one frame have made of one hand.
+/// One hand in one frame: the results of the steps so far.
 struct HandFrame {
-  Corrected corrected;             ///< by predict, filter and the ladder
-  RegisteredHand registered;       ///< by register
+  Corrected corrected;             ///< result of predict, filter and ladder
+  RegisteredHand registered;       ///< result of register
   float presence = 1;              ///< share of its light, 0..1
-  std::optional<Skinned> skinned;  ///< by skin; its landings are moved by correct
+  std::optional<Skinned> skinned;  ///< result of skin; its landings are moved by correct
 };
 
-/// The states of the steps for one hand, and the steps on them. The pipeline takes all hands
-/// through a step before the next one, for they share the camera's image. After a predict() that
-/// yields a frame, its steps come in this order; each may be left out.
+/// The steps for one hand, with their states. The pipeline does a step for all hands before the
+/// next step, because the hands share the camera's image. The steps after predict() are done in the
+/// order of their declaration, on the frame that it returned; each may be left out. One thread.
 class HandPipeline {
  public:
-  /// Errors: bad_config (no such hand file, no such content).
+  /// Loads the mesh and the content of a hand. `content`: see load_content(). `hand_file`: see
+  /// load_hand_or_default(). `oracle`: see make_landmark_filter(). Errors (bad_config): those of
+  /// load_hand() and load_content().
   static Result<HandPipeline> load(Side side, const config::Cascade& settings,
                                    const std::string& content, const std::string& hand_file,
                                    const calib::Calibration& calibration, LandmarkOracle oracle);
 
+  /// Which hand it is.
   Side side() const { return side_; }
 
+  /// Adds a tracker sample or a detection of this hand, with origin `origin_ns`, that arrived at
+  /// `now_ns`.
+  /// @{
   void push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose);
   void push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandLandmarks& seen);
-  /// Where the sensors' next samples should find the hand. Empty if it is not in sight.
+  /// @}
+  /// Where the sensors are expected to find the hand at `time_ns`: the pose in tracker space, and
+  /// the landmarks. Empty if the newest tracker sample is more than 0.2 s older.
+  /// @{
   std::optional<msg::HandPose> expected_pose(std::int64_t time_ns) const {
     return track_.recent_pose(time_ns);
   }
   std::optional<LandmarkPoints> expected_landmarks(std::int64_t time_ns) const {
     return landmarks_.expected_at(time_ns, track_);
   }
+  /// @}
 
-  /// Steps predict, filter and ladder: the hand and its landmarks at `target_ns`. `image_ns`: when
-  /// the image was exposed that the frame can be registered to. Empty if the hand is not in sight.
+  /// Steps predict, filter and ladder: the hand and its landmarks at `target_ns`. `image_ns`:
+  /// exposure of the image that the frame can be registered to. Empty if there is no hand, or its
+  /// light has faded out (Presence).
   std::optional<HandFrame> predict(std::int64_t now_ns, std::int64_t target_ns,
                                    std::optional<std::int64_t> image_ns);
 
-  /// Where the mask is to look for it in an image exposed at `image_ns`.
+  /// Where HandMask should search for the hand in an image exposed at `image_ns`. Borrows `frame`.
   HandMask::Expected expected(const HandFrame& frame, std::int64_t image_ns) const;
-  /// The newest image shows the hand, or does not (any more).
+  /// Sets whether the newest image shows the hand (HandMask::shows()).
   void set_shown(bool is_shown) { is_shown_ = is_shown; }
-  /// Takes the light from a hand that the newest image does not show, little by little.
+  /// Fades the light of a hand that the newest image does not show (Sight).
   void dim(HandFrame& frame, std::int64_t target_ns);
 
-  /// Empty if the hand is on a rung that does without registration.
+  /// The hand to be registered. Empty if its rung does without registration.
   std::optional<LateRegistration::Hand> to_register(const HandFrame& frame) const;
-  /// Step register: moves the landmarks by what the newest images know of the motion and the
-  /// tracker does not.
+  /// Step register: corrects the landmarks by the motion that the newest image shows.
   void register_motion(HandFrame& frame, LateRegistration& late, std::int64_t target_ns);
 
-  /// Step skin.
+  /// Step skin: poses the mesh. `shading`: see HandSurface::pose().
   void skin(HandFrame& frame, float shading);
-  /// P and Q̂ in projector px.
+  /// P and Q̂ in projector px: the landmarks before and after the correction.
+  /// @{
   LandmarkPoints from_px(const HandFrame& frame) const {
     return to_projector(frame.corrected.tracker);
   }
   LandmarkPoints to_px(const HandFrame& frame) const {
     return to_projector(frame.registered.landmarks);
   }
-  /// Step correct: moves the landings as the frame's rung does. Returns how many triangles stay
-  /// turned over.
+  /// @}
+  /// Step correct: moves the landings from P onto Q̂ by the model of the frame's rung. Returns the
+  /// number of triangles that remain turned over.
   int correct(HandFrame& frame);
-  /// Learns the person's widths from the mask of this hand in projector px.
+  /// Learns the widths of the person's fingers. `mask`: of this hand, projector px.
   void learn_widths(const HandFrame& frame, std::int64_t target_ns, GreyView mask);
 
-  /// What the painter is to draw, with its vertices at `position_px`.
+  /// The hand for the painter, with its vertices at `position_px`. Borrows the mesh and the
+  /// texture.
   DrawnHand drawn(const Skinned& skinned, std::span<const glm::vec2> position_px) const;
+  /// Bounds of the drawn vertices if they are at `position_px`.
   Rect bounds(std::span<const glm::vec2> position_px) const { return surface_.bounds(position_px); }
+  /// The hand for scores and traces.
   FrameHand described(const HandFrame& frame) const;
 
  private:

@@ -17,9 +17,10 @@ LandmarkOracle of_side(const Pipeline::Oracle& oracle, Side side) {
   return [oracle, side](std::int64_t time_ns) { return oracle(side, time_ns); };
 }
 
-/// From after it was heard of: believed, it would outdate all that comes until that time.
+/// True if an origin is implausibly later than the arrival. Such a message would make all messages
+/// until its origin count as older.
 bool is_early(std::int64_t now_ns, std::int64_t origin_ns) {
-  constexpr std::int64_t kMost_ns = 50'000'000;  // clocks are mapped to the host's, and not exactly
+  constexpr std::int64_t kMost_ns = 50'000'000;  // the map of sensor clocks is not exact
   return origin_ns > now_ns + kMost_ns;
 }
 
@@ -31,9 +32,9 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascad
                                                    const calib::Calibration& calibration,
                                                    const Oracle& oracle) {
   if (cascade.filter.method == config::FilterMethod::ideal && !oracle)
-    return fail(
-        Errc::bad_config,
-        "cascade.filter.method = \"ideal\" needs the truth, which only `handcast simulate` knows");
+    return fail(Errc::bad_config,
+                "cascade.filter.method = \"ideal\" needs the true landmarks, which only `handcast "
+                "simulate` has");
   auto left = HandPipeline::load(Side::left, cascade, content.left, hand.left, calibration,
                                  of_side(oracle, Side::left));
   if (!left) return fail_in("left hand", left.error());
@@ -131,8 +132,8 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
           stages_.marks()};
 }
 
-/// When the image is exposed that a frame for `target_ns` can be registered to: it is as old as the
-/// last frame's was.
+/// The exposure of the image that a frame for `target_ns` can be registered to. The image is
+/// assumed to be as old as that of the last frame.
 std::optional<std::int64_t> Pipeline::expected_image_ns(std::int64_t target_ns) const {
   if (!last_image_ || !late_.on()) return std::nullopt;
   return target_ns - (last_image_->target_ns - last_image_->origin_ns);
@@ -162,7 +163,7 @@ void Pipeline::dim(std::int64_t target_ns) {
   for (auto& [hand, frame] : hands_) hand->dim(frame, target_ns);
 }
 
-/// Takes in a new image, whose masks were found.
+/// Registers the hands in a new image, after find_masks().
 void Pipeline::register_late(const TimedImage& camera) {
   if (!late_.on()) return;
   late_hands_.clear();
@@ -181,8 +182,8 @@ Rect Pipeline::advance_masks(const TimedImage& camera) {
   return mask_.advance(expected_);
 }
 
-/// Moves the landings, and makes the grid if the drawing is to be warped. Returns what was turned
-/// over.
+/// Moves the landings, and makes the grid if the drawing will be warped. Returns the number of
+/// triangles that are turned over.
 int Pipeline::correct() {
   grid_.reset();
   if (settings_.correct.method == config::CorrectMethod::grid) return correct_by_grid();
@@ -192,7 +193,7 @@ int Pipeline::correct() {
   return foldovers;
 }
 
-/// One grid for all hands; a hand without landmarks holds its place in it.
+/// One grid for all hands. A hand without landmarks adds control points that do not move.
 int Pipeline::correct_by_grid() {
   if (std::ranges::none_of(
           hands_, [](const HandInFrame& each) { return each.frame.corrected.has_landmarks; }))

@@ -23,50 +23,55 @@
 
 namespace handcast::renderer {
 
-/// The cascade, whole: sensor messages in, one image for the projector out. It sees sensors only:
-/// the same messages at the same times give bit-identical light. The projector daemon and the
-/// simulator both call it. One thread.
+/// The whole cascade: sensor messages in, one image for the projector out. Its only inputs are
+/// sensor messages and the times of the calls: the same inputs give bit-identical light. Called by
+/// the projector daemon and by the simulator. One thread.
 class Pipeline {
  public:
-  /// Where the landmarks of a hand truly are (undistorted camera px): for the filter "ideal", in a
-  /// simulator.
+  /// The true landmarks of a hand at a time, undistorted camera px; empty if there are none. For
+  /// the filter "ideal", in a simulator.
   using Oracle = std::function<std::optional<LandmarkPoints>(Side side, std::int64_t time_ns)>;
 
-  /// Errors: bad_config (hand file, content, "ideal" without an oracle).
+  /// Loads both hands and their contents. Errors (bad_config): a hand file or a content cannot be
+  /// loaded; the filter is "ideal" and there is no oracle.
   static Result<std::unique_ptr<Pipeline>> create(const config::Cascade& cascade,
                                                   const config::Content& content,
                                                   const config::Hand& hand,
                                                   const calib::Calibration& calibration,
                                                   const Oracle& oracle = {});
 
-  /// A message arrived at `now_ns`. One whose origin is more than 50 ms after that is dropped: it
-  /// would outdate all that come until then.
+  /// Takes a message that arrived at `now_ns`. A message with an origin more than 50 ms later than
+  /// that is dropped: all messages until its origin would count as older.
+  /// @{
   void push(std::int64_t now_ns, const msg::HandPoses& reported);
   void push(std::int64_t now_ns, const msg::Landmarks& reported);
+  /// @}
 
-  /// The first half of render(): where the hands and their landmarks will be at `target_ns`,
-  /// without drawing. A caller that skips frames calls it for those, so that filters with a memory
-  /// of their output see every frame. Landings are empty.
+  /// The first half of render(): the hands and their landmarks at `target_ns`, without drawing.
+  /// Call it for frames that are not drawn, because filters remember their output of every frame.
+  /// Landings are empty. Valid until the next call of track() or render().
   std::span<const FrameHand> track(std::int64_t now_ns, std::int64_t target_ns);
 
-  /// A new image of a frame that is not drawn: what moves between the images is followed in all of
-  /// them. Call it before that frame's track(); render() looks at its own image. Not needed if
-  /// looks() is false. An image from more than 50 ms after the frame before is not looked at.
+  /// Takes the image of a frame that is not drawn, because late registration follows the hands
+  /// through all images. Call it before track() of that frame; render() takes its own image. Not
+  /// needed if looks() is false. Ignores an image that is not new, or is more than 50 ms later than
+  /// the `now_ns` of the last frame.
   void look(const TimedImage& camera);
+  /// True if look() has an effect.
   bool looks() const { return late_.on(); }
 
-  /// Draws the frame whose light will be seen at `target_ns`. `camera`: the newest image (image
-  /// px), or none; one from more than 50 ms after `now_ns` counts as none. No hand in sight gives a
-  /// dark frame with an empty region.
+  /// Draws the frame whose photons arrive at `target_ns`. `camera`: the newest image, or none; an
+  /// image more than 50 ms later than `now_ns` is ignored. Without hands the frame is dark and its
+  /// region empty.
   Frame render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera);
 
  private:
-  /// One hand in sight and what the frame has made of it so far.
+  /// One hand of the frame and the results of the steps so far.
   struct HandInFrame {
     HandPipeline* hand;
     HandFrame frame;
   };
-  /// When the last drawn frame was for, and when its image was exposed.
+  /// The target time of a frame and the exposure of its image.
   struct ImageUse {
     std::int64_t target_ns, origin_ns;
   };
@@ -100,13 +105,13 @@ class Pipeline {
   LateRegistration late_;
   std::unique_ptr<Painter> painter_;
   StageClock stages_;
-  msg::MadeFrom newest_;                ///< the newest inputs; of images the last frame's
+  msg::MadeFrom newest_;                ///< the newest messages, and the image of the last frame
   std::int64_t now_ns_ = 0;             ///< of the last frame
   std::optional<ImageUse> last_image_;  ///< of the last drawn frame, if it had an image
 
-  // One frame's; members, so that their memory is kept.
-  std::vector<HandInFrame> hands_;            ///< those in sight
-  std::vector<HandMask::Expected> expected_;  ///< beside them
+  // Of one frame; members so that their memory is reused.
+  std::vector<HandInFrame> hands_;            ///< the hands of the frame
+  std::vector<HandMask::Expected> expected_;  ///< one per entry of hands_
   std::vector<LateRegistration::Hand> late_hands_;
   std::vector<DrawnHand> drawn_;
   std::optional<WarpGrid> grid_;

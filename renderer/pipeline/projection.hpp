@@ -8,9 +8,9 @@
 
 namespace handcast::renderer {
 
-/// Writes a finished frame as the message that observers read: the pixels of its lit region into
-/// the tail, its landings, its times and origins. `tail_bytes` is the room after the struct; a
-/// region that does not fit is left out. header.frame_id and lit_ns are the caller's to set.
+/// Writes a finished frame as the message that observers read: its times, origins and landings, and
+/// the pixels of its region into the tail. `tail_bytes`: the space after the struct; a region that
+/// does not fit is left out. The caller sets header.frame_id and lit_ns.
 void write_projection(const Frame& frame, msg::Projection& projection, std::size_t tail_bytes);
 
 }  // namespace handcast::renderer

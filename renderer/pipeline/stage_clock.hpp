@@ -7,21 +7,25 @@
 
 namespace handcast::renderer {
 
-/// Marks the stages of one frame as they end; each begins where the one before ended.
+/// Marks the stages of one frame, each of which begins when the one before ends. CLOCK_MONOTONIC.
+/// One thread.
 class StageClock {
  public:
+  /// Begins a frame and drops the marks of the last one.
   void start() {
     marks_.clear();
     start_ns_ = last_ns_ = now_ns();
   }
+  /// Ends the stage that runs. `detail`: see msg::StageMark.
   void mark(msg::Stage stage, std::uint32_t detail = 0) {
     const std::int64_t end_ns = now_ns();
     marks_.push_back({stage, detail, last_ns_, end_ns});
     last_ns_ = end_ns;
   }
-  /// The whole frame, from start() to here.
+  /// Adds the mark of the whole frame, from start() to now.
   void finish() { marks_.push_back({msg::Stage::frame, 0, start_ns_, now_ns()}); }
 
+  /// The marks of the frame, in the order of their ends.
   const std::vector<msg::StageMark>& marks() const { return marks_; }
 
  private:

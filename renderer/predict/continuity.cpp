@@ -11,15 +11,15 @@ namespace handcast::renderer {
 namespace {
 
 constexpr std::int64_t kShortestSilence_ns = 25'000'000;
-constexpr std::int64_t kLongGap_ns = 50'000'000;  ///< across this there is no velocity
+constexpr std::int64_t kLongGap_ns = 50'000'000;  ///< no velocity is derived across a longer gap
 constexpr double kMostIntervals = 2.5;
 constexpr float kSlack_m = 8e-3f;       ///< noise of the samples
-constexpr float kLeastLimit_m_s2 = 60;  ///< a hand that rests may start like this,
-constexpr float kLimitOfUsual = 6;      ///< and one that does not may do this times what it did
-constexpr float kFastest_m_s = 5;       ///< where its speed is not known
+constexpr float kLeastLimit_m_s2 = 60;  ///< largest acceleration of a hand that rested
+constexpr float kLimitOfUsual = 6;      ///< largest acceleration, in multiples of the usual one
+constexpr float kFastest_m_s = 5;       ///< largest speed of a hand whose velocity is unknown
 constexpr float kResting_m_s = 20e-3f;
-constexpr float kLearning = 0.1f;
-constexpr int kFewestJoints = 4;  ///< a finger
+constexpr float kLearning = 0.1f;  ///< share of a new sample in the means
+constexpr int kFewestJoints = 4;   ///< the joints of one finger
 
 glm::vec3 position(const msg::HandPose& pose, int joint) {
   const auto& [x, y, z] = pose.joints[joint].position_m;
@@ -46,8 +46,8 @@ bool Continuity::broken(const Sample* before, const Sample& last, const Sample& 
 
   const float step_s = seconds_between(last, next),
               before_s = before ? seconds_between(*before, last) : 1;
-  const float square_s2 =
-      0.5f * step_s * (step_s + before_s);  // displacement = acceleration times this
+  // displacement = acceleration * square_s2
+  const float square_s2 = 0.5f * step_s * (step_s + before_s);
   const float limit_m =
       kSlack_m + (before ? std::max(kLeastLimit_m_s2, kLimitOfUsual * usual_m_s2_) * square_s2
                          : kFastest_m_s * step_s);

@@ -6,30 +6,34 @@
 
 namespace handcast::renderer {
 
-/// Tells a tracker that re-places its hand (after a freeze, a swap, a wrong finger) from a hand
-/// that moves. Judged by what the samples before were like: a hand that has been shaken for a while
-/// may be shaken on.
+/// Distinguishes a tracker that jumps (after a freeze, a swap of hands, a wrong finger) from a hand
+/// that moves. The limits adapt to the samples of one hand: a hand that has been shaken for a while
+/// may accelerate more. One thread.
 class Continuity {
  public:
+  /// One sample of the tracker.
   struct Sample {
-    std::int64_t origin_ns;
-    msg::HandPose pose;
+    std::int64_t origin_ns;  ///< when it was taken, CLOCK_MONOTONIC
+    msg::HandPose pose;      ///< tracker space
   };
 
-  /// Whether `next` cannot be where the motion from `before` (nullptr: unknown) over `last` led;
-  /// learns from it where it can.
+  /// Returns true if the tracker jumped between `last` and `next`: after a gap of more than 50 ms
+  /// and more than five usual intervals, or if at least four joints are too far from where the
+  /// motion from `before` to `last` leads. `before` is nullptr if there is no earlier sample.
+  /// Learns the usual interval and acceleration.
   bool broken(const Sample* before, const Sample& last, const Sample& next);
 
-  /// Whether `next` shows a hand that moved a moment ago stopped dead to the last bit: then nothing
-  /// was measured.
+  /// Returns true if `next` equals `last` bit by bit although the hand moved faster than 20 mm/s
+  /// from `before` to `last`: the tracker repeats a pose that it did not measure.
   static bool frozen(const Sample* before, const Sample& last, const msg::HandPose& next);
 
-  /// After which a tracker is held for silent.
+  /// The tracker counts as silent after this long without a sample: 2.5 usual intervals, at least
+  /// 25 ms.
   std::int64_t patience_ns() const;
 
  private:
-  std::int64_t interval_ns_ = 9'000'000;  ///< as samples usually follow each other
-  float usual_m_s2_ = 0;                  ///< by how much joints usually miss an even motion
+  std::int64_t interval_ns_ = 9'000'000;  ///< mean interval between samples
+  float usual_m_s2_ = 0;                  ///< mean deviation from constant velocity
 };
 
 }  // namespace handcast::renderer

@@ -10,10 +10,10 @@ namespace {
 using msg::Side;
 
 constexpr std::int64_t kPatience_ns = 400'000'000;
-constexpr float kFar_m = 0.05f,
-                kFar_px = 60;  ///< hands closer to each other than this are not told apart
-constexpr float kCloser =
-    0.3f;  ///< of the way to its own place: so near must it be to the other hand's
+/// Hands closer to their expected places than this are accepted as they are.
+constexpr float kFar_m = 0.05f, kFar_px = 60;
+/// Sides are exchanged if this share of the distance remains with the sides exchanged.
+constexpr float kCloser = 0.3f;
 
 Side other(Side side) { return side == Side::left ? Side::right : Side::left; }
 
@@ -37,8 +37,8 @@ float distance(const msg::HandLandmarks& seen, const LandmarkPoints& expected) {
   return count ? sum_px / static_cast<float>(count) : 0.0f;
 }
 
-/// Whether the hands fit each other's places far better than their own. A place that is not known
-/// is this far: `far` / kCloser.
+/// Returns true if the hands are far from their own places and much closer to each other's. The
+/// distance to an unknown place is taken to be `far` / kCloser.
 template <class Message, class Place>
 bool exchanged(const Message& reported, const HandSides::BySide<Place>& expected, float far) {
   const auto to_place = [&](const auto& hand, Side side) {

@@ -10,21 +10,24 @@
 
 namespace handcast::renderer {
 
-/// Keeps each hand's identity: sensors take a left hand for a right one now and then, for a moment.
-/// A hand that is reported where the other one should be is the other one. A sensor that goes on
-/// saying so is believed after a while; so it is where the hands are too close together to tell.
+/// Corrects exchanged sides: sensors now and then report a left hand as the right one for a moment.
+/// The sides of a message are exchanged if its hands are where the other hands are expected. A
+/// sensor that contradicts the expectation for 400 ms is accepted as it is; so is one whose hands
+/// are too close together to be distinguished. One thread.
 class HandSides {
  public:
+  /// Where each hand is expected, indexed by Side; empty if there is no such hand.
   template <class Place>
-  using BySide =
-      std::array<std::optional<Place>, 2>;  ///< where the hands should be; nothing: not in sight
+  using BySide = std::array<std::optional<Place>, 2>;
 
-  /// The same hands, each called what it is.
+  /// The message with corrected sides. `expected`: the hands at the message's origin time.
+  /// @{
   msg::HandPoses named(const msg::HandPoses& reported, const BySide<msg::HandPose>& expected);
   msg::Landmarks named(const msg::Landmarks& reported, const BySide<LandmarkPoints>& expected);
+  /// @}
 
  private:
-  /// How long one sensor has been contradicting itself.
+  /// Limits how long the sides of one sensor are exchanged.
   class Doubt {
    public:
     bool justified(std::int64_t time_ns, bool exchanged);

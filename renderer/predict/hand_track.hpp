@@ -11,40 +11,43 @@
 
 namespace handcast::renderer {
 
-/// One hand at the time of the photons, as the tracker alone has it.
+/// One hand at the time of the photons (T), from the tracker alone.
 struct Predicted {
   msg::HandPose pose;          ///< tracker space
-  LandmarkPoints landmarks{};  ///< P: the pose's landmarks in the camera
-  bool is_silent = false;      ///< the tracker has said nothing credible for a while
+  LandmarkPoints landmarks{};  ///< P: the landmarks of the pose in the camera
+  bool is_silent = false;      ///< no sample for a while, or a jump too recent for a velocity
 };
 
-/// Step "predict" of the cascade and its state: the recent tracker samples of one hand, asked for
-/// at a time. One thread.
+/// Step "predict" and its state: the recent tracker samples of one hand, from which a pose is
+/// computed for any time. See `docs/method.md#predict`. One thread.
 class HandTrack {
  public:
+  /// Without samples. Copies both arguments.
   HandTrack(const config::Predict& settings, const calib::Calibration& calibration)
       : calibration_(calibration), history_(settings) {}
 
-  /// A tracker sample of this hand, taken at `origin_ns`, arrived at `now_ns`.
+  /// Adds a tracker sample of this hand that was taken at `origin_ns` and arrived at `now_ns`.
   PoseHistory::Pushed push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose);
 
-  /// The hand at `target_ns`. Empty if the hand is not in sight.
+  /// The hand at `target_ns`. Empty if there is no pose (see pose_at()) or no P for it (see
+  /// project_landmarks()).
   std::optional<Predicted> predict(std::int64_t now_ns, std::int64_t target_ns) const;
 
-  /// The pose at any time, as far as it is known by now: interpolated, predicted, or held.
+  /// The pose at `time_ns` from the samples so far: interpolated, predicted, or held. Empty if
+  /// there is no sample or the newest one is more than 0.9 s older than `time_ns`.
   std::optional<msg::HandPose> pose_at(std::int64_t time_ns) const;
-  /// P of pose_at().
+  /// P of pose_at(); empty if there is none.
   std::optional<LandmarkPoints> landmarks_at(std::int64_t time_ns) const;
-  /// The same as pose_at(), but empty if the tracker has been silent for 0.2 s.
+  /// The same as pose_at(), but empty if the newest sample is more than 0.2 s older.
   std::optional<msg::HandPose> recent_pose(std::int64_t time_ns) const {
     return history_.at(time_ns);
   }
-  /// P of recent_pose().
+  /// P of recent_pose(); empty if there is none.
   std::optional<LandmarkPoints> recent_landmarks(std::int64_t time_ns) const;
 
-  /// The tracker jumped at this time: poses before it are guesses.
+  /// When the tracker last jumped. Poses at earlier times are guesses.
   std::int64_t begins_ns() const { return history_.begins_ns(); }
-  /// Time of the newest sample; later poses are predicted.
+  /// Time of the newest sample, 0 if there is none. Later poses are predicted.
   std::int64_t newest_ns() const { return history_.newest_ns(); }
 
  private:

@@ -9,8 +9,8 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kLongGap_ns =
-    100'000'000;  ///< after this long there is nothing to blend with
+/// A last frame farther away than this is not blended with.
+constexpr std::int64_t kLongGap_ns = 100'000'000;
 
 }  // namespace
 

@@ -7,24 +7,27 @@
 
 namespace handcast::renderer {
 
-/// Takes the jumps out of a row of landmarks: what a new input changes is held back, up to
-/// `blend_px`, and let in again with exp(-t / blend_ms). Motion is not delayed: only what the
-/// present knowledge says of the last frame is held against what was known then. Once a frame one
-/// of smooth() and follow() is called; a row may go over from the one to the other.
+/// Smooths the jumps that new inputs cause in a sequence of landmarks. A jump is held back, up to
+/// `blend_px`, and released with exp(-t / blend_ms). Motion is not delayed: a jump is the
+/// difference between two estimates for one time, without and with the new input. Call either
+/// smooth() or follow() once per frame; a sequence may switch between them. One thread.
 class JumpBlend {
  public:
+  /// Without a last frame. `blend_ms` 0: nothing is held back.
   JumpBlend(double blend_ms, double blend_px)
       : blend_ms_(static_cast<float>(blend_ms)), blend_px_(static_cast<float>(blend_px)) {}
 
-  /// When the last frame was for; nothing where it is too long ago to be blended with.
+  /// Target time of the last frame. Empty if there is none within 100 ms of `target_ns`.
   std::optional<std::int64_t> last_ns(std::int64_t target_ns) const;
-  /// `last_known`: where the landmarks of the last frame should have been, by what is known now.
+  /// The landmarks for `target_ns`: `wanted`, with the jump held back. `last_known`: the landmarks
+  /// for last_ns() as they are known now. The jump is their difference from the last frame's.
   LandmarkPoints smooth(std::int64_t target_ns, const LandmarkPoints& wanted,
                         const LandmarkPoints& last_known);
-  /// Where nobody knows that: without `news` there is no jump, with news the jump is against where
-  /// the landmarks were heading.
+  /// The same if the landmarks for last_ns() are not known anew. With `news` (an input arrived
+  /// since the last frame) the jump is the difference between `wanted` and the last frame
+  /// extrapolated at constant velocity; without `news` there is no jump.
   LandmarkPoints follow(std::int64_t target_ns, const LandmarkPoints& wanted, bool news);
-  /// What is held back is let in at once.
+  /// Releases at once what is held back.
   void let_in() { held_back_ = {}; }
 
  private:
@@ -34,8 +37,8 @@ class JumpBlend {
 
   float blend_ms_, blend_px_;
   std::optional<std::int64_t> last_ns_;
-  LandmarkPoints last_{};            ///< wanted then
-  LandmarkPoints velocity_px_ms_{};  ///< of that, jumps apart
+  LandmarkPoints last_{};            ///< `wanted` of the last frame
+  LandmarkPoints velocity_px_ms_{};  ///< of `wanted`, without its jumps
   LandmarkPoints held_back_{};
 };
 

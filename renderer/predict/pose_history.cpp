@@ -14,13 +14,14 @@ namespace {
 
 using msg::Joint;
 
-constexpr std::int64_t kShortestBase_ns =
-    2'000'000;  ///< samples closer than this give no velocity, only noise
-constexpr std::int64_t kStillWindow_ns =
-    50'000'000;  ///< over which a joint is judged still, and averaged if it is
-constexpr float kTurnLever_m =
-    0.05f;  ///< turns a rotation into the movement of skin this far from the joint
-constexpr float kMostTurn_rad = 1.0f;  ///< an orientation is never extrapolated further
+/// Two samples closer than this give a velocity that is mostly noise.
+constexpr std::int64_t kShortestBase_ns = 2'000'000;
+/// Window over which the speed and the mean of a joint are taken.
+constexpr std::int64_t kStillWindow_ns = 50'000'000;
+/// A rotation counts as the movement of skin at this distance from the joint.
+constexpr float kTurnLever_m = 0.05f;
+/// An orientation is extrapolated by at most this angle.
+constexpr float kMostTurn_rad = 1.0f;
 
 glm::vec3 position(const Joint& joint) {
   return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};
@@ -54,13 +55,14 @@ msg::HandPose between(const msg::HandPose& before, const msg::HandPose& after, f
   return pose;
 }
 
-/// Angle from `a` to `b`, radians. The chord, not the arc cosine, which is noise for small turns.
+/// Angle between `a` and `b`, radians. From the chord: the arc cosine is inaccurate for small
+/// angles.
 float angle_between(const glm::quat& a, const glm::quat& b) {
   const glm::quat chord = on_side_of(a, b) - a;
   return 4 * std::asin(std::min(1.0f, 0.5f * glm::length(chord)));
 }
 
-/// `newest` turned on by `share` times the turn from `earlier` to it.
+/// `newest` rotated further by `share` times the rotation from `earlier` to `newest`.
 glm::quat turned_on(const glm::quat& earlier, const glm::quat& newest, float share) {
   const glm::quat turn = on_side_of({1, 0, 0, 0}, newest * glm::conjugate(earlier));
   const glm::vec3 sine_axis{turn.x, turn.y, turn.z};
@@ -80,16 +82,18 @@ bool is_finite(const msg::HandPose& pose) {
   });
 }
 
-constexpr float kHandNoise_m_s2 =
-    10;  ///< acceleration that tracker noise alone makes: of the mean of all joints
-constexpr float kJointNoise_m_s2 = 40;  ///< of one joint against that mean
-constexpr float kMostBend_m = 0.02f;    ///< acceleration never moves a joint further
+// Accelerations caused by tracker noise.
+constexpr float kHandNoise_m_s2 = 10;   ///< of the mean of all joints
+constexpr float kJointNoise_m_s2 = 40;  ///< of one joint relative to that mean
+/// The acceleration displaces a joint by at most this much.
+constexpr float kMostBend_m = 0.02f;
 
 glm::vec3 beyond_noise(const glm::vec3& acceleration, float noise) {
   return acceleration * share_beyond_noise(glm::dot(acceleration, acceleration), noise);
 }
 
-/// Accelerations of the joints from three samples, oldest first, `first_s` and `second_s` apart.
+/// Accelerations of the joints beyond noise, from three samples, oldest first, `first_s` and
+/// `second_s` apart.
 std::array<glm::vec3, msg::kJoints> accelerations(const msg::HandPose& a, const msg::HandPose& b,
                                                   const msg::HandPose& c, float first_s,
                                                   float second_s) {
@@ -192,8 +196,9 @@ const PoseHistory::Sample* PoseHistory::earlier_than(const Sample& sample) const
   return nullptr;
 }
 
-/// Two-point velocity is that of the middle between the points: against it a constant acceleration
-/// a bends the way by a h (h + dt) / 2.
+/// Displacements by the acceleration `ahead_ns` (h) after the newest sample. The velocity of two
+/// samples is that of the middle between them, dt/2 before the newest one, so a constant
+/// acceleration a adds a h (h + dt) / 2.
 std::array<glm::vec3, msg::kJoints> PoseHistory::bends_m(const Sample& newest, const Sample& base,
                                                          std::int64_t ahead_ns) const {
   std::array<glm::vec3, msg::kJoints> bends{};

@@ -14,50 +14,57 @@
 
 namespace handcast::renderer {
 
-/// The recent poses of one hand, asked for at a time: interpolated inside the history, predicted
-/// beyond it up to a stated limit. Positions are interpolated linearly, orientations by normalised
-/// quaternion blending. Samples may come late or out of order.
+/// The recent poses of one hand as a function of time: interpolated between the samples, predicted
+/// after the newest one up to a limit. Positions are interpolated linearly, orientations by
+/// normalised linear interpolation of quaternions. Samples may arrive late or out of order. One
+/// thread.
 class PoseHistory {
  public:
-  /// `span_ns`: how far back samples are kept.
+  /// Without samples. `span_ns`: samples older than the newest by more than this are dropped.
   explicit PoseHistory(const config::Predict& settings, std::int64_t span_ns = 250'000'000);
 
-  /// What a sample was.
+  /// How a sample relates to the ones before it.
   enum class Pushed {
-    goes_on,       ///< the hand moved
-    begins_anew,   ///< the tracker jumped, or came back: what was before is forgotten, and no
-                   ///< velocity reaches across
-    not_measured,  ///< nothing is new: a number that is not finite, a frozen pose, older than where
-                   ///< the history begins
+    goes_on,  ///< it continues the motion
+    /// The tracker jumped, or returned after a gap. Older samples are dropped; no velocity is
+    /// derived across the jump.
+    begins_anew,
+    /// The sample is ignored: it is not finite, repeats a pose (Continuity::frozen()), or is older
+    /// than begins_ns().
+    not_measured,
   };
-  /// A sample with the time of an older one replaces it.
+  /// Adds a sample; it replaces one with the same time.
   Pushed push(std::int64_t origin_ns, const msg::HandPose& pose);
 
+  /// True if there is no sample.
   bool empty() const { return samples_.empty(); }
-  std::int64_t newest_ns() const;                        ///< 0 where empty
-  std::int64_t begins_ns() const { return begins_ns_; }  ///< of what is known nothing is older
-  bool settled() const {
-    return since_jump_ >= kSettled;
-  }  ///< its velocity is known again after a jump
-  std::int64_t patience_ns() const {
-    return continuity_.patience_ns();
-  }  ///< after this long without a sample the tracker is silent
+  /// Time of the newest sample; 0 if there is none.
+  std::int64_t newest_ns() const;
+  /// Time of the last jump, the lowest value if there was none. No sample is older.
+  std::int64_t begins_ns() const { return begins_ns_; }
+  /// False after a jump until three samples have arrived: the velocity is not known yet.
+  bool settled() const { return since_jump_ >= kSettled; }
+  /// The tracker counts as silent after this long without a sample.
+  std::int64_t patience_ns() const { return continuity_.patience_ns(); }
 
-  /// The hand at `time_ns`; nothing where the history is empty, or ends more than `lost_ns` before
-  /// `time_ns`. Before the oldest sample: the oldest. Beyond the newest: by
-  /// config::Predict::method, joint by joint. "velocity" goes on as between the two newest samples;
-  /// a joint slower than still_mm_s over the last 50 ms rests at its mean over them instead (noise
-  /// of the samples does not reach the light), fading over to motion up to twice that speed.
-  /// "acceleration" bends that way by the acceleration of the three newest samples, as far as it
-  /// stands out of the tracker's noise: of the whole hand first, whose mean is quieter, then of
-  /// each joint against it.
+  /// The pose at `time_ns`, tracker space. Empty if there is no sample or the newest one is more
+  /// than `lost_ns` older. Before the oldest sample: the oldest. After the newest: by
+  /// config::Predict::method, joint by joint, no farther than limit_ms:
+  ///
+  /// - hold: the newest pose.
+  /// - velocity: the constant velocity of the two newest samples. A joint that was slower than
+  ///   still_mm_s over the last 50 ms rests at its mean over them instead, so that a still hand is
+  ///   drawn without the noise of the samples; up to twice that speed the two are blended.
+  /// - acceleration: the same with the acceleration of the three newest samples, as far as it
+  ///   exceeds the noise of the tracker (share_beyond_noise()): that of the whole hand, whose mean
+  ///   has less noise, plus that of each joint relative to the hand.
   std::optional<msg::HandPose> at(std::int64_t time_ns, std::int64_t lost_ns = 200'000'000) const;
 
  private:
   using Sample = Continuity::Sample;
-  /// What the recent samples say of one joint.
+  /// Motion of one joint over the last 50 ms.
   struct Stillness {
-    float speed_m_s = 0;  ///< largest displacement from the newest sample, over the window's length
+    float speed_m_s = 0;  ///< largest distance from the newest sample, divided by the 50 ms
     glm::vec3 mean_m{0};
     glm::quat mean_turn{1, 0, 0, 0};
   };
@@ -67,18 +74,19 @@ class PoseHistory {
   Stillness stillness(int joint) const;
   void judge_stillness();
   msg::HandPose predicted(std::int64_t time_ns) const;
-  const Sample* earlier_than(
-      const Sample& sample) const;  ///< the newest that is far enough before it to tell a velocity
+  /// The newest sample that is long enough before `sample` for a velocity; nullptr if there is
+  /// none.
+  const Sample* earlier_than(const Sample& sample) const;
   std::array<glm::vec3, msg::kJoints> bends_m(const Sample& newest, const Sample& base,
                                               std::int64_t ahead_ns) const;
 
   config::Predict settings_;
   std::int64_t span_ns_;
   std::deque<Sample> samples_;
-  std::array<Stillness, msg::kJoints> stillness_;  ///< as of samples_
+  std::array<Stillness, msg::kJoints> stillness_;  ///< of samples_
   Continuity continuity_;
   std::int64_t begins_ns_ = std::numeric_limits<std::int64_t>::min();
-  int since_jump_ = kSettled;  ///< samples, up to kSettled
+  int since_jump_ = kSettled;  ///< samples since the last jump, counted up to kSettled
 };
 
 }  // namespace handcast::renderer

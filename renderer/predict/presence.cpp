@@ -7,9 +7,10 @@ namespace handcast::renderer {
 namespace {
 
 constexpr std::int64_t kFade_ns = 100'000'000, kReturn_ns = 30'000'000;
-constexpr std::int64_t kHeld_ns = 100'000'000;     ///< the tracker's pose alone
-constexpr std::int64_t kCarried_ns = 800'000'000;  ///< with landmarks
-constexpr std::int64_t kSeen_ns = 80'000'000;      ///< landmarks alone
+// Ages up to which data gives full light.
+constexpr std::int64_t kHeld_ns = 100'000'000;     ///< a tracker sample without landmarks
+constexpr std::int64_t kCarried_ns = 800'000'000;  ///< a tracker sample with landmarks
+constexpr std::int64_t kSeen_ns = 80'000'000;      ///< the landmarks
 
 static_assert(kCarried_ns + kFade_ns == Presence::kLongest_ns);
 

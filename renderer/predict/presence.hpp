@@ -5,47 +5,51 @@
 
 namespace handcast::renderer {
 
-/// A level of light that falls as it is wanted, and comes back in 30 ms. Target times ascend.
+/// A share of light, 0..1, that falls at once and rises from 0 to 1 in 30 ms. Target times must
+/// ascend.
 class Dimmer {
  public:
+  /// The share for `target_ns`: `wanted`, or less if it is still rising. The first one is `wanted`.
   float towards(std::int64_t target_ns, float wanted);
+  /// Sets the share to 0.
   void out(std::int64_t target_ns);
 
  private:
   float level_ = 1;
-  std::optional<std::int64_t> last_ns_;  ///< nothing: the first frame has the hand as it is
+  std::optional<std::int64_t> last_ns_;  ///< empty before the first frame
 };
 
-/// How much of its light a hand is given, 1..0. What cannot be saved fades out: when the tracker
-/// has been silent for a tenth of a second the light goes in another; landmarks that are still seen
-/// carry it for most of a second. It comes back in 30 ms.
+/// The share of its light that a hand gets, by the age of its sensor data. While the tracker is
+/// silent, the light fades between 100 and 200 ms after the last sample. Landmarks that are at most
+/// 80 ms old keep it, and it fades between 800 and 900 ms. It returns in 30 ms.
 class Presence {
  public:
-  static constexpr std::int64_t kLongest_ns =
-      900'000'000;  ///< after a silence of this length the light is out, landmarks or not
+  /// The light is out after a silence of the tracker of this length, with or without landmarks.
+  static constexpr std::int64_t kLongest_ns = 900'000'000;
 
-  /// `sampled_ns`: the tracker's newest sample. `seen_ns`: of the landmarks that carry the hand, if
-  /// any do. Target times ascend.
+  /// The share for `target_ns`, 0..1. `sampled_ns`: time of the tracker's newest sample. `seen_ns`:
+  /// origin of the newest detection; empty if no landmarks are used. Target times must ascend.
   float at(std::int64_t target_ns, std::int64_t sampled_ns, std::optional<std::int64_t> seen_ns);
-  /// The hand is not in sight.
+  /// There is no hand at `target_ns`: its light is out.
   void gone(std::int64_t target_ns);
 
  private:
   Dimmer light_;
 };
 
-/// The same for the camera's eye: a hand that the mask does not show any more (it left the image,
-/// something dark came before it, the lamp went out) fades in a tenth of a second. A hand that was
-/// never seen is dark.
+/// The share of its light that a hand gets, by what the camera shows. A hand that the mask no
+/// longer shows (it left the image, something dark covers it, the lamp went out) fades out in 100
+/// ms. A hand that was never shown is dark.
 class Sight {
  public:
-  /// `seen`: the newest image shows the hand. Target times ascend.
+  /// The share for `target_ns`, 0..1. `seen`: the newest image shows the hand. Target times must
+  /// ascend.
   float at(std::int64_t target_ns, bool seen);
-  /// The tracker has no hand.
+  /// There is no hand at `target_ns`: its light is out.
   void gone(std::int64_t target_ns);
 
  private:
-  std::optional<std::int64_t> seen_ns_;  ///< the last frame's target time for which it was seen
+  std::optional<std::int64_t> seen_ns_;  ///< target time of the last frame that showed it
   Dimmer light_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace handcast::renderer {
 
-/// P: where the camera sees the 21 landmarks of a pose in tracker space (undistorted camera px).
-/// Empty if one of them is behind the camera or nearer than 5 cm.
+/// P: the 21 landmarks of a pose (tracker space), projected into the camera. Empty if one of them
+/// is behind the camera or less than 5 cm in front of it.
 std::optional<LandmarkPoints> project_landmarks(const calib::Calibration& calibration,
                                                 const msg::HandPose& pose);
 

@@ -7,14 +7,14 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kSpacing_px = 6;  ///< between the rows, and between the columns, whose ends are taken
-constexpr int kMargin_px = 3;   ///< closer to the image's border nothing is taken
-constexpr float kSolid_px =
-    2;  ///< so far on either side of an edge there is hand, and none: specks have no edge
-constexpr float kLeastSlope = 8;  ///< of the grey values over the slope's window; less is no edge
+constexpr int kSpacing_px = 6;  ///< between the rows, and between the columns, that are searched
+constexpr int kMargin_px = 3;   ///< no points are taken closer to the border of the image
+/// An edge has hand up to this distance on one side and none on the other. Specks have no edge.
+constexpr float kSolid_px = 2;
+constexpr float kLeastSlope = 8;  ///< least sum of the differences in outward()
 
-/// Away from the bright side; zero where there is none. Differences over four pixels in five rows
-/// and columns.
+/// Unit vector away from the bright side, from differences over four pixels in five rows and
+/// columns. Zero if they are too small.
 glm::vec2 outward(GreyView image, int x, int y) {
   int across = 0, down = 0;
   for (int i = -2; i <= 2; ++i) {
@@ -56,8 +56,8 @@ class ContourBuilder {
   }
 
  private:
-  /// The edge between two neighbouring pixels, if the grey value makes it and it runs rather across
-  /// than along their line.
+  /// Adds the edge between two neighbouring pixels, if the grey values cross the threshold there
+  /// and the normal is within 45 degrees of the line through the pixels.
   void take(glm::ivec2 here, glm::ivec2 before, bool here_lit) {
     const glm::ivec2 in = here_lit ? here : before, out = here_lit ? before : here;
     const auto edge = static_cast<float>(silhouette_.threshold) + 0.5f;
@@ -72,7 +72,7 @@ class ContourBuilder {
     contour_.normals[contour_.count++] = normal;
   }
 
-  /// Keeps every second point, of what follows too.
+  /// Keeps every second point, and halves the rate of the points to come.
   void thin_out() {
     contour_.count /= 2;
     for (int i = 0; i < contour_.count; ++i) {
@@ -85,7 +85,7 @@ class ContourBuilder {
   const Silhouette& silhouette_;
   Contour& contour_;
   Rect inner_;
-  int seen_ = 0, stride_ = 1;  ///< points of the edge, of which every `stride_`th is taken
+  int seen_ = 0, stride_ = 1;  ///< points found so far, of which every `stride_`th is taken
 };
 
 }  // namespace
@@ -109,7 +109,7 @@ std::optional<float> edge_along(const Silhouette& silhouette, glm::vec2 from, gl
   if (!silhouette.lit(from + (last - kSolid_px) * direction) ||
       silhouette.lit(from + (last + 1 + kSolid_px) * direction))
     return std::nullopt;
-  // The mask's pixels say where to within about one: the grey values say where in it.
+  // The mask gives the edge to about a pixel; the grey values give it to a fraction.
   const auto edge = static_cast<float>(silhouette.threshold) + 0.5f;
   float inner = last - 1;
   float bright = silhouette.grey(from + inner * direction);

@@ -10,15 +10,15 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kKept_ns = 30'000'000;   ///< how old an outline may be
-constexpr std::int64_t kFresh_ns = 20'000'000;  ///< from an exposure to the photons it is good for
-constexpr float kHandNoise_px = 0.22f;          ///< what registration says of a hand that moved as
-                                                ///< predicted: of the mean of all landmarks,
-constexpr float kFingerNoise_px = 0.7f;         ///< of a finger's against that
-constexpr float kTrusted_ms =
-    5;  ///< a prediction's error over less than this says little of its growth
+constexpr std::int64_t kKept_ns = 30'000'000;   ///< greatest age of an anchor
+constexpr std::int64_t kFresh_ns = 20'000'000;  ///< longest time from an exposure to the photons
+// Noise of registration: the displacement of a hand that moved as predicted.
+constexpr float kHandNoise_px = 0.22f;   ///< of the mean of all landmarks
+constexpr float kFingerNoise_px = 0.7f;  ///< of a part of the hand relative to that mean
+/// The error of a prediction over less than this tells little about its growth.
+constexpr float kTrusted_ms = 5;
 
-/// The palm's and each finger's landmarks.
+/// The landmarks of the palm and of each finger.
 constexpr std::array<std::array<int, 5>, 6> kParts{{{0, 5, 9, 13, 17},
                                                     {1, 2, 3, 4, 4},
                                                     {5, 6, 7, 8, 8},
@@ -26,7 +26,8 @@ constexpr std::array<std::array<int, 5>, 6> kParts{{{0, 5, 9, 13, 17},
                                                     {13, 14, 15, 16, 16},
                                                     {17, 18, 19, 20, 20}}};
 
-/// Of the hand first, whose mean is quiet, then of each of its parts against it.
+/// Shrinks displacements by the noise: first the mean over the hand, which has less noise, then
+/// each part relative to it.
 void shrink(LandmarkPoints& moved) {
   glm::vec2 mean{0};
   for (const glm::vec2& point : moved) mean += point / static_cast<float>(kLandmarks);
@@ -41,8 +42,9 @@ void shrink(LandmarkPoints& moved) {
   for (int i = 0; i < kLandmarks; ++i) moved[i] = hand + share[i] * (moved[i] - mean);
 }
 
-/// A prediction's error grows faster than the time and, what of it is an acceleration's, as its
-/// square; the power between was measured.
+/// The ratio of a prediction's error at the wanted time to that at the seen time, both after the
+/// newest sample. The error grows faster than linearly; the part caused by acceleration grows with
+/// the square of the time. The exponent 1.5 was found by measurement.
 float growth_of_error(std::int64_t seen_after_ns, std::int64_t wanted_after_ns) {
   const auto power = [](float ms) { return ms > 0 ? ms * std::sqrt(ms) : 0; };
   const float seen = power(static_cast<float>(ns_to_ms(seen_after_ns))),
@@ -100,7 +102,7 @@ void LateRegistration::find_hand(const Silhouette& newest, std::span<const Hand>
   const Outline* anchor = hand.is_alone ? nullptr : anchor_before(hand.track->newest_ns());
   if (!anchor || anchor->time_ns < hand.track->begins_ns()) return;
 
-  std::array<HandMotion, msg::kMaxHands> motions;  // its own first
+  std::array<HandMotion, msg::kMaxHands> motions;  // that of `hand` first
   std::size_t count = 0;
   for (std::size_t i = 0; i < hands.size() && count < motions.size(); ++i) {
     const Hand& each = hands[(index + i) % hands.size()];
@@ -118,7 +120,7 @@ void LateRegistration::find_hand(const Silhouette& newest, std::span<const Hand>
                      hand.offset_px[i];
 }
 
-/// What the tracker's prediction missed of the motion up to the newest image.
+/// The error of the tracker's prediction for the time of the newest image.
 LandmarkPoints LateRegistration::missed(const Hand& hand, std::int64_t target_ns) const {
   const Seen& seen = seen_[static_cast<std::size_t>(hand.side)];
   if (seen.time_ns <= hand.track->newest_ns() || target_ns - seen.time_ns > kFresh_ns) return {};

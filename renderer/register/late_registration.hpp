@@ -18,43 +18,52 @@ namespace handcast::renderer {
 /// The landmarks of one hand after late registration.
 struct RegisteredHand {
   LandmarkPoints landmarks{};  ///< Q̂ at the target time
-  LandmarkPoints moved_then{},
-      moved_now{};  ///< what registration moved them by, at the exposure and at the target time
+  /// Displacement by registration, at the exposure and at the target time.
+  /// @{
+  LandmarkPoints moved_then{}, moved_now{};
+  /// @}
 };
 
-/// What the newest images know of the hands' motion that the tracker does not know yet. Each
-/// image's outline is kept for a while; the one that is as old as the tracker's newest sample,
-/// where the tracker's pose is not predicted, is found again in the newest image. That says where
-/// the tracker would have put the hand then, and so by how much its prediction is wrong.
+/// Step "register" and its state: corrects the predicted motion of the hands by the newest image.
+/// The contours of recent images are kept. The newest one that is not later than the tracker's
+/// newest sample is the anchor: at its time the tracker's pose is interpolated, not predicted. The
+/// anchor is found again in the newest image, which shows where the tracker would have placed the
+/// hand at that exposure, and so the error of its prediction. See `docs/method.md#register`. One
+/// thread.
 class LateRegistration {
  public:
-  /// One hand that is to be registered.
+  /// One hand to be registered.
   struct Hand {
-    msg::Side side;
-    const HandTrack* track;
+    msg::Side side;            ///< which hand it is
+    const HandTrack* track;    ///< its tracker samples; borrowed
     LandmarkPoints tracker;    ///< P at the target time
     LandmarkPoints offset_px;  ///< Q̂ - P
-    bool is_alone = false;     ///< the tracker is silent: only its blends are used
+    bool is_alone = false;     ///< see Filtered::is_alone; such a hand is not registered
   };
 
+  /// Without images. Uses limit_px and method of `settings`, blend_ms and blend_px of `filter`.
   LateRegistration(const config::Registration& settings, const config::Filter& filter,
                    const calib::Calibration& calibration);
 
+  /// True if the settings switch late registration on.
   bool on() const { return settings_.method == config::RegisterMethod::mask; }
 
+  /// True if `image` is newer than the image of the last look().
   bool is_new(const TimedImage& image) const { return image.origin_ns > newest_ns_; }
-  /// Takes in an image, once; an image that is not newer than the last is not looked at.
+  /// Registers the hands in an image and keeps its contour. Ignores an image that is not newer than
+  /// the last one.
   void look(const Silhouette& newest, std::span<const Hand> hands);
 
-  /// The landmarks of one frame, moved by what the newest image knows of the motion, and without
-  /// the jumps of new inputs: once a frame. (The filter is not to blend these: it would hold back
-  /// what registration already knows.) `share` of it: a switch between rungs is blended in.
+  /// The landmarks of one frame, corrected by the newest image and without the jumps of new inputs.
+  /// `share`: how much of the correction is applied, 0..1. The filter must not smooth the jumps as
+  /// well: it would hold back motion that registration already shows. Call correct() or follow()
+  /// once per frame and hand.
   RegisteredHand correct(const Hand& hand, std::int64_t target_ns, float share = 1);
-  /// In its place for a hand that follows its landmarks alone, which nothing registers: they are
-  /// blended on, without a jump between the two. `has_news`: an input arrived since the last frame.
+  /// The same for a hand that is_alone: its landmarks are only smoothed, also when the hand changes
+  /// between correct() and follow(). `has_news`: an input arrived since the last frame.
   LandmarkPoints follow(const Hand& hand, std::int64_t target_ns, bool has_news);
 
-  /// What the newest image said of a hand; for tests.
+  /// How a hand was registered by the last look(); for tests.
   const Registered& last(msg::Side side) const { return last_[static_cast<std::size_t>(side)]; }
 
  private:
@@ -63,10 +72,10 @@ class LateRegistration {
     std::int64_t time_ns = 0;
     Contour contour;
   };
-  /// Where the tracker would have put a hand's landmarks at an exposure.
+  /// Where the tracker would have placed the landmarks of a hand at an exposure.
   struct Seen {
     std::int64_t time_ns = 0;
-    std::int64_t anchor_ns = 0;  ///< when the outline was taken that was found again
+    std::int64_t anchor_ns = 0;  ///< time of the anchor
     LandmarkPoints points{};
   };
 
@@ -80,7 +89,7 @@ class LateRegistration {
   calib::Calibration calibration_;
   Registration registration_;
   std::int64_t newest_ns_ = 0;
-  std::vector<Outline> outlines_;  ///< a ring
+  std::vector<Outline> outlines_;  ///< ring buffer
   std::size_t next_outline_ = 0;
   std::array<Seen, msg::kMaxHands> seen_{};  ///< by side
   std::array<Registered, msg::kMaxHands> last_{};

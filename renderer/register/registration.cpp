@@ -20,21 +20,22 @@ constexpr std::array<Bone, 23> kBones{
      {14, 15, 3}, {15, 16, 3},  {17, 18, 4}, {18, 19, 4}, {19, 20, 4}}};
 constexpr std::array<int, 5> kKnuckles{1, 5, 9, 13, 17}, kTips{4, 8, 12, 16, 20};
 
-constexpr float kFurthestSkin_px = 45;  ///< of a bone
-constexpr float kTurnLever_px = 60;     ///< the hand's turn is counted in pixels at this distance
-constexpr float kLeastFinger_px = 12;   ///< shorter ones, foreshortened, move with the palm
+constexpr float kFurthestSkin_px = 45;  ///< from a bone
+constexpr float kTurnLever_px = 60;     ///< the rotation of the hand is in px at this distance
+constexpr float kLeastFinger_px = 12;   ///< shorter (foreshortened) fingers move with the palm
 constexpr int kLeastPoints = 24;
-constexpr float kLeastShare = 0.35f;  ///< of the outline whose edge must be found again
+constexpr float kLeastShare = 0.35f;  ///< of the points, whose edge must be found
 constexpr float kGoodFit_px = 1.5f;
 constexpr float kNoise_px = 0.1f;  ///< of a median distance
-constexpr float kHandPrior_px = 6,
-                kFingerPrior_px =
-                    3;  ///< what is expected of an unknown, where an edge is good to a pixel
-constexpr float kLeastScale_px = 0.8, kScaleOfMedian = 2;  ///< distances beyond it count little
+/// Standard deviations of the unknowns, if an edge has a standard deviation of 1 px.
+constexpr float kHandPrior_px = 6, kFingerPrior_px = 3;
+/// Distances beyond the scale have little weight: kScaleOfMedian medians, but at least
+/// kLeastScale_px.
+constexpr float kLeastScale_px = 0.8, kScaleOfMedian = 2;
 
 glm::vec2 turned(glm::vec2 v) { return {-v.y, v.x}; }
 
-/// Bones of one hand in one place, made ready to be asked which is nearest.
+/// The bones of one hand, prepared for finding the nearest one.
 struct Skeleton {
   explicit Skeleton(const LandmarkPoints& joints) {
     for (std::size_t b = 0; b < kBones.size(); ++b) {
@@ -43,10 +44,11 @@ struct Skeleton {
       per_length2[b] = 1 / std::max(glm::dot(axis[b], axis[b]), 1e-6f);
     }
   }
-  /// The nearest point of a bone: how far along it (0..1), and how far away, squared.
+  /// Position along bone `b` (0..1) of its point nearest to `at`.
   float along(std::size_t b, glm::vec2 at) const {
     return std::clamp(glm::dot(at - from[b], axis[b]) * per_length2[b], 0.0f, 1.0f);
   }
+  /// Squared distance of that point from `at`.
   float distance2(std::size_t b, glm::vec2 at) const {
     const glm::vec2 away = at - from[b] - along(b, at) * axis[b];
     return glm::dot(away, away);
@@ -67,7 +69,7 @@ struct Skeleton {
   std::array<float, kBones.size()> per_length2;
 };
 
-/// The turn of a bone, as cosine and sine; none where it is too short to tell.
+/// The rotation of a bone as (cosine, sine); the identity if the bone is too short.
 glm::vec2 turn_of(const Bone& bone, const HandMotion& hand) {
   constexpr float kShortest_px = 8;
   const glm::vec2 then = hand.then[bone.to] - hand.then[bone.from],
@@ -153,8 +155,8 @@ void Registration::find_edges(const Silhouette& newest, float reach_px) {
   }
 }
 
-/// One robust Gauss-Newton step of the first `unknowns`, weighted again twice: distance - row x is
-/// to be small, and x by its prior.
+/// One robust Gauss-Newton step for the first `unknowns`, with two reweighted solutions. Minimises
+/// distance - row x over the points, and x by its prior.
 void Registration::step(int unknowns) {
   const float scale_px = std::max(kLeastScale_px, kScaleOfMedian * median_distance());
   Solution change = Solution::Zero();

@@ -9,42 +9,48 @@
 
 namespace handcast::renderer {
 
-/// One hand at two times, image px: where its landmarks were when the outline was taken, and where
-/// the tracker's motion takes them.
+/// The landmarks of one hand at two times, by the tracker's motion, image px.
 struct HandMotion {
-  LandmarkPoints then{}, now{};
+  LandmarkPoints then{};  ///< when the contour was taken
+  LandmarkPoints now{};   ///< in the newest image
 };
 
-/// How one hand's outline lies in a newer image.
+/// The position of the contour of one hand in a newer image.
 struct Registered {
-  bool found = false;                 ///< false: nothing is moved
-  LandmarkPoints moved{};             ///< what the landmarks moved beyond HandMotion::now, image px
-  int points = 0;                     ///< of the outline, whose edge was found again
-  float before_px = 0, after_px = 0;  ///< median distance of outline and edge
+  bool found = false;      ///< false: the contour was not found, `moved` is 0
+  LandmarkPoints moved{};  ///< displacement of the landmarks from HandMotion::now, image px
+  int points = 0;          ///< points of the contour whose edge was found
+  /// Median distance of the contour from the edge, before and after registration.
+  /// @{
+  float before_px = 0, after_px = 0;
+  /// @}
 };
 
-/// Finds an outline again in the newest image (METHOD section 2, late registration): carried there
-/// with the nearest bone, its points look for the edge along their normals, and robust Gauss-Newton
-/// steps find the shift and turn of the hand and the turn and stretch of each finger that bring
-/// them there. Priors hold what too few points tell. Remembers nothing but its memory.
+/// Finds the contour of a hand again in a newer image. Its points are carried along with the
+/// nearest bone by the tracker's motion; each searches the edge along its normal. Robust
+/// Gauss-Newton steps find the translation and rotation of the hand and the rotation and stretch of
+/// each finger that bring the points to the edge. Priors limit the unknowns that too few points
+/// determine. See `docs/method.md#register`. Calls are independent of each other. One thread.
 class Registration {
  public:
+  /// `limit_px`: the farthest an edge is searched and a landmark may be moved.
   explicit Registration(float limit_px) : limit_px_(limit_px) {}
 
-  /// The hand `index` of `hands` (two at most); points of the outline nearer to the other hand are
-  /// not its own.
+  /// Registers the hand `index` of `hands` (at most two). Points of the contour that are nearer to
+  /// the other hand are not used.
   Registered find(const Contour& outline, const Silhouette& newest,
                   std::span<const HandMotion> hands, std::size_t index);
 
  private:
   static constexpr int kFingers = 5, kUnknowns = 3 + 2 * kFingers;
   struct Point {
-    glm::vec2 at, normal;  ///< as carried by the tracker's motion
+    glm::vec2 at, normal;  ///< after the tracker's motion
     int finger;            ///< -1: palm
     bool seen;
-    float distance_px;         ///< from the point as moved so far to the edge, along the normal
-    std::array<float, 5> row;  ///< what the unknowns (shift, turn, its finger's turn and stretch)
-                               ///< do along the normal
+    float distance_px;  ///< from the moved point to the edge, along the normal
+    /// Derivatives of the motion along the normal by the unknowns: translation, rotation, and the
+    /// rotation and stretch of its finger.
+    std::array<float, 5> row;
   };
   struct Finger {
     glm::vec2 knuckle, axis;

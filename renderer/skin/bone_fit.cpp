@@ -9,16 +9,16 @@ namespace handcast::renderer {
 namespace {
 
 constexpr int kPalm = 0, kWrist = 1;
-constexpr int kMemory = 600;  ///< samples of a tracker, about five seconds
+constexpr int kMemory = 600;  ///< tracker samples, about five seconds
 constexpr std::int64_t kForget_ns = 1'000'000'000;
 constexpr std::array<int, 4> kKnuckles{7, 12, 17, 22};  ///< proximal joints, index to little finger
-constexpr float kLeast = 0.5f, kMost = 2.0f;            ///< a wild joint must not blow a bone up
+constexpr float kLeast = 0.5f, kMost = 2.0f;            ///< limits of the stretch, against outliers
 constexpr float kShortest_m = 1e-4f;
 
 glm::vec3 origin(const glm::mat4& frame) { return glm::vec3(frame[3]); }
 
-/// The joint at a bone's far end; -1 where the joint begins none. A finger's joints follow one
-/// another.
+/// The joint at the far end of the bone that starts at `joint`; -1 if there is none. The joints of
+/// a finger are consecutive.
 int far_joint(int joint) {
   const int next = joint + 1;
   return joint > kWrist && next < kJoints && kJointParent[static_cast<std::size_t>(next)] == joint
@@ -30,7 +30,7 @@ float bone_length(const JointFrames& frames, int joint) {
   return glm::distance(origin(frames[joint]), origin(frames[far_joint(joint)]));
 }
 
-/// How much larger the posed skeleton is: the sums of all its bones' lengths compared.
+/// The size of the posed skeleton relative to the one at rest, from the sums of all bone lengths.
 float size_ratio(const JointFrames& rest, const JointFrames& posed) {
   float rest_m = 0, posed_m = 0;
   for (int joint = 0; joint < kJoints; ++joint) {
@@ -41,21 +41,20 @@ float size_ratio(const JointFrames& rest, const JointFrames& posed) {
   return rest_m > kShortest_m ? std::clamp(posed_m / rest_m, kLeast, kMost) : 1.0f;
 }
 
-/// The least rotation that turns unit vector `from` to `to`.
+/// The smallest rotation from unit vector `from` to unit vector `to`.
 glm::mat3 aim(const glm::vec3& from, const glm::vec3& to) {
   const float cosine = glm::dot(from, to);
-  if (cosine < -0.99f)
-    return glm::mat3(1);  // turned right around: the frame makes no sense, keep it
+  if (cosine < -0.99f) return glm::mat3(1);  // nearly opposite: the pose is not plausible
   const glm::vec3 axis = glm::cross(from, to);
   return glm::mat3_cast(glm::normalize(glm::quat(1 + cosine, axis.x, axis.y, axis.z)));
 }
 
-/// `along` times in direction `axis` (unit), `across` times at right angles to it.
+/// Scales by `along` in the direction `axis` (unit) and by `across` at right angles to it.
 glm::mat3 stretch(const glm::vec3& axis, float along, float across) {
   return glm::mat3(across) + (along - across) * glm::outerProduct(axis, axis);
 }
 
-/// What a joint's skin is held between.
+/// The two ends that the skin of a joint is fitted to.
 struct Span {
   glm::vec3 start, end;
 };
@@ -64,12 +63,13 @@ Span span(const JointFrames& frames, int start, int end) {
   return {origin(frames[start]), origin(frames[end])};
 }
 
-/// The turn of a joint from rest to pose.
+/// The rotation of a joint from rest to pose.
 glm::mat3 turn_of(const JointFrames& rest, const JointFrames& posed, int joint) {
   return glm::mat3(posed[joint]) * glm::transpose(glm::mat3(rest[joint]));
 }
 
-/// Turns and stretches a rest span onto a posed one; `width` at right angles to it.
+/// Rotates and stretches a span at rest onto a posed one, and scales by `width` at right angles to
+/// it.
 glm::mat4 onto(const Span& rest, const Span& posed, const glm::mat3& turn, float width) {
   const glm::vec3 rest_way = rest.end - rest.start, posed_way = posed.end - posed.start;
   const float rest_m = glm::length(rest_way), posed_m = glm::length(posed_way);
@@ -84,7 +84,8 @@ glm::mat4 onto(const Span& rest, const Span& posed, const glm::mat3& turn, float
   return posed_from_rest;
 }
 
-/// The turn of the palm that takes the middle of the learned knuckles to that of the seen ones.
+/// The rotation of the palm that maps the direction of the learned knuckles' middle to that of the
+/// seen ones.
 glm::mat3 turn_between(const std::array<glm::vec3, 4>& learned,
                        const std::array<glm::vec3, 4>& seen) {
   const glm::vec3 from = learned[0] + learned[1] + learned[2] + learned[3],
@@ -145,7 +146,7 @@ JointFrames BoneFit::operator()(const JointFrames& posed) const {
     const glm::vec3 base(posed[kWrist] * seen_from_person * glm::vec4(person.base[finger], 1));
     reach(kKnuckles[finger] - 1, {base, origin(posed[kKnuckles[finger]])});
   }
-  // Wrist and forearm turn with the knuckles, but are not stretched: they end nowhere.
+  // Wrist and forearm rotate with the knuckles but are not stretched: they have no far joint.
   const glm::mat3 turn = turn_between(person.knuckle, seen.knuckle);
   for (const int joint : {kPalm, kWrist}) {
     const glm::mat3 whole =

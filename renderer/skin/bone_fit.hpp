@@ -8,33 +8,36 @@
 
 namespace handcast::renderer {
 
-/// Makes linear blend skinning follow the joints of another person: each bone is aimed at the next
-/// joint, stretched to reach it, and widened by how much larger this hand is than the mesh. Without
-/// this a bone that is longer, shorter or elsewhere than the mesh's moves stiffly with its joint
-/// and meets the next one with a step. The palm is a case of its own: trackers only guess at the
-/// bases of the metacarpals and no landmark shows them, but a palm is nearly rigid. Its bases and
-/// knuckles as seen from the wrist are learned as a mean over some seconds, and what a sample says
-/// against that mean only bends the palm as far as wrist and knuckles show it. The width is learned
-/// likewise. Turns about a bone's own axis are kept; tips are left alone.
+/// Fits the skeleton of a mesh to the joints of another person before linear blend skinning. Each
+/// bone is aimed at the next joint, stretched to reach it, and widened by the ratio of the sizes of
+/// the hands. Otherwise a bone of another length or position than the mesh's would move rigidly
+/// with its joint and leave a step at the next one. Rotations about the axis of a bone are kept;
+/// tips are not changed.
+///
+/// The palm is treated separately: trackers only guess the bases of the metacarpals and no landmark
+/// shows them, but a palm is nearly rigid. Its bases and knuckles, relative to the wrist, are
+/// learned as a mean over some seconds. A sample changes that palm only as far as its wrist and
+/// knuckles differ from the mean. The size of the hand is learned in the same way. One thread.
 class BoneFit {
  public:
+  /// For the skeleton of `hand` at rest. Nothing is learned yet.
   explicit BoneFit(const HandMesh& hand) : rest_(hand.rest) {}
 
-  /// A tracker sample; one that is not finite is ignored. The person is learned afresh after the
-  /// hand was gone for a second.
+  /// Adds a tracker sample; one that is not finite is ignored. After more than a second without
+  /// samples the person is learned anew.
   void learn(std::int64_t origin_ns, const JointFrames& posed);
 
-  /// Draws every width times `factor` from now on.
+  /// Multiplies every width by `factor` from now on.
   void widen(float factor) { width_ = factor; }
 
-  /// The frames to skin with.
+  /// The frames to skin with, in the space of `posed`. Their scale is not 1 in general.
   JointFrames operator()(const JointFrames& posed) const;
 
  private:
-  /// What stays the same as long as one person's hand is in sight.
+  /// The proportions of one person's hand.
   struct Person {
-    std::array<glm::vec3, 4> base{}, knuckle{};  ///< index to little finger, as seen from the wrist
-    float size = 1;                              ///< times the mesh's
+    std::array<glm::vec3, 4> base{}, knuckle{};  ///< index to little finger, in wrist space
+    float size = 1;                              ///< relative to the mesh
   };
   Person person_in(const JointFrames& posed) const;
 

@@ -11,10 +11,10 @@ namespace handcast::renderer {
 namespace {
 
 constexpr int kWrist = 1;
-constexpr float kNearest_m = 0.02f;  ///< nearer to the camera's plane nothing is projected
+constexpr float kNearest_m = 0.02f;  ///< vertices nearer to the camera's plane are moved to here
 
-/// Triangles whose corners hang mostly on the wrist and lie more than `forearm_mm` towards the
-/// elbow are not drawn.
+/// Removes the triangles whose corners are mostly moved by the wrist and lie more than `forearm_mm`
+/// from it towards the elbow.
 HandMesh without_forearm(HandMesh mesh, double forearm_mm) {
   const glm::mat4 wrist_from_model = glm::inverse(mesh.rest[kWrist]);
   std::vector<bool> beyond(mesh.vertex_count());
@@ -55,8 +55,8 @@ HANDCAST_CLONES void project_all(const float* position, int count, const float* 
   }
 }
 
-/// Lambert's law for light that comes along the camera's axis: space is z forward, so a surface
-/// that faces the camera has normal z -1.
+/// Lambert's law for light along the camera's axis. The camera's z points forwards, so the normal
+/// of a surface that faces the camera has z = -1.
 HANDCAST_CLONES void shade_all(const float* normal, int count, float shading, float presence,
                                float* light) {
   for (int v = 0; v < count; ++v) {

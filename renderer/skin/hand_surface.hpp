@@ -16,38 +16,43 @@
 
 namespace handcast::renderer {
 
-/// One hand's skin in one frame, per vertex of its mesh. Borrowed from a HandSurface until its next
-/// pose().
+/// The skinned surface of one hand in one frame, per vertex of its mesh. Borrowed from a
+/// HandSurface until its next pose().
 struct Skinned {
-  std::span<const glm::vec2> seen_px;  ///< projector px, as the tracker has it
-  std::span<glm::vec2> landings_px;    ///< the same, to be moved by the correction
+  std::span<const glm::vec2> seen_px;  ///< projector px, in the pose that was skinned
+  std::span<glm::vec2> landings_px;    ///< the same; to be moved by the step "correct"
   std::span<const float> depth_m;      ///< distance along the camera's axis
   std::span<const float> light;        ///< factor 0..1; empty: 1 everywhere
-  float facing_sign = -1;  ///< sign of the projected area of a triangle that faces the camera
+  /// Sign of the area (projector px, y down) of a triangle that faces the camera.
+  float facing_sign = -1;
 };
 
-/// Step "skin" of the cascade and its state: the mesh of one hand without what lies beyond the
-/// wrist's cut, what is known of the person, and the buffers of a frame. One thread.
+/// Step "skin" and its state: the mesh of one hand without the forearm, the proportions of the
+/// person, and the buffers of a frame. See `docs/method.md#skin`. One thread.
 class HandSurface {
  public:
+  /// Takes the mesh. Triangles more than `forearm_mm` from the wrist towards the elbow are not
+  /// drawn.
   HandSurface(HandMesh mesh, double forearm_mm);
 
-  /// A tracker sample, from which the person's proportions are learned.
+  /// Adds a tracker sample, from which the proportions of the person are learned.
   void learn(std::int64_t origin_ns, const msg::HandPose& pose) {
     bone_fit_.learn(origin_ns, frames_of(pose));
   }
 
-  /// Skins the mesh and projects it through the camera onto the projector. `shading` 0..1; light
-  /// comes from the camera's side. All light is multiplied by `presence` 0..1.
+  /// Skins the mesh and projects it through the camera to the projector. `shading`: share of
+  /// Lambert's law in the light, 0..1, with a lamp at the camera. `presence`: factor of all light,
+  /// 0..1.
   Skinned pose(const msg::HandPose& pose, const config::Skin& settings,
                const calib::Calibration& calibration, float shading, float presence = 1);
 
-  /// Learns the person's widths from the mask of this hand (projector px) at the time that the
-  /// landings of the last pose() are for.
+  /// Learns the widths of the fingers from the landings of the last pose(), after correction, and
+  /// the landmarks and the mask at the same time, `time_ns`. All in projector px.
   void learn_widths(std::int64_t time_ns, const LandmarkPoints& landmarks_px, GreyView mask);
 
+  /// The mesh without the forearm. All vertices are kept.
   const HandMesh& mesh() const { return mesh_; }
-  /// Bounds of the drawn triangles' vertices, whole pixels.
+  /// Bounds of the vertices of the drawn triangles, in whole pixels.
   Rect bounds(std::span<const glm::vec2> position_px) const;
 
  private:

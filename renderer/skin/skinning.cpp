@@ -8,7 +8,8 @@
 namespace handcast::renderer {
 namespace {
 
-/// One bone: column-major 4x4, so that the blend of four bones is one loop over 16 floats.
+/// The transform of a bone: column-major 4x4, so that four bones are blended in one loop over 16
+/// floats.
 struct alignas(64) Bone {
   float m[16];
 };

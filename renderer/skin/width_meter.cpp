@@ -10,24 +10,23 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::array<int, 5> kBones{
-    2, 6, 10, 14,
-    18};  ///< where the middle phalanges begin: the inner ones touch, the outer ones taper
-constexpr float kFrom = 0.15f,
-                kTo = 0.85f;          ///< of a bone: wide enough for the middle of a stretched one
-constexpr float kLeastWeight = 0.5f;  ///< of a bone in a vertex that counts as its own
+/// Landmarks at which the middle phalanges start. Proximal phalanges touch; distal ones taper.
+constexpr std::array<int, 5> kBones{2, 6, 10, 14, 18};
+/// The part of a bone whose edges are kept: enough for the middle of a stretched bone.
+constexpr float kFrom = 0.15f, kTo = 0.85f;
+constexpr float kLeastWeight = 0.5f;  ///< of a bone in its vertices
 constexpr std::size_t kFewestEdges = 20;
-constexpr float kThinnest_px = 4;  ///< nothing is measured on less
-constexpr float kShortest = 1.3f;  ///< of its drawn width: a bone seen shorter is seen from its end
-constexpr float kFastest_px_s = 400;  ///< faster hands blur and their masks lag
+constexpr float kThinnest_px = 4;     ///< bones smaller than this are not measured
+constexpr float kShortest = 1.3f;     ///< length / drawn width; shorter bones are seen from the end
+constexpr float kFastest_px_s = 400;  ///< faster hands are blurred and their masks lag
 constexpr float kLeast = 0.75f, kMost = 1.35f;
 constexpr int kMemory = 600, kEnough = 12;  ///< measurements of one bone
 constexpr std::size_t kFewestBones = 3;
-constexpr float kStep = 0.005f;  ///< of the factor in one frame: the light must not twitch
+constexpr float kStep = 0.005f;  ///< largest change of the factor per frame, so it does not jump
 constexpr std::int64_t kForget_ns = 1'000'000'000;
 
-/// How far the mask reaches from `start` in direction `way` (unit); nothing where it does not end
-/// within `most_px`.
+/// The distance from `start` in direction `way` (unit) to the end of the mask. Empty if it does not
+/// end within `most_px`.
 std::optional<float> reach_px(GreyView mask, glm::vec2 start, glm::vec2 way, float most_px) {
   constexpr float kStride_px = 0.5f;
   for (int step = 0; static_cast<float>(step) * kStride_px < most_px; ++step) {
@@ -48,7 +47,7 @@ float weight_of(const HandMesh& mesh, std::size_t vertex, int joint) {
   return weight;
 }
 
-/// The edges whose ends hang on a bone and lie around its middle.
+/// The edges around the middle of a bone, whose ends are moved by it.
 std::vector<std::array<std::uint16_t, 2>> edges_around(const HandMesh& mesh, int landmark) {
   const int joint = msg::kJointOfLandmark[landmark], next = msg::kJointOfLandmark[landmark + 1];
   const glm::vec3 start(mesh.rest[joint][3]), way = glm::vec3(mesh.rest[next][3]) - start;
@@ -62,7 +61,7 @@ std::vector<std::array<std::uint16_t, 2>> edges_around(const HandMesh& mesh, int
     for (int corner = 0; corner < 3; ++corner) {
       const std::uint16_t a = triangle[corner], b = triangle[(corner + 1) % 3];
       if (a < b && around[a] && around[b])
-        edges.push_back({a, b});  // its other triangle has it the other way round
+        edges.push_back({a, b});  // a < b: the other triangle of this edge has (b, a)
     }
   return edges;
 }
@@ -123,8 +122,8 @@ void WidthMeter::forget() {
   }
 }
 
-/// The lower third of the bones that were seen often enough, since what spoils a measurement (a
-/// neighbour, a tilt) makes it larger; nothing where they are too few to outvote a wrong one.
+/// The lower third of the bones that were measured often enough, because disturbances (a neighbour,
+/// a tilt) make a measurement larger. Empty if the bones are too few to outvote a wrong one.
 std::optional<float> WidthMeter::typical() const {
   std::array<float, kBones.size()> medians;
   std::size_t count = 0;

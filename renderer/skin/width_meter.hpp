@@ -12,39 +12,40 @@
 
 namespace handcast::renderer {
 
-/// How much wider a person's fingers are than the drawn ones, learned from the camera's mask:
-/// across the middle of every finger bone that is seen from the side, the mask is as wide as the
-/// finger. (The shape of the hand is the paper's stated limitation.) The factor is the lower third
-/// of the bones' medians over the last seconds: neither a bone that another one touches now and
-/// then nor two that touch for long do harm. It is learned afresh after nothing was measured for a
-/// second, and held until then: the light must not jump.
+/// Measures how much wider a person's fingers are than the drawn ones, from the camera's mask:
+/// across the middle of each middle phalanx that is seen from the side, the mask is as wide as the
+/// finger. (The paper names the variation between users as a limitation.) The factor is the lower
+/// third of the bones' medians over the last seconds, so that neither a finger that touches another
+/// now and then nor two that touch for long disturb it. After a second without measure() it is
+/// learned anew; it is kept until enough is measured again, so the light does not jump. One thread.
 class WidthMeter {
  public:
+  /// For the fingers of `mesh`.
   explicit WidthMeter(const HandMesh& mesh);
 
-  /// One frame as drawn with factor(): where the vertices and the landmarks land after every
-  /// correction, and the mask of the hand at the same time, all in projector px.
+  /// Measures one frame that was drawn with factor(): its vertices and landmarks after all
+  /// corrections, and the mask of the hand at the same time, all in projector px.
   void measure(std::int64_t time_ns, std::span<const glm::vec2> landings_px,
                const LandmarkPoints& landmarks_px, GreyView mask);
 
-  /// For the widths of the next frame; 1 until enough was seen, never beyond 0.75..1.35.
+  /// The factor for the widths of the next frame, 0.75..1.35; 1 until enough is measured. It
+  /// changes by at most 0.005 per frame.
   float factor() const { return factor_; }
 
  private:
-  /// A finger bone from one landmark to the next, and the edges of the mesh around it that may
-  /// cross its middle.
+  /// A middle phalanx, and the edges of the mesh that may cross its middle.
   struct Bone {
-    int landmark = 0;  ///< it ends at the following one
+    int landmark = 0;  ///< where the bone starts; it ends at the next landmark
     std::vector<std::array<std::uint16_t, 2>> edges;
-    std::array<int, 256>
-        seen{};  ///< histogram of the factors seen; halved when it is full, so that old ones fade
+    /// Histogram of the measured factors. It is halved when it is full, so old values fade.
+    std::array<int, 256> seen{};
     int count = 0;
 
     void note(float factor);
     float median() const;
   };
-  /// How wide the mask is at a bone against how wide the bone is drawn; nothing where that cannot
-  /// be seen.
+  /// The width of the mask at a bone divided by the width of the drawn bone. Empty if it cannot be
+  /// measured.
   std::optional<float> ratio_at(const Bone& bone, std::span<const glm::vec2> landings_px,
                                 const LandmarkPoints& landmarks_px, GreyView mask) const;
   void forget();

@@ -8,7 +8,7 @@
 
 namespace handcast::renderer {
 
-/// A hand of five straight fingers, px.
+/// The landmarks of a hand with five straight fingers, px.
 inline LandmarkPoints open_hand() {
   LandmarkPoints points{glm::vec2(400, 500)};
   for (int i = 1; i < kLandmarks; ++i) {

@@ -8,7 +8,7 @@
 
 namespace handcast::renderer {
 
-/// 21 landmarks of an open hand seen from its back, projector px (about 1.8 px/mm).
+/// The 21 landmarks of an open hand seen from its back, projector px (about 1.8 px/mm).
 inline LandmarkPoints open_hand_px() {
   constexpr std::array<std::array<float, 2>, kLandmarks> mm{
       {{0, 0},      {23, -20},   {48, -51},   {63, -74},   {72, -93},   {29, -86},   {35, -126},
@@ -20,8 +20,7 @@ inline LandmarkPoints open_hand_px() {
   return points;
 }
 
-/// A flat hand cut from paper: a sheet along every finger and one over the palm, skinned to the
-/// joints under them.
+/// A flat hand: a sheet along every finger, skinned to the joints under it.
 struct PaperHand {
   HandMesh mesh;
   std::vector<glm::vec2> positions_px;
@@ -78,7 +77,7 @@ inline PaperHand make_paper_hand(const LandmarkPoints& p) {
   return hand;
 }
 
-/// Triangles whose orientation differs between two placings of the vertices.
+/// The number of triangles whose orientation differs between two sets of vertex positions.
 inline int flipped(const HandMesh& mesh, const std::vector<glm::vec2>& before,
                    const std::vector<glm::vec2>& after) {
   const auto area = [](const auto& v, const auto& t) {

@@ -8,9 +8,9 @@
 
 namespace handcast::renderer::testing {
 
-/// How far joints turn from rest, in degrees. Fingers: spread (towards the thumb), then flexion of
-/// MCP, PIP, DIP. Thumb: turn of the CMC about its dorsal axis (towards the palm's edge), its
-/// flexion, its twist; flexion of MCP and IP.
+/// Rotations of the joints from rest, in degrees. Fingers: abduction (towards the thumb), then
+/// flexion of MCP, PIP and DIP. Thumb: rotation of the CMC about its dorsal axis (towards the edge
+/// of the palm), its flexion, its twist; flexion of MCP and IP.
 struct Pose {
   std::string_view name;
   std::array<float, 5> thumb{};
@@ -37,7 +37,7 @@ inline glm::mat4 turn(float degrees, const glm::vec3& axis) {
   return glm::rotate(glm::mat4(1), glm::radians(degrees), axis);
 }
 
-/// The hand's joints in a pose, wrist where it is at rest. Turns are given for a left hand and
+/// The joints of a hand in a pose, with the wrist at rest. Rotations are given for a left hand and
 /// mirrored for a right one.
 inline JointFrames posed(const HandMesh& hand, const Pose& pose) {
   const float mirror = hand.side == Side::left ? 1.0f : -1.0f;

@@ -10,7 +10,6 @@ namespace {
 
 using namespace cpu;
 
-/// The passes on one core of the processor.
 class CpuPainter final : public Painter {
  public:
   CpuPainter(int width_px, int height_px)
@@ -53,7 +52,7 @@ class CpuPainter final : public Painter {
   Warper warper_;
   Filler filler_;
   FrameBuffer frame_;
-  std::unique_ptr<FrameBuffer> moved_;  ///< where a warp draws to; made by the first
+  std::unique_ptr<FrameBuffer> moved_;  ///< the target of warp(); made by the first one
   std::vector<const Texture*> textures_;
 };
 

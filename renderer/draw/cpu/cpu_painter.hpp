@@ -6,8 +6,8 @@
 
 namespace handcast::renderer {
 
-/// The back end that draws on one core of the processor: what every pass of another back end is
-/// compared with.
+/// The back end that draws on one core of the processor: the reference for the passes of all
+/// others.
 std::unique_ptr<Painter> make_cpu_painter(int width_px, int height_px);
 
 }  // namespace handcast::renderer

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-/// A block as the frame shows it.
+/// A block with its colours.
 struct Coloured {
   alignas(64) std::uint32_t colour[kLanes];
   alignas(64) glm::vec2 uv[kLanes];
@@ -42,8 +42,8 @@ struct Coloured {
   }
 }
 
-/// Colours what one hand shows; with the first hand also what shows nothing: dark. Lanes without
-/// light look up texel 0.
+/// Colours the pixels that show one hand. With the first hand, all others become dark. Lanes
+/// without light look up texel 0.
 template <bool kFirst>
 [[gnu::always_inline]] inline void set_colour(const PixelBlock& block, const Sampler sampler,
                                               std::uint32_t hand, Coloured& out) {
@@ -59,7 +59,7 @@ template <bool kFirst>
   }
 }
 
-/// The pixels of a frame from the first one of a block on.
+/// The position of a pixel in the planes of a frame.
 struct Place {
   std::uint32_t* colour;
   glm::vec2* uv;
@@ -75,7 +75,7 @@ struct Place {
   std::memcpy(to.light, from.light + lane, count);
 }
 
-/// A block's rows of pixels within the region.
+/// The part of a block within the region.
 struct Clip {
   int x0, x1, y0, y1;
 
@@ -124,7 +124,7 @@ HANDCAST_CLONES void colour_blocks(const PixelBlock* blocks, Span columns, int b
   }
 }
 
-/// Snaps the vertices and gives each its surface id.
+/// Fills the corners and the surface ids of a hand, per vertex.
 HANDCAST_CLONES void set_corners(const DrawnHand& hand, int index, std::span<Corner> corners,
                                  std::span<std::uint8_t> ids) {
   const bool shaded = !hand.light.empty();

@@ -7,7 +7,7 @@
 namespace handcast::renderer::cpu {
 namespace {
 
-/// One row of the region: hand and light in, what to do out.
+/// One row of the region: mask and drawing in, regions D (`lit`) and C (`unlit`) out.
 struct Sorting {
   const std::uint8_t* mask;
   SurfaceId* surface;
@@ -21,7 +21,7 @@ HANDCAST_CLONES int count_set(const std::uint8_t* pixels, int count) {
   return set;
 }
 
-/// Sorts the pixels from `x0` to `x1`.
+/// Sorts the pixels [x0, x1) into the regions. Returns true if there is light outside the hand.
 HANDCAST_CLONES bool sort_row(const Sorting row, int x0, int x1) {
   std::uint8_t spilt = 0;
 #pragma GCC ivdep
@@ -35,7 +35,7 @@ HANDCAST_CLONES bool sort_row(const Sorting row, int x0, int x1) {
   return spilt != 0;
 }
 
-/// Darkens light that is not on the hand.
+/// Removes light outside the hand.
 HANDCAST_CLONES void darken_spilt(const Sorting row, int x0, int x1) {
 #pragma GCC ivdep
   for (int x = x0; x < x1; ++x) row.surface[x] &= row.lit[x];
@@ -50,8 +50,8 @@ View<const std::uint8_t> part_of(const Plane<std::uint8_t>& plane, Rect region) 
 }  // namespace
 
 FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame) {
-  constexpr int kVector = 64;  // whole vectors where there is room: the two scratch planes may be
-                               // written beside the region
+  // Whole vectors if there is room: the two scratch planes may be written beside the region.
+  constexpr int kVector = 64;
   const int x0 = region.x0 & -kVector,
             x1 = std::min((region.x1 + kVector - 1) & -kVector, mask.width);
   FillCounts counts;

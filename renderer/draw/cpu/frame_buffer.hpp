@@ -12,8 +12,9 @@
 
 namespace handcast::renderer::cpu {
 
-/// The drawing as it stands, what the passes hand on to each other.
+/// The drawing between the passes. All planes have the projector's size.
 struct FrameBuffer {
+  /// A dark drawing.
   FrameBuffer(int width, int height)
       : colour(width, height),
         uv(width, height),
@@ -21,7 +22,7 @@ struct FrameBuffer {
         light(width, height),
         lit(static_cast<std::size_t>(height)) {}
 
-  /// Makes a row dark from `x0` to `x1`, but for the span that is about to be written.
+  /// Makes row `y` dark in [x0, x1), except for the span `written`, which the caller writes next.
   void darken(int y, int x0, int x1, Span written) {
     Span& row = lit[static_cast<std::size_t>(y)];
     const Span old = row.within(x0, x1);
@@ -41,15 +42,15 @@ struct FrameBuffer {
   }
 
   Plane<std::uint32_t> colour;  ///< RGBA8, alpha 0 where dark
-  Plane<glm::vec2> uv;
-  Plane<SurfaceId> surface;   ///< 0 where dark
-  Plane<std::uint8_t> light;  ///< shading factor, 0..255; undefined where dark
-  std::vector<Span> lit;      ///< per row: everything outside of it is dark
+  Plane<glm::vec2> uv;          ///< texture coordinates; undefined where dark
+  Plane<SurfaceId> surface;     ///< 0 where dark
+  Plane<std::uint8_t> light;    ///< shading factor, 0..255; undefined where dark
+  std::vector<Span> lit;        ///< per row: everything outside this span is dark
 };
 
-/// A texture (white where there is none) and what its lookup needs. Nearest texel; coordinates
-/// beyond the edge take the texel at the edge.
+/// Looks up the nearest texel of a texture. Coordinates outside 0..1 are clamped.
 struct Sampler {
+  /// Borrows the texture; nullptr: white.
   explicit Sampler(const Texture* texture) {
     static const Texture kWhite(1, 1, 0xffffffff);
     if (texture == nullptr) texture = &kWhite;
@@ -59,20 +60,25 @@ struct Sampler {
     height = static_cast<float>(texture->height());
   }
 
+  /// The index into `texels` of the texel at texture coordinates (u, v).
   [[gnu::always_inline]] std::int32_t index(float u, float v) const {
     const auto column = static_cast<std::int32_t>(std::min(std::max(u * width, 0.f), width - 1));
     const auto line = static_cast<std::int32_t>(std::min(std::max(v * height, 0.f), height - 1));
     return line * stride + column;
   }
 
-  const std::uint32_t* texels;
-  std::int32_t stride;
+  const std::uint32_t* texels;  ///< RGBA8
+  std::int32_t stride;          ///< texels from one row to the next
+  /// Size in texels.
+  /// @{
   float width, height;
+  /// @}
 };
 
+/// The alpha of an opaque colour.
 constexpr std::uint32_t kOpaque = 0xff000000;
 
-/// The colour's red, green and blue times `factor` / 256; alpha 0.
+/// Red, green and blue of a colour times `factor` / 256 (0..256); alpha 0.
 [[gnu::always_inline]] inline std::uint32_t dimmed(std::uint32_t colour, std::uint32_t factor) {
   const std::uint32_t red_blue = ((colour & 0xff00ff) * factor >> 8) & 0xff00ff;
   const std::uint32_t green = ((colour & 0x00ff00) * factor >> 8) & 0x00ff00;

@@ -10,13 +10,13 @@
 namespace handcast::renderer::cpu {
 namespace {
 
-constexpr int kBlock = 32;  ///< pixels of a row scanned at once
-constexpr std::uint8_t kNoRow =
-    100;  ///< no seed in the column within reach: the square is beyond it too
-constexpr std::int16_t kFar =
-    16'000;  ///< square of a way that does not exist; sums with squares of the reach still fit
+constexpr int kBlock = 32;  ///< pixels of a row that are scanned at once
+/// Distance to the seed of a column without one in reach. Its square is out of reach too.
+constexpr std::uint8_t kNoRow = 100;
+/// Squared distance outside the area. Its sum with the square of the reach fits into 16 bits.
+constexpr std::int16_t kFar = 16'000;
 
-/// Rows to the nearest seed at or before this row, given those of the row before.
+/// The distances of a row to the nearest seed at or before it, from those of the row before.
 HANDCAST_CLONES void step_rows(const std::uint8_t* __restrict seeds, const std::uint8_t* before,
                                std::uint8_t* rows, int count) {
 #pragma GCC ivdep
@@ -27,7 +27,7 @@ HANDCAST_CLONES void step_rows(const std::uint8_t* __restrict seeds, const std::
   }
 }
 
-/// Joins rows above and rows below to one signed offset, the upper where equal.
+/// Joins the distances upwards (in `to_seed`) and downwards to one signed offset; upwards if equal.
 HANDCAST_CLONES void join_rows(const std::uint8_t* __restrict below,
                                std::int8_t* __restrict to_seed, int count) {
   for (int x = 0; x < count; ++x) {
@@ -47,7 +47,7 @@ inline std::uint64_t eight(const std::uint8_t* pixels) {
   return word;
 }
 
-/// The first column that is set, `count` where none is.
+/// The first pixel that is set; `count` if none is.
 int first_set(const std::uint8_t* pixels, int count) {
   int x = 0;
   while (x + 8 <= count && eight(pixels + x) == 0) x += 8;
@@ -55,7 +55,7 @@ int first_set(const std::uint8_t* pixels, int count) {
   return x;
 }
 
-/// One past the last column that is set; one must be.
+/// One past the last pixel that is set. At least one must be.
 int end_of_set(const std::uint8_t* pixels, int count) {
   int x = count;
   while (x >= 8 && eight(pixels + x - 8) == 0) x -= 8;
@@ -69,7 +69,7 @@ HANDCAST_CLONES bool any_set(const std::uint8_t* pixels, int count) {
   return any != 0;
 }
 
-/// The bounding rectangle of what is set; empty where nothing is.
+/// Bounds of the set pixels; empty if none is set.
 Rect bounds_of(View<const std::uint8_t> set) {
   Rect bounds{set.width, set.height, 0, 0};
   for (int y = 0; y < set.height; ++y) {
@@ -84,12 +84,12 @@ Rect bounds_of(View<const std::uint8_t> set) {
 }
 
 struct Block {
-  alignas(64) std::array<std::int16_t, kBlock> best;  ///< square of the way to the best seed so far
-  alignas(64) std::array<std::int16_t, kBlock> shift;  ///< its column, from the pixel's own
+  alignas(64) std::array<std::int16_t, kBlock> best;   ///< squared distance of the nearest seed
+  alignas(64) std::array<std::int16_t, kBlock> shift;  ///< columns from the pixel to that seed
 };
 
-/// Looks left and right of all pixels of a block, one column further at a time, until nothing
-/// nearer can come.
+/// Searches left and right of all pixels of a block, one column farther at a time, until no wanted
+/// pixel can get a nearer seed.
 HANDCAST_CLONES void scan_block(const std::int16_t* __restrict squares,
                                 const std::uint8_t* __restrict wanted, int reach, Block& block) {
   alignas(64) std::int16_t best[kBlock], shift[kBlock], needed[kBlock];

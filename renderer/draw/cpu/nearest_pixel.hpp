@@ -8,24 +8,31 @@
 
 namespace handcast::renderer::cpu {
 
-/// A wanted pixel and the way to its nearest seed.
+/// A wanted pixel and the vector to its nearest seed, in pixels.
 struct NearestSeed {
+  /// The wanted pixel.
+  /// @{
   std::int16_t x, y;
+  /// @}
+  /// From there to the seed.
+  /// @{
   std::int8_t dx, dy;
+  /// @}
   std::int16_t squared_px;  ///< dx^2 + dy^2
 };
 
-/// The nearest seed of every wanted pixel: exact, within a reach. After Meijster et al. 2000 in two
-/// passes: up and down the columns, then along the rows outwards from each pixel, many pixels at
-/// once, until no pixel can get a nearer seed. Of seeds equally near: the one in the nearer column,
-/// then the left one, then the upper one.
+/// Finds the nearest seed of every wanted pixel, exactly, within a reach. Two passes, after
+/// Meijster et al. 2000: up and down the columns, then along the rows outwards from each pixel,
+/// many pixels at once, until no pixel can get a nearer seed. Among seeds at the same distance, the
+/// one in the nearer column is taken, then the left one, then the upper one. One thread.
 class NearestPixel {
  public:
+  /// Limit of `reach_px`.
   static constexpr int kLargestReach = 32;
 
-  /// `seeds` and `wanted` have one size; pixels are set where not 0. Work is done around the wanted
-  /// pixels only. Row by row; wanted pixels without a seed within `reach_px` are left out. Valid
-  /// until the next call.
+  /// `seeds` and `wanted` have the same size; pixels that are not 0 are set. Returns the wanted
+  /// pixels row by row, without those that have no seed within `reach_px`; valid until the next
+  /// call. Only the area around the wanted pixels is processed.
   std::span<const NearestSeed> find(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted,
                                     int reach_px);
 
@@ -33,10 +40,10 @@ class NearestPixel {
   void sweep_columns(View<const std::uint8_t> seeds, Rect area);
   void scan_row(const std::uint8_t* wanted, int y, Rect wanted_area, int reach_px);
 
-  std::vector<std::int8_t> to_seed_;  ///< per pixel of the area: rows to the nearest seed of its
-                                      ///< column, -100 where too far
+  /// Per pixel of area_: rows to the nearest seed in its column, -100 if that is too far.
+  std::vector<std::int8_t> to_seed_;
   std::vector<std::uint8_t> rows_below_;
-  std::vector<std::int16_t> squares_;  ///< of one row of to_seed_, with room on both sides
+  std::vector<std::int16_t> squares_;  ///< of one row of to_seed_, with a margin on both sides
   int to_seed_stride_ = 0;
   Rect area_;
   std::vector<NearestSeed> found_;

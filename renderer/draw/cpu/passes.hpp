@@ -12,12 +12,13 @@
 #include "renderer/draw/cpu/raster.hpp"
 #include "renderer/draw/painter.hpp"
 
-/// The painter's passes. Every region is within the image.
+/// The passes of the painter on the processor. Every region must be within the image. One thread.
 namespace handcast::renderer::cpu {
 
-/// Two steps: geometry into a raster target, then colour for the pixels that stayed visible.
+/// Draws in two steps: geometry into a raster target, then colour for the visible pixels.
 class Drawer {
  public:
+  /// Draws `hands` into `region` of `out`. `target` is overwritten.
   void draw(std::span<const DrawnHand> hands, Rect region, RasterTarget& target, FrameBuffer& out);
 
  private:
@@ -29,12 +30,13 @@ class Drawer {
   std::vector<Sampler> samplers_;
 };
 
-/// Rasterises the moved cells with the source pixel as what is interpolated, then fetches the
-/// drawing from there (nearest pixel). Where cells overlap, the one that comes later in the grid
-/// (row by row, then along the row) wins. The outermost cells reach half a pixel further, to the
-/// edge of the corner pixels, so that the grid at rest moves nothing and loses nothing.
+/// Rasterises the moved cells of a grid with their source positions as the interpolated values,
+/// then copies the drawing from there (nearest pixel). Where cells overlap, the later one in the
+/// grid wins (row by row, from the left). The outermost cells extend by half a pixel, to the edge
+/// of the corner pixels, so that a grid at rest moves nothing and loses nothing.
 class Warper {
  public:
+  /// Warps the part `from` of `in` into `region` of `out`. `target` is overwritten.
   void warp(const WarpGrid& grid, Rect from, Rect region, const FrameBuffer& in,
             RasterTarget& target, FrameBuffer& out);
 
@@ -48,14 +50,21 @@ class Warper {
   std::vector<std::uint8_t> ids_;
 };
 
-/// The paper's perceptual boundary reduction (section "Perceptual Boundary Reduction", METHOD
-/// section 1). A pixel without light takes the surface of its nearest lit one, p_D, with uv(p_C) =
-/// 2 uv(p_D) - uv(p'_D), p'_D being p_C reflected at p_D; or uv(p_D) where p'_D is unlit, on
-/// another surface, or the step between them is longer than seam_limit_uv.
+/// Fills hand without light (paper, "Perceptual Boundary Reduction"; `docs/method.md#fill`). A
+/// pixel p_C without light takes the surface of the nearest lit pixel p_D. With p'_D, p_C reflected
+/// at p_D:
+///
+///     uv(p_C) = 2 uv(p_D) - uv(p'_D)
+///
+/// or uv(p_D), if p'_D is not lit, is on another surface, or if the step from uv(p'_D) to uv(p_D)
+/// is longer than seam_limit_uv().
 class Filler {
  public:
+  /// For drawings of the given size in pixels.
   Filler(int width, int height) : lit_(width, height), unlit_(width, height) {}
 
+  /// Removes light outside `mask` and fills inside it, in `region` of `frame`. `textures`: one per
+  /// hand of the drawing; nullptr: white.
   FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings, Rect region,
                   std::span<const Texture* const> textures, FrameBuffer& frame);
 
@@ -64,7 +73,7 @@ class Filler {
     std::int16_t x, y;
     glm::vec2 uv;
     const std::uint32_t* texel;
-    std::uint16_t factor;  ///< of the texel's colour, 0..256: light and strength of the fill
+    std::uint16_t factor;  ///< of the texel's colour, 0..256: light times strength of the fill
     std::uint8_t alpha;
     SurfaceId surface;
     std::uint8_t light;
@@ -82,13 +91,14 @@ class Filler {
   std::vector<Patch> patches_;
   int reach_px_ = 0;
   double fade_px_ = 0, seam_uv_ = 0;
-  std::array<std::uint16_t, kSquares> strength_{};  ///< 0..256, by the square of a fill's length
-  std::array<float, kSquares> squared_limit_uv_{};  ///< seam_limit_uv squared, by the same
+  // By the square of the distance of a fill.
+  std::array<std::uint16_t, kSquares> strength_{};  ///< 0..256
+  std::array<float, kSquares> squared_limit_uv_{};  ///< seam_limit_uv() squared
 };
 
-/// A seam is told by the step in texture coordinates over a reflection. `seam_uv` holds for
-/// reflections up to 8 px; beyond, a smooth surface makes steps in proportion to the distance, and
-/// so does the limit.
+/// The longest step in texture coordinates over a reflection of `distance_px` that does not cross a
+/// seam. It is seam_uv up to 8 px and grows in proportion beyond, as the steps on a smooth surface
+/// do.
 inline float seam_limit_uv(const config::Fill& settings, float distance_px) {
   return static_cast<float>(settings.seam_uv) * std::max(1.f, distance_px / 8.f);
 }

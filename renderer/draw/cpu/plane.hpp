@@ -8,22 +8,33 @@
 
 namespace handcast::renderer::cpu {
 
-/// Pixels a pass works on: rows start on cache lines, have room for whole vectors past their end,
-/// and are not a multiple of a page apart, so that the rows of one triangle do not fight for the
-/// same cache sets.
+/// The pixels that a pass works on. Rows start on cache lines, have room for whole vectors past
+/// their end, and are not a multiple of a page apart: otherwise the rows of one triangle would
+/// share cache sets.
 template <class T>
 class Plane {
  public:
+  /// A plane of the given size in pixels, all T{}.
   Plane(int width, int height)
       : width_(width), height_(height), stride_(padded(width)), pixels_(allocate(count())) {}
 
+  /// Size in pixels.
+  /// @{
   int width() const { return width_; }
   int height() const { return height_; }
+  /// @}
+  /// Elements from one row to the next.
   int stride() const { return stride_; }
+  /// The first pixel of row `y`.
+  /// @{
   T* row(int y) { return pixels_.get() + static_cast<std::ptrdiff_t>(y) * stride_; }
   const T* row(int y) const { return pixels_.get() + static_cast<std::ptrdiff_t>(y) * stride_; }
+  /// @}
+  /// A view of all pixels, valid as long as the plane.
+  /// @{
   View<T> view() { return {pixels_.get(), width_, height_, stride_}; }
   View<const T> view() const { return {pixels_.get(), width_, height_, stride_}; }
+  /// @}
 
  private:
   static constexpr std::align_val_t kAlignment{64};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSubpixels = 16;
 
-/// What is interpolated over a triangle: at a pixel, or its change from pixel to pixel.
+/// The values interpolated over a triangle, at a pixel, or their change from pixel to pixel.
 struct Values {
   float depth, u, v, light;
 
@@ -27,23 +27,25 @@ struct Values {
   }
 };
 
-/// A triangle ready to be walked block by block. An edge is >= 0 at the pixels on its inner side.
+/// A triangle prepared for a walk from block to block. An edge value is >= 0 at the pixels on its
+/// inner side.
 struct Setup {
   int first_column, last_column, first_row, last_row;  ///< of blocks
   std::array<std::int64_t, 3> edge;                    ///< at the first pixel of the first block
-  std::array<std::int32_t, 3> edge_dx, edge_dy;        ///< per pixel
-  Values start, dx, dy;                                ///< at the same pixel, and per pixel
+  std::array<std::int32_t, 3> edge_dx, edge_dy;        ///< change per pixel
+  Values start, dx, dy;                                ///< at the same pixel; change per pixel
   std::uint32_t id;
 };
 
-/// Pixels exactly on a top or left edge belong to the triangle, others on its outline do not.
+/// Pixels exactly on a top or left edge belong to the triangle; those on other edges do not.
 inline bool is_top_left(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
 [[gnu::always_inline]] inline Values values_of(const Corner& c) {
   return {c.depth, c.u, c.v, c.light};
 }
 
-/// Which blocks the triangle touches; false where it holds no pixel centre of the region.
+/// Sets the blocks that the triangle touches. Returns false if its bounds contain no pixel centre
+/// of the region.
 [[gnu::always_inline]] inline bool set_bounds(const Corner& a, const Corner& b, const Corner& c,
                                               Rect region, Setup& s) {
   const auto first = [](int p, int q, int r) {
@@ -82,11 +84,11 @@ inline bool is_top_left(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy
   const float y =
       static_cast<float>(s.first_row * kBlockSide) - static_cast<float>(a.y) / kSubpixels;
   s.start = values_of(a) + s.dx * x + s.dy * y;
-  s.start.light += 0.5f;  // rounds where it is cut to a whole number
+  s.start.light += 0.5f;  // rounds when it is truncated
 }
 
-/// Edge values at a block's first pixel narrowed to 32 bits, keeping the sign of all lanes: these
-/// differ by at most 2 * 3 * 16 * 960,000 < 2^27.
+/// An edge value at the first pixel of a block, narrowed to 32 bits such that all lanes keep their
+/// sign: lanes differ by at most 2 * 3 * 16 * 960,000 < 2^27.
 template <bool kLarge>
 [[gnu::always_inline]] inline std::int32_t narrowed(std::int64_t edge) {
   constexpr std::int64_t kLimit = 1 << 30;
@@ -94,7 +96,7 @@ template <bool kLarge>
   return static_cast<std::int32_t>(edge);
 }
 
-/// What lane i of a block adds to the values at its first pixel.
+/// The difference of lane i of a block from the first pixel.
 struct LaneSteps {
   alignas(64) std::int32_t edge[3][kLanes];
   alignas(64) float depth[kLanes], u[kLanes], v[kLanes], light[kLanes];
@@ -115,8 +117,8 @@ struct LaneSteps {
   }
 }
 
-/// Tests a block and writes the pixels that are covered and nearest. `edge` and `at` belong to its
-/// first pixel.
+/// Tests the pixels of a block and writes those that are covered and nearest. `edge` and `at` are
+/// the values at its first pixel.
 [[gnu::always_inline]] inline void write_block(PixelBlock& block,
                                                const std::array<std::int32_t, 3> edge,
                                                const Values at, const LaneSteps& steps,
@@ -163,7 +165,7 @@ template <bool kLarge>
   }
 }
 
-/// Whether every edge value within reach of the triangle's bounds fits in 32 bits.
+/// Returns true if an edge value within the bounds of the triangle may not fit into 32 bits.
 [[gnu::always_inline]] inline bool is_large(const Setup& s) {
   constexpr std::int32_t kLargest = 900 * kSubpixels * kSubpixels;
   for (int k = 0; k < 3; ++k) {
@@ -191,7 +193,7 @@ Facing facing_of(std::span<const Corner> corners, std::span<const TriangleIndice
     volume += static_cast<double>(area) * (a.depth + b.depth + c.depth - 3 * depth_origin);
   }
   if (2 * std::abs(sum) >= sum_of_sizes || volume == 0)
-    return Facing::both;  // the areas of a closed surface cancel out
+    return Facing::both;  // not closed: the areas of a closed surface cancel out
   return volume < 0 ? Facing::positive : Facing::negative;
 }
 

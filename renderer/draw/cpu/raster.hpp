@@ -10,80 +10,112 @@
 #include "renderer/base/image.hpp"
 #include "renderer/draw/cpu/plane.hpp"
 
-/// Triangles to pixels. Coverage is exact: corners are snapped to 1/16 px, edges are integers, and
+/// @file
+/// Rasterises triangles. Coverage is exact: corners are snapped to 1/16 px, edges are integers, and
 /// the top-left rule gives a pixel on a shared edge to one of the two triangles. Pixel centres are
 /// at whole coordinates.
+
 namespace handcast::renderer::cpu {
 
-/// A triangle's corner: its place in 1/16 px, and what is interpolated linearly across the image.
+/// A corner of a triangle.
 struct Corner {
+  /// Position in 1/16 px.
+  /// @{
   std::int32_t x = 0, y = 0;
+  /// @}
+  /// Values that are interpolated linearly in the image.
+  /// @{
   float depth = 0, u = 0, v = 0, light = 0;
+  /// @}
 };
 
-/// Places beyond +-30,000 px (and NaN) are taken to be there.
+/// A position in 1/16 px, rounded. Positions are clamped to +-30,000 px; NaN becomes 30,000 px.
 [[gnu::always_inline]] inline std::int32_t snapped(float position_px) {
   const float below = position_px < 30'000 ? position_px : 30'000;
   const float sixteenths = 16 * (below > -30'000 ? below : -30'000);
   return static_cast<std::int32_t>(sixteenths + (sixteenths < 0 ? -0.5f : 0.5f));
 }
 
+/// The indices of the three corners of a triangle.
 using TriangleIndices = std::array<std::uint16_t, 3>;
 
-/// The sign of a triangle's area (x right, y down; positive is clockwise to the eye) that is drawn.
-enum class Facing { both, positive, negative };
+/// The sign of the area of the triangles that are drawn, x right, y down.
+enum class Facing {
+  both,      ///< all triangles
+  positive,  ///< clockwise ones, as seen in the image
+  negative,  ///< counter-clockwise ones
+};
 
-/// The winding under which the near side of a closed surface is seen: nearer sides and farther
-/// sides enclose a signed volume, so that mirrors between camera and projector do not matter. A
-/// surface that encloses nothing (a sheet) is drawn from both sides. `doubled_areas` gets one
-/// signed area per triangle, in (1/16 px)^2 times two.
+/// The winding of the near side of a closed surface. It follows from the sign of the volume between
+/// the near and the far side, whether or not there is a mirror between camera and projector. A
+/// surface that encloses no volume (a sheet) is drawn from both sides. `doubled_areas` is set to
+/// twice the signed area of each triangle, in (1/16 px)^2.
 Facing facing_of(std::span<const Corner> corners, std::span<const TriangleIndices> triangles,
                  std::vector<std::int64_t>& doubled_areas);
 
 /// Half-open range of columns.
 struct Span {
+  /// First column, and one past the last.
+  /// @{
   int x0 = 0, x1 = 0;
+  /// @}
 
+  /// True if the span contains no column.
   bool empty() const { return x1 <= x0; }
+  /// The smallest span that contains both; an empty one is ignored.
   Span joined(Span o) const {
     return empty() ? o : o.empty() ? *this : Span{std::min(x0, o.x0), std::max(x1, o.x1)};
   }
+  /// The part in [low, high); empty() if there is none.
   Span within(int low, int high) const { return {std::max(x0, low), std::min(x1, high)}; }
 };
 
-constexpr int kBlockSide = 4;
-constexpr int kLanes = kBlockSide * kBlockSide;
+constexpr int kBlockSide = 4;                    ///< width and height of a block in pixels
+constexpr int kLanes = kBlockSide * kBlockSide;  ///< pixels of a block
 
-/// 4x4 pixels that are tested, and later coloured, at once: a hand's triangles are a few pixels
-/// wide and taller than wide, so squares waste less of a vector than rows. Lane i is pixel (i % 4,
-/// i / 4) of the block.
+/// 4 x 4 pixels that are tested, and later coloured, at once. The triangles of a hand are a few
+/// pixels wide and taller than wide, so a square uses more of a vector than a row. Lane i is pixel
+/// (i % 4, i / 4) of the block.
 struct alignas(64) PixelBlock {
-  float depth[kLanes];  ///< infinite where nothing was drawn; the rest is stale there
+  float depth[kLanes];  ///< infinite where nothing was drawn; there the other values are undefined
+  /// Texture coordinates.
+  /// @{
   float u[kLanes], v[kLanes];
+  /// @}
   std::uint32_t tag[kLanes];  ///< light (0..256) << 8 | id
 };
 
-/// What the rasteriser writes.
+/// The image that the rasteriser writes, in blocks.
 class RasterTarget {
  public:
+  /// An empty image of the given size in pixels.
   RasterTarget(int width, int height);
 
-  /// Forgets everything drawn.
+  /// Removes everything drawn.
   void clear();
+  /// Number of rows of blocks.
   int block_rows() const { return static_cast<int>(drawn_.size()); }
+  /// The first block of a row of blocks.
+  /// @{
   PixelBlock* row(int block_row) {
     return blocks_.data() + static_cast<std::size_t>(block_row) * columns_;
   }
   const PixelBlock* row(int block_row) const {
     return blocks_.data() + static_cast<std::size_t>(block_row) * columns_;
   }
-  /// Columns of blocks of a row of blocks: nothing was drawn outside of them.
+  /// @}
+  /// The columns of blocks in a row of blocks outside of which nothing was drawn.
   Span& drawn(int block_row) { return drawn_[static_cast<std::size_t>(block_row)]; }
 
+  /// One pixel of a block.
   struct Pixel {
+    /// The values of PixelBlock.
+    /// @{
     float depth, u, v;
     std::uint32_t tag;
+    /// @}
   };
+  /// The pixel (x, y).
   Pixel at(int x, int y) const {
     const PixelBlock& block = row(y / kBlockSide)[x / kBlockSide];
     const int lane = y % kBlockSide * kBlockSide + x % kBlockSide;
@@ -96,21 +128,23 @@ class RasterTarget {
   std::vector<Span> drawn_;
 };
 
+/// The parts of PixelBlock::tag.
+/// @{
 constexpr std::uint32_t id_of_tag(std::uint32_t tag) { return tag & 0xff; }
 constexpr std::uint32_t light_of_tag(std::uint32_t tag) { return tag >> 8; }
+/// @}
 
-/// Triangles with what is the same for all of them. `ids` and `corners` have one element per
-/// vertex; a triangle bears the id of its first. `doubled_areas` as facing_of gives them.
+/// The triangles of one surface, borrowed.
 struct TriangleList {
-  std::span<const Corner> corners;
-  std::span<const TriangleIndices> triangles;
-  std::span<const std::int64_t> doubled_areas;
-  std::span<const std::uint8_t> ids;
-  Facing facing = Facing::both;
+  std::span<const Corner> corners;              ///< per vertex
+  std::span<const TriangleIndices> triangles;   ///< indices into `corners`
+  std::span<const std::int64_t> doubled_areas;  ///< per triangle, see facing_of()
+  std::span<const std::uint8_t> ids;            ///< per vertex; a triangle has the id of its first
+  Facing facing = Facing::both;                 ///< which triangles are drawn
 };
 
-/// Draws into the blocks that `region` (within the image) touches. Nearer wins; at equal depth, the
-/// later.
+/// Draws into the blocks that `region` touches, which must be within the image. The nearer triangle
+/// wins; at equal depth, the later one.
 void rasterise(const TriangleList& list, Rect region, RasterTarget& target);
 
 }  // namespace handcast::renderer::cpu

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::int32_t kNowhere = -1;
 
-/// The place in the source of a block's pixels, kNowhere where there is none; whether there is any.
+/// Sets `places` to the index in the source of each pixel of a block, or kNowhere. Returns true if
+/// one has a source.
 HANDCAST_CLONES bool find_sources(const PixelBlock& block, std::int32_t stride, Rect from,
                                   std::int32_t* __restrict places) {
   std::int32_t last = kNowhere;
@@ -27,7 +28,7 @@ HANDCAST_CLONES bool find_sources(const PixelBlock& block, std::int32_t stride, 
   return last != kNowhere;
 }
 
-/// Copies the pixels of one block that come from lit ones.
+/// Copies the pixels of one block whose sources are lit.
 void fetch(const std::array<std::int32_t, kLanes>& places, int column, int row, Rect region,
            const FrameBuffer& in, FrameBuffer& out) {
   for (int i = 0; i < kLanes; ++i) {

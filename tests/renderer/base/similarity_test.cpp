@@ -88,9 +88,9 @@ TEST(Similarity, TheScaleIsHeldBetweenAHalfAndTwo) {
     const auto seen = moved(points, similarity(wild, 0.4f, {1, 2}));
     const Similarity fit = fit_similarity(points, seen);
     EXPECT_NEAR(scale_of(fit), wild < 1 ? 0.5f : 2.0f, 1e-3f) << wild;
-    EXPECT_NEAR(std::atan2(fit.sine, fit.cosine), 0.4f, 1e-3f) << "turned as asked, " << wild;
+    EXPECT_NEAR(std::atan2(fit.sine, fit.cosine), 0.4f, 1e-3f) << "rotation, scale " << wild;
     EXPECT_LT(glm::distance(fit(middle_of(points)), middle_of(seen)), 1e-3f * std::max(1.0f, wild))
-        << "about the middle, " << wild;
+        << "translation, scale " << wild;
   }
 }
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-// jpeglib.h relies on cstdio
+// needs cstdio
 #include <jpeglib.h>
 
 #include "renderer/content/picture.hpp"
@@ -42,7 +42,7 @@ HandMesh two_sheets() {
   return hand;
 }
 
-/// A file in the temporary folder that is gone afterwards.
+/// A file in the temporary folder, which the destructor removes.
 class TemporaryFile {
  public:
   TemporaryFile(const char* name, std::string_view bytes)
@@ -73,7 +73,8 @@ TEST(Content, ColoursGoOnPastTheChartsOutline) {
   constexpr int kRight = static_cast<int>(0.35 * 1024) - 1;  // last column of chart 1
   for (int away = 4; away <= 20; ++away)
     EXPECT_EQ(texture->at(kRight + away, 320), texture->at(kRight + 4, 320)) << away;
-  EXPECT_NE(texture->at(kRight + 4, 320), texture->at(512, 20)) << "padding is not the ground";
+  EXPECT_NE(texture->at(kRight + 4, 320), texture->at(512, 20))
+      << "the padding has the colour of the background";
 }
 
 TEST(Content, BackAndPalmOfTheAtlasDiffer) {
@@ -138,7 +139,7 @@ TEST(Content, WhatIsWrittenIsReadBackAndBrokenFilesAreNotPictures) {
   EXPECT_FALSE(write_png("/nowhere/picture.png", picture.view()));
 }
 
-/// A square of noise.
+/// A JPEG file with a square of noise.
 std::string jpeg_of(J_COLOR_SPACE colours, int components) {
   constexpr int kSide = 64;
   jpeg_compress_struct jpeg{};
@@ -176,8 +177,7 @@ TEST(Content, AJpegThatEndsTooEarlyIsRefused) {
     const auto picture = read_picture(cut.path());
     ASSERT_FALSE(picture) << size;
     EXPECT_EQ(picture.error().code, Errc::bad_config);
-    EXPECT_THAT(picture.error().what,
-                HasSubstr("handcast_content_cut.jpg' ends before its picture does"));
+    EXPECT_THAT(picture.error().what, HasSubstr("handcast_content_cut.jpg' is truncated"));
   }
 }
 

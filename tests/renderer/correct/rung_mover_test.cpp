@@ -10,8 +10,8 @@
 namespace handcast::renderer {
 namespace {
 
-/// The drawn hand, 400 px tall, and the palm or finger each vertex hangs on wholly (0..4; -1: none;
-/// -2: several).
+/// The drawn hand, 400 px tall, and the part that moves each vertex alone: finger 0..4, -1 the
+/// palm, -2 several parts.
 struct DrawnHand2d {
   HandMesh mesh = *load_hand_or_default({}, Side::left);
   std::vector<glm::vec2> vertices;

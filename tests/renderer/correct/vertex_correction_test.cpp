@@ -77,7 +77,7 @@ TEST(VertexCorrection, FingersMayCross) {
   EXPECT_EQ(flipped(hand.mesh, hand.positions_px, vertices), 0);
 }
 
-/// The index finger points at the camera: its bones are seen `share` as long.
+/// The index finger points at the camera: its bones are seen at `share` of their length.
 LandmarkPoints foreshortened(float share) {
   auto p = open_hand_px();
   for (int k = 6; k <= 8; ++k) p[k] = p[5] + share * (p[k] - p[5]);
@@ -88,8 +88,8 @@ TEST(VertexCorrection, AForeshortenedBoneIsLeftToTheFieldAroundIt) {
   const auto p = foreshortened(0.04f);  // phalanges of 1 to 3 px
   PaperHand hand = make_paper_hand(p);
   auto q = p;
-  q[7] += glm::vec2(6, 4);  // 6 px across a bone 2 px long: a similarity of that bone would turn it
-                            // round and blow it up
+  // 6 px across a bone that is 2 px long: the similarity of the bone would be far off.
+  q[7] += glm::vec2(6, 4);
   auto vertices = hand.positions_px;
   correct_vertices({}, hand.mesh, p, q, vertices);
   for (std::size_t v = 0; v < vertices.size(); ++v) {
@@ -128,8 +128,8 @@ TEST(VertexCorrection, AWildLandmarkDoesNotBlowABoneUp) {
   EXPECT_LT(width_px(vertices), 2.05f * width_px(hand.positions_px));
 }
 
-/// The model's own hand at rest, seen on its back from far away: vertices and landmarks in px (1.8
-/// px/mm).
+/// The mesh of the hand at rest, its back seen without perspective: vertices and landmarks in px
+/// (1.8 px/mm).
 struct RealHand {
   HandMesh mesh = *load_hand_or_default({}, Side::left);
   std::vector<glm::vec2> vertices_px;
@@ -144,8 +144,8 @@ struct RealHand {
       landmarks_px[i] = seen(glm::vec3(mesh.rest[msg::kJointOfLandmark[i]][3]));
   }
 
-  /// Triangles that faced the camera (their area is negative: y down) and no longer do, by more
-  /// than the hundredth of a pixel that neither shows nor is told from rounding.
+  /// The number of triangles that faced the camera (with negative area, y down) and no longer do.
+  /// An area of 0.01 px^2 is ignored: it is not visible and within rounding errors.
   int turned_over(const std::vector<glm::vec2>& after) const {
     int count = 0;
     for (const auto& t : mesh.triangles)
@@ -250,7 +250,7 @@ TEST(VertexCorrection, UntanglingKeepsSeamsClosed) {
 }
 
 TEST(VertexCorrection, AnyNumberIsSurvived) {
-  const LandmarkPoints together{};  // every landmark on one spot
+  const LandmarkPoints together{};  // all landmarks coincide
   PaperHand hand = make_paper_hand(open_hand_px());
   auto vertices = hand.positions_px;
   correct_vertices({}, hand.mesh, together, open_hand_px(), vertices);

@@ -4,9 +4,10 @@
 
 #include "tests/renderer/draw/painter_scene.hpp"
 
-/// What every back end of Painter must do. A back end's test includes this file and instantiates
-/// the suite:
-///   INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&make_cpu_painter));
+/// The contract of every back end of Painter. The test of a back end includes this file and
+/// instantiates the suite:
+///
+///     INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&make_cpu_painter));
 namespace handcast::renderer::test {
 
 using MakePainter = std::unique_ptr<Painter> (*)(int width_px, int height_px);
@@ -28,7 +29,7 @@ class PainterContract : public testing::TestWithParam<MakePainter> {
     }
     return lit;
   }
-  /// Colour and surface id must tell the same story.
+  /// Colour and surface id must agree on which pixels are lit.
   void expect_consistent(Rect region = kWhole) {
     for (int y = region.y0; y < region.y1; ++y) {
       for (int x = region.x0; x < region.x1; ++x)
@@ -51,9 +52,8 @@ TEST_P(PainterContract, DrawsWhatASlowRasteriserInDoublePrecisionDraws) {
   std::uniform_real_distribution<float> x(-40, kWidth + 40), y(-40, kHeight + 40), unit(0, 1),
       depth(0.5f, 1.5f);
   constexpr double kSlackPx = 1e-4;
-  const auto sixteenths = [](float px) {
-    return std::round(px * 16) / 16;
-  };  // what back ends may snap to
+  // Back ends may snap corners to sixteenths of a pixel.
+  const auto sixteenths = [](float px) { return std::round(px * 16) / 16; };
   for (int scene = 0; scene < 20; ++scene) {
     Shape shape;
     for (int t = 0; t < 12; ++t) {
@@ -66,7 +66,7 @@ TEST_P(PainterContract, DrawsWhatASlowRasteriserInDoublePrecisionDraws) {
       const glm::vec2 ab = shape.position_px()[b] - shape.position_px()[a],
                       ac = shape.position_px()[c] - shape.position_px()[a];
       ab.x* ac.y > ab.y* ac.x ? shape.triangle(a, b, c)
-                              : shape.triangle(a, c, b);  // all seen from one side, as a sheet
+                              : shape.triangle(a, c, b);  // all with one winding, as a sheet
     }
     draw(*painter_, shape, kWhole);
     for (int py = 0; py < kHeight; ++py) {
@@ -74,7 +74,7 @@ TEST_P(PainterContract, DrawsWhatASlowRasteriserInDoublePrecisionDraws) {
         std::vector<Seen> seen = seen_at(shape, px, py, kSlackPx);
         const bool sure = std::all_of(seen.begin(), seen.end(),
                                       [&](const Seen& s) { return s.margin_px > kSlackPx; });
-        if (!sure) continue;  // a tie with an edge: either is right
+        if (!sure) continue;  // on an edge: both results are right
         std::sort(seen.begin(), seen.end(),
                   [](const Seen& a, const Seen& b) { return a.depth_m < b.depth_m; });
         ASSERT_EQ(surface(px, py) != 0, !seen.empty()) << px << ' ' << py;
@@ -164,7 +164,7 @@ TEST_P(PainterContract, LightScalesTheColourAndNotWhetherItIsLit) {
 
 TEST_P(PainterContract, TheNearSideOfAClosedSurfaceIsSeenAlsoInAMirror) {
   for (const float mirror : {1.f, -1.f}) {
-    Shape shape;  // a tetrahedron whose near face (chart 1) hides the three others
+    Shape shape;  // a tetrahedron, whose near face (chart 1) hides the three others
     const auto corner = [&](float x, float y, float depth, std::uint8_t chart) {
       return shape.vertex({100 + mirror * x, 75 + y}, {0.5f, 0.5f}, depth, chart);
     };
@@ -219,7 +219,7 @@ TEST_P(PainterContract, ARegionBeyondTheImageIsClipped) {
   draw(*painter_, shape, {-100, -100, 1000, 1000});
   EXPECT_EQ(lit_pixels(), kWidth * kHeight);
   EXPECT_NEAR(uv(100, 75).x, 100 / 256.f, 1e-3);
-  draw(*painter_, shape, {5000, 10, 6000, 20});  // nowhere: nothing happens
+  draw(*painter_, shape, {5000, 10, 6000, 20});  // outside the image: has no effect
   fill(mask_of(kWidth, kHeight, kWhole), {-10, -10, 1000, 1000});
   EXPECT_EQ(lit_pixels(), kWidth * kHeight);
 }
@@ -297,8 +297,9 @@ TEST_P(PainterContract, TheFillContinuesALinearTextureExactly) {
 }
 
 TEST_P(PainterContract, AtTheSeamBetweenTwoChartsTheFillKeepsTheSeedsOwnColour) {
-  Shape shape;  // a narrow strip of chart 2 at the right of chart 1: the reflection of far pixels
-                // lands on chart 1, though its texture coordinates go on smoothly
+  // A narrow strip of chart 2 to the right of chart 1: far pixels are reflected onto chart 1,
+  // although the texture coordinates are continuous.
+  Shape shape;
   shape.rectangle({19.5f, 19.5f}, {99.5f, 99.5f}, 1, 1);
   shape.rectangle({99.5f, 19.5f}, {104.5f, 99.5f}, 1, 2);
   draw(*painter_, shape, kWhole);
@@ -349,8 +350,8 @@ TEST_P(PainterContract, AHandAtTheImagesBorderIsFilledUpToIt) {
   EXPECT_EQ(counts.lit, 100);
   EXPECT_EQ(counts.filled, 25 * 25 - 100);
   EXPECT_EQ(lit_pixels(), 25 * 25);
-  // Reflections beyond the border do not exist: the seed's own. (20, 5) reflects at (9, 5) to (-2,
-  // 5).
+  // Without a reflection inside the image the seed's own texture coordinates are used: (20, 5) is
+  // reflected at (9, 5) to (-2, 5).
   EXPECT_NEAR(uv(20, 5).x, 9 / 256.f, 2e-5);
   EXPECT_NEAR(uv(15, 5).x, 15 / 256.f, 2e-5);
 }
@@ -471,7 +472,7 @@ TEST_P(PainterContract, WhereCellsOverlapTheLaterOneIsSeen) {
 TEST_P(PainterContract, DrawWarpAndFillGoTogether) {
   Shape shape;
   shape.rectangle({39.5f, 29.5f}, {89.5f, 69.5f});
-  for (int frame = 0; frame < 3; ++frame) {  // what a frame leaves behind must not show in the next
+  for (int frame = 0; frame < 3; ++frame) {  // no frame may show remains of the one before
     draw(*painter_, shape, {20, 10, 150, 120});
     painter_->warp(grid_of(11, 9, kWhole,
                            [](glm::vec2 p) {

@@ -18,7 +18,7 @@ class Shape {
  public:
   explicit Shape(Texture texture = ramp_texture()) : texture_(std::move(texture)) {}
 
-  /// Red grows with u, green with v: a texel tells its place.
+  /// Red grows with u and green with v, so each texel is unique.
   static Texture ramp_texture() {
     Texture texture(256, 256);
     for (int y = 0; y < 256; ++y) {
@@ -43,7 +43,7 @@ class Shape {
                                static_cast<std::uint16_t>(c)});
   }
 
-  /// A rectangle with uv = position / 256, so that texture coordinates tell the pixel.
+  /// A rectangle with uv = position / 256 + `uv_offset`.
   void rectangle(glm::vec2 low, glm::vec2 high, float depth_m = 1, std::uint8_t chart = 1,
                  glm::vec2 uv_offset = {0, 0}) {
     const auto uv = [&](glm::vec2 px) { return px / 256.f + uv_offset; };
@@ -95,15 +95,15 @@ inline std::uint32_t texel_at(const Texture& texture, glm::vec2 uv) {
   return texture.at(x, y);
 }
 
-/// What a pixel of a shape shows by the book, in double precision.
+/// What a pixel of a shape should show, computed in double precision.
 struct Seen {
   glm::dvec2 uv{};
   double depth_m = 0;
   SurfaceId surface = 0;
-  double margin_px = 0;  ///< how far the pixel is inside of the triangle's nearest edge
+  double margin_px = 0;  ///< distance of the pixel from the nearest edge, inwards
 };
 
-/// Everything at a pixel, covered or missed by less than `slack_px`; not sorted.
+/// All triangles that cover a pixel or miss it by less than `slack_px`; not sorted.
 inline std::vector<Seen> seen_at(const Shape& shape, int x, int y, double slack_px = 0,
                                  int hand = 0) {
   std::vector<Seen> all;

@@ -10,9 +10,9 @@
 #include "config/settings/choice.hpp"
 #include "renderer/filter/landmark_filter.hpp"
 
-/// The discrete simulation of the paper (figure "Discrete Simulation") on a made-up motion: truth,
-/// a tracker that is biased, 110.6 Hz and 10 ms late, a detector back to back with 16 ms and 1 px
-/// noise, light at 525 Hz.
+/// The discrete simulation of the paper ("Temporal Filtering") on an artificial motion: a biased
+/// tracker at 110.6 Hz, 10 ms late; a detector that takes 16 ms, back to back, with 1 px of noise;
+/// light at 525 Hz.
 namespace handcast::renderer {
 namespace {
 
@@ -40,7 +40,7 @@ struct World {
     return points;
   }
 
-  /// Scale, shift and a slow drift per point, as a tracker has.
+  /// The error of a tracker: scale, shift and a slow drift per point.
   static LandmarkPoints biased(double t) {
     LandmarkPoints points = truth(t);
     for (int i = 0; i < kLandmarks; ++i) {

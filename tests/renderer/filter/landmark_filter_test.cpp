@@ -17,7 +17,7 @@ config::Filter settings(const char* method, double blend_ms = 0) {
   config::Filter filter;
   filter.method = *config::choice_named<config::FilterMethod>(method);
   filter.blend_ms = blend_ms;
-  filter.blend_px = 100;  // more than any jump here: the bound has a test of its own
+  filter.blend_px = 100;  // larger than all jumps here; another test is about the bound
   return filter;
 }
 
@@ -44,8 +44,8 @@ msg::HandLandmarks seen(const LandmarkPoints& tracker, glm::vec2 offset_px) {
   return hand;
 }
 
-/// Feeds detections of `offset_px` every 16 ms, 16 ms late, and asks every 2 ms. Returns the time
-/// of the last question.
+/// Adds detections with `offset_px` every 16 ms, 16 ms late, and calls at() every 2 ms. Returns the
+/// time of the last call.
 std::int64_t run(LandmarkFilter& filter, const Line& line, glm::vec2 offset_px,
                  std::int64_t from_ms, std::int64_t to_ms) {
   for (std::int64_t now_ms = from_ms; now_ms <= to_ms; now_ms += 2) {
@@ -187,8 +187,8 @@ TEST(PaperFilter, WithoutHindsightTakesTheTrackerAsItWasDrawnThen) {
   config::Filter without = settings("paper");
   without.hindsight = false;
   const auto filter = make_landmark_filter(without);
-  const Line
-      drawn;  // what was drawn for every time; by hindsight the tracker was 30 px to the right
+  // The tracker as it was predicted for each frame. By hindsight it was 30 px to the right.
+  const Line drawn;
   for (int ms = 0; ms < 40; ms += 1) filter->at(ms * kMs, (ms + 4) * kMs, drawn.at(0));
   const TrackerAt hindsight = [&](std::int64_t) {
     auto points = drawn.at(0);
@@ -270,7 +270,7 @@ TEST(Blending, ATrackerThatJumpsMovesTheLightOnlyBitByBit) {
       EXPECT_LT(std::abs(now - before), 16 * (1 - std::exp(-1 / 8.0f)) + 0.1f) << ms;
     }
     if (ms == 350) {
-      EXPECT_NEAR(now, before, 0.1);  // in the very frame of the jump nothing moves
+      EXPECT_NEAR(now, before, 0.1);  // nothing moves in the frame of the jump
     }
     before = now;
   }
@@ -302,10 +302,10 @@ TEST(Blending, AHandThatComesBackIsNotDraggedFromWhereItLeft) {
 
 TEST_P(OffsetFilter, AFingerTakenForAnotherIsPutRightButBelievedInTheEnd) {
   if (std::string(GetParam()) == "paper")
-    GTEST_SKIP() << "the paper's filter takes detections as they come";
+    GTEST_SKIP() << "the filter \"paper\" does not reorder fingers";
   const auto filter = make_landmark_filter(settings(GetParam()));
   Line still;
-  const auto apart = [&] {  // fingers 60 px from each other
+  const auto apart = [&] {  // fingers 60 px apart
     auto hand = seen(still.at(0), {3, 0});
     for (int i = 1; i < kLandmarks; ++i)
       hand.points[i].x_px += 60.0f * static_cast<float>((i - 1) / 4);

@@ -18,7 +18,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
 using Offsets = std::array<glm::vec2, kLandmarks>;
 using Sigmas = std::array<float, kLandmarks>;
 
-/// A hand that rests, its landmarks 10 px right of the tracker's, each known to 2 px.
+/// A resting hand. Its landmarks are 10 px right of the tracker's and have a sigma of 2 px.
 class SharedOffset : public testing::TestWithParam<const char*> {
  protected:
   SharedOffset() {
@@ -26,7 +26,7 @@ class SharedOffset : public testing::TestWithParam<const char*> {
     sigmas_.fill(2);
   }
 
-  /// The offsets a filter makes of these detections.
+  /// The offsets of a filter after these detections.
   Offsets carried(LandmarkFilter::Tracker tracker = LandmarkFilter::Tracker::heard) const {
     config::Filter settings;
     settings.method = *config::choice_named<config::FilterMethod>(GetParam());
@@ -54,10 +54,10 @@ INSTANTIATE_TEST_SUITE_P(Filters, SharedOffset, testing::Values("offset_kalman",
 
 TEST_P(SharedOffset, ALandmarkTheDetectorIsUnsureOfGoesWithTheHand) {
   offsets_[kTip].x = 22;
-  EXPECT_NEAR(carried()[kTip].x, 22, 1.5) << "known to 2 px";
+  EXPECT_NEAR(carried()[kTip].x, 22, 1.5) << "sigma is 2 px";
   sigmas_[kTip] = 14;
   EXPECT_LT(carried()[kTip].x, 13);
-  EXPECT_NEAR(carried()[kTip - 1].x, 10, 0.5) << "and moves no other";
+  EXPECT_NEAR(carried()[kTip - 1].x, 10, 0.5) << "others do not move";
 }
 
 TEST_P(SharedOffset, AFingerTheTrackerHasWrongIsPutRightThoughTheDetectorIsUnsureOfIt) {
@@ -157,7 +157,7 @@ TEST(LandmarkSigmas, FollowSmoothlyWhatIsSaid) {
   msg::HandLandmarks seen;
   seen.points[kTip] = {1, 1, 1, 4};
   sigmas.detection(seen);
-  EXPECT_EQ(sigmas.px()[kTip], 4) << "the first at once";
+  EXPECT_EQ(sigmas.px()[kTip], 4) << "the first sigma is taken as it is";
   seen.points[kTip].sigma_px = 14;
   sigmas.detection(seen);
   EXPECT_LT(sigmas.px()[kTip], 6);
@@ -166,7 +166,7 @@ TEST(LandmarkSigmas, FollowSmoothlyWhatIsSaid) {
   seen.points[kTip].confidence = 0;
   seen.points[kTip].sigma_px = 90;
   sigmas.detection(seen);
-  EXPECT_NEAR(sigmas.px()[kTip], 14, 0.1) << "not seen";
+  EXPECT_NEAR(sigmas.px()[kTip], 14, 0.1) << "a landmark that is not seen keeps its sigma";
 }
 
 }  // namespace

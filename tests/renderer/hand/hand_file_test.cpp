@@ -35,7 +35,7 @@ class HandFile : public ::testing::Test {
     return file;
   }
 
-  /// The saved hand with its JSON (and, if asked for, its binary part) changed.
+  /// The saved hand with its JSON, and optionally its binary part, changed.
   std::filesystem::path changed(const std::function<void(json&)>& change,
                                 std::size_t binary_bytes = ~std::size_t{0}) const {
     std::ifstream in(saved(), std::ios::binary);
@@ -151,7 +151,7 @@ TEST_F(HandFile, AFileThatIsNotThereIsSaid) {
 TEST_F(HandFile, AFileThatIsNoGltfIsSaid) {
   for (const std::string content : {"", "plain text", "glTF\2\0\0\0 cut off"}) {
     std::ofstream(path("odd.glb"), std::ios::binary) << content;
-    EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("not a glTF file"));
+    EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("not a valid glTF file"));
   }
 }
 
@@ -179,7 +179,7 @@ TEST_F(HandFile, AnIndexBeyondTheVerticesIsSaid) {
       gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"][attribute].get<int>()]
           ["count"] = 100;
   });
-  EXPECT_THAT(refusal(file), HasSubstr("a triangle names vertex"));
+  EXPECT_THAT(refusal(file), HasSubstr("a triangle refers to vertex"));
 }
 
 TEST_F(HandFile, AnAccessorBeyondItsBufferIsSaid) {
@@ -198,7 +198,7 @@ TEST_F(HandFile, MoreVerticesThanIndicesCanNameAreSaid) {
   });
   const std::string said = refusal(file);
   EXPECT_TRUE(said.find("more than 65535") != std::string::npos ||
-              said.find("not a glTF") != std::string::npos)
+              said.find("not a valid glTF") != std::string::npos)
       << said;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kFrame_ms = 1000.0 / 946;
 
-/// A hand whose field needs all landmarks, in slow motion.
+/// A hand in slow motion whose Q̂ - P only all landmarks can follow.
 Evidence in_motion() {
   Evidence evidence;
   evidence.hold_px2 = 9;
@@ -31,7 +31,7 @@ Evidence in_motion() {
   return evidence;
 }
 
-/// A hand where the tracker says, at rest: nothing is left to correct but the landmarks' own noise.
+/// A hand at rest whose tracker is right: Q̂ - P is only the noise of the landmarks.
 Evidence at_rest() {
   Evidence evidence = in_motion();
   evidence.hold_px2 = evidence.predict_px2 = evidence.register_px2 = 0.01f;
@@ -42,7 +42,7 @@ Evidence at_rest() {
 Rung settled(const Evidence& evidence) { return Gate(config::Ladder{}).choose(0, evidence); }
 
 TEST(Gate, TheCheapestRungThatIsNearlyTheBestIsTaken) {
-  EXPECT_EQ(settled(in_motion()), Rung::landmarks) << "registration would add nothing";
+  EXPECT_EQ(settled(in_motion()), Rung::landmarks) << "registration gains nothing";
   EXPECT_EQ(settled(at_rest()), Rung::hold);
   Evidence fast = in_motion();
   fast.predict_px2 = 16;
@@ -66,12 +66,12 @@ TEST(Gate, LandmarksThatDoNotMoveWithTheTrackerAreNotChargedWithItsPrediction) {
   fast.hold_px2 = fast.predict_px2 = 100;
   fast.can_register = false;
   fast.left_px2 = {9, 9, 8, 7, 6, 0, 0};
-  EXPECT_LT(settled(fast), Rung::landmarks) << "the prediction's error is as large on every rung";
+  EXPECT_LT(settled(fast), Rung::landmarks)
+      << "the error of the prediction is the same on all rungs";
   fast.lag_px2 = 0;
   EXPECT_EQ(settled(fast), Rung::landmarks);
   fast.lag_px2 = 900;
-  EXPECT_EQ(settled(fast), Rung::hold)
-      << "seen so late the landmarks are worse than the tracker alone";
+  EXPECT_EQ(settled(fast), Rung::hold) << "landmarks of this age are worse than the tracker alone";
 }
 
 TEST(Gate, WithoutLandmarksOnlyTheTrackersOwnRungsAreThereAndWithoutAnImageNoRegistration) {
@@ -81,8 +81,8 @@ TEST(Gate, WithoutLandmarksOnlyTheTrackersOwnRungsAreThereAndWithoutAnImageNoReg
   EXPECT_EQ(settled(evidence), Rung::landmarks);
   evidence.has_landmarks = false;
   evidence.can_register = true;
-  EXPECT_EQ(settled(evidence),
-            Rung::hold);  // the cheaper of two that are equally wrong is the one that errs less
+  // Of two rungs with large errors, the one with the smaller error is taken.
+  EXPECT_EQ(settled(evidence), Rung::hold);
   evidence.hold_px2 = 400;
   EXPECT_EQ(settled(evidence), Rung::predict);
 }
@@ -106,7 +106,7 @@ TEST(Gate, AHandThatMovesNowAndThenKeepsTheDearerRung) {
 TEST(RungBlend, ASwitchIsLetInLittleByLittleAndThenWhole) {
   RungBlend blend;
   blend.turn_to(Rung::shift, 0, 6);
-  ASSERT_TRUE(blend.is_pure(Rung::shift)) << "nothing was lit before";
+  ASSERT_TRUE(blend.is_pure(Rung::shift)) << "there is no earlier frame";
   const double most = 1 - std::exp(-kFrame_ms / 6) + 0.02;
   float before = 0;
   int frames = 0;
@@ -173,8 +173,7 @@ TEST(Hindsight, AFewMomentsThatNothingFollowsDoNotHideWhatRegistrationGainsInThe
   EXPECT_GT(hindsight.motion().predict_px, 1.15f * hindsight.motion().register_px);
 }
 
-/// The landmarks the light is moved onto, frame by frame, as the field from P to Q̂ turns from
-/// nothing into 6 px at once.
+/// The landmarks of each frame while Q̂ - P changes from 0 to 6 px at once.
 std::vector<LandmarkPoints> lit_over_a_climb(std::vector<Rung>& rungs) {
   const auto calibration = rig_above_hand();
   config::Cascade settings;
@@ -209,8 +208,9 @@ TEST(Ladder, ASwitchOfRungDoesNotMakeTheLightJump) {
       ASSERT_LT(glm::distance(lit[i][k], lit[i - 1][k]), 0.25f * 6) << "frame " << i;
 }
 
-/// What the light is off by at most, and the share of frames on `rung` or below: a hand to and fro
-/// at up to 0.7 m/s, a tracker that is 9 ms old and `off_px` off, a detector that is 16 ms old.
+/// The largest error of the light, and the share of frames on `rung` or below, for a hand that
+/// moves to and fro at up to 0.7 m/s. The tracker is 9 ms old, the detector 16 ms; they differ by
+/// `off_px`.
 struct Ride {
   float worst_px = 0;
   double share = 0;
@@ -258,7 +258,7 @@ Ride ride(config::FilterMethod filter, Rung rung, glm::vec2 off_px) {
 TEST(Ladder, WhatAnOracleSaysIsTakenAsItIs) {
   const Ride ideal = ride(config::FilterMethod::ideal, Rung::predict, {0, 0});
   EXPECT_LT(ideal.share, 0.3);
-  EXPECT_LT(ideal.worst_px, 1.5) << "a prediction that is as good is enough";
+  EXPECT_LT(ideal.worst_px, 1.5) << "a prediction that is as good is used";
   EXPECT_FALSE(ideal.registered);
 }
 

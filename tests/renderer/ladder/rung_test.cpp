@@ -54,7 +54,7 @@ TEST(Rung, AMarkTellsTheRungOfEachHandAndNothingOfOneThatIsNotThere) {
       msg::rung_in(msg::with_rung(detail, msg::Side::left, Rung::registered), msg::Side::left),
       Rung::registered);
   EXPECT_EQ(msg::rung_in(0xf, msg::Side::left), std::nullopt)
-      << "shared memory: nothing read from it is trusted";
+      << "values from shared memory may be invalid";
 }
 
 }  // namespace

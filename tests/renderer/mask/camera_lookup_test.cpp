@@ -31,8 +31,7 @@ class Lookup : public ::testing::TestWithParam<bool> {
 INSTANTIATE_TEST_SUITE_P(Lenses, Lookup, ::testing::Values(false, true),
                          [](const auto& each) { return each.param ? "Bent" : "Reference"; });
 
-/// A half-plane in camera pixels reads back where the exact mapping crosses it, to a tenth of a
-/// pixel.
+/// The edge of a half-plane in camera pixels must be where the exact mapping crosses it.
 TEST_P(Lookup, AgreesWithTheExactMappingToATenthOfAPixel) {
   for (const int edge : {150, 360, 600}) {
     for (int y = 0; y < mask.height(); ++y)
@@ -127,8 +126,7 @@ TEST_P(Lookup, AMovedHandReadsAsTheMovedMask) {
     Image<std::uint8_t> expected(out.width(), out.height(), 77);
     lookup.resample(shifted.view(), screen, expected.view());
     lookup.resample(mask.view(), screen, out.view(), {1, 0, by});
-    // Beyond the camera image the shifted mask ends, but what was inside and moved out is still
-    // known.
+    // Outside the camera image only the shifted mask ends: those pixels are not compared.
     int compared = 0;
     for (int y = 0; y < screen.y1; ++y)
       for (int x = 0; x < screen.x1; ++x) {
@@ -157,7 +155,7 @@ TEST_P(Lookup, ATurnedAndScaledHandIsTheNearestPixelOfWhereItWas) {
         const int cx = static_cast<int>(std::lround(then.x)),
                   cy = static_cast<int>(std::lround(then.y));
         if (cx < 1 || cy < 1 || cx + 1 >= mask.width() || cy + 1 >= mask.height()) continue;
-        constexpr float kTable_px = 0.2f;  // a tenth, made larger by the scale
+        constexpr float kTable_px = 0.2f;  // 0.1 px times the scale
         const bool near_half = std::abs(std::abs(then.x - cx) - 0.5f) < kTable_px ||
                                std::abs(std::abs(then.y - cy) - 0.5f) < kTable_px;
         wrong += out.at(x, y) != mask.at(cx, cy) && !near_half;
@@ -168,8 +166,8 @@ TEST_P(Lookup, ATurnedAndScaledHandIsTheNearestPixelOfWhereItWas) {
   }
 }
 
-/// Blocks that are all hand or all background have a short cut of their own; a region one pixel
-/// high has none of them.
+/// Blocks that are all hand or all background take a short cut. A region one pixel high contains no
+/// whole block.
 TEST_P(Lookup, TheShortCutForUniformBlocksChangesNothing) {
   draw_checks(mask);
   mask.at(300, 250) ^= 255;
@@ -207,8 +205,7 @@ TEST_P(Lookup, AHandThatWasOutsideTheImageIsNotSeen) {
 TEST(CameraLookup, WhereTheCameraSeesNothingThereIsNoHand) {
   calib::Calibration calibration = calib::reference_rig();
   for (int row = 0; row < 3; ++row)
-    calibration.projector_from_camera[0][row] *=
-        0.5;  // the camera's image covers half the projector's
+    calibration.projector_from_camera[0][row] *= 0.5;  // the camera sees half of the screen
   const CameraLookup lookup(calibration);
   Image<std::uint8_t> mask(calibration.camera.width_px, calibration.camera.height_px, 255),
       out(1024, 768, 99);

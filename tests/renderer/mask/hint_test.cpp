@@ -11,7 +11,7 @@ namespace {
 
 TEST(Hint, AHandFarOutsideTheImageIsNotLookedForEvenWhereTheLensWouldFoldItIn) {
   auto calibration = rig_above_hand();
-  calibration.camera.k1 = -0.8;  // turns back some way outside the image
+  calibration.camera.k1 = -0.8;  // the polynomial turns back outside the image
   calibration.camera.k2 = calibration.camera.k3 = 0;
   ASSERT_FALSE(calibration.camera.folds());
   const auto hint_at = [&](float x_m) {
@@ -20,8 +20,8 @@ TEST(Hint, AHandFarOutsideTheImageIsNotLookedForEvenWhereTheLensWouldFoldItIn) {
     return make_hint(calibration, {}, hand.pose, hand);
   };
   EXPECT_TRUE(hint_at(0));
-  EXPECT_TRUE(hint_at(0.2f));    // a part of it is seen
-  EXPECT_FALSE(hint_at(0.55f));  // the polynomial lays it into the image
+  EXPECT_TRUE(hint_at(0.2f));    // partly in the image
+  EXPECT_FALSE(hint_at(0.55f));  // the polynomial maps it into the image
 }
 
 }  // namespace

@@ -7,8 +7,9 @@
 #include "renderer/mask/mask.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 
-/// The mask is as old as the camera's image: tests of its way from the exposure to the time of the
-/// photons.
+/// @file
+/// Tests that the mask, which is as old as the camera's image, is moved to the time of the photons.
+
 namespace handcast::renderer {
 namespace {
 
@@ -25,8 +26,7 @@ struct MovingHand {
   }
 };
 
-/// Hands at a time, as messages and as the camera's image. Two hands at most, apart from each
-/// other.
+/// Hands at a time, as messages and as the camera's image. At most two hands, which do not overlap.
 struct Scene {
   calib::Calibration calibration = rig_above_hand();
   std::vector<MovingHand> hands;
@@ -43,7 +43,7 @@ struct Scene {
   }
 };
 
-using Pixels = Image<std::uint32_t>;  ///< of the projector, 0 where dark
+using Pixels = Image<std::uint32_t>;  ///< projector pixels, 0 if dark
 
 Pixels light_of(const Scene& scene, bool advance) {
   config::Cascade settings;
@@ -62,7 +62,7 @@ Pixels light_of(const Scene& scene, bool advance) {
   return light;
 }
 
-/// Where the hands are when the light is there.
+/// The hands at the time of the photons.
 Pixels truth_of(const Scene& scene) {
   const auto image = scene.image(kTarget_ns);
   Image<std::uint8_t> grey(scene.calibration.projector_width_px,
@@ -74,7 +74,7 @@ Pixels truth_of(const Scene& scene) {
   return truth;
 }
 
-/// Projector row of the wrist at the target time: below it the arm goes on, without light.
+/// Projector row of the wrist at the target time. Below it is the arm, which gets no light.
 int wrist_row(const Scene& scene) {
   const auto [x, y, z] = scene.hands[0].at(kTarget_ns).joints[1].position_m;
   return static_cast<int>(
@@ -83,7 +83,7 @@ int wrist_row(const Scene& scene) {
           .y);
 }
 
-/// Middle of what is lit in [x0, x1) x [0, y1).
+/// Centroid of the lit pixels in [x0, x1) x [0, y1).
 glm::dvec2 centroid(const Pixels& pixels, int x0, int x1, int y1) {
   glm::dvec2 sum{0};
   double count = 0;
@@ -147,7 +147,7 @@ TEST_P(MaskAdvance, AStillHandGetsTheSameLight) {
     other += with.pixels()[i] != without.pixels()[i];
   }
   EXPECT_GT(lit, 20000);
-  EXPECT_LE(other, 5);  // at the edge of two camera pixels rounding decides
+  EXPECT_LE(other, 5);  // rounding at the edges of camera pixels
 }
 
 TEST(TwoMasks, EachHandsMaskMovesWithItsOwnHand) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWidth = 720, kHeight = 540;
 
-/// A hand of capsules, fingers up, with its forearm going down out of the image.
+/// A hand of capsules, fingers up. Its forearm leaves the image at the bottom.
 struct Scene {
   Image<std::uint8_t> image{kWidth, kHeight, 8};
   Image<std::uint8_t> mask{kWidth, kHeight, 0};
@@ -27,7 +27,7 @@ struct Scene {
       }
   }
 
-  /// `wrist` is the middle of the wrist.
+  /// Adds a hand; `wrist` is the middle of its wrist.
   void hand(glm::vec2 wrist, std::uint8_t grey = 150, glm::vec2 forearm = {0, 300}) {
     seeds.reserve(4);
     auto& joints = seeds.emplace_back();
@@ -63,7 +63,7 @@ TEST(MaskFinder, TheHandIsFoundAndTheArmCutOff) {
   EXPECT_EQ(region.y0, 210);
   EXPECT_TRUE(scene.lit(360, 340));   // palm
   EXPECT_TRUE(scene.lit(330, 260));   // little finger
-  EXPECT_TRUE(scene.lit(360, 398));   // above the wrist's line
+  EXPECT_TRUE(scene.lit(360, 398));   // above the line at the wrist
   EXPECT_FALSE(scene.lit(360, 403));  // below it: arm
   EXPECT_FALSE(scene.lit(360, 460));
   EXPECT_FALSE(scene.lit(300, 260));  // background
@@ -200,7 +200,7 @@ TEST(MaskFinder, AHandOutsideTheImageHasNoMask) {
 TEST(MaskFinder, TwoHandsAreFoundAndOneArmsLineDoesNotCutTheOtherHand) {
   Scene scene;
   scene.hand({260, 250});
-  scene.hand({430, 420});  // its fingers lie beyond the other's wrist
+  scene.hand({430, 420});  // its fingers are beyond the other hand's wrist
   scene.hints[0].region = {150, 40, 340, 330};
   MaskFinder finder({});
   scene.find(finder);
@@ -308,7 +308,7 @@ TEST(MaskFinder, ASmallDarkSpotOnTheHandIsHandAndALargeOneIsNot) {
   EXPECT_FALSE(scene.lit(372, 352));
 }
 
-/// The flesh of a scene's hand: its fingers and its palm.
+/// The flesh of the hand of a Scene: fingers and palm.
 std::vector<Flesh> flesh_of_hand(glm::vec2 wrist) {
   std::vector<Flesh> flesh;
   for (int finger = 0; finger < 4; ++finger) {
@@ -360,8 +360,8 @@ TEST(MaskFinder, BonesThatAreFarOffDoNotCutTheHandToTheirShape) {
   scene.hints[0].most_px = 14;
   MaskFinder finder({});
   scene.find(finder);
-  EXPECT_TRUE(scene.lit(334, 270));   // a finger beside the bones,
-  EXPECT_FALSE(scene.lit(324, 270));  // and what of it is beyond all they may be off by
+  EXPECT_TRUE(scene.lit(334, 270));   // a finger beside the bones
+  EXPECT_FALSE(scene.lit(324, 270));  // the part of it outside the outer bound
 }
 
 TEST(MaskFinder, WhenTheHandGoesDarkTheThresholdIsHeld) {

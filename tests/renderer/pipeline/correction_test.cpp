@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way from landmarks to light, with each method that moves it.
+// From landmarks to light, with each method of correction.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -46,7 +46,7 @@ TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
       }
   glm::vec2 tip{1e9f};
   for (const glm::vec2& landing : frame.hands[0].landings) tip = glm::min(tip, landing);
-  EXPECT_NEAR(low.x, tip.x, 3);  // the light is where the landings say
+  EXPECT_NEAR(low.x, tip.x, 3);  // the light is at the landings
   EXPECT_NEAR(low.y, tip.y, 3);
   EXPECT_NEAR(lit_pixels(frame), lit_before, 0.03 * lit_before);
 }
@@ -99,8 +99,8 @@ TEST(Correction, AGridThatFoldsIsCounted) {
   const auto hand = pose_of(Side::left);
   feed_still(*pipeline, {hand});
   auto torn = landmarks_of(calibration, 80 * kMs, hand, {});
-  std::swap(torn.hands[0].points[8],
-            torn.hands[0].points[20]);  // index and little tip change places
+  // The tips of index and little finger are exchanged.
+  std::swap(torn.hands[0].points[8], torn.hands[0].points[20]);
   std::swap(torn.hands[0].points[6], torn.hands[0].points[18]);
   pipeline->track(99 * kMs, 103 * kMs);
   pipeline->push(100 * kMs, torn);
@@ -108,8 +108,7 @@ TEST(Correction, AGridThatFoldsIsCounted) {
   EXPECT_GT(pipeline->render(140 * kMs, 144 * kMs, {}).foldovers, 0);
 }
 
-/// A moving hand with noisy sensors for a quarter of a second; every pixel and landing that was
-/// made.
+/// All pixels and landings of a moving hand with noisy sensors, for a quarter of a second.
 std::vector<std::uint32_t> everything(const config::Cascade& settings) {
   const auto calibration = rig_above_hand();
   const auto pipeline = make_pipeline(settings);

@@ -26,14 +26,14 @@ inline config::Cascade cascade(config::CorrectMethod correct, config::FillMethod
   return settings;
 }
 
-/// Tracker samples of a still hand up to `until_ns`.
+/// Adds tracker samples of still hands up to `until_ns`.
 inline void feed_still(Pipeline& pipeline, std::initializer_list<msg::HandPose> hands,
                        std::int64_t until_ns = 100 * kMs) {
   for (std::int64_t t = 0; t <= until_ns; t += 9 * kMs)
     pipeline.push(t + 9 * kMs, poses_of(t, hands));
 }
 
-/// Detections of it that are `offset_px` off, and the questions between.
+/// Adds detections of `hand` with an error of `offset_px`, and calls track() between them.
 inline void feed_landmarks(Pipeline& pipeline, const calib::Calibration& calibration,
                            const msg::HandPose& hand, glm::vec2 offset_px) {
   for (std::int64_t t = 20 * kMs; t <= 100 * kMs; t += 2 * kMs) {
@@ -48,7 +48,7 @@ inline bool lit(const Frame& frame, int x, int y) {
   return x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1 && (frame.colour.at(x, y) >> 24) > 0;
 }
 
-/// Lit pixels of a frame, or of a part of it.
+/// The number of lit pixels in `part` of a frame.
 inline int lit_pixels(const Frame& frame, const Rect& part = {0, 0, 1 << 20, 1 << 20}) {
   const Rect region = frame.region.overlap(part);
   int count = 0;
@@ -57,7 +57,7 @@ inline int lit_pixels(const Frame& frame, const Rect& part = {0, 0, 1 << 20, 1 <
   return count;
 }
 
-/// Grey value of the camera image at a projector pixel, or `aside_px` camera px from there.
+/// Grey value of the camera image at a projector pixel, moved by `aside_px` camera px.
 inline int grey_at(const calib::Calibration& calibration, const Image<std::uint8_t>& image, int x,
                    int y, glm::dvec2 aside_px = {}) {
   const glm::dvec2 at = calibration.camera.distort(calibration.to_camera({x, y})) + aside_px;
@@ -65,8 +65,7 @@ inline int grey_at(const calib::Calibration& calibration, const Image<std::uint8
   return cx < 0 || cy < 0 || cx >= image.width() || cy >= image.height() ? 0 : image.at(cx, cy);
 }
 
-/// True where no hand is, not even a tenth of a camera pixel away: so exact is the projector's
-/// table.
+/// True if there is no hand within a tenth of a camera pixel, the accuracy of CameraLookup.
 inline bool beside_hand(const calib::Calibration& calibration, const Image<std::uint8_t>& image,
                         int x, int y) {
   int most = 0;
@@ -76,10 +75,11 @@ inline bool beside_hand(const calib::Calibration& calibration, const Image<std::
   return most < 100;
 }
 
-/// Projector pixels of the hand above its wrist, those of them that are dark, and lit ones where no
-/// hand is.
+/// Numbers of projector pixels.
 struct LightCount {
-  int hand_px = 0, dark_px = 0, spill_px = 0;
+  int hand_px = 0;   ///< on the hand, above its wrist
+  int dark_px = 0;   ///< of these, without light
+  int spill_px = 0;  ///< with light, beside the hand
 };
 inline LightCount count_light(const Frame& frame, const calib::Calibration& calibration,
                               const Image<std::uint8_t>& image, double wrist_y_px) {

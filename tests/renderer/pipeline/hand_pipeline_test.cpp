@@ -12,8 +12,8 @@
 namespace handcast::renderer {
 namespace {
 
-/// A left hand that sways, a tracker 9 ms old that is 5 mm off, a detector 16 ms old that is right;
-/// what goes wrong is set by the test.
+/// A left hand that sways, a tracker that is 9 ms old and off by 5 mm, and a detector that is 16 ms
+/// old and right. Tests set the faults.
 class Rig {
  public:
   std::function<glm::vec3(std::int64_t ms)> way = [](std::int64_t ms) {
@@ -21,15 +21,15 @@ class Rig {
                                                          static_cast<double>(ms) * 1e-3)),
                      0, 0);
   };
+  /// The error of the tracker, m; empty if there is no sample.
   std::function<std::optional<glm::vec3>(std::int64_t ms)> tracker = [](std::int64_t) {
     return glm::vec3(0);
-  };  ///< its error
-  std::function<std::int64_t(std::int64_t ms)> sampled = [](std::int64_t ms) {
-    return ms;
-  };  ///< whose pose it gives
+  };
+  /// The time of the pose that the tracker reports for `ms`.
+  std::function<std::int64_t(std::int64_t ms)> sampled = [](std::int64_t ms) { return ms; };
   std::function<bool(std::int64_t ms)> detects = [](std::int64_t) { return true; };
 
-  /// Runs to `until_ms`; calls `each` with the time of the light and what is known for it.
+  /// Runs to `until_ms` and calls `each` with the time and the predicted frame, every millisecond.
   template <class Each>
   void run(int until_ms, Each each) {
     for (std::int64_t ms = 0; ms < until_ms; ++ms) {
@@ -56,7 +56,7 @@ class Rig {
     return sum / kLandmarks;
   }
 
-  /// The largest from 300 ms on.
+  /// The largest error_px() after 300 ms.
   double worst_px(int until_ms) {
     double worst = 0;
     run(until_ms, [&](std::int64_t ms, const auto& tracked) {
@@ -66,7 +66,7 @@ class Rig {
   }
 
  private:
-  /// Without late registration: jumps are blended by the filter.
+  /// Without late registration, so the filter smooths the jumps.
   static config::Cascade on_landmarks() {
     config::Cascade settings;
     settings.ladder.rung = config::RungChoice::landmarks;
@@ -108,9 +108,8 @@ TEST(HandPipeline, AFrozenTrackerIsNotFollowed) {
 TEST(HandPipeline, ATrackerThatStandsStillBesideAMovingHandIsNotBelieved) {
   Rig rig;
   rig.sampled = [](std::int64_t ms) { return ms >= 405 && ms < 700 ? 396 : ms; };
-  rig.tracker = [](std::int64_t ms) {
-    return glm::vec3(0, 1e-5f * static_cast<float>(ms % 7), 0);
-  };  // never twice the same
+  // No two samples are the same.
+  rig.tracker = [](std::int64_t ms) { return glm::vec3(0, 1e-5f * static_cast<float>(ms % 7), 0); };
   EXPECT_LT(rig.worst_px(1000), 60);
 }
 
@@ -157,18 +156,16 @@ TEST(HandPipeline, WhenTrackerAndDetectorAreLostTheLightStaysAndFades) {
 TEST(HandPipeline, FastMotionAndReversalsAreNotTakenForJumps) {
   for (const bool zigzag : {false, true}) {
     Rig rig;
-    rig.way =
-        [zigzag](
-            std::int64_t ms) {  // to 2 m/s in 100 ms; or to and fro at 2 m/s, turning within 20 ms
-          const double s = static_cast<double>(ms) * 1e-3, sharp = 0.97;
-          const double x = zigzag
-                               ? 0.1 * std::asin(sharp * std::sin(2 * std::numbers::pi * 5 * s)) /
-                                     (std::numbers::pi / 2)
-                               : (s < 0.35 ? 0
-                                           : 10 * std::pow(std::min(s - 0.35, 0.1), 2) +
-                                                 2 * std::max(0.0, s - 0.45));
-          return glm::vec3(static_cast<float>(x), 0, 0);
-        };
+    // From 0 to 2 m/s in 100 ms; or to and fro at 2 m/s, with reversals within 20 ms.
+    rig.way = [zigzag](std::int64_t ms) {
+      const double s = static_cast<double>(ms) * 1e-3, sharp = 0.97;
+      const double x = zigzag ? 0.1 * std::asin(sharp * std::sin(2 * std::numbers::pi * 5 * s)) /
+                                    (std::numbers::pi / 2)
+                              : (s < 0.35 ? 0
+                                          : 10 * std::pow(std::min(s - 0.35, 0.1), 2) +
+                                                2 * std::max(0.0, s - 0.45));
+      return glm::vec3(static_cast<float>(x), 0, 0);
+    };
     rig.run(550, [&](std::int64_t ms, const auto& tracked) {
       if (ms > 300 && tracked) {
         EXPECT_FALSE(tracked->corrected.is_alone) << ms << zigzag;

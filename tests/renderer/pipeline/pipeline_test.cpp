@@ -84,8 +84,8 @@ TEST(Pipeline, WithoutMaskingTheArmBeyondTheWristIsNotDrawnEither) {
   const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {});
   const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].tracker[0]));
   EXPECT_GT(lit_pixels(frame), 20000);
-  EXPECT_LT(frame.region.y1,
-            wrist.y + 90);  // 14 mm of forearm and the ring of triangles across the cut
+  // 14 mm of forearm, and the ring of triangles across the cut.
+  EXPECT_LT(frame.region.y1, wrist.y + 90);
 }
 
 TEST(Pipeline, BeforeTheFirstCameraImageTheHandIsDrawnUnmasked) {

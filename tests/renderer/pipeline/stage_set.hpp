@@ -12,14 +12,15 @@
 #include "renderer/pipeline/pipeline.hpp"
 #include "renderer/skin/skinning.hpp"
 
-/// A small world for the pipeline's tests: the model's own hand, its poses, its landmarks and its
-/// image.
+/// @file
+/// A scene for tests of the pipeline: poses, landmarks and images of the default hands.
+
 namespace handcast::renderer {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// The paper's rig with a tracker whose axes are the hand's: the camera looks down on its back,
-/// 0.55 m away, fingers up.
+/// The paper's rig, with tracker space equal to model space: the camera sees the back of the hand
+/// from 0.55 m, fingers up.
 inline calib::Calibration rig_above_hand() {
   calib::Calibration calibration = calib::reference_rig();
   calibration.camera_from_tracker =
@@ -53,7 +54,7 @@ inline glm::dvec3 in_camera(const calib::Calibration& calibration, glm::vec3 tra
   return glm::dvec3(calibration.camera_from_tracker * glm::dvec4(tracker_m, 1));
 }
 
-/// What a perfect detector sees of `pose`, moved by `offset_px`.
+/// The landmarks of a perfect detector for `pose`, moved by `offset_px`.
 inline msg::Landmarks landmarks_of(const calib::Calibration& calibration, std::int64_t origin_ns,
                                    const msg::HandPose& pose, glm::vec2 offset_px) {
   msg::Landmarks landmarks;
@@ -69,7 +70,7 @@ inline msg::Landmarks landmarks_of(const calib::Calibration& calibration, std::i
   return landmarks;
 }
 
-/// The camera's image of hands in `poses`, each moved by `offset_px`: 150 on 8.
+/// The camera's image of hands in `poses`, each moved by `offset_px`: grey value 150 on 8.
 inline Image<std::uint8_t> image_of(const calib::Calibration& calibration,
                                     std::initializer_list<msg::HandPose> poses,
                                     glm::dvec2 offset_px = {}) {

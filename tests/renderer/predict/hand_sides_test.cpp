@@ -80,8 +80,8 @@ TEST(HandSides, ATrackerThatGoesOnSayingSoIsBelieved) {
   EXPECT_LT(x_of(sides.named(swapped(0), both()), Side::left), 0);
   EXPECT_LT(x_of(sides.named(swapped(390), both()), Side::left), 0);
   EXPECT_GT(x_of(sides.named(swapped(410), both()), Side::left), 0);
-  sides.named(poses_of(420 * kMs, {left_hand(), right_hand()}),
-              both());  // in between it was right again
+  // One right message in between.
+  sides.named(poses_of(420 * kMs, {left_hand(), right_hand()}), both());
   EXPECT_LT(x_of(sides.named(swapped(430), both()), Side::left), 0);
 }
 

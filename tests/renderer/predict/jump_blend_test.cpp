@@ -15,7 +15,7 @@ LandmarkPoints at_x(float x_px) {
   return points;
 }
 
-/// A hand that goes on steadily; from 100 to 200 ms the landmarks follow it alone and are 6 px
+/// A hand at constant speed. From 100 to 200 ms its landmarks are smoothed by follow() and 6 px
 /// ahead.
 struct HandOver {
   float offset_px(int ms) const { return ms >= 100 && ms < 200 ? 6.0f : 0.0f; }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// Every joint at `at`, turned by `angle` about z.
+/// All joints at `at`, rotated by `angle` about z.
 msg::HandPose pose_at(glm::vec3 at, float angle = 0) {
   msg::HandPose pose;
   pose.side = Side::right;
@@ -36,7 +36,7 @@ config::Predict by_velocity() {
   return settings;
 }
 
-/// Samples every 9 ms of a hand that moves at `m_s` along x and turns at `rad_s`.
+/// Samples every 9 ms of a hand that moves at `m_s` along x and rotates at `rad_s`.
 PoseHistory moving(float m_s, float rad_s = 0, const config::Predict& settings = by_velocity()) {
   PoseHistory history(settings);
   for (int i = 0; i <= 10; ++i) {
@@ -187,8 +187,8 @@ TEST(PoseHistory, ATrackerThatJumpsIsNotTakenForAFastHand) {
             PoseHistory::Pushed::begins_anew);
   EXPECT_EQ(history.begins_ns(), 99 * kMs);
   EXPECT_FALSE(history.settled());
-  EXPECT_NEAR(x_of(history.at(110 * kMs)), 0.1495f, 1e-5f);  // no velocity across it,
-  EXPECT_NEAR(x_of(history.at(95 * kMs)), 0.1495f, 1e-5f);   // and nothing in between
+  EXPECT_NEAR(x_of(history.at(110 * kMs)), 0.1495f, 1e-5f);  // no velocity across the jump
+  EXPECT_NEAR(x_of(history.at(95 * kMs)), 0.1495f, 1e-5f);   // no interpolation across it
   EXPECT_EQ(history.push(108 * kMs, pose_at({0.154f, 0, 0})), PoseHistory::Pushed::goes_on);
   EXPECT_EQ(history.push(117 * kMs, pose_at({0.1585f, 0, 0})), PoseHistory::Pushed::goes_on);
   EXPECT_TRUE(history.settled());
@@ -225,9 +225,10 @@ TEST(PoseHistory, AMovingHandThatIsSuddenlyTheSameToTheLastBitIsNotMeasured) {
 }
 
 TEST(PoseHistory, AHandThatWasShakenHardMayBeShakenOn) {
+  // 3.4 m/s, 190 m/s^2
   const auto shaken = [](double s) {
     return static_cast<float>(0.06 * std::sin(2 * 3.14159265 * 9 * s));
-  };  // 3.4 m/s, 190 m/s^2
+  };
   PoseHistory history(by_velocity());
   for (int i = 0; i < 400; ++i) {
     const double s = i * 9e-3, swell = std::min(1.0, s / 0.5);

@@ -14,7 +14,7 @@ TEST(Presence, AHandThatIsTrackedIsAllThere) {
     EXPECT_EQ(presence.at(ms * kMs, (ms - ms % 9 - 14) * kMs, std::nullopt), 1) << ms;
 }
 
-/// The level every millisecond while the tracker's newest sample stays that of 0 ms.
+/// The share of light in every millisecond after a last tracker sample at 0 ms.
 std::vector<float> silent_for(int last_ms, std::optional<std::int64_t> seen_every_ms) {
   Presence presence;
   std::vector<float> levels;
@@ -94,7 +94,7 @@ TEST(Sight, AHandThatWasNeverSeenIsDark) {
   EXPECT_EQ(sight.at(20 * kMs, false), 0);
 }
 
-/// Mean of the red of all lit pixels, and how many there are.
+/// The mean red of the lit pixels, and their number.
 std::pair<double, int> brightness(const Frame& frame) {
   double sum = 0;
   int count = 0;
@@ -112,7 +112,8 @@ TEST(FadingLight, AHandTheTrackerLostFadesOutAndWhatWasFilledWithIt) {
     white.shading = shading;
     const auto pipeline = *Pipeline::create({}, white, {}, calibration);
     const auto hand = pose_of(Side::left);
-    const auto image = image_of(calibration, {hand}, {6, 0});  // a strip of the hand is filled
+    const auto image =
+        image_of(calibration, {hand}, {6, 0});  // the fill has to light a strip of the hand
     for (std::int64_t t = 0; t <= 99 * kMs; t += 9 * kMs)
       pipeline->push(t + 9 * kMs, poses_of(t, {hand}));
     const auto [full, full_px] =
@@ -130,7 +131,7 @@ TEST(FadingLight, AHandTheTrackerLostFadesOutAndWhatWasFilledWithIt) {
   }
 }
 
-/// A still hand before a camera that is dark for a while; frames every 2 ms.
+/// A still hand; the camera is covered for a while. Frames every 2 ms.
 TEST(FadingLight, ACoveredCameraDimsTheLightWhereItIsUntilItIsOut) {
   const auto calibration = rig_above_hand();
   config::Content white;
@@ -166,7 +167,7 @@ TEST(FadingLight, ACoveredCameraDimsTheLightWhereItIsUntilItIsOut) {
   EXPECT_GT(full, 200);
 }
 
-/// Of two hands one is hidden; the other keeps its light whole.
+/// One of two hands is covered; the other keeps its light.
 TEST(FadingLight, AHandThatIsCoveredFadesAloneAndMovesOnWithItsHand) {
   const auto calibration = rig_above_hand();
   config::Content white;

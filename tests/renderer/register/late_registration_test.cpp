@@ -14,8 +14,7 @@ namespace {
 constexpr std::int64_t kPeriod_ns = 9 * kMs, kAge_ns = 9 * kMs, kFrame_ns = 2 * kMs,
                        kLeg_ns = 5 * kMs;
 
-/// One hand on its way: the tracker samples it every 9 ms and says so 9 ms later, the camera sees
-/// it every 2 ms.
+/// One moving hand. Tracker samples come every 9 ms and are 9 ms old; images come every 2 ms.
 class Scene {
  public:
   explicit Scene(std::function<glm::vec3(double)> moved_m, glm::vec2 image_off_px = {})
@@ -31,7 +30,8 @@ class Scene {
     return *project_landmarks(calibration_, pose_at(time_ns));
   }
 
-  /// Up to `now_ns`; `seen` is what the camera has in place of the hand, where it is set.
+  /// Runs up to `now_ns`. `seen`: the image of the last 12 ms instead of that of the hand, if
+  /// given.
   RegisteredHand run(std::int64_t now_ns, const Image<std::uint8_t>* seen = nullptr) {
     RegisteredHand corrected;
     for (; now_ns_ <= now_ns; now_ns_ += kMs) {
@@ -76,9 +76,9 @@ double mean_distance(const LandmarkPoints& a, const LandmarkPoints& b) {
   return sum;
 }
 
-constexpr std::int64_t kNow_ns = 151 * kMs;  // some time after a sample: the prediction is long
+constexpr std::int64_t kNow_ns = 151 * kMs;  // long after a sample, so the prediction is long
 
-/// Rests, and starts so late that no sample shows it yet.
+/// A hand that rests, and starts to move after the newest sample.
 glm::vec3 starting(double s) {
   return {s > 0.138 ? static_cast<float>(30 * (s - 0.138) * (s - 0.138)) : 0, 0, 0};
 }
@@ -91,8 +91,8 @@ TEST(LateRegistration, AMotionThatTheTrackerHasNotSeenYetIsFollowed) {
   EXPECT_GT(mean_distance(scene.tracker(), truth), 9);
   EXPECT_LT(mean_distance(corrected.landmarks, truth),
             0.65 * mean_distance(scene.tracker(), truth));
-  EXPECT_GT(corrected.moved_now[9].x,
-            corrected.moved_then[9].x);  // the error grows on the way to the light
+  // The error grows from the exposure to the target time.
+  EXPECT_GT(corrected.moved_now[9].x, corrected.moved_then[9].x);
 }
 
 TEST(LateRegistration, AStillHandStaysWhereTheTrackerHasItHoweverFarOffTheMaskIs) {

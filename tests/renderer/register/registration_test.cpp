@@ -32,7 +32,7 @@ float distance_to_bone(glm::vec2 at, glm::vec2 from, glm::vec2 to) {
   return glm::distance(at, from + along * axis);
 }
 
-/// How far inside the hand's flesh a point is, px.
+/// Depth of a point inside the flesh of the hand, px.
 float depth(const LandmarkPoints& hand, glm::vec2 at) {
   float deepest = -1000;
   for (int f = 0; f < 5; ++f) {
@@ -44,7 +44,7 @@ float depth(const LandmarkPoints& hand, glm::vec2 at) {
   return deepest;
 }
 
-/// A picture and its mask.
+/// An image and its mask.
 struct Picture {
   Image<std::uint8_t> grey{kWidth, kHeight, 10}, mask{kWidth, kHeight, 0};
 
@@ -96,7 +96,8 @@ LandmarkPoints bent(LandmarkPoints hand, int finger, float turn_rad) {
   return hand;
 }
 
-/// The hand was `then`; the tracker thinks it is where it was; `newest` shows it.
+/// Registers a hand that was at `then`, is at `tracker_now` for the tracker, and is seen in
+/// `newest`.
 Registered registered(const LandmarkPoints& then, const Picture& newest,
                       const LandmarkPoints& tracker_now) {
   static Contour outline;
@@ -152,7 +153,7 @@ TEST(Contour, WhereTheMaskWasCutThereIsNoEdge) {
   Picture picture = picture_of(flat_hand());
   for (int y = 290; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)
-      picture.mask.at(x, y) = 0;  // the forearm's cut: the grey values go on
+      picture.mask.at(x, y) = 0;  // cut at the forearm; the grey values continue
   static Contour contour;
   find_contour(picture.silhouette(), contour);
   for (int i = 0; i < contour.count; ++i) EXPECT_LT(contour.points_px[i].y, 289.5) << i;

@@ -26,7 +26,7 @@ void move(JointFrames& frames, int joint, const glm::vec3& by) {
   frames[joint][3] += glm::vec4(by, 0);
 }
 
-/// Joints that begin a bone; it ends at the next joint.
+/// True if a bone starts at this joint. It ends at the next one.
 bool begins_bone(int joint) {
   return joint > kWrist && joint + 1 < kJoints && kJointParent[joint + 1] == joint;
 }
@@ -49,7 +49,7 @@ float weight_of(const HandMesh& hand, std::size_t v, int joint) {
   return weight;
 }
 
-/// How far apart two neighbouring bones put the skin they share around the joint `joint`, at most.
+/// The largest distance between the positions that the two bones at `joint` give their shared skin.
 float step_mm(const HandMesh& hand, const JointFrames& frames, int joint) {
   constexpr float kShared = 0.2f;
   float most = 0;
@@ -66,12 +66,12 @@ float largest_distance_mm(const std::vector<glm::vec3>& a, const std::vector<glm
   float most = 0;
   for (std::size_t v = 0; v < a.size(); ++v) {
     const float distance_mm = 1e3f * glm::distance(a[v], b[v]);
-    if (!(distance_mm <= most)) most = distance_mm;  // not a number stays
+    if (!(distance_mm <= most)) most = distance_mm;  // keeps NaN
   }
   return most;
 }
 
-/// Orientations kept, places scaled about the wrist.
+/// The frames with positions scaled about the wrist and orientations kept.
 JointFrames grown(JointFrames frames, float factor) {
   for (int joint = 0; joint < kJoints; ++joint)
     frames[joint][3] = glm::vec4(
@@ -80,7 +80,7 @@ JointFrames grown(JointFrames frames, float factor) {
   return frames;
 }
 
-/// The joints of `person`, a left hand, in a mirror where the side asks for it.
+/// The joints of `person`, a left hand; mirrored for Side::right.
 JointFrames joints_of(const HandShape& person, Side side) {
   JointFrames frames = rest_frames(person);
   if (side == Side::left) return frames;
@@ -163,8 +163,8 @@ TEST_P(BoneFitOf, LongerFingersHaveNoStepsInTheirSkin) {
       joints_of(HandShape::mean().scaled({1.2f, 1.2f, 1.2f, 1.2f, 1.2f}, 1, 1), GetParam());
   for (int joint = kWrist + 1; joint < kJoints; ++joint) {
     if (!begins_bone(joint - 1) || !begins_bone(joint)) continue;
-    const bool knuckle = kJointParent[joint - 1] ==
-                         kWrist;  // where a palm that is not longer meets a finger that is
+    // At a knuckle a palm of normal length meets a longer finger.
+    const bool knuckle = kJointParent[joint - 1] == kWrist;
     EXPECT_LT(step_mm(hand, fit(person), joint), knuckle ? 2.0f : 0.2f) << kJointNames[joint];
     if (!knuckle) {
       EXPECT_GT(step_mm(hand, person, joint), 3) << kJointNames[joint] << " without the fit";
@@ -259,7 +259,7 @@ TEST_P(BoneFitOf, AKnownPalmBendsWithItsKnuckles) {
     EXPECT_LT(1e3f * glm::distance(end, origin(bent, base + 1)), 1e-2f) << kJointNames[base];
   }
   EXPECT_LT(1e3f * (origin(fitted, kIndexBase) - origin(hand.rest, kIndexBase)).y, -0.5f)
-      << "the bases go part of the way";
+      << "the bases move part of the distance";
 }
 
 TEST_P(BoneFitOf, ARigidMotionMovesTheWholeHand) {
@@ -303,7 +303,7 @@ TEST_P(BoneFitOf, AfterOneSampleThePalmIsThatSamples) {
   EXPECT_LT(largest_distance_mm(fitted_skin(uncertain), fitted_skin(person)), 1);
 }
 
-/// How much a bone's frame makes lengths larger at most, and smaller.
+/// Expects that the frame of a bone scales lengths within the limits.
 void expect_sane(const HandMesh& hand, const JointFrames& fitted, int joint) {
   const glm::mat3 whole = glm::mat3(fitted[joint] * glm::inverse(hand.rest[joint]));
   for (const glm::vec3 way : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1),

@@ -7,8 +7,10 @@
 #include "renderer/skin/bone_fit.hpp"
 #include "renderer/skin/skinning.hpp"
 
+/// @file
 /// A person's hand as a mask, seen from above without perspective, and the mean hand drawn on the
 /// same joints.
+
 namespace handcast::renderer {
 namespace {
 
@@ -62,7 +64,7 @@ class WidthMeterTest : public testing::Test {
     return points;
   }
 
-  /// Frames of a still hand, each drawn as wide as was known by then.
+  /// Measures frames of a still hand, each drawn with the present factor.
   void look_at(const Image<std::uint8_t>& mask, int frames) {
     for (int i = 0; i < frames; ++i, time_ns_ += kFrame_ns) {
       fit_.widen(meter_.factor());

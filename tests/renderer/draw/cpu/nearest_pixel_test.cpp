@@ -11,8 +11,7 @@ namespace {
 
 using Mask = Image<std::uint8_t>;
 
-/// Square of the distance to the nearest seed, looked for everywhere; -1 where it is beyond the
-/// reach.
+/// Squared distance of the nearest seed, found by exhaustive search; -1 if it is out of reach.
 int nearest_by_hand(const Mask& seeds, int x, int y, int reach_px) {
   int best = reach_px * reach_px + 1;
   for (int sy = 0; sy < seeds.height(); ++sy) {

@@ -25,8 +25,7 @@ struct Sheet {
   }
 };
 
-/// A grid whose nodes stand on random half or whole pixels: its edges run through many pixel
-/// centres.
+/// A grid with nodes at random half or whole pixels, so its edges run through many pixel centres.
 Sheet jittered_grid(unsigned seed) {
   std::mt19937 random(seed);
   const int coarse = seed % 2 == 0 ? 16 : 8, most = seed % 2 == 0 ? 1 : 3;
