@@ -11,7 +11,7 @@
 namespace handcast::msg {
 
 /// How much of the cascade one hand of one frame was given, cheapest first
-/// (renderer/cascade/rung.hpp says what each does).
+/// (renderer/ladder/rung.hpp says what each does).
 enum class Rung : std::uint8_t { hold, predict, shift, similarity, fingers, landmarks, registered };
 
 inline constexpr std::size_t kRungs = 7;
