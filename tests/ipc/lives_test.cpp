@@ -19,7 +19,7 @@ TEST(Ring, ASecondWriterIsRefusedWhileTheFirstLives) {
   const auto second = Writer<Note>::attach(again(segment));
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::unavailable);
-  EXPECT_THAT(second.error().what, HasSubstr("another writer lives"));
+  EXPECT_THAT(second.error().what, HasSubstr("another writer is attached"));
   writer.reset();
   EXPECT_TRUE(Writer<Note>::attach(again(segment)));
 }
