@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contract of every camera back end.
+// The contract of all camera back ends.
 #include "services/camera/camera.hpp"
 
 #include <gmock/gmock.h>
