@@ -17,7 +17,7 @@ SegmentHeader& header_of(const Segment& segment) {
   return *reinterpret_cast<SegmentHeader*>(segment.data());
 }
 
-/// Why the ring cannot be opened any more; empty if it can.
+/// The reason why the ring cannot be opened; empty if it can.
 std::string refusal(int fd) {
   const auto segment = Segment::open(duplicate(fd));
   if (segment) return "";
@@ -50,7 +50,7 @@ TEST(Segment, EveryWriterHasLinesOfItsOwnAndAllLieWithinTheMemory) {
     lines.push_back(offset(words.owner(row)));
     for (const auto* word : {&words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
       EXPECT_EQ(offset(*word) / kLineBytes, lines.back() / kLineBytes)
-          << "a row's words are one reader's";
+          << "the words of a row belong to one reader";
     EXPECT_NE(&words.lease(row, 0), &words.lease(row, 1));
   }
   lines.push_back(offset(writer_tally(segment)));
