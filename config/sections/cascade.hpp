@@ -104,8 +104,8 @@ void describe(Visitor& visitor, Filter& filter) {
   visitor.field("one_euro_beta", filter.one_euro_beta, between(0, 10, "1/px"),
                 "one_euro: increase of the cutoff frequency with the speed of the offset.");
   visitor.field("blend_ms", filter.blend_ms, between(0, 50, "ms"),
-                "Time constant with which the jump at each new sample is blended in: larger is "
-                "steadier, smaller is faster. 0: no blending.");
+                "Time constant with which the jump caused by a new tracker sample or detection is "
+                "blended in: larger is steadier, smaller is faster. 0: no blending.");
   visitor.field("blend_px", filter.blend_px, between(0, 100, "px"),
                 "The largest part of a jump that is blended in; the rest is shown at once, so that "
                 "fast motion is not delayed.");

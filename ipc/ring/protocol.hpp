@@ -41,7 +41,7 @@ class WriterCore {
     if (newest != sequence_of(head))
       Atomics::store(words_.head(), head_word(newest_, newest), std::memory_order_release);
     epoch_ = following_epoch(Atomics::load(words_.epoch(), std::memory_order_acquire));
-    // Release: the epoch word is stored before any state of this epoch.
+    // Before any state of this epoch is stored.
     Atomics::store(words_.epoch(), epoch_, std::memory_order_release);
     next_ = following(newest);
     // Always: the previous writer may have died between its message and its wake-up.
@@ -96,8 +96,8 @@ class WriterCore {
   static constexpr std::size_t index(int slot) { return static_cast<std::size_t>(slot); }
 
   /// Readers that move from slot to slot may be met in each slot that is marked alone. So all
-  /// candidates are marked before a single scan. It sees at most n slots for n leases, so one of n
-  /// + 1 candidates is free, however the readers move.
+  /// candidates are marked before a single scan. For n leases it sees at most n slots, so of n + 1
+  /// candidates one is free, however the readers move.
   int loan_after_marking_all(const SlotSet& taken) {
     for (int slot = 0; slot < words_.slots(); ++slot)
       if (!taken[index(slot)]) mark(slot);
@@ -333,7 +333,7 @@ class ReaderCore {
     Atomics::compare_exchange(flag, idle | kWaiting, idle, std::memory_order_relaxed);
   }
 
-  /// Like wait(), but requests no wake-up: the writer makes no system call, and a new message does
+  /// Like wait(), but requests no wake-up: the writer makes no system call, and a new message need
   /// not end the sleep.
   void doze(std::int64_t until_ns) {
     const auto head = Atomics::load(words_.head(), std::memory_order_relaxed);

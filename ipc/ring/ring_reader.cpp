@@ -113,7 +113,8 @@ Result<Held> RingReader::take_until(Deadline deadline, const Verb& verb) {
     if (*outcome == Outcome::corrupt)
       return fail_here(Errc::bad_data,
                        "its control words are inconsistent: another program writes to its memory");
-    if (deadline.passed()) return fail_here(Errc::timeout, "nothing new before the deadline");
+    if (deadline.passed())
+      return fail_here(Errc::timeout, "no new message came before the deadline");
     if (*outcome == Outcome::nothing) wait(deadline);
   }
 }

@@ -23,7 +23,7 @@ void insist(bool holds, const char* what, const std::string& said) {
 
 template <class T>
 void expect_refusal(const Result<T>& result, const char* what, std::string_view hint = "") {
-  insist(!result, what, "nothing");
+  insist(!result, what, "none");
   insist(result.error().code == Errc::unavailable &&
              result.error().what.find(hint) != std::string::npos,
          what, result.error().what);
