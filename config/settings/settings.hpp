@@ -73,8 +73,8 @@ class Collector {
   /// Adds the top level of the file to `listing`, which must outlive this object.
   explicit Collector(Listing& listing) : listing_(listing) { listing_.push_back({}); }
 
-  /// Declares a setting of the section that is being described. `name`, `value` and `sentence` must
-  /// outlive the listing.
+  /// Declares a setting of the section that is being described. `value`, `sentence` and the unit in
+  /// `range` must outlive the listing.
   /// @{
   void field(std::string_view name, bool& value, std::string_view sentence) {
     add(name, &value, {}, sentence);
