@@ -60,7 +60,7 @@ enum class FilterMethod {
   none,           ///< landmarks are not used
   naive,          ///< Q, unchanged
   kalman,         ///< a constant-velocity Kalman filter on Q
-  paper,          ///< Q + P_now - P_then for each joint (paper, "Temporal Filtering")
+  paper,          ///< Q + P_now - P_then (paper, "Moving Least Squares Deformation")
   one_euro,       ///< a one-euro filter on the offset Q - P
   offset_kalman,  ///< a constant-velocity Kalman filter on that offset
   ideal,          ///< the true landmarks; only in the simulator
