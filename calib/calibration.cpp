@@ -17,9 +17,9 @@ glm::dvec2 apply(const glm::dmat3& homography, const glm::dvec2& px) {
 
 glm::dmat3 translation(double x, double y) { return {1, 0, 0, 0, 1, 0, x, y, 1}; }
 
-/// The paper's rig publishes no homography. This one covers the projector's picture with the
-/// camera's, as a coaxial rig does that was aligned by hand: turned by 0.4 degrees, with a keystone
-/// of about a pixel in the corners.
+/// A homography for the reference rig, since the authors of the paper published none. It maps the
+/// camera image onto the projector image as in a coaxial rig that was aligned by hand: turned by
+/// 0.4 degrees, with a keystone of about one pixel in the corners.
 glm::dmat3 coaxial_homography(const CameraModel& camera, int width_px, int height_px) {
   const double angle = glm::radians(0.4);
   const double scale = static_cast<double>(width_px) / camera.width_px;
@@ -64,8 +64,8 @@ double Calibration::mm_per_projector_px(double distance_m) const {
   const auto here = to_camera(centre);
   const auto right = to_camera(centre + glm::dvec2(1, 0)) - here,
              down = to_camera(centre + glm::dvec2(0, 1)) - here;
-  const double area_px2 =
-      std::abs(right.x * down.y - right.y * down.x);  // camera px^2 of one projector pixel
+  // Area of one projector pixel in the camera image.
+  const double area_px2 = std::abs(right.x * down.y - right.y * down.x);
   return 1000 * distance_m * std::sqrt(area_px2 / (camera.fx_px * camera.fy_px));
 }
 
@@ -76,7 +76,7 @@ Calibration reference_rig() {
   rig.camera.p1 = 0.00165304;
   rig.camera.p2 = 0.0000942112;
   rig.camera.k3 = 1.63144417;
-  // Columns: where the tracker's axes point in camera space, and its origin in metres.
+  // Columns: the axes of the tracker in camera space, and its origin in metres.
   rig.camera_from_tracker =
       orthonormalised({-0.9820147752761841, 0.14056652784347534, -0.1260479986667633, 0,  //
                        -0.01631111092865467, 0.6019535064697266, 0.7983646988868713, 0,   //

@@ -8,48 +8,63 @@
 
 namespace handcast::calib {
 
-/// Pinhole camera with Brown-Conrady distortion (OpenCV's five coefficients k1 k2 p1 p2 k3).
-/// Pixels: x right, y down, (0,0) is the centre of the top-left pixel. Camera space: x right, y
-/// down, z forward, metres.
+/// A pinhole camera with Brown-Conrady distortion (the coefficients k1, k2, p1, p2, k3 of OpenCV).
+/// Pixels: x to the right, y down, (0, 0) is the centre of the top-left pixel. Camera space: x to
+/// the right, y down, z forward, in metres.
 struct CameraModel {
+  /// Size of the image in pixels.
+  /// @{
   int width_px = 720;
   int height_px = 540;
+  /// @}
+  /// Focal lengths fx, fy, principal point cx, cy, and distortion coefficients.
+  /// @{
   double fx_px = 1162.2776, fy_px = 1162.2776;
   double cx_px = 359.5, cy_px = 269.5;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  /// @}
 
-  glm::dmat3 matrix() const;                            ///< K
-  glm::dvec2 project(const glm::dvec3& point_m) const;  ///< to undistorted px; z must be > 0
-  glm::dvec2 distort(
-      const glm::dvec2& undistorted_px) const;  ///< to where the lens puts it in the image
-  glm::dvec2 undistort(const glm::dvec2& image_px) const;  ///< the inverse, by Newton iterations
-  bool folds() const;  ///< inside the image, where there is then no inverse
+  /// The camera matrix K.
+  glm::dmat3 matrix() const;
+  /// Maps a point in camera space to undistorted pixels. z must be greater than 0.
+  glm::dvec2 project(const glm::dvec3& point_m) const;
+  /// Maps undistorted pixels to pixels of the image as the lens forms it.
+  glm::dvec2 distort(const glm::dvec2& undistorted_px) const;
+  /// The inverse of distort(), computed by Newton's method.
+  glm::dvec2 undistort(const glm::dvec2& image_px) const;
+  /// True if the distortion has no inverse somewhere inside the image.
+  bool folds() const;
 };
 
-/// What a calibrated rig knows of itself. Transforms read right to left.
+/// The calibration of a rig with a coaxial camera and projector. The names of transforms read from
+/// right to left.
 struct Calibration {
-  CameraModel camera;
-  glm::dmat4 camera_from_tracker{1};  ///< rigid, metres
-  glm::dmat3 projector_from_camera{
-      1};  ///< homography, undistorted camera px -> projector px (the rig is coaxial)
+  CameraModel camera;                   ///< the infrared camera
+  glm::dmat4 camera_from_tracker{1};    ///< rigid, in metres
+  glm::dmat3 projector_from_camera{1};  ///< homography: undistorted camera px to projector px
+  /// Size of the projector image in pixels.
+  /// @{
   int projector_width_px = 1024;
   int projector_height_px = 768;
+  /// @}
 
-  /// Undistorted camera px -> projector px.
+  /// Maps undistorted camera pixels to projector pixels.
   glm::dvec2 to_projector(const glm::dvec2& camera_px) const;
-  /// Projector px -> undistorted camera px.
+  /// Maps projector pixels to undistorted camera pixels.
   glm::dvec2 to_camera(const glm::dvec2& projector_px) const;
-  /// Millimetres on a plane facing the camera at `distance_m`, per projector pixel.
+  /// Size of a projector pixel in millimetres on a plane that faces the camera at `distance_m`.
   double mm_per_projector_px(double distance_m) const;
 };
 
-/// The rig of the paper, from its authors' published calibration: 720x540 camera, 1024x768 coaxial
-/// projector.
+/// The rig of the paper, from the calibration that its authors published: 720x540 camera, 1024x768
+/// coaxial projector.
 Calibration reference_rig();
 
-/// Reads a calibration file (TOML; scalar settings and matrices as rows). Empty path: the reference
-/// rig.
+/// Reads a calibration file: TOML, with matrices as rows. An empty path gives the reference rig.
+/// Errors: bad_config (the file cannot be read, is no TOML, or has invalid values; one line for
+/// each fault).
 Result<Calibration> load_calibration(const std::filesystem::path& file);
+/// The calibration as a commented file that load_calibration() reads back.
 std::string print_calibration(const Calibration& calibration);
 
 }  // namespace handcast::calib

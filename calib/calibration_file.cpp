@@ -7,7 +7,7 @@
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
 
-/// The calibration file: TOML, with the same declarations, messages and printer as a rig file.
+/// The calibration file: TOML, declared, checked and printed like a rig file (config/settings).
 namespace handcast::calib {
 
 using config::between;
@@ -37,8 +37,8 @@ template <class Visitor>
 void describe(Visitor& visitor, TransformSection& rows) {
   visitor.field("x", rows.x, between(-100, 100),
                 "Camera x (right) of the tracker's three axes and of its origin.");
-  visitor.field("y", rows.y, between(-100, 100), "Camera y (down) of the same.");
-  visitor.field("z", rows.z, between(-100, 100), "Camera z (forward) of the same.");
+  visitor.field("y", rows.y, between(-100, 100), "Camera y (down) of these.");
+  visitor.field("z", rows.z, between(-100, 100), "Camera z (forward) of these.");
 }
 
 struct ProjectorSection {
@@ -48,13 +48,12 @@ struct ProjectorSection {
 
 template <class Visitor>
 void describe(Visitor& visitor, ProjectorSection& projector) {
-  visitor.field("width_px", projector.width_px, between(16, 16384, "px"), "Width of the picture.");
-  visitor.field("height_px", projector.height_px, between(16, 16384, "px"),
-                "Height of the picture.");
+  visitor.field("width_px", projector.width_px, between(16, 16384, "px"), "Width of the image.");
+  visitor.field("height_px", projector.height_px, between(16, 16384, "px"), "Height of the image.");
   visitor.field("x", projector.x, Range{},
                 "First row of the homography from undistorted camera pixels to projector pixels.");
   visitor.field("y", projector.y, Range{}, "Second row.");
-  visitor.field("w", projector.w, Range{}, "Third row: what both are divided by.");
+  visitor.field("w", projector.w, Range{}, "Third row: the divisor of both.");
 }
 
 struct File {
@@ -67,7 +66,7 @@ template <class Visitor>
 void describe(Visitor& visitor, File& file) {
   visitor.section("camera", file.camera, "The infrared camera.");
   visitor.section("camera_from_tracker", file.camera_from_tracker,
-                  "Rigid, in rows; the last column in metres.");
+                  "Rigid transform, in rows; the last column is in metres.");
   visitor.section("projector", file.projector, "The projector, coaxial with the camera.");
 }
 
@@ -132,12 +131,12 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
                     file, off, kRigidTolerance));
   if (calibration.camera.folds())
     faults.add(
-        fmt::format("{}: camera.distortion: the lens folds the image: towards its edge two "
-                    "directions are seen in one pixel",
+        fmt::format("{}: camera.distortion: the lens folds the image: near its edge, two "
+                    "directions map to one pixel",
                     file));
   if (!(std::abs(glm::determinant(calibration.projector_from_camera)) > 1e-9))
-    faults.add(
-        fmt::format("{}: projector: the homography's rows x, y, w depend on each other", file));
+    faults.add(fmt::format(
+        "{}: projector: the rows x, y, w of the homography are linearly dependent", file));
 }
 
 }  // namespace
@@ -161,7 +160,7 @@ Result<Calibration> load_calibration(const std::filesystem::path& path) {
 
 std::string print_calibration(const Calibration& calibration) {
   auto file = to_file(calibration);
-  return config::print_settings(config::list_settings(file), "What a rig knows of itself.");
+  return config::print_settings(config::list_settings(file), "The calibration of a rig.");
 }
 
 }  // namespace handcast::calib

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/calibration.hpp"
 
-/// The lens: Brown-Conrady, as in OpenCV's "Camera Calibration and 3D Reconstruction".
+/// The lens: Brown-Conrady distortion, as in "Camera Calibration and 3D Reconstruction" of OpenCV.
 namespace handcast::calib {
 namespace {
 
@@ -13,8 +13,7 @@ glm::dvec2 to_px(const CameraModel& camera, const glm::dvec2& normalised) {
   return {normalised.x * camera.fx_px + camera.cx_px, normalised.y * camera.fy_px + camera.cy_px};
 }
 
-/// Where the lens puts a ray, and how that moves with the ray (d distorted / d ray). Both without a
-/// unit, at z = 1.
+/// The distorted position of a ray, and its derivative by the ray. Both at z = 1, without a unit.
 struct Bent {
   glm::dvec2 point;
   glm::dmat2 slope;
@@ -24,8 +23,8 @@ Bent bend(const CameraModel& c, const glm::dvec2& ray) {
   const double x = ray.x, y = ray.y;
   const double r2 = x * x + y * y;
   const double radial = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
-  const double radial_slope =
-      2 * (c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3));  // d radial / d x = radial_slope * x
+  // d radial / d x = radial_slope * x, and likewise for y.
+  const double radial_slope = 2 * (c.k1 + r2 * (2 * c.k2 + r2 * 3 * c.k3));
 
   Bent bent;
   bent.point.x = x * radial + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x);
@@ -49,7 +48,7 @@ glm::dvec2 CameraModel::distort(const glm::dvec2& undistorted_px) const {
 }
 
 glm::dvec2 CameraModel::undistort(const glm::dvec2& image_px) const {
-  constexpr int kIterations = 8;  // converges quadratically: 3 do for the image itself
+  constexpr int kIterations = 8;  // converges quadratically: 3 suffice inside the image
   constexpr double kDone = 1e-24;
   const auto seen = to_normalised(*this, image_px);
   auto ray = seen;
@@ -63,8 +62,8 @@ glm::dvec2 CameraModel::undistort(const glm::dvec2& image_px) const {
 }
 
 bool CameraModel::folds() const {
-  constexpr int kSteps =
-      16;  // of each side of the image, and from its principal point out to there
+  // Samples along each side of the image, and along the ray from the principal point to each.
+  constexpr int kSteps = 16;
   constexpr double kFound_px = 0.01;
   const glm::dvec2 last(width_px - 1, height_px - 1);
   for (int i = 0; i <= kSteps; ++i) {

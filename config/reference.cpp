@@ -11,18 +11,18 @@ namespace {
 constexpr std::string_view kHead =
     "# Settings\n"
     "\n"
-    "Every setting of a rig file, from the declarations in `config/sections`. This page is "
-    "generated; a test compares it.\n"
-    "Write a new one with `handcast config --reference > config/REFERENCE.md`.\n"
+    "All settings of a rig file, generated from the declarations in `config/sections`; a test "
+    "compares them.\n"
+    "To update this page: `handcast config --reference > config/REFERENCE.md`.\n"
     "\n"
-    "A rig file is TOML and says only what differs from the defaults. `--set path=value` changes "
-    "one setting for one run, for\n"
-    "example `--set cascade.fill.method=none`. A relative path in a rig file starts at that file's "
-    "folder, one in `--set` at the\n"
-    "current folder. `handcast config --check FILE` lists everything that is wrong with a file at "
-    "once.\n";
+    "A rig file is TOML and contains only what differs from the defaults. `--set path=value` "
+    "changes one setting for one run,\n"
+    "for example `--set cascade.fill.method=none`. A relative path in a rig file starts at the "
+    "folder of that file, a relative\n"
+    "path in `--set` at the current folder. `handcast config --check FILE` lists all errors of a "
+    "file at once.\n";
 
-/// A bar would end the cell.
+/// Escapes bars, which would end the cell of a table.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);

@@ -12,7 +12,7 @@
 namespace handcast::config {
 namespace {
 
-/// The settings that name files or folders.
+/// The settings whose values are paths of files or folders.
 constexpr std::string_view kPaths[] = {"calibration",
                                        "camera.replay.directory",
                                        "pose.replay.directory",
@@ -24,7 +24,7 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "content.right",
                                        "twin.motion"};
 
-/// Makes the relative paths absolute; "" and "builtin:…" are no paths.
+/// Makes relative paths absolute; "" and "builtin:…" are not paths.
 void resolve_paths(const Listing& listing, const std::filesystem::path& folder) {
   for (const auto path : kPaths) {
     auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
@@ -33,7 +33,7 @@ void resolve_paths(const Listing& listing, const std::filesystem::path& folder) 
   }
 }
 
-/// What no single setting can say about itself.
+/// Checks conditions between settings.
 void check_together(const Rig& rig, std::string_view file, Faults& faults) {
   const auto& correct = rig.cascade.correct;
   if (correct.bone_short_px >= correct.bone_long_px)
@@ -83,7 +83,7 @@ Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::s
 
 std::string print_rig(const Rig& rig) {
   auto copy = rig;
-  return print_settings(list_settings(copy), "Every setting of this rig.");
+  return print_settings(list_settings(copy), "All settings of this rig.");
 }
 
 }  // namespace handcast::config

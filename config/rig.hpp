@@ -14,11 +14,13 @@
 
 namespace handcast::config {
 
-/// Everything one rig is made of: the whole of a rig file. Sections are plain structs; `describe`
-/// declares their settings.
+/// The contents of a rig file. Each section is a plain struct, whose settings are declared by its
+/// describe() and listed in REFERENCE.md.
 struct Rig {
-  std::string name = "rig";
-  std::string calibration;  ///< path of the calibration file; empty: the reference rig's
+  std::string name = "rig";  ///< used in messages, reports and the path of the control socket
+  std::string calibration;   ///< path of the calibration file; empty: the reference rig
+  /// The sections.
+  /// @{
   Camera camera;
   Pose pose;
   Landmarks landmarks;
@@ -29,49 +31,52 @@ struct Rig {
   Twin twin;
   Observer observer;
   Supervisor supervisor;
+  /// @}
 };
 
+/// Declares the settings of a rig file: see field.hpp.
 template <class Visitor>
 void describe(Visitor& visitor, Rig& rig) {
-  visitor.field("name", rig.name, "Names the rig in messages, the report and its control socket.");
-  visitor.field(
-      "calibration", rig.calibration,
-      "Calibration file, relative to the rig file. Empty: the reference rig of the paper.");
+  visitor.field("name", rig.name,
+                "Name of the rig in messages, reports and the path of its control socket.");
+  visitor.field("calibration", rig.calibration,
+                "Calibration file, relative to the rig file. Empty: the rig of the paper.");
   visitor.section("camera", rig.camera, "The infrared camera.");
   visitor.section("pose", rig.pose, "The hand tracker.");
   visitor.section("landmarks", rig.landmarks, "The landmark detector.");
   visitor.section("projector", rig.projector, "The projector.");
-  visitor.section("content", rig.content, "What is painted.");
-  visitor.section("hand", rig.hand, "The hand that is drawn.");
-  visitor.section("cascade", rig.cascade, "From sensors to light.");
+  visitor.section("content", rig.content, "The pictures on the hands.");
+  visitor.section("hand", rig.hand, "The model of the hand that is drawn.");
+  visitor.section("cascade", rig.cascade, "The steps from sensor data to light.");
   visitor.section("twin", rig.twin,
-                  "The digital twin, for every back end named twin and for the simulator.");
-  visitor.section("observer", rig.observer, "The judge.");
-  visitor.section("supervisor", rig.supervisor, "Starting, watching, stopping.");
+                  "The digital twin, for the simulator and all back ends named twin.");
+  visitor.section("observer", rig.observer, "The service that scores the light.");
+  visitor.section("supervisor", rig.supervisor, "Start, supervision and stop of the services.");
 }
 
-/// How the service of this name ("camera") runs: its [NAME.process]. One that no rig file knows:
-/// the defaults.
+/// The section [NAME.process] of the service with this name ("camera"); the defaults if there is no
+/// such service.
 Process process_of(const Rig& rig, std::string_view service);
 
-/// Reads a rig file and applies `settings` ("path=value") on top. Paths become absolute: those of
-/// the file from its folder, those of `settings` from the current one. Every fault of the file is
-/// in the one error (bad_config), a line each: "FILE:LINE: camera.rate_hz: 0 is outside 1..2000
+/// Reads a rig file and applies `settings` ("path=value") on top. Relative paths become absolute:
+/// those of the file start at its folder, those of `settings` at the current folder. Errors:
+/// bad_config, with one line for each fault, e.g. "FILE:LINE: camera.rate_hz: 0 is outside 1..2000
 /// Hz".
 Result<Rig> load_rig(const std::filesystem::path& file,
                      const std::vector<std::string>& settings = {});
 
-/// The same from memory; `file` names it in messages and is what relative paths are relative to.
+/// Like load_rig(), from memory. `file` is used in messages, and relative paths start at its
+/// folder.
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
                       const std::vector<std::string>& settings = {});
 
-/// The whole rig as commented TOML: what load_rig reads back to the same rig.
+/// The rig as a commented TOML file with all settings, which load_rig() reads back.
 std::string print_rig(const Rig& rig);
 
-/// The setting names a file or folder ("twin.motion"): what load_rig makes absolute.
+/// True if the value of this setting ("twin.motion") is a path, which load_rig() makes absolute.
 bool names_a_file(std::string_view setting);
 
-/// The settings reference (config/REFERENCE.md), from the declarations alone.
+/// The text of config/REFERENCE.md, generated from the declarations of the settings.
 std::string print_reference();
 
 }  // namespace handcast::config

@@ -5,19 +5,20 @@
 
 #include "config/settings/field.hpp"
 
-/// The settings of the cascade: one section per step, in the order the steps run.
+/// The settings of the cascade: one section for each step.
 namespace handcast::config {
 
-/// How a pose is taken to the time of the photons.
+/// How a pose is extrapolated to the time of the light (docs/method.md#predict).
 enum class PredictMethod {
-  hold,          ///< the newest pose as it is
+  hold,          ///< the newest pose, unchanged
   velocity,      ///< constant velocity of the two newest samples
-  acceleration,  ///< and as much of the acceleration as stands out of the noise
+  acceleration,  ///< and the part of the acceleration that exceeds the noise
 };
 constexpr std::array<std::string_view, 3> words_of(PredictMethod) {
   return {"hold", "velocity", "acceleration"};
 }
 
+/// [cascade.predict]
 struct Predict {
   PredictMethod method = PredictMethod::acceleration;
   double limit_ms = 40;
@@ -27,17 +28,17 @@ struct Predict {
 template <class Visitor>
 void describe(Visitor& visitor, Predict& predict) {
   visitor.field("method", predict.method,
-                "hold: the newest pose as it is. velocity: two-point constant velocity to the time "
-                "of the photons. acceleration: the same "
-                "and as much "
-                "of the acceleration as stands out of the tracker's noise.");
+                "hold: the newest pose, unchanged. velocity: extrapolated to the time of the light "
+                "at the constant velocity of the two newest samples. acceleration: like velocity, "
+                "with the part of the acceleration that exceeds the tracker's noise.");
   visitor.field("limit_ms", predict.limit_ms, between(0, 200, "ms"),
-                "How far beyond the newest sample a pose is extrapolated; then it is held.");
-  visitor.field(
-      "still_mm_s", predict.still_mm_s, between(0, 1000, "mm/s"),
-      "Below this speed a joint is held, not extrapolated: a still hand gives still light.");
+                "Longest extrapolation beyond the newest sample; later the pose is held.");
+  visitor.field("still_mm_s", predict.still_mm_s, between(0, 1000, "mm/s"),
+                "A joint slower than this is not extrapolated but rests at its recent mean, so "
+                "that the light on a still hand is still.");
 }
 
+/// [cascade.skin]
 struct Skin {
   bool fit = true;
   bool widths = true;
@@ -46,26 +47,29 @@ struct Skin {
 template <class Visitor>
 void describe(Visitor& visitor, Skin& skin) {
   visitor.field("fit", skin.fit,
-                "Aim and stretch every bone of the drawn hand to reach the tracker's next joint. "
-                "false: move it stiffly with its own joint.");
-  visitor.field("widths", skin.widths,
-                "With fit: learn how wide the person's fingers are from the camera's mask.");
+                "true: aim and stretch each bone of the drawn hand so that it reaches the "
+                "tracker's next joint. false: move each bone rigidly with its own joint.");
+  visitor.field(
+      "widths", skin.widths,
+      "With fit: estimate the widths of the person's fingers from the mask of the camera image.");
 }
 
-/// How old landmarks Q become landmarks at the time of the photons. P: the tracker's.
+/// How landmarks Q of an older image are carried to the time of the light; P are the joints of the
+/// tracker in the image (docs/method.md#filter).
 enum class FilterMethod {
-  none,           ///< not at all
-  naive,          ///< as they were seen
+  none,           ///< landmarks are not used
+  naive,          ///< Q, unchanged
   kalman,         ///< a constant-velocity Kalman filter on Q
-  paper,          ///< Q + P_now - P_then per joint
+  paper,          ///< Q + P_now - P_then (paper, "Moving Least Squares Deformation")
   one_euro,       ///< a one-euro filter on the offset Q - P
   offset_kalman,  ///< a constant-velocity Kalman filter on that offset
-  ideal,          ///< where they truly are; the simulator only
+  ideal,          ///< the true landmarks; only in the simulator
 };
 constexpr std::array<std::string_view, 7> words_of(FilterMethod) {
   return {"none", "naive", "kalman", "paper", "one_euro", "offset_kalman", "ideal"};
 }
 
+/// [cascade.filter]
 struct Filter {
   FilterMethod method = FilterMethod::offset_kalman;
   double process = 3e3;
@@ -82,45 +86,47 @@ struct Filter {
 template <class Visitor>
 void describe(Visitor& visitor, Filter& filter) {
   visitor.field("method", filter.method,
-                "How old landmarks Q become landmarks now. none: not at all. naive: as they were "
-                "seen. kalman: a constant-velocity Kalman filter on "
-                "Q, "
-                "without the tracker. paper: Q + P_now - P_then per joint. one_euro: a one-euro "
-                "filter on the offset Q - P. offset_kalman: a "
-                "constant-velocity Kalman filter on that offset. ideal: where they truly are, "
-                "which only the simulator knows.");
+                "How landmarks Q of an older image are carried to the time of the light; P are the "
+                "tracker's joints in the image. none: landmarks are not used. naive: Q, unchanged. "
+                "kalman: a constant-velocity Kalman filter on Q, without the tracker. paper: Q + "
+                "P_now - P_then for each joint. one_euro: a one-euro filter on the offset Q - P. "
+                "offset_kalman: a constant-velocity Kalman filter on that offset. ideal: the true "
+                "landmarks, which only the simulator knows.");
   visitor.field("process", filter.process, between(0, 1e9, "px^2/s^3"),
-                "offset_kalman: how fast the offset may change.");
+                "offset_kalman: process noise, the spectral density of the offset's acceleration.");
   visitor.field("motion_process", filter.motion_process, between(0, 1e12, "px^2/s^3"),
-                "kalman: how fast a landmark's speed may change.");
-  visitor.field("noise_px", filter.noise_px, between(0.01, 50, "px"),
-                "kalman, offset_kalman: standard deviation of a landmark.");
+                "kalman: process noise, the spectral density of a landmark's acceleration.");
+  visitor.field(
+      "noise_px", filter.noise_px, between(0.01, 50, "px"),
+      "kalman, offset_kalman: measurement noise, the standard deviation of a landmark per axis.");
   visitor.field("one_euro_cutoff_hz", filter.one_euro_cutoff_hz, between(0.01, 100, "Hz"),
-                "one_euro: cutoff for an offset that rests.");
+                "one_euro: cutoff frequency for an offset that does not change.");
   visitor.field("one_euro_beta", filter.one_euro_beta, between(0, 10, "1/px"),
-                "one_euro: how much the cutoff rises with the offset's speed.");
+                "one_euro: increase of the cutoff frequency with the speed of the offset.");
   visitor.field("blend_ms", filter.blend_ms, between(0, 50, "ms"),
-                "The jump each new sample makes is blended in over this time: larger is stiller, "
-                "smaller is quicker. 0: not at all.");
+                "Time constant with which the jump caused by a new tracker sample or detection is "
+                "blended in: larger is steadier, smaller is faster. 0: no blending.");
   visitor.field("blend_px", filter.blend_px, between(0, 100, "px"),
-                "Of a jump no more than this is held back: fast motion is not delayed.");
+                "The largest part of a jump that is blended in; the rest is shown at once, so that "
+                "fast motion is not delayed.");
   visitor.field("hindsight", filter.hindsight,
-                "Take P at the landmarks' time from tracker samples that arrived since, not as it "
-                "was predicted then.");
+                "true: P at the time of the landmarks is interpolated from tracker samples that "
+                "have arrived since. false: P as it was predicted at that time.");
   visitor.field("lost_ms", filter.lost_ms, between(1, 10000, "ms"),
-                "Landmarks older than this fade out and the tracker alone is used.");
+                "Landmarks older than this fade out; then the tracker is used alone.");
 }
 
-/// How the drawing is moved onto the landmarks.
+/// How the drawing is moved onto the landmarks (docs/method.md#correct).
 enum class CorrectMethod {
   none,      ///< not at all
   grid,      ///< moving least squares on a grid over the image
-  vertices,  ///< per-bone similarities at the vertices
+  vertices,  ///< similarities of the bones, applied to the vertices
 };
 constexpr std::array<std::string_view, 3> words_of(CorrectMethod) {
   return {"none", "grid", "vertices"};
 }
 
+/// [cascade.correct]
 struct Correct {
   CorrectMethod method = CorrectMethod::vertices;
   double alpha = 1.0;
@@ -133,22 +139,25 @@ struct Correct {
 template <class Visitor>
 void describe(Visitor& visitor, Correct& correct) {
   visitor.field("method", correct.method,
-                "How the drawing is moved onto the landmarks. grid: similarity moving least "
-                "squares on a grid over the whole image, as in the paper. "
-                "vertices: per-bone similarities blended by skin weights, handing over to moving "
-                "least squares where a bone is foreshortened.");
+                "How the drawing is moved onto the landmarks. none: not at all. grid: similarity "
+                "moving least squares on a grid over the whole image, as in the paper. vertices: "
+                "the similarities of the bones, blended by skin weights; moving least squares for "
+                "bones that are foreshortened.");
   visitor.field("alpha", correct.alpha, between(0.1, 4),
-                "Moving least squares: weights fall with distance^(-2 alpha).");
+                "Moving least squares: the weights are distance^(-2 alpha).");
   visitor.field("grid_columns", correct.grid_columns, between(3, 201),
-                "grid: nodes across the image.");
-  visitor.field("grid_rows", correct.grid_rows, between(3, 201), "grid: nodes down the image.");
-  visitor.field("bone_short_px", correct.bone_short_px, between(0, 200, "px"),
-                "vertices: a bone seen shorter than this is left to moving least squares.");
+                "grid: number of nodes across the image.");
+  visitor.field("grid_rows", correct.grid_rows, between(3, 201),
+                "grid: number of nodes down the image.");
   visitor.field(
-      "bone_long_px", correct.bone_long_px, between(1, 400, "px"),
-      "vertices: a bone seen longer than this moves as a bone; between the two they are blended.");
+      "bone_short_px", correct.bone_short_px, between(0, 200, "px"),
+      "vertices: a bone whose image is shorter than this is moved by moving least squares.");
+  visitor.field("bone_long_px", correct.bone_long_px, between(1, 400, "px"),
+                "vertices: a bone whose image is longer than this is moved by its similarity; "
+                "between the two lengths both are blended.");
 }
 
+/// [cascade.mask]
 struct Mask {
   double threshold = 0;
   double forearm_mm = 14;
@@ -158,22 +167,23 @@ struct Mask {
 template <class Visitor>
 void describe(Visitor& visitor, Mask& mask) {
   visitor.field("threshold", mask.threshold, between(0, 255),
-                "Grey value above which a pixel may be hand. 0: chosen from every image.");
+                "Grey value above which a pixel can belong to the hand. 0: chosen for each image.");
   visitor.field(
       "forearm_mm", mask.forearm_mm, between(-100, 400, "mm"),
       "Where the hand ends on the forearm, measured from the wrist joint towards the elbow.");
   visitor.field(
       "advance", mask.advance,
-      "Move the mask on with the hand, from the image's exposure to the time of the photons.");
+      "Move the mask with the hand from the time of the exposure to the time of the light.");
 }
 
-/// Late registration.
+/// The method of late registration (docs/method.md#register).
 enum class RegisterMethod {
-  none,  ///< not at all
-  mask,  ///< the hand's outline is found again in the newest image
+  none,  ///< off
+  mask,  ///< the outline of the hand is searched in the newest image
 };
 constexpr std::array<std::string_view, 2> words_of(RegisterMethod) { return {"none", "mask"}; }
 
+/// [cascade.register]
 struct Registration {
   RegisterMethod method = RegisterMethod::mask;
   double limit_px = 24;
@@ -182,14 +192,15 @@ struct Registration {
 template <class Visitor>
 void describe(Visitor& visitor, Registration& registration) {
   visitor.field("method", registration.method,
-                "Late registration: none: not at all. mask: the outline of the hand at the "
-                "tracker's newest time is found again in the newest "
-                "image, and what it moved beyond the tracker's motion moves the landmarks.");
+                "Late registration. none: off. mask: the outline of the hand at the tracker's "
+                "newest sample is searched in the newest image; its motion beyond that of the "
+                "tracker is applied to the landmarks.");
   visitor.field("limit_px", registration.limit_px, between(1, 200, "px"),
-                "An outline that moved further than this is not believed.");
+                "An outline that moved further than this is rejected.");
 }
 
-/// The rung a frame is given: chosen frame by frame, or one that is held (ipc/msg/rung.hpp).
+/// The rung of a frame: chosen for each frame, or always the same (ipc/msg/rung.hpp,
+/// docs/method.md#ladder).
 enum class RungChoice {
   automatic,
   hold,
@@ -204,6 +215,7 @@ constexpr std::array<std::string_view, 8> words_of(RungChoice) {
   return {"auto", "hold", "predict", "shift", "similarity", "fingers", "landmarks", "register"};
 }
 
+/// [cascade.ladder]
 struct Ladder {
   RungChoice rung = RungChoice::automatic;
   double margin_percent = 5;
@@ -212,24 +224,24 @@ struct Ladder {
 
 template <class Visitor>
 void describe(Visitor& visitor, Ladder& ladder) {
-  visitor.field(
-      "rung", ladder.rung,
-      "How much of the cascade a frame is given. auto: the cheapest rung whose expected error is "
-      "near the best. Others hold it there.");
+  visitor.field("rung", ladder.rung,
+                "How far a frame is corrected, cheapest rung first. auto: the cheapest rung whose "
+                "expected error is near the smallest. Any other value: always this rung.");
   visitor.field(
       "margin_percent", ladder.margin_percent, between(0, 100, "%"),
-      "auto: the cheapest rung is taken whose expected error is at most this much above the best.");
+      "auto: how much the expected error of the chosen rung may exceed the smallest one.");
   visitor.field("dwell_ms", ladder.dwell_ms, between(0, 10000, "ms"),
-                "auto: a cheaper rung must have been enough for this long before it is taken.");
+                "auto: how long a cheaper rung must have been good enough before it is chosen.");
 }
 
-/// What is done about light beside the hand and hand without light.
+/// How light beside the hand and parts of the hand without light are treated (docs/method.md#fill).
 enum class FillMethod {
-  none,     ///< nothing; the drawing is not masked either
-  reflect,  ///< filled from the nearest lit pixel, its texture coordinates reflected
+  none,     ///< not at all; the drawing is not masked either
+  reflect,  ///< filled from the nearest lit pixel, with reflected texture coordinates
 };
 constexpr std::array<std::string_view, 2> words_of(FillMethod) { return {"none", "reflect"}; }
 
+/// [cascade.fill]
 struct Fill {
   FillMethod method = FillMethod::reflect;
   int reach_px = 32;
@@ -240,19 +252,19 @@ struct Fill {
 template <class Visitor>
 void describe(Visitor& visitor, Fill& fill) {
   visitor.field("method", fill.method,
-                "none: the drawing as it is, not even masked by the camera image. reflect: light "
-                "off the hand is removed and hand without "
-                "light is filled from the "
-                "nearest lit pixel, its texture coordinates reflected.");
+                "none: the drawing, not masked by the camera image. reflect: light beside the hand "
+                "is removed, and parts of the hand without light are filled from the nearest lit "
+                "pixel with reflected texture coordinates.");
   visitor.field("reach_px", fill.reach_px, between(1, 32, "px"),
-                "The longest way a pixel is filled from.");
+                "The largest distance of the lit pixel from which a pixel is filled.");
   visitor.field("fade_px", fill.fade_px, between(0, 32, "px"),
-                "The last stretch of the reach over which the fill fades to dark.");
+                "The last part of that distance, over which the fill fades to dark.");
   visitor.field("seam_uv", fill.seam_uv, between(0, 1),
-                "A reflected step in texture coordinates larger than this crosses a seam: the "
-                "seed's own are used.");
+                "A reflected step in texture coordinates larger than this crosses a seam of the "
+                "texture; then the coordinates of the lit pixel are used.");
 }
 
+/// [cascade]
 struct Cascade {
   Predict predict;
   Skin skin;
@@ -266,14 +278,18 @@ struct Cascade {
 
 template <class Visitor>
 void describe(Visitor& visitor, Cascade& cascade) {
-  visitor.section("predict", cascade.predict, "Where is the hand when the light arrives?");
-  visitor.section("skin", cascade.skin, "Pose the drawn hand.");
-  visitor.section("filter", cascade.filter, "Where are the landmarks now?");
-  visitor.section("correct", cascade.correct, "Move the drawing onto the landmarks.");
-  visitor.section("mask", cascade.mask, "What of the camera image is hand?");
-  visitor.section("register", cascade.registration, "Where does the newest image show the hand?");
-  visitor.section("fill", cascade.fill, "No light beside the hand, no hand without light.");
-  visitor.section("ladder", cascade.ladder, "No more of all this than the scene needs.");
+  visitor.section("predict", cascade.predict,
+                  "Prediction of the hand's pose at the time of the light.");
+  visitor.section("skin", cascade.skin, "Fit of the drawn hand to the pose.");
+  visitor.section("filter", cascade.filter,
+                  "Prediction of the landmarks at the time of the light.");
+  visitor.section("correct", cascade.correct, "Motion of the drawing onto the landmarks.");
+  visitor.section("mask", cascade.mask, "The pixels of the camera image that show the hand.");
+  visitor.section("register", cascade.registration,
+                  "Late registration with the newest camera image.");
+  visitor.section("fill", cascade.fill,
+                  "Removal of light beside the hand, and fill of parts without light.");
+  visitor.section("ladder", cascade.ladder, "Choice of the cheapest correction that suffices.");
 }
 
 }  // namespace handcast::config

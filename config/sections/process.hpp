@@ -7,7 +7,7 @@
 
 namespace handcast::config {
 
-/// How one service runs as a process: the same settings for each of them.
+/// [SERVICE.process]: how a service runs as a process. Each service has these settings.
 struct Process {
   ipc::Wait wait = ipc::Wait::predictive;
   bool standby = false;
@@ -18,20 +18,21 @@ struct Process {
 
 template <class Visitor>
 void describe(Visitor& visitor, Process& process) {
-  visitor.field("wait", process.wait,
-                "How it waits for its inputs: spin (a core for 1 us), predictive (some 5 % of a "
-                "core for 1 us on a regular stream), futex "
-                "(30 to 60 us), eventfd (as futex, by epoll).");
+  visitor.field(
+      "wait", process.wait,
+      "How the service waits for its inputs. spin: polls, sees an input within 1 us, uses one "
+      "core. predictive: within 1 us on a regular stream, uses about 5 % of a core. futex: sleeps, "
+      "is woken within 30 to 60 us. eventfd: like futex, through epoll.");
   visitor.field("standby", process.standby,
-                "Keep a second process of this service, started and idle, that takes over when the "
+                "Keep a second process of the service started and idle; it takes over when the "
                 "first one dies.");
   visitor.field("priority", process.priority, between(0, 99),
-                "Real-time priority (SCHED_FIFO); 0: as every other program. Needs CAP_SYS_NICE or "
-                "an rtprio limit.");
+                "Real-time priority (SCHED_FIFO). 0: normal scheduling. Needs CAP_SYS_NICE or an "
+                "rtprio limit.");
   visitor.field("cores", process.cores, between(0, 1023),
-                "The processor cores it may run on; empty: all.");
+                "The processor cores on which the service may run. Empty: all.");
   visitor.field("lock_memory", process.lock_memory,
-                "Keep all its memory out of swap (mlockall). Needs a memlock limit.");
+                "Lock the memory of the service in RAM (mlockall). Needs a memlock limit.");
 }
 
 }  // namespace handcast::config

@@ -7,6 +7,7 @@
 
 namespace handcast::config {
 
+/// [projector]
 struct Projector {
   std::string backend = "twin";
   double rate_hz = 946;
@@ -19,20 +20,22 @@ struct Projector {
 template <class Visitor>
 void describe(Visitor& visitor, Projector& projector) {
   visitor.field("backend", projector.backend,
-                "Where light goes; `handcast-projector --backends` lists what this build has.");
+                "The output device; `handcast-projector --backends` lists those of this build.");
   visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"),
-                "Frames a second asked of the projector.");
+                "Frames per second requested from the projector.");
   visitor.field("latency_ms", projector.latency_ms, between(0, 200, "ms"),
-                "From handing over a frame to the start of its light.");
-  visitor.field("software_ms", projector.software_ms, between(0, 100, "ms"),
-                "From the newest inputs to the frame handed over: what the simulator lets the "
-                "software take, and the horizon of the first "
-                "live frames (later ones use the measured time).");
-  visitor.field("frame_wait_ms", projector.frame_wait_ms, between(0, 100, "ms"),
-                "How long a projector frame may wait for a newer camera image. 0: not at all.");
-  visitor.section("process", projector.process, "How the service runs.");
+                "Time from handing over a frame to the start of its light.");
+  visitor.field(
+      "software_ms", projector.software_ms, between(0, 100, "ms"),
+      "Time from the newest inputs to the frame handed over. The simulator assumes it for each "
+      "frame, a live rig only for the first frames, until it has measured the time.");
+  visitor.field(
+      "frame_wait_ms", projector.frame_wait_ms, between(0, 100, "ms"),
+      "How long a projector frame may wait for a newer camera image. 0: it does not wait.");
+  visitor.section("process", projector.process, "The process of the service.");
 }
 
+/// [content]
 struct Content {
   std::string left = "builtin:atlas";
   std::string right = "builtin:atlas";
@@ -42,14 +45,15 @@ struct Content {
 template <class Visitor>
 void describe(Visitor& visitor, Content& content) {
   visitor.field("left", content.left,
-                "What the left hand wears: a PNG picture in the hand's texture layout, or "
-                "builtin:atlas, builtin:checker, "
-                "builtin:skeleton, builtin:white.");
-  visitor.field("right", content.right, "What the right hand wears.");
-  visitor.field("shading", content.shading, between(0, 1),
-                "How much a light from the projector's side shades the drawing. 0: not at all.");
+                "The picture on the left hand: a PNG file in the texture layout of the hand, or "
+                "builtin:atlas, builtin:checker, builtin:skeleton, builtin:white.");
+  visitor.field("right", content.right, "The same for the right hand.");
+  visitor.field(
+      "shading", content.shading, between(0, 1),
+      "Strength of the shading by a light that shines from the projector. 0: no shading.");
 }
 
+/// [hand]
 struct Hand {
   std::string left;
   std::string right;
@@ -58,8 +62,8 @@ struct Hand {
 template <class Visitor>
 void describe(Visitor& visitor, Hand& hand) {
   visitor.field("left", hand.left,
-                "A skinned glTF hand with WebXR joint names to draw as the left hand. Empty: the "
-                "one made by handcast.");
+                "The model that is drawn as the left hand: a skinned glTF file with WebXR joint "
+                "names. Empty: the hand of handcast.");
   visitor.field("right", hand.right, "The same for the right hand.");
 }
 

@@ -9,6 +9,7 @@
 
 namespace handcast::config {
 
+/// [SENSOR.replay]
 struct Replay {
   std::string directory;
   bool loop = true;
@@ -21,6 +22,7 @@ void describe(Visitor& visitor, Replay& replay) {
   visitor.field("loop", replay.loop, "Start again at the end of the recording.");
 }
 
+/// [camera]
 struct Camera {
   std::string backend = "twin";
   double rate_hz = 525;
@@ -32,17 +34,18 @@ struct Camera {
 template <class Visitor>
 void describe(Visitor& visitor, Camera& camera) {
   visitor.field("backend", camera.backend,
-                "Where frames come from; `handcast-camera --backends` lists what this build has.");
+                "The source of frames; `handcast-camera --backends` lists those of this build.");
   visitor.field("rate_hz", camera.rate_hz, between(1, 2000, "Hz"),
-                "Frames a second asked of the camera.");
+                "Frames per second requested from the camera.");
   visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"),
-                "Time the shutter is open.");
+                "Duration of the exposure.");
   visitor.section("replay", camera.replay,
-                  "For backend = \"replay\": grey PNG pictures in camera/ with their times in "
+                  "For backend = \"replay\": grey PNG images in camera/ with their times in "
                   "camera_timestamps.npy.");
-  visitor.section("process", camera.process, "How the service runs.");
+  visitor.section("process", camera.process, "The process of the service.");
 }
 
+/// [pose]
 struct Pose {
   std::string backend = "twin";
   Replay replay;
@@ -51,13 +54,12 @@ struct Pose {
 
 template <class Visitor>
 void describe(Visitor& visitor, Pose& pose) {
-  visitor.field(
-      "backend", pose.backend,
-      "Where hand poses come from; `handcast-pose --backends` lists what this build has.");
+  visitor.field("backend", pose.backend,
+                "The source of hand poses; `handcast-pose --backends` lists those of this build.");
   visitor.section("replay", pose.replay,
                   "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and "
                   "bones_{left,right}.npy.");
-  visitor.section("process", pose.process, "How the service runs.");
+  visitor.section("process", pose.process, "The process of the service.");
 }
 
 /// How MediaPipe's landmarks are defined.

@@ -7,6 +7,7 @@
 
 namespace handcast::config {
 
+/// [observer]
 struct Observer {
   bool enabled = true;
   double rate_hz = 20;
@@ -16,14 +17,16 @@ struct Observer {
 
 template <class Visitor>
 void describe(Visitor& visitor, Observer& observer) {
-  visitor.field("enabled", observer.enabled, "Score the live light against the twin's truth.");
+  visitor.field("enabled", observer.enabled,
+                "Score the live light against the true hand of the twin.");
   visitor.field("rate_hz", observer.rate_hz, between(0.1, 1000, "Hz"),
-                "Projector frames scored a second.");
+                "Projector frames scored per second.");
   visitor.field("step_px", observer.step_px, between(1, 16, "px"),
-                "Distance of the surface points that are scored.");
-  visitor.section("process", observer.process, "How the service runs.");
+                "Distance between the surface points that are scored.");
+  visitor.section("process", observer.process, "The process of the service.");
 }
 
+/// [supervisor]
 struct Supervisor {
   double ready_s = 10;
   double stop_s = 3;
@@ -39,13 +42,13 @@ void describe(Visitor& visitor, Supervisor& supervisor) {
   visitor.field("stop_s", supervisor.stop_s, between(0.1, 60, "s"),
                 "How long a service may take to stop before it is killed.");
   visitor.field("silent_s", supervisor.silent_s, between(0.2, 300, "s"),
-                "A service whose heart has not beaten for this time (stopped, or in an endless "
-                "loop) is killed and replaced.");
+                "A service without a heartbeat for this time (stopped, or in an endless loop) is "
+                "killed and replaced.");
   visitor.field("history_s", supervisor.history_s, between(1, 3600, "s"),
-                "How much of the past `handcast trace` and `handcast latency` can look at.");
-  visitor.field(
-      "metrics_port", supervisor.metrics_port, between(0, 65535),
-      "Serves the figures to Prometheus at http://127.0.0.1:PORT/metrics; 0: not at all.");
+                "How much of the past `handcast trace` and `handcast latency` can show.");
+  visitor.field("metrics_port", supervisor.metrics_port, between(0, 65535),
+                "The port of http://127.0.0.1:PORT/metrics, where metrics are served to "
+                "Prometheus. 0: no server.");
 }
 
 }  // namespace handcast::config

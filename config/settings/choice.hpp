@@ -9,10 +9,12 @@
 
 namespace handcast::config {
 
-/// An enum that a setting can be. Its words stand beside it, in the order of its enumerators:
+/// An enum that can be the type of a setting. words_of() gives its words in the order of the
+/// enumerators, which must count up from 0:
 ///
 ///     enum class FillMethod { none, reflect };
-///     constexpr std::array<std::string_view, 2> words_of(FillMethod) { return {"none", "reflect"};
+///     constexpr std::array<std::string_view, 2> words_of(FillMethod) {
+///       return {"none", "reflect"};
 ///     }
 template <class Enum>
 concept Choice = std::is_enum_v<Enum> && requires(Enum value) {

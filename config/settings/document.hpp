@@ -12,28 +12,32 @@ namespace handcast::config {
 
 struct Value;
 struct Member;
+/// A list of values.
 using Array = std::vector<Value>;
-using Table = std::vector<Member>;  ///< in the order of the file
+/// A section, in the order of the file.
+using Table = std::vector<Member>;
 
-/// A date or time: read, so that it can be named in a message, but no setting takes one.
+/// A date or time. It is kept so that messages can name it; no setting accepts one.
 struct OtherValue {};
 
-/// One value of a TOML document and where it stands.
+/// One value of a TOML document with its line.
 struct Value {
+  /// The value by kind; a Table is a section.
   std::variant<OtherValue, bool, std::int64_t, double, std::string, Array, Table> data;
-  int line = 0;  ///< of its key, from 1
+  int line = 0;  ///< line of its key, from 1
 };
 
+/// One key of a section with its value.
 struct Member {
-  std::string name;
-  Value value;
+  std::string name;  ///< the key
+  Value value;       ///< the value
 };
 
-/// The whole document as one table. The only function of the house that knows a TOML library.
-/// Errors (bad_config): "FILE:LINE:COLUMN: …" where the text is not TOML.
+/// Parses a TOML document into one table. The only function that uses a TOML library. `file` is
+/// used in messages. Errors: bad_config ("FILE:LINE:COLUMN: …" if the text is not TOML).
 Result<Value> parse_document(std::string_view toml, std::string_view file);
 
-/// "a number", "text", "a section": for messages about a value of the wrong kind.
+/// The kind of a value for messages: "a number", "text", "a section".
 std::string_view kind_of(const Value& value);
 
 }  // namespace handcast::config

@@ -5,33 +5,38 @@
 
 namespace handcast::config {
 
-/// What a number may be, and its unit ("" where it has none). Shown in every message about it and
-/// in REFERENCE.md.
+/// The range and unit of a number, shown in messages and in REFERENCE.md.
 struct Range {
+  /// The smallest and largest allowed value, both included.
+  /// @{
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::string_view unit;
+  /// @}
+  std::string_view unit;  ///< e.g. "ms"; empty if the number has no unit
 };
 
+/// The range `min` .. `max`, or from `min` without an upper limit.
+/// @{
 constexpr Range between(double min, double max, std::string_view unit = "") {
   return {min, max, unit};
 }
 constexpr Range at_least(double min, std::string_view unit = "") {
   return {min, std::numeric_limits<double>::infinity(), unit};
 }
+/// @}
 
-/// A visitor over the settings of a struct. A settings struct `X` is declared once, by a free
-/// function
-///
-///     template <class Visitor> void describe(Visitor& visitor, X& x) {
-///       visitor.field("rate_hz", x.rate_hz, between(1, 2000, "Hz"),
-///                     "Frames a second asked of the camera.");
-///       visitor.section("replay", x.replay, "Frames from a folder instead of a camera.");
-///     }
-///
-/// The loader, the printer (commented TOML), `--set path=value` and REFERENCE.md are visitors; the
-/// default of a setting is what the struct is born with. Field types: bool, int, double,
-/// std::string, std::vector<double>, and enums with words (choice.hpp). `section` calls describe()
-/// of the member, found by argument-dependent lookup.
+// How settings are declared. The settings of a struct `X` are declared once, by a free function:
+//
+//     template <class Visitor> void describe(Visitor& visitor, X& x) {
+//       visitor.field("rate_hz", x.rate_hz, between(1, 2000, "Hz"),
+//                     "Frames per second requested from the camera.");
+//       visitor.section("replay", x.replay, "Frames from a folder instead of a camera.");
+//     }
+//
+// Collector (settings.hpp) is the visitor. The loader, the printer (commented TOML), `--set
+// path=value` and REFERENCE.md use the listing that it makes. The default of a setting is the
+// initial value of its member. Types of fields: bool, int, double, std::string,
+// std::vector<double>, and enums with words (choice.hpp). section() calls describe() of the member,
+// found by argument-dependent lookup.
 
 }  // namespace handcast::config

@@ -7,13 +7,14 @@
 
 namespace handcast::config {
 
-/// The text of a file. Errors (bad_config): it cannot be read, and why.
+/// The contents of a file. Errors: bad_config (the file cannot be read).
 Result<std::string> read_text(const std::filesystem::path& file);
 
-/// Writes a file so that a reader never sees half of it; what is no plain file (a link, a pipe,
-/// /dev/stdout) is written in place. Errors: unavailable.
+/// Writes a file by replacing it, so that a reader never sees a part of it. A link, pipe or device
+/// (/dev/stdout) is written in place. Errors: unavailable (the file cannot be written).
 Result<void> write_whole(const std::filesystem::path& file, const std::string& text);
-/// Whether write_whole is likely to succeed, to be asked before long work. Errors: bad_config.
+/// Checks before long work whether write_whole() is likely to succeed. Errors: bad_config (it is
+/// not).
 Result<void> check_writable(const std::filesystem::path& file);
 
 }  // namespace handcast::config

@@ -5,8 +5,8 @@
 
 namespace handcast::config {
 
-/// The texts in a row with `separator` between them. (fmt::join of fmt 9 draws a false overflow
-/// warning from g++ 12.)
+/// Joins texts with `separator` between them. fmt::join of fmt 9 is not used because g++ 12 reports
+/// a false overflow in it.
 template <class Texts>
 std::string join(const Texts& texts, std::string_view separator) {
   std::string joined;

@@ -13,7 +13,7 @@
 namespace handcast::config {
 namespace {
 
-/// Empty: all is well. Otherwise what is wrong with the value.
+/// The problem with a value; empty if there is none.
 using Complaint = std::string;
 
 Complaint outside(double number, const Setting& setting) {
@@ -21,7 +21,7 @@ Complaint outside(double number, const Setting& setting) {
   return fmt::format("{} is outside {}", number, print_allowed(setting));
 }
 
-/// "must be a number, 1..2000 Hz".
+/// E.g. "must be a number, 1..2000 Hz".
 Complaint expected(const Setting& setting) {
   constexpr std::string_view kKinds[] = {"true or false",  "a whole number",    "a number",
                                          "text in quotes", "a list of numbers", "a word in quotes"};
@@ -85,7 +85,7 @@ Complaint store(const ChoiceTarget& target, const Value& value, const Setting& s
   return {};
 }
 
-/// A list that is born with elements keeps their number.
+/// A list with default elements must keep its length.
 Complaint store(std::vector<double>& target, const Value& value, const Setting& setting) {
   const auto* array = std::get_if<Array>(&value.data);
   if (!array) return wrong_kind(value, setting);
@@ -115,7 +115,7 @@ const Section* find_section(const Listing& listing, std::string_view path) {
   return found == listing.end() ? nullptr : &*found;
 }
 
-/// The names that may stand in a section: its settings and the sections right inside it.
+/// The names that are allowed in a section: its settings and the sections directly inside it.
 std::vector<std::string_view> names_in(const Listing& listing, const Section& section) {
   std::vector<std::string_view> names;
   for (const auto& setting : section.settings) names.push_back(setting.name());
@@ -128,7 +128,7 @@ std::vector<std::string_view> names_in(const Listing& listing, const Section& se
   return names;
 }
 
-/// For a name that stands in the wrong section: where it belongs.
+/// Suggests a setting of the same name in another section.
 std::string suggest_elsewhere(const Listing& listing, std::string_view name) {
   for (const auto& section : listing)
     for (const auto& setting : section.settings)
@@ -142,7 +142,7 @@ std::string unknown(const Listing& listing, const Section& section, std::string_
   return fmt::format("there is no such setting{}", hint);
 }
 
-/// One pass over a document: tables against sections, values against settings.
+/// Walks through a document, and matches its tables with sections and its values with settings.
 class Applier {
  public:
   Applier(std::string_view file, const Listing& listing, Faults& faults)
@@ -186,8 +186,8 @@ std::string unknown_path(const Listing& listing, std::string_view path) {
   return fmt::format("there is no such setting{}", hint);
 }
 
-/// The value of an assignment: text as it stands, everything else as TOML reads it; nothing where
-/// it cannot.
+/// Parses the value of an assignment: text without quotes is taken literally, everything else is
+/// TOML. Empty if it is not valid TOML.
 std::optional<Value> read_assigned(std::string_view text, const Target& target) {
   const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
   const bool is_text =

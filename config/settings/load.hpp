@@ -10,28 +10,30 @@
 
 namespace handcast::config {
 
-/// Gathers what is wrong with a file, so that a person sees it all at once.
+/// Collects the errors of a file, so that they are reported together.
 class Faults {
  public:
+  /// Adds one error.
   void add(std::string sentence) { sentences_.push_back(std::move(sentence)); }
+  /// True if there is no error.
   bool empty() const { return sentences_.empty(); }
-  /// The error (bad_config) with a line per fault.
+  /// All errors as one (bad_config), with one line each.
   Error to_error() const;
 
  private:
   std::vector<std::string> sentences_;
 };
 
-/// Writes the values of a document into the settings. What is not mentioned stays as it is; what is
-/// wrong becomes a fault "FILE:LINE: path: sentence" and stays as it is too.
+/// Assigns the values of a document to the settings. An invalid value is added to `faults`
+/// ("FILE:LINE: path: sentence"), and its setting is not changed.
 void apply_document(const Value& document, std::string_view file, const Listing& listing,
                     Faults& faults);
 
-/// Writes one "path=value", the value typed by its setting: text needs no quotes, a list may go
-/// without brackets.
+/// Applies one assignment "path=value". The setting determines the type of the value: text needs no
+/// quotes, a list needs no brackets. Errors are added to `faults`.
 void apply_assignment(std::string_view assignment, const Listing& listing, Faults& faults);
 
-/// " (did you mean 'rate_hz'?)", or nothing where no name is near.
+/// E.g. " (did you mean 'rate_hz'?)"; empty if no known name is similar.
 std::string suggest(std::string_view wrong, const std::vector<std::string_view>& known);
 
 }  // namespace handcast::config

@@ -12,9 +12,8 @@ namespace {
 
 std::string print(bool flag) { return flag ? "true" : "false"; }
 std::string print(int whole) { return fmt::format("{}", whole); }
-std::string print(double number) {
-  return fmt::format("{}", number);
-}  // the shortest text that reads back the same
+/// The shortest text that reads back as the same number.
+std::string print(double number) { return fmt::format("{}", number); }
 
 std::string print(const std::vector<double>& numbers) {
   std::vector<std::string> texts;

@@ -14,13 +14,15 @@
 
 namespace handcast::config {
 
-/// A setting that is one of several words: an enum somewhere, without its type.
+/// A reference to an enum whose type is erased: the target of a setting that is one of several
+/// words.
 struct ChoiceTarget {
-  void* value;
-  std::size_t (*index)(const void* value);
-  void (*assign)(void* value, std::size_t index);
-  std::vector<std::string_view> words;
+  void* value;                                     ///< the enum
+  std::size_t (*index)(const void* value);         ///< the number of its enumerator
+  void (*assign)(void* value, std::size_t index);  ///< sets it by number
+  std::vector<std::string_view> words;             ///< the words in the order of the enumerators
 
+  /// Refers to `value`, which must outlive the result.
   template <Choice Enum>
   static ChoiceTarget of(Enum& value) {
     const auto words = words_of(value);
@@ -29,21 +31,23 @@ struct ChoiceTarget {
             [](void* at, std::size_t index) { *static_cast<Enum*>(at) = static_cast<Enum>(index); },
             {words.begin(), words.end()}};
   }
+  /// The word of the present value.
   std::string_view word() const { return words[index(value)]; }
 };
 
-/// Where a setting's value lives.
+/// The value of a setting, in the struct that holds it.
 using Target = std::variant<bool*, int*, double*, std::string*, std::vector<double>*, ChoiceTarget>;
 
-/// One declared setting of a living struct.
+/// One declared setting of a struct, which must outlive it.
 struct Setting {
-  std::string path;  ///< "camera.replay.loop"
-  Target target;
-  Range range;
-  std::string_view sentence;
+  std::string path;           ///< e.g. "camera.replay.loop"
+  Target target;              ///< the value
+  Range range;                ///< the allowed numbers and their unit
+  std::string_view sentence;  ///< the description
 
+  /// The last part of the path: "loop".
   std::string_view name() const { return std::string_view(path).substr(path.rfind('.') + 1); }
-  /// What it may be, if it is a choice; empty otherwise.
+  /// The allowed words if the setting is a choice; empty otherwise.
   std::span<const std::string_view> words() const {
     const auto* choice = std::get_if<ChoiceTarget>(&target);
     return choice ? std::span<const std::string_view>(choice->words)
@@ -51,21 +55,27 @@ struct Setting {
   }
 };
 
+/// One declared section.
 struct Section {
-  std::string path;  ///< "" is the file itself
-  std::string_view sentence;
-  std::vector<Setting> settings;  ///< its own, not those of the sections inside it
+  std::string path;               ///< e.g. "camera.replay"; empty for the top level of the file
+  std::string_view sentence;      ///< the description
+  std::vector<Setting> settings;  ///< its settings without those of inner sections
 };
 
-/// Every section of a struct in the order of declaration, an outer one before those inside it.
-/// Borrows the struct.
+/// All sections of a struct in the order of declaration, each before its inner sections. Refers to
+/// the struct, which must outlive it.
 using Listing = std::vector<Section>;
 
-/// The visitor that turns declarations into a Listing; loader, printer and reference work on that.
+/// The visitor of describe() that makes a Listing, on which loader, printer and reference are
+/// based.
 class Collector {
  public:
+  /// Adds the top level of the file to `listing`, which must outlive this object.
   explicit Collector(Listing& listing) : listing_(listing) { listing_.push_back({}); }
 
+  /// Declares a setting of the section that is being described. `value`, `sentence` and the unit in
+  /// `range` must outlive the listing.
+  /// @{
   void field(std::string_view name, bool& value, std::string_view sentence) {
     add(name, &value, {}, sentence);
   }
@@ -81,7 +91,9 @@ class Collector {
   void field(std::string_view name, T& value, Range range, std::string_view sentence) {
     add(name, &value, range, sentence);
   }
+  /// @}
 
+  /// Declares an inner section: calls describe() for `members`.
   template <class T>
   void section(std::string_view name, T& members, std::string_view sentence) {
     const auto outer = index_;
@@ -105,6 +117,7 @@ class Collector {
   std::size_t index_ = 0;  ///< of the section that is being described
 };
 
+/// The settings that describe() declares for `declared`, which must outlive the listing.
 template <class T>
 Listing list_settings(T& declared) {
   Listing listing;
@@ -113,16 +126,17 @@ Listing list_settings(T& declared) {
   return listing;
 }
 
-/// The setting at `path`; nullptr where there is none.
+/// The setting at `path`, inside `listing`; null if there is none.
 const Setting* find_setting(const Listing& listing, std::string_view path);
 
-/// The value as TOML writes it: true, 525, "twin", [0.1, 2].
+/// The value in TOML: true, 525, "twin", [0.1, 2].
 std::string print_value(const Setting& setting);
 
-/// "1..2000 Hz", "at least 0 ms", "one of: hold, velocity"; empty where everything goes.
+/// The allowed values: "1..2000 Hz", "at least 0 ms", "one of: hold, velocity"; empty if all are
+/// allowed.
 std::string print_allowed(const Setting& setting);
 
-/// A commented TOML file of every setting; `title` becomes its first comment.
+/// A commented TOML file with all settings; `title` is its first comment.
 std::string print_settings(const Listing& listing, std::string_view title);
 
 }  // namespace handcast::config

@@ -14,7 +14,7 @@ std::int64_t now_ns() {
 
 void sleep_until_ns(std::int64_t wake_ns) {
   if (wake_ns <= now_ns())
-    return;  // the kernel takes its timer slack, about 50 us, even for a time gone by
+    return;  // clock_nanosleep adds the timer slack, about 50 us, even to a time in the past
   const timespec wake{wake_ns / 1'000'000'000, wake_ns % 1'000'000'000};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) == EINTR) {
   }

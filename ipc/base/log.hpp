@@ -7,18 +7,22 @@
 
 namespace handcast::log {
 
+/// The severity of a log line, lowest first.
 enum class Level { debug, info, warning, error };
 
-/// Names this process in every line ("camera"), once, at start-up.
+/// Sets the name of this process that each line carries, e.g. "camera". Call it once at start-up,
+/// before other threads log.
 void set_program(std::string_view name);
-/// Lines below this level are not written. Default: info; HANDCAST_LOG=debug|info|warning|error
-/// changes it.
+/// Sets the lowest level that is written. The default is info, or the value of the environment
+/// variable HANDCAST_LOG (debug, info, warning or error). Any thread.
 void set_level(Level level);
 
-/// One line to stderr in one write(): "12.345 camera  info  …" (seconds of CLOCK_MONOTONIC). Safe
-/// from any thread.
+/// Writes one line to stderr with a single write(2): "12.345 camera  info  …", the time in seconds
+/// of CLOCK_MONOTONIC. Any thread.
 void write(Level level, std::string_view line);
 
+/// Formats a line with fmt and writes it at the level of the function's name. Any thread.
+/// @{
 template <class... Args>
 void debug(fmt::format_string<Args...> format, Args&&... args) {
   write(Level::debug, fmt::format(format, std::forward<Args>(args)...));
@@ -35,5 +39,6 @@ template <class... Args>
 void error(fmt::format_string<Args...> format, Args&&... args) {
   write(Level::error, fmt::format(format, std::forward<Args>(args)...));
 }
+/// @}
 
 }  // namespace handcast::log

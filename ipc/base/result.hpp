@@ -7,30 +7,31 @@
 
 namespace handcast {
 
-/// What went wrong, by what the caller can do about it: one code per reaction.
+/// Error codes. Each code stands for one reaction of the caller.
 enum class Errc {
-  timeout,       ///< nothing arrived before the deadline; try again
-  bad_data,      ///< this item is unusable; drop it and go on
-  disconnected,  ///< the device or peer is gone; reopen it, or exit and be restarted
-  bad_config,    ///< restarting will not help; a person must change something
-  unavailable,   ///< a resource is missing now; restarting may help
+  timeout,       ///< Nothing arrived before the deadline. Try again.
+  bad_data,      ///< This item is unusable. Drop it and continue.
+  disconnected,  ///< The device or peer is gone. Reopen it, or exit and be restarted.
+  bad_config,    ///< A restart will not help. A person must change something.
+  unavailable,   ///< A resource is missing now. A restart may help.
 };
 
-/// An error as a value: a code for the program, one full sentence for the person.
+/// An error value: a code for the program and a sentence for the person.
 struct Error {
-  Errc code = Errc::bad_data;
-  std::string what;  ///< e.g. "camera 'A-2134': no frame within 50 ms"
+  Errc code = Errc::bad_data;  ///< tells the caller how to react
+  std::string what;            ///< e.g. "camera 'A-2134': no frame within 50 ms"
 };
 
+/// The return type of a function that can fail: a T or an Error.
 template <class T>
 using Result = tl::expected<T, Error>;
 
-/// Shorthand for the unhappy return of a function that yields a Result.
+/// Makes the error return of a function that returns a Result.
 inline tl::unexpected<Error> fail(Errc code, std::string what) {
   return tl::make_unexpected(Error{code, std::move(what)});
 }
 
-/// Passes an error on with the place it came from put in front of its sentence.
+/// Passes an error on, with "`place`: " put before its sentence.
 inline tl::unexpected<Error> fail_in(std::string_view place, Error error) {
   error.what = std::string(place) + ": " + error.what;
   return tl::make_unexpected(std::move(error));

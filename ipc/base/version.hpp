@@ -4,11 +4,11 @@
 
 namespace handcast {
 
-/// The version of this build: "0.1.0".
+/// The version of this build, e.g. "0.1.0".
 std::string_view version();
 
-/// What this build lacks because a library was not found: "without NAME: no SENTENCE", a line each;
-/// "" if it lacks nothing.
+/// The features that this build lacks because a library was not found, one line each: "without
+/// NAME: no SENTENCE". Empty if all features are built.
 std::string_view absent_features();
 
 }  // namespace handcast

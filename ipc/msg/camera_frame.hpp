@@ -9,23 +9,33 @@
 
 namespace handcast::msg {
 
-/// One 8-bit grey image; the pixels follow the struct in the same slot, row by row without padding.
+/// One 8-bit grey image. The pixels follow the struct in the same slot, row by row from the top,
+/// without padding.
 /// Published by: services/camera ("camera.frames").  Read by: services/landmarks,
 /// services/projector, observers.
 struct CameraFrame {
-  static constexpr std::string_view layout = "CameraFrame/1";
+  static constexpr std::string_view layout = "CameraFrame/1";  ///< see type_hash()
 
-  Header header;  ///< origin: the middle of the exposure
-  std::int64_t exposure_ns = 0;
+  Header header;                 ///< origin_ns: the middle of the exposure
+  std::int64_t exposure_ns = 0;  ///< duration of the exposure
+  /// Size of the image in pixels.
+  /// @{
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;
+  /// @}
 
+  /// Size in bytes of a message with an image of `width` x `height` pixels.
   static constexpr std::size_t bytes(std::size_t width, std::size_t height) {
     return bytes_with_tail(sizeof(CameraFrame), width, height, 1);
   }
 
+  /// The first pixel: height_px rows of width_px bytes. Valid only if the struct lies in a slot or
+  /// buffer of at least used_bytes().
+  /// @{
   std::uint8_t* pixels() { return reinterpret_cast<std::uint8_t*>(this + 1); }
   const std::uint8_t* pixels() const { return reinterpret_cast<const std::uint8_t*>(this + 1); }
+  /// @}
+  /// Size of this message in bytes, pixels included.
   std::size_t used_bytes() const { return bytes(width_px, height_px); }
 };
 

@@ -8,37 +8,43 @@
 
 namespace handcast::msg {
 
-inline constexpr int kLandmarks =
-    21;  ///< MediaPipe's: wrist, then thumb to little finger, each from palm to tip
+/// The landmarks of MediaPipe, in its order: wrist, then thumb to little finger, each from palm to
+/// tip.
+inline constexpr int kLandmarks = 21;
 
-/// The one table between the two hand models: landmark i is the image of joint kJointOfLandmark[i].
+/// Maps landmarks to joints: landmark i is the image of joint kJointOfLandmark[i].
 inline constexpr std::array<int, kLandmarks> kJointOfLandmark{
     1, 2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14, 15, 17, 18, 19, 20, 22, 23, 24, 25};
 
+/// One landmark in a camera image, lens distortion removed.
 struct Landmark {
-  float x_px =
-      0;  ///< right from the centre of the camera's top-left pixel, lens distortion removed
-  float y_px = 0;        ///< down from there
+  /// Position from the centre of the top-left pixel of the camera: x to the right, y down.
+  /// @{
+  float x_px = 0;
+  float y_px = 0;
+  /// @}
   float confidence = 0;  ///< 0..1; 0: not seen
-  float sigma_px = 0;    ///< standard deviation of x and of y each; 0: the detector does not say
+  float sigma_px = 0;    ///< standard deviation of x and of y; 0: not reported by the detector
 };
 
-/// The 21 landmarks of one hand as seen in one camera frame.
+/// The landmarks of one hand in one camera frame.
 struct HandLandmarks {
-  Side side = Side::left;
-  float presence = 0;  ///< 0..1
-  std::array<Landmark, kLandmarks> points{};
+  Side side = Side::left;                     ///< as reported by the detector
+  float presence = 0;                         ///< 0..1: how likely there is a hand
+  std::array<Landmark, kLandmarks> points{};  ///< in the order of MediaPipe
 };
 
+/// All hands that were detected in one camera frame.
 /// Published by: services/landmarks ("landmarks.hands").  Read by: services/projector.
 struct Landmarks {
-  static constexpr std::string_view layout = "Landmarks/2";
+  static constexpr std::string_view layout = "Landmarks/2";  ///< see type_hash()
 
-  Header header;  ///< frame_id and origin of the camera frame they were seen in
-  std::uint32_t count = 0;
-  std::uint32_t reserved = 0;
-  std::array<HandLandmarks, kMaxHands> hands{};
+  Header header;                                 ///< frame_id and origin_ns of the camera frame
+  std::uint32_t count = 0;                       ///< number of hands
+  std::uint32_t reserved = 0;                    ///< padding
+  std::array<HandLandmarks, kMaxHands> hands{};  ///< the first `count` are valid
 
+  /// The hand of this side; null if there is none. Points into this message.
   const HandLandmarks* find(Side side) const {
     for (std::uint32_t i = 0; i < count && i < hands.size(); ++i)
       if (hands[i].side == side) return &hands[i];

@@ -9,11 +9,16 @@
 
 namespace handcast::msg {
 
-/// A step of the way from exposure to photons. The order is the order of the time sheet.
+/// A stage of the way from exposure to light, in the order in which reports list them.
 enum class Stage : std::uint32_t {
+  /// The stage of each sensor daemon: camera, pose, landmarks.
+  /// @{
   capture,
   sample,
-  detect,  // one per sensor daemon
+  detect,
+  /// @}
+  /// The stages inside one projector frame.
+  /// @{
   predict,
   mask,
   registration,
@@ -23,35 +28,41 @@ enum class Stage : std::uint32_t {
   draw,
   warp,
   fill,
-  compose,  // inside one projector frame
-  frame,
-  present,  // the whole frame in software; handing it to the projector
-  light,    // from there to the middle of the time it is lit
-  count
+  compose,
+  /// @}
+  frame,    ///< the whole projector frame in software
+  present,  ///< handing the frame to the projector
+  light,    ///< from there to the middle of the time it is lit
+  count     ///< number of stages
 };
 
+/// The names of the stages in reports, in the order of Stage.
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::count)> kStageNames{
     "capture", "sample", "detect", "predict", "mask",    "register", "advance", "skin",
     "correct", "draw",   "warp",   "fill",    "compose", "frame",    "present", "light"};
 
+/// The time that one stage of one frame took.
 struct StageMark {
-  Stage stage = Stage::frame;
-  std::uint32_t detail = 0;  ///< of `correct`: the rung of each hand (rung.hpp); of others 0
+  Stage stage = Stage::frame;  ///< what was done
+  std::uint32_t detail = 0;    ///< for `correct`: the rung of each hand (rung.hpp); otherwise 0
+  /// Begin and end of the stage, CLOCK_MONOTONIC.
+  /// @{
   std::int64_t begin_ns = 0;
   std::int64_t end_ns = 0;
+  /// @}
 };
 
-/// The stages one service spent on one frame.
+/// The stages of one frame in one service.
 /// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's
 /// recorder, the observer.
 struct StageMarks {
-  static constexpr std::string_view layout = "StageMarks/4";
+  static constexpr std::string_view layout = "StageMarks/4";  ///< see type_hash()
 
-  Header header;
-  MadeFrom made_from;  ///< of a projector frame; nothing in all others
-  std::uint32_t count = 0;
-  std::uint32_t reserved = 0;
-  std::array<StageMark, 16> marks{};
+  Header header;               ///< frame_id and origin_ns of the frame
+  MadeFrom made_from;          ///< the inputs of a projector frame; zeros in all other frames
+  std::uint32_t count = 0;     ///< number of marks
+  std::uint32_t reserved = 0;  ///< padding
+  std::array<StageMark, 16> marks{};  ///< the first `count` are valid
 };
 
 }  // namespace handcast::msg

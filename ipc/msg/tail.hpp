@@ -5,8 +5,9 @@
 
 namespace handcast::msg {
 
-/// Size of a message with a picture behind it. The fields it is asked with may be anything: what is
-/// more than a number can hold is the largest number, which fits no slot.
+/// Size in bytes of a message of `fixed` bytes followed by an image. The arguments may come from
+/// torn or hostile memory: if the size overflows, the result is the largest size_t, which fits no
+/// slot.
 constexpr std::size_t bytes_with_tail(std::size_t fixed, std::size_t width, std::size_t height,
                                       std::size_t bytes_per_pixel) {
   std::size_t pixels = 0, tail = 0, all = 0;

@@ -11,13 +11,14 @@
 
 namespace handcast::ipc {
 
-/// Private memory for one message.
+/// Private memory for one message, owned by a BufferPool.
 class Buffer {
  public:
+  /// The first byte, aligned to kLineBytes.
   std::byte* data() const { return data_.get(); }
-  void give_back() {
-    in_use_.store(false, std::memory_order_release);
-  }  ///< from any thread; what was read before, was read before
+  /// Returns the buffer to its pool. Any thread. The release store orders all reads of the buffer
+  /// before its next use.
+  void give_back() { in_use_.store(false, std::memory_order_release); }
 
  private:
   friend class BufferPool;
@@ -32,13 +33,14 @@ class Buffer {
   std::atomic<bool> in_use_{true};
 };
 
-/// Buffers of one size, handed out again and again: no allocation per message once as many exist as
-/// are held at a time.
+/// Reusable buffers of one size. Allocates only if more buffers are in use than ever before.
 class BufferPool {
  public:
+  /// A pool of buffers of at least `bytes` bytes; allocates nothing yet.
   explicit BufferPool(std::size_t bytes) : bytes_(round_up(bytes, kLineBytes)) {}
 
-  /// Null where there is no memory. One thread.
+  /// A buffer that is not in use, valid until the pool is destroyed; null if there is no memory.
+  /// One thread.
   Buffer* take() {
     for (const auto& buffer : buffers_)
       if (!buffer->in_use_.load(std::memory_order_acquire)) {

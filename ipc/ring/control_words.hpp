@@ -6,7 +6,7 @@
 
 namespace handcast::ipc {
 
-/// The words of a mapped segment, valid as long as it is mapped.
+/// The control words of a mapped segment; valid as long as it is mapped.
 inline ControlWords<RealAtomics> control_words_of(const Segment& segment) {
   auto* lines = reinterpret_cast<ControlWords<RealAtomics>::Line*>(segment.data() + kControlOffset);
   return {lines, segment.slots(), segment.keep_history()};

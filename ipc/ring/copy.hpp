@@ -4,20 +4,25 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Copies between a slot and private memory, in words that are atomic on the slot's side: the other
-/// process may be at the same bytes, which is decided only afterwards. Both sides are aligned to 8;
-/// `bytes` is rounded up to whole words.
+/// Copies between a slot and private memory in words that are atomic on the side of the slot:
+/// another process may access the same bytes at the same time, which is detected only afterwards.
+/// Both sides are aligned to 8 bytes.
 namespace handcast::ipc {
 
+/// The unit of a copy.
 using PayloadWord = std::uint64_t;
 
+/// A relaxed atomic load or store of one word in a slot.
+/// @{
 inline PayloadWord load_relaxed(const PayloadWord& word) {
   return __atomic_load_n(&word, __ATOMIC_RELAXED);
 }
 inline void store_relaxed(PayloadWord& word, PayloadWord value) {
   __atomic_store_n(&word, value, __ATOMIC_RELAXED);
 }
+/// @}
 
+/// Copies `bytes`, rounded up to whole words, from a slot to private memory.
 inline void copy_from_slot(std::byte* to, const std::byte* slot, std::size_t bytes) {
   const auto* from = reinterpret_cast<const PayloadWord*>(slot);
   auto* out = reinterpret_cast<PayloadWord*>(to);
@@ -31,6 +36,7 @@ inline void copy_from_slot(std::byte* to, const std::byte* slot, std::size_t byt
   for (std::size_t i = 0; i < words % 4; ++i) out[i] = load_relaxed(from[i]);
 }
 
+/// Copies `bytes` from private memory to a slot. The last word is padded with zeros.
 inline void copy_to_slot(std::byte* slot, const std::byte* message, std::size_t bytes) {
   auto* to = reinterpret_cast<PayloadWord*>(slot);
   for (std::size_t done = 0; done < bytes; done += sizeof(PayloadWord)) {

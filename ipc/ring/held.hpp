@@ -10,21 +10,25 @@
 
 namespace handcast::ipc {
 
-/// A message in hand, as bytes: leased where it lies, or copied into a buffer. Ends its lease or
-/// gives its buffer back when it dies, on whichever thread.
+/// A message that a reader holds, as bytes: leased in its slot, or copied into a buffer. The
+/// destructor ends the lease or returns the buffer, on any thread.
 class Held {
  public:
   Held() = default;
+  /// A leased message.
   Held(std::shared_ptr<ReaderAttachment> attachment, const Lease& lease, const Taken& taken)
       : attachment_(std::move(attachment)),
         bytes_(attachment_->segment().slot_at(lease.slot)),
         lease_(lease),
         taken_(taken) {}
+  /// A message that was copied into `buffer`.
   Held(std::shared_ptr<ReaderAttachment> attachment, Buffer& buffer, const Taken& taken)
       : attachment_(std::move(attachment)),
         bytes_(buffer.data()),
         buffer_(&buffer),
         taken_(taken) {}
+  /// Takes the message of `other`, which is empty afterwards. Assignment releases the old one.
+  /// @{
   Held(Held&& other) noexcept
       : attachment_(std::move(other.attachment_)),
         bytes_(std::exchange(other.bytes_, nullptr)),
@@ -41,10 +45,14 @@ class Held {
     taken_ = other.taken_;
     return *this;
   }
+  /// @}
   ~Held() { let_go(); }
 
-  const std::byte* bytes() const { return bytes_; }  ///< null: nothing in hand
+  /// The first byte of the message; null if this object is empty.
+  const std::byte* bytes() const { return bytes_; }
+  /// The sequence and epoch of the message.
   const Taken& taken() const { return taken_; }
+  /// True for a leased message, false for a copy.
   bool leased() const { return bytes_ && !buffer_; }
 
  private:

@@ -11,21 +11,22 @@
 
 namespace handcast::ipc {
 
-/// A message with a tail: its used_bytes() counts the tail in. It is asked of bytes that may be
-/// torn or hostile, so it must bear any values in the fields.
+/// A message type with a tail: used_bytes() is its size, tail included. It is called on bytes that
+/// may be torn or hostile, so it must be safe for any values of the fields.
 template <class T>
 concept HasTail = requires(const T& message) {
   { message.used_bytes() } -> std::convertible_to<std::size_t>;
 };
 
-/// What the untyped half of a ring needs to know of a type of message.
+/// The properties of a message type that RingReader and RingWriter need.
 struct MessageShape {
-  std::string_view layout;
-  std::uint64_t type_hash = 0;
-  std::size_t bytes = 0;                                  ///< without a tail
-  std::size_t (*used_bytes)(const std::byte*) = nullptr;  ///< with it
+  std::string_view layout;                                ///< T::layout
+  std::uint64_t type_hash = 0;                            ///< msg::type_hash<T>()
+  std::size_t bytes = 0;                                  ///< size without a tail
+  std::size_t (*used_bytes)(const std::byte*) = nullptr;  ///< size of a message, tail included
 };
 
+/// The shape of a message type. Does not compile for types that cannot be shared between processes.
 template <class T>
 constexpr MessageShape shape_of() {
   static_assert(std::is_trivially_copyable_v<T> && std::is_standard_layout_v<T>,

@@ -7,25 +7,27 @@
 
 #include "ipc/ring/words.hpp"
 
-/// The protocol of a ring, and nothing else: which word is read and written when, in which memory
-/// order. It knows no system call and no message; the payload is touched through the caller's
-/// functions. README.md argues each order.
+/// The protocol of a ring: which word is read and written when, and in which memory order. It makes
+/// no system call and does not depend on the message type; payloads are accessed through functions
+/// of the caller. README.md gives the reason for each order.
 ///
-/// `Atomics` is RealAtomics in production; the explorer (tests/ipc/explorer) puts its own in.
-/// Nothing here needs a destructor, and no function of it depends on anything but the values its
-/// operations gave back.
+/// `Atomics` is RealAtomics in production; the explorer (tests/ipc/explorer) replaces it by a
+/// model. For its sake, nothing here needs a destructor, and every function depends only on the
+/// values that its operations returned.
 namespace handcast::ipc {
 
-inline constexpr int kNoSlot = -1;
+inline constexpr int kNoSlot = -1;  ///< the slot number that means none
 
-/// The writer's half. One thread of one process at a time, by the writer lock. `Capacity`: the most
-/// slots it can serve.
+/// The writer's side of the protocol. One thread of one process at a time, which the writer lock
+/// guarantees. `Capacity` is the largest number of slots.
 template <class Atomics, int Capacity = kMaxSlots>
 class WriterCore {
  public:
+  /// Stores `words`; call attach() before anything else.
   explicit WriterCore(const ControlWords<Atomics>& words) : words_(words) {}
 
-  /// Continues where a predecessor stopped, wherever that was. The writer lock must be held.
+  /// Continues after the last message of the previous writer, which may have died at any step. The
+  /// writer lock must be held.
   void attach() {
     const auto head = Atomics::load(words_.head(), std::memory_order_acquire);
     auto newest = sequence_of(head);
@@ -39,23 +41,22 @@ class WriterCore {
     if (newest != sequence_of(head))
       Atomics::store(words_.head(), head_word(newest_, newest), std::memory_order_release);
     epoch_ = following_epoch(Atomics::load(words_.epoch(), std::memory_order_acquire));
-    Atomics::store(words_.epoch(), epoch_,
-                   std::memory_order_release);  // before any state of this epoch
+    // Before any state of this epoch is stored.
+    Atomics::store(words_.epoch(), epoch_, std::memory_order_release);
     next_ = following(newest);
-    Atomics::wake(
-        words_
-            .head());  // always: the predecessor may have died between its message and its wake-up
+    // Always: the previous writer may have died between its message and its wake-up.
+    Atomics::wake(words_.head());
   }
 
-  /// A slot to write in; kNoSlot where all are leased, on loan or the newest. Wait-free.
+  /// A slot to write to; kNoSlot if each is leased, on loan or the newest. Wait-free.
   int loan() {
     auto taken = on_loan_;
     if (newest_ != kNoSlot) taken[index(newest_)] = true;  // readers always find one message
-    auto busy = taken | leased_;  // those that were leased last time probably still are
+    auto busy = taken | leased_;  // slots that were leased last time probably still are
     for (int slot = pick(busy); slot != kNoSlot; slot = pick(busy |= leased_)) {
       mark(slot);
-      Atomics::fence(std::memory_order_seq_cst);  // mark before scan (against a reader's lease),
-                                                  // mark before payload
+      // Orders the mark before the scan (pairs with lease_checked()) and before the payload.
+      Atomics::fence(std::memory_order_seq_cst);
       leased_ = scan_leases();
       if (!leased_[index(slot)]) return keep(slot);
       restore(slot);
@@ -63,38 +64,40 @@ class WriterCore {
     return leased_.none() ? kNoSlot : loan_after_marking_all(taken);
   }
 
-  /// Makes the message in a loaned slot visible and wakes who waits.
+  /// Makes the message in a loaned slot visible and wakes the waiting readers.
   void publish(int slot) {
     mine_[slot] = state_word(epoch_, next_);
-    Atomics::store(words_.state(slot), mine_[slot],
-                   std::memory_order_release);  // from here on the message exists
+    // From this store on the message exists.
+    Atomics::store(words_.state(slot), mine_[slot], std::memory_order_release);
     Atomics::store(words_.head(), head_word(slot, next_), std::memory_order_release);
     newest_ = slot;
     next_ = following(next_);
     on_loan_.reset(slot);
-    Atomics::fence(
-        std::memory_order_seq_cst);  // head before flags, against wait()'s flag before head
+    // Orders head before the flags; pairs with the fence in wait().
+    Atomics::fence(std::memory_order_seq_cst);
     if (anyone_waits()) Atomics::wake(words_.head());
   }
 
-  /// Gives a loaned slot back without a message. The old one never returns: its payload may be half
-  /// overwritten.
+  /// Returns a loaned slot without a message. The old message is not restored: its payload may be
+  /// half overwritten.
   void abandon(int slot) {
     mine_[slot] = state_word(epoch_, 0);
     Atomics::store(words_.state(slot), mine_[slot], std::memory_order_release);
     on_loan_.reset(slot);
   }
 
+  /// Number of this writer.
   std::uint64_t epoch() const { return epoch_; }
+  /// Sequence of the next message that is published.
   std::uint64_t next_sequence() const { return next_; }
 
  private:
   using SlotSet = std::bitset<Capacity>;
   static constexpr std::size_t index(int slot) { return static_cast<std::size_t>(slot); }
 
-  /// Readers that go from slot to slot may each time be met in the one that was just marked. So all
-  /// are marked before one scan: of n leases it sees at most n slots, so that one of n + 1
-  /// candidates is free, however the readers move.
+  /// Readers that move from slot to slot may be met in each slot that is marked alone. So all
+  /// candidates are marked before a single scan. For n leases it sees at most n slots, so of n + 1
+  /// candidates one is free, however the readers move.
   int loan_after_marking_all(const SlotSet& taken) {
     for (int slot = 0; slot < words_.slots(); ++slot)
       if (!taken[index(slot)]) mark(slot);
@@ -109,7 +112,7 @@ class WriterCore {
   void mark(int slot) {
     Atomics::store(words_.state(slot), mine_[slot] | kWriting, std::memory_order_relaxed);
   }
-  /// The payload is untouched: the old message is valid again.
+  /// Makes the old message valid again: its payload was not touched.
   void restore(int slot) {
     Atomics::store(words_.state(slot), mine_[slot], std::memory_order_release);
   }
@@ -119,8 +122,8 @@ class WriterCore {
     return marked;
   }
 
-  /// Where history is kept the slots go round; else the most recently freed one, which the caches
-  /// still hold.
+  /// The next slot in turn on a ring with history; otherwise the slot that was freed last, which is
+  /// still in the caches.
   int pick(const SlotSet& busy) const {
     return words_.keep_history() ? pick_next(busy) : pick_warmest(busy);
   }
@@ -140,10 +143,12 @@ class WriterCore {
     return best;
   }
 
-  /// Acquires what the end of each lease released: the reader's last look at the payload.
+  /// The leased slots. Each load acquires what the end of a lease released: the last read of the
+  /// payload by its reader.
   SlotSet scan_leases() const {
     SlotSet leased;
-    const auto words = words_;  // kept in registers, which a member is not across an acquire
+    // A copy stays in registers; a member is reloaded after each acquire.
+    const auto words = words_;
     for (int row = 0; row < words.rows(); ++row)
       for (int which = 0; which < kLeasesPerRow; ++which) {
         const auto lease = Atomics::load(words.lease(row, which), std::memory_order_acquire);
@@ -166,43 +171,49 @@ class WriterCore {
   int newest_ = kNoSlot;
   SlotSet on_loan_;
   SlotSet leased_;  ///< as of the last scan: a hint
-  std::array<std::uint64_t, Capacity>
-      mine_{};  ///< the state words as this writer left them: nobody else writes them
+  /// The state words as this writer stored them; no other process writes them.
+  std::array<std::uint64_t, Capacity> mine_{};
 };
 
+/// The result of an attempt to take a message.
 enum class Outcome {
-  taken,      ///< a message was copied whole
-  nothing,    ///< there is none (newer than the last one seen)
-  contended,  ///< the writer overwrote each one while it was being taken: try again
-  corrupt,    ///< the words make no sense: something else writes to this memory
+  taken,      ///< A whole message was taken.
+  nothing,    ///< There is no message, or none newer than the last one seen.
+  contended,  ///< The writer overwrote each message while it was being taken. Try again.
+  corrupt,    ///< The words are inconsistent: another program writes to this memory.
 };
 
-/// A message that was taken.
+/// Identifies a message that was taken.
 struct Taken {
-  std::uint64_t sequence = 0;
-  std::uint64_t epoch = 0;
+  std::uint64_t sequence = 0;  ///< number of the message
+  std::uint64_t epoch = 0;     ///< number of its writer
 };
 
-/// A message that is read where it lies. Its slot is not written until it is released.
+/// A lease on a message that is read in its slot. The slot is not written until the lease is
+/// released.
 struct Lease {
-  int index = 0;  ///< which of the row's lease words
-  int slot = kNoSlot;
-  std::uint64_t word = 0;  ///< what the lease word was set to
+  int index = 0;           ///< number of the lease word in its row
+  int slot = kNoSlot;      ///< the slot of the message
+  std::uint64_t word = 0;  ///< the value that the lease word was set to
 };
 
-/// A reader's half: one thread, one row (release() alone may be called from any thread). The verbs
-/// find a message; what happens to it is the caller's `take`, one of
-///   copying(copy)    copy(slot) reads the payload with relaxed atomic loads; worth something only
-///   after Outcome::taken leasing(lease)   leaves the payload where it is; `lease.index` says with
-///   which word, which must be free
+/// The reader's side of the protocol. One thread and one row; only release() may be called from any
+/// thread.
+///
+/// next(), latest() and nearest() find a message. Their argument `take` decides how it is taken:
+/// - copying(copy): copy(slot) reads the payload with relaxed atomic loads. The copy is valid only
+///   after Outcome::taken.
+/// - leasing(lease): the payload stays in its slot. `lease.index` is the lease word to use, which
+///   must be free.
 template <class Atomics>
 class ReaderCore {
  public:
+  /// Stores its arguments. `generation` is that of the row's owner word.
   ReaderCore(const ControlWords<Atomics>& words, int row, std::uint64_t generation)
       : words_(words), row_(row), generation_(generation) {}
 
-  /// A late reader's first message is the newest one; on a ring with history, the oldest one still
-  /// there.
+  /// Sets the position so that the first message is the newest one, or on a ring with history the
+  /// oldest one that is still there.
   void start() {
     auto first = sequence_of(Atomics::load(words_.head(), std::memory_order_acquire));
     for (int slot = 0; slot < words_.slots() && words_.keep_history(); ++slot) {
@@ -212,10 +223,13 @@ class ReaderCore {
     seen_ = first == 0 ? 0 : first - 1;
   }
 
+  /// True if a message after the last one seen may have been published.
   bool something_new() const {
     return sequence_of(Atomics::load(words_.head(), std::memory_order_relaxed)) != seen_;
   }
 
+  /// The two ways to take a message: see the class. The argument must outlive the result.
+  /// @{
   template <class Copy>
   auto copying(Copy& copy) const {
     return [this, &copy](int slot, std::uint64_t sequence, Taken& taken) {
@@ -227,7 +241,9 @@ class ReaderCore {
       return lease_checked(slot, sequence, lease, taken);
     };
   }
+  /// @}
 
+  /// Takes the newest message, if it was not seen yet.
   template <class Take>
   Outcome latest(const Take& take, Taken& taken) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -239,8 +255,8 @@ class ReaderCore {
     return Outcome::contended;
   }
 
-  /// The message after the last one seen; where that is gone, the oldest one after it that is still
-  /// there.
+  /// Takes the message after the last one seen; if that is gone, the oldest one after it that is
+  /// still there.
   template <class Take>
   Outcome next(const Take& take, Taken& taken) {
     auto wanted = following(seen_);
@@ -260,8 +276,9 @@ class ReaderCore {
     return Outcome::contended;
   }
 
-  /// The message whose origin, read by origin_of(slot) with a relaxed atomic load, is nearest to
-  /// `wanted_ns`.
+  /// Takes the message whose origin is nearest to `wanted_ns`, the newer one if two are equally
+  /// near. origin_of(slot) must read the origin with a relaxed atomic load. The message does not
+  /// count as seen.
   template <class Origin, class Take>
   Outcome nearest(std::int64_t wanted_ns, const Origin& origin_of, const Take& take,
                   Taken& taken) const {
@@ -286,13 +303,13 @@ class ReaderCore {
     return Outcome::contended;
   }
 
-  /// False where the lease was taken away, which only happens to a process that was taken for dead:
-  /// what was read is worth nothing.
+  /// Ends a lease. Returns false if the lease was taken away, which happens only to a process that
+  /// was mistaken for dead: the data that was read is invalid then. Any thread.
   bool release(const Lease& lease) const {
     return Atomics::compare_exchange(words_.lease(row_, lease.index), lease.word,
                                      free_word(generation_), std::memory_order_release);
   }
-  /// A lease word that is free; -1 where all are in use.
+  /// The number of a free lease word; -1 if all are in use.
   int free_lease() const {
     for (int index = 0; index < kLeasesPerRow; ++index)
       if (Atomics::load(words_.lease(row_, index), std::memory_order_relaxed) ==
@@ -301,29 +318,31 @@ class ReaderCore {
     return -1;
   }
 
-  /// Counts everything up to now as seen.
+  /// Counts all messages so far as seen.
   void catch_up() { seen_ = sequence_of(Atomics::load(words_.head(), std::memory_order_acquire)); }
 
-  /// Sleeps until something new is there or `until_ns` is reached; may return early. The writer is
-  /// asked to wake us.
+  /// Sleeps until there is a new message or `until_ns` (CLOCK_MONOTONIC) is reached; may return
+  /// early. Requests a wake-up from the writer.
   void wait(std::int64_t until_ns) {
     auto& flag = words_.wait(row_);
     const auto idle = free_word(generation_);
     Atomics::compare_exchange(flag, idle, idle | kWaiting, std::memory_order_relaxed);
-    Atomics::fence(
-        std::memory_order_seq_cst);  // flag before head, against publish()'s head before flags
+    // Orders the flag before head; pairs with the fence in publish().
+    Atomics::fence(std::memory_order_seq_cst);
     doze(until_ns);
     Atomics::compare_exchange(flag, idle | kWaiting, idle, std::memory_order_relaxed);
   }
 
-  /// The same without asking: the writer makes no system call for us, and a message does not end
-  /// the sleep.
+  /// Like wait(), but requests no wake-up: the writer makes no system call, and a new message need
+  /// not end the sleep.
   void doze(std::int64_t until_ns) {
     const auto head = Atomics::load(words_.head(), std::memory_order_relaxed);
     if (sequence_of(head) == seen_) Atomics::wait(words_.head(), head, until_ns);
   }
 
+  /// Number of messages that were overwritten or passed over.
   std::uint64_t skipped() const { return skipped_; }
+  /// Sequence of the last message seen.
   std::uint64_t seen() const { return seen_; }
 
  private:
@@ -334,8 +353,8 @@ class ReaderCore {
                  : static_cast<std::uint64_t>(b) - static_cast<std::uint64_t>(a);
   }
 
-  /// Outcome::taken: there is something to take. A head that went back is reported once, then
-  /// followed.
+  /// Outcome::taken if there is a message to take. A head that went backwards is reported as
+  /// corrupt once, then accepted.
   Outcome judge(std::uint64_t head) {
     if (sequence_of(head) == seen_) return Outcome::nothing;
     if (is_later(sequence_of(head), seen_)) return Outcome::taken;
@@ -360,8 +379,8 @@ class ReaderCore {
     if (!Atomics::compare_exchange(word, free_word(generation_), lease.word,
                                    std::memory_order_relaxed))
       return false;
-    Atomics::fence(
-        std::memory_order_seq_cst);  // lease before state, against loan()'s mark before scan
+    // Orders the lease before the state; pairs with the fence in loan().
+    Atomics::fence(std::memory_order_seq_cst);
     const auto state = Atomics::load(words_.state(slot), std::memory_order_acquire);
     if (holds_message(state) && sequence_of(state) == sequence) {
       taken = {sequence, epoch_of(state)};
@@ -371,10 +390,10 @@ class ReaderCore {
     return false;
   }
 
-  /// Whether what was read from the slot since its state was read belongs to that state: else it
-  /// may be torn.
+  /// True if the data that was read from the slot since `state` was loaded belongs to that state;
+  /// otherwise it may be torn.
   bool unchanged(int slot, std::uint64_t state) const {
-    Atomics::fence(std::memory_order_acquire);  // payload before the second look at the state
+    Atomics::fence(std::memory_order_acquire);  // payload before the second load of the state
     return Atomics::load(words_.state(slot), std::memory_order_relaxed) == state;
   }
 
@@ -391,13 +410,14 @@ class ReaderCore {
   std::uint64_t skipped_ = 0;
 };
 
-/// Gives a row whose owner word was seen to be `before` (free, or of a process that is gone) to
-/// `after`, of a later generation: a process that takes it, or free_word() where a dead one's
-/// leases are only to be cleared. False: somebody else was faster.
+/// Changes the owner of a row from `before` (free, or a process that is gone) to `after`, which
+/// must be of a later generation: the owner word of the process that claims the row, or free_word()
+/// to free the row of a dead process. Clears the wait word and the leases. Returns false if another
+/// process was faster.
 ///
-/// A word is cleared only while it is of an earlier generation, so a recoverer that stops half way
-/// is made good by the next one, and one that is slow cannot touch what the row's next owner has
-/// begun.
+/// A word is cleared only while it is of an earlier generation. So the next process completes the
+/// work of one that stopped half way, and a slow one cannot touch words that the next owner has
+/// begun to use.
 template <class Atomics>
 bool claim_row(const ControlWords<Atomics>& words, int row, std::uint64_t before,
                std::uint64_t after) {
@@ -415,7 +435,7 @@ bool claim_row(const ControlWords<Atomics>& words, int row, std::uint64_t before
   return true;
 }
 
-/// Gives a row back; nothing happens where it was taken away in the meantime.
+/// Releases a row. Has no effect if the row was taken away meanwhile.
 template <class Atomics>
 void release_row(const ControlWords<Atomics>& words, int row, std::uint64_t owner) {
   Atomics::compare_exchange(words.owner(row), owner, free_word(generation_of(owner)),

@@ -11,23 +11,27 @@
 
 namespace handcast::ipc {
 
-/// One message as a reader holds it, valid and unchanging as long as the Sample lives, also after
-/// its Reader. A message with a tail (an image) is leased: read where it lies, while the writer
-/// uses other slots; keep at most two of them at a time, more are copied. A small message is
-/// copied. A sample may die on another thread than its reader's.
+/// One message that a reader holds. It is valid and does not change as long as the Sample exists,
+/// even after its Reader is destroyed. A message with a tail (an image) is leased: it is read in
+/// its slot, while the writer uses other slots. A reader can hold two leased messages; further ones
+/// are copied. A message without a tail is copied. A Sample may be destroyed on any thread.
 ///
-/// Its size was checked when it was taken. A leased one still lies in shared memory: no reader or
-/// writer that goes through this library can change it meanwhile, but who does not trust the
-/// writer's process asks for Hold::copy.
+/// The size of the message was checked when it was taken. A leased message still lies in shared
+/// memory. No reader or writer that uses this library changes it meanwhile; if the process of the
+/// writer is not trusted, use Hold::copy.
 template <class T>
 class Sample {
  public:
+  /// The message; valid as long as this object.
+  /// @{
   const T& operator*() const { return *reinterpret_cast<const T*>(held_.bytes()); }
   const T* operator->() const { return &**this; }
+  /// @}
+  /// Number of the message in its stream, given once in the life of the ring.
   std::uint64_t sequence() const { return held_.taken().sequence; }
-  std::uint64_t epoch() const {
-    return held_.taken().epoch;
-  }  ///< another one each time the writer was replaced
+  /// Number of the writer that published the message; it changes with each new writer.
+  std::uint64_t epoch() const { return held_.taken().epoch; }
+  /// True for a leased message, false for a copy.
   bool leased() const { return held_.leased(); }
 
  private:
@@ -37,47 +41,49 @@ class Sample {
   Held held_;
 };
 
-/// A reader of a ring, in its own process; it cannot slow the writer down. One thread. The first
-/// message it gets is the newest one that is there (with next(), on a ring that keeps history: the
-/// oldest).
+/// A reader of a ring. It cannot slow the writer down. One thread. Its first message is the newest
+/// one in the ring, or the oldest one if next() is called on a ring that keeps history.
 template <class T>
 class Reader {
  public:
+  /// The default: messages with a tail are leased, others are copied.
   static constexpr Hold kHold = HasTail<T> ? Hold::lease : Hold::copy;
 
-  /// The messages become read-only in this mapping. Errors: bad_data (the ring is of another type),
-  /// unavailable (all reader rows are taken, no descriptor, no thread).
+  /// Takes the segment, makes its messages read-only in this mapping, and claims a reader row.
+  /// Errors: bad_data (the ring carries another type), unavailable (all reader rows are taken, no
+  /// descriptor, or no thread).
   static Result<Reader> attach(Segment segment, Wait wait = Wait::futex, Hold hold = kHold) {
     auto ring = RingReader::attach(std::move(segment), shape_of<T>(), wait, hold);
     if (!ring) return tl::make_unexpected(std::move(ring.error()));
     return Reader(std::move(*ring));
   }
 
-  /// The message after the last one seen, in order; waits for it until the deadline. Messages
-  /// overwritten meanwhile are skipped and counted. Errors: timeout, bad_data (the memory does not
-  /// make sense).
+  /// The message after the last one seen, in order; waits for it until the deadline. Messages that
+  /// were overwritten are skipped and counted. Errors: timeout, bad_data (the memory of the ring is
+  /// inconsistent), unavailable (no memory for a copy).
   Result<Sample<T>> next(Deadline deadline) { return sample(ring_->next(deadline)); }
-  /// The newest message not seen yet; waits for one until the deadline. Errors as for next.
+  /// The newest message not seen yet; waits for one until the deadline. Errors as for next().
   Result<Sample<T>> latest(Deadline deadline) { return sample(ring_->latest(deadline)); }
-  /// The message whose header.origin_ns is nearest to `origin_ns` among those the ring still holds;
-  /// does not change what has been seen. Errors: timeout (the ring is empty), bad_data.
+  /// The message whose header.origin_ns is nearest to `origin_ns` among those in the ring. Does not
+  /// wait and does not affect next() and latest(). Errors: timeout (the ring is empty, or its
+  /// messages change too fast), bad_data, unavailable (no memory for a copy).
   Result<Sample<T>> at(std::int64_t origin_ns) { return sample(ring_->at(origin_ns)); }
 
-  /// With Wait::eventfd: readable when there may be something new; next() and latest() make it
-  /// unreadable again when they find nothing. Put it into epoll, then call next(Deadline::now())
-  /// until it times out. Else -1.
+  /// With Wait::eventfd, a descriptor that is readable when there may be a new message; otherwise
+  /// -1. Add it to an epoll set; when it is readable, call next(Deadline::now()) until it times
+  /// out. next() and latest() make it unreadable again when they find no message. Owned by this
+  /// object.
   int event_fd() const { return ring_->event_fd(); }
 
+  /// Number of messages that next() and latest() have returned.
   std::uint64_t received() const { return ring_->received(); }
-  std::uint64_t skipped() const {
-    return ring_->skipped();
-  }  ///< never seen by next()/latest(): overwritten or passed over
-  std::uint64_t copied() const {
-    return ring_->copied();
-  }  ///< with Hold::lease: for want of a lease
-  std::uint64_t revoked() const {
-    return ring_->revoked();
-  }  ///< leases taken away because this process was taken for dead
+  /// Number of messages that next() and latest() did not return: overwritten, passed over or
+  /// unusable.
+  std::uint64_t skipped() const { return ring_->skipped(); }
+  /// With Hold::lease, the number of messages that were copied because all leases were in use.
+  std::uint64_t copied() const { return ring_->copied(); }
+  /// Number of leases that were taken away because this process was mistaken for dead.
+  std::uint64_t revoked() const { return ring_->revoked(); }
 
  private:
   explicit Reader(std::unique_ptr<RingReader> ring) : ring_(std::move(ring)) {}

@@ -17,7 +17,8 @@ struct Row {
   std::uint64_t owner = 0;
 };
 
-/// A row for this process: a free one, or one whose owner died without giving it back.
+/// Claims a row for this process: a free one, or one whose owner died without releasing it. The
+/// number is kNoSlot if there is none.
 Row claim_any_row(const ControlWords<RealAtomics>& words, std::uint64_t this_process) {
   for (int row = 0; row < words.rows(); ++row) {
     const auto before = RealAtomics::load(words.owner(row), std::memory_order_acquire);
@@ -47,7 +48,7 @@ Result<std::shared_ptr<ReaderAttachment>> ReaderAttachment::take(Segment segment
   const auto this_process = owner_word_of_this_process(0);
   if (!this_process)
     return fail(Errc::unavailable,
-                fmt::format("ring '{}': the kernel does not tell when this process began",
+                fmt::format("ring '{}': the start time of this process cannot be read from /proc",
                             segment.stream()));
   const auto row = claim_any_row(control_words_of(segment), *this_process);
   if (row.number == kNoSlot)
@@ -63,7 +64,8 @@ void ReaderAttachment::end(const Lease& lease) {
   if (core_.release(lease)) return;
   if (revoked_.fetch_add(1, std::memory_order_relaxed) == 0)
     log::error(
-        "ring '{}': a message was taken away while it was read: this process was taken for dead",
+        "ring '{}': a message was taken away while it was read, because this process was mistaken "
+        "for dead",
         segment_.stream());
 }
 

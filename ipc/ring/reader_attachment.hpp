@@ -13,27 +13,34 @@
 
 namespace handcast::ipc {
 
-/// A reader's place at a ring: the mapping, the row, the buffers for copies. Its reader and every
-/// message in hand share it, so that no lease outlives its row or its memory.
+/// The attachment of a reader to a ring: the mapping, the reader row, and the buffers for copies.
+/// The reader and all messages that it holds share it, so no lease outlives its row or its memory.
 class ReaderAttachment {
  public:
-  /// Errors: unavailable (all rows are taken; the messages cannot be protected; the kernel does not
-  /// tell when this process began).
+  /// Takes the segment and claims a reader row. Errors: unavailable (all rows are taken, the
+  /// messages cannot be protected, or the start time of this process cannot be read).
   static Result<std::shared_ptr<ReaderAttachment>> take(Segment segment);
-  ~ReaderAttachment();  ///< gives the row back
+  ~ReaderAttachment();  ///< Releases the row.
   ReaderAttachment(const ReaderAttachment&) = delete;
   ReaderAttachment& operator=(const ReaderAttachment&) = delete;
 
+  /// The mapped memory. Any thread.
   const Segment& segment() const { return segment_; }
-  ReaderCore<RealAtomics>& core() { return core_; }  ///< of the reader's thread
-  BufferPool& buffers() { return buffers_; }         ///< of the reader's thread
+  /// The reader's side of the protocol. The thread of the reader only.
+  ReaderCore<RealAtomics>& core() { return core_; }
+  /// The buffers for copies. The thread of the reader only.
+  BufferPool& buffers() { return buffers_; }
+  /// The counters of the row. The thread of the reader only.
   ReaderTally& tally() const { return reader_tally(segment_, row_); }
-  /// Another core on the same row, with a place of its own in the stream: for a bridge's thread.
+  /// A second core on the same row with its own position in the stream, for the thread of a
+  /// WakeBridge.
   ReaderCore<RealAtomics> another_core() const {
     return {control_words_of(segment_), row_, generation_of(owner_)};
   }
 
-  void end(const Lease& lease);  ///< from any thread
+  /// Ends a lease. If the lease was taken away, counts it and logs the first such case. Any thread.
+  void end(const Lease& lease);
+  /// Number of leases that were taken away while they were held. Any thread.
   std::uint64_t revoked() const { return revoked_.load(std::memory_order_relaxed); }
 
  private:
@@ -44,7 +51,7 @@ class ReaderAttachment {
   std::uint64_t owner_;
   ReaderCore<RealAtomics> core_;
   BufferPool buffers_;
-  std::atomic<std::uint64_t> revoked_{0};  ///< leases that were taken away while they were held
+  std::atomic<std::uint64_t> revoked_{0};
 };
 
 }  // namespace handcast::ipc

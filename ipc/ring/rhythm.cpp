@@ -6,18 +6,24 @@
 namespace handcast::ipc {
 namespace {
 
-constexpr int kAverageOver = 8;                       // messages, exponentially
-constexpr int kFirstPeriods = 4;                      // before the averages are trusted
-constexpr std::int64_t kShortestPeriod_ns = 100'000;  // below, waking up costs more than watching
-constexpr std::int64_t kLongestPeriod_ns = 500'000'000;  // above, being on time gains nothing
-constexpr std::int64_t kLead_ns =
-    90'000;  // what a sleeper needs to be awake: measured 30-45 us, and a timer's slack of 50
-constexpr std::int64_t kPatience_ns = 400'000;  // how long a late message is watched for
-constexpr std::int64_t kMostJitter_ns =
-    250'000;  // a message this early would be seen this late: then rather be woken
-constexpr std::int64_t kPause = 4;  // periods without a message: the averages start again
-constexpr std::int64_t kLatest_ns =
-    std::int64_t{1} << 62;  // later stamps are nonsense, and sums with them would overflow
+// Time constant of the exponential averages, in messages.
+constexpr int kAverageOver = 8;
+// The averages are used after this many periods.
+constexpr int kFirstPeriods = 4;
+// Below this period, waking up costs more than polling.
+constexpr std::int64_t kShortestPeriod_ns = 100'000;
+// Above this period, precise timing gains nothing.
+constexpr std::int64_t kLongestPeriod_ns = 500'000'000;
+// How early a sleeper must wake up: 30 to 45 us were measured, plus a timer slack of 50 us.
+constexpr std::int64_t kLead_ns = 90'000;
+// How long a reader polls for a late message.
+constexpr std::int64_t kPatience_ns = 400'000;
+// Above this jitter a message that comes early is seen so late that the futex is better.
+constexpr std::int64_t kMostJitter_ns = 250'000;
+// The averages restart after a gap of more than this many periods.
+constexpr std::int64_t kPause = 4;
+// Later time stamps are rejected: sums with them would overflow.
+constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
 
 }  // namespace
 

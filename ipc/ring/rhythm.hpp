@@ -5,26 +5,29 @@
 
 namespace handcast::ipc {
 
-/// Learns when the next message of a regular stream will come, from the times its messages were
-/// published.
+/// Predicts when the next message of a regular stream will be published, from the times of the past
+/// messages. One thread.
 class Rhythm {
  public:
-  /// When to stop sleeping and watch for the message, and when to stop watching.
+  /// The time in which a reader polls for the next message, CLOCK_MONOTONIC.
   struct Window {
-    std::int64_t from_ns = 0;
-    std::int64_t until_ns = 0;
+    std::int64_t from_ns = 0;   ///< when to stop sleeping and start polling
+    std::int64_t until_ns = 0;  ///< when to stop polling
   };
 
+  /// Records a received message: its sequence and the time when it was published (CLOCK_MONOTONIC).
+  /// Implausible times restart the averages.
   void heard(std::uint64_t sequence, std::int64_t published_ns);
-  /// Nothing while the stream is new, too slow or too irregular to be worth watching for.
+  /// When to poll for the next message; empty if the stream is new, or too fast, too slow or too
+  /// irregular for polling to pay off.
   std::optional<Window> window() const;
 
  private:
   std::uint64_t last_sequence_ = 0;
   std::int64_t last_ns_ = 0;
   std::int64_t period_ns_ = 0;
-  std::int64_t jitter_ns_ = 0;  ///< mean distance from the period
-  int heard_ = 0;               ///< periods in a row that went into the averages
+  std::int64_t jitter_ns_ = 0;  ///< mean absolute deviation from the period
+  int heard_ = 0;               ///< number of consecutive periods in the averages
 };
 
 }  // namespace handcast::ipc

@@ -12,8 +12,8 @@
 namespace handcast::ipc {
 namespace {
 
-/// A wait is looked at again this often, so that no lost wake-up, and no writer that died before
-/// its own, can hang a reader.
+/// The longest sleep before a reader looks again. A reader thus never hangs if a writer died
+/// between its message and its wake-up.
 constexpr std::int64_t kSlice_ns = 100'000'000;
 
 void pause() {
@@ -24,14 +24,13 @@ void pause() {
 #endif
 }
 
-/// What a bridge's thread does over and over: the futex wait, with a place of its own in the
-/// stream.
+/// The wait function of a WakeBridge: waits on the futex, with its own position in the stream.
 std::function<bool()> wait_for_news(const std::shared_ptr<ReaderAttachment>& attachment) {
   return [core = attachment->another_core()]() mutable {
     core.wait(now_ns() + kSlice_ns);
     if (!core.something_new()) return false;
-    core.catch_up();  // before the descriptor is made readable: what comes after this is told of
-                      // next time
+    // Before the descriptor is made readable: later messages are reported by the next call.
+    core.catch_up();
     return true;
   };
 }
@@ -43,7 +42,7 @@ void wait_readable(int fd, std::int64_t until_ns) {
   ::ppoll(&wanted, 1, &left, nullptr);
 }
 
-/// `now_ns` - `origin_ns` of a message that may say anything.
+/// `time_ns` - `origin_ns` without overflow: the message may hold any value.
 std::int64_t age(std::int64_t origin_ns, std::int64_t time_ns) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
                                    static_cast<std::uint64_t>(origin_ns));
@@ -113,14 +112,15 @@ Result<Held> RingReader::take_until(Deadline deadline, const Verb& verb) {
     if (*outcome == Outcome::taken) return counted(std::move(held));
     if (*outcome == Outcome::corrupt)
       return fail_here(Errc::bad_data,
-                       "its words make no sense: something else writes to its memory");
-    if (deadline.passed()) return fail_here(Errc::timeout, "nothing new before the deadline");
+                       "its control words are inconsistent: another program writes to its memory");
+    if (deadline.passed())
+      return fail_here(Errc::timeout, "no new message came before the deadline");
     if (*outcome == Outcome::nothing) wait(deadline);
   }
 }
 
-/// With a bridge, what has just been read may have been told of, or not: the descriptor is cleared
-/// before the look that finds nothing.
+/// With a bridge, the descriptor is cleared before the last attempt: a message that this attempt
+/// does not find makes the descriptor readable again.
 template <class Verb>
 Result<Outcome> RingReader::look(const Verb& verb, Held& held) {
   auto outcome = attempt(verb, held);
@@ -142,7 +142,7 @@ Result<Outcome> RingReader::attempt(const Verb& verb, Held& held) {
 template <class Verb>
 Result<Outcome> RingReader::attempt_copy(const Verb& verb, Held& held) {
   auto* buffer = attachment_->buffers().take();
-  if (!buffer) return fail_here(Errc::unavailable, "no memory for a copy of its message");
+  if (!buffer) return fail_here(Errc::unavailable, "there is no memory for a copy of its message");
   Taken taken;
   const auto copy = [&](int slot) { copy_out(slot, buffer->data()); };
   const auto outcome = verb(attachment_->core().copying(copy), taken);
@@ -155,7 +155,7 @@ Result<Outcome> RingReader::attempt_copy(const Verb& verb, Held& held) {
   return outcome;
 }
 
-/// Copies what the message says it uses, and never more than the slot has.
+/// Copies the bytes that the message says it uses, at most the size of the slot.
 void RingReader::copy_out(int slot, std::byte* to) const {
   const auto* from = attachment_->segment().slot_at(slot);
   const auto fixed = round_up(shape_.bytes, sizeof(PayloadWord));

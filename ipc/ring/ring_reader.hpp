@@ -16,16 +16,21 @@
 
 namespace handcast::ipc {
 
-/// What a sample is.
+/// How a reader holds a message.
 enum class Hold {
-  copy,   ///< a private copy: right for small messages
-  lease,  ///< the message where it lies, which the writer leaves alone meanwhile; a copy where all
-          ///< leases of the row are out
+  /// A private copy, for small messages.
+  copy,
+  /// The message in its slot, which the writer does not touch meanwhile; a copy if all leases of
+  /// the row are in use.
+  lease,
 };
 
-/// What every Reader<T> is made of: the protocol on a mapped segment, messages as bytes.
+/// The untyped implementation of Reader<T>: the protocol on a mapped segment, with messages as
+/// bytes. One thread.
 class RingReader {
  public:
+  /// See Reader<T>.
+  /// @{
   static Result<std::unique_ptr<RingReader>> attach(Segment segment, const MessageShape& shape,
                                                     Wait wait, Hold hold);
 
@@ -39,6 +44,7 @@ class RingReader {
   std::uint64_t skipped() const { return attachment_->core().skipped() + unusable_; }
   std::uint64_t copied() const { return copied_; }
   std::uint64_t revoked() const { return attachment_->revoked(); }
+  /// @}
 
  private:
   RingReader(std::shared_ptr<ReaderAttachment> attachment, const MessageShape& shape, Wait wait,
@@ -67,8 +73,8 @@ class RingReader {
   std::uint64_t received_ = 0;
   std::uint64_t unusable_ = 0;
   std::uint64_t copied_ = 0;
-  std::unique_ptr<WakeBridge>
-      bridge_;  ///< with Wait::eventfd. Its thread uses the attachment, so it ends first
+  /// Only with Wait::eventfd. Its thread uses the attachment, so it is destroyed first.
+  std::unique_ptr<WakeBridge> bridge_;
 };
 
 }  // namespace handcast::ipc

@@ -22,8 +22,8 @@ struct Newest {
   msg::Header header;
 };
 
-/// The newest message's header; zeros where there is none, or the writer is too fast. Of the
-/// protocol's reader only the loads are used.
+/// The newest message; zeros if there is none, or if the writer overwrites it too fast. Uses only
+/// those parts of ReaderCore that load words, because the mapping is read-only.
 Newest newest_of(const Segment& segment) {
   ReaderCore<RealAtomics> core(control_words_of(segment), 0, 0);
   alignas(PayloadWord) std::array<std::byte, sizeof(msg::Header)> bytes{};
@@ -98,8 +98,8 @@ std::int64_t RingView::lease_age_ns(int row, int index, std::int64_t time_ns) co
   if (!is_leased(lease) || slot_of_lease(lease) >= segment_.slots()) return -1;
   const auto* header = reinterpret_cast<const msg::Header*>(segment_.slot_at(slot_of_lease(lease)));
   const auto published_ns = __atomic_load_n(&header->published_ns, __ATOMIC_RELAXED);
-  return time_ns - std::clamp<std::int64_t>(
-                       published_ns, 0, time_ns);  // it may have ended meanwhile, and be anything
+  // The lease may have ended meanwhile, so the stamp may be of any message or torn.
+  return time_ns - std::clamp<std::int64_t>(published_ns, 0, time_ns);
 }
 
 }  // namespace handcast::ipc

@@ -16,13 +16,13 @@
 namespace handcast::ipc {
 namespace {
 
-/// Asking the kernel about the readers takes some 10 us each: too long for every message of a ring
-/// whose readers hold on.
+/// The shortest time between two sweeps. A query to the kernel takes about 10 us per reader, too
+/// long to repeat for every message while readers hold all slots.
 constexpr std::int64_t kBetweenSweeps_ns = 100'000'000;
 
-/// OFD locks belong to an open file description, and an inherited descriptor shares its description
-/// with every other process: so the file is opened anew. The kernel releases the lock when the
-/// process is gone, however it died.
+/// Takes the writer lock. An OFD lock belongs to an open file description, and an inherited
+/// descriptor shares its description with other processes, so the file is opened again. The kernel
+/// releases the lock when the process is gone, however it ended.
 Result<UniqueFd> lock_for_writing(const Segment& segment) {
   UniqueFd file(::open(fmt::format("/proc/self/fd/{}", segment.fd()).c_str(), O_RDWR | O_CLOEXEC));
   if (!file)
@@ -35,8 +35,8 @@ Result<UniqueFd> lock_for_writing(const Segment& segment) {
   if (::fcntl(file.get(), F_OFD_SETLK, &lock) == 0) return file;
   if (errno == EAGAIN || errno == EACCES)
     return fail(Errc::unavailable,
-                fmt::format("ring '{}': another writer lives", segment.stream()));
-  return fail(Errc::unavailable, fmt::format("ring '{}': the writer lock cannot be had: {}",
+                fmt::format("ring '{}': another writer is attached", segment.stream()));
+  return fail(Errc::unavailable, fmt::format("ring '{}': the writer lock cannot be taken: {}",
                                              segment.stream(), std::strerror(errno)));
 }
 

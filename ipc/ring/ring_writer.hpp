@@ -13,30 +13,43 @@
 
 namespace handcast::ipc {
 
-/// What every Writer<T> is made of: the protocol on a mapped segment, messages as bytes.
+/// The untyped implementation of Writer<T>: the protocol on a mapped segment, with messages as
+/// bytes. One thread.
 class RingWriter {
  public:
+  /// See Writer<T>::attach().
   static Result<std::unique_ptr<RingWriter>> attach(Segment segment, const MessageShape& shape);
 
-  int loan();  ///< kNoSlot where none is free, even after the rows of dead readers were cleared
+  /// A slot to write to; kNoSlot, and counted as dropped, if none is free even after the rows of
+  /// dead readers were freed.
+  int loan();
+  /// The first byte of a slot.
   std::byte* bytes_of(int slot) const {
     return slots_ + static_cast<std::size_t>(slot) * stride_bytes_;
   }
+  /// Stamps the message in a loaned slot and publishes it.
   void publish(int slot);
+  /// Returns a loaned slot without a message.
   void abandon(int slot) { core_.abandon(slot); }
+  /// Publishes a copy of `bytes` bytes, or drops the message if no slot is free.
   void publish_copy(const std::byte* message, std::size_t bytes);
 
+  /// Size of a slot: the largest message in bytes.
   std::size_t payload_bytes() const { return segment_.payload_bytes(); }
+  /// Number of messages that this writer has published, and that it has dropped for lack of a free
+  /// slot.
+  /// @{
   std::uint64_t published() const { return published_; }
   std::uint64_t dropped() const { return dropped_; }
+  /// @}
 
  private:
   RingWriter(Segment segment, UniqueFd lock);
   int loan_after_sweep();
 
   Segment segment_;
-  UniqueFd lock_;  ///< an open file description of its own, which holds the writer lock as long as
-                   ///< it is open
+  /// An open file description of its own, which holds the writer lock as long as it is open.
+  UniqueFd lock_;
   WriterCore<RealAtomics> core_;
   std::byte* slots_;
   std::size_t stride_bytes_;

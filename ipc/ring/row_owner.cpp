@@ -20,12 +20,12 @@ namespace handcast::ipc {
 namespace {
 
 struct ProcessStatus {
-  char state = '?';         ///< 'Z': dead, but nobody has asked for its exit status yet
-  std::uint64_t start = 0;  ///< clock ticks since the machine started
+  char state = '?';         ///< 'Z': a zombie, dead but not reaped
+  std::uint64_t start = 0;  ///< clock ticks since boot, the low 24 bits
 };
 
-/// From /proc/PID/stat: "PID (name) state ...", the start time is field 22. The name may hold
-/// anything, so count behind it.
+/// Reads /proc/PID/stat: "PID (name) state ...", with the start time as field 22. The name may
+/// contain any characters, so fields are counted from the last ") ".
 std::optional<ProcessStatus> status_of(std::uint64_t pid) {
   const UniqueFd file(::open(fmt::format("/proc/{}/stat", pid).c_str(), O_RDONLY | O_CLOEXEC));
   std::array<char, 1024> buffer{};
@@ -42,7 +42,7 @@ std::optional<ProcessStatus> status_of(std::uint64_t pid) {
   return status;
 }
 
-/// Whether a free row was freed by somebody who died before he had cleared it.
+/// True if the process that freed this row died before it had cleared the other words.
 bool left_uncleared(const ControlWords<RealAtomics>& words, int row, std::uint64_t owner) {
   const auto stale = [&](const RealAtomics::Word& word) {
     return is_older(RealAtomics::load(word, std::memory_order_relaxed), generation_of(owner));

@@ -14,7 +14,8 @@
 namespace handcast::ipc {
 namespace {
 
-/// Signals are the program's, not the bridge's: its thread begins with all of them blocked.
+/// Blocks all signals while the thread is started. The thread inherits the mask, so signals are
+/// delivered to the threads of the program.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -34,7 +35,7 @@ Result<std::unique_ptr<WakeBridge>> WakeBridge::start(std::function<bool()> wait
   UniqueFd event(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!event)
     return fail(Errc::unavailable,
-                fmt::format("no descriptor to wait on: {}", std::strerror(errno)));
+                fmt::format("no eventfd can be created: {}", std::strerror(errno)));
   std::unique_ptr<WakeBridge> bridge(new WakeBridge(std::move(event)));
   const auto run = [bridge = bridge.get(), wait = std::move(wait)] {
     while (!bridge->stop_.load(std::memory_order_relaxed))
@@ -44,7 +45,7 @@ Result<std::unique_ptr<WakeBridge>> WakeBridge::start(std::function<bool()> wait
     const SignalsBlocked blocked;
     bridge->thread_ = std::thread(run);
   } catch (const std::system_error& error) {
-    return fail(Errc::unavailable, fmt::format("no thread to wait on: {}", error.what()));
+    return fail(Errc::unavailable, fmt::format("no thread can be started: {}", error.what()));
   }
   return bridge;
 }
@@ -55,8 +56,8 @@ WakeBridge::~WakeBridge() {
 }
 
 void WakeBridge::clear() {
-  eventfd_t told = 0;
-  ::eventfd_read(event_.get(), &told);  // EAGAIN: it was clear already
+  eventfd_t count = 0;
+  ::eventfd_read(event_.get(), &count);  // EAGAIN: it was not readable
 }
 
 }  // namespace handcast::ipc

@@ -10,20 +10,22 @@
 
 namespace handcast::ipc {
 
-/// Turns a ring's futex into an eventfd, for programs that wait in epoll for many things at once: a
-/// thread that sleeps until `wait` says that something is new, then makes the descriptor readable.
-/// Costs one more wake-up (some 30 us) than Wait::futex.
+/// Turns the futex of a ring into an eventfd, for programs that wait in epoll: a thread waits on
+/// the futex and makes the descriptor readable when there is a new message. It takes one wake-up
+/// (about 30 us) more than Wait::futex.
 class WakeBridge {
  public:
-  /// `wait` blocks up to 100 ms and returns whether there is a message that it has not told of yet;
-  /// called on the bridge's thread. Errors: unavailable (no descriptor, no thread).
+  /// Starts the thread, which calls `wait` in a loop. `wait` blocks for at most 100 ms and returns
+  /// true if there is a message that it has not reported yet. Errors: unavailable (no descriptor or
+  /// no thread).
   static Result<std::unique_ptr<WakeBridge>> start(std::function<bool()> wait);
-  ~WakeBridge();  ///< within 100 ms
+  ~WakeBridge();  ///< Stops the thread, which takes up to 100 ms.
   WakeBridge(const WakeBridge&) = delete;
 
+  /// The eventfd, owned by this object.
   int fd() const { return event_.get(); }
-  /// Makes the descriptor unreadable. Call it before looking at the ring, never after: what comes
-  /// later makes it readable again.
+  /// Makes the descriptor unreadable. Call it before looking at the ring, never after: only later
+  /// messages make it readable again.
   void clear();
 
  private:

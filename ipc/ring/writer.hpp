@@ -13,17 +13,23 @@
 
 namespace handcast::ipc {
 
-/// A slot of shared memory, on loan to be filled in place. Published or given back (abandoned)
-/// exactly once, while its Writer lives.
+/// A slot of shared memory in which a message is written in place. It is published with
+/// Writer::publish(), or abandoned by the destructor; its Writer must still exist then.
 template <class T>
 class Loan {
  public:
+  /// The message; only if this loan is not empty.
+  /// @{
   T& operator*() const { return *message_; }
   T* operator->() const { return message_; }
+  /// @}
+  /// False if no slot was free, or the loan was published or moved from.
   explicit operator bool() const { return message_ != nullptr; }
-  /// Bytes after T for messages with a tail.
+  /// Bytes behind T, for messages with a tail.
   std::size_t tail_bytes() const { return ring_->payload_bytes() - sizeof(T); }
 
+  /// Takes the slot of `other`, which is empty afterwards. Assignment abandons the old slot.
+  /// @{
   Loan(Loan&& other) noexcept
       : ring_(other.ring_),
         slot_(std::exchange(other.slot_, kNoSlot)),
@@ -35,7 +41,8 @@ class Loan {
     other.abandon();
     return *this;
   }
-  ~Loan() { abandon(); }  ///< abandons what was not published
+  /// @}
+  ~Loan() { abandon(); }  ///< Abandons the slot if it was not published.
 
  private:
   template <class>
@@ -57,36 +64,42 @@ class Loan {
   T* message_;
 };
 
-/// The one writer of a ring. Never blocks, never waits for a reader. One thread.
+/// The writer of a ring. A ring has one writer at a time. It never blocks and never waits for a
+/// reader. One thread.
 template <class T>
 class Writer {
  public:
-  /// Takes the ring's writer lock (released by the kernel when the process dies) and continues
-  /// after the last message of a predecessor. Errors: bad_data (the ring is of another type),
-  /// unavailable (another writer lives).
+  /// Takes the segment and the writer lock of the ring, which the kernel releases when the process
+  /// ends, and continues after the last message of the previous writer. Errors: bad_data (the ring
+  /// carries another type, or its slots are too small), unavailable (another writer is attached, or
+  /// the memory is read-only).
   static Result<Writer> attach(Segment segment) {
     auto ring = RingWriter::attach(std::move(segment), shape_of<T>());
     if (!ring) return tl::make_unexpected(std::move(ring.error()));
     return Writer(std::move(*ring));
   }
 
-  /// A slot with a default T in it. Empty (tests false) where every slot is leased: drop the own
-  /// message.
+  /// A free slot with a default-constructed T in it. Empty (false) if all slots are leased: drop
+  /// the message.
   Loan<T> loan() { return {ring_.get(), ring_->loan()}; }
-  /// Stamps header.published_ns and makes the message visible. An empty loan is nothing to publish.
+  /// Sets header.published_ns and makes the message visible. Ignores an empty loan. Aborts if the
+  /// loan belongs to another ring.
   void publish(Loan<T>&& loan) {
     if (!loan) return;
-    if (loan.ring_ != ring_.get()) std::abort();  // a slot of another ring
+    if (loan.ring_ != ring_.get()) std::abort();
     ring_->publish(loan.take());
   }
-  /// loan + copy + publish for small messages without a tail.
+  /// Publishes a copy of a message without a tail, or drops it if all slots are leased.
   void publish(const T& message) {
     static_assert(!HasTail<T>, "a message with a tail is written in place: loan()");
     ring_->publish_copy(reinterpret_cast<const std::byte*>(&message), sizeof(T));
   }
 
-  std::uint64_t published() const { return ring_->published(); }  ///< by this writer
-  std::uint64_t dropped() const { return ring_->dropped(); }      ///< for want of a slot
+  /// Number of messages that this writer has published, and dropped for lack of a free slot.
+  /// @{
+  std::uint64_t published() const { return ring_->published(); }
+  std::uint64_t dropped() const { return ring_->dropped(); }
+  /// @}
 
  private:
   explicit Writer(std::unique_ptr<RingWriter> ring) : ring_(std::move(ring)) {}

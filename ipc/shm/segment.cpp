@@ -41,7 +41,7 @@ std::string boot_id() {
   return {text.begin(), text.end()};
 }
 
-/// What is wrong with the sizes a person or a header asks for; nothing if they are possible.
+/// The reason why a ring cannot have these sizes; empty if it can.
 std::optional<std::string> size_problem(std::uint64_t slots, std::uint64_t payload_bytes) {
   if (slots < kMinSlots || slots > kMaxSlots)
     return fmt::format("{} slots, but a ring has {} to {}", slots, kMinSlots, kMaxSlots);
@@ -54,8 +54,9 @@ std::optional<std::string> size_problem(std::uint64_t slots, std::uint64_t paylo
   return std::nullopt;
 }
 
-/// The seals make a mapping safe: nobody can cut the file under it, so no access can end in SIGBUS.
-/// The superuser's memory is as good as our own: he can do to us what he likes anyway.
+/// The reason why a file is not accepted as a ring; empty if it is. The seals guarantee that the
+/// file cannot shrink while it is mapped, so no access can raise SIGBUS. Memory of the superuser is
+/// accepted: root can write to this process anyway.
 std::optional<std::string> file_problem(int fd, const struct stat& status) {
   const int seals = ::fcntl(fd, F_GET_SEALS);
   if (seals < 0) return "it is not a memory file";
@@ -70,23 +71,23 @@ std::optional<std::string> file_problem(int fd, const struct stat& status) {
 }
 
 std::optional<std::string> header_problem(const SegmentHeader& header, std::uint64_t file_bytes) {
-  if (header.magic != kSegmentMagic) return "it does not begin like a ring";
+  if (header.magic != kSegmentMagic) return "it does not begin with the header of a ring";
   if (header.layout_version != kLayoutVersion)
-    return fmt::format("it has layout version {}, this program knows version {}",
+    return fmt::format("it has layout version {}, but this program needs version {}",
                        header.layout_version, kLayoutVersion);
   if (header.stream.back() != '\0' || header.boot_id.back() != '\0')
-    return "the texts in its header do not end";
+    return "the texts in its header are not terminated";
   if (auto problem = size_problem(header.slot_count, header.payload_bytes))
-    return "its header promises " + *problem;
+    return "its header says that it has " + *problem;
   const auto expected = with_sizes(header);
   if (header.segment_bytes != expected.segment_bytes ||
       header.slot_stride != expected.slot_stride || header.slots_offset != expected.slots_offset ||
       header.reader_rows != kReaderRows || header.leases_per_row != kLeasesPerRow)
     return "the sizes in its header contradict each other";
   if (header.segment_bytes != file_bytes)
-    return fmt::format("its header promises {} bytes, the memory has {}", header.segment_bytes,
+    return fmt::format("its header says {} bytes, but the memory has {}", header.segment_bytes,
                        file_bytes);
-  if (text_of(header.boot_id) != boot_id()) return "it was made before the machine last started";
+  if (text_of(header.boot_id) != boot_id()) return "it was created before the machine last started";
   return std::nullopt;
 }
 
@@ -96,7 +97,7 @@ std::byte* map(int fd, std::size_t bytes, Access rights) {
   return data == MAP_FAILED ? nullptr : static_cast<std::byte*>(data);
 }
 
-/// Allocates every page now, so that none is missing later.
+/// Allocates all pages now, so that a later access cannot fail for lack of memory.
 bool allocate(int fd, off_t bytes) {
   if (::ftruncate(fd, bytes) != 0) return false;
   int result = 0;
@@ -161,13 +162,14 @@ Result<Segment> Segment::create(const RingSpec& spec) {
 
   const auto header = header_for(spec);
   UniqueFd fd(::memfd_create(spec.stream.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  if (!fd) return fail(Errc::unavailable, fmt::format("{}: no memory file: {}", ring, reason()));
+  if (!fd)
+    return fail(Errc::unavailable,
+                fmt::format("{}: its memory file cannot be created: {}", ring, reason()));
   const auto bytes = static_cast<off_t>(header.segment_bytes);
   if (!allocate(fd.get(), bytes))
     return fail(Errc::unavailable,
-                fmt::format("{}: no memory for {} bytes: {}", ring, bytes, reason()));
-  // Not F_SEAL_FUTURE_WRITE: a writer that is started again must be able to map the ring for
-  // writing.
+                fmt::format("{}: {} bytes cannot be allocated: {}", ring, bytes, reason()));
+  // Not F_SEAL_FUTURE_WRITE: a restarted writer must be able to map the ring for writing.
   if (::fcntl(fd.get(), F_ADD_SEALS, kSeals | F_SEAL_SEAL) != 0)
     return fail(Errc::unavailable,
                 fmt::format("{}: its size cannot be sealed: {}", ring, reason()));
@@ -175,7 +177,7 @@ Result<Segment> Segment::create(const RingSpec& spec) {
   if (!data)
     return fail(Errc::unavailable,
                 fmt::format("{}: {} bytes cannot be mapped: {}", ring, bytes, reason()));
-  new (data) SegmentHeader(header);  // the control words are right as they are: zero
+  new (data) SegmentHeader(header);  // the control words start as zeros, as memfd gives them
   return Segment(std::move(fd), data, header, Access::write);
 }
 
@@ -205,7 +207,7 @@ Result<Segment> Segment::open(UniqueFd fd) {
 Result<void> Segment::restrict_to(Access access) {
   if (access < rights_)
     return fail(Errc::unavailable,
-                fmt::format("ring '{}': this mapping of it has fewer rights already", stream()));
+                fmt::format("ring '{}': its mapping already has fewer rights", stream()));
   const auto forbid = [&](std::size_t from, std::size_t to) {
     return ::mprotect(data_ + from, to - from, PROT_READ) == 0;
   };

@@ -12,15 +12,17 @@
 
 namespace handcast::ipc {
 
-/// What a ring is made for. `payload_bytes` is the largest message, tail included.
+/// The parameters of a ring.
 struct RingSpec {
-  std::string stream;           ///< "camera.frames"
-  std::uint64_t type_hash = 0;  ///< msg::type_hash<T>()
-  std::size_t payload_bytes = 0;
-  int slots = 4;
-  bool keep_history = false;  ///< reuse the oldest slot instead of the most recently freed: next()
-                              ///< and at() see back
+  std::string stream;             ///< name of the stream, e.g. "camera.frames"
+  std::uint64_t type_hash = 0;    ///< msg::type_hash<T>() of the message type
+  std::size_t payload_bytes = 0;  ///< size of the largest message, tail included
+  int slots = 4;                  ///< kMinSlots .. kMaxSlots
+  /// Reuse the oldest slot instead of the most recently freed one, so that next() and at() of a
+  /// reader find past messages.
+  bool keep_history = false;
 
+  /// The parameters of a ring of messages of type T.
   template <class T>
   static RingSpec of(std::string stream, int slots, bool keep_history,
                      std::size_t payload_bytes = sizeof(T)) {
@@ -28,49 +30,62 @@ struct RingSpec {
   }
 };
 
-/// What a mapping allows. Against accidents only: a process of the same user can map anew.
+/// The access rights of a mapping. They protect against accidents only: a process of the same user
+/// can map the memory again.
 enum class Access {
-  write,  ///< all but the header may be written
-  read,   ///< the control words and tallies may be written, the messages not: a reader's
-  look,   ///< nothing may be written
+  write,  ///< for writers: everything but the header is writable
+  read,   ///< for readers: the control words and tallies are writable, the messages are not
+  look,   ///< for observers: nothing is writable
 };
 
-/// The shared memory of one ring: a sealed memfd (SHRINK | GROW), without a name anywhere. Made by
-/// the supervisor, inherited by the services (its descriptor is close-on-exec: whoever spawns a
-/// service passes it on by hand); mapped as long as the object lives.
+/// The shared memory of one ring: a memfd without a name, sealed with F_SEAL_SHRINK and
+/// F_SEAL_GROW. The supervisor creates it and passes the descriptor, which is close-on-exec, to
+/// each service that it starts. The memory is mapped as long as this object exists. Const
+/// functions: any thread.
 class Segment {
  public:
-  /// Makes, sizes, seals and formats the memory of a ring. Errors: unavailable (memory,
-  /// descriptors), bad_config (sizes).
+  /// Creates, sizes, seals and initialises the memory of a ring. Errors: bad_config (name or sizes
+  /// out of range), unavailable (no memory or descriptor).
   static Result<Segment> create(const RingSpec& spec);
-  /// Maps the ring behind a descriptor (which is taken over). Errors: bad_data with a sentence that
-  /// says what differs: not a ring, another user's, other layout version, other boot, impossible
-  /// sizes, unsealed; unavailable (no memory to map it in). A descriptor that is only for reading
-  /// gives a mapping to look at, no more.
+  /// Takes ownership of `fd` and maps the ring behind it. A read-only descriptor gives a mapping
+  /// with Access::look, any other one Access::write. Errors: bad_data (not a ring, not sealed,
+  /// owned by another user, other layout version, other boot, or inconsistent sizes; the sentence
+  /// says which), unavailable (no memory to map it).
   static Result<Segment> open(UniqueFd fd);
 
-  /// Takes rights from this mapping, never gives any. Errors: unavailable (it has fewer already, or
-  /// the kernel cannot).
+  /// Removes rights from this mapping. Errors: unavailable (it already has fewer rights than
+  /// `access`, or the kernel refused).
   Result<void> restrict_to(Access access);
 
+  /// Moves the mapping; `other` is empty afterwards.
+  /// @{
   Segment(Segment&&) noexcept;
   Segment& operator=(Segment&&) noexcept;
+  /// @}
   ~Segment();
 
+  /// The descriptor, owned by this object.
   int fd() const { return fd_.get(); }
+  /// The first byte of the mapping; size() bytes are mapped.
   std::byte* data() const { return data_; }
+  /// Size of the mapping in bytes.
   std::size_t size() const { return size_; }
+  /// The parameters of the ring, as checked when it was opened: see RingSpec.
+  /// @{
   std::string stream() const;
   std::uint64_t type_hash() const;
   std::size_t payload_bytes() const;
   int slots() const;
   bool keep_history() const;
+  /// @}
+  /// When the ring was created, CLOCK_MONOTONIC.
   std::int64_t created_ns() const;
 
   /// The first byte of a slot; `slot` must be within 0 .. slots() - 1.
   std::byte* slot_at(int slot) const;
-  /// Errors: bad_data, where the ring is for another type of message or its slots are too small for
-  /// one.
+  /// Checks that the ring carries this message type: `layout` is its name, `type_hash` its hash,
+  /// `bytes` its size without a tail. Errors: bad_data (the type differs, or the slots are too
+  /// small).
   Result<void> require(std::string_view layout, std::uint64_t type_hash, std::size_t bytes) const;
 
  private:
@@ -81,8 +96,8 @@ class Segment {
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
   Access rights_ = Access::write;
-  SegmentHeader
-      header_;  ///< as it was validated: what others do to the shared one changes no bound of ours
+  /// A copy of the header made when it was checked: the shared one may be overwritten by others.
+  SegmentHeader header_;
 };
 
 }  // namespace handcast::ipc

@@ -13,25 +13,28 @@
 
 namespace handcast::camera {
 
-/// A camera that delivers grey frames of the calibration's size. One thread.
+/// A camera that delivers grey images of the size in the calibration. One thread.
 class Camera {
  public:
   virtual ~Camera() = default;
 
-  /// Fills `frame` and the `tail_bytes` behind it with the next image; waits for one until the
-  /// deadline. Frame ids and origins increase from call to call; images that nobody fetched in time
-  /// are skipped, never queued. Errors: timeout, bad_data (this image is lost), disconnected,
+  /// Fills `frame` and the `tail_bytes` behind it with the next image; waits for it until the
+  /// deadline. Frame ids and origins increase from call to call; images that were not fetched in
+  /// time are skipped, not queued. Errors: timeout, bad_data (this image is lost), disconnected,
   /// bad_config (the image does not fit the tail).
   virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                                Deadline deadline) = 0;
 };
 
-/// Opened with the rig, its calibration and its epoch (ns).
+/// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,
+/// ns).
 using CameraBackend = service::Backend<Camera, config::Rig, calib::Calibration, std::int64_t>;
 
+/// All back ends of this build.
 std::span<const CameraBackend> camera_backends();
 
-/// Opens the back end that rig.camera.backend names.
+/// Opens the back end rig.camera.backend. Errors: bad_config (unknown back end, or its settings are
+/// wrong), and those of the back end.
 Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig,
                                             const calib::Calibration& calibration,
                                             std::int64_t epoch_ns);

@@ -7,7 +7,7 @@
 
 namespace handcast::camera {
 
-/// Whether an image fits behind the message it is to be written to.
+/// Checks that an image fits into the tail of its message. Errors: bad_config (it does not).
 inline Result<void> check_room(int width_px, int height_px, std::size_t tail_bytes) {
   const std::size_t needed = static_cast<std::size_t>(width_px) * height_px;
   if (needed <= tail_bytes) return {};

@@ -6,7 +6,7 @@ using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-/// Frames from the camera into shared memory: camera.frames.
+/// Publishes the images of the camera to the ring camera.frames.
 static void run_camera(service::Context& context) {
   if (service::is_exclusive(context.rig().camera.backend, camera::camera_backends()))
     context.stand_by({"camera.frames"});
@@ -19,7 +19,7 @@ static void run_camera(service::Context& context) {
   while (context.running()) {
     auto slot = frames.loan();
     if (!slot) {
-      context.tolerate({Errc::timeout, "camera: readers hold every slot of camera.frames"});
+      context.tolerate({Errc::timeout, "camera: all slots of camera.frames are held by readers"});
       sleep_until_ns(now_ns() + to_ns(1ms));
       continue;
     }

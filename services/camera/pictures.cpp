@@ -21,7 +21,7 @@ Result<std::vector<fs::path>> list_pictures(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error))
     if (entry.path().extension() == ".png") files.push_back(entry.path());
   if (files.empty())
-    return fail(Errc::bad_config, fmt::format("there is no PNG picture in '{}'", folder.string()));
+    return fail(Errc::bad_config, fmt::format("there is no PNG image in '{}'", folder.string()));
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -30,8 +30,7 @@ Result<renderer::Image<std::uint8_t>> read_picture(const fs::path& file, int wid
                                                    int height_px) {
   auto grey = renderer::read_grey_png(file);
   if (!grey)
-    return fail(Errc::bad_config,
-                fmt::format("'{}' is not a picture that can be read", file.string()));
+    return fail(Errc::bad_config, fmt::format("'{}' is not a readable PNG image", file.string()));
   if (grey->width() != width_px || grey->height() != height_px)
     return fail(Errc::bad_config,
                 fmt::format("'{}' is {} x {} px, but the calibration is for a camera of {} x {} px",
@@ -48,7 +47,7 @@ Result<std::vector<renderer::Image<std::uint8_t>>> read_pictures(const fs::path&
   if (files->size() * width_px * height_px > kMostBytes)
     return fail(
         Errc::bad_config,
-        fmt::format("'{}' holds {} pictures, which take more than 1 GiB of memory; replay fewer",
+        fmt::format("'{}' has {} images, which take more than 1 GiB of memory; replay fewer",
                     folder.string(), files->size()));
   std::vector<renderer::Image<std::uint8_t>> images;
   for (const auto& file : *files) {

@@ -8,9 +8,9 @@
 
 namespace handcast::camera {
 
-/// The grey PNG pictures of a folder in the order of their names, all of one size, decoded: at most
-/// 1 GiB of them. Errors (bad_config): folder missing or without pictures, a file that is no
-/// picture, another size, too much.
+/// Decodes the grey PNG images of a folder, in the order of their names. Errors: bad_config (the
+/// folder is missing or has no images, a file is not an image or has another size, or the images
+/// take more than 1 GiB).
 Result<std::vector<renderer::Image<std::uint8_t>>> read_pictures(
     const std::filesystem::path& folder, int width_px, int height_px);
 

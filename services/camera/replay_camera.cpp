@@ -11,7 +11,8 @@ namespace handcast::camera {
 namespace fs = std::filesystem;
 namespace {
 
-/// Pictures of a folder, decoded at start-up, played at the times they were taken.
+/// Plays the images of a folder at the times at which they were taken. They are decoded at
+/// start-up.
 class ReplayCamera final : public Camera {
  public:
   ReplayCamera(std::vector<renderer::Image<std::uint8_t>> pictures, timing::Loop loop,
@@ -53,7 +54,8 @@ class ReplayCamera final : public Camera {
   std::int64_t last_ns_ = 0;
 };
 
-/// From camera_timestamps.npy where there is one, else at the rig's rate from `first_ns` on.
+/// The times of the images, from camera_timestamps.npy; if there is no such file, at `rate_hz` from
+/// `first_ns` on.
 Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::size_t count,
                                                    double rate_hz, std::int64_t first_ns) {
   const fs::path file = folder / "camera_timestamps.npy";
@@ -67,7 +69,7 @@ Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::
   }
   auto times_ns = twin::read_stamps_ns(file);
   if (times_ns && times_ns->size() != count)
-    return fail(Errc::bad_config, fmt::format("'{}' holds {} times for {} pictures", file.string(),
+    return fail(Errc::bad_config, fmt::format("'{}' has {} times for {} images", file.string(),
                                               times_ns->size(), count));
   return times_ns;
 }
@@ -79,7 +81,8 @@ Result<std::unique_ptr<Camera>> open_replay(const config::Rig& rig,
                                             const std::int64_t& epoch_ns) {
   const fs::path folder = rig.camera.replay.directory;
   if (folder.empty())
-    return fail(Errc::bad_config, "camera 'replay': camera.replay.directory names no folder");
+    return fail(Errc::bad_config,
+                "camera 'replay': no folder is given; set camera.replay.directory");
   const fs::path inner = folder / "camera";
   const auto has_inner = twin::is_there(inner);
   if (!has_inner) return fail_in("camera 'replay'", has_inner.error());

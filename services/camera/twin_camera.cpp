@@ -9,13 +9,12 @@
 namespace handcast::camera {
 namespace {
 
-/// More is never allowed for: an image that took a second, once, must not make every later one seem
-/// too late to begin.
+/// The upper limit of the estimated drawing time. Without it, one image that took a second would
+/// make all later ones seem too late to be drawn.
 constexpr std::int64_t kLongestDrawing_ns = 20'000'000;
 
-/// The twin's camera in real time. An image is a function of its number alone, so it is drawn
-/// before it arrives and handed over when it does: a frame is never late for having been drawn,
-/// there are only fewer of them on a slow machine.
+/// The twin's camera in real time. An image depends only on its number, so it is drawn before its
+/// arrival and delivered on time. A slow machine delivers fewer images, not late ones.
 class TwinCamera final : public Camera {
  public:
   TwinCamera(std::unique_ptr<twin::Twin> twin, const config::Camera& settings,
@@ -45,7 +44,8 @@ class TwinCamera final : public Camera {
   }
 
  private:
-  /// The first image makes the true hands' surfaces; the second one's time is that of all others.
+  /// Draws two images. The first one creates the surfaces of the true hands; the second one gives
+  /// the drawing time.
   void warm_up() {
     renderer::Image<std::uint8_t> image(model_.width_px, model_.height_px);
     twin_->camera_image(0, image.view());
@@ -68,7 +68,7 @@ class TwinCamera final : public Camera {
   std::unique_ptr<twin::Twin> twin_;
   calib::CameraModel model_;
   std::int64_t exposure_ns_, epoch_ns_;
-  std::int64_t drawing_ns_ = 0;  ///< what an image takes to draw, smoothed
+  std::int64_t drawing_ns_ = 0;  ///< smoothed time to draw an image
   std::uint64_t next_ = 0;
 };
 

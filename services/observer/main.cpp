@@ -17,8 +17,8 @@ static bool has_truth(const config::Rig& rig) {
   return rig.camera.backend == "twin" && rig.pose.backend == "twin";
 }
 
-/// Writes observer.json into the folder that HANDCAST_OUT names; without it the log is all there
-/// is.
+/// Writes observer.json to the folder HANDCAST_OUT. Without this variable the scores are only
+/// logged.
 static void save(const observer::LiveScore& scores, service::Context& context) {
   const char* folder = std::getenv("HANDCAST_OUT");
   if (folder == nullptr || scores.empty()) return;
@@ -32,34 +32,34 @@ static double number(const nlohmann::json& json, const char* pointer) {
   return json.contains(found) && json.at(found).is_number() ? json.at(found).get<double>() : 0.0;
 }
 
-static void tell(const observer::LiveScore& scores) {
+static void log_scores(const observer::LiveScore& scores) {
   if (scores.empty()) return;
   const auto json = scores.to_json();
   log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}",
             number(json, "/interior_mm/p95"), number(json, "/coverage"), number(json, "/spill"));
 }
 
-/// Judges the newest projected frame, observer.rate_hz times a second, in the time that the others
-/// leave.
+/// Scores the newest projected frame, observer.rate_hz times per second, at low priority.
 static void run_observer(service::Context& context) {
-  if (::nice(10) == -1) log::debug("stays at the others' priority");
+  if (::nice(10) == -1) log::debug("the priority cannot be lowered");
   auto judge =
       must(observer::LiveJudge::create(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by({"projection.frames"});
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
   if (!has_truth(context.rig()))
     log::warning(
-        "the sensors are not the twin's: there is no truth to score against, nothing is scored");
+        "nothing is scored: camera and tracker are not those of the twin, so there is no true hand "
+        "to compare with");
 
   observer::LiveScore scores;
   const auto period_ns = seconds_to_ns(1 / context.rig().observer.rate_hz);
-  std::int64_t look_ns = now_ns(), save_ns = look_ns + to_ns(2s), tell_ns = look_ns + to_ns(5s);
+  std::int64_t score_ns = now_ns(), save_ns = score_ns + to_ns(2s), log_ns = score_ns + to_ns(5s);
   context.ready();
   while (context.running()) {
-    sleep_until_ns(std::min(look_ns, now_ns() + to_ns(50ms)));
+    sleep_until_ns(std::min(score_ns, now_ns() + to_ns(50ms)));
     const std::int64_t time_ns = now_ns();
-    if (time_ns >= look_ns && has_truth(context.rig())) {
-      look_ns = std::max(look_ns + period_ns, time_ns);
+    if (time_ns >= score_ns && has_truth(context.rig())) {
+      score_ns = std::max(score_ns + period_ns, time_ns);
       if (const auto seen = projections.latest(Deadline::in(20ms)))
         scores.add(judge.score(**seen), static_cast<int>((*seen)->foldovers));
     }
@@ -67,9 +67,9 @@ static void run_observer(service::Context& context) {
       save(scores, context);
       save_ns = time_ns + to_ns(2s);
     }
-    if (time_ns >= tell_ns) {
-      tell(scores);
-      tell_ns = time_ns + to_ns(5s);
+    if (time_ns >= log_ns) {
+      log_scores(scores);
+      log_ns = time_ns + to_ns(5s);
     }
   }
   save(scores, context);
@@ -77,6 +77,6 @@ static void run_observer(service::Context& context) {
 
 int main(int argc, char** argv) {
   const service::Description description{
-      "observer", "Scores the projected light against the twin's truth.", {"twin"}};
+      "observer", "Scores the projected light against the true hand of the twin.", {"twin"}};
   return service::run(description, argc, argv, run_observer);
 }

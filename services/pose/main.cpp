@@ -6,8 +6,8 @@ using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-/// Samples of the hand tracker: pose.hands. One without a hand is published too, so that readers
-/// know it looked.
+/// Publishes the samples of the hand tracker to the ring pose.hands, also those without a hand, so
+/// that readers see that the tracker works.
 static void run_pose(service::Context& context) {
   if (service::is_exclusive(context.rig().pose.backend, pose::pose_backends()))
     context.stand_by({"pose.hands"});

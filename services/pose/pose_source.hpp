@@ -18,18 +18,21 @@ class PoseSource {
  public:
   virtual ~PoseSource() = default;
 
-  /// Fills `poses` with the next sample, also where it sees no hand (count 0); waits for one until
-  /// the deadline. Ids and origins increase from call to call. Errors: timeout, bad_data (this
+  /// Fills `poses` with the next sample, which may have no hand (count 0); waits for it until the
+  /// deadline. Frame ids and origins increase from call to call. Errors: timeout, bad_data (this
   /// sample is lost), disconnected.
   virtual Result<void> sample(msg::HandPoses& poses, Deadline deadline) = 0;
 };
 
-/// Opened with the rig, its calibration and its epoch (ns).
+/// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,
+/// ns).
 using PoseBackend = service::Backend<PoseSource, config::Rig, calib::Calibration, std::int64_t>;
 
+/// All back ends of this build.
 std::span<const PoseBackend> pose_backends();
 
-/// Opens the back end that rig.pose.backend names.
+/// Opens the back end rig.pose.backend. Errors: bad_config (unknown back end, or its settings are
+/// wrong), and those of the back end.
 Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
                                                      const calib::Calibration& calibration,
                                                      std::int64_t epoch_ns);

@@ -8,8 +8,8 @@
 namespace handcast::pose {
 namespace {
 
-/// A recording played at the pace it was taken. A sample is handed over at its own time: it has no
-/// age.
+/// Plays a recording at its original speed. Each sample is delivered at its own time, so its age is
+/// 0.
 class ReplayPose final : public PoseSource {
  public:
   ReplayPose(twin::Recording recording, timing::Loop loop)
@@ -44,7 +44,7 @@ Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const ca
                                                 const std::int64_t& epoch_ns) {
   const auto& settings = rig.pose.replay;
   if (settings.directory.empty())
-    return fail(Errc::bad_config, "pose 'replay': pose.replay.directory names no folder");
+    return fail(Errc::bad_config, "pose 'replay': no folder is given; set pose.replay.directory");
   auto recording = twin::read_recording(settings.directory);
   if (!recording) return fail_in("pose 'replay'", recording.error());
   const auto stamps_ns = twin::read_all_stamps_ns(settings.directory);

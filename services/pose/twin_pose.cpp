@@ -6,11 +6,12 @@
 namespace handcast::pose {
 namespace {
 
-/// A sample later than this is skipped: a tracker that was stopped goes on with the present.
+/// Samples that are later than this are skipped, so that a tracker that was stopped continues with
+/// the present.
 constexpr std::int64_t kLatest_ns = 50'000'000;
 
-/// The twin's tracker in real time: each sample is handed over when it arrives, as old as the rig
-/// says.
+/// The twin's tracker in real time. Each sample is delivered at its arrival, with the age that the
+/// rig file sets.
 class TwinPose final : public PoseSource {
  public:
   TwinPose(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns)

@@ -12,11 +12,11 @@ namespace handcast::projector {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kEvery = 100;  ///< one frame in so many is written
-constexpr std::int64_t kKept = 100;   ///< files; then the oldest is written over
+constexpr std::int64_t kEvery = 100;  ///< every kEvery-th frame is written
+constexpr std::int64_t kKept = 100;   ///< number of files, then the oldest is overwritten
 
-/// Light as pictures, for a look without hardware: PNG files in light/ of the folder HANDCAST_OUT
-/// names (else the working folder).
+/// Writes the light as images, to see it without hardware: PNG files in light/ of the folder
+/// HANDCAST_OUT, or of the current folder if that variable is not set.
 class FileProjector final : public Projector {
  public:
   FileProjector(const config::Projector& settings, fs::path folder)
@@ -33,7 +33,7 @@ class FileProjector final : public Projector {
   }
 
  private:
-  /// The whole projector image, dark outside the frame's region and where alpha is 0.
+  /// Writes the whole projector image, dark outside the region of the frame and where alpha is 0.
   static Result<void> write(const renderer::Frame& frame, const fs::path& file) {
     renderer::Texture image(frame.colour.width, frame.colour.height);
     const auto& region = frame.region;
@@ -56,7 +56,7 @@ Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    return fail(Errc::bad_config, fmt::format("projector 'file': '{}' cannot be made: {}",
+    return fail(Errc::bad_config, fmt::format("projector 'file': '{}' cannot be created: {}",
                                               folder.string(), error.message()));
   log::info("every {}th frame is written to '{}'", kEvery, folder.string());
   return std::make_unique<FileProjector>(rig.projector, folder);

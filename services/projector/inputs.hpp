@@ -12,17 +12,18 @@
 
 namespace handcast::projector {
 
-/// What the sensors say, as the cascade wants it: every pose and every detection in order, of the
-/// images only the newest.
+/// The inputs of the cascade: all poses and detections in order, and the newest image. One thread.
 class Inputs {
  public:
+  /// Takes the readers of the three rings.
   Inputs(ipc::Reader<msg::CameraFrame> frames, ipc::Reader<msg::HandPoses> poses,
          ipc::Reader<msg::Landmarks> landmarks)
       : frames_(std::move(frames)), poses_(std::move(poses)), landmarks_(std::move(landmarks)) {}
 
-  /// Pushes what arrived since the last call into `pipeline` (anything with renderer::Pipeline's
-  /// push). Waits for a new image until the deadline, for nothing else. Errors: bad_data (a ring
-  /// does not make sense). That nothing arrived is no error.
+  /// Takes the newest image, and passes all poses and detections since the last call to
+  /// pipeline.push() (renderer::Pipeline, or a type with the same push()). Waits only for a new
+  /// image, until the deadline. It is no error if nothing arrived. Errors: those of ipc::Reader,
+  /// except timeout.
   template <class Pipeline>
   Result<void> deliver(Pipeline& pipeline, Deadline image_deadline) {
     const auto taken = take_image(image_deadline);
@@ -31,7 +32,7 @@ class Inputs {
     return taken;
   }
 
-  /// The newest; none before the first.
+  /// The newest image; empty before the first one. Valid until the next deliver().
   renderer::TimedImage image() const;
 
  private:

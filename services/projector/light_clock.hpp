@@ -6,21 +6,24 @@
 
 namespace handcast::projector {
 
-/// The times of a modelled projector: it takes one frame a period, on average, and lights each
-/// `latency_ms` after it was handed over, for a period. A frame that came late may be followed by
-/// one that comes early: lateness does not pile up.
+/// The times of a simulated projector. It takes one frame per period on average, and lights it for
+/// one period, `latency_ms` after it was handed over. After a late frame the next one may follow
+/// sooner, so delays do not add up. One thread.
 class LightClock {
  public:
+  /// Uses rate_hz and latency_ms.
   explicit LightClock(const config::Projector& settings)
       : period_ns_(seconds_to_ns(1 / settings.rate_hz)),
         latency_ns_(ms_to_ns(settings.latency_ms)) {}
 
+  /// Waits until the projector is free and takes a frame. Errors: timeout (it was still busy at the
+  /// deadline).
   Result<PresentTimes> take(Deadline deadline) {
-    if (free_ns_ > now_ns()) {  // a sleep that is over before it begins would still cost the
-                                // kernel's timer slack, 50 us
+    if (free_ns_ > now_ns()) {
       sleep_until_ns(std::min(free_ns_, deadline.time_ns()));
       if (free_ns_ > deadline.time_ns())
-        return fail(Errc::timeout, "projector: still busy with the last frame at the deadline");
+        return fail(Errc::timeout,
+                    "projector: it was still busy with the last frame at the deadline");
     }
     const std::int64_t handed_ns = now_ns();
     free_ns_ = std::max(free_ns_ + period_ns_, handed_ns);
@@ -29,7 +32,7 @@ class LightClock {
 
  private:
   std::int64_t period_ns_, latency_ns_;
-  std::int64_t free_ns_ = 0;  ///< when it takes the next frame
+  std::int64_t free_ns_ = 0;  ///< when the projector can take the next frame
 };
 
 }  // namespace handcast::projector

@@ -8,7 +8,8 @@ using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-/// The stages of a frame as the cascade measured them, then the whole of it, then its presentation.
+/// The stages of a frame: those inside the cascade, the whole frame, its presentation and its
+/// light.
 static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std::int64_t begin_ns,
                                               std::int64_t drawn_ns,
                                               const projector::PresentTimes& times) {
@@ -22,7 +23,8 @@ static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std:
   return marks;
 }
 
-/// Sensors in, light out, one frame a projector period: projection.frames.
+/// Draws and presents one frame per projector period, and publishes it to the ring
+/// projection.frames.
 static void run_projector(service::Context& context) {
   const auto& rig = context.rig();
   const auto pipeline =
@@ -66,7 +68,7 @@ static void run_projector(service::Context& context) {
 
 int main(int argc, char** argv) {
   const service::Description description{"projector",
-                                         "Turns what the sensors see into light on the hands.",
+                                         "Projects light onto the hands that the sensors see.",
                                          service::names_of(projector::projector_backends())};
   return service::run(description, argc, argv, run_projector);
 }

@@ -9,14 +9,15 @@
 
 namespace handcast::projector {
 
-/// Ticks at a steady rate, counted from the first: a late tick does not delay those after it,
-/// missed ones are skipped.
+/// Ticks at a constant rate, counted from the first one: a late tick does not delay later ones, and
+/// missed ticks are skipped.
 class Pacer {
  public:
+  /// A pacer without ticks yet; the first next_ns() sets the phase.
   explicit Pacer(double rate_hz)
       : period_ns_(std::max<std::int64_t>(seconds_to_ns(1 / rate_hz), 1)) {}
 
-  /// The time of the first tick not before `time_ns` that was not given out yet.
+  /// The time of the next tick: the first one at `time_ns` or later that was not returned before.
   std::int64_t next_ns(std::int64_t time_ns) {
     if (start_ns_ == 0) start_ns_ = time_ns;
     const std::int64_t due = (time_ns - start_ns_ + period_ns_ - 1) / period_ns_;
@@ -25,6 +26,7 @@ class Pacer {
     ticks_ = tick + 1;
     return start_ns_ + tick * period_ns_;
   }
+  /// Number of ticks that were missed.
   std::int64_t skipped() const { return skipped_; }
 
  private:
@@ -32,8 +34,9 @@ class Pacer {
   std::int64_t start_ns_ = 0, ticks_ = 0, skipped_ = 0;
 };
 
-/// Sleeps until then, and asks on the way whether to go on: a daemon must say that it lives more
-/// often than a slow projector's frame comes. False: not to.
+/// Sleeps until `time_ns` (CLOCK_MONOTONIC) and calls `running` at least every 50 ms, because the
+/// heartbeat of a daemon must not depend on the rate of the projector. Returns false as soon as
+/// `running` does.
 template <class Running>
 bool sleep_while(const Running& running, std::int64_t time_ns) {
   constexpr std::int64_t kStep_ns = 50'000'000;
@@ -45,23 +48,26 @@ bool sleep_while(const Running& running, std::int64_t time_ns) {
   return false;
 }
 
-/// When the light of a frame begun now will be seen: after the software (the median of what the
-/// last frames took, so that one slow frame does not move it), the projector's latency and half of
-/// the time it is lit.
+/// Predicts when the light of a frame will be seen: after the time of the software, the latency of
+/// the projector, and half of the time it is lit. The time of the software is the median of the
+/// last 31 frames, so one slow frame does not change it.
 class Horizon {
  public:
+  /// Starts with the times of the settings.
   explicit Horizon(const config::Projector& settings)
       : light_ns_(ms_to_ns(settings.latency_ms) + seconds_to_ns(0.5 / settings.rate_hz)),
         software_ns_(ms_to_ns(settings.software_ms)) {
     recent_ns_.fill(software_ns_);
   }
 
+  /// The middle of the time at which a frame that is begun at `begin_ns` will be lit.
   std::int64_t target_ns(std::int64_t begin_ns) const {
     return begin_ns + software_ns_ + light_ns_;
   }
+  /// The expected time from the begin of a frame until it is handed over.
   std::int64_t software_ns() const { return software_ns_; }
 
-  /// The last frame was handed over so long after it was begun.
+  /// Adds a measurement: the time from the begin of the last frame until it was handed over.
   void learn(std::int64_t software_ns) {
     recent_ns_[learnt_++ % recent_ns_.size()] = software_ns;
     auto sorted = recent_ns_;

@@ -7,14 +7,13 @@
 
 namespace handcast::projector {
 
-/// Writes what was projected into a message with room for `tail_bytes` of pixels behind it. A
-/// region that does not fit is left out.
-/// `frame_id`: the projector's own number of the frame.
+/// Writes a projected frame to a message that is followed by `tail_bytes` for pixels. A region that
+/// does not fit is left out. `frame_id` is counted by the projector.
 void write_projection(const renderer::Frame& frame, std::uint64_t frame_id,
                       const PresentTimes& times, msg::Projection& projection,
                       std::size_t tail_bytes);
 
-/// The same into the next slot of the ring; nothing where readers hold all of them.
+/// Publishes a projected frame; drops it if readers hold all slots of the ring.
 void publish_projection(const renderer::Frame& frame, std::uint64_t frame_id,
                         const PresentTimes& times, ipc::Writer<msg::Projection>& projections);
 

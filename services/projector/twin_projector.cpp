@@ -4,7 +4,8 @@
 namespace handcast::projector {
 namespace {
 
-/// The twin's projector: its light is the message that observers read; here it only takes its time.
+/// The twin's projector. Only its timing is simulated here; its light is the published message,
+/// which the observer scores.
 class TwinProjector final : public Projector {
  public:
   explicit TwinProjector(const config::Projector& settings) : clock_(settings) {}

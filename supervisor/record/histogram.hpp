@@ -5,16 +5,21 @@
 
 namespace handcast::supervisor {
 
-/// How long something took, many times. Buckets are logarithmic, 16 to an octave: a percentile is
-/// right within 4.5 %.
+/// A histogram of durations with logarithmic buckets, 16 per octave: percentiles are accurate to
+/// 4.5 %.
 class Histogram {
  public:
+  /// Adds one duration; values below 1 ns count as 1 ns.
   void add(std::int64_t span_ns);
+  /// Adds all durations of another histogram.
   void add(const Histogram& other);
+  /// Removes all durations.
   void clear() { *this = Histogram(); }
 
+  /// Number of durations.
   std::uint64_t count() const { return count_; }
-  /// The time that `share` (0..1) of the spans did not exceed; 0 if there are none.
+  /// The duration that the fraction `share` (0..1) of all durations did not exceed; 0 if there are
+  /// none.
   double percentile_ns(double share) const;
 
  private:

@@ -35,7 +35,7 @@ ServiceName name_field(std::string_view name) {
   return field;
 }
 
-/// `kept` gets the marks that make sense; how many there are.
+/// Copies the valid marks to `kept`; returns their number.
 std::uint32_t keep_sensible(const msg::StageMarks& marks,
                             std::array<msg::StageMark, kMostMarks>& kept) {
   const auto count = std::min<std::size_t>(marks.count, kMostMarks);
@@ -45,8 +45,8 @@ std::uint32_t keep_sensible(const msg::StageMarks& marks,
 }
 
 tl::unexpected<Error> no_memory() {
-  return fail(Errc::unavailable,
-              fmt::format("the history finds no memory for a snapshot: {}", std::strerror(errno)));
+  return fail(Errc::unavailable, fmt::format("there is no memory for a snapshot of the history: {}",
+                                             std::strerror(errno)));
 }
 
 Result<void> write_all(int fd, std::span<const std::byte> bytes) {
@@ -68,8 +68,8 @@ std::uint32_t History::index_of(std::string_view service) {
   return index;
 }
 
-/// The newest block, or where that is full the oldest one, whose frames are forgotten, or a new one
-/// while there may be more.
+/// The newest block if it has room. Otherwise a new block, or the oldest one, whose frames are
+/// dropped, if it is older than the span of the history or there are kMostBlocks.
 History::Block& History::block_with_room(std::size_t bytes, std::int64_t time_ns) {
   if (!blocks_.empty() && blocks_.back().used + bytes <= kBlockBytes) return blocks_.back();
   const bool forget_oldest = !blocks_.empty() && (blocks_.front().newest_ns < time_ns - span_ns_ ||
@@ -87,13 +87,13 @@ History::Block& History::block_with_room(std::size_t bytes, std::int64_t time_ns
 void History::note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed) {
   FrameHead head{
       .service = index_of(service), .header = marks.header, .made_from = marks.made_from};
-  auto& untold = services_[head.service].missed;
-  untold += missed;
+  auto& unreported = services_[head.service].missed;
+  unreported += missed;
   std::array<msg::StageMark, kMostMarks> kept;
   head.marks = keep_sensible(marks, kept);
   if (head.marks == 0) return;
-  head.missed = static_cast<std::uint32_t>(
-      std::min<std::uint64_t>(std::exchange(untold, 0), std::numeric_limits<std::uint32_t>::max()));
+  head.missed = static_cast<std::uint32_t>(std::min<std::uint64_t>(
+      std::exchange(unreported, 0), std::numeric_limits<std::uint32_t>::max()));
 
   const auto time_ns = std::max<std::int64_t>(head.header.published_ns, 0);
   auto& block = block_with_room(bytes_of(head), time_ns);
@@ -106,7 +106,8 @@ void History::note(std::string_view service, const msg::StageMarks& marks, std::
   newest_ns_ = time_ns;
 }
 
-/// As few pieces as can be: blocks as a whole, except those in which the time begins.
+/// The frames since a time in few pieces: whole blocks, and single frames of the block that
+/// contains this time.
 std::vector<std::span<const std::byte>> History::frames_since(std::int64_t since_ns) const {
   std::vector<std::span<const std::byte>> pieces;
   for (const auto& block : blocks_) {

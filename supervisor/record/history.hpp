@@ -15,42 +15,46 @@
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/msg/stage_mark.hpp"
 
-// contract
 namespace handcast::supervisor {
 
-/// What one service spent on one frame.
+/// The stages of one frame in one service.
 struct FrameRecord {
-  std::uint32_t service = 0;  ///< index into the names
-  std::uint32_t missed = 0;   ///< frames of this service before this one whose marks were
-                              ///< overwritten before they were read
-  msg::Header header;
-  msg::MadeFrom made_from;            ///< of a projector frame
-  std::vector<msg::StageMark> marks;  ///< in the order of their making; none ends before it begins
+  std::uint32_t service = 0;  ///< index into HistorySnapshot::services
+  /// Number of frames of this service before this one whose marks were overwritten before the
+  /// recorder read them.
+  std::uint32_t missed = 0;
+  msg::Header header;       ///< frame_id, origin and time of publication of the frame
+  msg::MadeFrom made_from;  ///< the inputs of a projector frame; zeros in all other frames
+  std::vector<msg::StageMark> marks;  ///< in the order of StageMarks; none ends before it begins
 };
 
-/// The recorder's memory of the last frames: bounded in time and in bytes, in the order in which
-/// they were read.
+/// The frames of the last seconds of all services, in the order in which the recorder read them.
+/// Bounded in time and in bytes. One thread.
 class History {
  public:
-  static constexpr std::size_t kBlockBytes = 256 << 10;
-  static constexpr std::size_t kMostBlocks = 256;  ///< 64 MiB: some 200 s of a rig at full rate
+  static constexpr std::size_t kBlockBytes = 256 << 10;  ///< size of a block of memory
+  /// The largest number of blocks: 64 MiB, about 200 s of a rig at full rate.
+  static constexpr std::size_t kMostBlocks = 256;
 
+  /// A history of the last `seconds`.
   explicit History(double seconds) : span_ns_(static_cast<std::int64_t>(seconds * 1e9)) {}
-  /// How far back it is to reach from now on.
+  /// Changes the length of the history.
   void reach(double seconds) { span_ns_ = static_cast<std::int64_t>(seconds * 1e9); }
 
-  /// Gives the service its place in the order of the services, before its first frame.
+  /// Adds a service to the list of services before its first frame, so that it has a fixed place.
   void expect(std::string_view service) { index_of(service); }
-  /// Heart-beats are not kept, nor marks that make no sense. Allocates only until the history is as
-  /// long as it gets.
+  /// Adds a frame. Heartbeats (no marks) and invalid marks are left out. `missed`: see FrameRecord.
+  /// Allocates memory only until the history has its full length.
   void note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed);
-  /// Everything since `since_ns` as a memory file (sealed, read_history() reads it): what a tool
-  /// gets over the control socket. Errors: unavailable.
+  /// The frames published since `since_ns` (CLOCK_MONOTONIC) as a sealed memory file for
+  /// read_history(), which is sent over the control socket. Errors: unavailable (no memory or
+  /// descriptor).
   Result<UniqueFd> snapshot(std::int64_t since_ns) const;
+  /// Memory in use.
   std::size_t bytes() const { return blocks_.size() * kBlockBytes; }
 
  private:
-  /// Frames one behind the other: a head and its marks (history.cpp).
+  /// A block of frames, each a FrameHead and its marks (history_layout.hpp).
   struct Block {
     std::unique_ptr<std::byte[]> memory;
     std::size_t used = 0;
@@ -58,7 +62,7 @@ class History {
   };
   struct Service {
     std::string name;
-    std::uint64_t missed = 0;  ///< not yet told with a frame
+    std::uint64_t missed = 0;  ///< not yet reported with a frame
   };
 
   std::uint32_t index_of(std::string_view service);
@@ -71,14 +75,15 @@ class History {
   std::vector<Block> blocks_;  ///< the oldest first
 };
 
-/// A snapshot as read back.
+/// The contents of a snapshot.
 struct HistorySnapshot {
-  std::int64_t taken_ns = 0;
-  pid_t supervisor = 0;
-  std::vector<std::string> services;
-  std::vector<FrameRecord> frames;
+  std::int64_t taken_ns = 0;          ///< when it was taken, CLOCK_MONOTONIC
+  pid_t supervisor = 0;               ///< pid of the supervisor that took it
+  std::vector<std::string> services;  ///< names of the services
+  std::vector<FrameRecord> frames;    ///< in the order in which the recorder read them
 };
-/// Errors: bad_data.
+/// Reads a snapshot. All values are checked, because the file comes from another process. Errors:
+/// bad_data (the file is not a valid snapshot).
 Result<HistorySnapshot> read_history(const UniqueFd& file);
 
 }  // namespace handcast::supervisor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a snapshot back. It came over a socket: nothing in it is taken for granted.
+// Reads a snapshot. It came over a socket, so every value is checked.
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,15 +18,15 @@ constexpr std::size_t kMostBytes = 2 * History::kMostBlocks * History::kBlockByt
 constexpr std::uint32_t kMostServices = 1024;
 
 tl::unexpected<Error> nonsense(std::string_view what) {
-  return fail(Errc::bad_data, fmt::format("the history makes no sense: {}", what));
+  return fail(Errc::bad_data, fmt::format("the history is invalid: {}", what));
 }
 
-/// A private copy, so that whatever happens to the file from here on changes nothing.
+/// A private copy of the file, which cannot change while it is checked.
 Result<std::vector<std::byte>> contents_of(int fd) {
   struct stat file {};
   if (fstat(fd, &file) != 0 || !S_ISREG(file.st_mode)) return nonsense("it is not a file");
   if (file.st_size < 0 || static_cast<std::size_t>(file.st_size) > kMostBytes)
-    return nonsense("its size");
+    return nonsense("its size is impossible");
   std::vector<std::byte> bytes(static_cast<std::size_t>(file.st_size));
   for (std::size_t read = 0; read < bytes.size();) {
     const auto count =
@@ -37,7 +37,7 @@ Result<std::vector<std::byte>> contents_of(int fd) {
   return bytes;
 }
 
-/// What is left of the file.
+/// The part of the file that was not read yet.
 class Rest {
  public:
   explicit Rest(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -59,12 +59,12 @@ class Rest {
 Result<FrameRecord> take_frame(Rest& rest, std::size_t services) {
   const auto head = rest.take<FrameHead>();
   if (!head) return nonsense("a frame ends early");
-  if (head->service >= services) return nonsense("a frame of no service");
+  if (head->service >= services) return nonsense("a frame belongs to no service");
   FrameRecord frame{head->service, head->missed, head->header, head->made_from, {}};
   for (std::uint32_t i = 0; i < head->marks; ++i) {
     const auto mark = rest.take<msg::StageMark>();
     if (!mark) return nonsense("a frame ends early");
-    if (!makes_sense(*mark)) return nonsense("a mark of no stage, or that ends before it begins");
+    if (!makes_sense(*mark)) return nonsense("a mark has no stage, or ends before it begins");
     frame.marks.push_back(*mark);
   }
   return frame;
@@ -77,14 +77,15 @@ Result<HistorySnapshot> read_history(const UniqueFd& file) {
   if (!bytes) return tl::make_unexpected(bytes.error());
   Rest rest(*bytes);
   const auto head = rest.take<FileHead>();
-  if (!head || head->magic != FileHead::kMagic) return nonsense("it does not begin as one");
-  if (head->bytes != bytes->size()) return nonsense("its size is not the one it was written with");
-  if (head->services > kMostServices) return nonsense("too many services");
+  if (!head || head->magic != FileHead::kMagic)
+    return nonsense("it does not begin with its magic number");
+  if (head->bytes != bytes->size()) return nonsense("its size differs from that in its header");
+  if (head->services > kMostServices) return nonsense("it has too many services");
 
   HistorySnapshot snapshot{.taken_ns = head->taken_ns, .supervisor = head->supervisor};
   for (std::uint32_t i = 0; i < head->services; ++i) {
     const auto name = rest.take<ServiceName>();
-    if (!name || name->back() != '\0') return nonsense("a service without a name");
+    if (!name || name->back() != '\0') return nonsense("a service has no name");
     snapshot.services.emplace_back(name->data());
   }
   while (!rest.empty()) {

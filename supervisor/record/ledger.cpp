@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kRecent_ns = 2 * kSecond_ns;
-constexpr std::size_t kMostRecent = 1 << 16;  ///< bounds the memory whatever a service publishes
+/// Limits the memory, however much a service publishes.
+constexpr std::size_t kMostRecent = 1 << 16;
 
 double per_second(std::uint64_t count, std::int64_t span_ns) {
   return span_ns > 0 ? static_cast<double>(count) / ns_to_seconds(span_ns) : 0.0;
@@ -69,8 +70,7 @@ void Ledger::note(std::string_view service, const msg::StageMarks& marks, std::u
   for (std::size_t i = 0; i < count; ++i) {
     const auto& mark = marks.marks[i];
     const auto stage = static_cast<std::size_t>(mark.stage);
-    if (stage >= msg::kStageNames.size())
-      continue;  // shared memory: nothing read from it is trusted
+    if (stage >= msg::kStageNames.size()) continue;  // values from shared memory may be invalid
     stages_[std::string(msg::kStageNames[stage])].add(mark.end_ns, mark.end_ns - mark.begin_ns);
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})

@@ -14,25 +14,25 @@
 
 namespace handcast::supervisor {
 
-/// How many frames a service finished, and when.
+/// Counts the frames of one service.
 class FrameCount {
  public:
-  /// `missed` frames before this one were finished, but their marks were overwritten before they
-  /// were read.
+  /// Adds a frame, and `missed` frames before it whose marks were overwritten before they were
+  /// read.
   void add(const msg::Header& frame, std::uint64_t missed);
 
+  /// Number of all frames.
   std::uint64_t total() const { return total_; }
-  /// Frames a second over the last two seconds (or since the first frame, if that is less).
+  /// Frames per second over the last two seconds, or since the first frame if that is less.
   double recent_hz(std::int64_t now_ns) const;
-  /// Frames a second from one second after the first frame on, up to `now_ns`: with every
-  /// interruption, without the start.
+  /// Frames per second up to `now_ns`, without the first second. Includes all interruptions.
   double held_hz(std::int64_t now_ns) const;
-  /// The age of the newest frame's origin; empty if there was none.
+  /// The age of the newest frame's origin in ms; empty if there was no frame.
   std::optional<double> newest_age_ms(std::int64_t now_ns) const;
 
  private:
   std::uint64_t total_ = 0;
-  std::uint64_t settled_ = 0;  ///< of these, later than the first second
+  std::uint64_t settled_ = 0;  ///< frames after the first second
   std::int64_t first_ns_ = 0;
   std::int64_t newest_origin_ns_ = 0;
   struct Arrival {
@@ -42,33 +42,40 @@ class FrameCount {
   std::deque<Arrival> recent_;
 };
 
-/// Times of one stage over the last ten seconds and over the whole run.
+/// The times that one stage took, over the last ten seconds and over the whole run.
 class StageTimes {
  public:
+  /// Adds a duration that ended at `ended_ns`, CLOCK_MONOTONIC.
   void add(std::int64_t ended_ns, std::int64_t span_ns);
 
+  /// The durations of the whole run.
   const Histogram& whole_run() const { return whole_run_; }
+  /// The durations of the last ten seconds, in steps of a second.
   Histogram recent(std::int64_t now_ns) const;
 
  private:
   static constexpr int kWindow_s = 10;
   struct Second {
-    std::int64_t number = -1;  ///< of CLOCK_MONOTONIC
+    std::int64_t number = -1;  ///< seconds of CLOCK_MONOTONIC
     Histogram times;
   };
   Histogram whole_run_;
   std::array<Second, kWindow_s> seconds_;
 };
 
-/// What the recorder has seen: every service's frames, every stage's times.
+/// The statistics of a run: the frames of each service, the times of each stage, the rungs. One
+/// thread.
 class Ledger {
  public:
-  /// A message without marks is a heart-beat, not a frame.
+  /// Adds a frame. A message without marks is a heartbeat and does not count as a frame. `missed`:
+  /// see FrameCount::add().
   void note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed = 0);
 
+  /// The frames of a service; zeros if it is unknown.
   const FrameCount& frames(std::string_view service) const;
+  /// The times of each stage, by its name.
   const std::map<std::string, StageTimes, std::less<>>& stages() const { return stages_; }
-  /// Hands of drawn frames that were given each rung of the ladder.
+  /// Number of drawn hands that got each rung of the ladder, by msg::Rung.
   const std::array<std::uint64_t, msg::kRungs>& rungs() const { return rungs_; }
 
  private:

@@ -9,7 +9,8 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr int kMostAtOnce = 2048;  ///< a service that runs wild must not keep the event loop
+/// The most messages of a service per poll(), so that no service can block the event loop.
+constexpr int kMostAtOnce = 2048;
 
 }  // namespace
 

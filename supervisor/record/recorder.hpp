@@ -11,26 +11,32 @@
 
 namespace handcast::supervisor {
 
-/// Reads the services' stage marks into a ledger and a history: from the supervisor's event loop, a
-/// few dozen times a second.
+/// Reads the stage marks of all services into a ledger and a history. Runs in the event loop of the
+/// supervisor. One thread.
 class Recorder {
  public:
+  /// `history_s`: length of the history in seconds.
   explicit Recorder(double history_s = 60) : history_(history_s) {}
-  /// Follows "marks.<service>", behind the descriptor (which stays the caller's), unless it does
-  /// already.
+  /// Starts reading the ring "marks.<service>", whose descriptor remains owned by the caller. Has
+  /// no effect if this service is read already. Errors: those of ipc::Segment::open() and
+  /// ipc::Reader::attach().
   Result<void> follow(std::string service, int ring_fd);
+  /// Reads the new marks of all services. Call it a few dozen times per second.
   void poll();
+  /// The statistics of the run.
   const Ledger& ledger() const { return ledger_; }
+  /// The frames of the last seconds.
   const History& history() const { return history_; }
+  /// Changes the length of the history.
   void remember(double history_s) { history_.reach(history_s); }
-  /// Since the service's last sign of life, frame or heart-beat; empty if there was none.
+  /// Time since the last frame or heartbeat of a service; empty if there was none.
   std::optional<double> silence_ms(std::string_view service, std::int64_t now_ns) const;
 
  private:
   struct Source {
     std::string service;
     ipc::Reader<msg::StageMarks> marks;
-    std::uint64_t skipped = 0;  ///< as of the last message
+    std::uint64_t skipped = 0;  ///< Reader::skipped() at the last message
     std::int64_t last_sign_ns = 0;
   };
   std::vector<Source> sources_;

@@ -25,8 +25,8 @@ std::vector<std::int64_t> numbers_in(std::string_view text) {
   while (at != end) {
     std::int64_t number = 0;
     const auto [after, error] = std::from_chars(at, end, number);
-    if (after != at)
-      numbers.push_back(number);  // also where it is too large for one: its place counts
+    // Added as 0 if it is out of range, so that later fields keep their places.
+    if (after != at) numbers.push_back(number);
     at = after != at ? after : at + 1;
   }
   return numbers;
@@ -43,7 +43,7 @@ int descriptors_in(const std::filesystem::path& folder) {
   return forbidden ? -1 : static_cast<int>(std::distance(entries, {}));
 }
 
-/// The same time as in /proc/PID/stat, but in nanoseconds instead of ticks of 10 ms.
+/// The processor time, in nanoseconds and not in the ticks of 10 ms of /proc/PID/stat.
 std::optional<std::int64_t> cpu_time_of(pid_t pid) {
   clockid_t clock{};
   timespec time{};
@@ -54,14 +54,14 @@ std::optional<std::int64_t> cpu_time_of(pid_t pid) {
 
 }  // namespace
 
-// Fields as in proc(5). The name is in brackets and may hold anything, brackets too.
+// The fields of proc(5). The name is in parentheses and may contain any characters, also these.
 bool read_stat(std::string_view text, std::int64_t ticks_per_second, ProcessUsage& usage) {
   const auto open = text.find('('), close = text.rfind(')');
   if (open == std::string_view::npos || close == std::string_view::npos || close < open ||
       text.size() < close + 4)
     return false;
   const char state = text[close + 2];
-  const auto fields = numbers_in(text.substr(close + 4));  // from field 4 on
+  const auto fields = numbers_in(text.substr(close + 4));  // starts with field 4
   const auto field = [&](std::size_t number) { return fields[number - 4]; };
   if (fields.size() < 41 - 3 || ticks_per_second <= 0 || state == 'Z' || state == 'X') return false;
 

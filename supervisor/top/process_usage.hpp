@@ -9,41 +9,49 @@
 
 namespace handcast::supervisor {
 
-/// What a process uses, at one moment.
+/// The resources that a process uses at one moment.
 struct ProcessUsage {
-  std::string
-      program;  ///< its name as the kernel has it: at most 15 characters, and whatever it likes
-  std::int64_t taken_ns = 0;  ///< when this was looked up
-  std::int64_t cpu_ns = 0;    ///< processor time since its start, of all its threads
-  std::uint64_t started_ticks =
-      0;  ///< since boot: with the number it tells a process from a later one
-  std::int64_t resident_bytes = 0;  ///< in memory now
-  std::int64_t shared_bytes =
-      0;  ///< of these, shared with others: the rings, its program, libraries
-  int threads = 0;
-  int descriptors = 0;  ///< open ones; -1: not to be known
-  int last_core = 0;    ///< of its first thread, as is what follows
-  int policy = 0;       ///< SCHED_OTHER, SCHED_FIFO, …
-  int priority = 0;     ///< real-time priority; 0: none
+  /// The name of the process in the kernel: at most 15 characters, which may be any.
+  std::string program;
+  std::int64_t taken_ns = 0;  ///< when this was read, CLOCK_MONOTONIC
+  std::int64_t cpu_ns = 0;    ///< processor time of all threads since the start
+  /// Start time in clock ticks since boot. Together with the pid it identifies the process.
+  std::uint64_t started_ticks = 0;
+  std::int64_t resident_bytes = 0;  ///< memory in RAM
+  /// The part of resident_bytes that is shared with others: rings, program, libraries.
+  std::int64_t shared_bytes = 0;
+  int threads = 0;      ///< number of threads
+  int descriptors = 0;  ///< number of open descriptors; -1: not permitted to read
+  /// Of the first thread: the core it ran on last, its policy (SCHED_OTHER, SCHED_FIFO, …),
+  /// real-time priority (0: none) and nice value.
+  /// @{
+  int last_core = 0;
+  int policy = 0;
+  int priority = 0;
   int nice = 0;
+  /// @}
 
+  /// Memory that is not shared.
   std::int64_t own_bytes() const { return resident_bytes - shared_bytes; }
 };
 
-/// Takes in the text of /proc/PID/stat; false where it makes no sense.
+/// Parses /proc/PID/stat or /proc/PID/statm into `usage`. Returns false if the text is invalid;
+/// read_stat() also if the process is dead.
+/// @{
 bool read_stat(std::string_view text, std::int64_t ticks_per_second, ProcessUsage& usage);
-/// The same with /proc/PID/statm.
 bool read_statm(std::string_view text, std::int64_t page_bytes, ProcessUsage& usage);
+/// @}
 
-/// Empty where there is no such process, or only what its parent has not taken yet. Costs some 30
-/// us, and the process nothing: what would hold its memory map (smaps) is left alone, so there is
-/// no proportional share of the rings.
+/// The usage of a process; empty if there is no such process, or a zombie. Takes about 30 us and
+/// does not disturb the process: smaps, which locks its memory map, is not read, so the
+/// proportional share of the rings is unknown.
 std::optional<ProcessUsage> usage_of(pid_t pid);
 
-/// In cores (1.0: one whole core) between two looks; empty where they are not of the same process.
+/// The number of cores used between two readings (1.0: one whole core); empty if they are not of
+/// the same process.
 std::optional<double> cores_used(const ProcessUsage& before, const ProcessUsage& now);
 
-/// "FIFO 50", "nice 10", "idle", …; "" for what every program has.
+/// The scheduling class: "FIFO 50", "nice 10", "idle", …; empty for the default.
 std::string scheduling_of(const ProcessUsage& usage);
 
 }  // namespace handcast::supervisor

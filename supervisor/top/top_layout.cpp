@@ -39,7 +39,7 @@ Style style_of_state(const ServiceRow& service) {
   return service.state == "stopped" ? Style::faint : Style::warning;
 }
 
-/// A bar that is full at one whole core.
+/// A bar of kMeterCells characters that is full at one whole core.
 std::string meter(double cores) {
   static constexpr std::array<std::string_view, 8> kEighths{"", "▏", "▎", "▍", "▌", "▋", "▊", "▉"};
   const auto eighths =
@@ -196,15 +196,15 @@ Line head_line(const TopModel& model) {
             faint(fmt::format("  up {}", text_of_span(seconds_to_ns(model.uptime_s))))};
   const int problems = problems_of(model);
   if (!model.missing.empty())
-    line.push_back({"  supervisor away, still looking: " + harmless(model.missing), Style::bad});
+    line.push_back({"  the supervisor does not answer: " + harmless(model.missing), Style::bad});
   else if (problems == 0)
     line.push_back({"  all well", Style::good});
   else
-    line.push_back({fmt::format("  {} to look at", problems), Style::warning});
+    line.push_back({fmt::format("  problems: {}", problems), Style::warning});
   return line;
 }
 
-/// What the gate has been choosing.
+/// The shares of the rungs that the gate chose.
 Line rung_line(const TopModel& model) {
   Line line{{"RUNGS", Style::heading}};
   for (const auto& [rung, share] : model.rungs) {

@@ -7,31 +7,33 @@
 
 namespace handcast::supervisor {
 
+/// The style of a text. print() maps it to ANSI colours.
 enum class Style { plain, faint, strong, heading, good, warning, bad };
 
 /// A piece of a line in one style.
 struct Span {
-  std::string text;
-  Style style = Style::plain;
+  std::string text;            ///< UTF-8, without control characters
+  Style style = Style::plain;  ///< style of the whole text
 };
+/// A line of the screen.
 using Line = std::vector<Span>;
 
+/// The options of a view.
 struct Page {
-  std::size_t columns = 100;
-  bool with_marks = true;  ///< the rings of stage marks, too
+  std::size_t columns = 100;  ///< width of the screen
+  bool with_marks = true;     ///< include the rings of stage marks
 };
 
-/// The whole view as lines of at most `page.columns` columns; what matters least is left out where
-/// there is not enough room.
+/// The whole view, as lines of at most `page.columns` columns. If there is not enough room, the
+/// least important columns of the tables are left out.
 std::vector<Line> lay_out(const TopModel& model, const Page& page);
 
-/// What of the lines is seen on a screen of so many rows: the first lines are always there, the
-/// rest is scrolled by `first` (which is brought into bounds), the last row says which keys there
-/// are.
+/// The lines that are visible on a screen of `columns` x `rows`: the head lines, then the others
+/// from number `first` on (limited to the valid range), and a line with the keys.
 std::vector<Line> fit(const std::vector<Line>& lines, std::size_t columns, std::size_t rows,
                       std::size_t& first);
 
-/// Without a line's end. With colours: as ANSI sequences.
+/// The text of a line without a line break, with ANSI sequences if `with_colours`.
 std::string print(const Line& line, bool with_colours);
 
 }  // namespace handcast::supervisor

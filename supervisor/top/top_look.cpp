@@ -11,9 +11,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr auto kPatience = std::chrono::seconds(1);  ///< who looks on wants to be able to leave
+constexpr auto kPatience = std::chrono::seconds(1);  ///< so that `handcast top` can still be quit
 
-/// A supervisor that has not been up as long as before, or has other rings, is another one.
+/// True if a status is from another supervisor: its uptime is shorter, or its services differ.
 bool is_another(const json& before, const json& now) {
   const auto names_in = [](const json& status, const char* key) {
     std::set<std::string> names;
@@ -57,7 +57,7 @@ RigLook RigWatcher::look() {
 void RigWatcher::ask_supervisor() {
   auto answer = ask_with_descriptors(rig_, {.verb = Verb::status}, kPatience);
   if (!answer || !answer->object.contains("status") || !answer->object["status"].is_object()) {
-    missing_ = answer ? "its answer makes no sense" : answer.error().what;
+    missing_ = answer ? "its answer is invalid" : answer.error().what;
     return;
   }
   const auto& status = answer->object["status"];

@@ -13,23 +13,25 @@
 
 namespace handcast::supervisor {
 
-/// A rig from outside at one moment: what `handcast top` and the exporter are made of.
+/// The state of a rig at one moment, observed from outside, for `handcast top` and the exporter.
 struct RigLook {
-  std::string rig;
-  std::int64_t taken_ns = 0;
-  std::string missing;  ///< why its supervisor does not answer; "" where it does
-  nlohmann::json
-      status;  ///< as `handcast status --json`; the last there was while the supervisor is missing
-  std::vector<ipc::RingSnapshot> rings;
-  std::map<pid_t, ProcessUsage> processes;  ///< services, spares and readers that live
+  std::string rig;            ///< name of the rig
+  std::int64_t taken_ns = 0;  ///< when it was observed, CLOCK_MONOTONIC
+  std::string missing;        ///< why the supervisor does not answer; empty if it does
+  /// The output of `handcast status --json`; the last one if the supervisor does not answer.
+  nlohmann::json status;
+  std::vector<ipc::RingSnapshot> rings;     ///< the rings of the rig
+  std::map<pid_t, ProcessUsage> processes;  ///< living services, spares and readers
 };
 
-/// Looks at a rig again and again without taking part. Rings and services are seen while their
-/// supervisor is dead, too.
+/// Observes a rig repeatedly. Rings and services are observed even while the supervisor is dead.
+/// One thread.
 class RigWatcher {
  public:
+  /// A watcher of the rig with this name; connects at each look().
   explicit RigWatcher(std::string rig) : rig_(std::move(rig)) {}
 
+  /// Observes the rig. Waits at most 1 s for each answer of the supervisor.
   RigLook look();
 
  private:
@@ -42,7 +44,7 @@ class RigWatcher {
   std::vector<ipc::RingView> rings_;
 };
 
-/// A service's process in a status: "pid", "standby"; 0 where there is none.
+/// The pid of a service in a status: `key` is "pid" or "standby". 0 if there is none.
 pid_t pid_in(const nlohmann::json& service, const char* key);
 
 }  // namespace handcast::supervisor

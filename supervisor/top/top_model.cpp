@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t kSilentTooLong_ns = 1'000'000'000;  ///< for a ring without a steady rate
+constexpr std::int64_t kSilentTooLong_ns = 1'000'000'000;  ///< for a ring without a regular rate
 
 std::string text_in(const json& object, const char* key) {
   const auto found = object.find(key);
@@ -27,13 +27,13 @@ double number_in(const json& object, const char* key) {
   return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
 }
 
-/// Empty where a count went down: somebody else counts now.
+/// Counts per second; empty if the count decreased, because another process counts now.
 std::optional<double> rate(std::uint64_t before, std::uint64_t now, std::int64_t span_ns) {
   if (now < before || span_ns <= 0) return std::nullopt;
   return static_cast<double>(now - before) / ns_to_seconds(span_ns);
 }
 
-/// "died 10 times within 60 s; again in 2.1 s: its last log line".
+/// E.g. "died 10 times within 60 s; again in 2.1 s: last line of its log".
 std::string trouble_in(const json& service) {
   auto trouble = text_in(service, "reason");
   if (const auto wait_s = number_in(service, "retry_s"); wait_s > 0)
@@ -67,12 +67,12 @@ ServiceRow service_row(const std::string& name, const json& service, const RigLo
   const auto* earlier = usage_in(before, row.pid);
   if (usage) row.usage = *usage;
   if (!usage && row.pid > 0 && !now.missing.empty())
-    row.state = "gone";  // what the supervisor said last does not hold any more
+    row.state = "gone";  // the last status of the supervisor is outdated
   if (usage && earlier) row.cores = cores_used(*earlier, *usage);
   return row;
 }
 
-/// Names for the processes of a rig: its services', else what the kernel calls them.
+/// The names of the processes of a rig: names of services, otherwise program names.
 class Names {
  public:
   explicit Names(const RigLook& look) : look_(look) {

@@ -12,67 +12,91 @@
 
 namespace handcast::supervisor {
 
-inline constexpr std::int64_t kOldLease_ns = 100'000'000;  ///< a lease is meant to last one frame
-inline constexpr double kLatePeriods =
-    3;  ///< a ring whose newest message is older than so many periods is late
+/// A lease that is older than this is reported: it should last one frame.
+inline constexpr std::int64_t kOldLease_ns = 100'000'000;
+/// A ring is late if its newest message is older than this number of periods.
+inline constexpr double kLatePeriods = 3;
 
+/// One service of a rig.
 struct ServiceRow {
+  /// From the status of the rig: name, state, back end, and how the last process ended.
+  /// @{
   std::string name, state, backend, last_exit;
-  std::string trouble;  ///< of one that is not well: why, and its last log line
+  /// @}
+  std::string trouble;  ///< if it is not well(): the reason and the last line of its log
+  /// Pids of the service and of its spare; 0: none.
+  /// @{
   pid_t pid = 0, spare_pid = 0;
-  int restarts = 0;
-  double uptime_s = 0;
-  std::optional<ProcessUsage> usage;
-  std::optional<double> cores;  ///< 1.0: one whole core
+  /// @}
+  int restarts = 0;                   ///< number of restarts
+  double uptime_s = 0;                ///< time since its process was started
+  std::optional<ProcessUsage> usage;  ///< empty if the process is dead
+  std::optional<double> cores;        ///< processor use since the last look; 1.0: one whole core
 
+  /// True if the service runs, or was stopped on request.
   bool well() const { return state == "ready" || state == "stopped"; }
 };
 
+/// One reader of a ring.
 struct ReaderRow {
-  ipc::ReaderView now;
-  std::string who;    ///< the service, or the program's name
-  bool gone = false;  ///< its process is dead, its row not yet cleared
+  ipc::ReaderView now;  ///< its state
+  std::string who;      ///< name of the service or program
+  bool gone = false;    ///< the process is dead, and its row not yet freed
+  /// Messages read and skipped per second; empty if unknown.
+  /// @{
   std::optional<double> received_hz, skipped_hz;
+  /// @}
 
+  /// True if the reader has skipped messages since the last look.
   bool skips() const { return skipped_hz.value_or(0) > 0; }
+  /// True if a lease is older than kOldLease_ns.
   bool holds_an_old_lease() const;
 };
 
+/// One ring with its readers.
 struct RingRow {
-  ipc::RingSnapshot now;
-  std::optional<double> asked_hz;
+  ipc::RingSnapshot now;           ///< its state
+  std::optional<double> asked_hz;  ///< the configured rate; empty if there is none
+  /// Messages published and dropped per second; empty if unknown.
+  /// @{
   std::optional<double> rate_hz, dropped_hz;
-  std::optional<std::int64_t> newest_age_ns;  ///< since it was published
-  std::optional<std::int64_t> latency_ns;     ///< from its origin to its publication
-  std::vector<ReaderRow> readers;
+  /// @}
+  std::optional<std::int64_t> newest_age_ns;  ///< time since the newest message was published
+  std::optional<std::int64_t> latency_ns;     ///< time from its origin to its publication
+  std::vector<ReaderRow> readers;             ///< the readers
 
+  /// True if the newest message is older than kLatePeriods periods, or than 1 s if the ring has no
+  /// regular rate.
   bool late() const;
+  /// True if the writer has dropped messages since the last look.
   bool drops() const { return dropped_hz.value_or(0) > 0; }
-  /// A service's stage marks and heart-beats, not data.
+  /// True for a ring of stage marks and heartbeats.
   bool marks() const { return now.stream.starts_with("marks."); }
 };
 
-/// How many of the drawn hands were given a rung of the ladder.
+/// The share of the drawn hands that got a rung of the ladder.
 struct RungShare {
-  std::string rung;
-  double share = 0;
+  std::string rung;  ///< name of the rung
+  double share = 0;  ///< 0..1
 };
 
-/// What there is to show of a rig.
+/// The contents of `handcast top`.
 struct TopModel {
-  std::string rig;
-  std::string missing;  ///< why its supervisor does not answer; "" where it does
-  double uptime_s = 0;
-  std::vector<ServiceRow> services;
-  std::vector<RingRow> rings;
-  std::vector<RungShare>
-      rungs;  ///< of the hands drawn since the look before, cheapest first; rungs that were taken
+  std::string rig;                   ///< name of the rig
+  std::string missing;               ///< why the supervisor does not answer; empty if it does
+  double uptime_s = 0;               ///< time since the supervisor was started
+  std::vector<ServiceRow> services;  ///< the services
+  std::vector<RingRow> rings;        ///< the rings
+  /// The rungs of the hands that were drawn since the last look, cheapest first, without unused
+  /// rungs.
+  std::vector<RungShare> rungs;
 };
 
-/// Rates are between the two looks; there are none for what has changed hands in between.
+/// Compares two looks at a rig. Rates are those between the looks; they are empty for a service,
+/// ring or reader whose process has changed.
 TopModel compare(const RigLook& before, const RigLook& now);
 
-/// What `handcast top --json` prints.
+/// The output of `handcast top --json`.
 nlohmann::json json_of(const TopModel& model);
 
 }  // namespace handcast::supervisor

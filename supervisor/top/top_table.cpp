@@ -17,7 +17,7 @@ std::size_t width_of(const Table& table, std::size_t column) {
   return width;
 }
 
-/// Which columns there is room for, in their order.
+/// The columns for which there is room, in their order.
 std::vector<std::size_t> choose(const Table& table, const std::vector<std::size_t>& widths,
                                 std::size_t room) {
   std::vector<std::size_t> chosen;

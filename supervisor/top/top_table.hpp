@@ -7,31 +7,34 @@
 
 namespace handcast::supervisor {
 
-/// A table on a screen: columns as wide as they need to be, the least important ones left out where
-/// there is no room.
+/// A table on the screen. Columns are as wide as their contents; if there is no room, the least
+/// important ones are left out.
 struct Table {
+  /// Alignment of the cells of a column.
   enum class Align { left, right };
+  /// The description of a column.
   struct Column {
-    std::string title;
-    std::string
-        second_title;  ///< below it; none of the table's columns has one: one line of titles
-    Align align = Align::right;
-    std::size_t least =
-        0;  ///< columns of the screen: so that it does not jump when a figure gets longer
-    int importance = 0;  ///< the lowest is left out first
+    std::string title;           ///< heading
+    std::string second_title;    ///< second line of the heading, left out if empty in all columns
+    Align align = Align::right;  ///< alignment of the cells
+    /// Smallest width in characters, so that the table does not change when a figure gets longer.
+    std::size_t least = 0;
+    int importance = 0;  ///< columns with the lowest value are left out first
   };
+  /// The contents of a row.
   struct Row {
-    std::vector<Span> cells;  ///< as many as there are columns
-    Line note;                ///< a line of its own below the row; cut, not wrapped
+    std::vector<Span> cells;  ///< one for each column
+    Line note;                ///< a line below the row, cut to the width of the screen
   };
 
-  std::vector<Column> columns;
-  std::vector<Row> rows;
+  std::vector<Column> columns;  ///< from left to right
+  std::vector<Row> rows;        ///< from top to bottom
 };
 
+/// The lines of a table on a screen with this number of columns.
 std::vector<Line> lay_out(const Table& table, std::size_t columns);
 
-/// The line's first `columns` columns.
+/// The first `columns` columns of a line.
 Line cut_to(Line line, std::size_t columns);
 
 }  // namespace handcast::supervisor

@@ -17,12 +17,12 @@
 namespace handcast::supervisor {
 namespace {
 
-// Alternate screen, no cursor, no wrapping at the right edge; and all of it back.
+// Alternate screen, no cursor, no wrapping at the right edge; and the reverse.
 constexpr std::string_view kEnter = "\x1b[?1049h\x1b[?25l\x1b[?7l";
 constexpr std::string_view kLeave = "\x1b[?7h\x1b[?25h\x1b[?1049l";
 constexpr std::string_view kBeginPicture = "\x1b[?2026h\x1b[H", kEndPicture = "\x1b[J\x1b[?2026l";
 
-// For the signal handlers.
+// Used by the signal handlers.
 termios before{};
 int signal_pipe = -1;
 
@@ -46,7 +46,7 @@ void note(int number) {
 
 void crash(int number) {
   give_back();
-  raise(number);  // SA_RESETHAND: this time as if there were no handler
+  raise(number);  // SA_RESETHAND has removed this handler: the default action follows
 }
 
 void handle(int number, void (*handler)(int), unsigned flags) {
@@ -140,7 +140,7 @@ std::optional<std::vector<Key>> Terminal::wait(std::int64_t until_ns) const {
       {{.fd = STDIN_FILENO, .events = POLLIN}, {.fd = signals_.get(), .events = POLLIN}}};
   const int ready = poll(sources.data(), sources.size(), static_cast<int>(left_ms));
   if (ready == 0) return std::nullopt;
-  if (ready < 0) return std::vector<Key>{};  // a signal: the next call reads it
+  if (ready < 0) return std::vector<Key>{};  // interrupted by a signal, which the next call reads
   if (sources[1].revents != 0 && asks_to_quit(read_some(signals_.get())))
     return std::vector{Key::quit};
   if (sources[0].revents == 0) return std::vector<Key>{};

@@ -12,29 +12,37 @@
 
 namespace handcast::supervisor {
 
+/// The commands of the keyboard; `marks` shows or hides the rings of stage marks.
 enum class Key { quit, up, down, page_up, page_down, marks };
 
-/// The keys in what a terminal sent; what means nothing is passed over.
+/// The keys in the bytes that a terminal sent. Unknown bytes are ignored.
 std::vector<Key> keys_in(std::string_view bytes);
 
-/// The whole screen of the terminal, given back as it was: at the end, at SIGINT, SIGTERM and
-/// SIGHUP, after a crash. One at a time.
+/// The full screen of the terminal. It is restored by the destructor (also after SIGINT, SIGTERM
+/// and SIGHUP, which wait() reports) and after a crash. Only one object at a time.
 class Terminal {
  public:
-  static bool present();  ///< keys and screen both
+  /// True if stdin and stdout are both a terminal.
+  static bool present();
 
+  /// Switches the terminal to full screen and installs signal handlers.
   Terminal();
   ~Terminal();
   Terminal(const Terminal&) = delete;
 
+  /// The size of the screen in characters.
   struct Size {
+    /// 80 x 24 if the size is unknown.
+    /// @{
     std::size_t columns = 80, rows = 24;
+    /// @}
   };
+  /// The present size of the screen.
   Size size() const;
-  /// Replaces the picture in one write, so that nothing flickers.
+  /// Replaces the contents of the screen in one write, without flicker.
   void show(const std::vector<std::string>& lines) const;
-  /// Waits for keys, or a signal to quit (Key::quit), or a new size (no key). Empty: it is
-  /// `until_ns`.
+  /// Waits until `until_ns` (CLOCK_MONOTONIC) for keys, a signal to quit (Key::quit), or a new size
+  /// of the screen (no keys). Empty if nothing happened until then.
   std::optional<std::vector<Key>> wait(std::int64_t until_ns) const;
 
  private:

@@ -16,17 +16,17 @@ struct Unit {
   std::string_view name;
 };
 
-/// "1020", "999", "99.9", "9.99", without zeros at the end.
+/// Formats with at least three digits: "1020", "999", "99.9", "9.99", without trailing zeros.
 std::string three_digits(double value) {
   return std::abs(value) < 999.5 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
 }
 
-/// In the largest of the `units` (ascending) in which the number is not below 1.
+/// Formats a value in the largest unit in which it is at least 1. `units` are in ascending order.
 template <std::size_t N>
 std::string in_units(double value, const std::array<Unit, N>& units) {
   auto unit = units.front();
   for (const auto& next : units)
-    if (std::abs(value) >= 0.9995 * next.size) unit = next;  // 999.7 would be shown as 1000
+    if (std::abs(value) >= 0.9995 * next.size) unit = next;  // 999.7 would be printed as 1000
   return three_digits(value / unit.size) + " " + std::string(unit.name);
 }
 

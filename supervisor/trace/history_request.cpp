@@ -14,7 +14,7 @@ Result<HistorySnapshot> ask_for_history(const std::string& rig, double seconds) 
   auto answer = ask_with_descriptors(rig, request);
   if (!answer) return tl::make_unexpected(answer.error());
   if (answer->descriptors.size() != 1)
-    return fail(Errc::bad_data, fmt::format("rig '{}' gave no history", rig));
+    return fail(Errc::bad_data, fmt::format("the answer of rig '{}' contains no history", rig));
   return read_history(answer->descriptors.front());
 }
 

@@ -8,11 +8,13 @@
 
 namespace handcast::supervisor {
 
-/// What a rig remembers of its last `seconds`. Errors: unavailable, bad_data.
+/// Requests the history of the last `seconds` from a rig. Errors: unavailable (the rig does not
+/// answer), bad_data (the answer is invalid).
 Result<HistorySnapshot> ask_for_history(const std::string& rig, double seconds);
 
-/// The rates that are asked of a rig's services, by service; those that run as fast as they can are
-/// not in it. Errors: unavailable, bad_data.
+/// Requests the configured rates of the services of a rig in Hz, by service. Services without a
+/// fixed rate are left out. Errors: unavailable (the rig does not answer), bad_data (the answer is
+/// invalid).
 Result<std::map<std::string, double>> ask_for_rates(const std::string& rig);
 
 }  // namespace handcast::supervisor

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// All pictures of spans share one logarithmic axis, so that rows can be compared.
+// All bar charts share one logarithmic axis, so that rows can be compared.
 constexpr double kAxisBegin_ns = 1e3;  ///< 1 us
 constexpr int kDecades = 5, kCellsPerDecade = 6;
 constexpr int kCells = kDecades * kCellsPerDecade;
@@ -26,7 +26,7 @@ std::size_t cell_of(std::int64_t span_ns) {
   return std::min<std::size_t>(static_cast<std::size_t>(decades * kCellsPerDecade), kCells - 1);
 }
 
-/// How the spans are spread from 1 us to 100 ms. Whatever occurred is visible, be it once.
+/// A bar chart of the distribution from 1 us to 100 ms. A bar is visible even for a single span.
 std::string picture_of(const Spans& spans) {
   std::array<std::size_t, kCells> counts{};
   for (const auto span_ns : spans.sorted_ns()) ++counts[cell_of(span_ns)];
@@ -94,8 +94,8 @@ json to_json(const LatencyTable& table) {
 
 std::string print_latency(const LatencyTable& table) {
   auto text = fmt::format(
-      "the last {:.1f} s; light: the middle of the time a frame is lit, as the projector reports "
-      "it\n\n",
+      "Latency over the last {:.1f} s. light: the middle of the time a frame is lit, as reported "
+      "by the projector.\n\n",
       table.seconds);
   text += heading("from", "to");
   for (const auto& [from, to, spans] : table.ways)

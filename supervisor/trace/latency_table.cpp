@@ -16,8 +16,7 @@ namespace {
 
 using msg::Stage;
 
-/// Spans of several ways at once, each under its two names, in the order in which the ways are
-/// told.
+/// Collects the spans between pairs of events, in the order in which the pairs are first added.
 class Ways {
  public:
   void add(const char* from, const char* to, std::optional<std::int64_t> span_ns) {
@@ -85,11 +84,11 @@ std::vector<WayLatency> way_latencies(const HistorySnapshot& history) {
   return ways.take();
 }
 
-/// When a service was done with each of its frames, and what is known of those between.
+/// A frame that a service has finished.
 struct Done {
-  std::int64_t time_ns = 0;
+  std::int64_t time_ns = 0;  ///< the end of its last mark
   std::uint64_t frame_id = 0;
-  std::uint64_t lost = 0;  ///< done before this one, without a trace
+  std::uint64_t lost = 0;  ///< frames finished before this one whose marks were lost
   bool from_sensor = false;
 };
 
@@ -109,13 +108,13 @@ std::uint64_t above(std::uint64_t value, std::uint64_t allowed) {
   return value > allowed ? value - allowed : 0;
 }
 
-/// How many periods lie between two frames.
+/// The time between two frames in periods.
 double periods_between(const Done& before, const Done& after, double hz) {
   return ns_to_seconds(after.time_ns - before.time_ns) * hz;
 }
 
-/// The periods without a frame before frame `i`. One that comes late, with the next in its usual
-/// place, was not missed.
+/// The number of periods without a frame before frame `i`. If frame `i` is late but the next one is
+/// in time again, no period was missed.
 std::uint64_t missed_before(const std::vector<Done>& done, std::size_t i, double hz) {
   auto periods = periods_between(done[i - 1], done[i], hz);
   std::uint64_t frames = 1 + done[i].lost;

@@ -6,7 +6,7 @@
 namespace handcast::supervisor {
 namespace {
 
-/// The frames of the projector, in the order in which they were begun.
+/// The frames of the projector in the order of their begin.
 std::vector<std::size_t> projector_frames(const HistorySnapshot& history) {
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < history.frames.size(); ++i)

@@ -26,19 +26,17 @@ constexpr std::array<std::string_view, 6> kAnnotations{"frame_id",   "image_id",
                                                        "marks_lost", "left_hand", "right_hand"};
 enum Annotation { frame_id, image_id, age_ms, marks_lost, left_hand, right_hand };
 
-constexpr std::uint64_t name_id(msg::Stage stage) {
-  return static_cast<std::uint64_t>(stage) + 1;
-}  // 0 is no name
+/// The number of a stage's name in the trace; 0 means no name.
+constexpr std::uint64_t name_id(msg::Stage stage) { return static_cast<std::uint64_t>(stage) + 1; }
 
-/// Those that stand for their whole frame: flows pass through them, and they tell which frame it
-/// is.
+/// True for stages that represent their whole frame: they carry its flows and annotations.
 bool is_leading(msg::Stage stage) {
   using enum msg::Stage;
   return stage == capture || stage == sample || stage == detect || stage == frame ||
          stage == present || stage == light;
 }
 
-/// A packet that is yet to find its place in time.
+/// An event that is not yet sorted by time.
 struct TimedEvent {
   std::int64_t time_ns;
   Protobuf event;
@@ -57,7 +55,7 @@ class TraceWriter {
     const auto services = lanes_of(history_);
     for (std::size_t i = 0; i < services.size(); ++i) {
       for (const auto& lane : services[i]) {
-        if (lane.empty()) continue;  // it has marked nothing
+        if (lane.empty()) continue;  // the service has no marks
         add_track(track, history_.services[i], i);
         add_slices(track++, lane);
       }
@@ -68,7 +66,7 @@ class TraceWriter {
   }
 
  private:
-  /// A field of the trace is a packet of its own, and may be appended as it is.
+  /// Appends a packet. A trace is a sequence of packet fields, so its bytes can be concatenated.
   void add(Protobuf packet) {
     packet.number(packet::sequence, kSequence);
     bytes_ += Protobuf().message(trace::packet, packet).bytes();
@@ -89,7 +87,7 @@ class TraceWriter {
     add(Protobuf().message(packet::clock_snapshot, snapshot));
   }
 
-  /// The names that events refer to by number, and the clock they are on.
+  /// Adds the names that events refer to by number, and the clock of their times.
   void add_names() {
     Protobuf names;
     for (std::size_t i = 0; i < msg::kStageNames.size(); ++i)
@@ -126,7 +124,7 @@ class TraceWriter {
             .message(track::counter, Protobuf().text(track::counter_unit_name, "ms"))));
   }
 
-  /// The viewer shows tracks of the same name and parent as one, a lane each.
+  /// Adds a track. The viewer shows tracks of the same name and parent as one track with lanes.
   void add_track(std::uint64_t uuid, std::string_view service, std::uint64_t rank) {
     add(Protobuf().message(packet::track_descriptor, Protobuf()
                                                          .number(track::uuid, uuid)
@@ -136,7 +134,7 @@ class TraceWriter {
   }
 
   void add_slices(std::uint64_t track, const Lane& lane) {
-    std::vector<std::int64_t> open;  ///< ends, the innermost last
+    std::vector<std::int64_t> open;  // the ends of the open slices, innermost last
     const auto close_until = [&](std::int64_t time_ns) {
       for (; !open.empty() && open.back() <= time_ns; open.pop_back())
         events_.push_back(

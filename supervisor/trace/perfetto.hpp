@@ -7,16 +7,20 @@
 
 namespace handcast::supervisor {
 
-/// A moment on the clocks that a trace viewer may ask about.
+/// One moment on three clocks, with which a trace viewer can convert times.
 struct ClockReadings {
+  /// CLOCK_MONOTONIC, CLOCK_BOOTTIME and CLOCK_REALTIME.
+  /// @{
   std::int64_t monotonic_ns = 0, boottime_ns = 0, realtime_ns = 0;
+  /// @}
+  /// The present time.
   static ClockReadings now();
 };
 
 /// The history as a trace for ui.perfetto.dev: the bytes of a perfetto.protos.Trace of TrackEvents.
-/// A track per service, slices for its stages (`correct` with the rung each hand was given), flows
-/// from the sensors to the light (trace_flows.hpp), a counter for the age of the image in the
-/// light. Times are CLOCK_MONOTONIC's, as in every log and message of the house.
+/// It has a track for each service with a slice for each stage (`correct` is annotated with the
+/// rung of each hand), flows from the sensors to the light (trace_flows.hpp), and a counter for the
+/// age of the image in the light. Times are CLOCK_MONOTONIC.
 std::string perfetto_trace(const HistorySnapshot& history, std::string_view rig,
                            const ClockReadings& clocks);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Field numbers and values of the protobuf messages of a Perfetto trace, as far as we write them:
-/// github.com/google/perfetto, protos/perfetto/trace (trace_packet, clock_snapshot, interned_data,
-/// track_event/*).
+/// Field numbers and values of the protobuf messages of a Perfetto trace that perfetto.cpp writes.
+/// Source: github.com/google/perfetto, protos/perfetto/trace (trace_packet, clock_snapshot,
+/// interned_data, track_event/*).
 namespace handcast::supervisor::perfetto {
 
 namespace trace {

@@ -7,10 +7,13 @@
 
 namespace handcast::supervisor {
 
-/// A protobuf message under construction: fields in the order in which they are added
-/// (protobuf.dev, "Encoding").
+/// Encodes a protobuf message (protobuf.dev, "Encoding"). Fields are written in the order in which
+/// they are added.
 class Protobuf {
  public:
+  /// Adds a field: a varint, a fixed64, a double, a string, or a nested message. Returns this
+  /// object.
+  /// @{
   Protobuf& number(std::uint32_t field, std::uint64_t value) {
     tag(field, kVarint);
     varint(value);
@@ -33,7 +36,9 @@ class Protobuf {
   Protobuf& message(std::uint32_t field, const Protobuf& value) {
     return text(field, value.bytes_);
   }
+  /// @}
 
+  /// The encoded message so far.
   const std::string& bytes() const { return bytes_; }
 
  private:

@@ -14,7 +14,7 @@ class Flows {
  public:
   explicit Flows(std::size_t frames) : of_frame(frames) {}
 
-  /// A new flow through these frames; none where there is nothing to connect.
+  /// Adds a flow through these frames, if there are two or more.
   void connect(const std::vector<std::size_t>& frames) {
     if (frames.size() < 2) return;
     ++count_;
@@ -26,8 +26,8 @@ class Flows {
   std::uint64_t count_ = 0;
 };
 
-using Users =
-    std::map<std::size_t, std::vector<std::size_t>>;  ///< by what they use, in the order of time
+/// The projector frames that use an input, by the input, in the order of time.
+using Users = std::map<std::size_t, std::vector<std::size_t>>;
 
 Users users_of(const std::vector<MadeFrame>& frames,
                std::optional<std::size_t> MadeFrame::*ingredient) {

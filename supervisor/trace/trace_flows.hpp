@@ -7,10 +7,11 @@
 
 namespace handcast::supervisor {
 
-/// The arrows of a trace: per frame of the snapshot the numbers of the flows that pass through it.
-/// Three kinds, each from a sensor to the light: an image and every projector frame that showed it;
-/// an image, its detection and the first projector frame that knew it; a tracker's sample and the
-/// first projector frame that knew it.
+/// The flows (arrows) of a trace: for each frame of the snapshot the numbers of the flows through
+/// it. A flow connects
+/// - an image and all projector frames made from it;
+/// - an image, its detection and the first projector frame made from that detection;
+/// - a tracker sample and the first projector frame made from it.
 std::vector<std::vector<std::uint64_t>> flows_of(const HistorySnapshot& history);
 
 }  // namespace handcast::supervisor

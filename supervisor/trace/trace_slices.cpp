@@ -7,10 +7,10 @@
 namespace handcast::supervisor {
 namespace {
 
-/// A lane while it is filled: the slices that are open at its end, the innermost last.
+/// A lane that is being filled.
 struct OpenLane {
   Lane slices;
-  std::vector<Slice> open;
+  std::vector<Slice> open;  ///< the slices that are open at its end, innermost last
 
   bool take(const Slice& slice) {
     while (!open.empty() && open.back().mark.end_ns <= slice.mark.begin_ns) open.pop_back();
@@ -49,8 +49,8 @@ std::vector<std::vector<Lane>> lanes_of(const HistorySnapshot& history) {
   std::vector<std::vector<Lane>> lanes;
   for (std::size_t service = 0; service < work.size(); ++service) {
     lanes.push_back(arrange(std::move(work[service])));
-    for (auto& lane : arrange(std::move(light[service])))
-      lanes.back().push_back(std::move(lane));  // under the way of which the next frame is made
+    // Light has lanes of its own below: it overlaps with the work on the next frame.
+    for (auto& lane : arrange(std::move(light[service]))) lanes.back().push_back(std::move(lane));
   }
   return lanes;
 }

@@ -8,16 +8,18 @@
 
 namespace handcast::supervisor {
 
-/// One mark on a lane of its service. On a lane, slices lie one behind the other or, those of one
-/// frame, one inside the other: what a trace viewer can draw. A service whose frames overlap in
-/// time (a sensor that delivers later than its period) gets more lanes.
+/// One mark on a lane of its service. The slices of a lane follow each other or, if they belong to
+/// one frame, are nested, as a trace viewer requires. A service whose frames overlap in time (a
+/// sensor whose images arrive later than its period) gets several lanes.
 struct Slice {
-  std::size_t frame = 0;  ///< index into the snapshot's frames
-  msg::StageMark mark;
+  std::size_t frame = 0;  ///< index into HistorySnapshot::frames
+  msg::StageMark mark;    ///< the stage and its time
 };
-using Lane = std::vector<Slice>;  ///< by begin; what encloses others comes before them
+/// Slices in the order of their begin; a slice comes before those nested in it.
+using Lane = std::vector<Slice>;
 
-/// The lanes of every service of the snapshot, in the order of its services; each has at least one.
+/// The lanes of all services, in the order of HistorySnapshot::services; each service has at least
+/// one lane.
 std::vector<std::vector<Lane>> lanes_of(const HistorySnapshot& history);
 
 }  // namespace handcast::supervisor

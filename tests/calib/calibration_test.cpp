@@ -28,8 +28,8 @@ double largest_difference(const auto& a, const auto& b) {
   return largest;
 }
 
-/// The bytes of a file of the authors' published calibration; empty where the outside data is
-/// absent.
+/// The bytes of a file of the calibration that the authors of the paper published; empty if the
+/// external data is missing.
 std::string published(const std::string& name) {
   const char* data = std::getenv("HANDCAST_DATA");
   const char* source = std::getenv("HANDCAST_SOURCE");
@@ -39,8 +39,8 @@ std::string published(const std::string& name) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The numbers of the array `name` (".npy", uncompressed) in a file: they start where its header's
-/// line ends.
+/// The numbers of the uncompressed array `name` (".npy") in a file. They start after the line of
+/// its header.
 template <class Number>
 std::vector<Number> numbers_of(const std::string& bytes, const std::string& name,
                                std::size_t count) {
@@ -52,7 +52,9 @@ std::vector<Number> numbers_of(const std::string& bytes, const std::string& name
 
 TEST(ReferenceRig, HasTheLensItsAuthorsPublished) {
   const auto bytes = published("cam_calibration.npz");
-  if (bytes.empty()) GTEST_SKIP() << "no ../shared/data/calibration/cam_calibration.npz";
+  if (bytes.empty())
+    GTEST_SKIP()
+        << "calibration/cam_calibration.npz is missing in ../shared/data or $HANDCAST_DATA";
   const auto lens = numbers_of<double>(bytes, "cam_distortion.npy", 5);
   const auto matrix = numbers_of<double>(bytes, "cam_intrinsics.npy", 9);
   const auto camera = reference_rig().camera;
@@ -64,9 +66,10 @@ TEST(ReferenceRig, HasTheLensItsAuthorsPublished) {
 
 TEST(ReferenceRig, PlacesTheTrackerWhereItsAuthorsPublished) {
   const auto bytes = published("w2c.npy");
-  if (bytes.empty()) GTEST_SKIP() << "no ../shared/data/calibration/w2c.npy";
-  auto view = glm::dmat4(glm::make_mat4(
-      numbers_of<float>(bytes, "", 16).data()));  // OpenGL's camera: y up, z backward; mm
+  if (bytes.empty())
+    GTEST_SKIP() << "calibration/w2c.npy is missing in ../shared/data or $HANDCAST_DATA";
+  // A camera as in OpenGL: y up, z backward, in mm.
+  auto view = glm::dmat4(glm::make_mat4(numbers_of<float>(bytes, "", 16).data()));
   view[3] *= glm::dvec4(1e-3, 1e-3, 1e-3, 1);
   const glm::dmat4 flip(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
   EXPECT_LT(largest_difference(reference_rig().camera_from_tracker, flip * view), 1e-6);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_layers passes on the tree as it is and catches breaches that are planted in a copy of it.
+# Tests that check_layers accepts the tree and reports breaches that are planted in a copy of it.
 set -euo pipefail
 
 copy=$(mktemp -d)
@@ -10,7 +10,7 @@ for top in ipc config calib renderer services supervisor; do
 done
 scripts/check_layers "$copy" >/dev/null
 
-# must_catch WORDS FILE LINE [FILE LINE]...: planting each line in its file is reported with these words.
+# must_catch WORDS FILE LINE [FILE LINE]...: adds each line to its file; check_layers must report it with these words.
 must_catch() {
   local words=$1 said
   shift
@@ -20,11 +20,11 @@ must_catch() {
     printf '\n%s\n' "${planted[i + 1]}" >>"$copy/${planted[i]}"
   done
   if said=$(scripts/check_layers "$copy"); then
-    echo "not caught: ${planted[*]}"
+    echo "check_layers did not report: ${planted[*]}"
     exit 1
   fi
   if ! grep -qF "$words" <<<"$said"; then
-    printf 'reported, but not as "%s":\n%s\n' "$words" "$said"
+    printf 'check_layers reported the breach, but not as "%s":\n%s\n' "$words" "$said"
     exit 1
   fi
   for ((i = 0; i < ${#planted[@]}; i += 2)); do
@@ -33,7 +33,7 @@ must_catch() {
   done
 }
 
-# What a module does not declare, and what it declares in vain.
+# An include without a declaration, and a declaration without an include.
 must_catch 'ipc/base does not declare that it USES ipc/msg (ipc/msg/header.hpp)' \
   ipc/base/planted.hpp '#include "ipc/msg/header.hpp"'
 must_catch 'renderer/mask does not declare that it USES renderer/skin' \
@@ -41,7 +41,7 @@ must_catch 'renderer/mask does not declare that it USES renderer/skin' \
 must_catch 'calib/CMakeLists.txt: USES renderer/base, and no file includes anything of it' \
   calib/CMakeLists.txt 'handcast_program(planted USES renderer/base)'
 
-# A declaration that points up.
+# A declaration of a module in a higher layer.
 must_catch 'renderer/base must not use services/runtime' \
   renderer/base/CMakeLists.txt 'handcast_program(planted USES services/runtime)' \
   renderer/base/planted.cpp '#include "services/runtime/context.hpp"'
@@ -52,7 +52,7 @@ must_catch 'supervisor must not use renderer/base' \
   supervisor/CMakeLists.txt 'handcast_program(planted USES renderer/base)' \
   supervisor/planted.cpp '#include "renderer/base/image.hpp"'
 
-# Circles: of two modules, and of two folders inside one.
+# Cycles of two modules, and of two folders inside one module.
 must_catch 'a circle: renderer/filter -> renderer/predict -> renderer/filter' \
   renderer/predict/CMakeLists.txt 'handcast_program(planted USES renderer/filter)' \
   renderer/predict/planted.cpp '#include "renderer/filter/filters.hpp"'

@@ -7,9 +7,10 @@
 #include "config/rig.hpp"
 #include "config/settings/settings.hpp"
 
-/// Tools for tests that must not forget a setting: they walk over all of them.
+/// Helpers for tests that cover all settings.
 namespace handcast::config {
 
+/// All settings of a rig, which must outlive the result.
 inline std::vector<Setting> every_setting(Rig& rig) {
   std::vector<Setting> all;
   for (const auto& section : list_settings(rig))
@@ -17,7 +18,7 @@ inline std::vector<Setting> every_setting(Rig& rig) {
   return all;
 }
 
-/// The paths of the settings in which two rigs differ.
+/// The paths of the settings whose values differ between two rigs.
 inline std::vector<std::string> differences(Rig a, Rig b) {
   const auto of_a = every_setting(a), of_b = every_setting(b);
   std::vector<std::string> paths;
@@ -26,8 +27,8 @@ inline std::vector<std::string> differences(Rig a, Rig b) {
   return paths;
 }
 
-/// Gives a setting another allowed value than it has, one that is hard to print where the type has
-/// such.
+/// Changes a setting to another allowed value, one that is hard to print if its type has such
+/// values.
 inline void change(const Setting& setting) {
   std::visit(
       [&](const auto& target) {

@@ -14,7 +14,7 @@ TEST(Reference, ThePageInTheTreeIsWhatTheDeclarationsSay) {
   const auto page = read_text(std::filesystem::path(source ? source : ".") / "config/REFERENCE.md");
   ASSERT_TRUE(page) << page.error().what;
   EXPECT_TRUE(*page == print_reference())
-      << "config/REFERENCE.md is out of date. Write it anew:\n"
+      << "config/REFERENCE.md is out of date. Update it:\n"
          "  build/bin/handcast config --reference > config/REFERENCE.md";
 }
 

@@ -5,7 +5,7 @@
 
 #include "tests/config/every_setting.hpp"
 
-/// The rig files that ship.
+/// Tests of the rig files in config/rigs.
 namespace handcast::config {
 namespace {
 
@@ -20,7 +20,7 @@ Rig shipped(const std::string& name) {
   return rig ? *rig : Rig{};
 }
 
-/// Differences that are neither the name nor the cascade nor the time the software takes.
+/// The differences between two rigs, except the name, the cascade and the software time.
 std::vector<std::string> differences_in_hardware(const Rig& a, const Rig& b) {
   auto paths = differences(a, b);
   std::erase_if(paths, [](const std::string& path) {

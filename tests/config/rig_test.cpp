@@ -184,9 +184,10 @@ TEST(Print, EverySettingReadsBackAsItWas) {
 
 TEST(Print, SaysOfEverySettingWhatItIsAndMayBe) {
   const auto text = print_rig(Rig{});
-  EXPECT_THAT(text, HasSubstr("[camera]\n# Where frames come from"));
-  EXPECT_THAT(text,
-              HasSubstr("# Frames a second asked of the camera. (1..2000 Hz)\nrate_hz = 525\n"));
+  EXPECT_THAT(text, HasSubstr("[camera]\n# The source of frames"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("# Frames per second requested from the camera. (1..2000 Hz)\nrate_hz = 525\n"));
   EXPECT_THAT(text,
               HasSubstr("(one of: hold, velocity, acceleration)\nmethod = \"acceleration\"\n"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real processes that die at any moment.
+// Real processes that are killed at random moments.
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace handcast::ipc::testing;
 
-/// A child that runs `body` and dies with the test or by kill().
+/// A child process that runs `body` until kill(), or until the test ends.
 class Child {
  public:
   explicit Child(const std::function<void()>& body) : pid_(::fork()) {
@@ -46,7 +46,7 @@ class Child {
   for (std::uint64_t i = 1;; ++i) {
     auto loan = writer->loan();
     loan->fill(i);
-    if (i % 7 != 0) writer->publish(std::move(loan));  // else abandoned
+    if (i % 7 != 0) writer->publish(std::move(loan));  // otherwise it is abandoned
   }
 }
 
@@ -54,7 +54,7 @@ struct Storm {
   std::uint64_t received = 0, torn = 0, backwards = 0, epochs = 0, died_writing = 0;
 };
 
-/// Reads what writers publish that are killed one after the other, each after a random time.
+/// Reads the messages of writers that are killed one after the other, each after a random time.
 Storm storm(int slots, bool keep_history, int kills) {
   const auto segment = make_ring<Page>(slots, keep_history);
   auto reader = must(Reader<Page>::attach(again(segment)));
@@ -79,7 +79,7 @@ Storm storm(int slots, bool keep_history, int kills) {
   for (int i = 0; i < kills; ++i) {
     Child writer([&] { publish_without_end(segment); });
     look_back();
-    read(Deadline::in(10s));  // a new writer is heard of, however the last one ended
+    read(Deadline::in(10s));  // messages of a new writer arrive, however the last one ended
     const auto end = Deadline::in(std::chrono::microseconds(random() % 3000));
     while (!end.passed()) read(end);
     writer.kill();
@@ -102,7 +102,7 @@ TEST_P(Crash, AWriterKilledAtAnyMomentLeavesNoTornMessageAndItsSuccessorGoesOn) 
   EXPECT_EQ(storm.backwards, 0u);
   EXPECT_GE(storm.received, static_cast<std::uint64_t>(kKills));
   EXPECT_GT(storm.epochs, static_cast<std::uint64_t>(kKills / 2))
-      << "most writers lived long enough to be read";
+      << "most writers must live long enough to publish";
   EXPECT_GT(storm.died_writing, 0u) << "the test must hit writers in the middle of a message";
 }
 
@@ -115,12 +115,12 @@ TEST(Processes, ASleepingReaderIsWokenByAnotherProcess) {
   Child child([&] {
     auto writer = Writer<Note>::attach(again(segment));
     while (!(RealAtomics::load(words.wait(0), std::memory_order_relaxed) & kWaiting)) ::usleep(100);
-    ::usleep(20'000);  // by now it sleeps
+    ::usleep(20'000);  // until the reader sleeps
     writer->publish(note(1));
     ::pause();
   });
   ReaderCore<RealAtomics> reader(words, 0, 0);
-  const auto give_up_ns = now_ns() + 20'000'000'000;  // a lost wake-up would end here
+  const auto give_up_ns = now_ns() + 20'000'000'000;  // limits a lost wake-up
   while (!reader.something_new() && now_ns() < give_up_ns) reader.wait(give_up_ns);
   EXPECT_TRUE(reader.something_new());
   EXPECT_LT(now_ns(), give_up_ns);
@@ -170,7 +170,7 @@ TEST(Processes, RowsOfDeadReadersAreTakenOver) {
   for (int i = 0; i < 3 * kReaderRows; ++i) {
     Child child([&] {
       auto reader = Reader<Note>::attach(again(segment));
-      ::_exit(reader ? 0 : 1);  // without giving the row back
+      ::_exit(reader ? 0 : 1);  // without releasing the row
     });
     child.join();
   }
@@ -181,7 +181,7 @@ TEST(Processes, RowsOfDeadReadersAreTakenOver) {
   EXPECT_EQ(RealAtomics::load(words.owner(0), std::memory_order_relaxed), kept);
 }
 
-/// A reader's process that has both leases out and waits for more, until it is killed.
+/// A process with a reader that holds both leases and waits for more messages, until it is killed.
 Child reader_with_hands_full(const Segment& segment) {
   const auto words = control_words_of(segment);
   auto child = Child([&] {
@@ -241,8 +241,8 @@ TEST(Processes, ASweepFreesTheRowsOfDeadReadersAndNoOthers) {
 TEST(Processes, ASweepMakesGoodASweeperThatDiedHalfWay) {
   const auto segment = make_ring<Note>(3);
   const auto words = control_words_of(segment);
-  RealAtomics::store(words.owner(4), free_word(8),
-                     std::memory_order_seq_cst);  // freed by somebody who got no further
+  // Freed by a process that died before it cleared the other words.
+  RealAtomics::store(words.owner(4), free_word(8), std::memory_order_seq_cst);
   RealAtomics::store(words.wait(4), free_word(7) | kWaiting, std::memory_order_seq_cst);
   RealAtomics::store(words.lease(4, 0), lease_word(7, 1, 1), std::memory_order_seq_cst);
   RealAtomics::store(words.lease(4, 1), free_word(7), std::memory_order_seq_cst);
@@ -260,7 +260,8 @@ TEST(Processes, AWriterWithoutAFreeSlotFreesThoseOfDeadReadersItself) {
   EXPECT_EQ(ring.writer.dropped(), 1u);
   child.kill();
   const auto give_up = Deadline::in(20s);
-  while (!ring.writer.loan() && !give_up.passed()) ::usleep(1000);  // it asks at most every 100 ms
+  // It sweeps at most every 100 ms.
+  while (!ring.writer.loan() && !give_up.passed()) ::usleep(1000);
   EXPECT_FALSE(give_up.passed());
   EXPECT_TRUE(row_is_clean(ring.segment, 0));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that somebody else writes nonsense to: every call comes back, with a message that keeps to
-// its bounds or an error.
+// Memory to which another program writes random words: every call must return, with a message
+// inside its bounds or with an error.
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -22,7 +22,7 @@ using namespace handcast::ipc::testing;
 
 constexpr std::size_t kTail = 200;
 
-/// Values of which many come close to meaning something.
+/// Random values, many of which resemble valid words.
 std::uint64_t nonsense(std::mt19937_64& random) {
   const std::uint64_t any = random();
   switch (any >> 61) {
@@ -49,20 +49,20 @@ void scribble_between(std::byte* from, std::byte* to, std::mt19937_64& random, i
       store_relaxed(*reinterpret_cast<PayloadWord*>(at), nonsense(random));
 }
 
-/// Every word there is but the header: head, epoch, states, rows, tallies, messages.
+/// Overwrites random words behind the header: head, epoch, states, rows, tallies, messages.
 void scribble(const Segment& segment, std::mt19937_64& random, int one_word_in) {
   scribble_between(segment.data() + kControlOffset, segment.data() + segment.size(), random,
                    one_word_in);
 }
 
-std::uint64_t sum_of_tail(const Strip& strip) {  // a sanitizer would see a read beyond a copy
+/// Reads the whole tail, so that a sanitizer detects a read beyond a copy.
+std::uint64_t sum_of_tail(const Strip& strip) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < strip.tail_length && i < kTail; ++i) sum += strip.tail()[i];
   return sum;
 }
 
-/// What a copy says was checked and stays so; what lies in shared memory may change while it is
-/// held.
+/// The size in a copy was checked and cannot change. A leased message may change while it is held.
 void check(const Result<Sample<Strip>>& sample) {
   if (!sample) return;
   EXPECT_TRUE(sample->leased() || (*sample)->tail_length <= kTail);
@@ -110,12 +110,13 @@ TEST(Hostile, RandomWordsNeitherCrashNorHangAReaderAWriterAViewOrASweep) {
     auto writer = must(Writer<Strip>::attach(again(segment)));
     look(view);
     sweep_dead_rows(segment);
-    auto reader = Reader<Strip>::attach(again(segment), static_cast<Wait>(random() % 3),
-                                        any_hold(random));  // or every row looks taken
+    // Fails if all rows happen to look taken.
+    auto reader =
+        Reader<Strip>::attach(again(segment), static_cast<Wait>(random() % 3), any_hold(random));
     for (int turn = 0; turn < 10; ++turn) {
       if (turn == 5)
-        scribble_between(segment.data(), segment.data() + kControlOffset, random,
-                         3);  // nobody reads the header again
+        // The header is not read again.
+        scribble_between(segment.data(), segment.data() + kControlOffset, random, 3);
       use(writer, random);
       if (reader) use(*reader, random);
       look(view);
@@ -157,8 +158,9 @@ void expect_no_size_to_wrap(std::uint32_t Message::*width, std::uint32_t Message
     for (const std::uint32_t h : {0u, 1u, 3u, 1u << 16, 1u << 30, 1u << 31, ~0u}) {
       (*message).*width = w;
       (*message).*height = h;
-      const auto exact = static_cast<long double>(sizeof(Message)) +
-                         static_cast<long double>(w) * h;  // at one byte a pixel
+      // A lower bound, with one byte per pixel.
+      const auto exact =
+          static_cast<long double>(sizeof(Message)) + static_cast<long double>(w) * h;
       EXPECT_GE(static_cast<long double>(message->used_bytes()),
                 std::min(exact, static_cast<long double>(~std::size_t{0})))
           << w << " x " << h;

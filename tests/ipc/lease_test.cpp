@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that are read where they lie.
+// Messages that are read in their slots.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -11,7 +11,7 @@
 namespace {
 std::atomic<std::uint64_t> allocations{0};
 }
-// This program counts its allocations.
+// Replaced to count the allocations of this program.
 [[gnu::noinline]] void* operator new(std::size_t bytes) {
   allocations.fetch_add(1, std::memory_order_relaxed);
   if (void* memory = std::malloc(bytes)) return memory;
@@ -76,7 +76,7 @@ TEST(Lease, AMessageWithATailIsReadWhereItLiesAndASmallOneIsCopied) {
   EXPECT_TRUE(says(sample, 1));
   reinterpret_cast<Strip*>(ring.segment.slot_at(slot_of_lease(ring.lease_word_of(0, 0))))
       ->tail()[7] = 99;
-  EXPECT_EQ(sample->tail()[7], 99) << "it is the slot itself";
+  EXPECT_EQ(sample->tail()[7], 99) << "the sample must be the slot itself";
 
   const auto notes = make_ring<Note>(4);
   must(Writer<Note>::attach(again(notes))).publish(note(1));
@@ -128,7 +128,7 @@ TEST(Lease, WhoAsksForCopiesGetsCopiesAndLeasesNothing) {
   EXPECT_FALSE(sample.leased());
   EXPECT_TRUE(says(sample, 1));
   EXPECT_EQ(ring.leases_out(), 0);
-  EXPECT_EQ(reader.copied(), 0u) << "counts only what should have been leased";
+  EXPECT_EQ(reader.copied(), 0u) << "only messages that should have been leased count";
 }
 
 TEST(Lease, TheWriterDropsItsOwnMessageWhileAllSlotsAreHeldAndGoesOnWhenOneIsFree) {
@@ -140,7 +140,7 @@ TEST(Lease, TheWriterDropsItsOwnMessageWhileAllSlotsAreHeldAndGoesOnWhenOneIsFre
   publish(writer, 2);
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(writer.loan());
   EXPECT_EQ(writer.dropped(), 3u);
-  first = must(reader.next(kNow));  // lets go of the first message
+  first = must(reader.next(kNow));  // releases the first message
   EXPECT_TRUE(says(first, 2));
   EXPECT_TRUE(writer.loan());
 }
@@ -249,8 +249,8 @@ TEST(Lease, ALeaseThatWasTakenAwayIsToldOnceAndCountedAndTheReaderGoesOnWithCopi
   publish(writer, 2);
   auto second = std::make_unique<Sample<Strip>>(must(reader.next(kNow)));
   const auto owner = RealAtomics::load(ring.words().owner(0), std::memory_order_seq_cst);
-  ASSERT_TRUE(claim_row(ring.words(), 0, owner,
-                        free_word(generation_of(owner) + 1)));  // somebody took us for dead
+  // As if another process had mistaken this one for dead.
+  ASSERT_TRUE(claim_row(ring.words(), 0, owner, free_word(generation_of(owner) + 1)));
   EXPECT_EQ(ring.leases_out(), 0);
   ::testing::internal::CaptureStderr();
   first.reset();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leases against a writer in full flight, payload in plain memory on both sides, with threads in
-// place of processes and one mapping for all: what ThreadSanitizer says here is about the protocol.
+// Leases against a writer at full speed. The payload is plain memory on both sides, and threads
+// with one mapping replace the processes, so ThreadSanitizer checks the protocol.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ SmallRing::Payload& payload_of(SmallRing& ring, int slot) {
   return *reinterpret_cast<SmallRing::Payload*>(ring.slot(slot));
 }
 
-/// Returns how many loans failed.
+/// Writes until all readers have finished; returns the number of loans that failed.
 std::uint64_t write_until(SmallRing& ring, const std::atomic<int>& readers_left) {
   WriterCore<RealAtomics> writer(ring.words());
   writer.attach();
@@ -52,8 +52,8 @@ struct Hand {
   Taken taken;
 };
 
-/// Holds two messages at a time: the older one is read again, and let go, when the next one is in
-/// hand.
+/// Holds two messages at a time. When it has taken the next one, it reads the older one again and
+/// releases it.
 Tally read_some(SmallRing& ring, int row) {
   ReaderCore<RealAtomics> reader(ring.words(), row, 0);
   reader.start();
@@ -115,13 +115,13 @@ void expect_sound(const Run& run) {
 }
 
 TEST(Leased, AMessageInHandIsNeverWrittenTo) {
-  constexpr int kSlots =
-      SmallRing::kRows +
-      2;  // one more for each reader would never run out; with one less they may wait for ever
+  // With one slot more for each reader no loan would fail; with one slot less all may wait for
+  // ever.
+  constexpr int kSlots = SmallRing::kRows + 2;
   for (const bool keep_history : {false, true}) {
     const auto scarce = run(kSlots, keep_history);
     expect_sound(scarce);
-    EXPECT_GT(scarce.dropped, 0u) << "the test must drive the writer into leases";
+    EXPECT_GT(scarce.dropped, 0u) << "the test must have loans that fail because of leases";
   }
 }
 

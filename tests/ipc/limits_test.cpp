@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel may refuse, each in a process of its own that may then have no more of it.
+// Resources that the kernel may refuse. Each test runs in a child process with a resource limit.
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -14,22 +14,22 @@ namespace {
 
 using namespace handcast::ipc::testing;
 
-/// Prints what is not so and ends the child with 1.
-void insist(bool so, const char* what, const std::string& said) {
-  if (so) return;
-  std::fprintf(stderr, "not so: %s; the error says: %s\n", what, said.c_str());
+/// Ends the child with exit code 1 and a message unless `holds`.
+void insist(bool holds, const char* what, const std::string& said) {
+  if (holds) return;
+  std::fprintf(stderr, "this does not hold: %s; the error is: %s\n", what, said.c_str());
   ::_exit(1);
 }
 
 template <class T>
 void expect_refusal(const Result<T>& result, const char* what, std::string_view hint = "") {
-  insist(!result, what, "nothing");
+  insist(!result, what, "none");
   insist(result.error().code == Errc::unavailable &&
              result.error().what.find(hint) != std::string::npos,
          what, result.error().what);
 }
 
-/// Runs `body` under a limit; it ends well unless it insists on something that is not so, or
+/// Runs `body` in a child process with a limit. The test fails if insist() fails there, or if it
 /// crashes.
 void with_limit(int resource, rlim_t limit, const std::function<void()>& body) {
   const auto pid = ::fork();
@@ -58,9 +58,9 @@ TEST(Limits, WithoutDescriptorsNothingIsMadeAndNobodyIsTakenForDead) {
   auto for_reader = again(segment), for_writer = again(segment);
   with_limit(RLIMIT_NOFILE, descriptors_in_use(), [&] {
     expect_refusal(Segment::create(RingSpec::of<Note>("test.ring", 4, false)),
-                   "a segment needs a descriptor", "no memory file");
+                   "a segment needs a descriptor", "memory file cannot be created");
     expect_refusal(Reader<Note>::attach(std::move(for_reader)),
-                   "a reader must know when its process began", "when this process began");
+                   "a reader needs the start time of its process", "start time of this process");
     const auto owner =
         RealAtomics::load(control_words_of(segment).owner(0), std::memory_order_seq_cst);
     insist(owner == 0, "no row was taken with a wrong start time", "");
@@ -71,34 +71,35 @@ TEST(Limits, WithoutDescriptorsNothingIsMadeAndNobodyIsTakenForDead) {
   });
   with_limit(RLIMIT_NOFILE, descriptors_in_use(), [] {
     expect_refusal(WakeBridge::start([] { return false; }), "a bridge needs a descriptor",
-                   "no descriptor");
+                   "no eventfd");
   });
 }
 
 TEST(Limits, AFileLargerThanAllowedIsAnErrorValue) {
   with_limit(RLIMIT_FSIZE, 1 << 20, [] {
     std::signal(SIGXFSZ, SIG_IGN);
-    expect_refusal(Segment::create({"test.ring", 1, 1 << 20, 4, false}), "a segment needs room",
-                   "no memory for");
+    expect_refusal(Segment::create({"test.ring", 1, 1 << 20, 4, false}), "a segment needs memory",
+                   "cannot be allocated");
   });
 }
 
 TEST(Limits, WithoutAddressSpaceARingIsNeitherMadeNorOpenedNorLookedAt) {
 #ifdef HANDCAST_WITH_SANITIZER
-  GTEST_SKIP() << "a sanitizer has more address space than this allows";
+  GTEST_SKIP() << "a sanitizer needs more address space than the limit allows";
 #endif
   const RingSpec spec{"test.ring", 1, 4 << 20, 4, false};
   const auto segment = must(Segment::create(spec));
   auto once = duplicate(segment.fd());
   with_limit(RLIMIT_AS, address_space_in_use() + (8 << 20), [&] {
-    expect_refusal(Segment::open(std::move(once)), "a mapping needs room", "cannot be mapped");
-    expect_refusal(Segment::create(spec), "a mapping needs room", "cannot be mapped");
+    expect_refusal(Segment::open(std::move(once)), "a mapping needs address space",
+                   "cannot be mapped");
+    expect_refusal(Segment::create(spec), "a mapping needs address space", "cannot be mapped");
   });
 }
 
 TEST(Limits, WithoutMemoryABufferIsNone) {
 #ifdef HANDCAST_WITH_SANITIZER
-  GTEST_SKIP() << "a sanitizer ends a program that asks for so much";
+  GTEST_SKIP() << "a sanitizer ends a program that allocates so much";
 #endif
   BufferPool pool(std::size_t{1} << 60);
   EXPECT_EQ(pool.take(), nullptr);

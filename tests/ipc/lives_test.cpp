@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who comes, goes, waits and comes again.
+// Readers and writers that attach, detach, wait and attach again.
 #include <gmock/gmock.h>
 
 #include <thread>
@@ -19,7 +19,7 @@ TEST(Ring, ASecondWriterIsRefusedWhileTheFirstLives) {
   const auto second = Writer<Note>::attach(again(segment));
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::unavailable);
-  EXPECT_THAT(second.error().what, HasSubstr("another writer lives"));
+  EXPECT_THAT(second.error().what, HasSubstr("another writer is attached"));
   writer.reset();
   EXPECT_TRUE(Writer<Note>::attach(again(segment)));
 }
@@ -45,10 +45,9 @@ TEST(Ring, AMessageWhoseWriterDiedBeforeAnnouncingItIsAnnouncedByTheNextWriter) 
   EXPECT_TRUE(reader.latest(kNow));
   const auto words = control_words_of(segment);
   reinterpret_cast<Note*>(segment.slot_at(2))->value = 2;
-  RealAtomics::store(words.state(2), state_word(1, 2),
-                     std::memory_order_seq_cst);  // published, head not moved
-  RealAtomics::store(words.state(3), state_word(1, 3) | kWriting,
-                     std::memory_order_seq_cst);  // died while writing
+  // Slot 2 is published, but head is not moved; in slot 3 the writer died while writing.
+  RealAtomics::store(words.state(2), state_word(1, 2), std::memory_order_seq_cst);
+  RealAtomics::store(words.state(3), state_word(1, 3) | kWriting, std::memory_order_seq_cst);
   auto writer = must(Writer<Note>::attach(again(segment)));
   const auto rolled_forward = must(reader.latest(kNow));
   EXPECT_EQ(rolled_forward->value, 2u);

@@ -82,7 +82,7 @@ TEST(Ring, ALateReaderSeesTheNewestAtOnceAndOnlyOnce) {
   EXPECT_FALSE(latest.latest(kNow));
   EXPECT_EQ(must(next.next(kNow))->value, 5u);
   EXPECT_EQ(next.skipped() + latest.skipped(), 0u)
-      << "what came before a reader was not skipped by it";
+      << "messages before a reader attached do not count as skipped";
 }
 
 TEST(Ring, ALateReaderOfAHistoryReadsAllThatIsStillThere) {
@@ -204,7 +204,7 @@ TEST(Ring, LoansDoNotOverlapAndRunOutWithoutHarm) {
   EXPECT_NE(&*first, &*second);
   EXPECT_FALSE(writer.loan());
   EXPECT_EQ(writer.dropped(), 1u);
-  writer.publish(writer.loan());  // an empty loan is nothing to publish
+  writer.publish(writer.loan());  // an empty loan is ignored
   first->value = 2;
   second->value = 3;
   writer.publish(std::move(second));

@@ -17,7 +17,7 @@ SegmentHeader& header_of(const Segment& segment) {
   return *reinterpret_cast<SegmentHeader*>(segment.data());
 }
 
-/// Why the ring cannot be opened any more; empty if it can.
+/// The reason why the ring cannot be opened; empty if it can.
 std::string refusal(int fd) {
   const auto segment = Segment::open(duplicate(fd));
   if (segment) return "";
@@ -50,7 +50,7 @@ TEST(Segment, EveryWriterHasLinesOfItsOwnAndAllLieWithinTheMemory) {
     lines.push_back(offset(words.owner(row)));
     for (const auto* word : {&words.wait(row), &words.lease(row, 0), &words.lease(row, 1)})
       EXPECT_EQ(offset(*word) / kLineBytes, lines.back() / kLineBytes)
-          << "a row's words are one reader's";
+          << "the words of a row belong to one reader";
     EXPECT_NE(&words.lease(row, 0), &words.lease(row, 1));
   }
   lines.push_back(offset(writer_tally(segment)));
@@ -92,7 +92,7 @@ TEST(Segment, WhatIsNotARingIsRefusedWithAReason) {
   ASSERT_EQ(::fcntl(unsealed.get(), F_ADD_SEALS, F_SEAL_SHRINK), 0);
   EXPECT_THAT(refusal(unsealed.get()), HasSubstr("not sealed"));
   ASSERT_EQ(::fcntl(unsealed.get(), F_ADD_SEALS, F_SEAL_GROW), 0);
-  EXPECT_THAT(refusal(unsealed.get()), HasSubstr("does not begin like a ring"));
+  EXPECT_THAT(refusal(unsealed.get()), HasSubstr("does not begin with the header of a ring"));
 
   const UniqueFd tiny(::memfd_create("x", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   ASSERT_EQ(::ftruncate(tiny.get(), 100), 0);
@@ -110,11 +110,11 @@ TEST(Segment, AHeaderThatDiffersIsRefusedWithAReason) {
     return refusal(segment.fd());
   };
   EXPECT_EQ(with([](SegmentHeader&) {}), "");
-  EXPECT_THAT(with([](auto& h) { h.magic ^= 1; }), HasSubstr("does not begin like a ring"));
+  EXPECT_THAT(with([](auto& h) { h.magic ^= 1; }), HasSubstr("header of a ring"));
   EXPECT_THAT(with([](auto& h) { h.layout_version = 7; }), HasSubstr("layout version 7"));
   EXPECT_THAT(with([](auto& h) { h.boot_id[3] ^= 1; }),
               HasSubstr("before the machine last started"));
-  EXPECT_THAT(with([](auto& h) { h.stream.fill('x'); }), HasSubstr("do not end"));
+  EXPECT_THAT(with([](auto& h) { h.stream.fill('x'); }), HasSubstr("not terminated"));
   EXPECT_THAT(with([](auto& h) { h.slot_count = 1; }), HasSubstr("1 slots"));
   EXPECT_THAT(with([](auto& h) { h.slot_count = 0xffffffff; }), HasSubstr("slots"));
   EXPECT_THAT(with([](auto& h) { h.slot_count = 40; }), HasSubstr("contradict"));

@@ -10,19 +10,22 @@
 
 namespace handcast::ipc::testing {
 
-/// A ring in private memory: the production protocol, messages of equal words.
+/// A ring in private memory with the production protocol. All words of a message are equal.
 class SmallRing {
  public:
-  static constexpr std::size_t kWords = 512;
-  static constexpr int kRows = 3;
-  using Payload = std::array<PayloadWord, kWords>;
+  static constexpr std::size_t kWords = 512;        ///< words of a message
+  static constexpr int kRows = 3;                   ///< reader rows
+  using Payload = std::array<PayloadWord, kWords>;  ///< a message
 
+  /// An empty ring.
   SmallRing(int slots, bool keep_history)
       : lines_(std::make_unique<ControlWords<RealAtomics>::Line[]>(control_lines(slots, kRows))),
         payloads_(std::make_unique<Payload[]>(static_cast<std::size_t>(slots))),
         words_(lines_.get(), slots, keep_history, kRows) {}
 
+  /// The control words.
   const ControlWords<RealAtomics>& words() const { return words_; }
+  /// The first byte of a slot.
   std::byte* slot(int number) {
     return reinterpret_cast<std::byte*>(payloads_[static_cast<std::size_t>(number)].data());
   }

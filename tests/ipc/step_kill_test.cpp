@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real SIGKILL before each step of a writer's and of a reader's life, on real shared memory: the
-// k-th run dies before step k, until one lives to the end. What is left behind must serve the next
-// one.
+// SIGKILL before each step of a writer and of a reader, on real shared memory. The k-th process is
+// killed before step k, until one reaches its end. After each, a successor must be able to use the
+// ring.
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -18,7 +18,8 @@ using namespace handcast::ipc::testing;
 constexpr int kPayloadWords = 4;
 constexpr int kLeaserRow = 1, kSleeperRow = 2, kVictimRow = 0;
 
-/// RealAtomics, with death before a step of choice. Only the child that is to die counts.
+/// RealAtomics, with SIGKILL before a chosen step. Steps are counted only in the child that will be
+/// killed.
 struct KillingAtomics {
   using Word = RealAtomics::Word;
   static inline int steps_left = -1;
@@ -43,7 +44,7 @@ struct KillingAtomics {
   static void wake(Word& word) { step(), RealAtomics::wake(word); }
 };
 
-/// A ring whose words are reached through either kind of atomics.
+/// A ring whose words can be accessed through both kinds of atomics.
 class Ring {
  public:
   Ring(int slots, bool keep_history)
@@ -66,7 +67,7 @@ class Ring {
         return false;
     return true;
   }
-  /// Whatever says that it is a message is one.
+  /// True if each slot that claims to hold a message holds a whole one.
   bool all_whole() const {
     const auto words = this->words<RealAtomics>();
     for (int slot = 0; slot < words.slots(); ++slot) {
@@ -80,7 +81,7 @@ class Ring {
   Segment segment_;
 };
 
-/// False where there was no slot.
+/// Publishes or abandons one message. Returns false if there was no free slot.
 template <class Atomics>
 bool write_one(const Ring& ring, WriterCore<Atomics>& writer, bool abandons = false) {
   const int slot = writer.loan();
@@ -95,7 +96,7 @@ bool write_one(const Ring& ring, WriterCore<Atomics>& writer, bool abandons = fa
   return true;
 }
 
-/// The child dies before step `k` of `life`. False where it lived to the end.
+/// Runs `life` in a child that is killed before step `k`. Returns false if it reached its end.
 bool dies_before_step(int k, const std::function<void()>& life) {
   const auto child = ::fork();
   if (child == 0) {
@@ -106,7 +107,7 @@ bool dies_before_step(int k, const std::function<void()>& life) {
   int status = 0;
   ::waitpid(child, &status, 0);
   if (WIFEXITED(status)) {
-    EXPECT_EQ(WEXITSTATUS(status), 0) << "the child itself found something wrong";
+    EXPECT_EQ(WEXITSTATUS(status), 0) << "a check inside the child failed";
   }
   return WIFSIGNALED(status);
 }
@@ -123,7 +124,8 @@ ReaderCore<RealAtomics> reader_in(const Ring& ring, int row) {
   return {words, row, generation_of(after)};
 }
 
-/// Another process that sleeps until it sees `sequence`; its exit code is 0 if no wake-up was lost.
+/// Starts a process that sleeps until it sees `sequence`. Its exit code is 0 if no wake-up was
+/// lost.
 pid_t start_sleeper(const Ring& ring, std::uint64_t sequence) {
   const auto child = ::fork();
   if (child != 0) return child;
@@ -143,14 +145,14 @@ void writers_life(const Ring& ring) {
   for (int i = 0; i < 5; ++i) write_one(ring, writer, i == 2);
 }
 
-/// What holds after a writer died anywhere.
+/// Checks the ring after a writer was killed at any step.
 void expect_successor_goes_on(const Ring& ring) {
   auto reader = reader_in(ring, kVictimRow);
   Taken taken;
   int slot = kNoSlot;
   const auto copy = [&](int from) { slot = from; };
   EXPECT_EQ(reader.latest(reader.copying(copy), taken), Outcome::taken)
-      << "one message is always there";
+      << "there must always be a message";
   EXPECT_TRUE(ring.is_whole(slot, taken.sequence));
   EXPECT_TRUE(ring.all_whole());
 
@@ -195,13 +197,14 @@ void kill_writer_at_every_step(bool with_lease) {
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "a sleeping reader was not woken";
     if (::testing::Test::HasFailure()) return;
   }
-  EXPECT_GT(steps, 100) << "that is not a writer's life";
+  EXPECT_GT(steps, 100) << "the writer must reach its end";
 }
 
 TEST(StepKill, AWriterMayDieBeforeAnyStep) { kill_writer_at_every_step(false); }
 TEST(StepKill, AWriterMayDieBeforeAnyStepWhileAMessageIsLeased) { kill_writer_at_every_step(true); }
 
-/// Claims the row of a dead one, holds two leases, gives them back, waits, copies, leaves.
+/// Claims the row of a dead reader, takes two leases, releases them, waits, copies, and releases
+/// the row.
 void readers_life(const Ring& ring, std::uint64_t before) {
   const auto words = ring.words<KillingAtomics>();
   const auto owner = owner_of_this_process(generation_of(before) + 1);
@@ -233,7 +236,8 @@ TEST(StepKill, AReaderMayDieBeforeAnyStep) {
     WriterCore<RealAtomics> writer(words);
     writer.attach();
     for (int i = 0; i < 4; ++i) ASSERT_TRUE(write_one(ring, writer));
-    // The row is of one that died before, with all a reader can leave: two leases and a flag.
+    // The row belongs to a reader that died with all that it can leave behind: two leases and a
+    // flag.
     const auto dead = owner_word(7, 0, 0);
     RealAtomics::store(words.owner(kVictimRow), dead, std::memory_order_relaxed);
     RealAtomics::store(words.wait(kVictimRow), free_word(7) | kWaiting, std::memory_order_relaxed);
@@ -261,11 +265,12 @@ TEST(StepKill, AReaderMayDieBeforeAnyStep) {
     EXPECT_EQ(next.latest(next.leasing(lease), taken), Outcome::taken);
     EXPECT_TRUE(ring.is_whole(lease.slot, taken.sequence));
     const ReaderCore<RealAtomics> ghost(words, kVictimRow, generation_of(old));
-    EXPECT_FALSE(ghost.release({0, 0, old_lease})) << "who lost the row must not touch it";
+    EXPECT_FALSE(ghost.release({0, 0, old_lease}))
+        << "a reader that lost its row must not change it";
     EXPECT_TRUE(next.release(lease));
     if (HasFailure()) return;
   }
-  EXPECT_GT(steps, 35) << "that is not a reader's life";
+  EXPECT_GT(steps, 35) << "the reader must reach its end";
   EXPECT_GT(leases_left, 10) << "the test must hit readers that hold leases";
   EXPECT_GT(flags_left, 1) << "the test must hit readers that wait";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers against a writer that overwrites what they read, on as few slots as a ring can have, with
-// threads in place of processes and one mapping for all, so that ThreadSanitizer sees both sides.
+// Readers against a writer that overwrites their messages, on rings with the fewest slots. Threads
+// with one mapping replace the processes, so ThreadSanitizer sees both sides.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ Tally read_some(SmallRing& ring, int row, Verb verb) {
   reader.start();
   SmallRing::Payload payload;
   std::uint64_t copies = 0, last = 0;
-  const auto copy = [&](int slot) {  // every third one loses the processor half way
+  const auto copy = [&](int slot) {  // every third copy yields the processor half way
     auto* to = reinterpret_cast<std::byte*>(payload.data());
     copy_from_slot(to, ring.slot(slot), kHalf);
     if (++copies % 3 == 0) std::this_thread::yield();
@@ -91,10 +91,10 @@ TEST_P(Torn, NoReaderEverGetsAMessageThatWasOverwrittenWhileItWasCopied) {
       });
   }
   for (const auto& tally : tallies) {
-    EXPECT_EQ(tally.torn, 0u) << "of " << tally.taken << " messages; " << tally.overwritten
-                              << " were caught";
+    EXPECT_EQ(tally.torn, 0u) << "torn of " << tally.taken << " messages; " << tally.overwritten
+                              << " torn ones were rejected";
     EXPECT_EQ(tally.backwards, 0u);
-    EXPECT_GT(tally.overwritten, 0u) << "the test must catch readers in the middle of a copy";
+    EXPECT_GT(tally.overwritten, 0u) << "the test must overwrite messages during a copy";
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What somebody sees who looks at a ring without taking part.
+// Tests of the read-only view of a ring.
 #include <gmock/gmock.h>
 
 #include "ipc/ring/ring_view.hpp"
@@ -28,7 +28,7 @@ TEST(View, ShowsTheNewestMessageAndWhoseItIs) {
   const auto view = view_of(segment);
   auto writer = std::make_unique<Writer<Note>>(must(Writer<Note>::attach(again(segment))));
   EXPECT_EQ(view.look().epoch, 1u);
-  EXPECT_EQ(view.epoch(), 0u) << "it has published nothing yet";
+  EXPECT_EQ(view.epoch(), 0u) << "the writer has published nothing yet";
   const auto before_ns = now_ns();
   writer->publish(note(1, 4711));
   writer->publish(note(2, 4712));
@@ -39,7 +39,7 @@ TEST(View, ShowsTheNewestMessageAndWhoseItIs) {
   EXPECT_EQ(view.epoch(), 1u);
   writer.reset();
   writer = std::make_unique<Writer<Note>>(must(Writer<Note>::attach(again(segment))));
-  EXPECT_EQ(view.epoch(), 1u) << "the newest message is still the predecessor's";
+  EXPECT_EQ(view.epoch(), 1u) << "the newest message is still that of the previous writer";
   EXPECT_EQ(view.look().epoch, 2u);
   writer->publish(note(3));
   EXPECT_EQ(view.epoch(), 2u);
@@ -83,7 +83,7 @@ TEST(View, ShowsWhatIsUnusableWhatIsCopiedForWantOfALeaseAndHowOldLeasesAre) {
   writer.publish(std::move(loan));
   EXPECT_FALSE(reader.next(kNow));
   auto shown = view.look().readers.at(0);
-  EXPECT_EQ(shown.copied, 2u) << "the unusable one had to be copied, too";
+  EXPECT_EQ(shown.copied, 2u) << "the unusable message was copied, too";
   EXPECT_EQ(shown.unusable, 1u);
   EXPECT_EQ(shown.received, 3u);
   EXPECT_GE(shown.lease_ages_ns[1], 0);

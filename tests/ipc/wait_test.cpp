@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whoever waits is woken: by the futex, through an eventfd, from an epoll loop. A wake-up that is
-// lost ends a test after 20 s.
+// Waiting readers are woken: by the futex, through an eventfd, in an epoll loop. A lost wake-up
+// ends a test after 20 s.
 #include <gmock/gmock.h>
 #include <poll.h>
 #include <sys/epoll.h>
@@ -39,7 +39,7 @@ TEST(Wakeups, NoneIsLostBetweenAFlagAndAHead) {
     writer.attach();
     std::mt19937 random(1);
     for (std::uint64_t i = 1; i <= kMessages; ++i) {
-      while (seen.load() + 1 < i) continue;  // the reader is about to wait: meet it there
+      while (seen.load() + 1 < i) continue;  // publish when the reader is about to wait
       for (auto steps = random() % 200; steps > 0; --steps)
         std::atomic_signal_fence(std::memory_order_seq_cst);
       writer.publish(writer.loan());
@@ -52,7 +52,7 @@ TEST(Wakeups, NoneIsLostBetweenAFlagAndAHead) {
     reader.catch_up();
     seen.store(reader.seen());
   }
-  EXPECT_EQ(reader.seen(), kMessages) << "the reader slept over a message";
+  EXPECT_EQ(reader.seen(), kMessages) << "the reader has missed a message while it slept";
 }
 
 TEST(EventFd, ThereIsNoneForTheOtherWays) {
@@ -72,10 +72,10 @@ TEST(EventFd, IsReadableFromAMessageUntilThereIsNothingMore) {
     ASSERT_TRUE(readable(reader.event_fd(), kLong_ms));
     writer.publish(note(2 * round + 1));
     EXPECT_EQ(must(reader.next(kNow))->value, 2 * round);
-    EXPECT_TRUE(readable(reader.event_fd(), 0)) << "there is one more";
+    EXPECT_TRUE(readable(reader.event_fd(), 0)) << "there is one more message";
     EXPECT_EQ(must(reader.next(kNow))->value, 2 * round + 1);
-    for (int looks = 0; looks < 3 && readable(reader.event_fd(), 5);
-         ++looks)  // the second may be told of late
+    // The second message may be reported late.
+    for (int looks = 0; looks < 3 && readable(reader.event_fd(), 5); ++looks)
       EXPECT_FALSE(reader.next(kNow));
   }
 }
@@ -101,8 +101,8 @@ TEST(EventFd, TheReadersOwnWaitIsWokenToo) {
   for (std::uint64_t i = 1; i <= 50; ++i) EXPECT_EQ(must(reader.next(Deadline::in(20s)))->value, i);
 }
 
-/// Publishes one message after the other, each as soon as the last one was seen: the moment its
-/// reader looks once more and clears its descriptor.
+/// Publishes messages, each as soon as the last one was seen: at that moment the reader clears its
+/// descriptor and looks once more.
 void publish_in_step(const Segment& segment, const std::atomic<std::uint64_t>& seen,
                      std::uint64_t messages, unsigned seed) {
   auto writer = must(Writer<Note>::attach(again(segment)));
@@ -132,8 +132,8 @@ TEST(EventFd, AnEpollLoopWithTwoRingsMissesNothingOfEither) {
     epoll_event event{};
     const auto events = ::epoll_wait(epoll.get(), &event, 1, kLong_ms);
     if (events < 0 && errno == EINTR) continue;
-    ASSERT_EQ(events, 1) << "a message was not told of: " << seen[0] << " and " << seen[1]
-                         << " were seen";
+    ASSERT_EQ(events, 1) << "a message was not reported; " << seen[0] << " and " << seen[1]
+                         << " messages were seen";
     auto& reader = readers[event.data.u32];
     auto& count = seen[event.data.u32];
     while (const auto sample = reader.next(kNow)) {
@@ -145,9 +145,9 @@ TEST(EventFd, AnEpollLoopWithTwoRingsMissesNothingOfEither) {
 
 TEST(WakeBridge, TellsOfWhatComesAfterTheDescriptorWasCleared) {
   std::atomic<int> news{0};
-  const auto bridge = must(WakeBridge::start([&, told = 0]() mutable {
+  const auto bridge = must(WakeBridge::start([&, reported = 0]() mutable {
     std::this_thread::sleep_for(1ms);
-    return std::exchange(told, news.load()) != news.load();
+    return std::exchange(reported, news.load()) != news.load();
   }));
   EXPECT_FALSE(readable(bridge->fd(), 10));
   for (int i = 0; i < 5; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that come to their end: sequences, epochs, generations.
+// Numbers that wrap around: sequences, epochs, generations.
 #include <gtest/gtest.h>
 
 #include "ipc/ring/ring_view.hpp"
@@ -16,7 +16,7 @@ TEST(Wrap, LaterAndHowManyAreTrueAcrossTheLastSequence) {
   EXPECT_TRUE(is_later(2, 1) && is_later(1, kLast) && is_later(5, kLast - 5) &&
               is_later(kLast, kLast - 1));
   EXPECT_FALSE(is_later(1, 2) || is_later(kLast, 1) || is_later(7, 7) || is_later(kLast, kLast));
-  EXPECT_TRUE(is_later(1, 0) && is_later(kLast, 0)) << "any is later than none";
+  EXPECT_TRUE(is_later(1, 0) && is_later(kLast, 0)) << "any sequence is later than none";
   EXPECT_FALSE(is_later(0, 1) || is_later(0, kLast) || is_later(0, 0));
   EXPECT_EQ(following(kLast), 1u);
   EXPECT_EQ(given_between(kLast, 1), 1u);
@@ -26,7 +26,7 @@ TEST(Wrap, LaterAndHowManyAreTrueAcrossTheLastSequence) {
   EXPECT_EQ(following_epoch(kEpochMask), 1u);
 }
 
-/// A ring whose newest message, in slot 0, has this sequence.
+/// A ring whose newest message has this sequence and is in slot 0.
 Segment ring_at(std::uint64_t sequence, int slots, bool keep_history) {
   auto segment = make_ring<Note>(slots, keep_history);
   const auto words = control_words_of(segment);

@@ -41,7 +41,7 @@ TEST_F(Files, AreReplacedWholeAndNothingIsLeftBeside) {
   ASSERT_TRUE(write_whole(file, "second"));
   EXPECT_EQ(read_text(file), "second");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(reader), {}), "a longer first text")
-      << "who reads the old one reads all of it";
+      << "an open reader still gets the whole old file";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
   EXPECT_EQ(write_whole("/nowhere/observer.json", "x").error().code, Errc::unavailable);
 }

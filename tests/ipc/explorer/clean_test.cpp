@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The protocol under every order of steps, every late store and every death. Each test goes through
-// all of it.
+// The protocol under every order of steps, every late store and every death. Each test explores one
+// story completely.
 #include <gtest/gtest.h>
 
 #include <iostream>

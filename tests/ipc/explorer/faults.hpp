@@ -7,36 +7,50 @@
 
 #include "tests/ipc/explorer/memory_model.hpp"
 
-/// Faults that are planted under the protocol: the code stays as it is, its operations do something
-/// else.
+/// Faults that are planted under the protocol: its code is unchanged, but its operations behave
+/// differently.
 namespace handcast::explorer {
 
+/// A kind of operation on shared memory.
 enum class Operation : std::uint8_t { load, store, exchange, fence, wake };
+/// A kind of shared word (ipc/ring/words.hpp).
 enum class Kind : std::uint8_t { head, epoch, state, owner, wait, lease, payload, other };
+/// The side of the protocol that a thread plays.
 enum class Role : std::uint8_t { writer, reader, recoverer };
 
+/// An operation on a kind of word.
 struct Place {
-  Operation operation;
-  Kind kind;
+  Operation operation;  ///< what is done
+  Kind kind;            ///< the word it is done to
+  /// Equal if both members are.
   bool operator==(const Place&) const = default;
 };
 
+/// A fault: the operations that it changes, and how.
 struct Fault {
+  /// Which operations are changed.
+  /// @{
   Role role;
   Operation operation;
-  Kind kind;                   ///< of a fence: the kind of word that was touched just before it
-  std::optional<Place> after;  ///< only where the thread did this just before; fences do not count
-  bool (*when)(std::uint64_t value) = nullptr;  ///< only where this is being stored
+  Kind kind;  // for a fence: the word of the operation before it
+  /// @}
+  /// Only directly after this operation of the same thread. Fences do not count.
+  std::optional<Place> after;
+  /// Only if it returns true for the value to be stored.
+  bool (*when)(std::uint64_t value) = nullptr;
 
-  // What happens instead, one of:
-  std::optional<std::memory_order> order;  ///< this order
-  bool dropped = false;                    ///< nothing
-  bool plain_store = false;                ///< an exchange that does not compare
+  /// How they are changed: one of the following.
+  /// @{
+  std::optional<std::memory_order> order;  // uses this memory order
+  bool dropped = false;                    // does nothing
+  bool plain_store = false;                // for an exchange: stores without a comparison
   std::uint64_t (*instead)(std::uint64_t newest,
-                           std::uint64_t value) = nullptr;  ///< another value, loaded or stored
-  std::vector<Place> overtaken_by;                          ///< a store that these come before
+                           std::uint64_t value) = nullptr;  // loads or stores another value
+  std::vector<Place> overtaken_by;  // for a store: takes effect after these operations
+  /// @}
 };
 
+/// All faults that are planted at once.
 using Faults = std::vector<Fault>;
 
 }  // namespace handcast::explorer

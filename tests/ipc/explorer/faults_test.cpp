@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every order of the protocol weakened, and every rule of it broken, once: the explorer must find
-// what that breaks. What it finds nothing in is listed as redundant, and asserted to be.
-// HANDCAST_TRACE=1 prints the way to each fault.
+// Weakens each memory order of the protocol and breaks each of its rules, one at a time: the
+// explorer must find a broken property. Orders without effect are asserted to be redundant.
+// HANDCAST_TRACE=1 prints the steps to each broken property.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ bool is_abandoned(std::uint64_t state) { return !(state & kWriting) && sequence_
 bool takes_lease(std::uint64_t lease) { return ipc::slot_of_lease(lease) >= 0; }
 bool ends_lease(std::uint64_t lease) { return ipc::slot_of_lease(lease) < 0; }
 
-// Orders.
+// Faults that weaken a memory order or drop a fence.
 Fault weaker(Role role, Operation operation, Kind kind, std::memory_order order = kRelaxed) {
   return {.role = role, .operation = operation, .kind = kind, .order = order};
 }
@@ -53,11 +53,11 @@ const std::string kTwice = "a sequence is given twice";
 const std::string kLostWakeUp =
     "a wake-up is lost: a reader sleeps for ever, with a message unseen";
 const std::string kNoneFree = "a reader has no free lease although it holds less than it may";
-/// Also where somebody else has changed a reader's lease word: it cannot take a lease any more.
+/// Also if another process has changed a lease word of the reader, which can then take no lease.
 const std::string kStarves = "a reader starves although nothing newer was published";
 const std::string kLost = "a message was published that no reader will find";
 
-// ---- A torn message is recognised.
+// ---- A torn message is detected.
 
 TEST(Mark, NeedsTheFenceBeforeThePayload) {
   expect_found(stories::copying(), {without_fence(Role::writer, Kind::state)}, kTorn);
@@ -280,7 +280,7 @@ TEST(Claim, ClearsTheLeases) {
                kNoneFree);
 }
 
-// ---- What could be weaker. Kept, since it costs nothing and each argument stays short.
+// ---- Redundant orders. They are kept because they cost nothing and keep each argument short.
 
 TEST(Redundant, TheReadersFenceBeforeItSleepsBecauseTheKernelHasOne) {
   expect_redundant(stories::waiting(), {without_fence(Role::reader, Kind::wait)});

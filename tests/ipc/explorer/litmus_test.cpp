@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory model itself: what each classic of weak memory may end with, and what it may not.
+// Tests of the memory model: the allowed and forbidden outcomes of the classic litmus tests.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -30,11 +30,11 @@ bool exchange(int location, std::uint64_t from, std::uint64_t to, std::memory_or
 }
 void fence(std::memory_order order) { machine->fence(order); }
 
-/// What a thread has read.
+/// The values that a thread has read.
 struct Registers {
   std::uint64_t a, b;
 };
-using Outcome = std::array<int, 4>;  ///< a and b of the first thread that reads, then of the second
+using Outcome = std::array<int, 4>;  ///< a, b of the first reading thread, a, b of the second one
 using Outcomes = std::set<Outcome>;
 
 struct TestThread {
@@ -97,7 +97,7 @@ Outcomes ends_of(const std::vector<TestThread>& threads, bool every_order) {
   return outcomes;
 }
 
-/// All outcomes. The reductions of the search must not lose one.
+/// All outcomes. They must be the same with and without the reductions of the search.
 Outcomes outcomes_of(const std::vector<TestThread>& threads) {
   const auto outcomes = ends_of(threads, false);
   EXPECT_EQ(outcomes, ends_of(threads, true)) << "a reduction loses outcomes";
@@ -110,10 +110,10 @@ void expect_allowed(const std::vector<TestThread>& threads, const Outcome& outco
 void expect_forbidden(const std::vector<TestThread>& threads, const Outcome& outcome) {
   const auto outcomes = outcomes_of(threads);
   EXPECT_FALSE(outcomes.contains(outcome));
-  EXPECT_GT(outcomes.size(), 1u) << "the test must leave something open";
+  EXPECT_GT(outcomes.size(), 1u) << "the test must have several outcomes";
 }
 
-// Store buffering: x = 1; read y | y = 1; read x. Both reading 0 is what a Dekker must exclude.
+// Store buffering: x = 1; read y | y = 1; read x. A Dekker protocol must exclude that both read 0.
 
 TEST(StoreBuffering, BothMayReadOldValuesInSpiteOfAcquireAndRelease) {
   expect_allowed({reads([](Registers& r) { store(kX, 1, release), r.a = load(kY, acquire); }),
@@ -145,8 +145,8 @@ TEST(StoreBuffering, AReadModifyWriteDoesNotReplaceAFence) {
       {0, 0, 0, 0});
 }
 
-// Message passing: x = 1 (the message); y = 1 | read y; read x. Reading 1 and then 0 is a message
-// that is not there.
+// Message passing: x = 1 (the message); y = 1 (the flag) | read y; read x. To read 1 and then 0 is
+// to see the flag but not the message.
 
 TEST(MessagePassing, RelaxedShowsTheFlagBeforeTheMessage) {
   expect_allowed({writes([](Registers&) { store(kX, 1, relaxed), store(kY, 1, relaxed); }),
@@ -195,8 +195,8 @@ TEST(MessagePassing, AnAcquireFenceBeforeTheFlagIsTooEarly) {
                  {1, 0, 0, 0});
 }
 
-// A sequence lock in small: the mark, then the payload | the payload, then the mark again. Reading
-// new and then unmarked is a torn copy.
+// A small sequence lock: x = 1 (the mark); y = 1 (the payload) | read y; read x. To read 1 and then
+// 0 is to accept a torn copy.
 
 TEST(Mark, AReleaseStoreDoesNotKeepWhatFollowsBehindIt) {
   expect_allowed({writes([](Registers&) { store(kX, 1, release), store(kY, 1, relaxed); }),
@@ -212,7 +212,7 @@ TEST(Mark, AnAcquireLoadDoesNotKeepWhatPrecedesBeforeIt) {
       {1, 0, 0, 0});
 }
 
-// Release sequences, as C++20 has them: only read-modify-writes go on with one.
+// Release sequences of C++20: only read-modify-writes continue one.
 
 TEST(ReleaseSequence, APlainStoreOnTopEndsIt) {
   expect_allowed({writes([](Registers&) {
@@ -235,7 +235,7 @@ TEST(ReleaseSequence, AnothersReadModifyWriteKeepsItToo) {
                    {2, 0, 0, 0});
 }
 
-// Coherence: one location has one order for everybody.
+// Coherence: all threads see the stores to one location in the same order.
 
 TEST(Coherence, AReaderNeverGoesBack) {
   expect_forbidden({writes([](Registers&) { store(kX, 1, relaxed), store(kX, 2, relaxed); }),
@@ -259,7 +259,8 @@ TEST(Coherence, OnlyOneOfTwoExchangesSucceeds) {
                    {1, 0, 1, 0});
 }
 
-// Independent reads of independent writes: may two readers disagree on which came first?
+// Independent reads of independent writes: whether two readers may see two stores in opposite
+// orders.
 
 TEST(IndependentReads, MayDisagreeUnderAcquire) {
   expect_allowed({writes([](Registers&) { store(kX, 1, release); }),
@@ -279,7 +280,7 @@ TEST(IndependentReads, AgreeWithSeqCstFences) {
                    {1, 0, 1, 0});
 }
 
-// What a real machine may do and this one cannot: see memory_model.hpp.
+// An outcome that is possible on real machines but not in this model: see memory_model.hpp.
 
 TEST(LimitOfTheModel, NoLoadSeesAStoreThatComesLaterInItsOwnThread) {
   expect_forbidden({reads([](Registers& r) { r.a = load(kX, relaxed), store(kY, 1, relaxed); }),

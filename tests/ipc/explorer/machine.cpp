@@ -16,7 +16,7 @@ int Machine::add_location(std::string name, Kind kind) {
 
 void Machine::close() {
   for (int i = 0; i < threads(); ++i) {
-    Set family = bit(i);  // the thread and all that come after it
+    Set family = bit(i);  // the thread and all that it starts, directly or not
     for (int round = 0; round < threads(); ++round)
       for (int k = 0; k < threads(); ++k)
         if (family & bit(k)) family |= program(k).starts_on_death | program(k).starts_on_end;
@@ -102,8 +102,8 @@ bool Machine::exchange(int location, std::uint64_t expected, std::uint64_t desir
   return exchange_now(location, expected, desired, fault->order.value_or(order));
 }
 
-/// Succeeds on the newest message only; fails on it, or like a load on any older one of another
-/// value.
+/// Succeeds only on the newest message. Fails on that, or like a load on an older message with
+/// another value.
 bool Machine::exchange_now(int location, std::uint64_t expected, std::uint64_t desired,
                            std::memory_order order) {
   return perform(manner_of_store(location), [&](Thread& self) {
@@ -163,8 +163,8 @@ void Machine::futex_wake(int location) {
   });
 }
 
-/// No other order needs to be tried: a write that nothing orders against this read is found here
-/// when it came before, and in write_payload() when it comes later.
+/// No other order needs to be tried: a write that is not ordered with this read is detected here if
+/// it came before, and in write_payload() if it comes later.
 std::uint64_t Machine::plain_read(int location, int read_count) {
   return perform(Manner::unnoticed, [&](Thread& self) {
     check(knows_newest(location), "a payload is written while a lease reads it");

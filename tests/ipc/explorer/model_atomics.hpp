@@ -5,15 +5,19 @@
 
 namespace handcast::explorer {
 
-/// The machine whose threads are running: the protocol's operations have no other way to find it.
+/// The machine whose threads are running. It is global because the operations of the protocol take
+/// no other argument.
 inline Machine* machine = nullptr;
 
-/// Puts the machine under the protocol, in RealAtomics' place.
+/// Replaces RealAtomics by the operations of the machine.
 struct ModelAtomics {
+  /// One word.
   struct Word {
-    std::uint8_t location = 0;
+    std::uint8_t location = 0;  ///< its location in the machine
   };
 
+  /// The operations of RealAtomics; wait() has no time limit.
+  /// @{
   static std::uint64_t load(const Word& word, std::memory_order order) {
     return machine->load(word.location, order);
   }
@@ -29,8 +33,10 @@ struct ModelAtomics {
     machine->futex_wait(word.location, seen);
   }
   static void wake(Word& word) { machine->futex_wake(word.location); }
+  /// @}
 };
 
+/// The control words of a ring in the machine.
 using Words = ipc::ControlWords<ModelAtomics>;
 
 }  // namespace handcast::explorer

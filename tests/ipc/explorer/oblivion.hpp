@@ -4,11 +4,11 @@
 
 namespace handcast::explorer {
 
-/// Brings a state into the form it shares with all that differ from it only in what nobody can see
-/// any more: messages that every living thread knows to be replaced. Without this, no state would
-/// ever come twice.
+/// Removes from a state the messages that all living threads know to be replaced, so that states
+/// which differ only in those become equal. Otherwise no state would ever be reached twice.
 class Oblivion {
  public:
+  /// Call it after Machine::close().
   explicit Oblivion(const Machine& machine)
       : threads_(machine.threads()), locations_(machine.locations()) {
     for (int i = 0; i < threads_; ++i)
@@ -16,6 +16,7 @@ class Oblivion {
         blind_[i].place[k] = machine.reads_of(i) & bit(k) ? 0 : 0xff;
   }
 
+  /// Removes these messages and adjusts all views.
   void forget(State& state) const {
     const auto old = oldest_in_sight(state);
     if (std::all_of(old.place, old.place + locations_,

@@ -19,7 +19,7 @@ std::uint64_t top_sequence() {
   return ipc::sequence_of(machine->state().memory.newest_value(ring->words().head().location));
 }
 
-/// With relaxed loads, word by word.
+/// Copies the payload word by word with relaxed loads.
 void copy_payload(int slot, Got& got) {
   got.payload = machine->load(ring->payload(slot, 0), std::memory_order_relaxed);
   got.is_whole = true;
@@ -72,16 +72,17 @@ Got take_lease(ReaderLocals& self) {
   return got;
 }
 
-/// What every reader relies on.
+/// Checks the properties that a reader relies on.
 void judge(const ReaderLocals& self, const Got& got, std::uint64_t seen_before) {
-  machine->check(got.outcome != Outcome::corrupt, "the words make no sense to a reader");
+  machine->check(got.outcome != Outcome::corrupt, "the control words are inconsistent to a reader");
   if (got.outcome == Outcome::taken && self.reading.hold != Hold::doubted_lease)
     machine->check(got.is_whole && got.payload == payload_of(got.taken.sequence, got.taken.epoch),
                    "a torn or wrong message is accepted");
   const bool in_order = self.reading.verb != Verb::nearest;
   if (got.outcome == Outcome::taken && in_order)
     machine->check(got.taken.sequence > seen_before, "the sequence goes backwards");
-  // Only newer messages may make a reader fail: a writer that stands still, or is dead, never does.
+  // A reader may fail only because of newer messages, not because the writer stands still or is
+  // dead.
   if (got.outcome == Outcome::contended && self.reading.hold != Hold::doubted_lease)
     machine->check(top_sequence() > seen_before + 1,
                    "a reader starves although nothing newer was published");
@@ -89,7 +90,7 @@ void judge(const ReaderLocals& self, const Got& got, std::uint64_t seen_before) 
     machine->check(seen_before != 0, "a late reader finds no message although there always is one");
 }
 
-/// The oldest lease ends. Its payload is looked at once more: it must still be what was taken.
+/// Releases the oldest lease. Its payload must still be the one that was taken.
 bool release_oldest(ReaderLocals& self) {
   const auto lease = self.leases[0];
   const bool is_unchanged = read_leased(self, lease.slot) == self.payloads[0];
@@ -119,7 +120,8 @@ ReaderLocals::Phase after_releasing(const ReaderLocals& self) {
   return self.held > 0 ? ReaderLocals::releasing : ReaderLocals::leaving;
 }
 
-/// 0 where the row is not to be had: its owner lives.
+/// Claims a row, or frees it; returns the new owner word, or 0 if its owner lives or another
+/// process was faster.
 std::uint64_t claim(int row, bool keeps_it) {
   machine->act_as(Role::recoverer);
   const auto words = ring->words();

@@ -4,48 +4,56 @@
 
 namespace handcast::explorer {
 
+/// The function of ReaderCore that a reader uses.
 enum class Verb : std::uint8_t { latest, next, nearest };
+/// How a reader holds a message.
 enum class Hold : std::uint8_t {
-  copy,
-  lease,
-  doubted_lease,  ///< of a process that lives but was taken for dead: it reads atomically, and
-                  ///< believes nothing before release() says so
+  copy,   ///< as a copy
+  lease,  ///< by a lease
+  /// By a lease of a living process that was mistaken for dead. It reads atomically, and uses the
+  /// data only after release() has succeeded.
+  doubted_lease,
 };
 
-/// What a reader does.
+/// The behaviour of a reader.
 struct Reading {
-  Verb verb = Verb::latest;
-  Hold hold = Hold::copy;
-  int takes = 1;           ///< attempts at a message
-  bool waits = false;      ///< sleeps where there is nothing, and counts only what it got
-  int leases_at_once = 1;  ///< keeps so many messages before it gives the oldest back
-  bool stays = false;      ///< ends without giving its row back, as one that is going on does
+  Verb verb = Verb::latest;  ///< how it looks for messages
+  Hold hold = Hold::copy;    ///< how it holds them
+  int takes = 1;             ///< number of attempts to take a message
+  bool waits = false;        ///< sleeps if there is no message; such attempts do not count
+  int leases_at_once = 1;    ///< number of messages it holds before it releases the oldest
+  bool stays = false;        ///< ends without releasing its row, like a reader that continues
 };
 
-/// One that has the row already, or claims it first: from a dead process, or a free one.
+/// The locals of a reader. It owns its row from the beginning, or claims it first: a free one, or
+/// that of a dead process.
 struct ReaderLocals {
+  /// The next operation.
   enum Phase : std::uint8_t { claiming, starting, taking, sleeping, releasing, leaving };
 
+  /// A reader that owns its row already.
   ReaderLocals(const Words& words, int which_row, std::uint64_t generation)
       : core(words, which_row, generation), row(which_row) {}
 
-  ipc::ReaderCore<ModelAtomics> core;
-  ipc::Lease leases[ipc::kLeasesPerRow];         ///< those held, the oldest first
-  std::uint64_t payloads[ipc::kLeasesPerRow]{};  ///< what they hold
-  std::uint64_t owner = 0;
-  int row;
-  Phase phase = taking;
-  std::uint8_t held = 0;
-  std::uint8_t left = 0;
-  Reading reading;
+  ipc::ReaderCore<ModelAtomics> core;            ///< the protocol
+  ipc::Lease leases[ipc::kLeasesPerRow];         ///< the leases that it holds, oldest first
+  std::uint64_t payloads[ipc::kLeasesPerRow]{};  ///< the payloads of their messages
+  std::uint64_t owner = 0;                       ///< its owner word
+  int row;                                       ///< number of its row
+  Phase phase = taking;                          ///< the next operation
+  std::uint8_t held = 0;                         ///< number of leases that it holds
+  std::uint8_t left = 0;                         ///< number of attempts left
+  Reading reading;                               ///< its behaviour
 };
 
+/// The operations of a reader; `locals` is a ReaderLocals. See Program::operation.
 bool run_reader(void* locals);
 
-/// Clears a dead reader's row and leaves it free.
+/// The locals of a recoverer, which frees the row of a dead reader.
 struct RecovererLocals {
-  int row;
+  int row;  ///< number of the row
 };
+/// The operation of a recoverer; `locals` is a RecovererLocals. See Program::operation.
 bool run_recoverer(void* locals);
 
 /// The owner word of a thread of the machine.

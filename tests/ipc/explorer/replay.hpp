@@ -10,51 +10,72 @@
 #include "tests/ipc/explorer/faults.hpp"
 #include "tests/ipc/explorer/state.hpp"
 
-/// Threads that go one step at a time.
 namespace handcast::explorer {
 
-using Set = std::uint32_t;  ///< of locations or threads, a bit each
+/// A set of locations or threads, with one bit for each.
+using Set = std::uint32_t;
+/// The set with one element.
 constexpr Set bit(int i) { return Set{1} << i; }
 
-/// What a thread runs. It consists of operations, each a function of the thread's locals alone;
-/// between two of them only the locals are kept, so short operations let more states fall together.
+/// The program of a thread: a sequence of operations, each a function of the thread's locals. Only
+/// the locals are kept between two operations, so with short operations more states are equal.
 struct Program {
-  std::string name;
-  bool (*operation)(void* locals) = nullptr;  ///< false: that was the last one. Leaves by longjmp:
-                                              ///< nothing in it needs a destructor
-  Role role = Role::reader;
-  Set reads = 0, writes = 0;                   ///< locations it may ever load or store
-  bool mortal = false;                         ///< it may be killed before any of its steps
-  bool is_doubted = false;                     ///< others take it for dead while it lives
-  bool is_read_at_end = false;                 ///< its locals are kept when it has finished
-  Set starts_on_death = 0, starts_on_end = 0;  ///< threads that are absent until then. They know
-                                               ///< what this one knew: the kernel tells
+  std::string name;  ///< used in traces
+  /// Runs the next operation. Returns false if it was the last one. It may be left by longjmp, so
+  /// nothing in it may need a destructor.
+  bool (*operation)(void* locals) = nullptr;
+  Role role = Role::reader;  ///< for faults
+  /// The locations that it may ever load or store.
+  /// @{
+  Set reads = 0, writes = 0;
+  /// @}
+  bool mortal = false;          ///< it may be killed before any of its steps
+  bool is_doubted = false;      ///< others mistake it for dead while it lives
+  bool is_read_at_end = false;  ///< its locals are kept when it has finished
+  /// Threads that are absent until it dies, or finishes. They know what it knew, since they learn
+  /// its end from the kernel.
+  /// @{
+  Set starts_on_death = 0, starts_on_end = 0;
+  /// @}
 };
 
-/// What the order of an action among other threads' steps is worth. Most orders need not be tried:
+/// Whether the order of an action relative to steps of other threads matters. Most orders need not
+/// be tried.
 enum class Manner {
-  unnoticed,  ///< no other thread's step, no death can be told from it: it happens with the step
-              ///< before
-  early,  ///< nobody loses a choice when it comes at once. A store is such: others may still load
-          ///< what was there before
-  early_choice,  ///< the same, but it has several outcomes
-  contested,     ///< its order among the others' steps matters
+  /// No step of another thread and no death can be distinguished from it: it is part of the step
+  /// before.
+  unnoticed,
+  /// No thread loses a choice if it happens at once, as with a store: others may still load the old
+  /// value.
+  early,
+  /// Like `early`, but with several outcomes.
+  early_choice,
+  /// Its order matters.
+  contested,
 };
 
+/// Runs threads step by step. A step runs the current operation again with the logged results of
+/// its actions, until one action more is done.
 class Replay {
  public:
   virtual ~Replay() = default;
 
+  /// Adds a thread; returns its number.
   int add(Program program) {
     programs_.push_back(std::move(program));
     return static_cast<int>(programs_.size()) - 1;
   }
+  /// The program of a thread.
+  /// @{
   Program& program(int thread) { return programs_[static_cast<std::size_t>(thread)]; }
   const Program& program(int thread) const { return programs_[static_cast<std::size_t>(thread)]; }
+  /// @}
+  /// Number of threads.
   int threads() const { return static_cast<int>(programs_.size()); }
 
-  /// One step of one thread: the operation is run again against the log, takes one action beyond
-  /// it, and is left at the next. Returns how many outcomes that action has; `choice` picks one.
+  /// Makes one step of a thread: runs its operation again with the log, does one action beyond the
+  /// log, and leaves it at the next action. Returns the number of outcomes of that action; `choice`
+  /// selects one.
   int step(State& state, int thread, int choice) {
     begin(state, thread, choice);
     while (self().status == Status::running && run_operation()) {
@@ -62,7 +83,7 @@ class Replay {
     return choices_;
   }
 
-  /// Runs `count` whole operations with nobody about; for what lies before the story.
+  /// Runs `count` whole operations without other threads, for the time before a story begins.
   void run_alone(State& state, int thread, int count) {
     begin(state, thread, 0);
     for (operations_left_ = count; operations_left_ > 0;) {
@@ -72,6 +93,7 @@ class Replay {
     operations_left_ = -1;
   }
 
+  /// Kills a thread, and starts those of Program::starts_on_death.
   void kill(State& state, int thread) {
     state_ = &state;
     thread_ = thread;
@@ -79,33 +101,48 @@ class Replay {
     end(Status::dead, program(thread).starts_on_death);
   }
 
+  /// True if a thread lives and may be killed.
   bool mortal(const State& state, int thread) {
     return program(thread).mortal && state.threads[thread].lives();
   }
 
+  /// Reports a broken property, described by `otherwise`, unless `holds`.
   void check(bool holds, const char* otherwise) {
     if (!holds && !broken_) broken_ = otherwise;
   }
+  /// The first property that was broken in the last step; null if none was.
   const char* broken() const { return broken_; }
 
+  /// Turns the description of steps on or off.
   void trace(bool on) { tracing_ = on; }
+  /// Returns and clears the description of the last steps.
   std::string said() { return std::exchange(said_, {}); }
 
+  /// The running thread, the state that it changes, and its role.
+  /// @{
   int thread() const { return thread_; }
   const State& state() const { return *state_; }
   Role role() const { return role_; }
+  /// @}
+  /// Changes the role for the rest of the operation.
   void act_as(Role role) { role_ = role; }
 
  protected:
-  /// Called when an operation is over, before its locals are kept.
+  /// Called before an operation, and after it before its locals are kept.
+  /// @{
   virtual void operation_ends() {}
   virtual void operation_begins() {}
+  /// @}
 
+  /// The running thread.
   Thread& self() { return state_->threads[thread_]; }
+  /// The state that the running thread changes.
   State& changing() { return *state_; }
+  /// True if the next action is in the log already.
   bool replaying() { return cursor_ < self().log_length; }
 
-  /// `action(self)` gives the value to log, once; from then on the log answers.
+  /// Does an action: action(self) returns the value to log. If the action is in the log already,
+  /// returns that value instead.
   template <class Action>
   std::uint64_t perform(Manner manner, const Action& action) {
     auto& self = this->self();
@@ -126,12 +163,13 @@ class Replay {
     return value;
   }
 
-  /// One of `count` outcomes of the action that is being taken.
+  /// The number of the outcome to use, out of `count`, in the present action.
   int choose(int count) {
     choices_ = count;
     return choice_;
   }
 
+  /// Adds to the description of the step, with the format of printf().
   template <class... Args>
   void say(const char* format, Args... args) {
     if (!tracing_) return;
@@ -151,7 +189,7 @@ class Replay {
     self().urgent = false;
   }
 
-  /// False where the operation was left half way, or was the last one.
+  /// Runs the current operation. Returns false if it was left half way or was the last one.
   [[gnu::noinline]] bool run_operation() {
     cursor_ = 0;
     role_ = program(thread_).role;
@@ -182,7 +220,7 @@ class Replay {
     const bool is_remembered = status == Status::dead && program(thread_).role != Role::writer;
     std::memset(static_cast<void*>(&ended), 0, offsetof(Thread, locals));
     if (!program(thread_).is_read_at_end) std::memset(ended.locals, 0, kLocalsBytes);
-    if (is_remembered) ended.views.current = known;  // for who asks whether it is gone
+    if (is_remembered) ended.views.current = known;  // for Machine::is_gone()
     ended.status = status;
   }
 
@@ -193,7 +231,7 @@ class Replay {
   int cursor_ = 0;
   int choice_ = 0, choices_ = 1;
   bool acted_ = false;
-  int operations_left_ = -1;  ///< of run_alone()
+  int operations_left_ = -1;  ///< in run_alone(); -1 otherwise
   const char* broken_ = nullptr;
   bool tracing_ = false;
   std::string said_;

@@ -6,39 +6,52 @@
 
 namespace handcast::explorer {
 
+/// The sizes of the model: reader rows, and the largest numbers of slots and of payload words.
+/// @{
 inline constexpr int kModelRows = 2;
 inline constexpr int kModelSlots = 4;
 inline constexpr int kMaxPayloadWords = 2;
+/// @}
 
+/// The ring that is explored.
 struct RingShape {
-  int slots = 3;
-  bool keep_history = false;
-  /// One is enough: words beyond it can only make a reader notice more, since a copy that holds one
-  /// new word shows the mark.
+  int slots = 3;              ///< number of slots
+  bool keep_history = false;  ///< RingSpec::keep_history
+  /// Number of words of a payload. One is enough: a copy with one new word makes its reader see the
+  /// mark, and more words only add further chances.
   int payload_words = 1;
-  int messages = 1;  ///< published before the story begins, known to all
-  std::uint64_t first_sequence = 1;
-  std::uint64_t first_epoch = 1;
-  std::uint64_t generation = 1;  ///< of the rows' first owners
+  int messages = 1;  ///< messages published before the story begins, known to all threads
+  std::uint64_t first_sequence = 1;  ///< sequence of the first message
+  std::uint64_t first_epoch = 1;     ///< epoch of the first writer
+  std::uint64_t generation = 1;      ///< generation of the first owners of the rows
 };
 
-/// What lies in the memory of the ring that is being explored. One at a time: the threads' code
-/// reaches it without locals.
+/// The words of the ring that is explored, as locations of the machine. Only one object at a time.
 class RingMemory {
  public:
+  /// Adds the locations to the machine.
   explicit RingMemory(const RingShape& shape);
 
+  /// The ring.
   const RingShape& shape() const { return shape_; }
+  /// Its control words.
   Words words() { return {lines_, shape_.slots, shape_.keep_history, kModelRows}; }
+  /// The location of a word of a payload.
   int payload(int slot, int word) const { return payload_[slot][word]; }
-  /// Counts the plain reads of a slot by a thread; -1 where it never leases.
+  /// The location that counts the plain reads of a slot by a thread; -1 if it takes no leases.
   int read_count(int slot, int thread) const { return read_counts_[slot][thread]; }
+  /// The read counts of a slot of all threads that take leases.
   const std::vector<int>& read_counts(int slot) const { return counted_[slot]; }
+  /// Adds the read counts of a thread.
   void count_reads_of(int thread);
 
-  Set words_of_writer() const;      ///< what a writer stores
-  Set words_of_row(int row) const;  ///< what a reader or a recoverer of that row changes
+  /// The words that a writer stores.
+  Set words_of_writer() const;
+  /// The words that a reader or recoverer of this row changes.
+  Set words_of_row(int row) const;
+  /// The lease words of a row.
   Set lease_words(int row) const;
+  /// All words.
   Set everything() const { return ~Set{0}; }
 
  private:
@@ -49,12 +62,14 @@ class RingMemory {
   std::vector<int> counted_[kModelSlots];
 };
 
+/// The ring that is explored. It is global because the code of the threads has only its locals.
 inline RingMemory* ring = nullptr;
 
-/// The one payload that belongs to a message.
+/// The payload of a message, which no other message has.
 constexpr std::uint64_t payload_of(std::uint64_t sequence, std::uint64_t epoch) {
   return sequence << 15 | epoch;
 }
+/// The origin of a message with this payload: its sequence.
 constexpr std::int64_t origin_of_payload(std::uint64_t payload) {
   return static_cast<std::int64_t>(payload >> 15);
 }

@@ -12,18 +12,18 @@ namespace {
 
 struct Move {
   int thread = 0;
-  int choice = 0;     ///< -1: no step, only death
-  bool dies = false;  ///< after the step
+  int choice = 0;     ///< outcome of the step; -1: no step, only death
+  bool dies = false;  ///< the thread is killed after the step
 };
 
-/// A state on the path, and which moves from it were tried.
+/// A state on the path, and the moves from it that were tried.
 struct Frame {
   State state;
-  Move move;
-  int choices = 0;       ///< of the thread's next step; known once it was taken
-  bool may_die = false;  ///< after the step that was tried last
+  Move move;             ///< the last one that was tried
+  int choices = 0;       ///< outcomes of the step; known after the first try
+  bool may_die = false;  ///< the thread may be killed after the step
   bool is_started = false;
-  int only = -1;  ///< the thread whose step comes first without loss
+  int only = -1;  ///< the only thread whose step needs to be tried; -1: all
 };
 
 class Search {
@@ -71,8 +71,8 @@ class Search {
     --depth_;
   }
 
-  /// Deaths: to be killed commutes with every step of others, so it is enough to be killed at once
-  /// after a step of one's own.
+  /// Selects the next move. A death commutes with all steps of other threads, so it is enough to
+  /// kill a thread directly after each of its own steps.
   bool next_move(Frame& frame) {
     auto& move = frame.move;
     if (!frame.is_started) {
@@ -134,8 +134,8 @@ class Search {
     if (static_cast<int>(path_.size()) <= depth) path_.push_back(std::make_unique<Frame>());
   }
 
-  /// Runs the path once more, with words. `above`: how many frames of the path have no move of
-  /// their own.
+  /// Runs the path again to describe its steps. `above`: the number of frames at the end of the
+  /// path without a move.
   void fail(const char* broken, int above = 0) {
     found_.broken = broken;
     auto state = std::make_unique<State>();

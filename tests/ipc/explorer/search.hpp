@@ -7,17 +7,21 @@
 
 namespace handcast::explorer {
 
+/// The result of a search.
 struct Found {
-  std::string broken;  ///< the property that does not hold; empty where all do in every execution
-  bool is_complete = true;  ///< false where `max_states` ended the search
+  std::string broken;       ///< the broken property; empty if all hold in every execution
+  bool is_complete = true;  ///< false if `max_states` ended the search
+  /// Number of different states, of steps, and of ends of executions.
+  /// @{
   std::uint64_t states = 0, steps = 0, ends = 0;
-  int depth = 0;
-  double seconds = 0;
-  std::string trace;  ///< a line per step, to the broken property
+  /// @}
+  int depth = 0;       ///< length of the longest execution
+  double seconds = 0;  ///< duration of the search
+  std::string trace;   ///< the steps to the broken property, one per line
 };
 
-/// Every execution from `start`, depth first. `at_end` looks at states in which nobody runs any
-/// more; it gives what is wrong, or null.
+/// Explores all executions from `start`, depth first. `at_end` is called with each state in which
+/// no thread runs; it returns the broken property, or null.
 Found explore(Machine& machine, const State& start,
               const std::function<const char*(const State&)>& at_end,
               std::uint64_t max_states = 100'000'000);

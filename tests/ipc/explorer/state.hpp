@@ -6,46 +6,52 @@
 
 #include "tests/ipc/explorer/memory_model.hpp"
 
-/// A state of the machine: plain bytes, so that it can be copied, hashed and compared.
+/// A state of the machine: plain bytes, which can be copied, hashed and compared.
 namespace handcast::explorer {
 
+/// Limits of the model: threads, actions of an operation, bytes of locals, sequences of a story.
+/// @{
 inline constexpr int kMaxThreads = 7;
 inline constexpr int kMaxLog = 250;
 inline constexpr int kLocalsBytes = 192;
 inline constexpr int kMaxSequences = 16;
+/// @}
 
+/// The status of a thread.
 enum class Status : std::uint8_t { absent, running, sleeping, finished, dead };
 
-/// A thread is a deterministic function of what its operations gave back. So it is wholly described
-/// by its locals when its current operation began and by the values since: no stack has to be
-/// copied.
+/// The state of a thread. A thread is a deterministic function of the values that its operations
+/// returned, so its locals at the begin of the current operation and the values since then describe
+/// it completely. No stack needs to be copied.
 struct Thread {
-  Status status;
-  std::uint8_t log_length;
-  std::uint8_t sleeps_on;
-  bool urgent;  ///< its next step may as well come before anybody else's: see Manner
-  std::uint8_t unused[12];
-  ThreadViews views;
-  std::uint64_t log[kMaxLog];
-  alignas(16) std::byte locals[kLocalsBytes];
+  Status status;               ///< what it does
+  std::uint8_t log_length;     ///< number of values in `log`
+  std::uint8_t sleeps_on;      ///< location of the futex, if it sleeps
+  bool urgent;                 ///< its next step may come first without loss: see Manner
+  std::uint8_t unused[12];     ///< padding
+  ThreadViews views;           ///< its knowledge of memory
+  std::uint64_t log[kMaxLog];  ///< the values returned in the current operation
+  alignas(16) std::byte locals[kLocalsBytes];  ///< the locals at its begin
 
+  /// True if it runs or sleeps.
   bool lives() const { return status == Status::running || status == Status::sleeping; }
 };
 
+/// The state of all threads and of memory.
 struct State {
-  std::uint8_t published[kMaxSequences];  ///< who gave which sequence to the world: bookkeeping of
-                                          ///< the ring's properties
-  Thread threads[kMaxThreads];
-  Memory memory;
+  std::uint8_t published[kMaxSequences];  ///< the author of each sequence: see story.cpp
+  Thread threads[kMaxThreads];            ///< the threads
+  Memory memory;                          ///< the shared memory
 };
 static_assert(std::is_trivially_copyable_v<State>);
 
-/// How much of a state is in use: threads, and locations that have a history.
+/// The parts of a state that are in use.
 struct Extent {
-  int threads = 0;
-  int locations = 0;
+  int threads = 0;    ///< number of threads
+  int locations = 0;  ///< number of locations
 };
 
+/// Copies the parts of a state that are in use.
 inline void copy_state(State& to, const State& from, const Extent& extent) {
   std::memcpy(to.published, from.published, sizeof to.published);
   for (int i = 0; i < extent.threads; ++i) {
@@ -60,15 +66,17 @@ inline void copy_state(State& to, const State& from, const Extent& extent) {
                 sizeof(Message) * from.memory.length[i]);
 }
 
-/// Sums a product for every 16 bytes, each with a key of its own: the products do not wait for each
-/// other.
+/// A hash of bytes: the sum of one product for each 16 bytes, each with its own key. The products
+/// are independent, so they overlap in the processor.
 class Hash {
  public:
+  /// Adds bytes.
   void add(const void* bytes, std::size_t count) {
     const auto* at = static_cast<const std::byte*>(bytes);
     for (; count >= 16; at += 16, count -= 16) add_words(at, 16);
     if (count > 0) add_words(at, count);
   }
+  /// The hash of all bytes so far.
   std::uint64_t value() const { return sum_ ^ sum_ >> 29; }
 
  private:
@@ -85,8 +93,8 @@ class Hash {
   std::uint64_t key_ = 0x2545f4914f6cdd1d;
 };
 
-/// Two states of the same hash are taken for one: with 10 million states the odds of an error are 1
-/// in 300,000.
+/// The hash of a state. States with the same hash are considered equal: with 10 million states the
+/// probability of an error is 1 in 300,000.
 inline std::uint64_t hash_state(const State& state, const Extent& extent) {
   Hash hash;
   hash.add(state.published, sizeof state.published);

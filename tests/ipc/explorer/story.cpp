@@ -19,7 +19,7 @@ void put(State& state, const ModelAtomics::Word& word, std::uint64_t value) {
   state.memory.history[word.location][0].value = value;
 }
 
-/// A sequence belongs to one message: one writer, one slot.
+/// Checks that a sequence is given to one message only, identified by its writer and slot.
 void note_message(Machine& checked, State& state, int location, std::uint64_t word) {
   if (!ipc::holds_message(word)) return;
   const auto index = (ipc::sequence_of(word) - ring->shape().first_sequence) & (kMaxSequences - 1);
@@ -157,8 +157,8 @@ int Story::leases_that_may_be_out() const {
   return std::accumulate(leases_of_row_, leases_of_row_ + kModelRows, 0);
 }
 
-/// The writer attaches and publishes the first messages; then everybody has seen everything, so no
-/// history is left.
+/// Lets the writer attach and publish the first messages. Then all threads know all of memory, so
+/// only the newest messages are kept.
 void Story::start_in_same_knowledge() {
   auto& memory = start_->memory;
   std::fill_n(memory.length, machine_.locations(), std::uint8_t{1});
@@ -205,7 +205,7 @@ const char* Story::look_at_end(const State& state) const {
       writer_is_dead =
           thread.status == Status::dead || (writer_is_dead && thread.status == Status::absent);
     if (!is_writer && thread.status == Status::dead && machine_.program(i).starts_on_death == 0)
-      return nullptr;  // nobody cleans up
+      return nullptr;  // no thread cleans up, so leases may remain
   }
   for (int slot = 0; slot < words.slots() && !writer_is_dead; ++slot)
     if (const auto word = newest(words.state(slot));

@@ -10,38 +10,50 @@
 
 namespace handcast::explorer {
 
-/// A ring, who uses it and who is killed: what one exploration goes through to the end.
+/// One exploration: a ring, the threads that use it, and those that are killed.
 ///
-/// It begins with a writer that has attached and published a message or more, which everybody
-/// knows, and with readers that own their rows.
+/// It begins with a writer that has attached and published at least one message, which all threads
+/// know, and with readers that own their rows.
 class Story {
  public:
+  /// A story of this ring, without threads yet. Only one story at a time.
   explicit Story(const RingShape& shape);
   ~Story();
   Story(const Story&) = delete;
   Story& operator=(const Story&) = delete;
 
-  /// Every function that adds a thread returns its number.
+  /// Adds the writer or a reader; returns the number of the thread. The first `abandons` of the
+  /// writer's `publishes` loans are abandoned.
+  /// @{
   int writer(int publishes, int abandons = 0);
   int reader(int row, const Reading& reading);
+  /// @}
 
-  /// One that died before the story, with leases and a raised flag.
+  /// Adds a reader that died before the story, with leases and a set wait flag; returns its number.
   int dead_reader(int row, std::initializer_list<int> leased_slots);
 
-  // Who is there from the beginning, or only after another's death.
+  /// Adds a thread that takes over from another one: a reader that claims a row, a recoverer, or a
+  /// second writer. It runs from the beginning unless dies() or ends() names it. Returns its
+  /// number.
+  /// @{
   int claiming_reader(int row, const Reading& reading);
   int recoverer(int row);
   int successor(int publishes);
+  /// @}
 
-  /// `thread` may be killed before any of its steps; `then` start when it was.
+  /// `thread` may be killed before any of its steps; the threads `then` start when it is dead.
   void dies(int thread, std::initializer_list<int> then);
+  /// The threads `then` start when `thread` has finished.
   void ends(int thread, std::initializer_list<int> then);
 
-  /// Everybody takes this thread for dead from the beginning, although it lives.
+  /// All threads mistake this one for dead from the beginning, although it lives.
   void doubt(int thread) { machine_.program(thread).is_doubted = true; }
 
+  /// See Machine::try_every_order().
   void try_every_order() { machine_.try_every_order(true); }
+  /// See Machine::plant().
   void plant(Faults faults) { machine_.plant(std::move(faults)); }
+  /// Explores all executions. Call it once, last.
   Found explore();
 
  private:
@@ -61,7 +73,8 @@ class Story {
   int leases_of_row_[kModelRows]{};
 };
 
-/// True with HANDCAST_EXPLORE=deep: more messages, more readers, minutes to hours.
+/// True with HANDCAST_EXPLORE=deep: stories have one message or one take more, which takes minutes
+/// to hours.
 bool explores_deep();
 
 }  // namespace handcast::explorer

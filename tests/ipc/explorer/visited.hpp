@@ -5,14 +5,16 @@
 
 namespace handcast::explorer {
 
-/// Hashes of the states that were seen: an open table, since there are millions.
+/// The set of the hashes of visited states: an open-addressing hash table, since there are
+/// millions.
 class Visited {
  public:
-  /// False where it was there already.
+  /// Adds a hash. Returns false if it was in the set already.
   bool insert(std::uint64_t hash) {
     if (2 * count_ >= slots_.size()) grow();
     return place(hash == 0 ? 1 : hash);
   }
+  /// Number of hashes.
   std::uint64_t count() const { return count_; }
 
  private:

@@ -9,11 +9,11 @@ void fill(int slot, std::uint64_t payload) {
     machine->write_payload(ring->payload(slot, word), payload, ring->read_counts(slot));
 }
 
-/// False where there was no slot to loan: the message is dropped.
+/// Loans a slot. Returns false if there is none: the message is dropped.
 bool loan(WriterLocals& self) {
   self.slot = static_cast<std::int8_t>(self.core.loan());
   machine->check(self.slot != ipc::kNoSlot || !self.never_drops,
-                 "a loan fails although there are slots enough");
+                 "a loan fails although there are enough slots");
   return self.slot != ipc::kNoSlot;
 }
 

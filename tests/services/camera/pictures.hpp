@@ -7,7 +7,7 @@
 
 namespace handcast::test {
 
-/// `count` pictures in `folder`; every pixel of picture i is 10 + i.
+/// Writes `count` images to `folder`; all pixels of image i have the value 10 + i.
 inline void write_pictures(const std::filesystem::path& folder, int count, int width_px,
                            int height_px) {
   std::filesystem::create_directories(folder);

@@ -93,7 +93,7 @@ TEST_F(ReplayCamera, SaysWhenTheFolderIsMissing) {
   expect_refused("nowhere' is not a folder");
 }
 
-TEST_F(ReplayCamera, SaysWhenTheFolderHoldsNoPicture) { expect_refused("no PNG picture"); }
+TEST_F(ReplayCamera, SaysWhenTheFolderHoldsNoPicture) { expect_refused("no PNG image"); }
 
 TEST_F(ReplayCamera, SaysWhichPictureHasAnotherSize) {
   test::write_pictures(scratch_.path(), 1, kWidth + 1, kHeight);
@@ -102,13 +102,13 @@ TEST_F(ReplayCamera, SaysWhichPictureHasAnotherSize) {
 
 TEST_F(ReplayCamera, SaysWhichFileIsNoPicture) {
   std::ofstream(scratch_.path() / "0001.png") << "not a picture";
-  expect_refused("0001.png' is not a picture");
+  expect_refused("0001.png' is not a readable PNG image");
 }
 
 TEST_F(ReplayCamera, SaysWhenTimesAndPicturesDoNotPair) {
   test::write_pictures(scratch_.path(), 2, kWidth, kHeight);
   ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "camera_timestamps.npy", {0, 10, 20}));
-  expect_refused("3 times for 2 pictures");
+  expect_refused("3 times for 2 images");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contract of every pose back end, and what is special to one.
+// The contract of all pose back ends, and tests of single ones.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Thirty samples of the twin's left hand, 5 ms apart.
+/// A recording of 30 samples of the twin's left hand, 5 ms apart.
 twin::Recording recording_of(const config::Rig& rig) {
   const auto twin = twin::Twin::create(rig, calib::reference_rig());
   if (!twin) throw std::runtime_error(twin.error().what);
@@ -31,7 +31,7 @@ class PoseContract : public testing::TestWithParam<std::string_view> {
     rig_.pose.backend = GetParam();
     rig_.pose.replay.directory = scratch_.path();
     if (GetParam() == "replay" && !twin::write_recording(scratch_.path(), recording_of(rig_)))
-      throw std::runtime_error("no recording");
+      throw std::runtime_error("the recording cannot be written");
     auto opened = open_pose_source(rig_, calib::reference_rig(), epoch_ns_);
     if (!opened) throw std::runtime_error(opened.error().what);
     source_ = std::move(*opened);

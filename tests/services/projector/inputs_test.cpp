@@ -10,7 +10,7 @@
 namespace handcast::projector {
 namespace {
 
-/// Stands in for the cascade and only notes what it is told.
+/// Replaces the pipeline and records the ids of the messages that it gets.
 struct Listener {
   void push(std::int64_t, const msg::HandPoses& message) {
     poses.push_back(message.header.frame_id);
@@ -22,7 +22,7 @@ struct Listener {
   std::vector<std::uint64_t> poses, landmarks;
 };
 
-/// Both ends of a ring.
+/// A ring with its writer and a reader.
 template <class Message>
 struct Ring {
   static ipc::Segment make(std::size_t payload_bytes) {

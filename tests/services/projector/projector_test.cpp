@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contract of every projector back end, and what is special to one.
+// The contract of all projector back ends, and tests of single ones.
 #include "services/projector/projector.hpp"
 
 #include <gmock/gmock.h>
@@ -15,8 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A dark 32 x 24 frame with a 4 x 4 region at (8, 6); the region's first pixel is red, the rest of
-/// it has alpha 0.
+/// A dark 32 x 24 frame with a 4 x 4 region at (8, 6). The first pixel of the region is red; its
+/// other pixels have alpha 0.
 struct SmallFrame {
   SmallFrame() {
     pixels.at(8, 6) = 0xFF0000FF;
@@ -85,7 +85,7 @@ TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
   ::unsetenv("HANDCAST_OUT");
   ASSERT_TRUE(projector) << projector.error().what;
   SmallFrame small;
-  small.pixels.at(0, 0) = 0xFFFFFFFF;  // outside the region: left over from an older frame
+  small.pixels.at(0, 0) = 0xFFFFFFFF;  // outside the region, as left over from an older frame
   ASSERT_TRUE((*projector)->present(small.frame, 0, Deadline::in(5s)));
 
   const cv::Mat picture = cv::imread((scratch.path() / "light" / "light_000.png").string());
