@@ -117,7 +117,7 @@ endfunction()
 #               [LABELS ...])
 #
 # One GoogleTest program and one ctest, named after its folder: tests/renderer/mask -> test_renderer_mask[_SUFFIX].
-# NEEDS are programs and files that it uses when it runs.
+# NEEDS are programs and files that it uses when it runs; the hands that the build makes are implied.
 function(handcast_test)
   cmake_parse_arguments(ARG "" "SUFFIX;TIMEOUT" "SOURCES;USES;LIBRARIES;NEEDS;LABELS" ${ARGN})
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
@@ -130,6 +130,9 @@ function(handcast_test)
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   handcast_use(${name} PRIVATE ${ARG_USES})
   handcast_precompile(${name} TEST)
+  if("${ARG_USES}" MATCHES "renderer|services")
+    list(APPEND ARG_NEEDS handcast_hands)
+  endif()
   if(ARG_NEEDS)
     add_dependencies(${name} ${ARG_NEEDS})
   endif()
