@@ -9,7 +9,7 @@
 namespace handcast::renderer {
 namespace {
 
-/// A triangle laid into a plane, with the weights of the edges opposite its corners.
+/// A triangle in its own plane, with the weights of the edges opposite its corners.
 struct FlatTriangle {
   std::array<int, 3> vertex;
   std::array<glm::dvec2, 3> corner;
@@ -26,7 +26,7 @@ FlatTriangle laid_flat(const std::vector<glm::dvec3>& points, const std::array<i
           half_cotangents({points[t[0]], points[t[1]], points[t[2]]})};
 }
 
-/// The rotation (cosine, sine) that best turns the triangle's own edges into those of the chart.
+/// The rotation (cosine, sine) that best maps the triangle's own edges to those of the chart.
 glm::dvec2 best_rotation(const FlatTriangle& t, const std::vector<glm::dvec2>& flat) {
   glm::dvec2 sum(0);
   for (int k = 0; k < 3; ++k) {
@@ -60,7 +60,7 @@ void flatten_as_rigid_as_possible(const std::vector<glm::dvec3>& points,
                                   const std::vector<std::array<int, 3>>& triangles,
                                   std::vector<glm::dvec2>& flat, int rounds) {
   Eigen::SparseMatrix<double> system = mesh_operators(points, triangles).laplacian;
-  system.coeffRef(0, 0) += 1;  // holds the first vertex where it is
+  system.coeffRef(0, 0) += 1;  // fixes the first vertex
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system);
   std::vector<FlatTriangle> laid;
   for (const auto& t : triangles) laid.push_back(laid_flat(points, t));

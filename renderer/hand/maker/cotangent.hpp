@@ -7,15 +7,16 @@
 
 namespace handcast::renderer {
 
-/// Half the cotangent of each corner of a triangle (the weight of the opposite edge), kept within
-/// what a solver bears.
+/// Half the cotangent of each corner of a triangle, which is the weight of the opposite edge.
+/// Clamped to [0.01, 20] to keep linear systems well conditioned.
 std::array<double, 3> half_cotangents(const std::array<glm::dvec3, 3>& corners);
 
-/// The positive cotangent Laplacian of a triangle mesh and the area around each vertex.
+/// Discrete operators of a triangle mesh.
 struct MeshOperators {
-  Eigen::SparseMatrix<double> laplacian;
-  Eigen::VectorXd area;
+  Eigen::SparseMatrix<double> laplacian;  ///< cotangent Laplacian, positive semidefinite
+  Eigen::VectorXd area;                   ///< by vertex: a third of its triangles, unit of points^2
 };
+/// Computes the operators. Triangles hold vertex indices.
 MeshOperators mesh_operators(const std::vector<glm::dvec3>& points,
                              const std::vector<std::array<int, 3>>& triangles);
 

@@ -29,7 +29,7 @@ glm::dvec3 FingerAxis::point(double arc_mm) const {
 }
 
 glm::dmat3 FingerAxis::axes(double arc_mm) const {
-  constexpr double kReach = 5;  // mm past a bone's end over which its axes still count
+  constexpr double kReach = 5;  // mm: decay of a bone's weight beyond its ends
   glm::dmat3 sum(0);
   for (int k = 0; k < kBones; ++k) {
     const double beyond = std::max({0.0, arc_mm_[k] - arc_mm, arc_mm - arc_mm_[k + 1]}) / kReach;

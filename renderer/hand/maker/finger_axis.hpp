@@ -6,18 +6,22 @@
 
 namespace handcast::renderer {
 
-/// The bent line through a finger's joints, from the MCP joint (thumb: the CMC) to the tip, with
-/// axes that turn smoothly.
+/// The polyline through a finger's joints, from the MCP joint (thumb: the CMC joint) to the tip,
+/// with axes that turn smoothly. Positions on it are given by their arc length from its start.
 class FingerAxis {
  public:
+  /// Copies the joints of one finger.
   FingerAxis(const RestPose& rest, int finger);
 
+  /// Arc length of the tip.
   double length_mm() const { return arc_mm_[kBones]; }
-  /// Arc length of the k-th joint, 0..3.
+  /// Arc length of joint `k`, 0..3.
   double joint_mm(int k) const { return arc_mm_[k]; }
+  /// The point at an arc length, which is clamped to the ends.
   glm::dvec3 point(double arc_mm) const;
+  /// The axes at an arc length. Columns as in RestPose.
   glm::dmat3 axes(double arc_mm) const;
-  /// The finger's radius there, between those of its joints.
+  /// The radius of the finger at an arc length, interpolated between its joints.
   double radius_mm(const HandShape& shape, double arc_mm) const;
 
  private:

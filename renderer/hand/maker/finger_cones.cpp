@@ -4,10 +4,10 @@
 namespace handcast::renderer {
 namespace {
 
-/// What the smooth union of a finger's cones adds to its radius.
+/// Increase of a finger's radius by the smooth union of its cones, in tuned millimetres.
 constexpr double kFingerSwelling = 1.5;
-/// Half the distance between the two cones of the proximal, intermediate and distal phalanx, per
-/// radius.
+/// Half the distance between the two cones of the proximal, intermediate and distal phalanx, as a
+/// share of the radius.
 constexpr std::array<double, 3> kFlatness{0.10, 0.14, 0.20};
 
 struct Phalanx {

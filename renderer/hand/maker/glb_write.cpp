@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-// glTF 2.0, section 4.4 (binary glTF) and 3.6 (accessors): a JSON chunk that describes the arrays
-// of the binary chunk.
+// glTF 2.0, sections 3.6 (accessors) and 4.4 (binary glTF): a JSON chunk describes the arrays of
+// the binary chunk.
 namespace handcast::renderer {
 namespace {
 
@@ -28,7 +28,7 @@ enum AccessorIndex {
   kInverseBind
 };
 
-/// Gathers arrays in one buffer, each on a boundary of four bytes, with its view and accessor.
+/// Collects arrays in one buffer, each aligned to four bytes, with its view and accessor.
 class BufferWriter {
  public:
   template <class T>
@@ -82,7 +82,7 @@ void add_arrays(BufferWriter& buffer, const HandMesh& hand) {
   buffer.add(inverse_bind_matrices(hand), "MAT4", kFloat, kJoints, kNoTarget);
 }
 
-/// The joint as a child of its parent, so that other programs show a skeleton.
+/// The node of a joint, relative to its parent, so that other programs show a skeleton.
 json joint_node(const HandMesh& hand, int joint) {
   const int parent = kJointParent[joint];
   const glm::mat4 local =

@@ -7,8 +7,9 @@
 
 namespace handcast::renderer {
 
-/// Writes a binary glTF 2.0 file that load_hand and other programs read: WebXR names, one skin,
-/// two-chart UV.
+/// Writes a binary glTF 2.0 file that load_hand and other programs can read: WebXR joint names, one
+/// skin, the texture coordinates of the mesh. Errors: bad_data (an empty mesh), unavailable (the
+/// file cannot be written).
 Result<void> save_hand(const HandMesh& hand, const std::filesystem::path& file);
 
 }  // namespace handcast::renderer

@@ -6,7 +6,8 @@
 namespace handcast::renderer {
 namespace {
 
-/// Sphere tracing: the first skin met from `start` along `direction`, or nothing within `reach` mm.
+/// Sphere tracing: finds the first point of the skin from `start` along `direction`. Returns false
+/// if there is none within `reach` mm.
 bool meet_skin(const HandField& field, const glm::dvec3& start, const glm::dvec3& direction,
                double reach, glm::dvec3& met) {
   double way = 0;
@@ -34,6 +35,7 @@ glm::dvec3 first_place(const GloveTemplate& glove, const GloveLayout& layout,
   return layout.middle[v] + outward * layout.half_thickness[v];
 }
 
+/// The neighbours of each vertex.
 struct Neighbours {
   std::vector<std::vector<int>> of;
   Neighbours(int count, const std::vector<Edge>& edges) : of(count) {

@@ -5,21 +5,23 @@
 
 namespace handcast::renderer {
 
-/// Glued vertices on a skin (millimetres).
+/// Positions of the glued vertices on a skin, millimetres.
 using SkinPoints = std::vector<glm::dvec3>;
 
-/// First places on the skin: fingers pushed out from the sheet, the palm met by rays from outside
-/// along the dorsal direction (from inside one would stop short of the thenar).
+/// The initial positions on the skin. Fingers are pushed out from the sheet; the palm is found by
+/// rays from outside along the dorsal direction, because rays from inside would not reach the
+/// thenar.
 SkinPoints place_on_skin(const GloveTemplate& glove, const GloveLayout& layout,
                          const HandField& field);
 
-/// Slides the vertices over the skin until they are evenly spread and the seam runs along the
+/// Moves the vertices along the skin, so that they become evenly spread and the seam follows the
 /// silhouette as seen from the back.
 void relax_on_skin(SkinPoints& points, const GloveTemplate& glove, const GloveLayout& layout,
                    const HandField& field, int rounds);
 
-/// Puts a skin that is nearly right on the skin of `field`: every vertex goes where its neighbours
-/// go, so that the spacing of `carried`, to which texture and weights belong, is kept.
+/// Moves the vertices of `carried` to the skin of `field`, which must be near. Each vertex follows
+/// the mean displacement of its neighbours, which preserves the spacing and with it the texture and
+/// the weights.
 SkinPoints settled_on_skin(const SkinPoints& carried, const GloveTemplate& glove,
                            const HandField& field, int rounds);
 

@@ -13,12 +13,12 @@ namespace {
 using namespace glove;
 
 constexpr double kPi = std::numbers::pi;
-/// A finger's first row lies this far along its first bone (thumb: along the metacarpal).
+/// Position of a finger's first row, as a share of its first bone (thumb: of the metacarpal).
 constexpr double kFingerStart = 0.41, kThumbStart = 0.72;
 
 using PalmRow = std::array<glm::dvec3, kPalmColumns + 1>;
 
-/// Linear interpolation of `values` given at rising `knots`, held beyond the ends.
+/// Linear interpolation of `values` at ascending `knots`, constant beyond the ends.
 template <class Value>
 Value interpolate(const std::vector<double>& knots, const std::vector<Value>& values, double x) {
   if (x <= knots.front()) return values.front();
@@ -52,7 +52,7 @@ class LayoutBuilder {
   glm::dvec3& palm(int column, int row) { return out_.middle[glove_.palm_vertex(column, row)]; }
   static int first_column(int finger) { return (finger - 1) * (kHalfRing + kWebQuads); }
 
-  /// The row where the fingers grow from the palm: half rings, and webs that sag between them.
+  /// The row where the fingers join the palm: half rings, and webs between them that sag by 2.5 mm.
   PalmRow finger_row() const {
     PalmRow row;
     for (int f = 1; f < kFingers; ++f) {
@@ -70,7 +70,7 @@ class LayoutBuilder {
     return row;
   }
 
-  /// A row through one point per finger, spread to the borders of the hand.
+  /// A row through one point per finger, extended by `border` mm to both sides of the hand.
   PalmRow row_through(const std::array<glm::dvec3, 5>& points, double border) const {
     std::vector<double> knots{0};
     std::vector<glm::dvec3> values{points[1] + glm::dvec3(border, 0, 0)};
@@ -85,7 +85,8 @@ class LayoutBuilder {
     return row;
   }
 
-  /// Around an oval as even as its columns' angles: rays from above meet it evenly.
+  /// A row across an oval. The spacing is mixed from that of equal widths and of equal angles, so
+  /// that rays along the dorsal direction meet the oval at even distances.
   PalmRow oval_row(double thumb_side, double little_side, const glm::dvec3& offset) const {
     PalmRow row;
     for (int i = 0; i <= kPalmColumns; ++i) {
@@ -114,7 +115,7 @@ class LayoutBuilder {
     }
   }
 
-  /// The edge of the palm from which the thumb grows, and the straight edges before and after it.
+  /// Lays the edge of the palm at which the thumb begins, and the straight edges before and after.
   void lay_thumb_side() {
     constexpr int kEnd = kThumbRow + kHalfRing;
     const FingerAxis thumb(rest_, 0);
@@ -143,7 +144,7 @@ class LayoutBuilder {
     return thumb_root || at.row == kPalmRows;
   }
 
-  /// Spreads the palm's rows and columns evenly between its pinned outline.
+  /// Spreads the rows and columns of the palm evenly inside its pinned outline.
   void smooth_palm() {
     for (int round = 0; round < 60; ++round) {
       std::vector<glm::dvec3> sum(out_.middle.size(), glm::dvec3(0));
@@ -159,7 +160,7 @@ class LayoutBuilder {
     }
   }
 
-  /// Arc lengths of a finger's rows: even, but with one row on each joint.
+  /// Arc lengths of a finger's rows: even between joints, with a row at each joint.
   std::vector<double> row_arcs(int finger, const FingerAxis& axis) const {
     const double start =
                      finger == 0 ? kThumbStart * axis.joint_mm(1) : kFingerStart * axis.joint_mm(1),
@@ -197,7 +198,7 @@ class LayoutBuilder {
     }
   }
 
-  /// The thumb's dorsal direction fades into the palm's.
+  /// Blends the dorsal direction of the thumb into that of the palm.
   void turn_thumb_root() {
     const glm::dvec3 thumb_dorsal = rest_.axes[kMetacarpal[0]][1];
     for (int j = kThumbRow; j <= kThumbRow + kHalfRing; ++j)

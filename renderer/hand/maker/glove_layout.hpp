@@ -4,13 +4,14 @@
 
 namespace handcast::renderer {
 
-/// Where the sheet lies inside a person's hand: per sheet vertex (millimetres).
+/// The position of the sheet inside a person's hand, by sheet vertex. Millimetres.
 struct GloveLayout {
   std::vector<glm::dvec3> middle;      ///< a point between back and palm
-  std::vector<glm::dvec3> dorsal;      ///< unit, towards the back of the hand or finger
-  std::vector<double> half_thickness;  ///< a first guess of the way to the skin
+  std::vector<glm::dvec3> dorsal;      ///< unit vector to the back of the hand or finger
+  std::vector<double> half_thickness;  ///< estimated distance from the middle to the skin
 };
 
+/// Lays the sheet into the hand of `shape`, whose rest pose must be `rest`.
 GloveLayout lay_out_glove(const GloveTemplate& glove, const HandShape& shape, const RestPose& rest);
 
 }  // namespace handcast::renderer

@@ -45,7 +45,8 @@ void GloveTemplate::add_finger(int finger) {
                         finger_vertex(finger, i + 1, j + 1), finger_vertex(finger, i, j + 1)});
 }
 
-/// The outline: edges with one quad. A quad's vertex between two such edges is a corner.
+/// The seam consists of the edges of only one quad. A vertex of a quad between two such edges is a
+/// corner.
 void GloveTemplate::find_seam() {
   std::map<Edge, int> uses;
   const auto edge = [](const Quad& q, int k) { return Edge(std::minmax(q[k], q[(k + 1) % 4])); };

@@ -6,10 +6,10 @@
 namespace handcast::renderer {
 namespace {
 
-// Over how many millimetres neighbours melt into one another.
+/// Widths of the smooth unions, in tuned millimetres.
 constexpr double kInsideFinger = 4.5, kFingerToFinger = 1.2, kInsidePalm = 14, kBallToPalm = 22,
                  kPalmToFingers = 10;
-/// What the many unions of the palm add to it.
+/// Increase of the palm by its smooth unions, in tuned millimetres.
 constexpr double kPalmSwelling = 2.0;
 
 Reading union_of(const Cones& cones, const glm::dvec3& point, double width) {
@@ -48,8 +48,8 @@ glm::dvec3 HandField::projected(glm::dvec3 point, int steps) const {
   constexpr double kLongestStep = 6;
   for (int k = 0; k < steps; ++k) {
     const Reading here = at(point);
-    const double slope_squared =
-        std::max(glm::dot(here.gradient, here.gradient), 0.25);  // flat where cones meet: no leaps
+    // The gradient is small between cones; the limit prevents large steps there.
+    const double slope_squared = std::max(glm::dot(here.gradient, here.gradient), 0.25);
     point -=
         here.gradient * std::clamp(here.distance_mm / slope_squared, -kLongestStep, kLongestStep);
   }

@@ -12,8 +12,7 @@ glm::dmat3 rotation(double degrees, const glm::dvec3& axis) {
   return glm::dmat3(glm::rotate(glm::dmat4(1), glm::radians(degrees), axis));
 }
 
-/// Axes of a bone that runs from `from` to `to` with its back turned to `dorsal` as far as that can
-/// be.
+/// Axes of a bone from `from` to `to` whose back faces `dorsal` as nearly as possible.
 glm::dmat3 bone_axes(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& dorsal) {
   const glm::dvec3 proximal = glm::normalize(from - to);
   const glm::dvec3 back = glm::normalize(dorsal - proximal * glm::dot(dorsal, proximal));

@@ -37,7 +37,7 @@ void set_triangles(HandMesh& hand, const GloveTemplate& glove, const std::vector
   for (const Triangle& t : palm) add(t, glove.sheet_count());
 }
 
-/// Positions and normals of the file's vertices, in metres, and the joints.
+/// Sets the positions (metres) and normals of the file vertices, and the joints.
 void set_skin(HandMesh& hand, const GloveTemplate& glove, const HandShape& shape,
               const SkinPoints& points, const HandField& field) {
   hand.positions.clear();
@@ -59,7 +59,8 @@ void set_weights(HandMesh& hand, const GloveTemplate& glove,
   }
 }
 
-/// Left to right and back: x mirrored (orientations S R S), triangles turned round.
+/// Turns a left hand into a right one or vice versa: mirrors x (orientations S R S) and reverses
+/// the triangles.
 void mirror(HandMesh& hand) {
   const glm::mat4 flip(glm::vec4(-1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0),
                        glm::vec4(0, 0, 0, 1));
@@ -70,8 +71,8 @@ void mirror(HandMesh& hand) {
   hand.side = hand.side == Side::left ? Side::right : Side::left;
 }
 
-/// The mean hand's skin carried along by the joints of another person, stretched along each bone by
-/// how much longer that is.
+/// The skin of the mean hand, posed by the joints of another person and stretched along each bone
+/// by the ratio of the lengths.
 SkinPoints carried_skin(const HandMesh& mean, const GloveTemplate& glove, const HandShape& shape) {
   JointFrames frames = rest_frames(shape);
   const JointFrames unstretched = frames;
@@ -107,7 +108,7 @@ HandMesh make_hand(const HandShape& shape, Side side) {
   number_charts(hand);
   if (side == Side::right) {
     mirror(hand);
-    for (glm::vec2& uv : hand.uv) uv.x = 1 - uv.x;  // so that text reads right on this hand too
+    for (glm::vec2& uv : hand.uv) uv.x = 1 - uv.x;  // text must not be mirrored on this hand
   }
   return hand;
 }
@@ -121,7 +122,7 @@ HandMesh refit_hand(const HandMesh& mean, const HandShape& shape) {
     const SkinPoints points =
         settled_on_skin(carried_skin(hand, glove, shape), glove, field, kRoundsOfARefit);
     set_skin(hand, glove, shape, points, field);
-  } else {  // not one of ours: its skin can only follow the joints
+  } else {  // not made by make_hand(): its skin can only follow the joints
     skin(HandMesh(hand), rest_frames(shape), hand.positions, hand.normals);
     hand.rest = rest_frames(shape);
   }

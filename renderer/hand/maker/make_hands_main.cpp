@@ -5,17 +5,18 @@
 #include "renderer/hand/maker/glb_write.hpp"
 #include "renderer/hand/maker/hand_shape.hpp"
 
-// make_hands FOLDER: writes hand_left.glb and hand_right.glb of the mean person. Run by the build.
+// handcast-make-hands FOLDER: writes hand_left.glb and hand_right.glb of the mean person. The build
+// runs it.
 int main(int argc, char** argv) {
   using namespace handcast::renderer;
-  if (argc != 2) return std::fprintf(stderr, "usage: make_hands FOLDER\n"), 2;
+  if (argc != 2) return std::fprintf(stderr, "usage: handcast-make-hands FOLDER\n"), 2;
   const std::filesystem::path folder = argv[1];
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   for (const Side side : {Side::left, Side::right}) {
     const auto file = folder / (side == Side::left ? "hand_left.glb" : "hand_right.glb");
     if (const auto saved = save_hand(make_hand(HandShape::mean(), side), file); !saved) {
-      std::fprintf(stderr, "make_hands: %s\n", saved.error().what.c_str());
+      std::fprintf(stderr, "handcast-make-hands: %s\n", saved.error().what.c_str());
       return 1;
     }
   }

@@ -4,8 +4,7 @@
 namespace handcast::renderer {
 namespace {
 
-/// Collects the cones of the palm. Offsets and radii are in tuned millimetres and grow with the
-/// person.
+/// Collects the cones of the palm. Offsets and radii are in tuned millimetres (flesh_scale()).
 class PalmBuilder {
  public:
   PalmBuilder(const HandShape& shape, const RestPose& rest)
@@ -36,7 +35,7 @@ class PalmBuilder {
                         radius_to * scale_);
   }
 
-  /// One metacarpal, the flesh towards the next, and the knuckle.
+  /// Adds a metacarpal, the flesh between it and the next, and the knuckle.
   void add_ray(int f) {
     const double slimmer = f == 4 ? 0.93 : 1.0;
     const double border = f == 1 ? 2.0 : f == 4 ? -2.5 : 0.0;
@@ -48,8 +47,8 @@ class PalmBuilder {
     add(head(f), {0, kHalf * 0.22, 14}, head(f), {0, kHalf * 0.30, -2}, kHalf * 0.55, kHalf * 0.58);
   }
 
-  /// From finger to finger, on the palmar side of their axes, about a quarter along the proximal
-  /// phalanx.
+  /// Adds the web between two fingers, on the palmar side of their axes, at about a quarter of the
+  /// proximal phalanges.
   void add_web(int f) {
     const auto on_phalanx = [&](int finger, double share) {
       return head(finger) -
@@ -58,14 +57,14 @@ class PalmBuilder {
     add(on_phalanx(f, 0.26), {0, -2.5, 0}, on_phalanx(f + 1, 0.28), {0, -2.5, 0}, 7.4, 7.2);
   }
 
-  /// Under the heads of the metacarpals.
+  /// Adds the pads below the heads of the metacarpals.
   void add_pads() {
     add(head(1), {-2, -6, 0}, head(2), {0, -7, 0}, 7.5, 7);
     add(head(2), {0, -7, 0}, head(3), {0, -6, 0}, 7, 7);
     add(head(3), {0, -6, 0}, head(4), {1, -4.5, 0}, 7, 7);
   }
 
-  /// The metacarpal, the ball (thenar) and the web to the index.
+  /// Adds the thumb's metacarpal, its ball (thenar) and its web to the index finger.
   void add_thumb() {
     const glm::dvec3 root = base(0), bone = head(0) - root;
     const double cmc = shape_.radius_mm[0][0] / scale_, mcp = shape_.radius_mm[0][1] / scale_;
@@ -77,17 +76,17 @@ class PalmBuilder {
     add(root + bone * 0.55, {}, (base(1) + head(1)) * 0.5, {0, -3, 0}, 9, 9);
   }
 
-  /// The hypothenar.
+  /// Adds the hypothenar.
   void add_little_side() {
     const glm::dvec3 root = base(4), bone = head(4) - root;
     add(root, {-7, -6, 6}, root + bone * 0.66, {-6, -8, 0}, kHalf * 0.85, kHalf * 0.90);
     add(root, {-5, -3, 8}, root + bone * 0.80, {-4, -2, 0}, kHalf * 0.85, kHalf * 0.90);
   }
 
-  /// Three cones side by side from the forearm's end into the palm: without a joint at the wrist,
-  /// where a band would show.
+  /// Adds three cones side by side from the forearm's end into the palm. They are continuous at the
+  /// wrist, where a joint would be visible as a band.
   void add_wrist() {
-    constexpr double kUnionSwelling = 3.5, kWidening = 0.05;  // of the forearm, mm per mm
+    constexpr double kUnionSwelling = 3.5, kWidening = 0.05;  // mm; forearm's mm per mm
     const glm::dvec2 half = glm::dvec2(shape_.wrist_half_axes_mm) / scale_;
     const double radius = half.y - kUnionSwelling, into_palm = 36;
     const double end = shape_.forearm_mm / scale_, end_radius = radius + kWidening * end;

@@ -21,7 +21,7 @@ RoundCone::RoundCone(const glm::dvec3& from, const glm::dvec3& to, double radius
       radius_from_(radius_from),
       radius_to_(radius_to),
       length_(glm::distance(from, to)) {
-  if (length_ <= std::abs(radius_from - radius_to)) {  // one sphere holds the other
+  if (length_ <= std::abs(radius_from - radius_to)) {  // one sphere contains the other
     if (radius_to > radius_from) from_ = to_, radius_from_ = radius_to_;
     length_ = 0;
     return;
@@ -37,8 +37,8 @@ Reading RoundCone::at(const glm::dvec3& point) const {
   const double along = glm::dot(from_start, axis_);
   const glm::dvec3 off_axis = from_start - axis_ * along;
   const double away = glm::length(off_axis);
-  const double foot =
-      along - away * sin_ / cos_;  // where the normal of the slanted side meets the axis
+  // The point at which the normal of the slanted side meets the axis.
+  const double foot = along - away * sin_ / cos_;
   if (foot <= 0) return sphere(from_start, radius_from_);
   if (foot >= length_) return sphere(point - to_, radius_to_);
   return {away * cos_ + along * sin_ - radius_from_,

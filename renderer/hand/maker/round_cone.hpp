@@ -4,16 +4,18 @@
 
 namespace handcast::renderer {
 
-/// What a distance field says of a point: negative inside; the gradient points away from the shape.
+/// The value of a distance field at a point.
 struct Reading {
-  double distance_mm = 0;
-  glm::dvec3 gradient{0};
+  double distance_mm = 0;  ///< negative inside the shape
+  glm::dvec3 gradient{0};  ///< of the distance: points away from the shape
 };
 
-/// The hull of two spheres.
+/// The convex hull of two spheres.
 class RoundCone {
  public:
+  /// The centres and radii of the spheres, in mm.
   RoundCone(const glm::dvec3& from, const glm::dvec3& to, double radius_from, double radius_to);
+  /// The exact distance field at a point.
   Reading at(const glm::dvec3& point) const;
 
  private:
@@ -22,8 +24,9 @@ class RoundCone {
   double sin_ = 0, cos_ = 1;  ///< of the angle between the axis and the side
 };
 
-/// Union that rounds the crease between two shapes over `width` (quadratic polynomial: a, b and
-/// their gradients mixed by h = 1 - |a - b| / width where that is positive).
+/// Union of two shapes that rounds the crease between them over `width` mm: with h = 1 - |a - b| /
+/// width, the smaller distance is reduced by h^2 width / 4 and the gradients are blended by h / 2
+/// if h is positive.
 Reading smooth_union(const Reading& a, const Reading& b, double width);
 
 }  // namespace handcast::renderer

@@ -12,8 +12,7 @@ namespace handcast::renderer {
 namespace {
 
 constexpr int kWrist = 1;
-/// Below this a weight is dropped.
-constexpr double kLeastWeight = 0.01;
+constexpr double kLeastWeight = 0.01;  ///< smaller weights are dropped
 
 double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 ab = b - a;
@@ -21,11 +20,11 @@ double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return glm::distance(p, a + ab * share);
 }
 
-/// The bone (by the joint at its start) to which a vertex belongs. Palm vertices know the
-/// metacarpals, the first phalanx of the thumb's two and the forearm; finger vertices only the
-/// bones of their own finger.
+/// The bone, given by the joint at its start, to which a vertex belongs: for palm vertices the
+/// forearm, a metacarpal or the proximal phalanx of a finger other than the thumb; for finger
+/// vertices a bone of their own finger.
 int nearest_bone(const glm::dvec3& p, int finger_of_vertex, const RestPose& rest) {
-  constexpr double kMetacarpalHandicap = 2;  // mm: a finger's skin prefers its phalanges
+  constexpr double kMetacarpalHandicap = 2;  // mm: favours the phalanges for the skin of a finger
   const bool in_palm = finger_of_vertex < 0;
   int best = kWrist;
   double least = in_palm ? distance_to_segment(p, {0, 0, -4}, {0, 0, 1000})
@@ -44,7 +43,7 @@ int nearest_bone(const glm::dvec3& p, int finger_of_vertex, const RestPose& rest
   return best;
 }
 
-/// `columns` after two implicit heat steps that spread over about `reach_mm`.
+/// Diffuses `columns` by two implicit heat steps over a distance of about `reach_mm`.
 Eigen::MatrixXd spread(const MeshOperators& operators, const Eigen::MatrixXd& columns,
                        double reach_mm) {
   Eigen::SparseMatrix<double> system = operators.laplacian * (reach_mm * reach_mm / 2);

@@ -8,14 +8,14 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kGutter = 8.0 / 1024;  ///< of the atlas' width
+constexpr double kGutter = 8.0 / 1024;  ///< share of the width of the atlas
 
 struct Chart {
   std::vector<glm::dvec2> flat;  ///< millimetres, y down, the top left corner at the origin
   glm::dvec2 size{0};
 };
 
-/// Turns triangle corners seen from outside into those of a plane with y up.
+/// Flattens the back or the palm. The initial positions are its vertices seen from outside, y up.
 Chart chart_of(const SkinPoints& points, const GloveTemplate& glove,
                const std::vector<Triangle>& triangles, bool back) {
   std::vector<glm::dvec3> chart_points;
@@ -40,7 +40,7 @@ std::vector<glm::vec2> unwrapped(const SkinPoints& points, const GloveTemplate& 
                                  const std::vector<Triangle>& palm) {
   const Chart charts[2] = {chart_of(points, glove, back, true),
                            chart_of(points, glove, palm, false)};
-  // Atlas width in millimetres so that both fit with a gutter all around and between.
+  // The width in mm at which both charts fit, with a gutter around and between them.
   const double wide = (charts[0].size.x + charts[1].size.x) / (1 - 3 * kGutter);
   const double high =
       std::max(charts[0].size.y, charts[1].size.y) / (1 / kAtlasAspect - 2 * kGutter);

@@ -4,9 +4,9 @@
 
 namespace handcast::renderer {
 
-/// Texture coordinates per file vertex (u right, v down, 0..1) of a left hand, laid out for a
-/// picture of kAtlasAspect: the back on the left, the palm on the right, fingers up, each as seen
-/// from outside, so that text on either reads right.
+/// The texture coordinates of a left hand by file vertex: u right, v down, 0..1, for a picture of
+/// kAtlasAspect. The back is on the left, the palm on the right, fingers up, both as seen from
+/// outside, so that text is not mirrored on either.
 std::vector<glm::vec2> unwrapped(const SkinPoints& points, const GloveTemplate& glove,
                                  const std::vector<Triangle>& back,
                                  const std::vector<Triangle>& palm);

@@ -19,9 +19,9 @@ std::vector<std::size_t> ascending(std::span<const Value> values, const Key& key
   return order;
 }
 
-/// Marks that touch, laid out as one about the mean of where they would be.
+/// Marks that touch. They are moved as one to the mean of their wanted places.
 struct Cluster {
-  double sum = 0;  ///< of the wanted place of the first, as each of its marks sees it
+  double sum = 0;  ///< sum over the marks of the place of the first that would suit the mark
   std::size_t count = 0;
 
   double first(double gap, double low, double high) const {

@@ -7,20 +7,23 @@
 
 namespace handcast::chart {
 
+/// A point of a chart, in the units of its axes or in pixels.
 struct Point {
-  double x = 0, y = 0;
+  double x = 0;  ///< to the right
+  double y = 0;  ///< upwards on axes, downwards in pixels
 };
 
-/// Which points no other beats: none is as small in both and smaller in one. By ascending x.
+/// The indices of the Pareto-optimal points, by ascending x: no other point is at most as large in
+/// both coordinates and smaller in one.
 std::vector<std::size_t> pareto_front(std::span<const Point> points);
 
-/// Where y first reaches `times` its value at the mildest stress, the first point; between two
-/// points on the line between them. None where it never does. Points by ascending stress.
+/// The point at which y first reaches `times` its value at the first point, interpolated linearly;
+/// empty if it never does. The points must be in the order of ascending x.
 std::optional<Point> breakdown_point(std::span<const Point> points, double times = 2);
 
-/// Moves marks on a line apart so that neighbours have at least `gap` between them, keeps their
-/// order and all between `low` and `high` where there is room, and moves them as little as that
-/// allows.
+/// Moves marks on a line apart until neighbours have a distance of at least `gap`. The order is
+/// kept, the sum of squared displacements is minimal, and all marks stay between `low` and `high`
+/// if they fit.
 std::vector<double> spread_apart(std::span<const double> marks, double gap, double low,
                                  double high);
 

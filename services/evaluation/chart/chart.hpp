@@ -8,20 +8,26 @@
 
 namespace handcast::chart {
 
-/// One picture, the numbers behind it, and what to see in it.
+/// A chart and the numbers behind it.
 struct Chart {
-  std::string name;  ///< of its files, without ending
-  std::string title;
-  std::string reading;
-  std::string script;   ///< for gnuplot; empty where the results lack what it shows
-  std::string lacking;  ///< the sentence that says so
-  std::vector<NumberTable> tables;
+  std::string name;                 ///< name of its files, without extension
+  std::string title;                ///< heading on the page
+  std::string reading;              ///< explanation on the page
+  std::string script;               ///< for gnuplot; "" if the results lack what the chart needs
+  std::string lacking;              ///< what the chart needs: "needs runs ..."; "" with a script
+  std::vector<NumberTable> tables;  ///< empty without a script
 };
 
-Chart chart_a(const Results& results);  ///< speed against accuracy
-Chart chart_b(
-    const Results& results);  ///< one panel per stress, with the point where the error doubles
-Chart chart_b_faults(const Results& results);  ///< the failure atlas
-Chart chart_c(const Results& results);  ///< error against degrees of freedom, and against time
+/// Makes one chart of the results.
+/// @{
+/// Speed against accuracy.
+Chart chart_a(const Results& results);
+/// Error against stress: a panel per stress, with the points at which the error doubles.
+Chart chart_b(const Results& results);
+/// The failure atlas.
+Chart chart_b_faults(const Results& results);
+/// Error against degrees of freedom, and against time.
+Chart chart_c(const Results& results);
+/// @}
 
 }  // namespace handcast::chart

@@ -10,12 +10,12 @@
 namespace handcast::chart {
 namespace {
 
-/// What bystanders notice: delay with the edges of the light in sight, and with gaps filled (METHOD
-/// section 5).
+/// Just noticeable delay of the light, without and with the fill (paper, "Just Noticeable
+/// Difference").
 constexpr double kJndEdges_ms = 3.08, kJndFilled_ms = 6.62;
 
 constexpr int kWidth_px = 1060, kHeight_px = 440;
-constexpr double kFrom_ms = 2;  ///< sooner than any camera and projector
+constexpr double kFrom_ms = 2;  ///< less than the delay of any camera and projector
 
 struct Panel {
   std::vector<Standing> standings;
@@ -30,7 +30,7 @@ Panel panel_of(const Ladder& ladder, double speed) {
     panel.standings.push_back(standing);
     panel.points.push_back({*standing.photon_ms, *standing.p95_mm});
   }
-  // The ideal knows the truth: nothing that is built can stand there.
+  // "ideal" uses the truth, so that it cannot be built and is not on the front.
   std::vector<Point> buildable = panel.points;
   for (std::size_t i = 0; i < buildable.size(); ++i)
     if (panel.standings[i].method.variant == "ideal") buildable[i] = {1e9, 1e9};
@@ -50,7 +50,7 @@ void draw_bands(Script& script) {
   note(kJndFilled_ms, "6.62, filled");
 }
 
-/// The front as a stair from its first point to its last.
+/// The Pareto front as a staircase from its first point to its last.
 std::vector<Point> stair_of(const Panel& panel) {
   std::vector<Point> stair;
   for (const auto i : panel.front) {
@@ -72,7 +72,7 @@ void draw(Script& script, const Panel& panel, double speed, const Area& area, co
   script.panel(area, x, y);
   script.text(area.left - 34, area.top - 38, name_of_speed(speed), {kInk, "left", 15, true});
   script.y_axis("interior error, 95th percentile, mm");
-  script.x_axis("from motion to photon, ms");
+  script.x_axis("motion to photon, ms");
   draw_bands(script);
   script.series(stair_of(panel), fmt::format("lines lc rgb \"{}\" lw 2 dt (6,4)", kOurs.value));
   std::vector<Label> labels;
@@ -109,12 +109,12 @@ std::string script_of(const Ladder& ladder, const std::vector<Panel>& panels) {
 
 NumberTable table_of(const Ladder& ladder, const std::vector<Panel>& panels) {
   NumberTable table{"chart_a",
-                    "Means over the motions and seeds of the sweep; the error is at the middle of "
-                    "a frame's light. The paper stands at its published "
-                    "software leg, the rest at the "
-                    "time that a frame takes on one core: each its own, ideal and paper at our "
-                    "speed handcast's. Simulated figures are the same on every "
-                    "machine; italic columns have times of the machine that ran the sweep.",
+                    "Means over the motions and seeds of the sweep. The error is that at the "
+                    "middle of a frame's light. The motion-to-photon time of the paper has its "
+                    "published software time; those of the others have the measured time of a "
+                    "frame on one core, which is that of handcast for ideal landmarks, the paper "
+                    "at our speed and real detectors. Simulated figures are the same on all "
+                    "machines; columns in italics depend on the machine that ran the sweep.",
                     {{"speed", "speed"},
                      {"method", "method"},
                      {"back_end", "back end"},
@@ -124,7 +124,7 @@ NumberTable table_of(const Ladder& ladder, const std::vector<Panel>& panels) {
                      {"coverage", "coverage", 3},
                      {"spill", "spill", 3},
                      {"jitter_px", "jitter, px", 2},
-                     {"landmarks_age_ms", "landmarks' age, ms", 1},
+                     {"landmarks_age_ms", "landmark age, ms", 1},
                      {"frame_us_p50", "frame, µs p50", 0, true},
                      {"on_front", "on the front"},
                      {"runs", "runs", 0}},
@@ -147,11 +147,11 @@ NumberTable table_of(const Ladder& ladder, const std::vector<Panel>& panels) {
 Chart chart_a(const Results& results) {
   Chart chart{"chart_a",
               "A. Speed against accuracy",
-              "Left is sooner, low is nearer: 95 of 100 points of the skin get their light nearer "
-              "than this. The dashed line is the best that "
-              "can be had: what lies on it is beaten by no method in both. In the shaded bands the "
-              "delay goes unnoticed: to 3.08 ms where the "
-              "edges of the light are in sight, to 6.62 ms where gaps are filled.",
+              "Further left is faster, further down is more accurate: the error is the one that "
+              "95 % of the points of the skin do not exceed. The dashed line joins the methods "
+              "that no other method beats in both. In the shaded bands the delay is not noticed: "
+              "up to 3.08 ms without the fill, when the edges of the light are visible, and up to "
+              "6.62 ms with it.",
               {},
               {},
               {}};
@@ -160,8 +160,8 @@ Chart chart_a(const Results& results) {
   for (const double speed : ladder.speeds) panels.push_back(panel_of(ladder, speed));
   if (std::ranges::all_of(panels, [](const Panel& panel) { return panel.points.empty(); })) {
     chart.lacking =
-        "needs runs that were drawn, with the columns motion_to_photon_ms and interior_mm_p95: "
-        "sweep config/sweeps/ladder.toml";
+        "needs drawn runs with the columns motion_to_photon_ms and interior_mm_p95: sweep "
+        "config/sweeps/ladder.toml";
     return chart;
   }
   chart.script = script_of(ladder, panels);

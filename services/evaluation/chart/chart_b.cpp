@@ -36,14 +36,14 @@ void mark_breakdown(Script& script, const StressLine& line) {
   script.series({&*line.breakdown, 1},
                 fmt::format("points pt 6 ps 1.2 lw 2 lc rgb \"{}\"", line.method.colour.value));
   const auto place = script.place_px(*line.breakdown);
-  const bool ours =
-      line.method.variant == "handcast";  // right below its line, the others left above theirs
+  // The label is below the line on the right for handcast, above on the left for the others.
+  const bool ours = line.method.variant == "handcast";
   script.text(place.x + (ours ? 9 : -9), place.y + (ours ? 11 : -12),
               fmt::format("{:.3g}", line.breakdown->x),
               {line.method.colour, ours ? "left" : "right", 11});
 }
 
-/// Panels that show the same harm have one axis, so that they can be compared.
+/// Panels with the same metric have the same y axis.
 Range harm_range(const std::vector<Panel>& panels, const Panel& like) {
   std::vector<double> ys;
   for (const auto& panel : panels)
@@ -117,8 +117,8 @@ const StressLine* line_of(const Panel& panel, const Method& method) {
 NumberTable breakdowns_of(const std::vector<Panel>& panels, const std::vector<Method>& methods) {
   NumberTable table{
       "chart_b_breakdown",
-      "The stress at which the harm is twice what it is at the mildest of the sweep. A dash: not "
-      "within the sweep.",
+      "The stress at which the harm is twice that of the mildest stress of the sweep. A dash: not "
+      "reached within the sweep.",
       with_methods({{"stress", "breaks down at"}, {"unit", "unit"}, {"up_to", "swept up to", 1}},
                    methods, 1),
       {}};
@@ -143,7 +143,7 @@ const Point* point_at(const StressLine* line, double level) {
              : &line->points[static_cast<std::size_t>(found - line->levels.begin())];
 }
 
-/// Every level at which a method has a point, with the place of the first such method's.
+/// All levels at which any method has a point, and the x of the first such method.
 std::map<double, double> levels_of(const Panel& panel) {
   std::map<double, double> levels;
   for (const auto& line : panel.lines)
@@ -155,7 +155,7 @@ std::map<double, double> levels_of(const Panel& panel) {
 NumberTable numbers_of(const std::vector<Panel>& panels, const std::vector<Method>& methods) {
   NumberTable table{
       "chart_b",
-      "Means over motions and seeds. Simulated: the same on every machine.",
+      "Means over motions and seeds. Simulated: the same on all machines.",
       with_methods(
           {{"stress", "stress"}, {"level", "level", 2}, {"unit", "unit"}, {"harm", "harm"}},
           methods, 2),
@@ -178,16 +178,16 @@ NumberTable numbers_of(const std::vector<Panel>& panels, const std::vector<Metho
 Chart chart_b(const Results& results) {
   Chart chart{"chart_b",
               "B. Where methods fail",
-              "One thing made worse at a time, the rest at the defaults. The open circle is the "
-              "breakdown point: there the harm is twice what "
-              "it is at the mildest stress.",
+              "One setting at a time is made worse; the others have their defaults. The open "
+              "circle is the breakdown point, at which the harm is twice that of the mildest "
+              "stress.",
               {},
               {},
               {}};
   const auto panels = panels_of(results);
   if (panels.empty()) {
     chart.lacking =
-        "needs runs in which one setting alone is made worse: sweep config/sweeps/stress.toml";
+        "needs runs in which a single setting is made worse: sweep config/sweeps/stress.toml";
     return chart;
   }
   const auto methods = methods_of(panels);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth_px = 980;
 constexpr double kRow_px = 24, kNames_px = 262, kDots_px = 620, kTop_px = 96;
 
-/// One block of rows: what its dots measure, and what its right-hand columns say.
+/// One block of rows, with the metric of its dots. The columns on the right hold another.
 struct Block {
   std::string title, axis, columns_title;
   std::vector<const Failure*> rows;
@@ -29,9 +29,9 @@ const Damage* damage_of(const Failure& failure, std::string_view variant) {
 std::vector<Block> blocks_of(const std::vector<Failure>& failures) {
   const auto error = "interior error p95, mm", lit = "hand lit, %";
   std::vector<Block> blocks{
-      {"For a moment", "worst landmark error, mm", "good again after, ms", {}, &Damage::worst_mm},
-      {"For good", error, lit, {}, &Damage::p95_mm},
-      {"Motions that are hard, and a wave to compare with", error, lit, {}, &Damage::p95_mm},
+      {"For a moment", "worst landmark error, mm", "recovery, ms", {}, &Damage::worst_mm},
+      {"For the whole run", error, lit, {}, &Damage::p95_mm},
+      {"Difficult motions, and a wave for comparison", error, lit, {}, &Damage::p95_mm},
   };
   for (const auto& failure : failures)
     blocks[static_cast<std::size_t>(failure.kind)].rows.push_back(&failure);
@@ -107,20 +107,21 @@ std::string script_of(const std::vector<Block>& blocks) {
   return script.finish();
 }
 
-constexpr const char* kKindNames[] = {"for a moment", "for good", "motion"};
+constexpr const char* kKindNames[] = {"for a moment", "for the whole run", "motion"};
 
 NumberTable table_of(const std::vector<Failure>& failures) {
   NumberTable table{"chart_b_faults",
-                    "Worst and recovery are of the landmarks, the worst of the sweep's motions; "
-                    "recovery from the fault's end until for 100 ms the "
-                    "error is no more than half the usual one above that of the same run without "
-                    "the fault. The others are of the whole "
-                    "run, means over motions. Simulated: the same on every machine.",
+                    "Worst error, recovery and time without light are of the landmarks, and the "
+                    "largest over the motions of the sweep. Recovery is the time from the end of "
+                    "the fault until the error stays for 100 ms within half the usual error of "
+                    "the same run without the fault. The other figures are of the whole run: "
+                    "means over the motions, and the largest number of fold-overs. Simulated: the "
+                    "same on all machines.",
                     {{"failure", "failure"},
                      {"kind", "kind"},
                      {"method", "method"},
                      {"worst_mm", "worst, mm", 1},
-                     {"recovery_ms", "good again after, ms", 0},
+                     {"recovery_ms", "recovery, ms", 0},
                      {"dark_ms", "without light, ms", 0},
                      {"interior_mm_p95", "interior p95, mm", 2},
                      {"coverage", "coverage", 3},
@@ -145,16 +146,14 @@ NumberTable table_of(const std::vector<Failure>& failures) {
 Chart chart_b_faults(const Results& results) {
   Chart chart{"chart_b_faults",
               "B. The failure atlas",
-              "What goes wrong at a rig, how far the light is off while it does, and how long "
-              "until it is good again.",
+              "The failures of a rig: the error of the light during each of them, and the time "
+              "until the light is good again.",
               {},
               {},
               {}};
   const auto failures = failures_of(results);
   if (failures.empty()) {
-    chart.lacking =
-        "needs runs that were drawn and in which something fails: sweep "
-        "config/sweeps/failures.toml";
+    chart.lacking = "needs drawn runs with failures: sweep config/sweeps/failures.toml";
     return chart;
   }
   chart.script = script_of(blocks_of(failures));

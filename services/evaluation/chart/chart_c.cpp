@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kWidth_px = 980, kHeight_px = 400;
 
-/// One speed: what stands on the rungs, in their order, and the gate that chooses among them.
+/// The rungs at one speed, in their order, and the gate that chooses among them.
 struct Series {
   double speed = 1;
   Colour colour;
@@ -45,7 +45,7 @@ std::string line_style(const Colour& colour) {
   return fmt::format("linespoints lc rgb \"{}\" lw 2 pt 7 ps 0.7", colour.value);
 }
 
-/// Error over the rungs; the gate is the dashed line across.
+/// Draws the error over the rungs. The error of the gate is a dashed horizontal line.
 void draw_freedoms(Script& script, const std::vector<Series>& all, const Range& y) {
   const Range x{-0.4, static_cast<double>(rungs().size()) - 0.6};
   script.panel({44, 62, 470, kHeight_px - 62}, x, y);
@@ -73,7 +73,7 @@ void draw_freedoms(Script& script, const std::vector<Series>& all, const Range& 
     if (!series.gate) continue;
     const std::vector<Point> across{{x.low, *series.gate->p95_mm}, {x.high, *series.gate->p95_mm}};
     script.series(across, fmt::format("lines lc rgb \"{}\" lw 1.5 dt (3,3)", series.colour.value));
-    labels.push_back({across.back(), "handcast, chosen", series.colour, true});
+    labels.push_back({across.back(), "handcast, gated", series.colour, true});
   }
   label_beside(script, labels);
   script.plot();
@@ -89,8 +89,8 @@ Range time_range(const std::vector<Series>& all) {
   return {0.93 * least, 1.05 * most, false};
 }
 
-/// Error over the time of a frame; the gate is the large point. Rungs are named at the last series,
-/// which is the furthest apart.
+/// Draws the error over the time of a frame. The gate is the large point. Only the rungs of the
+/// last series have labels: its points are the furthest apart.
 void draw_times(Script& script, const std::vector<Series>& all, const Range& y) {
   const auto x = time_range(all);
   if (x.low <= 0) return;
@@ -98,7 +98,7 @@ void draw_times(Script& script, const std::vector<Series>& all, const Range& y) 
   script.text(622, 24, "by time", {kInk, "left", 15, true});
   script.y_axis("interior error, 95th percentile, mm");
   script.tics("x", nice_tics(x, 3));
-  script.x_axis("median of a frame on one core, µs");
+  script.x_axis("median frame time on one core, µs");
   std::vector<Label> labels;
   for (const auto& series : all) {
     std::vector<Point> points;
@@ -121,11 +121,11 @@ void draw_times(Script& script, const std::vector<Series>& all, const Range& y) 
 NumberTable table_of(const std::vector<Series>& all, bool timed_alone) {
   NumberTable table{
       "chart_c",
-      std::string("Errors are simulated, the same on every machine. Italic: of the machine that "
-                  "ran the sweep, ") +
-          (timed_alone
-               ? "alone on one core."
-               : "one core among busy ones (sweep config/sweeps/times.toml with -j 1 for better)."),
+      std::string("Errors are simulated and the same on all machines. Columns in italics are times "
+                  "of the machine that ran the sweep, ") +
+          (timed_alone ? "measured with one run at a time."
+                       : "measured with several runs at a time; sweep config/sweeps/times.toml "
+                         "with -j 1 for better ones."),
       {{"speed", "speed"},
        {"rung", "rung"},
        {"degrees_of_freedom", "degrees of freedom", 0},
@@ -153,9 +153,9 @@ NumberTable table_of(const std::vector<Series>& all, bool timed_alone) {
 Chart chart_c(const Results& results) {
   Chart chart{"chart_c",
               "C. No more than needed",
-              "Each rung of the ladder held for the whole run, cheapest first: what one more "
-              "degree of freedom buys, and what it costs. "
-              "handcast takes for every frame the cheapest rung that is good enough.",
+              "Each rung of the ladder, used for the whole run, cheapest first: the gain and the "
+              "cost of more degrees of freedom. handcast uses the cheapest rung that is good "
+              "enough in each frame.",
               {},
               {},
               {}};

@@ -11,21 +11,21 @@ namespace handcast::chart {
 namespace {
 
 struct Kind {
-  std::string_view setting, name;  ///< the name takes the setting, times the scale
+  std::string_view setting, name;  ///< name: a format string for the setting times the scale
   bool passes = false;
   double scale = 1;
 };
 
 constexpr std::array kKinds{
-    Kind{"twin.tracker.lost_s", "tracker gives nothing, {:g} ms", true, 1e3},
+    Kind{"twin.tracker.lost_s", "tracker silent, {:g} ms", true, 1e3},
     Kind{"twin.tracker.frozen_s", "tracker frozen, {:g} ms", true, 1e3},
     Kind{"twin.tracker.wrong_finger_s", "tracker: wrong finger, {:g} ms", true, 1e3},
     Kind{"twin.tracker.swapped_s", "tracker: hands swapped, {:g} ms", true, 1e3},
-    Kind{"twin.detector.lost_s", "landmarks gone, {:g} ms", true, 1e3},
+    Kind{"twin.detector.lost_s", "landmarks lost, {:g} ms", true, 1e3},
     Kind{"twin.detector.wrong_finger_s", "landmarks: wrong finger, {:g} ms", true, 1e3},
-    Kind{"twin.tracker.clock_skew_ms", "tracker's clock {:+g} ms"},
-    Kind{"twin.detector.clock_skew_ms", "landmarks' clock {:+g} ms"},
-    Kind{"twin.detector.outliers", "landmarks thrown off, {:g} %", false, 100},
+    Kind{"twin.tracker.clock_skew_ms", "tracker clock {:+g} ms"},
+    Kind{"twin.detector.clock_skew_ms", "detector clock {:+g} ms"},
+    Kind{"twin.detector.outliers", "outliers, {:g} % of the landmarks", false, 100},
     Kind{"twin.image.dark", "image dark: {:g} % of the light", false, 100},
     Kind{"twin.image.saturated", "image saturated: {:g} times the light"},
     Kind{"twin.image.holes", "image with holes, {:g} % of the hand", false, 100},
@@ -35,7 +35,7 @@ constexpr std::array kKinds{
 
 bool is_beside(const std::string& path) { return path.ends_with("_at_s"); }
 
-/// The one failure that a run's settings name; null where there is none.
+/// The kind of the failure in the axes of a run; null if there is none.
 const Kind* kind_of(const Run& run) {
   for (const auto& path : run.turned())
     if (const auto kind = std::ranges::find(kKinds, path, &Kind::setting);
@@ -78,7 +78,7 @@ Damage damage_of(const Runs& runs) {
   return damage;
 }
 
-/// Runs of the plans that make things fail: those that turn more than a ladder does.
+/// The drawn runs of the plans with more axes than those of a ladder.
 Runs laboratory(const Results& results) {
   std::map<std::string, bool> ladder;
   for (const auto& source : results.sources) ladder[source.plan] = source.ladder;

@@ -9,23 +9,34 @@
 
 namespace handcast::chart {
 
-/// What one method did under one failure: means over motions and seeds, the worst of the worst.
+/// The effect of one failure on one method, over motions and seeds. Empty if not measured.
 struct Damage {
-  std::optional<double> worst_mm, recovery_ms, dark_ms;  ///< of failures that pass
-  std::optional<double> p95_mm, coverage, spill, foldovers;
-  std::size_t runs = 0, never_good = 0;  ///< how many were not good again before their end
+  std::optional<double> worst_mm;     ///< largest landmark error; of passing failures only
+  std::optional<double> recovery_ms;  ///< longest recovery; of passing failures only
+  std::optional<double> dark_ms;      ///< longest time without light; of passing failures only
+  std::optional<double> p95_mm;       ///< mean of the interior error's 95th percentile
+  std::optional<double> coverage;     ///< mean
+  std::optional<double> spill;        ///< mean
+  std::optional<double> foldovers;    ///< largest number of a run
+  std::size_t runs = 0;               ///< number of runs
+  std::size_t never_good = 0;         ///< runs that ended before the light was good again
 };
 
-enum class FailureKind { passing, lasting, motion };
+/// The kinds of failure, in the order of the atlas.
+enum class FailureKind {
+  passing,  ///< a sensor fails for a moment
+  lasting,  ///< a sensor or the image is bad for the whole run
+  motion,   ///< no failure: a difficult motion
+};
 
+/// One failure and its effect.
 struct Failure {
-  std::string name;
-  FailureKind kind = FailureKind::passing;
-  std::map<std::string, Damage> damage;  ///< by variant
+  std::string name;                         ///< label in the atlas
+  FailureKind kind = FailureKind::passing;  ///< block of the atlas
+  std::map<std::string, Damage> damage;     ///< by variant
 };
 
-/// Every failure of the results: of sensors for a moment, of sensors and images for good, motions
-/// that are hard; in this order.
+/// The failures of the results, ordered by kind.
 std::vector<Failure> failures_of(const Results& results);
 
 }  // namespace handcast::chart

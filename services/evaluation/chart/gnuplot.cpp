@@ -16,7 +16,7 @@
 namespace handcast::chart {
 namespace {
 
-/// A folder that goes when it is done with.
+/// A temporary folder, which the destructor removes. The path is empty if it cannot be created.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -41,16 +41,17 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Of what gnuplot says: its lines with a caret below the fault are in front, the sentence behind.
+/// The last line of gnuplot's error output, which is the message. The source line and a caret below
+/// the fault precede it.
 std::string last_line(const std::string& text) {
   const auto end = text.find_last_not_of(" \t\n");
-  if (end == text.npos) return "it says nothing";
+  if (end == text.npos) return "it printed no message";
   const auto begin = text.rfind('\n', end);
   return text.substr(begin == text.npos ? 0 : begin + 1,
                      end - (begin == text.npos ? 0 : begin + 1) + 1);
 }
 
-/// The exit status as waitpid gives it; the error of posix_spawnp where there is no such program.
+/// Runs the program and returns its status as of waitpid(). Errors: bad_config (it cannot start).
 Result<int> run(const std::string& program, const std::filesystem::path& script,
                 const std::string& out, const std::string& complaints) {
   posix_spawn_file_actions_t files;
@@ -67,7 +68,7 @@ Result<int> run(const std::string& program, const std::filesystem::path& script,
     return fail(
         Errc::bad_config,
         fmt::format(
-            "charts are drawn by {}, which cannot be started ({}); scripts/setup installs it",
+            "charts are drawn by {}, which cannot be started: {}; scripts/setup installs it",
             program, std::strerror(failed)));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
@@ -80,7 +81,7 @@ Result<std::string> run_gnuplot(const std::string& script, const std::string& pr
   const TemporaryFolder folder;
   if (folder.path().empty())
     return fail(Errc::unavailable,
-                fmt::format("no folder for temporary files: {}", std::strerror(errno)));
+                fmt::format("cannot create a temporary folder: {}", std::strerror(errno)));
   const auto script_file = folder.path() / "script.gp", out = folder.path() / "out.svg",
              complaints = folder.path() / "complaints";
   std::ofstream(script_file, std::ios::binary) << script;
@@ -90,7 +91,7 @@ Result<std::string> run_gnuplot(const std::string& script, const std::string& pr
   const bool whole = svg.find("</svg>") != svg.npos;
   if (*status != 0 || !whole)
     return fail(Errc::bad_data,
-                fmt::format("{} drew nothing: {}", program, last_line(text_of(complaints))));
+                fmt::format("{} failed: {}", program, last_line(text_of(complaints))));
   return svg;
 }
 

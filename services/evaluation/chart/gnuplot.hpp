@@ -6,9 +6,9 @@
 
 namespace handcast::chart {
 
-/// Has gnuplot run a script, as a child process that reads no start-up file, and gives what it
-/// printed: the SVG. Errors: bad_config (there is no such program), bad_data (it complained of the
-/// script), unavailable (no folder for temporary files).
+/// Runs a script with gnuplot and returns its output, an SVG. Blocks until the child process ends;
+/// it does not read start-up files. Errors: bad_config (there is no such program), bad_data (the
+/// script failed), unavailable (there is no folder for temporary files).
 Result<std::string> run_gnuplot(const std::string& script, const std::string& program = "gnuplot");
 
 }  // namespace handcast::chart

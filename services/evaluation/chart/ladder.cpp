@@ -40,8 +40,9 @@ Standing standing_of(const std::string& variant, double speed, const Runs& runs)
           mean_of(runs, "frame_us_p50")};
 }
 
-/// Whose frames tell how long a method's software takes; "" where its rig says so. What is not
-/// built runs as fast as what is; a detector does not hold up the frames.
+/// The variant whose measured frame time is used for a method; "" if that of its rig is used. The
+/// detector does not delay the frames, and methods that cannot be built are given the time of
+/// handcast.
 std::string timed_as(const Method& method) {
   if (method.variant == "paper") return "";
   return method.variant == "paper_at_our_speed" || method.variant == "ideal" || method.detects
@@ -49,7 +50,7 @@ std::string timed_as(const Method& method) {
              : method.variant;
 }
 
-/// All is simulated with one software leg; a frame takes as long as it was timed.
+/// Replaces the simulated software time in photon_ms by the measured time of a frame.
 void take_own_leg(Standing& standing, const Runs& runs, std::optional<double> frame_us) {
   const auto simulated_ms = mean_of(runs, "software_ms");
   if (standing.photon_ms && simulated_ms && frame_us)

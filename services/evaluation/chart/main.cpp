@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// handcast chart: what sweeps found, as charts on one page.
+// handcast chart: draws the results of sweeps as charts on one page.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -16,13 +16,13 @@ using namespace handcast;
 
 static const char* const kFooter =
     R"(A: speed against accuracy. B: where methods fail, and the failure atlas. C: error against degrees of freedom and time.
-Each needs the results of a plan in config/sweeps: A and C of ladder.toml (times from times.toml), B of stress.toml and failures.toml.
-scripts/charts runs them all.)";
+The charts need the results of these plans in config/sweeps: A and C ladder.toml, and times.toml for frame times; B stress.toml and
+failures.toml. scripts/charts runs all of them.)";
 
 int main(int argc, char** argv) try {
   CLI::App app(
-      "Draws what sweeps found: one page that needs no network, with the charts as SVG and the "
-      "numbers behind them as CSV.",
+      "Draws the results of sweeps: a self-contained page, the charts as SVG, and the numbers "
+      "behind them as CSV.",
       "handcast chart");
   app.footer(kFooter);
   chart::Order order;
@@ -33,7 +33,7 @@ int main(int argc, char** argv) try {
                  "Folder for charts.html, *.svg and *.csv (default: out/charts)")
       ->default_val("out/charts");
   app.add_option("--title", order.imprint.title, "Heading of the page");
-  app.add_option("--gnuplot", order.gnuplot, "The gnuplot that draws");
+  app.add_option("--gnuplot", order.gnuplot, "The gnuplot program (default: gnuplot)");
   app.set_version_flag("--version", fmt::format("handcast chart {}", version()));
   CLI11_PARSE(app, argc, argv);
 

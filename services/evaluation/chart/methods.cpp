@@ -6,7 +6,7 @@
 namespace handcast::chart {
 namespace {
 
-/// 21 landmarks in two directions are 42; registration has 3 + 2 x 5 of its own.
+/// 21 landmarks have 42 degrees of freedom; registration adds 3 + 2 x 5.
 const std::array kRungMethods{
     Method{"hold", "hold", kOurs, 0},           Method{"predict", "predict", kOurs, 0},
     Method{"shift", "shift", kOurs, 2},         Method{"similarity", "similarity", kOurs, 4},

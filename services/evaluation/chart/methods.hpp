@@ -9,21 +9,22 @@
 
 namespace handcast::chart {
 
-/// What charts know of a variant by its name.
+/// The presentation of a variant in charts.
 struct Method {
-  std::string variant, label;
-  Colour colour = kInk;
-  std::optional<int> freedoms = {};  ///< of the correction, per hand; only rungs have a number
-  bool detects = false;  ///< handcast with a real detector on the twin's images, as old as it is
+  std::string variant;               ///< name in the plan
+  std::string label;                 ///< name in charts
+  Colour colour = kInk;              ///< of points and lines
+  std::optional<int> freedoms = {};  ///< degrees of freedom of the correction per hand; rungs only
+  bool detects = false;              ///< handcast with a real detector of measured age
 };
 
-/// The rungs of the ladder, cheapest first.
+/// The rungs of the ladder (`docs/method.md#ladder`), cheapest first.
 std::span<const Method> rungs();
 
-/// Of a variant that nobody knows: its name, in the colour of text.
+/// The method of a variant. An unknown variant has its name as label and the colour of text.
 Method method_of(std::string_view variant);
 
-/// The three that every chart compares.
+/// The variants that the failure atlas compares.
 inline constexpr std::string_view kCompared[] = {"baseline", "paper", "handcast"};
 
 }  // namespace handcast::chart

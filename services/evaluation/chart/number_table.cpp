@@ -21,7 +21,7 @@ std::string to_csv(const NumberTable& table) {
   return csv;
 }
 
-static constexpr std::size_t kLongRows = 30;  ///< more are folded up
+static constexpr std::size_t kLongRows = 30;  ///< a table with more rows is collapsed
 
 static std::string print(const Cell& cell, const Column& column) {
   return cell.text.empty() ? page::figure(cell.number, column.digits) : page::escape(cell.text);

@@ -11,11 +11,11 @@ namespace handcast::chart {
 namespace {
 
 constexpr const char* kHeader =
-    R"html(<p class="quiet">Errors are simulated on the digital twin in virtual time and are the same on every machine. Times of frames, and what they enter
-(columns in italic), are those of the machine that ran the sweeps.</p>
+    R"html(<p class="quiet">Errors are simulated on the digital twin in virtual time and are the same on all machines. Frame times, and the figures that depend on
+them (columns in italics), are those of the machine that ran the sweeps.</p>
 )html";
 
-/// The colours of palette.hpp, light and dark.
+/// The colours of palette.hpp for the light and the dark colour scheme.
 constexpr const char* kStyle = R"css(
 :root { --near: #e3efe9; --far: #f3f1e7; --fast: #3b5fa0; }
 @media (prefers-color-scheme: dark) { :root { --near: #1f3a33; --far: #2a2a22; --fast: #86a8e6; } }
@@ -41,7 +41,8 @@ std::string section(const Chart& chart, const std::string& drawing) {
   auto html = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p>{}</p>\n", chart.name,
                           page::escape(chart.title), page::escape(chart.reading));
   if (drawing.empty())
-    return html + page::missing(fmt::format("Not drawn: {}.", chart.lacking)) + "</section>\n";
+    return html + page::missing(fmt::format("Not drawn: the chart {}.", chart.lacking)) +
+           "</section>\n";
   html += fmt::format("<figure role=\"img\" aria-label=\"{}\">\n{}</figure>\n",
                       page::escape(chart.title), as_part_of_page(drawing, chart.name));
   for (const auto& table : chart.tables) html += to_html(table);

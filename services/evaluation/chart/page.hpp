@@ -7,13 +7,15 @@
 
 namespace handcast::chart {
 
-/// What a page says about its making.
+/// Title and origin of a page.
 struct Imprint {
-  std::string title, machine, date;
+  std::string title;    ///< plain text
+  std::string machine;  ///< "AMD EPYC, 2 cores, Debian 12"
+  std::string date;     ///< "2025-11-21 12:00 UTC"
 };
 
-/// The whole page: one file that needs nothing beside it, no network and no script. `drawings` are
-/// the charts' SVGs, in their order; "" for a chart that lacks its results.
+/// The whole page: a self-contained HTML file without scripts that needs no network. `drawings` are
+/// the SVGs of the charts in the same order; "" for a chart without a script.
 std::string make_page(const Results& results, const std::vector<Chart>& charts,
                       const std::vector<std::string>& drawings, const Imprint& imprint);
 

@@ -37,7 +37,7 @@ Result<Run> run_of(const sweep::Table& table, const sweep::Row& row, const std::
     } else if (const auto value = number_of(row[i])) {
       run.metrics[column] = *value;
     } else {
-      return fail(Errc::bad_data, fmt::format("{}: run {}: {} is '{}', not a number", file,
+      return fail(Errc::bad_data, fmt::format("{}: run {}: {} is '{}', which is not a number", file,
                                               row.front(), column, row[i]));
     }
   }
@@ -49,7 +49,8 @@ Result<void> read_file(const std::filesystem::path& file, Results& results) {
   if (!table) return tl::make_unexpected(table.error());
   const auto& columns = table->heading.columns;
   if (columns.size() < 3 || columns[1] != "variant" || columns.back() != "error")
-    return fail(Errc::bad_data, fmt::format("{}: holds no results of a sweep", file.string()));
+    return fail(Errc::bad_data,
+                fmt::format("{}: the file does not hold results of a sweep", file.string()));
   Source source{after(table->heading.stamp, "plan"), file.filename().string()};
   source.planned = table->heading.runs();
   source.ladder = std::ranges::none_of(
@@ -65,7 +66,7 @@ Result<void> read_file(const std::filesystem::path& file, Results& results) {
     ++source.scored;
   }
   if (source.scored == 0)
-    return fail(Errc::bad_data, fmt::format("{}: no run of it was scored", file.string()));
+    return fail(Errc::bad_data, fmt::format("{}: the file has no scored run", file.string()));
   results.sources.push_back(source);
   return {};
 }

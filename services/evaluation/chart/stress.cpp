@@ -12,19 +12,19 @@ constexpr std::string_view kLandmarks = "landmark_mm_p95",
                            kLandmarksTitle = "landmark error p95, mm";
 
 constexpr std::array kStresses{
-    Stress{"twin.tracker.age_ms", "tracker's age", "ms", 1, "", kLandmarks, kLandmarksTitle},
+    Stress{"twin.tracker.age_ms", "tracker age", "ms", 1, "", kLandmarks, kLandmarksTitle},
     Stress{"twin.tracker.dropout", "tracker samples lost", "%", 100, "", kLandmarks,
            kLandmarksTitle},
     Stress{"twin.detector.noise_px", "landmark noise", "px", 1, "", kLandmarks, kLandmarksTitle},
-    Stress{"twin.detector.age_ms", "landmarks' age", "ms, back to back (100 ms: 10 Hz)", 1, "",
+    Stress{"twin.detector.age_ms", "landmark age", "ms, back to back (100 ms: 10 Hz)", 1, "",
            kLandmarks, kLandmarksTitle},
-    Stress{"twin.image.holes", "holes in the camera's image", "% of the hand", 100, "", "coverage",
+    Stress{"twin.image.holes", "holes in the camera image", "% of the hand", 100, "", "coverage",
            "hand without light, %", true},
     Stress{"twin.speed", "hand speed", "m/s", 1, "hand_speed_m_s_p95", kLandmarks, kLandmarksTitle},
 };
 
-/// A sweep of nothing but speed is a ladder, no stress: there the hand's speed is one of two and
-/// not an axis.
+/// True if the only axis of a run, motion and seed aside, is the setting of the stress. The caller
+/// excludes the runs of ladders, in which the speed is not a stress.
 bool is_under(const Run& run, const Stress& stress) {
   const auto turned = run.turned();
   if (stress.setting == "twin.speed") return turned.empty() && !run.setting("twin.speed").empty();

@@ -26,7 +26,7 @@ const Colour* known_colour(std::string_view value) {
   return nullptr;
 }
 
-/// "rgb( 20, 128, 106)" as "#14806a".
+/// Converts "rgb( 20, 128, 106)" to "#14806a"; empty if it is malformed.
 std::optional<std::string> as_hexadecimal(std::string_view rgb) {
   std::string hexadecimal = "#";
   for (std::size_t i = 0; i < rgb.size();) {

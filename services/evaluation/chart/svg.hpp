@@ -4,12 +4,12 @@
 
 namespace handcast::chart {
 
-/// What gnuplot drew as a file of its own: a title for those who do not see it, and the reader's
-/// own font.
+/// Prepares an SVG of gnuplot for a file: sets the title, which screen readers use, and the
+/// system's fonts.
 std::string as_file(std::string svg, const std::string& title);
 
-/// The same as a part of a page: names that no other chart there has, and the page's colours for
-/// kColours.
+/// Prepares an SVG for a page: prefixes its ids with `name`, which must be unique on the page, and
+/// replaces kColours by the CSS variables of the page.
 std::string as_part_of_page(std::string svg, const std::string& name);
 
 }  // namespace handcast::chart

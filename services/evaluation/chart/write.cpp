@@ -55,7 +55,7 @@ Result<Written> write_charts(const Order& order) {
     if (chart.script.empty())
       written.lacking.push_back(fmt::format("{} {}", chart.name, chart.lacking));
   if (written.lacking.size() == charts.size())
-    return fail(Errc::bad_data, fmt::format("no chart can be drawn of these results: {}",
+    return fail(Errc::bad_data, fmt::format("no chart can be drawn from these results: {}",
                                             fmt::join(written.lacking, "; ")));
 
   const auto drawings = draw(charts, order.gnuplot);

@@ -5,18 +5,19 @@
 
 namespace handcast::page {
 
-/// A page that needs nothing but itself. All but the title is HTML.
+/// A self-contained HTML page.
 struct Document {
-  std::string title;
-  std::string style;   ///< CSS, after the house's
-  std::string facts;   ///< of fact(), under the title
-  std::string header;  ///< below them
-  std::string body;
+  std::string title;   ///< plain text
+  std::string style;   ///< CSS that follows kStyle
+  std::string facts;   ///< HTML of fact(), shown below the title
+  std::string header;  ///< HTML below the facts
+  std::string body;    ///< HTML of the sections
 };
 
+/// The page as the content of an HTML file.
 std::string to_html(const Document& document);
 
-/// One named value of the header; nothing where the value is empty.
+/// The HTML of one named value of the header; "" if the value is empty. Escapes both.
 std::string fact(std::string_view name, std::string_view value);
 
 }  // namespace handcast::page

@@ -8,20 +8,21 @@
 
 namespace handcast::page {
 
-/// Text as it may stand in HTML, in an attribute too.
+/// Escapes text for HTML, including the values of attributes.
 std::string escape(std::string_view text);
 
-/// A skeleton with every {{name}} replaced by its value. A name without a value becomes nothing.
-/// Values are not looked into.
+/// Replaces each {{name}} of a skeleton by its value, or by "" without one. Values are inserted as
+/// they are: a {{name}} in a value is not replaced.
 std::string fill(std::string_view skeleton,
                  const std::map<std::string, std::string, std::less<>>& values);
 
+/// Base64 with padding (RFC 4648).
 std::string base64(std::span<const unsigned char> bytes);
 
-/// A figure with `digits` decimals; a dash where there is none.
+/// Prints a number with `digits` decimals; a dash if it is missing or not finite.
 std::string figure(std::optional<double> value, int digits);
 
-/// A paragraph that says what a section lacks.
+/// A paragraph that explains why something is missing. Escapes the sentence.
 std::string missing(std::string_view sentence);
 
 }  // namespace handcast::page

@@ -23,7 +23,7 @@ static std::string first_line_after(const char* file, std::string_view key, char
 
 std::string this_machine() {
   std::string machine = first_line_after("/proc/cpuinfo", "model name", ':');
-  if (machine.empty()) machine = "unnamed processor";
+  if (machine.empty()) machine = "unknown processor";
   const unsigned cores = std::thread::hardware_concurrency();
   machine += fmt::format(", {} core{}", cores, cores == 1 ? "" : "s");
   const std::string system = first_line_after("/etc/os-release", "PRETTY_NAME", '=');

@@ -4,7 +4,7 @@
 
 namespace handcast::page {
 
-/// This machine: processor, cores, system.
+/// Describes this machine: "AMD EPYC, 2 cores, Debian GNU/Linux 12 (bookworm)".
 std::string this_machine();
 
 }  // namespace handcast::page

@@ -3,7 +3,7 @@
 
 namespace handcast::page {
 
-/// CSS that every page of the house begins with: colours (for dark rooms too), text, tables.
+/// The CSS shared by all pages: colours of the light and the dark colour scheme, text, tables.
 extern const char* const kStyle;
 
 }  // namespace handcast::page

@@ -24,33 +24,34 @@ struct Metric {
 
 constexpr Metric kMetrics[] = {
     {"Interior error, mean", "mm", "/interior_mm/mean", 1, 2, Better::lower,
-     "How far the light meant for a point of the skin lands from that point, over all visible "
+     "Distance between a point of the skin and the place where its light lands, over all visible "
      "points."},
     {"Interior error, p95", "mm", "/interior_mm/p95", 1, 2, Better::lower,
-     "Nineteen of twenty points are nearer than this."},
+     "95 % of the points have a smaller error."},
     {"Interior error, p99", "mm", "/interior_mm/p99", 1, 2, Better::lower,
-     "The worst hundredth: what the eye catches in fast motion."},
+     "99 % of the points have a smaller error. The larger ones are noticed in fast motion."},
     {"Interior error, p95", "projector px", "/interior_px/p95", 1, 2, Better::lower,
-     "The same in pixels of the projector."},
+     "The 95th percentile in pixels of the projector."},
     {"Coverage", "%", "/coverage", 100, 2, Better::higher,
-     "Share of the hand that is lit; what is missing shows as dark rims."},
+     "Share of the hand that is lit. Unlit parts appear as dark rims."},
     {"Spill", "%", "/spill", 100, 2, Better::lower,
-     "Light beside the hand, as a share of the hand."},
+     "Area of the light beside the hand, as a share of the hand."},
     {"Overlap (IoU)", "", "/iou", 1, 4, Better::higher,
-     "Lit hand over lit or hand: 1 is a perfect outline."},
+     "Area of the lit hand divided by the area of hand and light together; 1 is a perfect "
+     "outline."},
     {"Seam", "px", "/seam_px", 1, 1, Better::lower,
-     "Length of the edge of light that runs across the hand instead of around it."},
+     "Length of the edge of the light that runs across the hand instead of around it."},
     {"Jitter", "px RMS", "/jitter_px", 1, 3, Better::lower,
-     "How much the light trembles on the skin once the hand's own motion is taken away."},
+     "Trembling of the landmarks from frame to frame, relative to the true hand."},
     {"Fold-overs", "", "/foldovers", 1, 0, Better::lower,
-     "Triangles or grid cells that the correction turned over; there should be none."},
+     "Triangles or grid cells that the correction has turned over. There should be none."},
     {"Equivalent latency", "ms", "/equivalent_latency_ms", 1, 2, Better::nearer_zero,
-     "The delay that would explain the error best; it means little for a hand that hardly moves. "
-     "People notice 3.1 ms with edges visible, "
-     "6.6 ms with the fill."},
+     "The delay that explains the error best. It means little for a hand that hardly moves. People "
+     "notice 3.1 ms without and 6.6 ms with the fill."},
     {"Frame, p50", "µs", "/frame_us/p50", 1, 0, Better::lower,
-     "Software time of one projector frame on the machine that ran this."},
-    {"Frame, p99", "µs", "/frame_us/p99", 1, 0, Better::lower, "The slowest hundredth of them."},
+     "Median software time of one projector frame on the machine that ran the simulation."},
+    {"Frame, p99", "µs", "/frame_us/p99", 1, 0, Better::lower,
+     "99 % of the frames take less time."},
 };
 
 std::optional<double> best_of(const Inputs& inputs, const Metric& metric) {
@@ -82,18 +83,17 @@ std::string metric_rows(const Inputs& inputs, const Metric& metric) {
                            metric.reading);
 }
 
-/// The rigs differ in how long their software takes, too: one sentence that takes this apart from
-/// the method.
+/// A paragraph that separates the effect of the method from that of the software time, in which the
+/// rigs differ too.
 std::string equal_legs(const Inputs& inputs) {
   const Source& equal = inputs.equal_legs;
   const auto p95 = equal.number("/interior_mm/p95"), coverage = equal.number("/coverage"),
              spill = equal.number("/spill");
   if (!p95 || !coverage || !spill) return "";
   return fmt::format(
-      "<p>Each rig is given the time its software takes. With equal legs, {} ms for handcast as "
-      "for the paper, handcast scores p95 <b>{} "
-      "mm</b>, coverage <b>{} %</b> and spill <b>{} %</b>: what is left between the two is the "
-      "method.</p>\n",
+      "<p>Each rig is simulated with the time that its software takes. With the {} ms of the "
+      "paper, handcast has a p95 of <b>{} mm</b>, a coverage of <b>{} %</b> and a spill of <b>{} "
+      "%</b>: the remaining difference is that of the method.</p>\n",
       page::figure(equal.number("/software_ms"), 2), page::figure(p95, 2),
       page::figure(*coverage * 100, 2), page::figure(*spill * 100, 2));
 }
@@ -115,8 +115,8 @@ std::string headline(const Inputs& inputs) {
         page::escape(run.sentence));
   }
   return "<div class=\"cards\">\n" + cards +
-         "</div>\n<p class=\"quiet\">The large figure: 95 of 100 points of the skin get their "
-         "light nearer than this.</p>\n";
+         "</div>\n<p class=\"quiet\">Large figure: the interior error that 95 % of the points of "
+         "the skin do not exceed.</p>\n";
 }
 
 std::string accuracy_table(const Inputs& inputs) {
@@ -129,7 +129,8 @@ std::string accuracy_table(const Inputs& inputs) {
   table += equal_legs(inputs);
   for (const auto& run : inputs.runs)
     if (!run.metrics.content)
-      table += page::missing(fmt::format("No figures for {}: {}.", run.name, run.metrics.problem));
+      table += page::missing(
+          fmt::format("There are no figures for {}: {}.", run.name, run.metrics.problem));
   return table;
 }
 

@@ -15,8 +15,7 @@ namespace handcast::report {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kLit =
-    80;  ///< grey value that only light makes: skin in the room's light is darker
+constexpr double kLit = 80;  ///< change of the grey value that only projected light causes
 constexpr int kPanelWidth = 480, kPanelHeight = 360, kCaptionHeight = 40;
 
 cv::Mat read(const fs::path& file) {
@@ -32,7 +31,7 @@ std::vector<unsigned char> bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Where light comes and goes in the pictures of a run: the hand's way through them.
+/// Bounds of the pixels in which light comes or goes during a run.
 cv::Rect moving_part(const Run& run) {
   cv::Mat least, most;
   const std::size_t stride = std::max<std::size_t>(run.pictures.size() / 24, 1);
@@ -54,8 +53,8 @@ cv::Rect moving_part(const Run& run) {
   return cv::boundingRect(moved);
 }
 
-/// `part` with a margin, in the panels' shape, inside the picture; the whole picture where nothing
-/// moved.
+/// `part` with a margin, in the aspect ratio of a panel and inside the picture; the whole picture
+/// if `part` is empty or too large.
 cv::Rect framed(const cv::Rect& part, const cv::Size& picture) {
   const cv::Rect whole({0, 0}, picture);
   if (part.empty()) return whole;
@@ -78,8 +77,8 @@ cv::Mat panel(const fs::path& file, const cv::Rect& frame) {
   return shown;
 }
 
-/// The panels of one moment with their captions above: players lay their controls over the lower
-/// edge. A picture that cannot be read stays dark.
+/// The panels of one moment. The captions are above them because players show their controls over
+/// the lower edge. A picture that cannot be read stays dark.
 cv::Mat side_by_side(const std::vector<const Run*>& runs, std::size_t moment,
                      const cv::Rect& frame) {
   cv::Mat image(kPanelHeight + kCaptionHeight, kPanelWidth * static_cast<int>(runs.size()), CV_8UC3,
@@ -94,7 +93,8 @@ cv::Mat side_by_side(const std::vector<const Run*>& runs, std::size_t moment,
   return image;
 }
 
-/// True where browsers play what was opened: H.264. MPEG-4 part 2 is for players only.
+/// Opens a video file in H.264, or else in MPEG-4 part 2. Returns true for H.264, which browsers
+/// play.
 bool open_video(cv::VideoWriter& writer, const fs::path& file, double rate_hz,
                 const cv::Size& size) {
   if (writer.open(file.string(), cv::VideoWriter::fourcc('a', 'v', 'c', '1'), rate_hz, size))
@@ -103,7 +103,7 @@ bool open_video(cv::VideoWriter& writer, const fs::path& file, double rate_hz,
   return false;
 }
 
-/// Pictures a second at which the film plays as fast as the hand moved.
+/// The frame rate at which the film plays at the speed of the run, from 1 to 120 Hz.
 double rate_of(const Run& run, std::size_t moments) {
   const double seconds = run.metrics.number("/seconds").value_or(0);
   return seconds > 0 ? std::clamp(static_cast<double>(moments) / seconds, 1.0, 120.0) : 30.0;
@@ -133,7 +133,7 @@ void shoot(Film& film, const std::vector<const Run*>& runs, const fs::path& vide
   for (std::size_t moment = 0; writer.isOpened() && moment < moments; ++moment)
     writer.write(side_by_side(runs, moment, frame));
   if (!writer.isOpened())
-    film.problems.push_back("this build of OpenCV can write neither H.264 nor MPEG-4 video");
+    film.problems.push_back("this build of OpenCV cannot write H.264 or MPEG-4 video");
   writer.release();
   cv::imwrite(fs::path(video_file).replace_extension(".png").string(),
               side_by_side(runs, moments / 2, frame));

@@ -9,24 +9,24 @@
 
 namespace handcast::report {
 
-/// The pictures of the runs side by side.
+/// The pictures of the runs side by side, as shown on the page.
 struct Film {
-  std::string
-      video;  ///< base64 of an H.264 MP4; empty where this build cannot make one that browsers play
-  std::vector<std::string>
-      stills;  ///< base64 of JPEG pictures, a row of kStills per run that has any
-  std::vector<std::string> rows;  ///< the name of the run of each row
-  std::vector<std::string> problems;
+  /// Base64 of an H.264 MP4; empty if this build of OpenCV cannot write one, which browsers need.
+  std::string video;
+  std::vector<std::string> stills;    ///< base64 of JPEG pictures: kStills for each row
+  std::vector<std::string> rows;      ///< names of the runs with pictures
+  std::vector<std::string> problems;  ///< reasons why something is not shown, without a full stop
 };
 
+/// Stills per run.
 inline constexpr int kStills = 5;
 
-/// Writes `video_file`, beside it one moment as a PNG picture, and returns what the page shows of
-/// it. Pictures are cropped to where anything moves. Runs without pictures are left out and named
-/// in the problems.
+/// Makes the film. Writes `video_file`, and a PNG picture of its middle beside it. Pictures are
+/// cropped to the part in which the light moves. Runs without pictures are left out; they and all
+/// errors are in the problems.
 Film make_film(const Inputs& inputs, const std::filesystem::path& video_file);
 
-/// The film as HTML.
+/// The HTML of the film.
 std::string film_section(const Film& film);
 
 }  // namespace handcast::report

@@ -62,17 +62,18 @@ Result<Inputs> read_inputs(const fs::path& folder) {
   if (!fs::is_directory(folder, error))
     return fail(Errc::bad_config, fmt::format("'{}' is not a folder", folder.string()));
   Inputs inputs{{read_run(folder, "baseline", "baseline",
-                          "The tracker's hand where it is predicted to be; nothing corrects it."),
-                 read_run(folder, "paper", "paper", "The cascade as the paper describes it."),
+                          "The tracker's hand at its predicted pose, without any correction."),
+                 read_run(folder, "paper", "paper", "The cascade as described in the paper."),
                  read_run(folder, "twin", "handcast", "The cascade of this software.")},
                 read_source(folder, "equal_legs.json"),
                 read_source(folder, "live.json"),
                 read_source(folder, "observer.json")};
   if (is_empty(inputs))
-    return fail(Errc::bad_config, fmt::format("'{}' holds nothing to report: none of "
-                                              "baseline.json, paper.json, twin.json, live.json, "
-                                              "observer.json, and no pictures in frames/",
-                                              folder.string()));
+    return fail(Errc::bad_config,
+                fmt::format("'{}' has nothing to report: there is none of baseline.json, "
+                            "paper.json, twin.json, live.json and observer.json, and there are no "
+                            "pictures in frames/",
+                            folder.string()));
   return inputs;
 }
 

@@ -11,37 +11,38 @@
 
 namespace handcast::report {
 
-/// A JSON file of the folder: its content, or why there is none.
+/// A JSON file of the folder.
 struct Source {
-  std::string file;  ///< "paper.json"
-  std::optional<nlohmann::json> content;
-  std::string problem;  ///< "paper.json is missing"
+  std::string file;                       ///< name of the file: "paper.json"
+  std::optional<nlohmann::json> content;  ///< an object; empty if there is a problem
+  std::string problem;                    ///< "paper.json is missing"; "" without a problem
 
-  /// The number at a place of the content ("/interior_mm/p95"); nothing where there is none.
+  /// The number at a place of the content; empty if there is none.
   std::optional<double> number(const nlohmann::json::json_pointer& place) const;
+  /// The same for a place as text: "/interior_mm/p95".
   std::optional<double> number(const char* place) const {
     return number(nlohmann::json::json_pointer(place));
   }
 };
 
-/// One way to light the hand, simulated against the same truth as the others.
+/// One simulated method. All runs of a report have the same truth.
 struct Run {
-  std::string name;      ///< as the page calls it: "handcast"
-  std::string sentence;  ///< what it is
-  Source metrics;
+  std::string name;                             ///< name on the page: "handcast"
+  std::string sentence;                         ///< description on the page
+  Source metrics;                               ///< of `handcast simulate --json`
   std::vector<std::filesystem::path> pictures;  ///< in the order of their numbers
 };
 
-/// All that a report is made of.
+/// The input of a report.
 struct Inputs {
   std::array<Run, 3> runs;  ///< baseline, paper, handcast
-  Source equal_legs;        ///< handcast once more, given as much software time as the paper
-  Source live;              ///< what the supervisor saw of a live run
-  Source observer;          ///< what the observer scored in it
+  Source equal_legs;        ///< handcast with the software time of the paper
+  Source live;              ///< rates, restarts and stage times of a live run, from the supervisor
+  Source observer;          ///< the observer's score of the live run
 };
 
-/// Reads what a folder holds. What is missing or damaged is a problem of its own source.
-/// Errors (bad_config): the folder is not there; nothing in it can go into a report.
+/// Reads the files of a folder. A missing or malformed file is a problem of its Source. Errors:
+/// bad_config (there is no such folder, or none of the files).
 Result<Inputs> read_inputs(const std::filesystem::path& folder);
 
 }  // namespace handcast::report

@@ -30,7 +30,7 @@ std::string held_share(const Source& live, const std::string& service) {
   return fmt::format("{:.0f} %", 100 * *held_hz / *asked_hz);
 }
 
-/// Along the way of the data, then whatever else ran.
+/// The names of the services in the order of the data flow, then all others.
 std::vector<std::string> names_in_order(const json& services) {
   std::vector<std::string> names;
   for (const char* name : {"camera", "pose", "landmarks", "projector", "observer"})
@@ -45,8 +45,8 @@ std::string services_table(const Source& live) {
   const json services = live.content->value("services", json::object());
   if (!services.is_object()) return "";
   std::string table =
-      "<div class=\"wide\"><table>\n<thead><tr><th>service</th><th>back end</th><th>asked, "
-      "Hz</th><th>held, Hz</th><th>held</th>"
+      "<div class=\"wide\"><table>\n<thead><tr><th>service</th><th>back end</th><th>requested, "
+      "Hz</th><th>measured, Hz</th><th>share</th>"
       "<th>restarts</th></tr></thead>\n<tbody>\n";
   for (const auto& name : names_in_order(services)) {
     const auto& service = services.at(name);
@@ -69,8 +69,8 @@ std::string score_sentence(const Source& observer) {
     return page::figure(share ? std::optional(*share * 100) : std::nullopt, 1);
   };
   return fmt::format(
-      "<p>The observer scored {} frames of the live light against the twin's truth: interior error "
-      "<b>{} mm</b> mean, <b>{} mm</b> p95; "
+      "<p>The observer compared {} frames of the live light with the truth of the twin: interior "
+      "error <b>{} mm</b> mean, <b>{} mm</b> p95; "
       "<b>{} %</b> of the hand lit, {} % spill.</p>\n",
       page::figure(observer.number("/frames"), 0),
       page::figure(observer.number("/interior_mm/mean"), 2),
@@ -85,7 +85,7 @@ std::string live_table(const Inputs& inputs) {
   if (!live.content)
     return page::missing(fmt::format("There was no live run: {}.", live.problem)) +
            (inputs.observer.content ? score_sentence(inputs.observer) : "");
-  return fmt::format("<p>The rig <b>{}</b> ran live for {} s, one process a service.</p>\n",
+  return fmt::format("<p>The rig <b>{}</b> ran live for {} s, with one process per service.</p>\n",
                      text_at(*live.content, "rig"), page::figure(live.number("/seconds"), 1)) +
          services_table(live) + score_sentence(inputs.observer);
 }

@@ -14,14 +14,14 @@ using namespace handcast;
 
 int main(int argc, char** argv) try {
   CLI::App app(
-      "Makes report.html, metrics.json and preview.mp4 from what a demonstration left in a folder.",
+      "Makes report.html, metrics.json and preview.mp4 from the results of a demonstration.",
       "handcast report");
   std::string folder;
   report::Imprint imprint{"handcast: light that stays on moving hands", page::this_machine(),
                           fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
   app.add_option("--out", folder,
                  "Folder with baseline.json, paper.json, twin.json, live.json, observer.json and "
-                 "frames/; gets the report")
+                 "frames/; the report is written to it")
       ->required();
   app.add_option("--title", imprint.title, "Heading of the page");
   CLI11_PARSE(app, argc, argv);

@@ -14,15 +14,15 @@ const char* const kBody = R"html(<section id="headline">
 {{headline}}</section>
 <section id="film">
 <h2>The true hand and the light on it</h2>
-<p>The same hand in the same moments. Drawn is what a bystander at the projector sees: the hand as it really is, and where the light falls.</p>
+<p>The same hand at the same times, seen from the projector: the true hand, and the light that falls on it.</p>
 {{film}}</section>
 <section id="accuracy">
 <h2>Where the light lands</h2>
-<p>Simulated against the digital twin's truth: the three see the same sensors, with the same delays and errors. The best of a row is bold.</p>
+<p>Simulated, and compared with the truth of the digital twin. All three use the same sensors with the same delays and errors. The best value of a row is bold.</p>
 {{accuracy}}</section>
 <section id="speed">
 <h2>By speed of the hand</h2>
-<p>Interior error, 95th percentile in mm, by the mean speed of the skin.</p>
+<p>Interior error by the mean speed of the skin: 95th percentile in mm.</p>
 {{speed}}</section>
 <section id="live">
 <h2>The live rig</h2>
@@ -32,7 +32,7 @@ const char* const kBody = R"html(<section id="headline">
 {{times}}</section>
 )html";
 
-/// A setting as the first run that has it states it.
+/// A setting, from the first run that has it.
 static std::string stated(const Inputs& inputs, const char* key) {
   for (const auto& run : inputs.runs) {
     if (!run.metrics.content || !run.metrics.content->contains(key)) continue;
@@ -58,7 +58,7 @@ std::string make_page(const Inputs& inputs, const Film& film, const Imprint& imp
   const std::string seconds = stated(inputs, "seconds");
   const std::string facts =
       page::fact("rigs", rigs(inputs)) + page::fact("motion", stated(inputs, "motion")) +
-      page::fact("scored", seconds.empty() ? "" : seconds + " s of it") +
+      page::fact("scored", seconds.empty() ? "" : seconds + " s") +
       page::fact("seed", stated(inputs, "seed")) + page::fact("machine", imprint.machine) +
       page::fact("made", imprint.date);
   const std::string body = page::fill(kBody, {{"headline", headline(inputs)},

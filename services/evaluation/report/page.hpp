@@ -7,17 +7,17 @@
 
 namespace handcast::report {
 
-/// What a page says about its making.
+/// Title and origin of a page.
 struct Imprint {
-  std::string title;
+  std::string title;    ///< plain text
   std::string machine;  ///< "AMD EPYC, 2 cores, Debian 12"
   std::string date;     ///< "2025-11-21 12:00 UTC"
 };
 
-/// The whole page: one file that needs nothing beside it and no network.
+/// The whole page: a self-contained HTML file that needs no network.
 std::string make_page(const Inputs& inputs, const Film& film, const Imprint& imprint);
 
-extern const char* const kSkeleton;  ///< HTML with {{places}}
-extern const char* const kStyle;     ///< CSS beyond page::kStyle
+/// The CSS of the report, which follows page::kStyle.
+extern const char* const kStyle;
 
 }  // namespace handcast::report

@@ -8,8 +8,8 @@
 namespace handcast::report {
 namespace fs = std::filesystem;
 
-/// The figures of all runs in one object: baseline, paper, handcast, and live with the observer's
-/// score in it. What is missing is left out.
+/// The metrics of all runs in one object: baseline, paper, handcast, handcast_equal_legs, and live
+/// with the observer's score. Missing ones are left out.
 static nlohmann::json gather_metrics(const Inputs& inputs) {
   auto metrics = nlohmann::json::object();
   for (const auto& run : inputs.runs)

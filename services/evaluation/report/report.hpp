@@ -8,9 +8,9 @@
 
 namespace handcast::report {
 
-/// Makes metrics.json, preview.mp4 (where there are pictures) and report.html from what the folder
-/// holds; returns the page's path. Errors: bad_config (nothing to report), unavailable (a file
-/// cannot be written).
+/// Writes metrics.json, preview.mp4 (if there are pictures) and report.html from the files of a
+/// folder into the same folder. Returns the path of the page. Errors: bad_config (there is nothing
+/// to report), unavailable (a file cannot be written).
 Result<std::filesystem::path> write_report(const std::filesystem::path& folder,
                                            const Imprint& imprint);
 

@@ -16,8 +16,7 @@ std::optional<double> in_bin(const Run& run, const std::string& bin, const char*
   return run.metrics.number(Place("/bins") / bin / Place(place));
 }
 
-/// The bins in which any run scored a frame. Their names ("0-0.1" … ">1.0") sort in the order of
-/// speed.
+/// The bins in which any run scored a frame. Their names ("0-0.1" … ">1.0") sort by speed.
 std::set<std::string> bins_of(const Inputs& inputs) {
   std::set<std::string> bins;
   for (const auto& run : inputs.runs) {
@@ -28,7 +27,7 @@ std::set<std::string> bins_of(const Inputs& inputs) {
   return bins;
 }
 
-/// Bars of the 95th percentile, three to a bin, from one base line.
+/// A bar chart of the 95th percentile: a group of three bars per bin.
 std::string chart(const Inputs& inputs, const std::set<std::string>& bins) {
   constexpr double kHeight = 150, kBar = 22, kGroup = 104, kTop = 18;
   double highest = 0;
@@ -90,7 +89,7 @@ std::string rows(const Inputs& inputs, const std::set<std::string>& bins) {
 std::string speed_table(const Inputs& inputs) {
   const auto bins = bins_of(inputs);
   if (bins.empty())
-    return page::missing("None of baseline.json, paper.json and twin.json holds figures by speed.");
+    return page::missing("None of baseline.json, paper.json and twin.json has figures by speed.");
   std::string names;
   for (int column = 0; column < 3; ++column)
     for (const auto& run : inputs.runs)

@@ -25,12 +25,12 @@ struct Group {
 
 constexpr Group kGroups[] = {
     {"One projector frame",
-     "Steps in the order they run, then the whole frame, its handing over and the way to its "
-     "light.",
+     "The steps in their order; frame: all of them; present: handing the frame to the projector; "
+     "light: the time from there to the middle of its light.",
      msg::Stage::predict, msg::Stage::light},
     {"Sensors",
-     "capture and sample: the age of an image or pose when it is handed over; detect: the time a "
-     "detection takes.",
+     "capture and sample: the age of an image or pose when it is published; detect: the duration "
+     "of a detection.",
      msg::Stage::capture, msg::Stage::detect},
 };
 
@@ -39,22 +39,21 @@ std::optional<double> time_us(const Column& column, const std::string& stage, co
                               std::string(which));
 }
 
-/// The stages of a group that any column knows.
+/// The stages of a group for which any column has a time.
 std::vector<std::string> stages_of(const Group& group, std::span<const Column> columns) {
   std::vector<std::string> stages;
   for (auto i = static_cast<std::size_t>(group.first); i <= static_cast<std::size_t>(group.last);
        ++i) {
     const std::string stage(msg::kStageNames[i]);
-    const auto knows = [&](const Column& column) {
+    const auto has_time = [&](const Column& column) {
       return time_us(column, stage, "p50").has_value();
     };
-    if (std::any_of(columns.begin(), columns.end(), knows)) stages.push_back(stage);
+    if (std::any_of(columns.begin(), columns.end(), has_time)) stages.push_back(stage);
   }
   return stages;
 }
 
-/// The solid bar is the median, the pale one reaches to the 99th percentile and is cut off at the
-/// edge.
+/// A solid bar for the median and a pale one for the 99th percentile, both clipped at the edge.
 std::string bar(const Column& column, const std::string& stage, double full_us) {
   const auto p50 = time_us(column, stage, "p50"), p99 = time_us(column, stage, "p99");
   if (!p50) return "";
@@ -92,7 +91,7 @@ std::string time_sheet(const Inputs& inputs) {
   std::string sheets;
   for (const auto& group : kGroups) sheets += group_sheet(group, columns);
   if (sheets.empty())
-    return page::missing("Neither live.json nor twin.json holds the times of stages.");
+    return page::missing("Neither live.json nor twin.json has the times of the stages.");
   return "<p>Microseconds, median / 99th percentile.</p>\n" + sheets;
 }
 

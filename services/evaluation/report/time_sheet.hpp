@@ -6,7 +6,8 @@
 
 namespace handcast::report {
 
-/// What each stage took, live and simulated: median and 99th percentile, as bars and figures.
+/// The HTML of the durations of the stages, live and simulated: median and 99th percentile, as bars
+/// and figures.
 std::string time_sheet(const Inputs& inputs);
 
 }  // namespace handcast::report

@@ -6,7 +6,7 @@
 namespace handcast::simulate {
 
 void BackToBack::until(std::int64_t now_ns, std::vector<SensorEvent>& events) {
-  untold_.insert(untold_.end(), events.begin(), events.end());
+  waiting_.insert(waiting_.end(), events.begin(), events.end());
   while (true) {
     if (!under_way_) {
       const auto frame = next_frame();
@@ -36,13 +36,13 @@ BackToBack::Run BackToBack::begin(std::uint64_t frame, std::int64_t begin_ns) {
   return {std::max(exposure.origin_ns + detection.age_ns, begin_ns), detection.landmarks};
 }
 
-/// What has arrived by the time a run is begun, and nothing after it.
+/// Passes on the samples that have arrived when a run begins, and no later ones.
 void BackToBack::tell(std::int64_t begin_ns) {
   const auto later = std::ranges::find_if(
-      untold_, [&](const SensorEvent& event) { return event.arrival_ns > begin_ns; });
-  for (auto event = untold_.begin(); event != later; ++event)
+      waiting_, [&](const SensorEvent& event) { return event.arrival_ns > begin_ns; });
+  for (auto event = waiting_.begin(); event != later; ++event)
     if (const auto* poses = std::get_if<msg::HandPoses>(&event->message)) detector_->tell(*poses);
-  untold_.erase(untold_.begin(), later);
+  waiting_.erase(waiting_.begin(), later);
 }
 
 }  // namespace handcast::simulate

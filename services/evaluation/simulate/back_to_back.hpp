@@ -11,16 +11,17 @@
 
 namespace handcast::simulate {
 
-/// A detector in virtual time: it takes the newest frame whenever it is free, and sleeps until
-/// there is a newer one.
+/// Runs a detector in virtual time, back to back: when it is free it takes the newest frame, or
+/// waits for one that is newer than its last.
 class BackToBack {
  public:
+  /// `twin` must outlive the object. `on_detection` is called after each run; may be empty.
   BackToBack(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector,
              OnDetection on_detection)
       : twin_(twin), detector_(std::move(detector)), on_detection_(std::move(on_detection)) {}
 
-  /// Adds the runs that are done by `now_ns` to `events`: the tracker's samples that have arrived
-  /// since the last call, in that order.
+  /// Appends the detections that are done by `now_ns`. On entry, `events` must hold the tracker's
+  /// samples that have arrived since the last call, in the order of arrival.
   void until(std::int64_t now_ns, std::vector<SensorEvent>& events);
 
  private:
@@ -35,8 +36,7 @@ class BackToBack {
   const twin::Twin& twin_;
   std::unique_ptr<FrameDetector> detector_;
   OnDetection on_detection_;
-  std::vector<SensorEvent>
-      untold_;  ///< samples of the tracker that arrived after the last run was begun
+  std::vector<SensorEvent> waiting_;  ///< tracker samples that arrived after the last run began
   std::optional<Run> under_way_;
   std::uint64_t runs_ = 0;
   std::int64_t last_frame_ = -1;

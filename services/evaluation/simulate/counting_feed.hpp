@@ -10,9 +10,10 @@
 
 namespace handcast::simulate {
 
-/// A feed that passes another's messages on and counts the detections of a hand among them.
+/// Passes on the messages of another feed and counts the detections that hold a hand.
 class CountingFeed final : public SensorFeed {
  public:
+  /// Takes over the feed to be counted.
   explicit CountingFeed(std::unique_ptr<SensorFeed> source) : source_(std::move(source)) {}
 
   std::vector<SensorEvent> until(std::int64_t now_ns) override {
@@ -30,6 +31,7 @@ class CountingFeed final : public SensorFeed {
     source_->image(exposure, pixels);
   }
 
+  /// Detections with at least one hand so far.
   int detections() const { return detections_; }
 
  private:

@@ -9,23 +9,29 @@
 
 namespace handcast::simulate {
 
-/// How a detector fared against the truth at each frame's time. Time stamps do not count: a skewed
-/// clock is no error of the points.
+/// Accuracy of a detector: its detections compared with the truth at the time of each frame. The
+/// time stamps of the detections are ignored: a clock error is not an error of the points.
 class DetectorTally {
  public:
+  /// `twin` must outlive the object; `camera` is copied.
   DetectorTally(const twin::Twin& twin, const calib::CameraModel& camera)
       : twin_(twin), camera_(camera) {}
 
+  /// Adds the detection of one frame.
   void add(const Exposure& exposure, const Detection& detection);
 
-  /// {"runs","hands": those in sight, of which at least half the landmarks are in the
-  /// image,"missed": of these,"invented": found where
-  ///  there is no hand of that side,"error_px":{mean,p50,p95} of the landmarks in the image of
-  ///  hands that were found,"ms_p50": of this machine}. What was never measured is null.
+  /// {"runs", "hands", "missed", "invented", "error_px": {mean, p50, p95}, "ms_p50"}; a value that
+  /// was not measured is null.
+  ///
+  /// - hands: true hands with at least half of their landmarks in the image
+  /// - missed: those of them that were not found
+  /// - invented: hands that were found although there is no hand of that side
+  /// - error_px: error of the landmarks in the image, of the hands that were found
+  /// - ms_p50: median time of a run on this machine
   nlohmann::json to_json() const;
 
  private:
-  /// 0 to 100 in equal steps; what is above counts as 100.
+  /// Counts of values from 0 to 100; larger values count as 100.
   class Histogram {
    public:
     void add(double value);
@@ -33,7 +39,7 @@ class DetectorTally {
     nlohmann::json percentile(double share) const;
 
    private:
-    static constexpr double kSteps = 50;  ///< for each one
+    static constexpr double kSteps = 50;  ///< steps per unit
     std::array<std::uint32_t, 5001> counts_{};
     std::size_t count_ = 0;
     double sum_ = 0;

@@ -31,7 +31,7 @@ class TwinDetector final : public FrameDetector {
   const twin::Twin& twin_;
 };
 
-/// A detector of services/landmarks, used as its daemon uses it.
+/// A detector of services/landmarks, called as by its daemon.
 class RealDetector final : public FrameDetector {
  public:
   RealDetector(std::unique_ptr<landmarks::Detector> detector, const config::Camera& camera,

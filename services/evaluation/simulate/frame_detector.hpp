@@ -15,32 +15,34 @@
 
 namespace handcast::simulate {
 
-/// What a landmark detector made of one frame.
+/// The result of a landmark detector on one frame.
 struct Detection {
-  std::optional<msg::Landmarks> landmarks;  ///< nothing where it could not use the frame
-  std::int64_t age_ns = 0;                  ///< virtual: done this long after the frame's origin
-  std::int64_t work_ns = 0;  ///< what it took on this machine; 0: nothing was looked at
+  std::optional<msg::Landmarks> landmarks;  ///< empty if the detector could not use the frame
+  std::int64_t age_ns = 0;                  ///< virtual time from the frame's origin to the result
+  std::int64_t work_ns = 0;                 ///< run time on this machine; 0 if no image was read
 };
 
-/// A landmark detector that is shown frames of the twin's camera, in ascending order.
+/// A landmark detector for frames of the twin's camera, which must be passed in ascending order.
 class FrameDetector {
  public:
   virtual ~FrameDetector() = default;
-  /// A sample of the tracker that arrived before the next frame is begun.
+  /// Receives a sample of the tracker that arrived before the next run begins.
   virtual void tell(const msg::HandPoses&) {}
+  /// Runs the detector on one frame. `run` is the number of the run.
   virtual Detection detect(std::uint64_t run, const Exposure& exposure) = 0;
 };
 
-/// The twin's model of a detector.
+/// Makes the twin's model of a detector. `twin` must outlive it.
 std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin);
 
-/// What runs in the simulator for rig.landmarks.backend: that detector itself on the twin's images;
-/// the twin's model for "twin", and for "replay", whose landmarks belong to other images.
+/// The back end that the simulator runs for rig.landmarks.backend: the same, on the twin's images,
+/// except that "replay" becomes "twin" because recorded landmarks belong to other images.
 std::string simulated_backend(const config::Rig& rig);
 
-/// Opens it. A detector takes the twin's model's age (twin.detector.age_ms, age_sd_ms) and clock,
-/// none of its other errors. Errors: as the detector's daemon says them (a missing model:
-/// bad_config).
+/// Opens the detector of simulated_backend(). A real detector has the age and the clock error of
+/// the twin's model (twin.detector.age_ms, age_sd_ms, clock_skew_ms), but none of its other errors.
+/// `twin` must outlive it. Errors: those of landmarks::open_detector (bad_config if a model is
+/// missing).
 Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,
                                                            const calib::Calibration& calibration,
                                                            const twin::Twin& twin);

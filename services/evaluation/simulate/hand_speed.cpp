@@ -9,7 +9,7 @@
 namespace handcast::simulate {
 namespace {
 
-constexpr double kGap_s = 0.01;  ///< longer without the hand: it came anew
+constexpr double kGap_s = 0.01;  ///< no speed is computed over a longer gap
 
 }  // namespace
 

@@ -9,13 +9,14 @@
 
 namespace handcast::simulate {
 
-/// How fast the true hands are: the mean speed of a hand's 21 landmarks, over successive projector
-/// frames, lit or not.
+/// Speed of the true hands: the mean over the 21 landmarks of a hand between successive projector
+/// frames, whether or not the hand is lit.
 class HandSpeed {
  public:
+  /// Adds the landmarks of one hand (one space, metres) at the time of a projector frame.
   void add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m,
            std::int64_t lit_ns);
-  /// {"mean","p95"} in m/s, the latter to a hundredth; null where no hand was seen.
+  /// {"mean", "p95"} in m/s, the latter to 0.01; null if there was no hand.
   nlohmann::json to_json() const;
 
  private:
@@ -25,8 +26,8 @@ class HandSpeed {
     std::array<glm::dvec3, msg::kLandmarks> landmarks_m{};
   };
   std::array<Trail, msg::kMaxHands> trails_;
-  std::array<std::int64_t, 1000>
-      counts_{};  ///< by speed, in steps; the last holds all that is faster
+  /// Number of speeds by steps of kStep_m_s; the last counts all higher ones.
+  std::array<std::int64_t, 1000> counts_{};
   std::int64_t count_ = 0;
   double sum_m_s_ = 0;
 };

@@ -10,18 +10,20 @@
 
 namespace handcast::simulate {
 
-/// Trembling of the corrected landmarks against the true ones: RMS of the second difference of
-/// their error over successive projector frames, camera px. On a motion at rest this is the
-/// still-hand jitter of METHOD section 5.
+/// Jitter of the corrected landmarks: RMS of the second difference of their error over successive
+/// projector frames, camera px. The second difference responds to trembling from frame to frame and
+/// hardly to slow wobble.
 class JitterMeter {
  public:
+  /// Adds one hand of projector frame `tick` to `metrics`. `truth`: the true landmarks at its
+  /// light.
   void add(const renderer::FrameHand& hand, const std::array<glm::vec2, msg::kLandmarks>& truth,
            std::int64_t tick, twin::Metrics& metrics);
 
  private:
   struct Trail {
     std::int64_t last_tick = -10;
-    int length = 0;  ///< successive frames held, up to two
+    int length = 0;  ///< number of successive frames in `error`
     std::array<std::array<glm::vec2, msg::kLandmarks>, 2> error{};
   };
   std::array<Trail, msg::kMaxHands> trails_;

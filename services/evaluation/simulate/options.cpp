@@ -11,29 +11,30 @@
 namespace handcast::simulate {
 
 const char* const kHelp =
-    R"(handcast simulate RIG.toml [options]: runs a rig's cascade on its digital twin in virtual time and scores the light.
+    R"(handcast simulate RIG.toml [options]: runs the cascade of a rig on its digital twin in virtual time and scores the light.
 
-  --motion DIR|builtin:NAME  what the true hand does (sets twin.motion)
-  --speed K                  plays the motion K times as fast (sets twin.speed)
-  --seed N                   draws everything random anew (sets twin.seed)
+  --motion DIR|builtin:NAME  motion of the true hands: a recording or a built-in motion (sets twin.motion)
+  --speed K                  speed of the motion; 2 is twice as fast (sets twin.speed)
+  --seed N                   seed of all random numbers (sets twin.seed)
   --set path=value           changes any setting; may be repeated (config/REFERENCE.md lists them)
-  --seconds S                time that is scored (default 5)
-  --warm-up S                time before it that is not (default 0.5)
+  --seconds S                scored time (default 5)
+  --warm-up S                time before it that is not scored (default 0.5)
   --draw-every N             draws and scores every N-th projector frame (default 8); the others are only tracked
-  --joints-only              draws nothing: scores the 21 landmarks alone, some hundred times as fast
-  --json FILE                the metrics
-  --frames DIR               pictures of the true hand with the light on it, of every --picture-every N drawn frames (default 4)
-  --trace FILE.csv           per projector frame and landmark: time, truth, tracker P and corrected Q in camera pixels
-  --record DIR               writes the sensors' messages and images as a recording that the replay back ends play
-  --quiet                    no progress line
+  --joints-only              draws nothing and scores only the 21 landmarks, which takes a few per cent of the time
+  --json FILE                writes the metrics
+  --frames DIR               writes pictures of the true hand with the light on it
+  --picture-every N          writes a picture of every N-th drawn frame (default 4)
+  --trace FILE.csv           writes time, truth, tracker P and corrected Q per projector frame and landmark, in camera pixels
+  --record DIR               writes the messages and images of the sensors as a recording for the replay back ends
+  --quiet                    prints no progress
   --help, --version
 
-Landmarks come from the twin's model of a detector, or from a detector itself that looks at the twin's images:
+Landmarks come from the twin's model of a detector, or from a real detector that runs on the twin's images:
   --set landmarks.backend=onednn|opencv|own
-Its points are its own; how old they are when they arrive is set: twin.detector.age_ms and age_sd_ms, for every back end alike, so
-that a slow machine simulates a fast one. "detector" in --json says what it took here (ms_p50) and what it missed.
+The age of its landmarks is simulated for every back end (twin.detector.age_ms and age_sd_ms), so that a slow machine can simulate
+a fast one. "detector" in the metrics has its run time on this machine (ms_p50) and the number of hands that it missed.
 
-The same seed gives the same figures; only the times in frame_us, stage_us and detector.ms_p50 are this machine's.
+The same seed gives the same figures, except for frame_us, stage_us and detector.ms_p50, which are times of this machine.
 )";
 
 namespace {
@@ -117,14 +118,14 @@ Result<Options> parse_options(int argc, const char* const* argv) {
     } else if (options.rig_file.empty()) {
       options.rig_file = word;
     } else {
-      return fail(Errc::bad_config, fmt::format("one rig file, please: '{}' comes after '{}'", word,
-                                                options.rig_file));
+      return fail(Errc::bad_config, fmt::format("there must be one rig file, but '{}' follows '{}'",
+                                                word, options.rig_file));
     }
   }
   if (options.rig_file.empty() && !options.help && !options.version)
-    return fail(
-        Errc::bad_config,
-        "which rig? e.g. handcast simulate config/rigs/twin.toml; see handcast simulate --help");
+    return fail(Errc::bad_config,
+                "the rig file is missing: type e.g. handcast simulate config/rigs/twin.toml; see "
+                "handcast simulate --help");
   return options;
 }
 

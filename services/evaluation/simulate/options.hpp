@@ -10,19 +10,26 @@ namespace handcast::simulate {
 
 /// The command line of `handcast simulate`.
 struct Options {
-  std::string rig_file;
-  std::vector<std::string> settings;  ///< "path=value", --motion, --speed and --seed among them
+  std::string rig_file;               ///< TOML file
+  std::vector<std::string> settings;  ///< "path=value" of --set, --motion, --speed and --seed
   double seconds = 5;                 ///< scored time
-  double warm_up_s = 0.5;             ///< run before it, not scored
-  int draw_every = 8;  ///< projector frames from one drawn and scored to the next; 0: none is drawn
-  int picture_every = 4;  ///< drawn frames from one picture to the next
+  double warm_up_s = 0.5;             ///< time before it that is not scored
+  int draw_every = 8;                 ///< every how many projector frames one is drawn; 0: never
+  int picture_every = 4;              ///< every how many drawn frames one is written as a picture
+  /// Files and folders to be written; "" for none.
+  /// @{
   std::string json_file, frames_directory, trace_file, record_directory;
-  bool help = false, version = false, quiet = false;
+  /// @}
+  bool help = false;     ///< --help
+  bool version = false;  ///< --version
+  bool quiet = false;    ///< no progress line
 };
 
+/// The text of --help.
 extern const char* const kHelp;
 
-/// Errors: bad_config, a sentence per fault.
+/// Parses the command line. Errors: bad_config (an unknown option, a missing value or rig file, a
+/// number out of range).
 Result<Options> parse_options(int argc, const char* const* argv);
 
 }  // namespace handcast::simulate

@@ -28,7 +28,7 @@ std::uint32_t mix(const Rgb& albedo, float shade, std::uint32_t light) {
   return pixel;
 }
 
-/// The projector's light at a pixel of its own grid.
+/// The light of a projector pixel; 0 outside the region of the projection.
 std::uint32_t light_at(const msg::Projection& projection, int x, int y) {
   const int column = x - projection.region_x_px, row = y - projection.region_y_px;
   const int width = static_cast<int>(projection.region_width_px),

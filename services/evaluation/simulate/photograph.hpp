@@ -11,13 +11,15 @@
 
 namespace handcast::simulate {
 
-/// What a bystander would see from the projector's place: the true hand in dim light, and the
-/// projector's light on it and on the table behind it.
+/// Draws the scene as seen from the projector: the true hands in dim light, and the projector's
+/// light on them and on the table behind them.
 class Photographer {
  public:
+  /// `twin` must outlive the object; `calibration` is copied.
   Photographer(const twin::Twin& twin, const calib::Calibration& calibration);
 
-  /// The scene while `projection` is lit. Valid until the next picture.
+  /// Draws the scene at the time of `projection`: RGBA8, in the size of the projector. Valid until
+  /// the next call.
   renderer::View<const std::uint32_t> take(const msg::Projection& projection);
 
  private:

@@ -8,13 +8,14 @@
 
 namespace handcast::simulate {
 
+/// Writes an 8-bit grey image. Errors: bad_config (the file cannot be written).
 Result<void> write_png(const std::filesystem::path& file, renderer::View<const std::uint8_t> grey);
-/// The file of picture `number` of a folder: NNNNNN.png.
+/// The file of picture `number` in a folder: NNNNNN.png.
 std::filesystem::path numbered_png(const std::filesystem::path& folder, std::size_t number);
-/// Removes the pictures an earlier run left under such names, and no other file. Errors
-/// (bad_config): one that cannot be removed.
+/// Removes all files with such names from a folder, and no others. Errors: bad_config (a file
+/// cannot be removed).
 Result<void> remove_numbered_pngs(const std::filesystem::path& folder);
-/// RGBA8 pixels; alpha is not written.
+/// Writes an RGBA8 image without its alpha. Errors: bad_config (the file cannot be written).
 Result<void> write_png(const std::filesystem::path& file,
                        renderer::View<const std::uint32_t> colour);
 

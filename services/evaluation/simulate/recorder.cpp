@@ -13,11 +13,9 @@ namespace handcast::simulate {
 namespace {
 
 constexpr const char* kSides[] = {"left", "right"};
-constexpr std::size_t kColumns = 3;  ///< of a landmark: x, y, sigma (px)
+constexpr std::size_t kColumns = 3;  ///< per landmark: x, y, sigma (px)
 constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
-
-constexpr std::int64_t kStep_ns =
-    100'000;  ///< shorter than the time between two frames of any camera
+constexpr std::int64_t kStep_ns = 100'000;  ///< shorter than the period of any camera
 
 std::int64_t to_us(std::int64_t time_ns) { return (time_ns + 500) / 1000; }
 
@@ -26,7 +24,7 @@ std::int64_t origin_us(const Message& message) {
   return to_us(message.header.origin_ns);
 }
 
-/// A bit for the left hand and one for the right; none where a side is there twice.
+/// One bit per side: 1 left, 2 right. 0 if a side occurs twice.
 template <class Message>
 unsigned sides_of(const Message& message) {
   unsigned sides = 0;
@@ -38,8 +36,8 @@ unsigned sides_of(const Message& message) {
   return sides;
 }
 
-/// What one recording can hold: the messages of the hands that most messages are of, in the order
-/// of their times, one at a time.
+/// The messages that one recording can hold: those with the most frequent set of hands, in the
+/// order of their times, without repeated times.
 template <class Message>
 std::vector<Message> recordable(std::vector<Message> messages) {
   std::array<std::size_t, 4> of_sides{};
@@ -52,10 +50,10 @@ std::vector<Message> recordable(std::vector<Message> messages) {
   return messages;
 }
 
-Result<void> make_room(const std::filesystem::path& folder) {
+Result<void> prepare(const std::filesystem::path& folder) {
   std::error_code failed;
-  std::filesystem::create_directories(folder / "camera",
-                                      failed);  // where it fails, so does the first picture
+  // If this fails, writing the first picture fails too.
+  std::filesystem::create_directories(folder / "camera", failed);
   if (auto removed = twin::remove_recording(folder); !removed) return removed;
   return remove_numbered_pngs(folder / "camera");
 }
@@ -67,7 +65,7 @@ RecordingFeed::RecordingFeed(std::unique_ptr<SensorFeed> source, const calib::Ca
     : source_(std::move(source)),
       folder_(std::move(folder)),
       image_(camera.width_px, camera.height_px),
-      pictures_(make_room(folder_)) {}
+      pictures_(prepare(folder_)) {}
 
 std::vector<SensorEvent> RecordingFeed::until(std::int64_t now_ns) {
   auto events = source_->until(now_ns);
@@ -106,7 +104,8 @@ Result<void> RecordingFeed::save() const {
   }
   if (recording.time_ns.size() < 2)
     return fail(Errc::bad_data,
-                fmt::format("{}: fewer than two samples of a hand were seen, nothing to record",
+                fmt::format("{}: there is no recording, for there were fewer than two samples of a "
+                            "hand",
                             folder_.string()));
   recording.first_ns = recording.time_ns.front();
   for (auto& time_ns : recording.time_ns) time_ns -= recording.first_ns;

@@ -13,15 +13,18 @@
 
 namespace handcast::simulate {
 
-/// A feed that passes another's messages on and keeps them, to be written as a recording: what the
-/// replay back ends play. Every camera frame that has arrived is written, whether anybody asks for
-/// it or not. An earlier recording in the folder is removed. Folder: timestamps.npy,
-/// joints_SIDE.npy, bones_SIDE.npy (Leap's layout); landmarks_timestamps.npy, landmarks_SIDE.npy
-/// (n,21,3: x, y and sigma in px, x and y not a number where not seen); camera/NNNNNN.png with
-/// camera_timestamps.npy. Times in microseconds since the start. A recording holds the same hands
-/// in every sample: those with others than most samples have are left out.
+/// Passes on the messages of another feed and writes them as a recording for the replay back ends.
+/// Every camera frame that arrives is written, whether or not the cascade uses it.
+///
+/// The folder holds timestamps.npy, joints_SIDE.npy and bones_SIDE.npy (Leap's layout);
+/// landmarks_timestamps.npy and landmarks_SIDE.npy (n,21,3: x, y and sigma in px; x and y are NaN
+/// if the landmark was not seen); camera_timestamps.npy and camera/NNNNNN.png. Times are in
+/// microseconds since the epoch. All samples of a recording hold the same hands: the samples with
+/// other hands than most are left out.
 class RecordingFeed : public SensorFeed {
  public:
+  /// Removes an earlier recording from `folder`. Errors of this and of writing pictures are
+  /// returned by save().
   RecordingFeed(std::unique_ptr<SensorFeed> source, const calib::CameraModel& camera,
                 std::filesystem::path folder);
 
@@ -31,8 +34,8 @@ class RecordingFeed : public SensorFeed {
   }
   void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override;
 
-  /// Writes what was kept. Errors: bad_config (a picture or file cannot be written), bad_data
-  /// (fewer than two samples of a hand).
+  /// Writes the messages and the time stamps. Errors: bad_config (a picture cannot be written or
+  /// removed), unavailable (another file), bad_data (fewer than two samples of a hand).
   Result<void> save() const;
 
  private:
@@ -46,10 +49,10 @@ class RecordingFeed : public SensorFeed {
   std::vector<msg::HandPoses> poses_;
   std::vector<msg::Landmarks> landmarks_;
   std::optional<Exposure> newest_;
-  renderer::Image<std::uint8_t> image_;  ///< of newest_
-  std::int64_t asked_ns_ = -1;           ///< for the camera's frames until then
+  renderer::Image<std::uint8_t> image_;  ///< that of newest_
+  std::int64_t asked_ns_ = -1;           ///< camera frames are written up to this time
   std::vector<std::int64_t> image_times_us_;
-  Result<void> pictures_;  ///< the first that could not be removed or written
+  Result<void> pictures_;  ///< first error of removing or writing a picture
 };
 
 }  // namespace handcast::simulate

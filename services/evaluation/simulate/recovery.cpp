@@ -25,7 +25,7 @@ std::array<config::Fault*, 7> faults_of(config::Twin& twin) {
           &detector.lost,  &detector.wrong_finger, &twin.image.fault};
 }
 
-/// Median error; nothing where it was never lit.
+/// Median error; empty if there was never light.
 std::optional<double> usual_error_mm(std::span<const LightMoment> moments) {
   std::vector<double> errors;
   for (const auto& moment : moments)
@@ -41,7 +41,7 @@ bool is_good(const LightMoment& moment, const LightMoment& clean, double usual_m
   return moment.error_mm <= clean.error_mm + kFelt * usual_mm;
 }
 
-/// The begin of the first good stretch after the fault's end that is long enough.
+/// Index of the first light after `ends_s` from which on the light is good for kStays_s.
 std::optional<std::size_t> first_good(std::span<const LightMoment> moments,
                                       std::span<const LightMoment> clean, double ends_s,
                                       double usual_mm) {
@@ -58,7 +58,7 @@ std::optional<std::size_t> first_good(std::span<const LightMoment> moments,
   return std::nullopt;
 }
 
-/// Of the last light before `ends_s`.
+/// The detections that had arrived for the last light before `ends_s`.
 int detections_until(std::span<const LightMoment> moments, double ends_s) {
   int detections = 0;
   for (const auto& moment : moments)

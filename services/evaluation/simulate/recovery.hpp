@@ -9,40 +9,42 @@
 
 namespace handcast::simulate {
 
-/// When something goes wrong in a rig, in seconds since the epoch.
+/// Time span of the faults of a twin, in seconds since the epoch.
 struct FaultTime {
-  double begins_s = 0, ends_s = 0;
+  double begins_s = 0;  ///< start of the first fault
+  double ends_s = 0;    ///< end of the last fault
 };
 
-/// From the first to the last second of the faults that the settings time; none where there are
-/// none, or one without an end.
+/// The time span of the timed faults; empty without any. Image faults that last for the whole run
+/// are not timed.
 std::optional<FaultTime> fault_time(const config::Twin& twin);
-/// The same twin in a world where none of them happens.
+/// The same settings without the timed faults.
 config::Twin without_faults(config::Twin twin);
 
-/// How much a fault did, and how long it was felt.
+/// Effect of a fault on the light, and the time it lasts. The light is good if its error exceeds
+/// that of the run without the fault, at the same time, by at most kFelt of the usual error: the
+/// error of a moving hand varies without any fault.
 struct Recovery {
-  double usual_mm = 0;                ///< median error of the run without the fault
-  double worst_mm = 0;                ///< largest error from its begin on
-  double dark_ms = 0;                 ///< from its begin on, time without light on a hand
-  std::optional<double> recovery_ms;  ///< from its end until the light is good and stays so for
-                                      ///< kStays_s; none: it was not again
-  std::optional<int> recovery_detections;  ///< that the first good light knew, and the last one
-                                           ///< during the fault did not
+  double usual_mm = 0;  ///< median error of the run without the fault
+  double worst_mm = 0;  ///< largest error after the start of the fault
+  double dark_ms = 0;   ///< time without light on a hand after the start of the fault
+  /// Time from the end of the fault until the light is good and stays good for kStays_s; empty if
+  /// that does not happen.
+  std::optional<double> recovery_ms;
+  /// Detections with a hand between the last light of the fault and the first good light.
+  std::optional<int> recovery_detections;
 };
 
-constexpr double kStays_s = 0.1;
-constexpr double kFelt =
-    0.5;  ///< of the usual error: what more than that is the fault's doing is not good
+constexpr double kStays_s = 0.1;  ///< time for which the light must stay good
+constexpr double kFelt = 0.5;  ///< largest additional error of good light, as a share of the usual
 
-/// Good is a light that errs at most kFelt of the usual error more than at the same time in the
-/// same run without the fault: a hand that moves has better and worse moments by itself, and
-/// neither is the fault's. `clean` is that run, moment by moment; none where it was dark.
+/// Measures the recovery. `moments` is the run with the fault, `clean` the same run without it,
+/// frame by frame. Empty if the runs differ in length or the clean run has no light.
 std::optional<Recovery> recovery_of(std::span<const LightMoment> moments,
                                     std::span<const LightMoment> clean, const FaultTime& fault);
 
-/// {"begins_s","ends_s","usual_mm","worst_mm","dark_ms","recovery_ms","recovery_detections"}; null
-/// where there was no fault.
+/// {"begins_s", "ends_s", "usual_mm", "worst_mm", "dark_ms", "recovery_ms", "recovery_detections"};
+/// null without a fault.
 nlohmann::json to_json(const std::optional<FaultTime>& fault, std::span<const LightMoment> moments,
                        std::span<const LightMoment> clean);
 

@@ -14,7 +14,7 @@
 namespace handcast::simulate {
 namespace {
 
-/// One line on the terminal that is written over; every tenth where there is none.
+/// Progress on stderr: one line that is overwritten on a terminal, else a line every 10 %.
 class Progress {
  public:
   Progress(std::string rig, double seconds, bool quiet)
@@ -47,13 +47,13 @@ Result<nlohmann::json> score_in_sight(const config::Rig& rig, const calib::Calib
   return score(rig, calibration, options, [&](double done_s) { progress.at(done_s); });
 }
 
-/// Where a detector looked at images: how it fared.
+/// Prints the accuracy of the detector if a real one has run.
 void print_detector(const nlohmann::json& detector) {
   if (!detector["ms_p50"].is_number()) return;
   const auto error_px = detector["error_px"]["p50"];
   fmt::print(
-      "{}: {} runs of {:.1f} ms (p50, this machine), taken to be done at an age of {:.1f} ms; {} "
-      "of {} hands missed; error {} (p50)\n",
+      "{}: {} runs of {:.1f} ms (p50, this machine), simulated with an age of {:.1f} ms; {} of {} "
+      "hands missed; error {} (p50)\n",
       detector["backend"].get<std::string>(), detector["runs"].get<long>(),
       detector["ms_p50"].get<double>(), detector["age_ms"].get<double>(),
       detector["missed"].get<long>(), detector["hands"].get<long>(),
@@ -99,7 +99,7 @@ Result<void> run(const Options& options) {
   print_summary(*json, *rig, options);
   print_detector((*json)["detector"]);
   if (options.json_file.empty()) return {};
-  // A path in it need not be UTF-8.
+  // Paths and names in the metrics need not be UTF-8.
   return config::write_whole(
       options.json_file,
       json->dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");

@@ -5,7 +5,9 @@
 
 namespace handcast::simulate {
 
-/// The whole of `handcast simulate`: runs the rig and writes what the options ask for.
+/// Runs `handcast simulate`: simulates the rig, prints a summary and writes the files of the
+/// options. Errors: bad_config (a setting, or a file that cannot be read or written), and those of
+/// score().
 Result<void> run(const Options& options);
 
 }  // namespace handcast::simulate

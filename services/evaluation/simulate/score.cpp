@@ -21,7 +21,7 @@
 namespace handcast::simulate {
 namespace {
 
-/// Everything that is made of the ticks of one run.
+/// The metrics and files that are made from the ticks of one run.
 class Products {
  public:
   static Result<std::unique_ptr<Products>> create(const Options& options, const config::Rig& rig,
@@ -37,8 +37,8 @@ class Products {
       std::error_code failed;
       std::filesystem::create_directories(options.frames_directory, failed);
       if (failed)
-        return fail(Errc::bad_config,
-                    fmt::format("{}: {}", options.frames_directory, failed.message()));
+        return fail(Errc::bad_config, fmt::format("{}: cannot be created: {}",
+                                                  options.frames_directory, failed.message()));
       if (auto removed = remove_numbered_pngs(options.frames_directory); !removed)
         return tl::make_unexpected(removed.error());
       products->photographer_.emplace(twin, calibration);
@@ -46,7 +46,7 @@ class Products {
     return products;
   }
 
-  /// `detections` of a hand had arrived before it.
+  /// Adds a tick. `detections`: detections with a hand that had arrived before it.
   Result<void> add(const Tick& tick, int detections) {
     add_speeds(tick.lit_ns);
     for (const auto& hand : tick.hands) {
@@ -69,12 +69,12 @@ class Products {
     return picture(drawn_++, *tick.projection);
   }
 
-  /// After the last tick.
+  /// Closes the files after the last tick.
   Result<void> finish() { return trace_ ? trace_->close() : Result<void>(); }
 
   bool has_fault() const { return fault_.has_value(); }
 
-  /// `clean`: the light of the same run without the fault, where there is one.
+  /// The metrics. `clean`: the light of the same run without the fault; empty without a fault.
   nlohmann::json to_json(const config::Rig& rig, std::span<const LightMoment> clean) const {
     auto json = metrics_.to_json();
     if (drawn_ == 0) json["foldovers"] = nullptr;
@@ -131,20 +131,19 @@ class Products {
   const calib::Calibration& calibration_;
   const twin::Twin& twin_;
   std::optional<FaultTime> fault_;
-  std::unique_ptr<twin::Judge>
-      judge_;  ///< null where nothing is drawn: it makes the whole true hand
+  std::unique_ptr<twin::Judge> judge_;  ///< null if nothing is drawn: it makes the true hands
   twin::Metrics metrics_;
   JitterMeter jitter_;
   HandSpeed hand_speed_;
-  std::vector<LightMoment> moments_;  ///< kept where there is a fault
+  std::vector<LightMoment> moments_;  ///< empty without a fault
   std::optional<Trace> trace_;
   std::optional<Photographer> photographer_;
   std::int64_t drawn_ = 0, with_exposure_ = 0;
   std::size_t pictures_ = 0;
-  double motion_to_photon_ms_ = 0;  ///< summed over the frames that show an exposure
+  double motion_to_photon_ms_ = 0;  ///< sum over the drawn frames that have an image
 };
 
-/// What is scored begins at `start_ns`.
+/// Adds the detections of frames from `start_ns` on to the tally.
 OnDetection from(std::int64_t start_ns, DetectorTally& tally) {
   return [start_ns, &tally](const Exposure& exposure, const Detection& detection) {
     if (exposure.origin_ns >= start_ns) tally.add(exposure, detection);

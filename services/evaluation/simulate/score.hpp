@@ -9,19 +9,20 @@
 
 namespace handcast::simulate {
 
-/// Runs the rig on its twin in virtual time and gives the metrics of `simulate --json`: those of
+/// Runs the rig on its twin in virtual time and returns the metrics of `simulate --json`: those of
 /// twin::Metrics, and "rig", "motion", "speed", "seed", "seconds", "software_ms",
-/// "motion_to_photon_ms" (from the middle of the exposure that a frame shows to the middle of its
-/// light, mean over the drawn frames; null where none was drawn), "hand_speed_m_s" (HandSpeed),
-/// "fault" (recovery.hpp) and "detector" (DetectorTally, with its back end and "age_ms" as set). A
-/// rig whose twin times a fault runs twice, the second time without it. Of the options it reads the
-/// times, what to draw and the folders of pictures, trace and recording; the rig's own are done
-/// with. Nothing is shared between two calls: they may run side by side, and give the same figures
-/// as one after the other.
+/// "motion_to_photon_ms" (from the middle of the exposure of a frame's image to the middle of its
+/// light, mean over the drawn frames; null without any), "hand_speed_m_s" (HandSpeed), "fault"
+/// (Recovery) and "detector" (DetectorTally, with "backend" and "age_ms"). A rig with a timed fault
+/// runs twice, the second time without the fault.
+///
+/// Ignores rig_file and settings of the options, which are in `rig` already. Thread-safe: calls
+/// share no state, and the figures do not depend on other calls. Errors: those of the twin, the
+/// pipeline and the detector (bad_config), and of files that cannot be written.
 Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration,
                              const Options& options, const OnProgress& on_progress = {});
 
-/// What `on_progress` comes to.
+/// The virtual time that score() will simulate: the last value of `on_progress`.
 double simulated_s(const config::Rig& rig, const Options& options);
 
 }  // namespace handcast::simulate

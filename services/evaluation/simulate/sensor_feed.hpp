@@ -16,33 +16,34 @@
 
 namespace handcast::simulate {
 
-/// A message and the moment it reaches the projector.
+/// A message and the time at which it reaches the projector.
 struct SensorEvent {
-  std::int64_t arrival_ns = 0;
-  std::variant<msg::HandPoses, msg::Landmarks> message;
+  std::int64_t arrival_ns = 0;                           ///< virtual time since the epoch
+  std::variant<msg::HandPoses, msg::Landmarks> message;  ///< from the tracker or the detector
 };
 
-/// What reaches the cascade, and when: all that it may know of the world. Virtual time, asked for
-/// in ascending order.
+/// The input of the cascade in virtual time: messages and images with their times of arrival, and
+/// nothing else of the world. `now_ns` must not decrease from call to call.
 class SensorFeed {
  public:
   virtual ~SensorFeed() = default;
-  /// The messages that arrived up to `now_ns` and were not given yet, in the order of their
-  /// arrival.
+  /// The messages that have arrived by `now_ns` since the last call, in the order of arrival.
   virtual std::vector<SensorEvent> until(std::int64_t now_ns) = 0;
-  /// The newest camera frame in memory at `now_ns`.
+  /// The newest camera frame in memory at `now_ns`; empty before the first.
   virtual std::optional<Exposure> newest_exposure(std::int64_t now_ns) = 0;
+  /// Writes the image of a frame to `pixels`, which has the size of the camera's image.
   virtual void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) = 0;
 };
 
-/// Called with every frame a detector was shown.
+/// Called after each run of a detector.
 using OnDetection = std::function<void(const Exposure&, const Detection&)>;
 
-/// The twin's tracker and camera, and a detector back to back, run in virtual time.
+/// Makes the feed of the twin's tracker and camera and a detector that runs back to back. `twin`
+/// must outlive it.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin,
                                            std::unique_ptr<FrameDetector> detector,
                                            OnDetection on_detection = {});
-/// With the twin's model of a detector.
+/// The same with the twin's model of a detector.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin);
 
 }  // namespace handcast::simulate

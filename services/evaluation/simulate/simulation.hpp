@@ -14,26 +14,29 @@
 
 namespace handcast::simulate {
 
-/// One projector frame of a simulated rig. Borrowed: valid during the call it is given to.
+/// One projector frame of a simulated rig. The borrowed data is valid during the callback only.
 struct Tick {
-  std::int64_t index = 0;   ///< of the projector frame
-  std::int64_t lit_ns = 0;  ///< the middle of the time its light is on
-  std::span<const renderer::FrameHand> hands;
-  const renderer::Frame* frame = nullptr;       ///< null where the frame was tracked, not drawn
-  const msg::Projection* projection = nullptr;  ///< null likewise
+  std::int64_t index = 0;                       ///< number of the projector frame
+  std::int64_t lit_ns = 0;                      ///< the middle of its light
+  std::span<const renderer::FrameHand> hands;   ///< the tracked hands
+  const renderer::Frame* frame = nullptr;       ///< null if the frame was tracked but not drawn
+  const msg::Projection* projection = nullptr;  ///< null if the frame was not drawn
 };
 
-/// The cascade in virtual time: at each projector frame, what has arrived goes in; what is drawn is
-/// lit `software_ms` and the projector's latency later. Every `draw_every`-th frame is drawn, the
-/// others only tracked, which leaves the cascade's memory as if all were; with 0 none is drawn.
+/// Runs the cascade in virtual time. Each projector frame uses the messages and images that have
+/// arrived when it begins; its light is on `software_ms` plus the projector's latency later. Every
+/// `draw_every`-th frame is drawn. The others are only tracked, which leaves the cascade in the
+/// same state as if they had been drawn. With 0 no frame is drawn.
 class Simulation {
  public:
+  /// The pipeline and the feed must outlive the simulation.
   Simulation(const config::Rig& rig, const calib::Calibration& calibration,
              renderer::Pipeline& pipeline, SensorFeed& feed, int draw_every);
 
-  /// Runs the next projector frame.
+  /// Runs the next projector frame and calls `on_tick` with it.
   void step(const std::function<void(const Tick&)>& on_tick);
 
+  /// The time at which the next projector frame begins, since the epoch.
   std::int64_t now_ns() const { return tick_time_ns(next_tick_); }
 
  private:
@@ -47,7 +50,7 @@ class Simulation {
   renderer::Pipeline& pipeline_;
   SensorFeed& feed_;
   int draw_every_;
-  bool looks_;  ///< at every image, of frames that are not drawn too
+  bool looks_;  ///< the pipeline needs the image of each frame, drawn or not
   std::int64_t next_tick_ = 0;
   std::optional<Exposure> shown_;
   renderer::Image<std::uint8_t> image_;

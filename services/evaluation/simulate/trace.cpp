@@ -28,7 +28,7 @@ Result<void> Trace::close() {
   stream_.close();
   if (!stream_)
     return fail(Errc::unavailable,
-                fmt::format("{}: could not be written to its end", file_.string()));
+                fmt::format("{}: could not be written completely", file_.string()));
   return {};
 }
 

@@ -10,14 +10,17 @@
 
 namespace handcast::simulate {
 
-/// A CSV file with a line per projector frame and landmark, camera px: what the filters did, for
-/// plots.
+/// A CSV file with the true, the tracker's and the corrected landmarks, for plots of the filters: a
+/// line per projector frame and landmark, in camera px.
 class Trace {
  public:
+  /// Creates the file and writes the header line. Errors: bad_config (it cannot be written).
   static Result<Trace> open(const std::filesystem::path& file);
+  /// Writes the lines of one hand whose light is on at `lit_ns`.
   void add(std::int64_t lit_ns, const renderer::FrameHand& hand,
            const std::array<glm::vec2, msg::kLandmarks>& truth);
-  /// The last call. Errors: unavailable (the file lacks lines: the disk is full).
+  /// Closes the file; must be the last call. Errors: unavailable (lines are missing, e.g. because
+  /// the disk is full).
   Result<void> close();
 
  private:

@@ -9,26 +9,27 @@
 
 namespace handcast::simulate {
 
-/// What a run in virtual time is made of.
+/// The parts of a run in virtual time.
 struct VirtualRig {
-  std::unique_ptr<twin::Twin> twin;
-  std::unique_ptr<renderer::Pipeline> pipeline;
-  std::unique_ptr<FrameDetector> detector;  ///< to be moved into the feed
+  std::unique_ptr<twin::Twin> twin;              ///< must outlive the other two
+  std::unique_ptr<renderer::Pipeline> pipeline;  ///< the cascade
+  std::unique_ptr<FrameDetector> detector;       ///< must be moved into the feed
 };
-/// Errors: as the parts say them.
+/// Opens the parts for a rig. Errors: those of Twin::create, Pipeline::create and
+/// open_frame_detector.
 Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration);
 
-/// Told after every projector frame how much virtual time is done, the warm-up included.
+/// Called after each projector frame with the virtual time done so far, warm-up included.
 using OnProgress = std::function<void(double done_s)>;
 
-/// Runs the warm-up and the seconds of the options; the ticks of the latter go to `on_tick`, whose
-/// first error ends the run.
+/// Runs the warm-up and the scored time of the options, and passes the ticks of the latter to
+/// `on_tick`. Stops at the first error of `on_tick` and returns it.
 Result<void> run_ticks(const Options& options, Simulation& simulation,
                        const std::function<Result<void>(const Tick&)>& on_tick,
                        const OnProgress& on_progress = {});
 
-/// The light of the same run, were there none of the faults that the rig's twin times. Takes as
-/// long as the run itself.
+/// The light of the same run without the timed faults. Takes as long as the run itself. Errors: as
+/// open_virtual_rig.
 Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig,
                                                        const calib::Calibration& calibration,
                                                        const Options& options,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// handcast sweep: grids of settings over motions, seeds and speeds, on all cores.
+// handcast sweep: scores grids of settings over motions, seeds and speeds, on all cores.
 #include <fmt/format.h>
 #include <signal.h>
 
@@ -25,20 +25,20 @@ struct CommandLine {
 constexpr int kExitRunsFailed = 1;
 constexpr int kExitStopped = 130;
 
-const char* const kFooter = R"(A plan is a TOML file, every path in it relative to the file:
+const char* const kFooter = R"(A plan is a TOML file. The paths in it are relative to the file.
   rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24    joints_only = false
-  [settings]    of every run, e.g. twin.tracker.age_ms = 15
-  [[variant]]   name, its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"
-  [grid]        every combination, e.g. twin.speed = [1, 2, 3]; several, each a [[grid]], are run one after the other
-Settings are those of config/REFERENCE.md; config/sweeps holds plans.
+  [settings]    settings of all runs, e.g. twin.tracker.age_ms = 15
+  [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"
+  [grid]        lists of values, e.g. twin.speed = [1, 2, 3]; all combinations are run. Several [[grid]] are run one after the other
+config/REFERENCE.md lists the settings; config/sweeps holds plans.
 
-The same command goes on where a sweep was cut off, and tries again what failed. On many machines: one `--shard I/N` each, then --merge.
-Times of frames and stages are those of a core among busy ones; to measure them take -j 1.
-Exit code 1: runs failed, or are missing from what was merged. 130: stopped before the end.)";
+The same command continues an interrupted sweep and repeats the runs that failed. To use several machines, run one `--shard I/N` on
+each and --merge the results. The measured times of frames and stages depend on the number of jobs; use -j 1 to compare them.
+Exit codes: 1 if runs failed or are missing after a merge, 130 if the sweep was interrupted.)";
 
 std::atomic<bool> stop{false};
 
-/// The first Ctrl-C lets the runs that are under way end; the second ends the program.
+/// Installs the handler: the first Ctrl-C lets the current runs end, the second ends the program.
 void stop_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int) { stop = true; };
@@ -70,10 +70,9 @@ int list_runs(const Plan& plan, const std::vector<Run>& runs, const Shard& shard
 }
 
 int report(const Plan& plan, const Outcome& outcome, const std::filesystem::path& file) {
-  fmt::print(
-      "sweep {}: {} runs scored, {} failed, {} kept from before, {} left out, {} not begun: {}\n",
-      plan.name, outcome.scored, outcome.failed, outcome.kept, outcome.absent, outcome.left,
-      file.string());
+  fmt::print("sweep {}: {} runs scored, {} failed, {} kept, {} left out, {} not begun: {}\n",
+             plan.name, outcome.scored, outcome.failed, outcome.kept, outcome.absent, outcome.left,
+             file.string());
   if (outcome.left > 0) return kExitStopped;
   return outcome.failed > 0 ? kExitRunsFailed : 0;
 }
@@ -99,7 +98,7 @@ int sweep(const CommandLine& line) {
 
 int merge_files(const CommandLine& line) {
   if (line.output.empty())
-    return complain({Errc::bad_config, "--merge: into which file? give it with -o"});
+    return complain({Errc::bad_config, "--merge needs an output file; give it with -o"});
   const auto merged = merge({line.files.begin(), line.files.end()}, line.output);
   if (!merged) return complain(merged.error());
   fmt::print("{} runs, {} of them failed: {}\n", merged->rows, merged->failed, line.output);
@@ -115,25 +114,26 @@ int main(int argc, char** argv) try {
   using namespace handcast::sweep;
   CommandLine line;
   CLI::App app(
-      "Scores a rig under every combination of the settings a plan names, in virtual time, to CSV.",
+      "Scores a rig in virtual time with all combinations of the settings of a plan, and writes a "
+      "CSV file.",
       "handcast sweep");
   app.footer(kFooter);
   app.add_option("PLAN.toml", line.files, "The plan; with --merge, the files of results")
       ->required();
-  app.add_option("-o,--output", line.output, "The file of results (default: out/PLAN.csv)");
-  app.add_option("--shard", line.shard, "I/N: only the runs whose index is I modulo N");
-  app.add_option("-j,--jobs", line.jobs, "Runs at the same time (default: one per core)")
+  app.add_option("-o,--output", line.output, "File of results (default: out/PLAN.csv)");
+  app.add_option("--shard", line.shard, "I/N: does only the runs whose index is I modulo N");
+  app.add_option("-j,--jobs", line.jobs, "Number of simultaneous runs (default: one per core)")
       ->check(CLI::Range(1, 4096));
-  app.add_flag("--list", line.list, "Names the runs and runs none");
-  app.add_flag("--fresh", line.fresh, "Forgets what the file of results holds");
-  app.add_flag("--merge", line.merge, "Puts the results of shards together");
-  app.add_flag("--quiet", line.quiet, "No progress line");
+  app.add_flag("--list", line.list, "Prints the runs and does none");
+  app.add_flag("--fresh", line.fresh, "Discards the content of the file of results");
+  app.add_flag("--merge", line.merge, "Merges the results of shards into one file");
+  app.add_flag("--quiet", line.quiet, "Prints no progress");
   app.set_version_flag("--version", fmt::format("handcast sweep {}", handcast::version()));
   CLI11_PARSE(app, argc, argv);
   if (line.merge) return merge_files(line);
   if (line.files.size() > 1)
     return complain(
-        {handcast::Errc::bad_config, "one plan, please; for files of results say --merge"});
+        {handcast::Errc::bad_config, "there must be one plan; use --merge for files of results"});
   return sweep(line);
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast sweep: %s\n", problem.what());

@@ -16,7 +16,7 @@ struct Source {
   std::string file;
 };
 
-/// The first column in which two rows of one run differ and may not; "" where they agree.
+/// The first column in which two rows of one run differ, machine times excepted; "" if they agree.
 std::string disagreement(const Heading& heading, const Row& a, const Row& b) {
   for (std::size_t i = 0; i < heading.columns.size(); ++i)
     if (a[i] != b[i] && !is_machine_time(heading.columns[i])) return heading.columns[i];

@@ -8,19 +8,21 @@
 
 namespace handcast::sweep {
 
+/// The result of merge().
 struct Merged {
-  std::size_t rows = 0, failed = 0;
+  std::size_t rows = 0;              ///< runs in the merged file
+  std::size_t failed = 0;            ///< those of them that failed
   std::vector<std::size_t> missing;  ///< runs of the plan that no file has
 };
 
-/// Writes the results of shards as one file, in the order of the runs: the file one machine would
-/// have written. Where two files have the same run they must agree, but for the times; where it
-/// failed in one, the other counts. Errors: bad_config (a file cannot be read or written), bad_data
-/// (they are of different plans, or disagree).
+/// Merges the results of shards into one file, in the order of the runs: the file that one machine
+/// would have written. If two files have the same run, they must agree except for machine times; if
+/// the run failed in one of them, the other is used. Errors: bad_config (a file cannot be read or
+/// written), bad_data (the files are of different plans, or disagree).
 Result<Merged> merge(const std::vector<std::filesystem::path>& files,
                      const std::filesystem::path& into);
 
-/// "3, 7-12".
+/// Prints ascending numbers with ranges: "3, 7-12".
 std::string print_indices(const std::vector<std::size_t>& ascending);
 
 }  // namespace handcast::sweep

@@ -13,12 +13,12 @@
 
 namespace handcast::sweep {
 
-/// A section that is read by hand; declared so that a mistyped name is told of it.
+/// A section that Reader reads. It is declared so that the loader suggests it for a mistyped name.
 struct ReadByHand {};
 template <class Visitor>
 void describe(Visitor&, ReadByHand&) {}
 
-/// The single settings of a plan file.
+/// The settings at the top level of a plan file.
 struct Head {
   std::string rig = "../rigs/twin.toml";
   double seconds = Plan().seconds;
@@ -30,21 +30,21 @@ struct Head {
 
 template <class Visitor>
 void describe(Visitor& visitor, Head& head) {
-  visitor.field("rig", head.rig, "Rig file of the variants that name none, relative to the plan.");
+  visitor.field("rig", head.rig, "Rig file of the variants without one, relative to the plan.");
   visitor.field("seconds", head.seconds, config::between(0.01, 86400, "s"),
-                "Time that is scored in every run.");
+                "Scored time of each run.");
   visitor.field("warm_up_s", head.warm_up_s, config::between(0, 3600, "s"),
-                "Time before it that is not.");
+                "Time before it that is not scored.");
   visitor.field("draw_every", head.draw_every, config::between(1, 100000),
                 "Draws and scores every N-th projector frame.");
-  visitor.field("joints_only", head.joints_only, "Draws nothing and scores the landmarks alone.");
-  visitor.section("settings", head.settings, "Settings of every run.");
-  visitor.section("variant", head.variant, "Rungs.");
+  visitor.field("joints_only", head.joints_only, "Draws nothing and scores only the landmarks.");
+  visitor.section("settings", head.settings, "Settings of all runs.");
+  visitor.section("variant", head.variant, "Variants of the rig.");
   visitor.section("grid", head.grid,
-                  "Lists of values: every combination is run. Several as [[grid]].");
+                  "Lists of values of which all combinations are run. Several as [[grid]].");
 }
 
-/// The single settings of a [[variant]].
+/// The settings at the top level of a [[variant]].
 struct VariantHead {
   std::string name, rig;
   ReadByHand settings;
@@ -52,16 +52,16 @@ struct VariantHead {
 
 template <class Visitor>
 void describe(Visitor& visitor, VariantHead& head) {
-  visitor.field("name", head.name, "Names the rung.");
-  visitor.field("rig", head.rig, "Its rig file, relative to the plan.");
-  visitor.section("settings", head.settings, "Settings of its runs.");
+  visitor.field("name", head.name, "Name of the variant.");
+  visitor.field("rig", head.rig, "Rig file of the variant, relative to the plan.");
+  visitor.section("settings", head.settings, "Settings of the variant's runs.");
 }
 
 namespace {
 
 using config::Value;
 
-/// As an assignment writes it: text without quotes.
+/// The value as in "path=value": text without quotes.
 std::string print(const Value& value) {
   if (const auto* flag = std::get_if<bool>(&value.data)) return *flag ? "true" : "false";
   if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *whole);
@@ -73,7 +73,7 @@ std::string print(const Value& value) {
   return fmt::format("[{}]", config::join(texts, ", "));
 }
 
-/// The document that sets one path, so that the loader of rigs can judge it.
+/// A document that sets one path, which the loader of rigs can check.
 Value nested(std::string_view path, Value value) {
   const auto dot = path.rfind('.');
   Value table{config::Table{{std::string(path.substr(dot == path.npos ? 0 : dot + 1)), value}},
@@ -81,7 +81,7 @@ Value nested(std::string_view path, Value value) {
   return dot == path.npos ? table : nested(path.substr(0, dot), std::move(table));
 }
 
-/// The values of a section by their whole paths: "a.b" = 1, a.b = 1 and [a] b = 1 are the same.
+/// The values of a section by their full paths: "a.b" = 1, a.b = 1 and [a] b = 1 are the same.
 void flatten(const config::Table& table, const std::string& outer, config::Table& flat) {
   for (const auto& [name, value] : table) {
     const auto path = outer.empty() ? name : fmt::format("{}.{}", outer, name);
@@ -93,7 +93,7 @@ void flatten(const config::Table& table, const std::string& outer, config::Table
   }
 }
 
-/// One pass over a plan file.
+/// Reads one plan file and collects its faults.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file)
@@ -125,7 +125,7 @@ class Reader {
     faults_.add(fmt::format("{}:{}: {}: {}", file_.string(), line, path, sentence));
   }
 
-  /// Lays the named members aside and gives what is left.
+  /// Moves the named members to taken_ and returns the others.
   Value take_sections(const Value& document, const std::vector<std::string_view>& names) {
     taken_.clear();
     config::Table rest;
@@ -179,11 +179,11 @@ class Reader {
     for (const auto& [path, value] : members(section, "grid")) {
       const auto* values = std::get_if<config::Array>(&value.data);
       if (!values || values->empty()) {
-        complain(value.line, path, "must be a list of the values to try");
+        complain(value.line, path, "must be a list of values");
         continue;
       }
       if (std::ranges::find(axes, path, &Axis::path) != axes.end())
-        complain(value.line, path, "is twice in the grid");
+        complain(value.line, path, "occurs twice in the grid");
       axes.push_back({path, {}});
       for (const auto& each : *values) axes.back().choices.push_back(choice(path, each));
     }
@@ -208,7 +208,8 @@ class Reader {
       }
       auto read = variant(element, head.rig);
       if (std::ranges::find(plan.variants, read.name, &Variant::name) != plan.variants.end())
-        complain(element.line, "variant.name", fmt::format("there are two '{}'", read.name));
+        complain(element.line, "variant.name",
+                 fmt::format("two variants are called '{}'", read.name));
       plan.variants.push_back(std::move(read));
     }
   }
@@ -222,7 +223,7 @@ class Reader {
     return {head.name, file, rig_text(file, element.line), fixed(section("settings"))};
   }
 
-  /// A rig file is judged once, however many variants name it.
+  /// Reads a rig file. Its faults are reported once, even if several variants name it.
   std::string rig_text(const std::filesystem::path& rig, int line) {
     auto text = config::read_text(rig);
     const bool new_here = std::ranges::find(judged_, rig) == judged_.end();
@@ -243,7 +244,7 @@ class Reader {
           if (const auto axis = std::ranges::find(grid, setting.path, &Axis::path);
               axis != grid.end())
             complain(setting.choices.front().line, setting.path,
-                     fmt::format("is fixed here, and in the grid too (line {})",
+                     fmt::format("is fixed here, but is also an axis of a grid (line {})",
                                  axis->choices.front().line));
     };
     check(plan.settings);
@@ -251,7 +252,7 @@ class Reader {
   }
 
   std::filesystem::path file_, folder_;
-  config::Rig scratch_;  ///< takes the values, so that each is judged where it stands
+  config::Rig scratch_;  ///< receives each value when it is checked
   config::Listing listing_;
   config::Faults faults_;
   config::Table taken_;

@@ -8,69 +8,67 @@
 
 namespace handcast::sweep {
 
-/// One value a setting takes in a plan.
+/// One value of a setting in a plan.
 struct Choice {
-  std::string
-      shown;  ///< as the plan says it: what --list and the CSV print, the same on every machine
-  std::string assigned;  ///< what stands behind "path=": files and folders are absolute
-  int line = 0;
+  std::string shown;     ///< the text in the plan, --list and the CSV; the same on all machines
+  std::string assigned;  ///< the value to be set: files and folders are absolute
+  int line = 0;          ///< line of the plan
 };
 
-/// A setting (any path of config/REFERENCE.md) and what it is: one choice where it is fixed,
-/// several along an axis of the grid.
+/// A setting and its values: one if it is fixed, several if it is an axis of a grid.
 struct Axis {
-  std::string path;
-  std::vector<Choice> choices;
+  std::string path;             ///< of the setting, as in config/REFERENCE.md
+  std::vector<Choice> choices;  ///< at least one
 };
 
-/// Every combination of the choices of its axes.
+/// All combinations of the values of its axes.
 using Grid = std::vector<Axis>;
 
-/// A rig with settings of its own, under a name: where one word is to change several settings at
-/// once.
+/// A named rig with settings of its own: changes several settings at once.
 struct Variant {
-  std::string name;
-  std::filesystem::path rig_file;
-  std::string rig_text;  ///< of that file, read once
-  std::vector<Axis> settings;
+  std::string name;                ///< unique in the plan
+  std::filesystem::path rig_file;  ///< absolute
+  std::string rig_text;            ///< content of rig_file
+  std::vector<Axis> settings;      ///< fixed settings
 };
 
-/// What a plan file says. Every path in it is relative to the file.
+/// The content of a plan file. The paths in it are relative to the file.
 ///
-///     rig = "../rigs/twin.toml"        # of the variants that name none
+///     rig = "../rigs/twin.toml"        # of the variants without a rig of their own
 ///     seconds = 5
 ///     warm_up_s = 0.5
-///     draw_every = 24                  # projector frames from one drawn and scored to the next
-///     joints_only = false              # true: nothing is drawn, only the 21 landmarks are scored
-///     [settings]                       # of every run
+///     draw_every = 24                  # draws and scores every 24th projector frame
+///     joints_only = false              # true: draws nothing and scores only the 21 landmarks
+///     [settings]                       # of all runs
 ///     twin.tracker.age_ms = 15
-///     [[variant]]                      # of one rung; without any: the rig as it is
+///     [[variant]]                      # without any, the rig is the only variant
 ///     name = "one_euro"
 ///     settings.cascade.filter.method = "one_euro"
-///     [grid]                           # every combination
+///     [grid]                           # all combinations are run
 ///     twin.motion = ["builtin:wave", "../../data/wave"]
 ///     twin.speed = [1, 2, 3]
 ///
-/// Several grids, each a [[grid]], are run one after the other; what one does not name is in it as
-/// the rig has it.
+/// Several grids, each a [[grid]], are run one after the other. In the runs of one grid, the axes
+/// of the others have the values of the rig.
 struct Plan {
-  std::string name;  ///< the file's, without its ending
-  std::filesystem::path file;
-  double seconds = 5;
-  double warm_up_s = 0.5;
-  int draw_every = 24;  ///< 0: joints only
-  std::vector<Axis> settings;
-  std::vector<Variant> variants;
-  std::vector<Grid> grids;  ///< at least one, and be it empty
+  std::string name;               ///< file name without its extension
+  std::filesystem::path file;     ///< the file itself
+  double seconds = 5;             ///< scored time of a run
+  double warm_up_s = 0.5;         ///< time before it that is not scored
+  int draw_every = 24;            ///< 0 if joints_only
+  std::vector<Axis> settings;     ///< fixed settings of all runs
+  std::vector<Variant> variants;  ///< at least one
+  std::vector<Grid> grids;        ///< at least one, possibly without axes
 
-  /// Every setting that any grid turns, in the order of the file.
+  /// The paths of all axes of all grids, in the order of the file.
   std::vector<std::string> axes() const;
 };
 
-/// Errors: bad_config; every fault of the plan at once, a line each, "PLAN:LINE: path: sentence".
+/// Reads a plan file. Errors: bad_config; the message holds all faults of the plan, a line each:
+/// "PLAN:LINE: path: sentence".
 Result<Plan> load_plan(const std::filesystem::path& file);
 
-/// The same from memory.
+/// The same for the text of a plan. Its paths are relative to `file`, which need not exist.
 Result<Plan> parse_plan(const std::string& toml, const std::filesystem::path& file);
 
 }  // namespace handcast::sweep

@@ -10,7 +10,7 @@ namespace handcast::sweep {
 namespace {
 
 constexpr const char* kClearLine = "\r\033[K";
-constexpr std::int64_t kPause_ns = 100'000'000;  ///< between two writings of a terminal's line
+constexpr std::int64_t kPause_ns = 100'000'000;  ///< least time between updates of the terminal
 
 std::string print_span(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);

@@ -7,15 +7,18 @@
 
 namespace handcast::sweep {
 
-/// How far a sweep is, on stderr: one line on a terminal that is written over; every tenth where
-/// there is none. Any thread.
+/// Prints the progress of a sweep on stderr: one line that is overwritten on a terminal, else a
+/// line every 10 %. Thread-safe.
 class Progress {
  public:
+  /// `plan` is printed before the progress. If `quiet`, only say() prints.
   Progress(std::string plan, std::size_t runs, bool quiet);
+  /// Ends the line on a terminal.
   ~Progress();
 
+  /// Counts a run.
   void one_done(bool failed);
-  /// A sentence of its own line.
+  /// Prints a message on a line of its own.
   void say(const std::string& sentence);
 
  private:

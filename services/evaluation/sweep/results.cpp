@@ -19,7 +19,8 @@ Result<std::unique_ptr<Results>> Results::open(const std::filesystem::path& file
   if (!fd)
     return fail(Errc::bad_config, fmt::format("{}: {}", file.string(), std::strerror(errno)));
   if (flock(fd.get(), LOCK_EX | LOCK_NB) != 0)
-    return fail(Errc::unavailable, fmt::format("{}: another sweep is writing it", file.string()));
+    return fail(Errc::unavailable,
+                fmt::format("{}: another sweep is writing this file", file.string()));
   auto results = std::unique_ptr<Results>(new Results(file, std::move(fd)));
   if (fresh && ftruncate(results->fd_.get(), 0) != 0)
     return fail(Errc::bad_config, fmt::format("{}: {}", file.string(), std::strerror(errno)));
@@ -31,19 +32,20 @@ Result<void> Results::go_on(const Heading& heading) {
   const auto table = read_table(file_);
   if (!table)
     return fail(Errc::bad_config,
-                table.error().what + "; give another file with -o, or --fresh to write over it");
+                table.error().what + "; give another file with -o, or overwrite it with --fresh");
   const bool no_columns = table->heading.columns.empty() && table->rows.empty();
   const bool begun = !table->heading.stamp.empty();
   if (begun &&
       (table->heading.stamp != heading.stamp || (!no_columns && table->heading != heading)))
-    return fail(Errc::bad_config, fmt::format("{}: holds results of another plan, rig or version "
-                                              "({}; this is {}); give another file with -o, "
-                                              "or --fresh to write over it",
-                                              file_.string(), table->heading.stamp, heading.stamp));
+    return fail(Errc::bad_config,
+                fmt::format("{}: the file holds results of another plan, rig or version ({}; this "
+                            "is {}); give another file with -o, or overwrite it with --fresh",
+                            file_.string(), table->heading.stamp, heading.stamp));
   if (!begun && !heading.print().starts_with(table->torn))
-    return fail(
-        Errc::bad_config,
-        fmt::format("{}: holds no results of a sweep; give another file with -o", file_.string()));
+    return fail(Errc::bad_config,
+                fmt::format("{}: the file does not hold results of a sweep; give another file "
+                            "with -o",
+                            file_.string()));
   const auto whole_bytes = no_columns ? 0 : table->whole_bytes;
   if (ftruncate(fd_.get(), static_cast<off_t>(whole_bytes)) != 0)
     return fail(Errc::bad_config, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
@@ -55,9 +57,9 @@ Result<void> Results::go_on(const Heading& heading) {
 }
 
 Result<void> Results::append(const Row& row) {
-  const std::lock_guard lock(one_line_at_a_time_);
-  if (sound_) sound_ = write(print_row(row));
-  return sound_;
+  const std::lock_guard lock(mutex_);
+  if (state_) state_ = write(print_row(row));
+  return state_;
 }
 
 Result<void> Results::sort() {

@@ -10,25 +10,25 @@
 
 namespace handcast::sweep {
 
-/// The file a sweep writes: a line per finished run, each in the file, whole, before the next
-/// begins. A sweep that was cut off goes on in the same file; runs that failed are tried again. One
-/// process at a time.
+/// The output file of a sweep: a complete line per finished run. An interrupted sweep continues in
+/// the same file and repeats the runs that failed. The file is locked: one process at a time.
 class Results {
  public:
-  /// Opens or makes the file, and its folder. `fresh`: what it held is forgotten.
-  /// Errors: bad_config (it cannot be written, or holds something else), unavailable (another
-  /// process writes it now).
+  /// Opens the file, or creates it and its folder. If `fresh`, its content is discarded. Errors:
+  /// bad_config (the file cannot be written, or does not hold results of `heading`), unavailable
+  /// (another process is writing it).
   static Result<std::unique_ptr<Results>> open(const std::filesystem::path& file,
                                                const Heading& heading, bool fresh);
 
-  /// The runs that need not be done again.
+  /// The runs that the file holds without an error. Does not change after open().
   const std::set<std::size_t>& done() const { return done_; }
 
-  /// From any thread. Errors: unavailable (the disk is full).
+  /// Appends a line. Thread-safe. Errors: unavailable (e.g. the disk is full); then all later calls
+  /// fail too.
   Result<void> append(const Row& row);
 
-  /// Puts the lines in the order of the runs, the newest of each. The last call: nothing is
-  /// appended after it.
+  /// Sorts the lines by run and keeps the newest of each run. Must be the last call. Errors: those
+  /// of read_table and write_table.
   Result<void> sort();
 
  private:
@@ -37,10 +37,10 @@ class Results {
   Result<void> write(const std::string& text);
 
   std::filesystem::path file_;
-  UniqueFd fd_;  ///< opened to append, and locked
+  UniqueFd fd_;  ///< in append mode, and locked
   std::set<std::size_t> done_;
-  std::mutex one_line_at_a_time_;
-  Result<void> sound_;  ///< the first line that could not be written: none may follow a torn one
+  std::mutex mutex_;
+  Result<void> state_;  ///< first error of writing: no line may follow an incomplete one
 };
 
 }  // namespace handcast::sweep

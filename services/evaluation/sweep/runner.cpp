@@ -34,8 +34,7 @@ Result<nlohmann::json> score(const Plan& plan, const Run& run) try {
   return fail(Errc::unavailable, problem.what());
 }
 
-/// The shard's runs that are still to do; those whose motion is absent are named, a sentence per
-/// folder.
+/// The runs of the shard that must be done. Prints those whose motion is absent, a line per folder.
 std::vector<const Run*> to_do(const Plan& plan, const std::vector<Run>& runs, const Work& work,
                               const Results& results, Outcome& outcome) {
   std::vector<const Run*> todo;
@@ -59,7 +58,7 @@ std::vector<const Run*> to_do(const Plan& plan, const std::vector<Run>& runs, co
   return todo;
 }
 
-/// Threads that take the next run until there is none.
+/// Threads that do runs until none is left.
 class Workers {
  public:
   Workers(const Plan& plan, const std::vector<const Run*>& todo, Results& results,
@@ -114,7 +113,7 @@ class Workers {
   Progress progress_;
   std::atomic<std::size_t> next_ = 0, done_ = 0, failed_ = 0;
   std::atomic<bool> full_ = false;
-  Result<void> broken_;  ///< written by the thread that sets full_, read after all have ended
+  Result<void> broken_;  ///< written by the thread that sets full_, read after all threads ended
 };
 
 }  // namespace

@@ -8,22 +8,25 @@
 
 namespace handcast::sweep {
 
+/// The runs to be done, and how.
 struct Work {
-  Shard shard;
-  int jobs = 0;  ///< worker threads; 0: one per core
-  bool quiet = false;
+  Shard shard;         ///< part of the plan
+  int jobs = 0;        ///< worker threads; 0: one per core
+  bool quiet = false;  ///< prints no progress
 };
 
+/// Numbers of runs of the shard.
 struct Outcome {
-  std::size_t scored = 0, failed = 0;
-  std::size_t kept = 0;    ///< of an earlier sweep
-  std::size_t absent = 0;  ///< their motion is not on this machine
-  std::size_t left = 0;    ///< stopped before they began
+  std::size_t scored = 0;  ///< runs that were scored
+  std::size_t failed = 0;  ///< runs that ended with an error
+  std::size_t kept = 0;    ///< runs that an earlier sweep had scored
+  std::size_t absent = 0;  ///< runs whose motion is not on this machine
+  std::size_t left = 0;    ///< runs that were not begun because of `stop`
 };
 
-/// Runs what the shard has and `results` has not. A run that cannot be done becomes a line with its
-/// error, and the others go on. Once `stop` is true none begins any more. The same figures with any
-/// number of threads: a run shares nothing. Errors: those of Results.
+/// Does the runs of the shard that `results` does not hold. A run that fails is written as a line
+/// with its error. No run begins after `stop` has become true. The figures do not depend on the
+/// number of threads. Errors: those of Results.
 Result<Outcome> run_all(const Plan& plan, const std::vector<Run>& runs, const Work& work,
                         Results& results, const std::atomic<bool>& stop);
 

@@ -21,7 +21,7 @@ class Hash {
  public:
   void add(std::string_view text) {
     for (const char c : text) byte(static_cast<unsigned char>(c));
-    byte(0xff);  // in no UTF-8 text: where one ends and the next begins counts too
+    byte(0xff);  // separates texts: does not occur in UTF-8
   }
   std::string print() const { return fmt::format("{:016x}", state_); }
 
@@ -30,6 +30,7 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325u;
 };
 
+/// The settings of a rig with the absolute paths made relative to `folder`.
 std::string without_machine(config::Rig rig, const std::filesystem::path& folder) {
   for (const auto& section : config::list_settings(rig))
     for (const auto& setting : section.settings) {
@@ -41,7 +42,7 @@ std::string without_machine(config::Rig rig, const std::filesystem::path& folder
   return config::print_rig(rig);
 }
 
-/// False after the last.
+/// Advances to the next combination; returns false after the last.
 bool next_choices(const Grid& grid, std::vector<std::size_t>& choices) {
   for (std::size_t axis = grid.size(); axis-- > 0;) {
     if (++choices[axis] < grid[axis].choices.size()) return true;
@@ -57,8 +58,8 @@ Result<std::vector<Run>> all_runs(const Plan& plan) {
       std::vector<std::size_t> choices(plan.grids[grid].size(), 0);
       do {
         if (runs.size() == kMostRuns)
-          return fail(Errc::bad_config,
-                      fmt::format("{}: more than {} runs", plan.file.string(), kMostRuns));
+          return fail(Errc::bad_config, fmt::format("{}: the plan has more than {} runs",
+                                                    plan.file.string(), kMostRuns));
         runs.push_back({runs.size(), variant, grid, choices});
       } while (next_choices(plan.grids[grid], choices));
     }
@@ -121,10 +122,11 @@ std::optional<std::string> why_absent(const config::Rig& rig) {
   const auto& motion = rig.twin.motion;
   std::error_code unknown;
   const auto kind = std::filesystem::status(motion, unknown).type();
-  const bool hidden = kind == std::filesystem::file_type::none;  // the run itself says why
+  // If the status is unknown, the run itself reports the reason.
+  const bool hidden = kind == std::filesystem::file_type::none;
   if (motion.starts_with("builtin:") || kind == std::filesystem::file_type::directory || hidden)
     return std::nullopt;
-  return fmt::format("twin.motion: the folder {} is not there", motion);
+  return fmt::format("twin.motion: there is no folder {}", motion);
 }
 
 Result<Shard> parse_shard(const std::string& text) {
@@ -135,7 +137,7 @@ Result<Shard> parse_shard(const std::string& text) {
   const auto count = std::from_chars(slash ? index.ptr + 1 : end, end, shard.count);
   if (!slash || count.ec != std::errc{} || count.ptr != end || shard.index >= shard.count)
     return fail(Errc::bad_config,
-                fmt::format("--shard {}: must be I/N with I from 0 to N-1, e.g. 0/4", text));
+                fmt::format("--shard {}: a shard is I/N with I from 0 to N-1, e.g. 0/4", text));
   return shard;
 }
 

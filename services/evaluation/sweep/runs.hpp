@@ -10,46 +10,50 @@
 
 namespace handcast::sweep {
 
-/// One run of a plan. The order is fixed: variant by variant, within it grid by grid, each with its
-/// last axis turning fastest.
+/// One run of a plan. Runs are ordered by variant, then by grid, then by the values of its axes, of
+/// which the last varies fastest.
 struct Run {
-  std::size_t index = 0;
-  std::size_t variant = 0;           ///< in Plan::variants
-  std::size_t grid = 0;              ///< in Plan::grids
-  std::vector<std::size_t> choices;  ///< one per axis of that grid
+  std::size_t index = 0;             ///< number of the run in the plan, from 0
+  std::size_t variant = 0;           ///< index in Plan::variants
+  std::size_t grid = 0;              ///< index in Plan::grids
+  std::vector<std::size_t> choices;  ///< index of the value by axis of the grid
 
-  /// What a setting is in this run; null where its grid does not turn it.
+  /// The value of a setting in this run; null if it is not an axis of the run's grid.
   const Choice* choice(const Plan& plan, const std::string& path) const;
 };
 
-/// Every run of the plan, and a number (hexadecimal) that two plans share only where every run of
-/// both is the same: rig files, settings and times together. Paths count relative to the plan, so
-/// that it is the same on every machine.
+/// All runs of a plan.
 struct Expansion {
-  std::vector<Run> runs;
+  std::vector<Run> runs;  ///< in the order of their index
+  /// Hexadecimal hash of all runs: rig files, settings and times. Paths enter relative to the plan,
+  /// so that it is the same on all machines.
   std::string fingerprint;
 };
 
-/// Errors: bad_config, where settings that are each right do not go together; every such sentence
-/// once, with the first run it is about.
+/// Expands a plan into its runs. Errors: bad_config (valid settings that exclude each other, or
+/// more than 1,000,000 runs); each message occurs once, with the first run that it concerns.
 Result<Expansion> expand(const Plan& plan);
 
-/// The rig of one run.
+/// The rig of one run. Errors: bad_config (settings that exclude each other).
 Result<config::Rig> rig_of(const Plan& plan, const Run& run);
 
-/// "one_euro, twin.speed=2".
+/// Prints the variant and the axes of a run: "one_euro, twin.speed=2".
 std::string describe_run(const Plan& plan, const Run& run);
 
-/// Why this machine cannot do a run: its motion is a folder that is not there.
+/// The reason why this machine cannot do a run, i.e. that the folder of its motion does not exist;
+/// empty if it can.
 std::optional<std::string> why_absent(const config::Rig& rig);
 
-/// One part of a sweep that several machines share: the runs whose index is `index` modulo `count`.
+/// One part of a sweep on several machines: the runs whose index is `index` modulo `count`.
 struct Shard {
-  std::size_t index = 0, count = 1;
+  std::size_t index = 0;  ///< less than `count`
+  std::size_t count = 1;  ///< number of parts
+
+  /// True if the run is in this part.
   bool has(const Run& run) const { return run.index % count == index; }
 };
 
-/// "2/8". Errors: bad_config.
+/// Parses "2/8". Errors: bad_config.
 Result<Shard> parse_shard(const std::string& text);
 
 }  // namespace handcast::sweep

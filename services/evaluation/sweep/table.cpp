@@ -18,7 +18,7 @@ namespace {
 
 struct Metric {
   std::string column;
-  nlohmann::json::json_pointer place;  ///< in the metrics of simulate::score
+  nlohmann::json::json_pointer place;  ///< in the result of simulate::score
 };
 
 std::vector<Metric> make_metrics() {
@@ -95,7 +95,8 @@ Result<void> check_row(const Row& row, const Heading& heading, const std::filesy
   const auto read = std::from_chars(text.data(), text.data() + text.size(), index);
   const bool number = read.ec == std::errc{} && read.ptr == text.data() + text.size();
   if (row.size() == heading.columns.size() && number && index < heading.runs()) return {};
-  return fail(Errc::bad_data, fmt::format("{}:{}: no line of this sweep", file.string(), line));
+  return fail(Errc::bad_data,
+              fmt::format("{}:{}: the line is not one of this sweep", file.string(), line));
 }
 
 }  // namespace
@@ -191,7 +192,8 @@ Result<Table> read_table(const std::filesystem::path& file) {
   }
   table.torn = text->substr(table.whole_bytes);
   if (line > 1 && !table.heading.stamp.starts_with("# handcast sweep "))
-    return fail(Errc::bad_data, fmt::format("{}: holds no results of a sweep", file.string()));
+    return fail(Errc::bad_data,
+                fmt::format("{}: the file does not hold results of a sweep", file.string()));
   return table;
 }
 

@@ -11,52 +11,63 @@
 
 namespace handcast::sweep {
 
-/// The cells of one line of the CSV: index, variant, the axes (empty: not turned in this run's
-/// grid), the metrics (empty: never measured), and what went wrong.
+/// The cells of one line of the CSV: index, variant, axes (empty if not in the run's grid), metrics
+/// (empty if not measured), error.
 using Row = std::vector<std::string>;
 
-/// What a file of results is of; two files belong together where all of it is the same.
+/// The first two lines of a file of results. Files with equal headings can be merged.
 ///
 ///     # handcast sweep version=0.1.0 fingerprint=9d1c07e2a5b3f684 runs=240 plan=ladder
 ///     index,variant,twin.motion,...,error
 struct Heading {
   std::string stamp;  ///< the first line
-  Row columns;        ///< the second
+  Row columns;        ///< the second line
 
+  /// Compares both lines.
   bool operator==(const Heading&) const = default;
+  /// Both lines with their line ends.
   std::string print() const;
-  std::size_t runs() const;  ///< of the whole plan
+  /// Number of runs of the whole plan.
+  std::size_t runs() const;
 };
 
+/// The heading of the results of a plan. `version` is that of the program.
 Heading heading_of(const Plan& plan, const Expansion& expansion, std::string_view version);
 
-/// The line of a run that was scored, and of one that could not be.
+/// The line of a run with the metrics of simulate::score().
 Row scored_row(const Plan& plan, const Run& run, const nlohmann::json& metrics);
+/// The line of a run that failed.
 Row failed_row(const Plan& plan, const Run& run, const std::string& error);
 
-/// A column of times this machine took: they differ from one run of the same to the next.
+/// True for a column of times measured on this machine, which differ when a run is repeated.
 bool is_machine_time(std::string_view column);
-/// A column of figures; those between the variant and them are settings.
+/// True for a column of metrics. The columns between the variant and the metrics are axes.
 bool is_metric(std::string_view column);
 
-/// With its line end. Cells with a comma or quote are quoted; a line break becomes a blank.
+/// Prints a line with its line end. Cells with a comma or quote are quoted; line breaks become
+/// spaces.
 std::string print_row(const Row& row);
+/// Parses a line without its line end.
 Row parse_row(std::string_view line);
 
-/// A file of results as it stands. A last line without its end is torn and left out.
+/// The content of a file of results. An incomplete last line is not among the rows.
 struct Table {
-  Heading heading;
-  std::vector<Row> rows;
-  std::string torn;             ///< what stands behind the last whole line
-  std::size_t whole_bytes = 0;  ///< of the file, up to the end of the last whole line
+  Heading heading;              ///< empty if the file has no complete line
+  std::vector<Row> rows;        ///< in the order of the file; a run may occur several times
+  std::string torn;             ///< text after the last complete line
+  std::size_t whole_bytes = 0;  ///< size of all complete lines
 
+  /// The index of the run of a row.
   static std::size_t index_of(const Row& row);
+  /// True if the row has an error.
   static bool failed(const Row& row) { return !row.back().empty(); }
 };
 
-/// Errors: bad_config (it cannot be read), bad_data (a line is none of a sweep's).
+/// Reads a file of results. Errors: bad_config (it cannot be read), bad_data (a line that is not of
+/// a sweep).
 Result<Table> read_table(const std::filesystem::path& file);
-/// Writes the file anew, whole or not at all: the newest row of each index, in their order.
+/// Replaces a file atomically: the newest row of each run, ordered by run. Errors: bad_config (it
+/// cannot be written).
 Result<void> write_table(const std::filesystem::path& file, const Table& table);
 
 }  // namespace handcast::sweep

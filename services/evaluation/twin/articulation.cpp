@@ -15,8 +15,8 @@ glm::dmat4 turn(double radians, const glm::dvec3& axis) {
   return glm::rotate(glm::dmat4(1), radians, axis);
 }
 
-/// Joint axes: +x to the thumb, +y out of the back, -z to the tip; bending towards the palm is a
-/// negative turn about x.
+/// Rotation of each joint of a left hand about its own axes: +x points to the thumb, +y out of the
+/// back, -z to the tip. Flexion is a negative rotation about x.
 std::array<glm::dmat4, kJoints> turns_of(const Bend& bend) {
   std::array<glm::dmat4, kJoints> turns;
   turns.fill(glm::dmat4(1));
@@ -31,7 +31,7 @@ std::array<glm::dmat4, kJoints> turns_of(const Bend& bend) {
   return turns;
 }
 
-/// The mirror image in x of a rigid transform is a rigid transform again.
+/// The mirror image in x of a rigid transform: S m S with S = diag(-1, 1, 1, 1), which is rigid.
 glm::dmat4 mirrored(glm::dmat4 m) {
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r)

@@ -7,12 +7,12 @@
 
 namespace handcast::twin {
 
-/// How far the joints are bent beyond the rest pose, radians. Fingers: thumb, index, middle, ring,
-/// little.
+/// Rotation of the joints relative to the rest pose, in radians. Finger order: thumb, index,
+/// middle, ring, little.
 struct Bend {
-  std::array<std::array<double, 3>, 5>
-      flexion{};                  ///< towards the palm: MCP PIP DIP (thumb: MCP IP, then unused)
-  std::array<double, 5> splay{};  ///< towards the thumb
+  /// Flexion towards the palm, by finger: MCP, PIP, DIP (thumb: MCP, IP, unused).
+  std::array<std::array<double, 3>, 5> flexion{};
+  std::array<double, 5> splay{};  ///< at the MCP, towards the thumb
   double thumb_flexion = 0;       ///< at the thumb's root, in the plane of its nail
   double thumb_opposition = 0;    ///< at the thumb's root, across the palm
   double thumb_roll = 0;          ///< at the thumb's root, about its own length
@@ -21,10 +21,11 @@ struct Bend {
 /// Forward kinematics of one person's hand. Only angles change: every bone keeps its length.
 class Articulation {
  public:
+  /// Copies the rest pose and the bone lengths of `shape`.
   explicit Articulation(const renderer::HandShape& shape);
 
-  /// The joints where the wrist stands at `space_from_wrist` (OpenXR hand axes, metres). A right
-  /// hand is the left one mirrored in x.
+  /// The joints of a hand whose wrist is at `space_from_wrist` (OpenXR hand axes, metres). A right
+  /// hand is the mirror image in x of the left one.
   renderer::JointFrames frames(renderer::Side side, const glm::dmat4& space_from_wrist,
                                const Bend& bend) const;
 

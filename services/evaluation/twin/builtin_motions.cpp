@@ -13,36 +13,37 @@ namespace handcast::twin {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kView_m =
-    0.452;  ///< what the camera sees across at the hand's distance: 0.73 m on the reference rig
+/// Width of the camera's field of view at the hand, which is 0.73 m away on the reference rig.
+constexpr double kView_m = 0.452;
 constexpr double kForearm_m = 0.25;  ///< wrist to elbow
 
-/// What a hand does at one time. Camera axes (x right, y down, z away), metres and radians, from
-/// where the hand is held up: fingers up in the image, its back to the camera.
+/// The pose of a hand at one time, relative to a hand that is held up with its fingers up in the
+/// image and its back to the camera. Camera axes (x right, y down, z away), metres and radians.
 struct Posture {
   glm::dvec3 shift{0};
-  double sway = 0;  ///< of the whole forearm about the elbow, in the image's plane, clockwise
-  double turn = 0;  ///< about the forearm
-  double nod = 0;   ///< of the wrist, fingers away from the camera
-  double over = 0;  ///< share of the way to the other hand's place, the left hand nearer to the
-                    ///< camera than the right
-  bool gone = false;
+  double sway = 0;  ///< rotation of the forearm about the elbow, clockwise in the image
+  double turn = 0;  ///< rotation about the forearm
+  double nod = 0;   ///< rotation of the wrist, fingers away from the camera
+  /// Share of the way to the other hand's place. The left hand passes nearer to the camera.
+  double over = 0;
+  bool gone = false;  ///< there is no hand
   Bend bend;
 };
 
 double wave_at(double hz, double t, double phase = 0) { return std::sin(kTurn * (hz * t + phase)); }
-/// 0..1..0, starting at 0.
+/// Rises from 0 to 1 and falls back to 0 in each period, starting at 0.
 double pulse_at(double hz, double t) { return 0.5 - 0.5 * std::cos(kTurn * hz * t); }
 
-/// From 0 to 1 between two times, as hands go: with the least jerk (Flash and Hogan 1985).
+/// From 0 to 1 between two times along the minimum-jerk curve of reaching movements (Flash and
+/// Hogan 1985).
 double step_at(double begin_s, double end_s, double t) {
   const double x = std::clamp((t - begin_s) / (end_s - begin_s), 0.0, 1.0);
   return x * x * x * (10 + x * (6 * x - 15));
 }
-/// The time within the round of `period_s` that is under way.
+/// The time since the current period began.
 double within(double period_s, double t) { return t - period_s * std::floor(t / period_s); }
 
-/// Nobody holds a hand quite still while it does something.
+/// Adds the slow sway of a hand that is held in the air.
 void breathe(Posture& posture, double t) {
   posture.shift += glm::dvec3(0.008 * wave_at(0.23, t), 0.006 * wave_at(0.31, t, 0.2),
                               0.006 * wave_at(0.17, t, 0.4));
@@ -91,7 +92,7 @@ Posture rotate(double t) {
   return posture;
 }
 
-/// The angles at amount 1 bring the tips of thumb and index together on the mean hand.
+/// At an amount of 1, the tips of the thumb and the index finger of the mean hand meet.
 Posture pinch(double t) {
   Posture posture;
   const double amount = pulse_at(0.6, t);
@@ -104,7 +105,8 @@ Posture pinch(double t) {
   return posture;
 }
 
-/// Bursts of fast shaking: the palm's peak speed swells from 0.3 to 1.3 m/s and back every 4 s.
+/// Bursts of shaking: the peak speed of the palm rises from 0.3 to 1.3 m/s and falls again every 4
+/// s.
 Posture shake(double t) {
   Posture posture;
   const double burst = 0.25 + 0.75 * pulse_at(0.25, t);
@@ -134,7 +136,7 @@ Posture still(double t) {
   return posture;
 }
 
-/// Two hands pass before one another and swap places, there and back.
+/// Two hands pass in front of each other, swap places and return.
 Posture crossing(double t) {
   Posture posture;
   posture.over = pulse_at(0.4, t);
@@ -143,7 +145,7 @@ Posture crossing(double t) {
   return posture;
 }
 
-/// The hand is turned over in 0.4 s, and back.
+/// Turns the hand over in 0.4 s, and back.
 Posture flip(double t) {
   Posture posture;
   const double round = within(2, t);
@@ -153,7 +155,7 @@ Posture flip(double t) {
   return posture;
 }
 
-/// Shut in 0.25 s, held, opened.
+/// Closes the hand in 0.25 s, holds it and opens it in 0.3 s.
 Posture fist(double t) {
   Posture posture;
   const auto shut_at = [&](double later_s) {
@@ -169,7 +171,7 @@ Posture fist(double t) {
   return posture;
 }
 
-/// The palm to the camera, the fingers bend at their roots until they point into the lens.
+/// The palm faces the camera; the fingers bend at the MCPs until they point into the lens.
 Posture point_at_camera(double t) {
   Posture posture;
   const double round = within(2.4, t);
@@ -183,12 +185,12 @@ Posture point_at_camera(double t) {
   return posture;
 }
 
-/// The middle finger over the index finger's back and beyond.
+/// Moves the middle finger across the back of the index finger and beyond.
 Posture cross_fingers(double t) {
   Posture posture;
   const double round = within(2.4, t);
   const double crossed = step_at(0.4, 0.8, round) - step_at(1.5, 1.9, round);
-  // First out of each other's way in depth, then across; and back in the other order.
+  // The fingers separate in depth before they cross; on the way back the order is reversed.
   const double apart = step_at(0.3, 0.6, round) - step_at(1.7, 2.1, round);
   posture.bend.flexion[1] = {0.08 + 0.5 * apart, 0.1, 0.05};
   posture.bend.flexion[2] = {0.08 - 0.1 * apart, 0.1, 0.05};
@@ -199,7 +201,7 @@ Posture cross_fingers(double t) {
   return posture;
 }
 
-/// Down out of the image, away for a while, and back.
+/// The hand leaves the image at the bottom, is absent for 0.6 s and returns.
 Posture enter_leave(double t) {
   Posture posture;
   const double round = within(3, t);
@@ -211,10 +213,11 @@ Posture enter_leave(double t) {
   return posture;
 }
 
-/// To and fro with hardly a warning: an even speed (up to 2 m/s, swelling) and short turns.
+/// Moves to and fro at a nearly constant speed with abrupt reversals. The speed rises to 2 m/s and
+/// falls again every 4 s.
 Posture reverse(double t) {
   Posture posture;
-  constexpr double kHz = 3.6, kSharpness = 0.9;  // 0: a sine; 1: straight lines and corners
+  constexpr double kHz = 3.6, kSharpness = 0.9;  // sharpness 0: a sine; 1: a triangle wave
   const auto zigzag = [&](double phase) {
     return std::asin(kSharpness * wave_at(kHz, t, phase)) / std::asin(kSharpness);
   };
@@ -259,7 +262,7 @@ struct Choreography {
   std::string_view name;
   Posture (*at)(double seconds);
   bool both_hands = false;
-  double right_ahead_s = 0;  ///< the right hand is this far ahead of the left
+  double right_ahead_s = 0;  ///< lead of the right hand over the left
 };
 
 constexpr std::array<Choreography, 15> kChoreographies{{
@@ -304,8 +307,7 @@ class BuiltinMotion final : public Motion {
   const renderer::HandShape& shape() const override { return shape_; }
 
  private:
-  /// Where the wrist is when nothing moves: below the image's middle, or side by side with the
-  /// other hand.
+  /// Position of the wrist at rest: below the middle of the image, or beside the other hand's.
   glm::dvec3 home(Side side) const {
     const double z = kView_m * camera_.fx_px / camera_.width_px;
     double across = 0.49;
@@ -315,10 +317,10 @@ class BuiltinMotion final : public Motion {
             z};
   }
 
-  /// Where the wrist is on its way from its own place to the other hand's.
+  /// Position of the wrist on its way to the other hand's place.
   glm::dvec3 way(Side side, double over) const {
     if (over == 0) return home(side);
-    constexpr double kApart_m = 0.1;  // at the meeting, along the camera's axis
+    constexpr double kApart_m = 0.1;  // along the camera's axis, half-way
     const Side other = side == Side::left ? Side::right : Side::left;
     const double aside_m = 4 * over * (1 - over) * kApart_m / 2 * (side == Side::left ? -1 : 1);
     return glm::mix(home(side), home(other), over) + glm::dvec3(0, 0, aside_m);
@@ -330,12 +332,12 @@ class BuiltinMotion final : public Motion {
     m = glm::translate(m, {0, kForearm_m, 0});
     m = glm::rotate(m, posture.sway, {0, 0, 1});
     m = glm::translate(m, {0, -kForearm_m, 0});
-    constexpr double kElbowNearer =
-        0.15;  // the forearm comes from somewhat in front of the hand, as on the reference rig
+    // The elbow is nearer to the camera than the hand, as on the reference rig. Radians.
+    constexpr double kElbowNearer = 0.15;
     m = glm::rotate(m, posture.nod + kElbowNearer, {-1, 0, 0});
     m = glm::rotate(m, mirror * posture.turn, {0, 1, 0});
-    return m * glm::dmat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0,
-                          1);  // hand axes: y to the camera, z down the image
+    // Hand axes in the image: y to the camera, z down.
+    return m * glm::dmat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
   }
 
   const Choreography& choreography_;

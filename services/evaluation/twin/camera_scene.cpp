@@ -13,10 +13,9 @@ namespace handcast::twin {
 namespace {
 
 constexpr std::size_t kNoiseSize = 1 << 18;
-constexpr float kNominal_m = 0.73f;  ///< where settings.gain holds
+constexpr float kNominal_m = 0.73f;  ///< distance to which settings.gain applies
 constexpr float kCornerLoss = 0.3f;  ///< vignetting at the image's corners
-constexpr float kScattered =
-    0.4f;  ///< share of skin's light that does not depend on where it faces
+constexpr float kScattered = 0.4f;   ///< share of the light that is independent of the normal
 
 HANDCAST_CLONES
 void add_noise(const std::uint8_t* scene, const std::int8_t* noise, std::uint8_t* out, int count) {
@@ -83,7 +82,7 @@ float CameraScene::vignette(float x_px, float y_px) const {
          kCornerLoss * std::min(1.0f, glm::dot(from_centre, from_centre) / glm::dot(half, half));
 }
 
-/// Camera-space corners and normals -> image px and grey. The lamp stands beside the lens: its
+/// Projects vertices in camera space and computes their grey values. The lamp is at the lens; its
 /// light falls with 1/r^2.
 void CameraScene::shoot(Shot& shot, std::span<const glm::vec3> positions,
                         std::span<const glm::vec3> normals, glm::vec2 within_pixel) {
@@ -195,7 +194,7 @@ void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int ins
   }
 }
 
-/// What the region has grown by since the last instant was empty scene in all instants so far.
+/// Initialises the part of `region` outside `done`: it was empty scene in all `instants` so far.
 void CameraScene::start_sum(const renderer::Rect& region, const renderer::Rect& done,
                             int instants) {
   const auto fill = [&](int y, int x0, int x1) {
@@ -215,7 +214,7 @@ void CameraScene::draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exp
   const int instants = settings_.blur_samples;
   renderer::Rect region, done;
   for (int i = 0; i < instants; ++i) {
-    // The instants also lie at different places within the pixel, so that edges come out soft.
+    // The instants also differ in their position within the pixel, which antialiases the edges.
     const float at = (static_cast<float>(i) + 0.5f) / static_cast<float>(instants) - 0.5f;
     std::size_t shots = 0;
     const auto time_ns =

@@ -19,19 +19,22 @@ namespace handcast::twin {
 using msg::Side;
 using renderer::JointFrames;
 
-/// Where the true joints of a hand are (tracker space) at a time since the epoch.
+/// Returns the true joints of a hand in tracker space at a time since the epoch; empty if there is
+/// no such hand.
 using TruthAt = std::function<std::optional<JointFrames>(Side side, std::int64_t time_ns)>;
 
-/// The twin's infrared camera: hands, forearms and sleeves lit by a lamp beside the lens, blurred
-/// over the exposure, with vignetting and noise. Keeps buffers; one thread.
+/// The images of the twin's infrared camera: hands, forearms and sleeves lit by a lamp beside the
+/// lens, with motion blur, vignetting, noise and faults. Reuses its buffers: not thread-safe.
 class CameraScene {
  public:
+  /// Copies the settings and the calibration. `seed` selects the noise and the holes.
   CameraScene(const config::TwinImage& settings, int seed, const calib::Calibration& calibration);
 
-  /// The hand of one side; `mesh` must outlive the scene.
+  /// Sets the mesh of one hand, which must outlive the scene. A hand without a mesh is not drawn.
   void set_hand(Side side, const renderer::HandMesh& mesh);
 
-  /// Frame k, exposed for `exposure_ns` around `origin_ns`. `image` has the camera's size.
+  /// Draws frame `k`, exposed for `exposure_ns` around `origin_ns` (ns since the epoch). `image`
+  /// must have the size of the camera's image.
   void draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exposure_ns, const TruthAt& truth,
             renderer::View<std::uint8_t> image);
 
@@ -39,9 +42,9 @@ class CameraScene {
   struct Hand {
     const renderer::HandMesh* mesh = nullptr;
     Forearm forearm;
-    std::vector<float> holes;  ///< brightness of its vertices; empty: there are none
+    std::vector<float> holes;  ///< brightness of each vertex; empty without holes
   };
-  /// One lit surface on the screen of one instant.
+  /// One lit surface, projected at one instant of the exposure.
   struct Shot {
     const std::vector<std::array<std::uint16_t, 3>>* triangles = nullptr;
     ScreenVertices screen;
@@ -51,7 +54,7 @@ class CameraScene {
   Shot& next_shot(std::size_t& count);
   void shoot(Shot& shot, std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
              glm::vec2 within_pixel);
-  /// The instant's shots into shots_[0 .. count); their joint bounds.
+  /// Appends the hands at one instant to shots_[0 .. count); returns their bounds in the image.
   renderer::Rect shoot_hands(std::int64_t time_ns, const TruthAt& truth, glm::vec2 within_pixel,
                              std::size_t& count);
   renderer::Rect shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count);
@@ -68,11 +71,11 @@ class CameraScene {
   glm::mat4 camera_from_tracker_;
   Random image_noise_;
   std::array<Hand, 2> hands_;
-  Face face_;            ///< empty: there is none
-  bool faulty_ = false;  ///< the frame that is drawn
+  Face face_;            ///< empty without a face
+  bool faulty_ = false;  ///< the frame being drawn has the image faults
 
   renderer::Image<std::uint8_t> empty_scene_;
-  std::vector<std::int8_t> noise_;  ///< kNoiseSize values, read from anywhere
+  std::vector<std::int8_t> noise_;  ///< each row of a frame reads it from a random offset
   std::vector<Shot> shots_;
   std::vector<glm::vec3> positions_, normals_;
   renderer::Image<float> inverse_depth_, instant_, sum_;

@@ -35,7 +35,7 @@ std::int64_t DetectorModel::stamp_ns(std::int64_t origin_ns) const {
   return origin_ns + ms_to_ns(settings_.clock_skew_ms);
 }
 
-/// How far one landmark is thrown: zero for most.
+/// Displacement of one landmark: zero unless it is an outlier.
 glm::dvec2 DetectorModel::outlier_px(std::uint64_t run, std::uint64_t draw) const {
   const Random random(seed_, Stream::detector_outlier);
   if (settings_.outliers <= random.uniform(run, 2 * draw)) return glm::dvec2(0);

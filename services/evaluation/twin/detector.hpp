@@ -10,18 +10,22 @@
 
 namespace handcast::twin {
 
-/// The landmark detector of the twin: true landmarks with white noise, late, at times none. Its own
-/// idea of where a joint is counts as removed.
+/// The twin's model of a landmark detector: the true landmarks with white noise and outliers, late
+/// and sometimes missing. It has no constant bias: the joint convention of a real detector is
+/// assumed to be corrected. Pure functions of the settings, the seed and the arguments.
 class DetectorModel {
  public:
+  /// Copies its arguments. `seed` selects the random errors.
   DetectorModel(const config::TwinDetector& settings, int seed, const calib::CameraModel& camera);
 
-  std::int64_t age_ns(std::uint64_t run) const;  ///< from the middle of the exposure to the result
+  /// Time from the middle of the exposure to the result of run number `run`.
+  std::int64_t age_ns(std::uint64_t run) const;
+  /// True if run number `run`, on the frame of `origin_ns`, finds no hand.
   bool lost(std::uint64_t run, std::int64_t origin_ns) const;
-  std::int64_t stamp_ns(
-      std::int64_t origin_ns) const;  ///< what the detector's clock says of a frame's time
-  /// What run number `run` makes of the true landmarks (undistorted camera px) of `origin_ns`.
-  /// Points outside the image have confidence 0.
+  /// The time of a frame of `origin_ns` by the detector's clock.
+  std::int64_t stamp_ns(std::int64_t origin_ns) const;
+  /// The landmarks that run number `run` reports if `truth` are the true ones at `origin_ns`
+  /// (undistorted camera px). Points outside the image have confidence 0.
   msg::HandLandmarks report(std::uint64_t run, msg::Side side,
                             const std::array<glm::vec2, msg::kLandmarks>& truth,
                             std::int64_t origin_ns) const;

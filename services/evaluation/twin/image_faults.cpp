@@ -13,12 +13,11 @@ namespace handcast::twin {
 namespace {
 
 constexpr int kBlobs = 12;
-constexpr glm::vec3 kHead_m{0.078f, 0.112f, 0.095f};  ///< half its width, height and depth
-constexpr float kFarther_m = 0.22f;                   ///< from the hands to the middle of the head
+constexpr glm::vec3 kHead_m{0.078f, 0.112f, 0.095f};  ///< half the width, height and depth
+constexpr float kFarther_m = 0.22f;                   ///< distance of its centre behind the hands
 constexpr int kRings = 18, kSpokes = 24;
 
-/// A third of every triangle goes to each of its corners. What lies behind the wrist is not the
-/// hand.
+/// Area of each vertex: a third of each adjacent triangle. Vertices behind the wrist have none.
 std::vector<double> vertex_areas_m2(const renderer::HandMesh& hand) {
   const auto behind_m = behind_wrist_m(hand);
   std::vector<double> area(hand.positions.size(), 0);
@@ -31,7 +30,8 @@ std::vector<double> vertex_areas_m2(const renderer::HandMesh& hand) {
   return area;
 }
 
-/// From every vertex to the nearest blob's middle; blobs are as likely here as there.
+/// Distance of each vertex from the nearest centre of a blob. The centres are distributed uniformly
+/// over the surface.
 std::vector<float> distance_from_blobs_m(const renderer::HandMesh& hand,
                                          const std::vector<double>& area, double whole,
                                          const Random& random) {
@@ -102,9 +102,9 @@ glm::vec3 face_sway_m(std::int64_t time_ns) {
 }
 
 void spoil_row(const config::TwinImage& settings, std::span<std::uint8_t> row) {
-  constexpr std::uint8_t kDarkThing = 2;
+  constexpr std::uint8_t kDarkGrey = 2;
   const auto hidden = static_cast<std::size_t>(settings.covered * static_cast<double>(row.size()));
-  std::fill_n(row.begin(), std::min(hidden, row.size()), kDarkThing);
+  std::fill_n(row.begin(), std::min(hidden, row.size()), kDarkGrey);
   const auto light = static_cast<float>(settings.dark * settings.saturated);
   if (light == 1) return;
   for (auto& pixel : row)

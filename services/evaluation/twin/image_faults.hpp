@@ -11,24 +11,26 @@
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/evaluation/twin/random.hpp"
 
-/// What can be wrong with the twin's camera images.
+/// Faults of the twin's camera images.
 namespace handcast::twin {
 
-/// Brightness of each vertex of a hand, beside skin: 0 under a dark blob. The blobs hold `share` of
-/// the surface.
+/// Brightness of each vertex of a hand as a factor: 0 under a dark blob, else 1. The blobs cover
+/// `share` of the surface in front of the wrist.
 std::vector<float> draw_holes(const renderer::HandMesh& hand, double share, const Random& random);
 
-/// A head behind the hands, upper right of the middle. Camera axes, metres.
+/// A head behind the hands, in the upper right of the image. Camera axes, metres.
 struct Face {
-  std::vector<glm::vec3> positions, normals;
-  std::vector<std::array<std::uint16_t, 3>> triangles;  ///< counter-clockwise from outside
+  std::vector<glm::vec3> positions;                     ///< by vertex
+  std::vector<glm::vec3> normals;                       ///< by vertex
+  std::vector<std::array<std::uint16_t, 3>> triangles;  ///< counter-clockwise seen from outside
 };
+/// Makes the head for hands that are 0.73 m from the camera; it is 0.22 m behind them.
 Face make_face(const calib::CameraModel& camera);
-/// Nobody holds a head quite still.
+/// Displacement of the head at a time since the epoch: at most 8 mm per axis.
 glm::vec3 face_sway_m(std::int64_t time_ns);
 
-/// Too little or too much light, and something dark before the left of the image, on one row of
-/// pixels before their noise.
+/// Applies under- or overexposure and the dark object at the left edge of the image to one row of
+/// pixels, before noise is added.
 void spoil_row(const config::TwinImage& settings, std::span<std::uint8_t> row);
 
 }  // namespace handcast::twin

@@ -15,10 +15,10 @@ using renderer::Rect;
 
 constexpr int kWrist = 1;
 constexpr float kArmBegins_m = 0.005f;  ///< behind the wrist
-constexpr std::int64_t kVelocityStep_ns =
-    1'000'000;  ///< before and after the moment that is scored
+/// Velocities are central differences over this time before and after the light.
+constexpr std::int64_t kVelocityStep_ns = 1'000'000;
 
-/// What a projector pixel shows. 2 and above: the triangle of a hand.
+/// The surface at a projector pixel: kNothing, kArm, or a triangle of a hand.
 using Surface = std::uint32_t;
 constexpr Surface kNothing = 0, kArm = 1, kFirstTriangle = 2;
 constexpr Surface surface_of(std::size_t hand, std::size_t triangle) {
@@ -27,7 +27,7 @@ constexpr Surface surface_of(std::size_t hand, std::size_t triangle) {
 constexpr std::size_t hand_of(Surface surface) { return (surface - kFirstTriangle) >> 16; }
 constexpr std::size_t triangle_of(Surface surface) { return (surface - kFirstTriangle) & 0xffff; }
 
-/// A true hand as the projector sees it at the moment that is scored.
+/// A true hand seen from the projector at the time of the light.
 struct SeenHand {
   Side side = Side::left;
   const HandMesh* mesh = nullptr;
@@ -45,7 +45,7 @@ int spill_in(const Surface* surface, const std::uint8_t* lit, int count) {
   return spill;
 }
 
-/// The light of one projection: which pixels of the projector are lit.
+/// The lit pixels of one projection.
 class Light {
  public:
   explicit Light(const msg::Projection& projection)
@@ -56,7 +56,7 @@ class Light {
         height_(static_cast<int>(projection.region_height_px)) {}
 
   Rect region() const { return {x_, y_, x_ + width_, y_ + height_}; }
-  /// Row y of a picture as large as the projector, between x0 and x1: 1 where lit.
+  /// Writes lit[x0 .. x1) of row y of the projector: 1 if the pixel is lit, else 0.
   void row(int y, int x0, int x1, std::uint8_t* lit) const {
     std::fill(lit + x0, lit + x1, std::uint8_t{0});
     if (y < y_ || y >= y_ + height_) return;
@@ -82,9 +82,8 @@ class RigJudge final : public Judge {
         inverse_depth_(calibration.projector_width_px, calibration.projector_height_px),
         lit_(calibration.projector_width_px, calibration.projector_height_px) {
     const glm::dmat2 map(calibration.projector_from_camera);
-    front_ = glm::determinant(map) > 0
-                 ? -1.0f
-                 : 1.0f;  // a homography that mirrors turns every triangle over
+    // A homography that mirrors reverses the orientation of the triangles.
+    front_ = glm::determinant(map) > 0 ? -1.0f : 1.0f;
     for (const Side side : {Side::left, Side::right}) {
       const auto s = static_cast<std::size_t>(side);
       behind_wrist_m_[s] = behind_wrist_m(twin.true_hand(side));
@@ -148,7 +147,7 @@ class RigJudge final : public Judge {
     const std::size_t count = hand.mesh->vertex_count();
     for (auto* buffer : {&now_, &before_, &after_}) buffer->resize(count);
     renderer::skin(*hand.mesh, joints, now_);
-    // A hand that comes or goes just now has no velocity from there.
+    // A hand that appears or disappears within the step is taken to rest in the missing half.
     renderer::skin(*hand.mesh, joints_in_camera(side, time_ns - kVelocityStep_ns).value_or(joints),
                    before_);
     renderer::skin(*hand.mesh, joints_in_camera(side, time_ns + kVelocityStep_ns).value_or(joints),
@@ -176,7 +175,7 @@ class RigJudge final : public Judge {
     return area.within(surface_.width(), surface_.height());
   }
 
-  /// The true hands and arms into surface_, nearest first.
+  /// Draws the true hands and arms into surface_ with a depth test.
   void draw_truth(const Rect& area) {
     for (int y = area.y0; y < area.y1; ++y) {
       std::fill_n(surface_.row(y) + area.x0, area.width(), kNothing);
@@ -227,7 +226,7 @@ class RigJudge final : public Judge {
     }
   }
 
-  /// Light beside hands and arms, block by block; a block's goes to the hand nearest to its middle.
+  /// Counts the light beside hands and arms by blocks, for the hand nearest to the block's centre.
   void count_spill(const Rect& area, FrameScore& score) const {
     constexpr int kBlock = 16;
     for (int top = area.y0; top < area.y1; top += kBlock)
@@ -242,7 +241,7 @@ class RigJudge final : public Judge {
       }
   }
 
-  /// 1 where the neighbour is of the same hand and only one of the two is lit.
+  /// 1 if the neighbour is of the same hand and just one of the two is lit, else 0.
   int edge_of_light(Surface surface, bool lit, int x, int y) const {
     const Surface neighbour = surface_.at(x, y);
     return neighbour >= kFirstTriangle && hand_of(neighbour) == hand_of(surface) &&
@@ -288,7 +287,8 @@ class RigJudge final : public Judge {
     return nullptr;
   }
 
-  /// One visible point of the true surface: where does the light land that was meant for it?
+  /// Scores one visible point of the true surface: the distance between it and the place where the
+  /// light drawn for it lands.
   void score_point(const SeenHand& hand, std::size_t t, glm::vec2 place,
                    const msg::ProjectedHand* drawn, FrameScore::Hand& score) const {
     const auto& triangle = hand.mesh->triangles[t];
@@ -303,14 +303,14 @@ class RigJudge final : public Judge {
       velocity_m_s += share[c] * hand.velocity_m_s[v];
       inverse_depth += share[c] * hand.screen.inverse_depth[v];
     }
-    score.speed_m_s += glm::length(velocity_m_s);  // a sum until all points are in
+    score.speed_m_s += glm::length(velocity_m_s);  // divided by the number of points at the end
     const glm::vec2 error = landing - place;
     if (!drawn || !std::isfinite(error.x) || !std::isfinite(error.y)) return;
     const float error_px = glm::length(error);
     score.interior_px.push_back(error_px);
     score.interior_mm.push_back(error_px * mm_per_px_at_1_m_ / inverse_depth);
-    score.lag_px_s -= glm::dot(
-        error, velocity_px_s);  // light that comes late lands behind: error = -latency * velocity
+    // Late light lands behind the point: error = -latency * velocity.
+    score.lag_px_s -= glm::dot(error, velocity_px_s);
     score.speed2_px_s2 += glm::dot(velocity_px_s, velocity_px_s);
   }
 

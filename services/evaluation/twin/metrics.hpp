@@ -13,32 +13,38 @@
 
 namespace handcast::twin {
 
-/// Gathers frame scores and stage times into the metrics of `simulate --json` and the observer:
-/// overall, per speed bin (0-0.1, -0.3, -0.6, -1.0, >1 m/s) and per hand.
+/// Accumulates frame scores and stage times into the metrics of `simulate --json` and the observer:
+/// overall, per speed bin (0-0.1, -0.3, -0.6, -1.0, >1 m/s) and per hand. `docs/method.md#metrics`
+/// defines them.
 class Metrics {
  public:
+  /// Adds the score of one frame; a hand counts in the bin of its mean speed.
   void add(const FrameScore& score);
+  /// Adds the durations of the stages of one frame.
   void add_stages(std::span<const msg::StageMark> stages);
+  /// Adds the number of folded-over triangles or grid cells of one frame.
   void add_foldovers(int count);
-  /// One hand of one drawn frame.
+  /// Adds the rung of one hand of one drawn frame.
   void add_rung(msg::Rung rung);
-  /// Landings of a fixed set of surface points in successive frames; jitter is the RMS of what
-  /// remains after the truth's own motion.
+  /// Adds the sum of `samples` squared deviations in px^2. Jitter is the root of their mean.
   void add_jitter(double square_px, int samples);
-  /// Distance of one corrected landmark from the true one at photon time: undistorted camera px,
-  /// and mm at its distance.
+  /// Adds the distance between one corrected landmark and the true one at photon time: undistorted
+  /// camera px, and mm at the landmark's distance.
   void add_landmark(double error_px, double error_mm);
 
-  /// What was never measured is null; every bin and both hands are always there.
-  /// {"frames","interior_mm":{mean,p95,p99},"interior_px":{...},"coverage","spill","iou","seam_px","jitter_px","foldovers",
-  ///  "landmark_px":{mean,p95,p99},"landmark_mm":{...},"rungs":{rung: its share of the hands of
-  ///  drawn frames},
-  ///  "equivalent_latency_ms","frame_us":{p50,p99},"stage_us":{stage:{p50,p99}},"bins":{...},"hands":{"left":{...}}}
+  /// The metrics so far. A value that was not measured is null; all bins and both hands are
+  /// present.
+  ///
+  ///     {"frames", "interior_mm": {mean, p95, p99}, "interior_px": {...}, "coverage", "spill",
+  ///      "iou", "seam_px", "jitter_px", "foldovers", "landmark_px": {mean, p95, p99},
+  ///      "landmark_mm": {...}, "rungs": {rung: share of the hands of drawn frames},
+  ///      "equivalent_latency_ms", "frame_us": {p50, p99}, "stage_us": {stage: {p50, p99}},
+  ///      "bins": {...}, "hands": {"left": {...}, "right": {...}}}
   nlohmann::json to_json() const;
 
  private:
-  /// Numbers of which the mean is exact and percentiles are close: beyond a fixed count every
-  /// second one is forgotten, by their place in the row and not by chance.
+  /// Samples with an exact mean and approximate percentiles. Above a fixed number, every second
+  /// sample is dropped, selected by order and not at random.
   class Samples {
    public:
     void add(float value);

@@ -15,13 +15,13 @@ Result<std::unique_ptr<Motion>> open_motion(const config::Twin& settings,
     auto motion = make_builtin_motion(name, settings, calibration);
     if (!motion)
       return fail(Errc::bad_config,
-                  fmt::format("twin.motion: there is no motion '{}' (there are: {})", name,
-                              builtin_motion_names()));
+                  fmt::format("twin.motion: there is no built-in motion '{}'; choose one of {}",
+                              name, builtin_motion_names()));
     return motion;
   }
   if (!std::filesystem::is_directory(settings.motion))
     return fail(Errc::bad_config,
-                fmt::format("twin.motion: '{}' is neither a folder nor builtin: one of {}",
+                fmt::format("twin.motion: '{}' is neither a folder nor builtin: and one of {}",
                             settings.motion, builtin_motion_names()));
   const auto recording = read_recording(settings.motion);
   if (!recording) return fail_in("twin.motion", Error{Errc::bad_config, recording.error().what});

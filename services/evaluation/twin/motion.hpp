@@ -16,20 +16,20 @@ namespace handcast::twin {
 using msg::Side;
 using renderer::JointFrames;
 
-/// Where the true joints are: a smooth function of time, the same whenever it is asked. Tracker
-/// space, metres.
+/// The true joints of the hands as a smooth, pure function of time. Tracker space, metres.
 class Motion {
  public:
   virtual ~Motion() = default;
-  /// The joints of one hand; nothing where this motion has no such hand.
+  /// The joints of one hand at a time since the epoch; empty if the motion has no such hand then.
   virtual std::optional<JointFrames> at(Side side, double seconds) const = 0;
-  /// The person who moves: the true shape to which the mesh is fitted.
+  /// The true shape of the person's hands, to which the mesh is fitted.
   virtual const renderer::HandShape& shape() const = 0;
 };
 
-/// `what`: "builtin:NAME" or a folder with a recording. Speed is applied; recordings loop (there
-/// and back, so that they stay smooth). Errors (bad_config): unknown name (with the known ones),
-/// folder or file missing, truncated or odd .npy (file named).
+/// Opens settings.motion, "builtin:NAME" or a folder with a recording, to be played at
+/// settings.speed. A recording is played forwards and backwards in turn, which keeps it smooth.
+/// Errors (bad_config): an unknown name (the message lists the known ones), a missing folder or
+/// file, a truncated or malformed .npy file.
 Result<std::unique_ptr<Motion>> open_motion(const config::Twin& settings,
                                             const calib::Calibration& calibration);
 

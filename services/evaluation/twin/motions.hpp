@@ -10,15 +10,15 @@
 /// The kinds of motion that open_motion chooses from.
 namespace handcast::twin {
 
-/// The names after "builtin:", comma separated.
+/// The names of the built-in motions, separated by commas.
 std::string builtin_motion_names();
 
-/// A motion made from angles and smooth functions of time, before the camera. Nothing: the name is
-/// unknown.
+/// Makes a motion whose joint angles are smooth functions of time, in front of the camera. Returns
+/// null if the name is unknown.
 std::unique_ptr<Motion> make_builtin_motion(std::string_view name, const config::Twin& settings,
                                             const calib::Calibration& calibration);
 
-/// A recording, splined, played there and back.
+/// Makes a motion from a recording: its spline, played forwards and backwards in turn.
 std::unique_ptr<Motion> make_recorded_motion(const Recording& recording,
                                              const config::Twin& settings);
 

@@ -28,11 +28,12 @@ tl::unexpected<Error> damaged(const path& file, std::string_view what) {
 Result<std::string> read_all(const path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file))
-    return fail(Errc::bad_config, fmt::format("{}: no such file", file.string()));
+    return fail(Errc::bad_config,
+                fmt::format("{}: there is no such file, or it cannot be read", file.string()));
   return std::string((std::istreambuf_iterator<char>(in)), {});
 }
 
-/// What stands after `'key':` in the header's dictionary; empty where the key is missing.
+/// The header from the value of `key` on; empty if the key is missing.
 std::string_view value_of(std::string_view header, std::string_view key) {
   const std::size_t at = header.find(fmt::format("'{}':", key));
   if (at == std::string_view::npos) return {};
@@ -41,7 +42,7 @@ std::string_view value_of(std::string_view header, std::string_view key) {
   return value;
 }
 
-/// "(553, 42, 3)" -> {553, 42, 3}; false where it is no such tuple.
+/// Parses a tuple: "(553, 42, 3)" -> {553, 42, 3}. Returns false if `text` does not begin with one.
 bool parse_shape(std::string_view text, std::vector<std::size_t>& shape) {
   if (text.empty() || text.front() != '(') return false;
   const std::size_t end = text.find(')');
@@ -64,7 +65,7 @@ bool parse_shape(std::string_view text, std::vector<std::size_t>& shape) {
   return true;
 }
 
-/// The fixed part and the dictionary (NumPy's format document, NEP 1).
+/// Parses the prefix and the header's dictionary (NumPy enhancement proposal NEP 1).
 Result<Layout> parse_layout(const path& file, std::string_view bytes) {
   if (bytes.size() < 12 || bytes.substr(0, 6) != kMagic)
     return damaged(file, "not a NumPy array file");
@@ -73,24 +74,24 @@ Result<Layout> parse_layout(const path& file, std::string_view bytes) {
   };
   const std::size_t version = byte(6);
   if (version < 1 || version > 3)
-    return damaged(file,
-                   fmt::format("NumPy format version {} is unknown (1 to 3 are read)", version));
+    return damaged(
+        file, fmt::format("NumPy format version {} is unknown; 1 to 3 are supported", version));
   const std::size_t start = version == 1 ? 10 : 12;
   std::size_t length = byte(8) | byte(9) << 8;
   if (version > 1) length |= byte(10) << 16 | byte(11) << 24;
-  if (length > bytes.size() - start) return damaged(file, "its header is cut off");
+  if (length > bytes.size() - start) return damaged(file, "the header is truncated");
 
   const std::string_view header = bytes.substr(start, length);
   Layout layout;
   layout.data_offset = start + length;
   const std::string_view type = value_of(header, "descr");
   if (type.size() < 5 || type[0] != '\'' || type[4] != '\'')
-    return damaged(file, "its header names no plain number type");
+    return damaged(file, "the header has no plain number type");
   layout.type = type.substr(1, 3);
   if (!value_of(header, "fortran_order").starts_with("False"))
-    return damaged(file, "its array is not in C order");
+    return damaged(file, "the array is not in C order");
   if (!parse_shape(value_of(header, "shape"), layout.shape))
-    return damaged(file, "its header has no readable shape");
+    return damaged(file, "the header has no valid shape");
   return layout;
 }
 
@@ -132,17 +133,18 @@ Result<Npy> read_npy(const path& file) {
 
   const std::string& type = layout->type;
   if (type != "<f4" && type != "<f8" && type != "<i4" && type != "<i8")
-    return damaged(file,
-                   fmt::format("holds '{}'; only '<f4', '<f8', '<i4' and '<i8' are read", type));
+    return damaged(
+        file,
+        fmt::format("the array holds '{}'; '<f4', '<f8', '<i4' and '<i8' are supported", type));
   const std::size_t size = type[2] == '4' ? 4 : 8;
   const std::string_view data = std::string_view(*bytes).substr(layout->data_offset);
   std::size_t count = 1;
   for (const std::size_t extent : layout->shape) {
-    if (extent != 0 && count > data.size() / extent) return damaged(file, "is cut off");
+    if (extent != 0 && count > data.size() / extent) return damaged(file, "the array is truncated");
     count *= extent;
   }
   if (data.size() != count * size)
-    return damaged(file, fmt::format("holds {} bytes of data where its shape asks for {}",
+    return damaged(file, fmt::format("the array has {} bytes, but its shape requires {}",
                                      data.size(), count * size));
 
   Npy array{layout->shape, std::vector<double>(count)};

@@ -30,7 +30,7 @@ glm::vec3 place_m(const msg::HandPose& pose, int joint) {
   return {p[0], p[1], p[2]};
 }
 
-/// A joint seen from the wrist, millimetres, as if of a left hand.
+/// Position of a joint in the wrist's axes, in mm. A right hand is mirrored to a left one.
 glm::vec3 from_wrist_mm(const msg::HandPose& pose, int joint) {
   const auto& q = pose.joints[1].orientation_xyzw;
   glm::vec3 place =
@@ -55,7 +55,7 @@ float median_length_mm(const std::vector<msg::HandPose>& poses, int joint) {
   return median(lengths);
 }
 
-/// From the index's to the little finger's MCP.
+/// Distance between the MCPs of the index and the little finger.
 float breadth_mm(const HandShape& shape) {
   return glm::distance(shape.proximal_mm[1], shape.proximal_mm[4]);
 }

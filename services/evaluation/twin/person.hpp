@@ -6,12 +6,13 @@
 
 namespace handcast::twin {
 
-/// Somebody else than the model: every finger's length, the palm and the widths drawn from the seed
-/// within the settings' spread.
+/// Draws the hand shape of a person: the length of each finger, the size of the palm and the widths
+/// differ from the mean hand by at most the spread of the settings.
 renderer::HandShape draw_person(const config::TwinShape& settings, int seed);
 
-/// The person of a recording: joint places and bone lengths are medians over its samples, widths
-/// follow the palm's breadth and the seed.
+/// Fits the hand shape of the person in a recording (the left hand if recorded): joint positions
+/// and bone lengths are medians over the samples; the widths follow the palm's breadth and the
+/// seed.
 renderer::HandShape fit_person(const Recording& recording, const config::TwinShape& settings,
                                int seed);
 

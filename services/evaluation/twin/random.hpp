@@ -4,28 +4,28 @@
 #include <cstdint>
 #include <numbers>
 
-/// Chance without a state: every number is a function of (seed, stream, index, ...), so that any
-/// process may ask for any sample in any order and all of them see the same world.
+/// Random numbers without state: each number is a pure function of (seed, stream, index), so that
+/// several processes can draw any sample in any order and agree.
 namespace handcast::twin {
 
-/// What a number is drawn for. Streams never share numbers.
+/// The purpose of a random number. Numbers of different streams are independent.
 enum class Stream : std::uint64_t {
-  person,
-  tracker_time,
-  tracker_age,
-  tracker_loss,
-  tracker_place,
-  tracker_drift,
-  tracker_noise,
-  detector_age,
-  detector_loss,
-  detector_noise,
-  image_noise,
-  detector_outlier,
-  image_holes,
+  person,            ///< shape of the true hands
+  tracker_time,      ///< jitter of the sample times
+  tracker_age,       ///< delay of a sample
+  tracker_loss,      ///< lost samples
+  tracker_place,     ///< constant offset and rotation
+  tracker_drift,     ///< frequencies and phases of the drift
+  tracker_noise,     ///< white noise of the joints
+  detector_age,      ///< delay of a detection
+  detector_loss,     ///< detections without a hand
+  detector_noise,    ///< white noise of the landmarks
+  image_noise,       ///< noise of the pixels
+  detector_outlier,  ///< displaced landmarks
+  image_holes,       ///< dark blobs on the hands
 };
 
-/// The finaliser of splitmix64 (Steele, Lea, Flood 2014).
+/// The splitmix64 step (Steele, Lea, Flood 2014): a bijection that scrambles all 64 bits.
 constexpr std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ull;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -33,21 +33,24 @@ constexpr std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+/// The numbers of one stream, each selected by an index (a, b).
 class Random {
  public:
+  /// The numbers of `stream` that belong to `seed`.
   Random(int seed, Stream stream)
       : key_(mixed(mixed(static_cast<std::uint64_t>(seed)) ^ static_cast<std::uint64_t>(stream))) {}
 
+  /// 64 random bits.
   std::uint64_t bits(std::uint64_t a, std::uint64_t b = 0) const {
     return mixed(mixed(key_ ^ a) + b);
   }
-  /// In [0, 1).
+  /// Uniform in [0, 1).
   double uniform(std::uint64_t a, std::uint64_t b = 0) const {
     return static_cast<double>(bits(a, b) >> 11) * 0x1p-53;
   }
-  /// In [-1, 1).
+  /// Uniform in [-1, 1).
   double spread(std::uint64_t a, std::uint64_t b = 0) const { return 2 * uniform(a, b) - 1; }
-  /// Standard normal, by Box and Muller.
+  /// Standard normal (Box and Muller 1958).
   double normal(std::uint64_t a, std::uint64_t b = 0) const {
     const std::uint64_t first = bits(a, b);
     const double radius =

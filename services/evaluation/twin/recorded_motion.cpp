@@ -14,17 +14,17 @@ namespace {
 using msg::kJoints;
 
 constexpr std::size_t kJointChannels = 7;  ///< x y z, then the quaternion x y z w
-constexpr double kTurn_s =
-    0.15;  ///< on either side of an end of the recording, the hand brakes and turns back
+/// Time before and after an end of the recording in which the hand brakes and turns back.
+constexpr double kTurn_s = 0.15;
 
-/// How far from a turning point the hand is after `s` seconds: at full speed beyond kTurn_s, twice
-/// differentiable everywhere. Against a hand that never brakes it lags 3/8 kTurn_s behind.
+/// Recording time covered in the first `s` seconds after a turning point. Twice differentiable; at
+/// full speed after kTurn_s, after which it lags 3/8 kTurn_s behind.
 double way_from_turn(double s) {
   const double u = s / kTurn_s;
   return u < 1 ? kTurn_s * (0.75 * u * u - 0.125 * u * u * u * u) : s - 0.375 * kTurn_s;
 }
 
-/// There and back through a recording of `duration_s`.
+/// Recording time that is shown at `time_s`, played forwards and backwards in turn.
 double there_and_back(double duration_s, double time_s) {
   const double leg_s = duration_s + 0.75 * kTurn_s;
   const double phase = time_s - 2 * leg_s * std::floor(time_s / (2 * leg_s));
@@ -43,8 +43,9 @@ Spline spline_of(const std::vector<std::int64_t>& time_ns,
     for (int j = 0; j < kJoints; ++j) {
       const auto& joint = poses[i].joints[j];
       values.insert(values.end(), joint.position_m.begin(), joint.position_m.end());
-      double along = 1;  // a quaternion and its negative are one rotation: keep to the side of the
-                         // sample before
+      // A quaternion and its negative are the same rotation: take the one nearer to the last
+      // sample.
+      double along = 1;
       if (i > 0) {
         const double* before = values.data() + values.size() - kChannels;
         along = 0;

@@ -20,10 +20,10 @@ using std::filesystem::path;
 constexpr std::array<std::string_view, 2> kSideNames{"left", "right"};
 constexpr std::array<std::string_view, 3> kStampFiles{"timestamps.npy", "camera_timestamps.npy",
                                                       "landmarks_timestamps.npy"};
-constexpr double kMostStamp_us = 4e15;  ///< so that differences in ns fit in 64 bits
-constexpr std::int64_t kMostGap_ns =
-    3'600'000'000'000;               ///< between the end of one sensor and the begin of another
-constexpr double kForearm_mm = 250;  ///< wrist to elbow in what is written; poses do not say
+constexpr double kMostStamp_us = 4e15;  ///< differences in ns fit in 64 bits
+/// Largest gap between the last time of one sensor and the first of another: an hour.
+constexpr std::int64_t kMostGap_ns = 3'600'000'000'000;
+constexpr double kForearm_mm = 250;  ///< written distance of the elbow, which poses do not hold
 
 path array_file(const path& folder, std::string_view what, std::size_t side) {
   return folder / fmt::format("{}_{}.npy", what, kSideNames[side]);
@@ -40,12 +40,12 @@ Result<Npy> read_shaped(const path& file, const std::vector<std::size_t>& shape)
   auto array = read_npy(file);
   if (!array) return array;
   if (array->shape != shape)
-    return fail(Errc::bad_data, fmt::format("{}: its shape is {} where {} is expected",
+    return fail(Errc::bad_data, fmt::format("{}: the array has shape {}, but must have shape {}",
                                             file.string(), text_of(array->shape), text_of(shape)));
   for (const double value : array->values)
     if (!std::isfinite(value))
       return fail(Errc::bad_data,
-                  fmt::format("{}: holds a value that is not a number", file.string()));
+                  fmt::format("{}: the array holds a value that is not finite", file.string()));
   return array;
 }
 
@@ -58,8 +58,8 @@ Result<void> remove_file(const path& file) {
   return {};
 }
 
-/// A bone's rows are -Z, -Y and (for a left hand) -X; X follows from the other two, whichever hand
-/// it is.
+/// The rows of a bone are -Z, -Y and, for a left hand, -X. For either hand, X is computed from the
+/// other two.
 Result<glm::dquat> axes_of_bone(const double* bone) {
   const glm::dvec3 to_wrist = -glm::dvec3(bone[0], bone[1], bone[2]);
   const glm::dvec3 back = -glm::dvec3(bone[4], bone[5], bone[6]);
@@ -160,8 +160,8 @@ Result<bool> is_there(const path& file) {
   std::error_code failed;
   const bool there = std::filesystem::exists(file, failed);
   if (failed)
-    return fail(Errc::bad_config,
-                fmt::format("'{}' cannot be looked for: {}", file.string(), failed.message()));
+    return fail(Errc::bad_config, fmt::format("cannot tell whether '{}' exists: {}", file.string(),
+                                              failed.message()));
   return there;
 }
 
@@ -171,13 +171,13 @@ Result<std::vector<std::int64_t>> read_stamps_ns(const path& file) {
   std::vector<std::int64_t> times_ns;
   for (const double time_us : array->values) {
     if (!(std::abs(time_us) < kMostStamp_us))
-      return fail(Errc::bad_data, fmt::format("{}: time {} is no time in microseconds",
+      return fail(Errc::bad_data, fmt::format("{}: time {} is not a time in microseconds",
                                               file.string(), times_ns.size()));
     const double whole_us = std::floor(time_us);
     const std::int64_t time_ns =
         static_cast<std::int64_t>(whole_us) * 1000 + std::llround((time_us - whole_us) * 1e3);
     if (!times_ns.empty() && time_ns <= times_ns.back())
-      return fail(Errc::bad_data, fmt::format("{}: time {} does not come after the one before it",
+      return fail(Errc::bad_data, fmt::format("{}: time {} is not later than the one before it",
                                               file.string(), times_ns.size()));
     times_ns.push_back(time_ns);
   }
@@ -195,9 +195,10 @@ Result<std::vector<std::vector<std::int64_t>>> read_all_stamps_ns(const path& fo
     for (const auto& other_ns : all_ns)
       if (!times_ns->empty() && std::max(times_ns->front() - other_ns.back(),
                                          other_ns.front() - times_ns->back()) > kMostGap_ns)
-        return fail(Errc::bad_config, fmt::format("{}: lies more than an hour from the recording's "
-                                                  "other times; all must be of one clock",
-                                                  (folder / name).string()));
+        return fail(Errc::bad_config,
+                    fmt::format("{}: its times are more than an hour from those of the recording's "
+                                "other sensors; all must be of one clock",
+                                (folder / name).string()));
     if (!times_ns->empty()) all_ns.push_back(std::move(*times_ns));
   }
   return all_ns;
@@ -218,7 +219,7 @@ Result<Recording> read_recording(const path& folder) {
   if (!times_ns) return tl::make_unexpected(times_ns.error());
   if (times_ns->size() < 2)
     return fail(Errc::bad_data,
-                fmt::format("{}: needs one row of at least two times", stamps.string()));
+                fmt::format("{}: a recording needs at least two times", stamps.string()));
   Recording recording;
   recording.first_ns = times_ns->front();
   recording.time_ns = std::move(*times_ns);
@@ -236,7 +237,7 @@ Result<Recording> read_recording(const path& folder) {
   if (!any)
     return fail(
         Errc::bad_config,
-        fmt::format("{}: holds neither joints_left.npy nor joints_right.npy", folder.string()));
+        fmt::format("{}: there is neither joints_left.npy nor joints_right.npy", folder.string()));
   return recording;
 }
 
@@ -245,7 +246,7 @@ Result<void> write_recording(const path& folder, const Recording& recording) {
   std::filesystem::create_directories(folder, made);
   if (made)
     return fail(Errc::unavailable,
-                fmt::format("{}: cannot be made: {}", folder.string(), made.message()));
+                fmt::format("{}: cannot be created: {}", folder.string(), made.message()));
 
   const std::size_t samples = recording.time_ns.size();
   std::vector<std::int64_t> time_us;
@@ -259,8 +260,9 @@ Result<void> write_recording(const path& folder, const Recording& recording) {
       continue;
     }
     if (recording.hands[side].size() != samples)
-      return fail(Errc::bad_data, fmt::format("{}: {} poses for {} times", folder.string(),
-                                              recording.hands[side].size(), samples));
+      return fail(Errc::bad_data,
+                  fmt::format("{}: the recording has {} poses for {} times", folder.string(),
+                              recording.hands[side].size(), samples));
     LeapArrays arrays(samples);
     for (std::size_t i = 0; i < samples; ++i) put(arrays, i, recording.hands[side][i]);
     auto joints =

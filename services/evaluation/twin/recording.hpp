@@ -14,39 +14,46 @@ namespace handcast::twin {
 
 /// A NumPy array file (.npy, format 1-3, little-endian f4 f8 i4 i8, C order), as doubles.
 struct Npy {
-  std::vector<std::size_t> shape;
-  std::vector<double> values;
+  std::vector<std::size_t> shape;  ///< extent of each dimension
+  std::vector<double> values;      ///< row-major; as many as the product of the extents
 };
+/// Reads an array. Errors: bad_config (the file cannot be opened), bad_data (malformed content).
 Result<Npy> read_npy(const std::filesystem::path& file);
+/// Writes values in row-major order as '<f4'. Errors: unavailable (the file cannot be written).
 Result<void> write_npy_f32(const std::filesystem::path& file, const std::vector<std::size_t>& shape,
                            const std::vector<float>& values);
+/// Writes a one-dimensional array as '<i8'. Errors: unavailable (the file cannot be written).
 Result<void> write_npy_i64(const std::filesystem::path& file,
                            const std::vector<std::int64_t>& values);
 
 /// The hands of a recording in OpenXR joints, metres.
 struct Recording {
-  std::int64_t first_ns = 0;          ///< the first sample's time by the recording's clock
-  std::vector<std::int64_t> time_ns;  ///< from the first sample
-  std::array<std::vector<msg::HandPose>, 2>
-      hands;  ///< by side; empty where the recording has no such hand
+  std::int64_t first_ns = 0;          ///< time of the first sample by the recording's clock
+  std::vector<std::int64_t> time_ns;  ///< times of the samples since the first
+  /// The poses by side, one per time; empty if the hand was not recorded.
+  std::array<std::vector<msg::HandPose>, 2> hands;
 };
 
-/// Reads timestamps.npy (us) with joints_{left,right}.npy (n,42,3 mm) and bones_{left,right}.npy
-/// (n,22,4,4), Leap's layout.
+/// Reads timestamps.npy (us), joints_{left,right}.npy (n,42,3 mm) and bones_{left,right}.npy
+/// (n,22,4,4), all in Leap's layout. Errors: bad_config (a file is missing, or there is no hand),
+/// bad_data (a malformed file, fewer than two times).
 Result<Recording> read_recording(const std::filesystem::path& folder);
-/// Writes the same; of a hand that the recording does not have nothing is left in the folder.
+/// Writes the same files, and removes those of a hand that is not in the recording. Errors:
+/// unavailable (a file cannot be written or removed), bad_data (a hand without a pose per time).
 Result<void> write_recording(const std::filesystem::path& folder, const Recording& recording);
 
-/// A row of ascending times, microseconds of the recording's clock.
+/// Reads an array of ascending times in microseconds of the recording's clock. Errors: as read_npy,
+/// and bad_data (a time out of range or not later than the one before it).
 Result<std::vector<std::int64_t>> read_stamps_ns(const std::filesystem::path& file);
-/// The times of every sensor of a recording: of timestamps.npy, camera_timestamps.npy and
-/// landmarks_timestamps.npy those that are there. Errors: bad_data (a file's), bad_config (times so
-/// far apart that they cannot be of one clock).
+/// The times of each sensor of a recording, from those of timestamps.npy, camera_timestamps.npy and
+/// landmarks_timestamps.npy that exist. Errors: as read_stamps_ns, and bad_config (times more than
+/// an hour apart, which cannot be of one clock).
 Result<std::vector<std::vector<std::int64_t>>> read_all_stamps_ns(
     const std::filesystem::path& folder);
-/// Removes the arrays and times a recording left in a folder, and no other file.
+/// Removes the arrays and time stamps of a recording from a folder, and no other file. Errors:
+/// unavailable (a file cannot be removed).
 Result<void> remove_recording(const std::filesystem::path& folder);
-/// Errors (bad_config): it may not be looked for.
+/// Whether a file exists. Errors: bad_config (its status cannot be read).
 Result<bool> is_there(const std::filesystem::path& file);
 
 }  // namespace handcast::twin

@@ -14,8 +14,8 @@ Spline::Spline(std::vector<double> times_s, std::vector<double> values, std::siz
   if (times_s_.size() > 2) solve_bends();
 }
 
-/// Thomas' algorithm on h_i M_{i-1} + 2 (h_i + h_{i+1}) M_i + h_{i+1} M_{i+1} = 6 (slope_{i+1} -
-/// slope_i), M = 0 at both ends.
+/// Solves the tridiagonal system h_i M_{i-1} + 2 (h_i + h_{i+1}) M_i + h_{i+1} M_{i+1} = 6
+/// (slope_{i+1} - slope_i), M = 0 at both ends, by Thomas' algorithm.
 void Spline::solve_bends() {
   const std::size_t last = times_s_.size() - 1;
   std::vector<double> upper(last + 1, 0.0);

@@ -8,11 +8,11 @@ namespace handcast::twin {
 namespace {
 
 constexpr int kAround = 24;
-constexpr float kBegin_m = 0.05f, kElbow_m = 0.34f;  ///< behind the wrist
+constexpr float kBegin_m = 0.05f, kElbow_m = 0.34f;  ///< ends of the forearm behind the wrist
 constexpr float kSleeveBrightness = 1.35f;
 
-/// Half axes of a bare forearm at a distance behind the wrist: hidden in the hand's stub at first,
-/// then thicker and rounder.
+/// Half axes of a bare forearm at a distance behind the wrist. It begins inside the hand's stub and
+/// becomes thicker and rounder towards the elbow.
 glm::vec2 half_axes_at(glm::vec2 wrist, float behind_m) {
   const float u = std::clamp((behind_m - kBegin_m) / 0.2f, 0.0f, 1.0f);
   const glm::vec2 elbow(wrist.x * 1.6f, wrist.y * 2.1f);
@@ -29,7 +29,7 @@ void add_ring(Forearm& arm, float behind_m, glm::vec2 half_axes, float brightnes
   }
 }
 
-/// Joins the last two rings, the outside being counter-clockwise.
+/// Joins the last two rings with triangles that are counter-clockwise seen from outside.
 void join_rings(Forearm& arm) {
   const auto last = static_cast<std::uint16_t>(arm.positions.size() - kAround);
   const auto before = static_cast<std::uint16_t>(last - kAround);
@@ -41,7 +41,7 @@ void join_rings(Forearm& arm) {
   }
 }
 
-/// Half axes of the stub where the forearm takes over from it.
+/// Half axes of the hand's stub at kBegin_m, where the forearm begins.
 glm::vec2 half_axes_of(const renderer::HandMesh& hand) {
   const glm::mat4 wrist_from_model = glm::inverse(hand.rest[1]);
   glm::vec2 half_axes(0.01f);
@@ -73,8 +73,8 @@ Forearm make_forearm(const renderer::HandMesh& hand, float sleeve_m) {
   }
   if (sleeve_m >= kElbow_m) return arm;
   constexpr float kCloth_m = 0.007f;
-  add_ring(arm, sleeve_m, half_axes_at(wrist_half_axes_m, sleeve_m) * 0.9f,
-           kSleeveBrightness);  // its cuff closes on the arm
+  // The first ring lies inside the arm and closes the cuff.
+  add_ring(arm, sleeve_m, half_axes_at(wrist_half_axes_m, sleeve_m) * 0.9f, kSleeveBrightness);
   for (int ring = 0; ring <= 4; ++ring) {
     const float behind = sleeve_m + (kElbow_m - sleeve_m) * static_cast<float>(ring) / 4;
     add_ring(arm, behind, half_axes_at(wrist_half_axes_m, behind) * 1.08f + kCloth_m,

@@ -10,37 +10,42 @@
 #include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 
-/// Small tools shared by what looks at the true hand: the camera and the judge.
+/// Geometry of the true hand, shared by the camera and the judge.
 namespace handcast::twin {
 
-/// A bare forearm and a sleeve behind a hand, in the wrist's axes (metres): the hand's mesh ends in
-/// a short stub.
+/// A bare forearm and a sleeve behind a hand, whose mesh ends in a short stub. Wrist axes, metres.
 struct Forearm {
-  std::vector<glm::vec3> positions, normals;
-  std::vector<float> brightness;  ///< beside skin: 1
-  std::vector<std::array<std::uint16_t, 3>> triangles;
+  std::vector<glm::vec3> positions;                     ///< by vertex
+  std::vector<glm::vec3> normals;                       ///< by vertex
+  std::vector<float> brightness;                        ///< by vertex, relative to skin
+  std::vector<std::array<std::uint16_t, 3>> triangles;  ///< counter-clockwise seen from outside
 };
-/// Fits the stub of `hand`. The sleeve begins at `sleeve_m` behind the wrist; kBareArm_m: there is
-/// none.
+/// Makes a forearm that fits the stub of `hand`. The sleeve begins at `sleeve_m` behind the wrist;
+/// with kBareArm_m there is none.
 Forearm make_forearm(const renderer::HandMesh& hand, float sleeve_m);
+/// A start of the sleeve beyond the elbow.
 inline constexpr float kBareArm_m = 1;
 
-/// How far each vertex at rest lies behind the wrist, metres.
+/// Distance of each vertex behind the wrist in the rest pose, metres; negative in the hand.
 std::vector<float> behind_wrist_m(const renderer::HandMesh& hand);
 
-/// Corners on a screen: px, and 1/depth (which is linear on the screen).
+/// Vertices on a screen.
 struct ScreenVertices {
-  std::vector<float> x, y, inverse_depth;
+  std::vector<float> x;              ///< px
+  std::vector<float> y;              ///< px
+  std::vector<float> inverse_depth;  ///< 1/m, which is linear on the screen
 
+  /// Resizes all three.
   void resize(std::size_t count) {
     x.resize(count);
     y.resize(count);
     inverse_depth.resize(count);
   }
-  renderer::Rect bounds() const;  ///< of all pixels they span, not clipped
+  /// The smallest rectangle of pixels that holds all vertices; not clipped to the screen.
+  renderer::Rect bounds() const;
 };
 
-/// Shares of a triangle's corners in a point of the screen; they sum to 1.
+/// Barycentric coordinates of a point on the screen in a triangle; they sum to 1.
 inline glm::vec3 barycentrics(const ScreenVertices& v, const std::array<std::uint16_t, 3>& triangle,
                               float x_px, float y_px) {
   const auto [i, j, k] = triangle;
@@ -52,13 +57,14 @@ inline glm::vec3 barycentrics(const ScreenVertices& v, const std::array<std::uin
   return {1 - b - c, b, c};
 }
 
-/// One barycentric along a row of pixels: `at0 + step x`. Cuts [first, last] down to where it is
-/// not negative.
+/// One barycentric coordinate along a row of pixels: `at0 + step x`.
 struct EdgeRow {
-  float at0, step;
+  float at0;   ///< value at x = 0
+  float step;  ///< increment per pixel
 
+  /// Reduces [first, last] to the pixels at which the coordinate is not negative.
   void cut(float& first, float& last) const {
-    constexpr float kOutside = -1e-5f;  // neighbours share their edge: no gaps
+    constexpr float kOutside = -1e-5f;  // leaves no gap between adjacent triangles
     const float margin = at0 - kOutside;
     if (step > 0) {
       first = std::max(first, -margin / step);

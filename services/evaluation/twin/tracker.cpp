@@ -12,8 +12,8 @@ namespace handcast::twin {
 namespace {
 
 constexpr int kWrist = 1, kIndexMetacarpal = 6, kMiddleMetacarpal = 11;
-constexpr double kDepthShare =
-    0.3;  ///< offset and drift along the camera's axis, beside those across it
+/// Offset and drift along the camera's axis relative to those across it.
+constexpr double kDepthShare = 0.3;
 constexpr double kMinDrift_hz = 0.2, kMaxDrift_hz = 1.5;
 
 std::uint64_t index(Side side, int joint, int axis) {
@@ -84,8 +84,9 @@ bool TrackerModel::lost(std::uint64_t k) const {
 
 std::uint64_t TrackerModel::shown_sample(std::uint64_t k) const {
   if (!settings_.frozen.holds(ns_to_seconds(sample_ns(k)))) return k;
-  auto last = std::min(k, static_cast<std::uint64_t>(settings_.frozen.at_s * settings_.rate_hz) +
-                              1);  // not before the last one
+  // Searches backwards for the last sample before the fault.
+  auto last =
+      std::min(k, static_cast<std::uint64_t>(settings_.frozen.at_s * settings_.rate_hz) + 1);
   while (last > 0 && settings_.frozen.holds(ns_to_seconds(sample_ns(last)))) --last;
   return last;
 }
@@ -94,7 +95,7 @@ bool TrackerModel::knows_sides(std::uint64_t k) const {
   return !settings_.swapped.holds(ns_to_seconds(sample_ns(k)));
 }
 
-/// A sum of sines of amplitude sqrt(2/n) has an RMS of 1 whatever its frequencies.
+/// The sum of n sines of different frequencies with amplitude sqrt(2/n) has an RMS of 1.
 glm::dvec3 TrackerModel::drift_m(Side side, int joint, double seconds, double distance_m) const {
   glm::dvec3 drift(0);
   for (int axis = 0; axis < 3; ++axis)

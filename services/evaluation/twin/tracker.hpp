@@ -15,28 +15,34 @@ namespace handcast::twin {
 using msg::Side;
 using renderer::JointFrames;
 
-/// The hand tracker of the twin: when it samples, when a sample arrives, and how wrong it is
-/// (METHOD section 4). Its hand is a little too large, misplaced and turned; every joint drifts
-/// slowly and trembles.
+/// The twin's model of a hand tracker: times, delays and errors of its samples
+/// (`docs/method.md#twin`). The reported hand is scaled, displaced and rotated by constants; each
+/// joint drifts slowly and has white noise. Pure functions of the settings, the seed and the
+/// arguments.
 class TrackerModel {
  public:
+  /// Copies its arguments. `seed` selects the random errors; `person` is the shape of the true
+  /// hands, from which the reported joint radii follow.
   TrackerModel(const config::TwinTracker& settings, int seed, const calib::Calibration& calibration,
                const renderer::HandShape& person);
 
-  std::int64_t sample_ns(
-      std::uint64_t k) const;  ///< origin of sample k: regular, but for a jitter of 3 % of a period
+  /// True time of sample `k`: periodic with a jitter of 3 % of the period (standard deviation).
+  std::int64_t sample_ns(std::uint64_t k) const;
+  /// Time at which sample `k` is available. Samples may overtake each other.
   std::int64_t arrival_ns(std::uint64_t k) const;
-  std::int64_t stamp_ns(std::uint64_t k) const;  ///< what the tracker's clock says of it
+  /// Time of sample `k` by the tracker's clock.
+  std::int64_t stamp_ns(std::uint64_t k) const;
+  /// True if sample `k` holds no hands.
   bool lost(std::uint64_t k) const;
-  /// The sample whose pose sample k repeats: itself, but while the tracker is frozen.
+  /// The sample whose poses sample `k` reports: `k`, or an earlier one while the tracker is frozen.
   std::uint64_t shown_sample(std::uint64_t k) const;
-  /// What a person would call the hands of sample k is what the tracker calls them.
+  /// False while the tracker reports left hands as right ones and vice versa.
   bool knows_sides(std::uint64_t k) const;
-  /// What sample k reports of a hand whose true joints (tracker space) were `truth`.
+  /// The pose that sample `k` reports for a hand whose true joints (tracker space) are `truth`.
   msg::HandPose report(std::uint64_t k, Side side, const JointFrames& truth) const;
 
  private:
-  /// How one hand is misplaced for good.
+  /// Constant error of the pose of one hand.
   struct Place {
     glm::dmat3 turn{1};
     glm::dvec3 offset_m{0};
@@ -58,8 +64,8 @@ class TrackerModel {
   glm::dmat4 camera_from_tracker_;
   std::array<float, msg::kJoints> radius_m_;
   std::array<Place, 2> places_;
-  std::array<std::array<std::array<Waves, 3>, msg::kJoints>, 2>
-      waves_;  ///< by side, joint, camera axis
+  /// The drift by side, joint and camera axis.
+  std::array<std::array<std::array<Waves, 3>, msg::kJoints>, 2> waves_;
 };
 
 }  // namespace handcast::twin

@@ -33,8 +33,8 @@ renderer::JointFrames rest_of(Side side, const renderer::HandShape& person) {
   return rest;
 }
 
-/// The model's surface on the true person's bones. Hands made by handcast are made anew for the
-/// person; another model is only stretched by its own skin weights.
+/// The model's surface on the true person's bones. A hand made by handcast is made again for the
+/// person; any other model is posed by its own skin weights.
 renderer::HandMesh true_hand_of(const renderer::HandMesh& model, bool made_by_handcast,
                                 const renderer::HandShape& person) {
   if (made_by_handcast) return renderer::refit_hand(model, person);
@@ -45,8 +45,8 @@ renderer::HandMesh true_hand_of(const renderer::HandMesh& model, bool made_by_ha
   return hand;
 }
 
-/// The true hands' surfaces. They take a quarter of a second to make, which only those pay who look
-/// at a surface: the camera and the judge, not the tracker and the detector.
+/// The surfaces of the true hands. They take a quarter of a second to make and are therefore made
+/// on first use: the camera and the judge need them, the tracker and the detector do not.
 class TrueHands {
  public:
   TrueHands(std::array<renderer::HandMesh, 2> models, std::array<bool, 2> made_by_handcast,
@@ -71,7 +71,7 @@ class TrueHands {
   }
 
   mutable std::once_flag made_;
-  mutable std::array<renderer::HandMesh, 2> hands_;  ///< the models, until they are made
+  mutable std::array<renderer::HandMesh, 2> hands_;  ///< the models until the first use
   std::array<bool, 2> made_by_handcast_, seen_;
   renderer::HandShape person_;
 };
@@ -170,14 +170,14 @@ class RigTwin final : public Twin {
   calib::Calibration calibration_;
   double camera_rate_hz_;
   std::int64_t exposure_ns_, delivery_ns_;
-  std::optional<Side> absent_;  ///< left out of the motion
+  std::optional<Side> absent_;  ///< the hand of the motion that is left out
   std::unique_ptr<Motion> motion_;
   TrueHands hands_;
   TrackerModel tracker_;
   DetectorModel detector_;
   config::TwinImage image_;
   int seed_;
-  mutable std::optional<CameraScene> scene_;  ///< from the first image on
+  mutable std::optional<CameraScene> scene_;  ///< made for the first image
 };
 
 }  // namespace

@@ -18,75 +18,86 @@
 
 namespace handcast::twin {
 
-/// The digital twin of a rig: a true hand over time, and what each sensor makes of it. Every answer
-/// is a pure function of the settings, the seed and the time or index asked for, so several
-/// processes hold the same world without talking. Times are ns since the rig's epoch (virtual or
-/// real). Not thread-safe: one per thread.
+/// The digital twin of a rig: the true hands over time and the output of each sensor
+/// (`docs/method.md#twin`). Every result is a pure function of the settings, the seed and the
+/// arguments, so that several processes agree without communication. Times are ns since the rig's
+/// epoch (virtual or real). Not thread-safe: use one object per thread.
 class Twin {
  public:
+  /// Creates the twin of a rig; copies what it needs. Errors: those of open_motion and of loading
+  /// the hand models (bad_config).
   static Result<std::unique_ptr<Twin>> create(const config::Rig& rig,
                                               const calib::Calibration& calibration);
   virtual ~Twin() = default;
 
-  // --- the truth ---
-  virtual std::optional<JointFrames> joints(Side side,
-                                            std::int64_t time_ns) const = 0;  ///< tracker space
-  virtual const renderer::HandMesh& true_hand(
-      Side side) const = 0;  ///< topology of the model's mesh
-  /// The true places of the 21 landmarks, undistorted camera px.
+  /// The true joints of one hand in tracker space; empty if there is no such hand at that time.
+  virtual std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const = 0;
+  /// The mesh of one true hand, with the topology of the model's. The first call makes both hands,
+  /// which takes a quarter of a second. Valid as long as the twin.
+  virtual const renderer::HandMesh& true_hand(Side side) const = 0;
+  /// The true positions of the 21 landmarks, undistorted camera px; empty as joints().
   virtual std::optional<std::array<glm::vec2, msg::kLandmarks>> landmarks(
       Side side, std::int64_t time_ns) const = 0;
 
-  // --- the tracker: sample k, and when it arrives ---
+  /// One sample of the tracker.
   struct TrackerSample {
-    msg::HandPoses poses;  ///< header.origin_ns by the tracker's own clock, header.frame_id = k;
-                           ///< count 0 where the sample is lost
-    std::int64_t arrival_ns = 0;
+    /// header.frame_id is the number of the sample, header.origin_ns its time by the tracker's
+    /// clock; count is 0 if the sample is lost.
+    msg::HandPoses poses;
+    std::int64_t arrival_ns = 0;  ///< time at which it is available
   };
+  /// Sample `k` of the tracker.
   virtual TrackerSample tracker_sample(std::uint64_t k) const = 0;
-  virtual std::int64_t tracker_time_ns(std::uint64_t k) const = 0;  ///< true origin of sample k
+  /// The true time of sample `k`.
+  virtual std::int64_t tracker_time_ns(std::uint64_t k) const = 0;
 
-  // --- the camera: frame k ---
-  virtual std::int64_t camera_origin_ns(std::uint64_t k) const = 0;   ///< middle of its exposure
-  virtual std::int64_t camera_arrival_ns(std::uint64_t k) const = 0;  ///< in memory
+  /// The middle of the exposure of camera frame `k`.
+  virtual std::int64_t camera_origin_ns(std::uint64_t k) const = 0;
+  /// The time at which camera frame `k` is in memory.
+  virtual std::int64_t camera_arrival_ns(std::uint64_t k) const = 0;
+  /// Draws camera frame `k`. `image` must have the size of the calibration's camera.
   virtual void camera_image(std::uint64_t k, renderer::View<std::uint8_t> image) const = 0;
 
-  // --- the detector, run number n, on the camera frame (id, origin) it is given ---
+  /// The result of one run of the detector.
   struct Detection {
-    msg::Landmarks landmarks;
-    std::int64_t age_ns = 0;  ///< it is done this long after the frame's origin
+    msg::Landmarks landmarks;  ///< header.origin_ns by the detector's clock; count 0 if lost
+    std::int64_t age_ns = 0;   ///< time from the frame's origin to the result
   };
+  /// The result of run number `n` of the detector on the camera frame of this id and origin.
   virtual Detection detect(std::uint64_t n, std::uint64_t frame_id,
                            std::int64_t origin_ns) const = 0;
 };
 
-/// What the light of one frame did on the true hand (METHOD section 5). Lengths in projector px and
-/// mm at the point's distance.
+/// The score of the light of one frame on the true hands (`docs/method.md#metrics`). Lengths are in
+/// projector px, or mm at the distance of the point.
 struct FrameScore {
-  std::int64_t lit_ns = 0;
+  std::int64_t lit_ns = 0;  ///< time of the light, since the epoch
+  /// The score of one hand.
   struct Hand {
-    Side side = Side::left;
-    double speed_m_s = 0;            ///< mean speed of the true visible surface points
-    std::vector<float> interior_px;  ///< per scored surface point
-    std::vector<float> interior_mm;
-    int hand_px = 0, lit_px = 0;  ///< true hand pixels; those with light
-    int spill_px = 0;             ///< lit pixels on neither hand nor arm, given to the nearest hand
-    int union_px = 0;             ///< for IoU: true hand or lit (arm left out)
-    double seam_px = 0;           ///< length of the edge of light inside the true hand
-    double lag_px_s = 0,
-           speed2_px_s2 =
-               0;  ///< sums of error . velocity and |velocity|^2: equivalent latency = lag / speed2
+    Side side = Side::left;          ///< which hand
+    double speed_m_s = 0;            ///< mean speed of the visible points of the true surface
+    std::vector<float> interior_px;  ///< error of the light by scored surface point that is drawn
+    std::vector<float> interior_mm;  ///< the same errors in mm
+    int hand_px = 0;                 ///< pixels of the true hand
+    int lit_px = 0;                  ///< those of them with light
+    int spill_px = 0;                ///< lit pixels beside hands and arms, nearest to this hand
+    int union_px = 0;                ///< hand_px + spill_px: the denominator of the IoU
+    double seam_px = 0;              ///< length of the edge of the light inside the true hand
+    double lag_px_s = 0;             ///< sum of -error . velocity over the points
+    double speed2_px_s2 = 0;         ///< sum of |velocity|^2; equivalent latency = lag / speed2
   };
-  std::vector<Hand> hands;
+  std::vector<Hand> hands;  ///< the visible hands
 };
 
-/// Scores projections against the truth. Keeps buffers; one thread.
+/// Scores projections against the truth. Reuses its buffers: not thread-safe.
 class Judge {
  public:
+  /// Creates a judge that scores surface points on a grid of `step_px` projector pixels. `twin`
+  /// must outlive it.
   static std::unique_ptr<Judge> create(const Twin& twin, const calib::Calibration& calibration,
                                        int step_px);
   virtual ~Judge() = default;
-  /// `projection.lit_ns` is on the twin's clock (ns since the epoch).
+  /// Scores one projection. projection.lit_ns must be in ns since the twin's epoch.
   virtual FrameScore score(const msg::Projection& projection) = 0;
 };
 

@@ -134,7 +134,7 @@ TEST_F(Replay, AFileThatMayNotBeLookedForIsASentenceNotAnException) {
     return opened ? "none" : opened.error().what;
   };
   const auto names = [](const char* name) {
-    return testing::HasSubstr(std::string(name) + "' cannot be looked for: ");
+    return testing::HasSubstr(std::string(name) + "' exists: ");
   };
   EXPECT_THAT(complaint_with("camera", camera::open_camera), names("camera"));
   EXPECT_THAT(complaint_with("camera_timestamps.npy", camera::open_camera),

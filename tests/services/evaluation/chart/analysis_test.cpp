@@ -19,7 +19,7 @@ TEST(ParetoFront, IsWhatNothingBeatsByAscendingX) {
 
 TEST(ParetoFront, EqualPointsDoNotBeatEachOther) {
   EXPECT_THAT(pareto_front(Points{{1, 1}, {1, 1}}), ElementsAre(0u, 1u));
-  EXPECT_THAT(pareto_front(Points{{1, 2}, {1, 1}}), ElementsAre(1u)) << "as soon, and nearer";
+  EXPECT_THAT(pareto_front(Points{{1, 2}, {1, 1}}), ElementsAre(1u)) << "equal in x, smaller in y";
   EXPECT_TRUE(pareto_front({}).empty());
 }
 

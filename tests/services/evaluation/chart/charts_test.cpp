@@ -44,7 +44,7 @@ TEST_F(ChartsTest, ThePageHoldsEveryChartAndNeedsNothingElse) {
   for (const char* name : {"chart_a", "chart_b", "chart_b_faults", "chart_c"}) {
     EXPECT_THAT(page, HasSubstr(fmt::format("<section id=\"{}\">", name)));
     EXPECT_THAT(page, HasSubstr(fmt::format("id='{}_gpPt6'", name)))
-        << "drawn, with names of its own";
+        << "the chart must be drawn, with ids of its own";
     EXPECT_THAT(text_of(out() / fmt::format("{}.svg", name)), HasSubstr("</svg>"));
   }
   EXPECT_THAT(page,
@@ -83,7 +83,7 @@ TEST_F(ChartsTest, TheTimesOfFramesAreThoseOfThePlanThatMeasuresThemAlone) {
   for (const auto& standing : ladder.at(1))
     if (standing.method.variant == "handcast") {
       EXPECT_EQ(standing.frame_us, 555);
-      EXPECT_EQ(standing.p95_mm, 2.1) << "the errors stay the ladder's";
+      EXPECT_EQ(standing.p95_mm, 2.1) << "the errors are those of the ladder";
     }
 }
 
@@ -100,7 +100,7 @@ TEST_F(ChartsTest, AMethodStandsAtTheTimeOfItsOwnFrameAndThePaperAtItsOwnLeg) {
   ASSERT_EQ(standings.size(), 4u);
   EXPECT_NEAR(*standings[0].photon_ms, 6.4, 1e-9);
   EXPECT_NEAR(*standings[1].photon_ms, 8.9, 1e-9);
-  EXPECT_NEAR(*standings[2].photon_ms, 6.7, 1e-9) << "what cannot be built is as fast as what is";
+  EXPECT_NEAR(*standings[2].photon_ms, 6.7, 1e-9) << "ideal has the frame time of handcast";
   EXPECT_NEAR(*standings[3].photon_ms, 6.7, 1e-9);
 }
 
@@ -122,12 +122,12 @@ TEST_F(ChartsTest, ARealDetectorStandsWithItsAgeAtTheTimeOfOurFrames) {
 TEST_F(ChartsTest, AStressIsTheMeanOverSeedsAndItsBreakdownIsMarked) {
   const auto lines = lines_of(results(), stresses()[0]);
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0].points[0].y, 3) << "of seeds 1 and 2";
+  EXPECT_EQ(lines[0].points[0].y, 3) << "mean of seeds 1 and 2";
   ASSERT_TRUE(lines[0].breakdown);
   EXPECT_DOUBLE_EQ(lines[0].breakdown->x, 15);
   EXPECT_FALSE(lines[1].breakdown);
   ASSERT_TRUE(write_charts(order(all())));
-  EXPECT_THAT(text_of(out() / "chart_b_breakdown.csv"), HasSubstr("tracker's age,ms,20,15,\n"));
+  EXPECT_THAT(text_of(out() / "chart_b_breakdown.csv"), HasSubstr("tracker age,ms,20,15,\n"));
 }
 
 TEST_F(ChartsTest, ALevelThatOneMethodLacksIsAnEmptyCellAndTheOthersStayInTheirRows) {
@@ -136,16 +136,15 @@ TEST_F(ChartsTest, ALevelThatOneMethodLacksIsAnEmptyCellAndTheOthersStayInTheirR
                                    "handcast,20,1.9,", "handcast,40,2.5,"});
   ASSERT_TRUE(write_charts(order({stress})));
   const std::string harm = ",ms,\"landmark error p95, mm\",";
-  EXPECT_THAT(
-      text_of(out() / "chart_b.csv"),
-      HasSubstr("tracker's age,5" + harm + "3,\ntracker's age,10" + harm +
-                ",1.1\ntracker's age,20" + harm + "7,1.9\ntracker's age,40" + harm + ",2.5\n"));
+  EXPECT_THAT(text_of(out() / "chart_b.csv"),
+              HasSubstr("tracker age,5" + harm + "3,\ntracker age,10" + harm +
+                        ",1.1\ntracker age,20" + harm + "7,1.9\ntracker age,40" + harm + ",2.5\n"));
 }
 
 TEST_F(ChartsTest, TheAtlasTellsWhatPassesFromWhatStaysAndWhoNeverRecovers) {
   const auto failures = failures_of(results());
   ASSERT_EQ(failures.size(), 3u);
-  EXPECT_EQ(failures[0].name, "tracker gives nothing, 200 ms");
+  EXPECT_EQ(failures[0].name, "tracker silent, 200 ms");
   EXPECT_EQ(failures[0].damage.at("paper").recovery_ms, 73);
   EXPECT_EQ(failures[0].damage.at("handcast").never_good, 1u);
   EXPECT_EQ(failures[1].name, "image dark: 50 % of the light");
@@ -153,8 +152,7 @@ TEST_F(ChartsTest, TheAtlasTellsWhatPassesFromWhatStaysAndWhoNeverRecovers) {
   ASSERT_TRUE(write_charts(order(all())));
   EXPECT_THAT(
       text_of(out() / "chart_b_faults.csv"),
-      HasSubstr(
-          "\"tracker gives nothing, 200 ms\",for a moment,handcast,30,not within the run,10"));
+      HasSubstr("\"tracker silent, 200 ms\",for a moment,handcast,30,not within the run,10"));
 }
 
 TEST_F(ChartsTest, ChartCHasTheRungsByTheirDegreesOfFreedom) {
@@ -173,7 +171,7 @@ TEST_F(ChartsTest, WhatCannotBeDrawnIsSaidAndTheRestIsDrawn) {
   EXPECT_THAT(written->lacking,
               ElementsAre(HasSubstr("chart_a needs"), HasSubstr("chart_b_faults needs"),
                           HasSubstr("chart_c needs")));
-  EXPECT_THAT(text_of(written->page), HasSubstr("Not drawn: needs runs that were drawn"));
+  EXPECT_THAT(text_of(written->page), HasSubstr("Not drawn: the chart needs drawn runs"));
   EXPECT_FALSE(fs::exists(out() / "chart_a.svg"));
 }
 
@@ -224,7 +222,7 @@ TEST_F(ChartsTest, NamesOfMethodsAreNoCommandsOfThePlotter) {
 
 TEST_F(ChartsTest, TheProgramPrintsThePageAndExitsWith100WhereAFileIsNoSweep) {
   const char* bin = std::getenv("HANDCAST_BIN");
-  if (!bin) GTEST_SKIP() << "HANDCAST_BIN names no folder of programs";
+  if (!bin) GTEST_SKIP() << "HANDCAST_BIN is not set to the folder of the programs";
   const auto run = [&](const std::string& words) {
     return WEXITSTATUS(
         std::system(fmt::format("{}/handcast-chart {} >/dev/null 2>&1", bin, words).c_str()));

@@ -33,10 +33,10 @@ TEST_F(ResultsTest, ARunHasTheSettingsOfItsGridAndTheMetricsThatWereMeasured) {
   EXPECT_EQ(run.variant, "handcast");
   EXPECT_EQ(run.plan, "failures");
   EXPECT_EQ(run.metric("fault_worst_mm"), 30);
-  EXPECT_FALSE(run.metric("fault_recovery_ms")) << "it never recovered";
+  EXPECT_FALSE(run.metric("fault_recovery_ms")) << "the run has no recovery";
   EXPECT_THAT(run.turned(), ElementsAre("twin.tracker.lost_at_s", "twin.tracker.lost_s"));
   EXPECT_THAT(results->runs[9].turned(), ElementsAre("twin.image.dark"))
-      << "empty cells are not turned";
+      << "empty cells are not axes";
 }
 
 TEST_F(ResultsTest, AMeanIsOfTheRunsThatHaveTheFigure) {
@@ -64,17 +64,18 @@ TEST_F(ResultsTest, ASettingOfNoSectionIsASettingToo) {
 }
 
 TEST_F(ResultsTest, WhatIsNoSweepIsToldInASentence) {
-  EXPECT_THAT(fault_of(""), HasSubstr("results.csv: holds no results of a sweep"));
-  EXPECT_THAT(fault_of("a,b\n1,2\n"), HasSubstr("results.csv: holds no results of a sweep"));
+  EXPECT_THAT(fault_of(""), HasSubstr("results.csv: the file does not hold results of a sweep"));
+  EXPECT_THAT(fault_of("a,b\n1,2\n"),
+              HasSubstr("results.csv: the file does not hold results of a sweep"));
   EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\na,b,c\n"),
-              HasSubstr("results.csv: holds no results of a sweep"));
+              HasSubstr("results.csv: the file does not hold results of a sweep"));
   EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,iou,error\n"),
-              HasSubstr("results.csv: no run of it was scored"));
+              HasSubstr("results.csv: the file has no scored run"));
   EXPECT_THAT(fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,iou,error\n0,a\n"),
-              HasSubstr("results.csv:3: no line of this sweep"));
+              HasSubstr("results.csv:3: the line is not one of this sweep"));
   EXPECT_THAT(
       fault_of("# handcast sweep version=1 runs=1 plan=x\nindex,variant,iou,error\n0,a,much,\n"),
-      HasSubstr("results.csv: run 0: iou is 'much', not a number"));
+      HasSubstr("results.csv: run 0: iou is 'much', which is not a number"));
   const auto absent = read_results({scratch_.path() / "nowhere.csv"});
   ASSERT_FALSE(absent);
   EXPECT_THAT(absent.error().what, HasSubstr("nowhere.csv"));

@@ -15,7 +15,7 @@ inline std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// A file as `handcast sweep` writes it; `rows` without their index.
+/// Writes a file of results like `handcast sweep`. `rows` have no index.
 inline std::filesystem::path write_sweep(const std::filesystem::path& folder,
                                          const std::string& plan, const std::string& columns,
                                          const std::vector<std::string>& rows) {
@@ -28,7 +28,7 @@ inline std::filesystem::path write_sweep(const std::filesystem::path& folder,
   return file;
 }
 
-/// Rungs at two speeds: the dearer, the better; the paper is slow and mediocre.
+/// Rungs at two speeds: the error falls with the cost. The paper is slow and has a medium error.
 inline std::filesystem::path write_ladder(const std::filesystem::path& folder) {
   std::vector<std::string> rows;
   for (const int speed : {1, 3}) {
@@ -44,15 +44,15 @@ inline std::filesystem::path write_ladder(const std::filesystem::path& folder) {
       rows);
 }
 
-/// Two methods under older and older tracker samples: paper's error doubles at 15 ms, handcast's
-/// never.
+/// Two methods with tracker samples of increasing age: the error of the paper doubles at 15 ms,
+/// that of handcast never.
 inline std::filesystem::path write_stress(const std::filesystem::path& folder) {
   return write_sweep(folder, "stress", "twin.tracker.age_ms,twin.seed,landmark_mm_p95",
                      {"paper,5,1,2,", "paper,5,2,4,", "paper,10,1,5,", "paper,20,1,7,",
                       "handcast,5,1,1,", "handcast,10,1,1.1,", "handcast,20,1,1.9,"});
 }
 
-/// One fault that passes, one that stays, and a motion.
+/// A passing fault, a lasting one, and a difficult motion.
 inline std::filesystem::path write_failures(const std::filesystem::path& folder) {
   return write_sweep(folder, "failures",
                      "twin.tracker.lost_at_s,twin.tracker.lost_s,twin.motion,twin.image.dark,"

@@ -11,7 +11,8 @@
 
 namespace handcast::test {
 
-/// Figures as the simulator writes them; `error_mm` is the mean, the rest follows from it.
+/// Metrics in the format of the simulator. `error_mm` is the mean error; most others follow from
+/// it.
 inline nlohmann::json metrics_of(const std::string& rig, double error_mm) {
   const auto spread = [](double value) {
     return nlohmann::json{{"mean", value}, {"p95", 2.2 * value}, {"p99", 3 * value}};
@@ -48,6 +49,7 @@ inline nlohmann::json metrics_of(const std::string& rig, double error_mm) {
   return json;
 }
 
+/// The supervisor's record of a live run.
 inline nlohmann::json live_of() {
   nlohmann::json live{{"rig", "twin"}, {"seconds", 20.02}};
   live["services"] = {{"camera", {{"restarts", 0}, {"backend", "twin"}}},
@@ -69,7 +71,7 @@ inline void write_json(const std::filesystem::path& file, const nlohmann::json& 
   std::ofstream(file) << json.dump(2);
 }
 
-/// Pictures of something like a hand that moves to and fro with light `off_px` beside it.
+/// Pictures of a shape like a hand that moves to and fro, with light that is displaced by `off_px`.
 inline void write_frames(const std::filesystem::path& folder, int count, int off_px) {
   std::filesystem::create_directories(folder);
   for (int i = 0; i < count; ++i) {
@@ -85,7 +87,7 @@ inline void write_frames(const std::filesystem::path& folder, int count, int off
   }
 }
 
-/// Everything a demonstration leaves in its folder.
+/// Writes all files of a demonstration to a folder.
 inline void write_demonstration(const std::filesystem::path& folder, int pictures) {
   write_json(folder / "baseline.json", metrics_of("baseline", 7.6));
   write_json(folder / "paper.json", metrics_of("paper", 1.83));

@@ -54,7 +54,7 @@ TEST_F(Report, ShowsTheFiguresFilmTimesAndRates) {
       << "p95 in mm of the three";
   EXPECT_THAT(
       html, AllOf(HasSubstr("data:image/jpeg;base64,/9j/"), HasSubstr("498.2"), HasSubstr("95 %")))
-      << "strip, rate, share";
+      << "stills, rate, share";
   EXPECT_THAT(html, AllOf(HasSubstr("0.6-1.0"), Not(HasSubstr("&gt;1.0"))))
       << "bins with frames, none without";
   EXPECT_THAT(html,

@@ -6,10 +6,9 @@
 namespace handcast::simulate {
 namespace {
 
-/// METHOD's promise, motion by motion: the paper's cascade beats drawing alone, ours beats the
-/// paper's. Coverage alone flatters the baseline, whose hand is too large and lights up to a fifth
-/// of a hand beside the hand: it is compared by the intersection over union of light and hand,
-/// which counts both.
+/// For each motion, the paper's cascade is better than the baseline, and ours is better than the
+/// paper's. The baseline is compared by intersection over union and not by coverage: its hand is
+/// too large and its spill is up to a fifth of the hand.
 class Accuracy : public testing::TestWithParam<std::string> {
  protected:
   static void expect_ordering(const std::string& motion) {
@@ -21,8 +20,8 @@ class Accuracy : public testing::TestWithParam<std::string> {
     EXPECT_LE(paper["coverage"], handcast["coverage"]);
     EXPECT_LE(paper["iou"], handcast["iou"]);
     EXPECT_EQ(handcast["foldovers"], 0);
-    constexpr double kTie =
-        0.01;  // shaken at 1.3 m/s the paper's mask is as far behind as the baseline's hand
+    // Shaken at 1.3 m/s, the paper's mask is as late as the baseline's hand.
+    constexpr double kTie = 0.01;
     EXPECT_LE(baseline["iou"].get<double>(), paper["iou"].get<double>() + kTie);
   }
 };
@@ -32,7 +31,7 @@ TEST_P(Accuracy, BaselinePaperHandcast) {
   if (!motion.starts_with("builtin:")) {
     motion = (data_root() / "lmc" / motion).string();
     if (!std::filesystem::exists(motion))
-      GTEST_SKIP() << "the recording " << motion << " is not here (set HANDCAST_DATA)";
+      GTEST_SKIP() << "there is no recording " << motion << "; HANDCAST_DATA names another folder";
   }
   expect_ordering(motion);
 }
@@ -62,8 +61,8 @@ TEST(TwoHands, AreNoMoreThanATenthWorseThanOne) {
   }
 }
 
-/// The paper's stated limitation: the drawn hand is not the person's. Bones reach the tracker's
-/// joints, widths come from the mask.
+/// A limitation that the paper states: the drawn hand has not the shape of the person's. Here the
+/// bones are fitted to the tracker's joints and the widths to the mask.
 TEST(HandShape, FittedToThePersonIsNeverWorseThanTheDefaultOne) {
   for (const std::string person : {"1", "2", "3"})
     for (const std::string spread : {"0", "0.1"}) {

@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The folder of MediaPipe's files; empty where they are not here.
+/// The folder of MediaPipe's networks; empty if they are missing.
 std::filesystem::path models() {
   const char* named = std::getenv("HANDCAST_MODELS");
   const auto folder =
@@ -27,10 +27,11 @@ std::filesystem::path models() {
 
 #define SKIP_WITHOUT_MODELS() \
   if (models().empty())       \
-  GTEST_SKIP() << "no networks in ../shared/models (HANDCAST_MODELS names another folder)"
+  GTEST_SKIP() << "../shared/models has no networks; HANDCAST_MODELS names another folder"
 
 constexpr std::int64_t kAge_ns = 7'000'000;
 
+/// Finds no hand in any frame, or cannot use the frames.
 class Blind : public FrameDetector {
  public:
   explicit Blind(bool can_use_the_frame) : can_use_the_frame_(can_use_the_frame) {}
@@ -45,12 +46,12 @@ class Blind : public FrameDetector {
   bool can_use_the_frame_;
 };
 
-/// Writes down what it was told before each frame.
+/// Records the tracker samples that it received before each frame.
 class Diary : public FrameDetector {
  public:
   struct Page {
     Exposure exposure;
-    std::vector<std::uint64_t> samples;  ///< all so far
+    std::vector<std::uint64_t> samples;  ///< numbers of all samples so far
   };
   explicit Diary(std::vector<Page>& pages) : pages_(pages) {}
   void tell(const msg::HandPoses& poses) override { samples_.push_back(poses.header.frame_id); }
@@ -64,11 +65,11 @@ class Diary : public FrameDetector {
   std::vector<std::uint64_t> samples_;
 };
 
-/// What became of the hands of a run without a picture.
+/// The hands of a run without drawing.
 struct Outcome {
-  int hands = 0;           ///< one a projector frame and hand
+  int hands = 0;           ///< summed over the projector frames
   double error_px = 0;     ///< mean over their landmarks
-  int with_landmarks = 0;  ///< of the hands
+  int with_landmarks = 0;  ///< hands on a rung that uses landmarks
 };
 
 Outcome outcome_of(const std::string& rung, const twin::Twin& world, SensorFeed& feed) {
@@ -113,7 +114,7 @@ TEST(SimulatedDetector, KnowsTheTrackersSamplesThatHaveArrivedAndNoOthers) {
   std::vector<Diary::Page> pages;
   const auto feed = make_twin_feed(*world, std::make_unique<Diary>(pages));
   for (std::int64_t now_ns = 0; now_ns < 500'000'000; now_ns += 20'000'000)
-    feed->until(now_ns);  // several runs a call
+    feed->until(now_ns);  // several runs per call
   ASSERT_GT(pages.size(), 50u);
   std::int64_t free_ns = 0;
   for (const auto& [exposure, samples] : pages) {
@@ -216,8 +217,8 @@ TEST(SimulatedDetector, ARealOneFollowsTheTwinsHandAndItsAgeIsTheOneThatIsSet) {
   EXPECT_EQ(detector["backend"], "onednn");
   EXPECT_EQ(detector["missed"], 0);
   EXPECT_LT(detector["error_px"]["p50"], 15);
-  EXPECT_NEAR(detector["runs"], 500 / 5.7,
-              3);  // every third frame: the newest one is 1.2 to 3.1 ms old when it is taken
+  // Every third frame: the newest one is 1.2 to 3.1 ms old when a run begins.
+  EXPECT_NEAR(detector["runs"], 500 / 5.7, 3);
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include "services/evaluation/simulate/simulation.hpp"
 #include "tests/services/evaluation/simulate/run_rig.hpp"
 
-/// Where the cascade fails, how badly, and how long until it is good again: each fault of the twin
-/// against the same run without it. The figures asserted are the measured ones
-/// (config/rigs/twin.toml, seed 1) with a margin.
+/// The effect of each fault of the twin on the cascade, and the time of recovery, compared with the
+/// same run without the fault. The limits are the measured figures (config/rigs/twin.toml, seed 1)
+/// with a margin.
 namespace handcast::simulate {
 namespace {
 
@@ -25,8 +25,7 @@ constexpr const char* kFrom = "0.8";
 struct Moment {
   double seconds = 0;
   int hands = 0;
-  double worst_px =
-      0;  ///< the hand that is worst: mean distance of its corrected landmarks from the truth
+  double worst_px = 0;  ///< mean error of the corrected landmarks of the worst hand
   bool finite = true;
 };
 
@@ -34,9 +33,9 @@ struct Moment {
 struct Light {
   double seconds = 0;
   int lit_px = 0;      ///< projector pixels with light
-  int changed_px = 0;  ///< dark now and lit in the drawn frame before, or the other way round
+  int changed_px = 0;  ///< pixels lit either now or in the last drawn frame, but not in both
   int foldovers = 0;
-  double sum = 0;  ///< of all grey values
+  double sum = 0;  ///< sum of all colour channels
 };
 
 struct Run {
@@ -67,7 +66,7 @@ Moment moment_of(const Tick& tick, const twin::Twin& world) {
   return moment;
 }
 
-/// Which pixels of a frame are lit, compared with the frame before.
+/// Compares the lit pixels of a frame with those of the frame before.
 class LightMeter {
  public:
   Light measure(const Tick& tick) {
@@ -91,7 +90,7 @@ class LightMeter {
   std::vector<bool> before_;
 };
 
-/// Runs the rig to kEnd_s; draws every `draw_every`-th frame (0: none).
+/// Runs the rig until kEnd_s and draws every `draw_every`-th frame (0: none).
 Run run_through(const std::string& motion, const Settings& settings, int draw_every = 0) {
   const auto rig = rig_with(motion, settings);
   const auto calibration = calib::reference_rig();
@@ -111,7 +110,7 @@ Run run_through(const std::string& motion, const Settings& settings, int draw_ev
   return run;
 }
 
-/// The run without a fault; made once.
+/// The run without a fault, which is made on the first call.
 const Run& clean_run(const std::string& motion, int draw_every = 0) {
   static std::map<std::pair<std::string, int>, Run> runs;
   const auto [run, is_new] = runs.try_emplace({motion, draw_every});
@@ -119,16 +118,15 @@ const Run& clean_run(const std::string& motion, int draw_every = 0) {
   return run->second;
 }
 
-/// What a fault did, beside the same run without it.
+/// Effect of a fault, compared with the same run without it. All but `finite` from its start on.
 struct Damage {
   bool finite = true;
   double clean_px = 0;  ///< mean error of the run without the fault
-  double worst_px = 0;  ///< the largest mean error of a hand, from the fault on
-  double step_px = 0;   ///< the largest change of that error from one projector frame to the next,
-                        ///< from the fault on
-  double recovery_ms =
-      0;  ///< from the end of the fault until the error stays within 2 px of the clean run's
-  int frames_without_hand = 0;  ///< that the run without the fault has
+  double worst_px = 0;  ///< largest mean error of a hand
+  double step_px = 0;   ///< largest change of that error between successive projector frames
+  /// Time from the end of the fault until the error stays within 2 px of the clean run's.
+  double recovery_ms = 0;
+  int frames_without_hand = 0;  ///< frames that lack a hand of the clean run
 };
 
 Damage damage_of(const Run& clean, const Run& faulty, double fault_end_s) {
@@ -159,7 +157,7 @@ Damage damage_of(const Run& clean, const Run& faulty, double fault_end_s) {
   return damage;
 }
 
-/// A fault, and what was measured of it, with a margin.
+/// A fault and the limits of its effect.
 struct Case {
   std::string name, motion;
   Settings settings;
@@ -193,9 +191,9 @@ Settings lasting(const std::string& path, const std::string& lasting_s) {
   return {path + "_at_s=" + kFrom, path + "_s=" + lasting_s};
 }
 
-/// While the tracker is silent, or has just jumped, the landmarks go on alone: with a shaken hand
-/// that is what the worst pixels are. Good again: two detections after a detector's fault (its age
-/// and its interval), and three samples of the tracker and its age after one's.
+/// While the tracker is silent or has just jumped, only landmarks are used, which causes the worst
+/// errors of a shaken hand. Recovery takes two detections after a fault of the detector (its age
+/// and its interval), and three samples plus their age after a fault of the tracker.
 std::vector<Case> cases() {
   const auto detector_lost = lasting("twin.detector.lost", "0.3"),
              detector_wrong = lasting("twin.detector.wrong_finger", "0.2");
@@ -229,11 +227,11 @@ INSTANTIATE_TEST_SUITE_P(All, Failure, testing::ValuesIn(cases()), [](const auto
   return test.param.name + "_on_" + test.param.motion;
 });
 
-/// Faults that have no end: the whole run beside the one without.
+/// A fault that lasts for the whole run, which is compared with the run without it.
 struct Lasting {
   std::string name, motion;
   Settings settings;
-  double times;  ///< as bad as the run without it, at most
+  double times;  ///< upper limit of its mean error, relative to the run without it
 };
 class LastingFailure : public testing::TestWithParam<Lasting> {};
 
@@ -267,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(
         Lasting{"outliers", "still", {"twin.detector.outliers=0.05"}, 1.2}),
     [](const auto& test) { return test.param.name + "_on_" + test.param.motion; });
 
-/// Motions that are hard in themselves.
+/// Motions that are difficult without any fault.
 class HardMotion : public testing::TestWithParam<std::pair<std::string, double>> {};
 
 TEST_P(HardMotion, KeepsEveryFrameFiniteAndTheErrorBounded) {
@@ -290,14 +288,14 @@ INSTANTIATE_TEST_SUITE_P(All, HardMotion,
                                          std::pair("cross_fingers", 8.0)),
                          [](const auto& test) { return std::string(test.param.first); });
 
-/// The light itself: what is lit changes no more from one drawn frame to the next than the motion
-/// and the fault explain.
+/// A fault and the limits of its effect on the lit pixels between successive drawn frames. All are
+/// relative to the lit pixels of the clean run.
 struct Flash {
   std::string name, motion;
   Settings settings;
-  double extra_change;  ///< beyond the clean run's, in lit pixels of the clean run: at most
-  double most_light;    ///< in lit pixels of the clean run
-  double least_light;
+  double extra_change;  ///< most pixels that change in addition to those of the clean run
+  double most_light;    ///< most lit pixels
+  double least_light;   ///< fewest lit pixels
 };
 std::ostream& operator<<(std::ostream& out, const Flash& fault) {
   return out << fault.name << " on " << fault.motion;
@@ -357,8 +355,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flash{"face", "two_hands", in_the_image("face=true"), 0.05, 1.06, 0.97}),
     [](const auto& test) { return test.param.name; });
 
-/// The camera sees nothing at all for a while: its light goes slowly, and comes back without a
-/// flash.
+/// The camera image is black for a while: the light fades out slowly and returns without a flash.
 class CoveredCamera : public testing::TestWithParam<std::pair<std::string, double>> {};
 
 TEST_P(CoveredCamera, TakesTheLightLittleByLittleAndGivesItBack) {
@@ -390,8 +387,7 @@ TEST_P(CoveredCamera, TakesTheLightLittleByLittleAndGivesItBack) {
   }
   fmt::print(
       "[ covered  ] {:6} for {:3.0f} ms: {:.2f} of its light after 10 ms, {:.2f} at the end; "
-      "{:.2f} to {:.2f}; a step of {:.1f} ms "
-      "takes {:.2f} or gives {:.2f} at most\n",
+      "{:.2f} to {:.2f}; in a step of {:.1f} ms, {:.2f} less or {:.2f} more at most\n",
       motion, 1e3 * dark_s, after_10_ms, last_dark, least, most, kStep_ms, most_fall, most_rise);
   EXPECT_GT(after_10_ms, 0.9);
   EXPECT_LT(most_fall, 1.5 * kStep_ms / kFade_ms + 0.05);

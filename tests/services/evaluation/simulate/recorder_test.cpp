@@ -18,8 +18,7 @@ using msg::Side;
 constexpr calib::CameraModel kCamera{.width_px = 8, .height_px = 6};
 constexpr std::int64_t kFrame_ns = 2'000'000;
 
-/// Gives what a test wants recorded, and a camera frame every 2 ms that has its number in every
-/// pixel.
+/// Returns the events of the test, and a camera frame every 2 ms whose pixels all hold its number.
 class MadeUpFeed : public SensorFeed {
  public:
   std::vector<SensorEvent> until(std::int64_t) override { return std::exchange(events, {}); }
@@ -45,7 +44,7 @@ class Recorder : public testing::Test {
     recorder_ = std::make_unique<RecordingFeed>(std::move(feed), kCamera, folder_.path());
   }
 
-  /// A message of a pose and one of landmarks, sampled at `ms`.
+  /// Adds a message of poses and one of landmarks, both sampled at `ms`.
   void see(std::int64_t ms, std::vector<Side> sides) {
     msg::HandPoses poses;
     msg::Landmarks landmarks;

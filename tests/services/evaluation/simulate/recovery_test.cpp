@@ -19,10 +19,10 @@ constexpr FaultTime kFault{1.0, 1.2};
 using Error_mm = std::function<double(double seconds)>;
 using IsDark = std::function<bool(double seconds)>;
 
-/// A thousand moments a second.
+/// Detections before a moment: one every 16 moments, i.e. every 16 ms.
 int detections_until(int moment) { return (moment + 8) / 16; }
 
-/// Two seconds of them.
+/// Two seconds of light, at a thousand moments per second.
 std::vector<LightMoment> moments_of(const Error_mm& error_mm, const IsDark& dark = {}) {
   std::vector<LightMoment> moments;
   for (int i = 0; i < 2000; ++i) {
@@ -95,15 +95,14 @@ TEST(Recovery, AHandWithoutLightIsNotGoodHoweverSmallTheError) {
 }
 
 TEST(Recovery, WhatTheMotionItselfMakesWorseIsNoLateDamage) {
-  // A burst as the fault ends, and ever after.
+  // The motion gets harder when the fault ends, and stays so.
   const auto burst = [](double t) { return t > 1.2 ? 6.0 : 2.0; };
   EXPECT_NEAR(recovery_of(moments_of(burst), moments_of(burst), kFault)->recovery_ms.value_or(999),
               0, 1.5);
 }
 
 TEST(Recovery, AFaultIsFeltAsLongAsTheRunWithoutItIsBetterThanThat) {
-  // No worse than the hand had it before the fault; but without the fault it would have it better
-  // now.
+  // The error after the fault is no larger than before it, but larger than without the fault.
   const auto once_as_bad = [](double t) {
     return t < 1.0 ? (t < 0.3 ? 4.0 : 2.0) : (t < 1.25 ? 4.0 : 2.0);
   };
@@ -174,7 +173,7 @@ TEST(FaultTime, AnImageThatIsSpoiltAllTheTimeHasNone) {
   ASSERT_TRUE(fault_time(twin));
   EXPECT_DOUBLE_EQ(fault_time(twin)->ends_s, 2.5);
   twin.image.dark = 1;
-  EXPECT_FALSE(fault_time(twin)) << "a time, but nothing that happens then";
+  EXPECT_FALSE(fault_time(twin)) << "a time is set, but no fault";
 }
 
 TEST(HandSpeed, IsThePathOfTheLandmarksOverTime) {

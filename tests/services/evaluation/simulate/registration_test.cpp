@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/services/evaluation/simulate/run_rig.hpp"
 
-/// Late registration, measured where it matters: in the light on the hand.
+/// The effect of late registration on the light on the hand.
 namespace handcast::simulate {
 namespace {
 

@@ -17,30 +17,33 @@
 
 namespace handcast::simulate {
 
+/// The root of the repository.
 inline std::filesystem::path source_root() {
   const char* root = std::getenv("HANDCAST_SOURCE");
   return root ? root : ".";
 }
 
+/// The folder of data that is not in the repository: HANDCAST_DATA or ../shared/data.
 inline std::filesystem::path data_root() {
   const char* root = std::getenv("HANDCAST_DATA");
   return root ? std::filesystem::path(root) : source_root() / "../shared/data";
 }
 
-/// twin.toml with settings of a test, and its world.
+/// config/rigs/twin.toml with the settings of a test.
 inline config::Rig rig_with(const std::vector<std::string>& settings) {
   auto rig = config::load_rig(source_root() / "config/rigs/twin.toml", settings);
   EXPECT_TRUE(rig) << rig.error().what;
   return *rig;
 }
 
+/// The twin of a rig with the reference calibration.
 inline std::unique_ptr<twin::Twin> twin_of(const config::Rig& rig) {
   auto twin = twin::Twin::create(rig, calib::reference_rig());
   EXPECT_TRUE(twin) << twin.error().what;
   return std::move(*twin);
 }
 
-/// A short, quiet run of one of config/rigs.
+/// The options of a quiet run of config/rigs/RIG.toml.
 inline Options options_of(const std::string& rig, double seconds) {
   Options options;
   options.rig_file = (source_root() / "config/rigs" / (rig + ".toml")).string();
@@ -49,7 +52,7 @@ inline Options options_of(const std::string& rig, double seconds) {
   return options;
 }
 
-/// Runs one of config/rigs and returns its metrics.
+/// Runs config/rigs/RIG.toml and returns its metrics.
 inline nlohmann::json run_rig(const std::string& rig, const std::string& motion, double seconds,
                               std::vector<std::string> settings = {}) {
   const test::Scratch folder;

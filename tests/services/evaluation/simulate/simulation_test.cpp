@@ -20,7 +20,7 @@ std::unique_ptr<renderer::Pipeline> pipeline_of(const config::Rig& rig) {
   return std::move(*pipeline);
 }
 
-/// Keeps what a feed gave, to give it again without any world behind it.
+/// Records the output of a feed and, after rewind(), plays it without the feed.
 class Tape : public SensorFeed {
  public:
   explicit Tape(SensorFeed* source) : source_(source) {}
@@ -56,7 +56,7 @@ class Tape : public SensorFeed {
   std::map<std::uint64_t, std::vector<std::uint8_t>> images_;
 };
 
-/// FNV-1a over the light of every drawn frame.
+/// The FNV-1a hash of the light of all drawn frames, and its mean error if there is a judge.
 std::uint64_t light_of(const config::Rig& rig, SensorFeed& feed, twin::Judge* judge = nullptr,
                        double* error_px = nullptr) {
   const auto pipeline = pipeline_of(rig);
@@ -93,7 +93,7 @@ TEST(Simulation, TheCascadeSeesSensorsOnly) {
   const auto light_under_another_truth = light_of(rig, tape, other_judge.get(), &other_error_px);
 
   EXPECT_EQ(light, light_under_another_truth);
-  EXPECT_GT(other_error_px, 3 * error_px);  // the judge does see the other truth
+  EXPECT_GT(other_error_px, 3 * error_px);  // the judges use different truths
 }
 
 TEST(Simulation, TheSameSeedGivesTheSameFiguresTwice) {
@@ -134,8 +134,8 @@ TEST(TwinFeed, MessagesArriveInOrderAndAtTheirAge) {
   EXPECT_NEAR(poses, 2 * 110.6, 4);
   EXPECT_NEAR(pose_age_ms / poses, 9.1, 0.2);
   EXPECT_NEAR(landmark_age_ms / landmarks, 16.2, 0.6);
-  EXPECT_NEAR(landmarks, 2000 / 14.0,
-              8);  // back to back: a frame is about 2.2 ms old when it is taken
+  // Back to back: a frame is about 2.2 ms old when a run begins.
+  EXPECT_NEAR(landmarks, 2000 / 14.0, 8);
 }
 
 TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
@@ -144,7 +144,7 @@ TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
   options.settings = {"twin.detector.dropout=0.6"};
   options.draw_every = 64;
   options.record_directory = folder.path().string();
-  for (int seed = 1; seed <= 3; ++seed) {  // whichever detection is the first to find nothing
+  for (int seed = 1; seed <= 3; ++seed) {  // the first detection without a hand varies
     options.settings.push_back("twin.seed=" + std::to_string(seed));
     const auto done = run(options);
     ASSERT_TRUE(done) << done.error().what;
@@ -157,7 +157,7 @@ TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
 
 TEST(Recording, APictureThatCannotBeWrittenIsSaid) {
   const test::Scratch folder;
-  std::ofstream(folder.path() / "camera") << "in the way of the pictures' folder";
+  std::ofstream(folder.path() / "camera") << "a file instead of the folder of the pictures";
   Options options = options_of("twin", 0.1);
   options.record_directory = folder.path().string();
   const auto done = run(options);
@@ -180,7 +180,7 @@ TEST(Simulation, FiguresThatCannotBeWrittenAreRefusedBeforeTheRun) {
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().code, Errc::bad_config);
     EXPECT_THAT(done.error().what, testing::HasSubstr(file.string()));
-    EXPECT_FALSE(std::filesystem::exists(options.trace_file)) << "it has run";
+    EXPECT_FALSE(std::filesystem::exists(options.trace_file)) << "the rig has run";
   }
 }
 
@@ -224,7 +224,7 @@ TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
   const auto lit = score(*rig, calib::reference_rig(), options),
              dark = score(blind, calib::reference_rig(), options);
   ASSERT_TRUE(lit && dark);
-  EXPECT_GT((*dark)["fault"]["dark_ms"], 100) << "the light went out";
+  EXPECT_GT((*dark)["fault"]["dark_ms"], 100) << "the light must go out";
   EXPECT_EQ((*dark)["hand_speed_m_s"], (*lit)["hand_speed_m_s"]);
 }
 

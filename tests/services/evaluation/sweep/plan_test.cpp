@@ -75,7 +75,7 @@ TEST(Plan, SeveralGridsAreRunOneAfterTheOther) {
               ElementsAre("twin.tracker.age_ms", "twin.speed", "twin.tracker.dropout"));
   const auto row = failed_row(*plan, runs[3], "");
   EXPECT_THAT(Row(row.begin(), row.begin() + 5), ElementsAre("3", "twin", "", "2", "0.2"))
-      << "empty where the rig is as it is";
+      << "an axis of another grid must be empty";
   EXPECT_EQ(row.size(), heading_of(*plan, *expand(*plan), "1").columns.size());
 }
 
@@ -83,7 +83,7 @@ TEST(Plan, ASettingIsNotFixedWhereAnyGridTurnsIt) {
   EXPECT_THAT(
       fault_of(
           "[settings]\ntwin.speed = 2\n[[grid]]\ntwin.seed = [1]\n[[grid]]\ntwin.speed = [1, 2]\n"),
-      HasSubstr("in the grid too"));
+      HasSubstr("is also an axis of a grid"));
 }
 
 TEST(Plan, FoldersAreRelativeToThePlan) {
@@ -125,7 +125,7 @@ TEST(Plan, EveryFaultIsNamedWithItsLineAtOnce) {
   EXPECT_THAT(
       fault,
       HasSubstr(":4: cascade.filter.methd: there is no such setting (did you mean 'method'?)"));
-  EXPECT_THAT(fault, HasSubstr(":7: variant.name: there are two 'a'"));
+  EXPECT_THAT(fault, HasSubstr(":7: variant.name: two variants are called 'a'"));
   EXPECT_THAT(fault, HasSubstr(":9: projector.rate_hz: must be a number"));
   EXPECT_THAT(fault, HasSubstr(":11: twin.speed: must be a list"));
   EXPECT_THAT(fault, HasSubstr(":13: twin.seed: -4 is outside"));

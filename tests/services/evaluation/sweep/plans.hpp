@@ -14,6 +14,7 @@
 
 namespace handcast::sweep {
 
+/// The root of the repository.
 inline std::filesystem::path source_root() {
   const char* root = std::getenv("HANDCAST_SOURCE");
   return std::filesystem::absolute(root ? root : ".");
@@ -23,12 +24,13 @@ inline std::string default_rig() {
   return "rig = \"" + (source_root() / "config/rigs/twin.toml").string() + "\"\n";
 }
 
-/// A plan in memory on the rig of the house, unless its text names another.
+/// Parses a plan whose rig is config/rigs/twin.toml, unless its text names another.
 inline Result<Plan> plan_of(const std::string& toml,
                             const std::filesystem::path& file = "/plans/test.toml") {
   return parse_plan(toml.starts_with("rig =") ? toml : default_rig() + toml, file);
 }
 
+/// The error message of a plan; "" if it has none.
 inline std::string fault_of(const std::string& toml) {
   const auto plan = plan_of(toml);
   if (!plan) return plan.error().what;

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A plan of six runs and a folder for what they give.
+/// A plan of six runs and a folder for their results.
 class ResultsTest : public testing::Test {
  protected:
   Row row(std::size_t index, double error_mm, double machine = 900) const {

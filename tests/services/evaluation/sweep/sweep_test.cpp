@@ -90,7 +90,7 @@ TEST_F(SweepTest, ARunThatCannotBeDoneIsALineAndTheOthersGoOn) {
   EXPECT_EQ(table->rows[1].back(), "");
 }
 
-/// A motion that is a link to itself: asking what it is throws.
+/// A motion that is a link to itself: the query of its type throws.
 TEST_F(SweepTest, ARunThatThrowsIsALineAndTheOthersGoOn) {
   const auto motion = file("motion");
   std::filesystem::create_symlink("motion", motion);
@@ -108,12 +108,12 @@ TEST_F(SweepTest, AMotionThatIsNotThereIsLeftOut) {
       "joints_only = true\nseconds = 0.1\n[grid]\ntwin.motion = [\"nowhere\", \"builtin:wave\"]\n",
       "a.csv");
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
-              HasSubstr("/plans/nowhere is not there; left out: runs 0"));
+              HasSubstr("there is no folder /plans/nowhere; left out: runs 0"));
   EXPECT_EQ(outcome.absent, 1u);
   EXPECT_EQ(outcome.scored, 1u);
 }
 
-/// Bit for bit, whole metrics of drawn frames, the times apart.
+/// Compares all metrics of drawn frames bit by bit, except for the times.
 TEST_F(SweepTest, ARunBesideOthersGivesTheFiguresOfARunAlone) {
   const auto plan = plan_of("[settings]\ntwin.speed = 3\n[grid]\ntwin.seed = [1, 2]\n");
   ASSERT_TRUE(plan);
@@ -142,7 +142,7 @@ TEST_F(SweepTest, ARunBesideOthersGivesTheFiguresOfARunAlone) {
   EXPECT_NE(together[1], alone);
 }
 
-/// The program, as a person or a batch scheduler calls it.
+/// Runs the program.
 class SweepProgramTest : public SweepTest {
  protected:
   int handcast(const std::string& arguments) {

@@ -18,7 +18,7 @@ Image<std::uint8_t> picture(const Twin& twin, std::uint64_t k) {
   return image;
 }
 
-/// The hand's mesh alone, drawn where a pinhole camera with the rig's lens sees it.
+/// The mask of the hand's mesh alone as seen by the rig's camera, lens distortion included.
 Image<std::uint8_t> silhouette(const Twin& twin, Side side, std::int64_t time_ns) {
   const auto rig = calib::reference_rig();
   const auto& mesh = twin.true_hand(side);
@@ -138,7 +138,7 @@ TEST(CameraImage, TwoHandsAreBothThere) {
   }
 }
 
-/// Pictures for a person to look at: HANDCAST_PICTURES names a folder.
+/// Writes pictures for inspection into the folder HANDCAST_PICTURES.
 TEST(CameraImage, Pictures) {
   const char* folder = std::getenv("HANDCAST_PICTURES");
   if (!folder) GTEST_SKIP() << "HANDCAST_PICTURES is not set";

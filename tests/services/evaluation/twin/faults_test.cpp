@@ -6,7 +6,7 @@
 #include "ipc/base/clock.hpp"
 #include "tests/services/evaluation/twin/world.hpp"
 
-/// Every fault does what it says between its times, and nothing before and after.
+/// Each fault has its effect between its times, and none before and after.
 namespace handcast::twin {
 namespace {
 
@@ -20,8 +20,7 @@ bool same(const msg::HandLandmarks& a, const msg::HandLandmarks& b) {
   return std::memcmp(&a.points, &b.points, sizeof a.points) == 0;
 }
 
-/// Calls `check(usual sample, faulty sample, under the fault)` for both hands' samples of nearly
-/// two seconds.
+/// Calls `check(usual poses, faulty poses, whether the fault holds)` for 200 samples of two hands.
 template <class Check>
 void compare_trackers(const config::TwinTracker& settings, Check&& check) {
   auto rig = rig_with("builtin:two_hands");
@@ -38,6 +37,7 @@ void compare_trackers(const config::TwinTracker& settings, Check&& check) {
   }
 }
 
+/// The same for the detections of every fifth camera frame.
 template <class Check>
 void compare_detectors(const config::TwinDetector& settings, Check&& check) {
   auto rig = rig_with("builtin:two_hands");
@@ -185,8 +185,8 @@ TEST(DetectorFault, OutliersAreTheAskedShareAndFarOff) {
 // --- images ---
 
 using renderer::Image;
-constexpr std::uint64_t kBefore = 500, kDuring = 560,
-                        kAfter = 700;  // frames at 525 Hz: 0.95, 1.07 and 1.33 s
+// Frames at 525 Hz: 0.95, 1.07 and 1.33 s.
+constexpr std::uint64_t kBefore = 500, kDuring = 560, kAfter = 700;
 
 /// The images of a still hand at kBefore, kDuring and kAfter.
 std::map<std::uint64_t, Image<std::uint8_t>> pictures(const config::TwinImage& settings) {
@@ -202,8 +202,7 @@ std::map<std::uint64_t, Image<std::uint8_t>> pictures(const config::TwinImage& s
   return images;
 }
 
-/// The image under a fault and without it, where the fault is; before and after, both must be the
-/// same.
+/// The image at kDuring without and with the fault. Checks that both are the same before and after.
 std::pair<Image<std::uint8_t>, Image<std::uint8_t>> usual_and_faulty(config::TwinImage settings) {
   auto usual = pictures({});
   settings.fault = kAWhile;
@@ -249,7 +248,7 @@ TEST(ImageFault, HolesCoverTheAskedShareOfTheHand) {
       holes += torn.at(x, y) < 40;
     }
   EXPECT_NEAR(holes / double(hand), 0.3, 0.12)
-      << "of what is seen; the share is of the whole surface";
+      << "share of the visible surface; the setting is the share of the whole surface";
 }
 
 TEST(ImageFault, HolesMoveWithTheHand) {

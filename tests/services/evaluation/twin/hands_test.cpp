@@ -7,7 +7,7 @@
 namespace handcast::twin {
 namespace {
 
-/// A rig's twin in which one hand of two is there.
+/// The twin of a rig in which one of the two hands is left out.
 class OnlyOneHand : public testing::TestWithParam<Side> {
  protected:
   static config::Rig rig(config::TwinHands hands) {
@@ -31,7 +31,7 @@ TEST_P(OnlyOneHand, TheTruthHasNoOther) {
     EXPECT_FALSE(one->joints(away, time_ns));
     EXPECT_FALSE(one->landmarks(away, time_ns));
     EXPECT_EQ(one->joints(there, time_ns), both->joints(there, time_ns))
-        << "the one that is there moves as before";
+        << "the remaining hand must move as before";
     EXPECT_EQ(one->landmarks(there, time_ns), both->landmarks(there, time_ns));
     EXPECT_TRUE(both->joints(away, time_ns));
   }

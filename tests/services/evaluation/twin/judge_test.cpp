@@ -18,7 +18,7 @@ double mean_of(const std::vector<float>& values) {
                               static_cast<double>(values.size());
 }
 
-/// A projection with room for the whole projector's light.
+/// A projection whose region is the whole projector, dark at first.
 class Projected {
  public:
   Projected() : bytes_((msg::Projection::bytes(kWidth, kHeight) + 7) / 8) {
@@ -35,7 +35,7 @@ class Projected {
   std::vector<std::uint64_t> bytes_;
 };
 
-/// Light that knows the truth: drawn for the hands as they are at `time_ns`, moved by `shift_px`.
+/// Light drawn from the truth: for the hands as they are at `time_ns`, displaced by `shift_px`.
 Projected light_of(const Twin& twin, std::int64_t time_ns, glm::vec2 shift_px = {0, 0}) {
   const auto rig = calib::reference_rig();
   Projected light;

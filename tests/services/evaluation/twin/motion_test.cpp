@@ -34,7 +34,8 @@ glm::dvec2 seen_at_px(const glm::mat4& frame) {
   return rig.camera.project(glm::dvec3(rig.camera_from_tracker * glm::dvec4(place(frame), 1)));
 }
 
-/// Calls `check(side, before, now, after)` at 1 ms steps through the motion.
+/// Calls `check(t, before, now, after)` every `step_s`, with the joints at t - 1 ms, t and t + 1
+/// ms.
 template <class Check>
 void walk(const Motion& motion, double seconds, double step_s, Check&& check) {
   for (const Side side : {Side::left, Side::right}) {
@@ -178,7 +179,7 @@ TEST(BuiltinMotion, PinchBringsThumbAndIndexTogether) {
          farthest_mm = std::max(farthest_mm, gap_mm);
        });
   EXPECT_LT(nearest_mm, 20);
-  EXPECT_GT(nearest_mm, 6) << "the finger tips are not inside each other";
+  EXPECT_GT(nearest_mm, 6) << "the finger tips must not penetrate each other";
   EXPECT_GT(farthest_mm, 60);
 }
 

@@ -35,7 +35,7 @@ class Files : public testing::Test {
   static void write(const path& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
   }
-  /// The error's sentence, which must name the file.
+  /// The error message of reading `file`, which must name the file.
   static std::string complaint(const path& file) {
     const auto array = read_npy(file);
     if (array) return "none";
@@ -87,7 +87,7 @@ TEST_F(NpyFiles, EveryFaultIsNamedTogetherWithItsFile) {
   EXPECT_THAT(broken("<f4", "|O8"), HasSubstr("|O8"));
   EXPECT_THAT(broken("False", "True "), HasSubstr("C order"));
   EXPECT_THAT(broken("(2, 2", "(2; 2"), HasSubstr("shape"));
-  EXPECT_THAT(broken("(2, 2", "(2, 9"), HasSubstr("cut off"));
+  EXPECT_THAT(broken("(2, 2", "(2, 9"), HasSubstr("truncated"));
   EXPECT_THAT(broken("(2, 2", "(2, 1"), HasSubstr("bytes"));
   write(file("broken.npy"), good.substr(0, good.size() - 1));
   EXPECT_THAT(complaint(file("broken.npy")), HasSubstr("bytes"));
@@ -97,7 +97,7 @@ TEST_F(NpyFiles, EveryFaultIsNamedTogetherWithItsFile) {
   EXPECT_THAT(complaint(file("broken.npy")), HasSubstr("not a NumPy array"));
 }
 
-/// Two hands that move, made from angles.
+/// Two moving hands, made from joint angles.
 Recording made_up_recording() {
   Recording recording;
   const Articulation articulation(renderer::HandShape::mean());
@@ -166,7 +166,7 @@ TEST_F(RecordingFiles, ATimeThatIsNoneIsRefused) {
     write(file("timestamps.npy"), whole);
     const auto stamps_ns = read_stamps_ns(file("timestamps.npy"));
     ASSERT_FALSE(stamps_ns);
-    EXPECT_THAT(stamps_ns.error().what, HasSubstr("timestamps.npy: time 0 is no time"));
+    EXPECT_THAT(stamps_ns.error().what, HasSubstr("timestamps.npy: time 0 is not a time"));
   }
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMany = 3000;
 
-/// One number of each of many samples.
+/// Mean and standard deviation of a series.
 struct Spread {
   double mean = 0, sd = 0;
   explicit Spread(const std::vector<double>& values) {
@@ -38,7 +38,7 @@ TEST(Tracker, SamplesAtItsRateAndArrivesLate) {
   }
   const Spread step(steps_ms), age(ages_ms);
   EXPECT_NEAR(step.mean, 1000 / 110.6, 0.01);
-  EXPECT_GT(step.sd, 0.1) << "a real tracker is not that regular";
+  EXPECT_GT(step.sd, 0.1) << "the samples of a real tracker jitter";
   EXPECT_NEAR(age.mean, 9.1, 0.03);
   EXPECT_NEAR(age.sd, 0.4, 0.03);
 }
@@ -170,7 +170,7 @@ TEST(Detector, PointsOutsideTheImageAreNotSeen) {
     const auto truth = *twin->landmarks(Side::left, origin_ns);
     const auto detection = twin->detect(n, n, origin_ns);
     for (int i = 0; i < msg::kLandmarks; ++i) {
-      if (std::abs(truth[i].y - 540) < 8) continue;  // the lens moves the border by some pixels
+      if (std::abs(truth[i].y - 540) < 8) continue;  // lens distortion displaces the border
       EXPECT_EQ(detection.landmarks.hands[0].points[i].confidence, truth[i].y < 540 ? 1 : 0);
       outside += truth[i].y > 540;
     }
