@@ -193,7 +193,7 @@ struct Twin {
 template <class Visitor>
 void describe(Visitor& visitor, Twin& twin) {
   visitor.field("motion", twin.motion,
-                "The true motion: builtin:open_close, wave, rotate, pinch, shake, two_hands, "
+                "The true motion: builtin:show, open_close, wave, rotate, pinch, shake, two_hands, "
                 "still, crossing, flip, fist, point_at_camera, enter_leave, reverse, "
                 "cross_fingers; or a folder with a recording.");
   visitor.field("hands", twin.hands, "The hands of the motion that exist in the twin.");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speed against accuracy: every rung of the ladder on the twin, and the goals of the cascade.
 //   bench_cascade [--goals FILE]
-// Accuracy: twin.toml at the defaults of METHOD section 4, 3 s of each motion; two runs side by
+// Accuracy: twin.toml at the defaults of docs/method.md#twin, 3 s of each motion; two runs side by
 // side. Speed: render() of a swaying hand on one core, alone, the rungs in turns.
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ std::vector<SimulatedRun> ladder_runs() {
   return runs;
 }
 
-/// The filters alone, as METHOD section 2 compares them (S1: a fixed bias and no drift).
+/// The filters alone, as docs/results.md compares them (S1: a fixed bias and no drift).
 std::vector<SimulatedRun> filter_runs() {
   const std::vector<std::string> common{"cascade.ladder.rung=landmarks", "twin.tracker.drift_px=0"};
   std::vector<SimulatedRun> runs;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "calib/calibration.hpp"
@@ -27,13 +28,19 @@ class Progress {
     const int percent = static_cast<int>(100 * done_s / seconds_);
     if (quiet_ || percent < shown_ + (tty_ ? 1 : 10)) return;
     shown_ = percent;
-    const auto elapsed_s = ns_to_seconds(now_ns() - start_ns_);
-    fmt::print(stderr, "{}simulate {}: {:4.1f} of {:.1f} s, {:3d} %, about {:.0f} s left {}",
-               tty_ ? "\r" : "", rig_, done_s, seconds_, percent,
-               done_s > 0 ? elapsed_s * (seconds_ - done_s) / done_s : 0.0, tty_ ? "  " : "\n");
+    fmt::print(stderr, "{}simulate {}: {:4.1f} of {:.1f} s, {:3d} %{} {}", tty_ ? "\r" : "", rig_,
+               done_s, seconds_, percent, estimate(done_s), tty_ ? "  " : "\n");
   }
 
  private:
+  /// ", about 12 s left", once enough is done to tell.
+  std::string estimate(double done_s) const {
+    const double elapsed_s = ns_to_seconds(now_ns() - start_ns_);
+    const double done = done_s / seconds_;
+    if (done < 0.1 || done >= 1) return {};
+    return fmt::format(", about {:.0f} s left", std::ceil(elapsed_s * (1 - done) / done));
+  }
+
   std::string rig_;
   double seconds_;
   bool quiet_, tty_;
