@@ -71,7 +71,7 @@ std::vector<SimulatedRun> ladder_runs() {
   return runs;
 }
 
-/// The filters alone, as docs/results.md compares them (S1: a fixed bias and no drift).
+/// The filters alone, against a tracker with a fixed bias and no drift.
 std::vector<SimulatedRun> filter_runs() {
   const std::vector<std::string> common{"cascade.ladder.rung=landmarks", "twin.tracker.drift_px=0"};
   std::vector<SimulatedRun> runs;
