@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/runtime/stop_signal.hpp"
+#include "ipc/daemon/stop_signal.hpp"
 
 #include <signal.h>
 
 #include <atomic>
 
-namespace handcast::service {
+namespace handcast::daemon {
 namespace {
 
 std::atomic<bool> stop_flag{false};
@@ -27,4 +27,4 @@ void install_stop_signals() {
 
 bool stop_requested() { return stop_flag.load(std::memory_order_relaxed); }
 
-}  // namespace handcast::service
+}  // namespace handcast::daemon
