@@ -10,8 +10,7 @@
 
 #include "config/settings/join.hpp"
 #include "ipc/base/version.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/verbs.hpp"
+#include "supervisor/commands/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -81,7 +80,7 @@ int main(int argc, char** argv) {
   using namespace handcast::supervisor;
   if (argc < 2) {
     print_overview();
-    return kExitUsage;
+    return handcast::kExitUsage;
   }
   return dispatch(argv[1], Arguments(argv + 2, argv + argc));
 }

@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 
 #include "config/rig.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
-#include "supervisor/verbs.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/verbs.hpp"
 
 namespace handcast::supervisor {
 

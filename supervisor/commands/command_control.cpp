@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "config/settings/join.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/choose_rig.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/control/control_client.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
 #include "supervisor/rig/status.hpp"
 #include "supervisor/succession/adoption.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -21,11 +21,10 @@ struct Talk {
 /// Finds the rig, asks it, complains about what goes wrong.
 Talk talk(const std::string& rig_name, const Request& request) {
   const auto rig = choose_rig(rig_name);
-  if (!rig) return {complain(kExitNotRunning, rig.error().what), {}};
+  if (!rig) return {complain(rig.error()), {}};
   auto answer = ask(*rig, request);
-  if (answer) return {0, std::move(*answer)};
-  const bool refused = answer.error().code == Errc::bad_data;
-  return {complain(refused ? kExitConfig : kExitNotRunning, answer.error().what), {}};
+  if (!answer) return {complain(answer.error()), {}};
+  return {kExitDone, std::move(*answer)};
 }
 
 /// "reloaded: camera, landmarks restarted; pose, projector untouched".

@@ -8,11 +8,10 @@
 #include <fstream>
 
 #include "config/rig.hpp"
-#include "supervisor/control/runtime_folder.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/base/runtime_folder.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/succession/service_unit.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {

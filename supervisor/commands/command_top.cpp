@@ -4,13 +4,12 @@
 #include <deque>
 
 #include "ipc/base/clock.hpp"
-#include "supervisor/control/control_client.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/choose_rig.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/top/top_layout.hpp"
 #include "supervisor/top/top_look.hpp"
 #include "supervisor/top/top_terminal.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -25,7 +24,7 @@ int show_once(const std::string& rig, bool as_json) {
   const auto before = watcher.look();
   if (before.missing.empty()) sleep_until_ns(before.taken_ns + kOnce_ns);
   const auto now = watcher.look();
-  if (now.status.is_null()) return complain(kExitNotRunning, now.missing);
+  if (now.status.is_null()) return complain(kExitRetry, now.missing);
 
   const auto model = compare(before, now);
   if (as_json) {
@@ -113,7 +112,7 @@ int run_top(const Arguments& arguments) {
   if (!options)
     return complain(kExitUsage, "top: " + options.error().what + "; `handcast help top`");
   const auto rig = choose_rig(options->value("--rig"));
-  if (!rig) return complain(kExitNotRunning, rig.error().what);
+  if (!rig) return complain(rig.error());
   const bool once = options->has("--once") || options->has("--json") || !Terminal::present();
   return once ? show_once(*rig, options->has("--json")) : show_until_quit(*rig);
 }

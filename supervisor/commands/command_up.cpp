@@ -3,12 +3,12 @@
 
 #include <cstdlib>
 
-#include "ipc/base/log.hpp"
-#include "supervisor/options.hpp"
+#include "ipc/daemon/contract.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/rig_runner.hpp"
 #include "supervisor/succession/keeper.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -54,9 +54,7 @@ int run_up(const Arguments& arguments) {
                  .is_successor = take_successor_mark()};
   if (options->has("--out")) {
     run.out = std::filesystem::absolute(options->value("--out"));
-    setenv(
-        "HANDCAST_OUT", run.out->c_str(),
-        1);  // the services write there too: part of their contract (services/runtime/context.hpp)
+    setenv(daemon::kOutVariable, run.out->c_str(), 1);  // the services write there, too
   }
   const auto applied = applied_before(run.rig_file, run.settings);
   const auto rig = applied ? *applied : config::load_rig(run.rig_file, run.settings);

@@ -8,10 +8,6 @@
 
 namespace handcast::supervisor {
 
-/// The rig to talk to: `name`, or where it is empty the only one that is up. Errors: unavailable,
-/// with who is up.
-Result<std::string> choose_rig(const std::string& name);
-
 /// Asks a rig and waits for its answer's object: as long as the services take, but no longer than
 /// its supervisor is awake. Errors: unavailable (it is not up, it went away, it hangs), bad_data
 /// (its refusal).

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <vector>
 
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 
 namespace handcast::supervisor {
 namespace {

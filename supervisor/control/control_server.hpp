@@ -9,8 +9,8 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
+#include "supervisor/base/event_loop.hpp"
 #include "supervisor/control/control_message.hpp"
-#include "supervisor/event_loop.hpp"
 
 namespace handcast::supervisor {
 

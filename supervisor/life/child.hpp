@@ -11,18 +11,18 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/succession/adoption.hpp"
-#include "supervisor/succession/exit_reports.hpp"
+#include "ipc/daemon/handover.hpp"
+#include "supervisor/base/exit.hpp"
+#include "supervisor/life/exit_reports.hpp"
+#include "supervisor/life/saved_service.hpp"
 
 namespace handcast::supervisor {
 
-/// What a daemon is started with: see the contract in services/runtime/context.hpp.
+/// What a daemon is started with (ipc/daemon/contract.hpp).
 struct ChildSpec {
   std::filesystem::path program;
   std::vector<std::string> arguments;
-  std::vector<std::pair<std::string, int>>
-      rings;  ///< stream and the supervisor's descriptor of its segment
+  daemon::Rings rings;  ///< the supervisor's descriptors, which the daemon inherits
   std::int64_t epoch_ns = 0;
   bool spare = false;      ///< it prepares everything and waits for its turn
   bool log_errors = true;  ///< stderr is read with stdout; otherwise it is this process's own

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "supervisor/exit.hpp"
+#include "supervisor/base/exit.hpp"
 
 namespace handcast::supervisor {
 

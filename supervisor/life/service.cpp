@@ -11,7 +11,8 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "supervisor/console.hpp"
+#include "supervisor/base/console.hpp"
+#include "supervisor/base/process.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -340,7 +341,7 @@ void Service::log_death(Exit exit, const Decision& decision) const {
 
 void Service::note_failed_start(const Error& error) {
   log_.append(error.what + "\n", print_line);
-  const Exit exit{.code = error.code == Errc::bad_config ? kExitConfig : kExitFailure};
+  const Exit exit{.code = exit_code_of(error)};
   last_exit_ = exit;
   tell(exit, judge(exit));
 }

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "ipc/ring/ring_view.hpp"
-#include "supervisor/event_loop.hpp"
+#include "supervisor/base/event_loop.hpp"
 #include "supervisor/life/child.hpp"
 #include "supervisor/life/log_tail.hpp"
 #include "supervisor/life/restart_policy.hpp"
-#include "supervisor/life/service_spec.hpp"
+#include "supervisor/life/saved_service.hpp"
 #include "supervisor/life/standby.hpp"
 #include "supervisor/life/state.hpp"
-#include "supervisor/succession/adoption.hpp"
+#include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
 

@@ -55,7 +55,7 @@ void Standby::start(std::int64_t now) {
   auto child = host_.spawn();
   if (!child) {
     log::warning("the spare of {} could not be started: {}", host_.name, child.error().what);
-    return replace_after({now, std::nullopt, {.code = kExitFailure}});
+    return replace_after({now, std::nullopt, {.code = kExitRetry}});
   }
   child_.emplace(std::move(*child));
   loop_.watch(child_->pidfd(), [this] { child_ended(); });

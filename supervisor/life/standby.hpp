@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "supervisor/event_loop.hpp"
+#include "supervisor/base/event_loop.hpp"
 #include "supervisor/life/child.hpp"
 #include "supervisor/life/log_tail.hpp"
 #include "supervisor/life/restart_policy.hpp"

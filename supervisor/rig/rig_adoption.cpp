@@ -11,8 +11,9 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "supervisor/life/service_spec.hpp"
+#include "ipc/daemon/contract.hpp"
 #include "supervisor/rig/rig_runner.hpp"
+#include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -120,7 +121,7 @@ void RigRunner::continue_run(const SavedRig& saved) {
     *options_.seconds += ns_to_seconds(now_ns() - started_ns_);
   if (options_.out || saved.out.empty()) return;
   options_.out = saved.out;
-  setenv("HANDCAST_OUT", saved.out.c_str(), 1);
+  setenv(daemon::kOutVariable, saved.out.c_str(), 1);
 }
 
 void RigRunner::report_deaths(const AdoptedRig& adopted) {

@@ -7,10 +7,10 @@
 #include "config/settings/join.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "supervisor/life/service_spec.hpp"
 #include "supervisor/rig/applied_rig.hpp"
-#include "supervisor/rig/fingerprint.hpp"
 #include "supervisor/rig/rig_runner.hpp"
+#include "supervisor/spec/fingerprint.hpp"
+#include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
 namespace {

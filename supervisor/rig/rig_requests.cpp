@@ -10,8 +10,8 @@
 
 #include "config/settings/join.hpp"
 #include "ipc/base/clock.hpp"
-#include "supervisor/rig/fingerprint.hpp"
 #include "supervisor/rig/rig_runner.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
 namespace {

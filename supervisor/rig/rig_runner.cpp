@@ -13,9 +13,9 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
-#include "supervisor/console.hpp"
-#include "supervisor/life/service_spec.hpp"
+#include "supervisor/base/console.hpp"
 #include "supervisor/rig/applied_rig.hpp"
+#include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
 namespace {

@@ -9,11 +9,12 @@
 
 #include "config/rig.hpp"
 #include "ipc/shm/segment.hpp"
+#include "supervisor/base/event_loop.hpp"
 #include "supervisor/control/control_server.hpp"
-#include "supervisor/event_loop.hpp"
 #include "supervisor/life/service.hpp"
 #include "supervisor/record/recorder.hpp"
 #include "supervisor/rig/status.hpp"
+#include "supervisor/succession/adoption.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {

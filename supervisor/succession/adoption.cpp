@@ -16,7 +16,8 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/process.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {

@@ -5,24 +5,14 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
-#include "ipc/base/unique_fd.hpp"
 #include "ipc/shm/segment.hpp"
 #include "supervisor/succession/saved_rig.hpp"
 
-// contract
 namespace handcast::supervisor {
 
 /// A new ring under a number which a successor, that must give it the same one, has not used for
 /// anything else before. Errors: as Segment::create.
 Result<ipc::Segment> make_ring(const ipc::RingSpec& spec);
-
-/// A living service of a supervisor that died, identified beyond doubt: the pidfd was opened before
-/// the start time was compared.
-struct AdoptedProcess {
-  SavedService saved;
-  UniqueFd pidfd;
-  UniqueFd log;  ///< the reading end of its output, opened again; does not block
-};
 
 struct AdoptedRig {
   SavedRig saved;

@@ -18,9 +18,9 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/console.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/succession/exit_reports.hpp"
+#include "supervisor/base/console.hpp"
+#include "supervisor/base/exit.hpp"
+#include "supervisor/life/exit_reports.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -93,7 +93,7 @@ class Keeper {
       const auto started_ns = now_ns();
       start();
       while (supervisor_ > 0) handle(wait_for_signal(kMinute_ns));
-      const bool cannot_now = is_successor_ && exit_ && exit_->code == kExitFailure;
+      const bool cannot_now = is_successor_ && exit_ && exit_->code == kExitRetry;
       if (exit_ && !exit_->signalled && !cannot_now) return see_off(exit_->code);
       deaths_.note(started_ns, now_ns());
       if (deaths_.too_many(now_ns())) return give_up();
@@ -144,7 +144,7 @@ class Keeper {
     execve(plan_.argument_pointers[0], plan_.argument_pointers.data(),
            plan_.environment_pointers.data());
     print_line(fmt::format("handcast: {}: {}", plan_.arguments[0], std::strerror(errno)));
-    _exit(kExitFailure);
+    _exit(kExitRetry);
   }
 
   /// A signal's number; 0 after `span_ns` without one.
@@ -196,7 +196,7 @@ class Keeper {
                     "again; what lives of its services goes on: "
                     "`handcast up` takes them over, `handcast down` ends them",
                     kDeathsInAMinute));
-    return kExitFailure;
+    return kExitRetry;
   }
 
   UniqueFd here_;   ///< reports go in here
@@ -218,7 +218,7 @@ int keep(const std::vector<std::string>& arguments) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     print_line(fmt::format("handcast: no socket for the keeper: {}", std::strerror(errno)));
-    return kExitFailure;
+    return kExitRetry;
   }
   return Keeper(arguments, UniqueFd(ends[0]), UniqueFd(ends[1])).run();
 }

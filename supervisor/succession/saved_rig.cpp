@@ -11,10 +11,9 @@
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -167,22 +166,6 @@ Result<std::optional<SavedRig>> load_saved(const std::string& name) {
 
 void forget_saved(const std::string& rig) {
   if (const auto path = state_of(rig)) unlink(path->c_str());
-}
-
-// "PID (name) state ppid ...": the name may hold anything, so count behind it. The state is
-// field 3.
-std::optional<std::uint64_t> start_ticks_of(pid_t pid) {
-  constexpr int kStartField = 22;
-  const auto text = text_of_proc(fmt::format("/proc/{}/stat", pid));
-  const auto behind_name = text.rfind(") ");
-  if (behind_name == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(behind_name + 2));
-  std::string field;
-  for (int number = 3; number <= kStartField; ++number) {
-    if (!(fields >> field)) return std::nullopt;
-    if (number == 3 && (field == "Z" || field == "X")) return std::nullopt;
-  }
-  return std::strtoull(field.c_str(), nullptr, 10);
 }
 
 }  // namespace handcast::supervisor

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <sys/types.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,9 +7,8 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
-#include "supervisor/life/state.hpp"
+#include "supervisor/life/saved_service.hpp"
 
-// contract
 namespace handcast::supervisor {
 
 struct SavedRing {
@@ -19,17 +16,6 @@ struct SavedRing {
   std::uint64_t inode =
       0;        ///< of the memory file: tells it from whatever else has the number by now
   int fd = -1;  ///< its number in every service
-};
-
-struct SavedService {
-  std::string name;
-  pid_t pid = 0;  ///< of the process that works (not of a spare); 0: none
-  std::uint64_t started_ticks =
-      0;  ///< of that process (/proc/PID/stat, field 22): numbers are used again
-  State state = State::starting;
-  std::string swapped;      ///< the back end that `handcast swap` gave it; "" for the rig's own
-  std::string fingerprint;  ///< of the settings it runs with (fingerprint.hpp)
-  int restarts = 0;
 };
 
 /// What a supervisor leaves for its successor, so that services and picture go on when it dies.
@@ -51,8 +37,5 @@ Result<void> save(const SavedRig& rig);
 /// (it makes no sense).
 Result<std::optional<SavedRig>> load_saved(const std::string& rig);
 void forget_saved(const std::string& rig);
-
-/// Start time of a process in clock ticks since boot; empty where there is none (or only a zombie).
-std::optional<std::uint64_t> start_ticks_of(pid_t pid);
 
 }  // namespace handcast::supervisor

@@ -9,7 +9,6 @@
 
 #include "ipc/base/unique_fd.hpp"
 
-// contract
 namespace handcast::supervisor {
 
 /// What systemd is told (sd_notify's protocol, a datagram to $NOTIFY_SOCKET). Without systemd

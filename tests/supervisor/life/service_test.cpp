@@ -13,6 +13,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/ring/writer.hpp"
+#include "supervisor/base/process.hpp"
 
 namespace handcast::supervisor {
 namespace {

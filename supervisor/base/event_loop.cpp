@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/event_loop.hpp"
+#include "supervisor/base/event_loop.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>

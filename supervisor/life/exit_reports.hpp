@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/exit.hpp"
+#include "supervisor/base/exit.hpp"
 
-// contract
 namespace handcast::supervisor {
+
+/// The variable that holds the number of the supervisor's end of the keeper's socket.
+inline constexpr const char* kKeeperVariable = "HANDCAST_KEEPER_FD";
 
 /// One process's end as the keeper sends it: si_pid, si_code and si_status of its siginfo_t.
 struct ExitReport {

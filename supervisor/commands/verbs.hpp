@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
+#include "ipc/daemon/exit_code.hpp"
 
 namespace handcast::supervisor {
 
@@ -42,8 +43,9 @@ int run_latency(const Arguments& arguments);
 int run_top(const Arguments& arguments);
 int run_install_units(const Arguments& arguments);
 
-/// Prints "handcast: sentence" and gives back the exit code.
+/// Prints "handcast: sentence" and returns the exit code.
 int complain(int exit_code, std::string_view sentence);
+/// The same with the error's sentence and exit code.
 int complain(const Error& error);
 
 }  // namespace handcast::supervisor

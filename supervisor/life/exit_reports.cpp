@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/succession/exit_reports.hpp"
+#include "supervisor/life/exit_reports.hpp"
 
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -12,8 +12,6 @@
 #include <cstring>
 #include <string_view>
 #include <utility>
-
-#include "supervisor/succession/keeper.hpp"
 
 namespace handcast::supervisor {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/rig/fingerprint.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,6 @@
 
 #include "config/rig.hpp"
 
-// contract
 namespace handcast::supervisor {
 
 /// A short text that changes when a setting changes on which the service depends: those of its own

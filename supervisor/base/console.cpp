@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/console.hpp"
+#include "supervisor/base/console.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

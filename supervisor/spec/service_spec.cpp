@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/life/service_spec.hpp"
+#include "supervisor/spec/service_spec.hpp"
 
+#include "ipc/daemon/contract.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/stage_mark.hpp"
-#include "supervisor/rig/fingerprint.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -38,7 +39,8 @@ std::vector<ipc::RingSpec> all_streams() {
 }
 
 ipc::RingSpec marks_of(const ServiceSpec& service) {
-  return ipc::RingSpec::of<msg::StageMarks>("marks." + service.name, kMarkSlots, kWithHistory);
+  return ipc::RingSpec::of<msg::StageMarks>(daemon::marks_stream_of(service.name), kMarkSlots,
+                                            kWithHistory);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/succession/exit_reports.hpp"
+#include "supervisor/life/exit_reports.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -10,8 +10,6 @@
 #include <sys/wait.h>
 
 #include <array>
-
-#include "supervisor/succession/keeper.hpp"
 
 namespace handcast::supervisor {
 namespace {

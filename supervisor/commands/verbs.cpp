@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/verbs.hpp"
+#include "supervisor/commands/verbs.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
-
-#include "supervisor/exit.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -72,8 +70,6 @@ int complain(int exit_code, std::string_view sentence) {
   return exit_code;
 }
 
-int complain(const Error& error) {
-  return complain(error.code == Errc::bad_config ? kExitConfig : kExitFailure, error.what);
-}
+int complain(const Error& error) { return complain(exit_code_of(error), error.what); }
 
 }  // namespace handcast::supervisor
