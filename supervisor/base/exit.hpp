@@ -23,8 +23,6 @@ struct Exit {
     return signalled ? fmt::format("signal {} ({})", code, strsignal(code))
                      : fmt::format("exit {}", code);
   }
-
-  bool operator==(const Exit&) const = default;
 };
 
 }  // namespace handcast::supervisor

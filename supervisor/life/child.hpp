@@ -50,6 +50,7 @@ class Child {
   ~Child();
 
   pid_t pid() const { return pid_; }
+  bool is_adopted() const { return reports_ != nullptr; }
   int pidfd() const { return pidfd_.get(); }  ///< readable when the process has ended
   int log_fd() const {
     return log_.get();

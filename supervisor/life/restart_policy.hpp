@@ -48,4 +48,8 @@ inline constexpr std::size_t kStormDeaths = 10;
 /// back together.
 Decision decide(DeathRecord record, const Death& death, double jitter = 0);
 
+/// A jitter for decide() out of the last digits of the time, which differ even between services
+/// that die together.
+double jitter_at(std::int64_t now_ns);
+
 }  // namespace handcast::supervisor

@@ -162,10 +162,10 @@ void RigRunner::apply(const std::vector<ServiceSpec>& specs) {
 void RigRunner::add_service(const ServiceSpec& spec, std::size_t place) {
   const auto at =
       services_.begin() + static_cast<std::ptrdiff_t>(std::min(place, services_.size()));
-  services_.insert(at, std::make_unique<Service>(spec, launch_, loop_,
-                                                 [this](Service& service, Service::Event event) {
-                                                   on_event(service, event);
-                                                 }));
+  services_.insert(
+      at, std::make_unique<Service>(spec, launch_, loop_, [this](Service& service, Notice notice) {
+        on_notice(service, notice);
+      }));
 }
 
 void RigRunner::continue_reload(std::int64_t now) {

@@ -99,7 +99,7 @@ Result<void> RigRunner::open_descriptors() {
   loop_.watch(signals_.get(), [this] {
     drain(signals_.get());
     if (phase_ != Phase::stopping) return begin_stop(0);
-    for (const auto& service : services_) service->kill();  // asked twice: in a hurry
+    for (const auto& service : services_) service->hurry();  // asked twice
   });
   return {};
 }
@@ -130,11 +130,10 @@ void RigRunner::tick() {
   watchdog_.tick(now);
   forgive_a_standstill(now);
   recorder_.poll();
-  for (const auto& service : services_) service->tick(now, needs_are_ready(*service));
+  for (const auto& service : services_) service->tick(now, look_at(*service, now));
   if (phase_ == Phase::stopping || phase_ == Phase::done) return;
   if (options_.seconds && now - started_ns_ >= seconds_to_ns(*options_.seconds))
     return begin_stop(0);
-  replace_the_silent(now);
   continue_reload(now);
   progress(now);
 }
@@ -186,22 +185,17 @@ void RigRunner::forgive_a_standstill(std::int64_t now) {
   if (late_ns < kStoodStill_ns) return;
   log::warning("everything stood still for {:.1f} s; nobody is late for it",
                ns_to_seconds(late_ns));
-  forgiven_ns_ = now;
   for (const auto& service : services_) service->forgive(late_ns);
 }
 
-void RigRunner::replace_the_silent(std::int64_t now) {
-  for (const auto& service : services_) {
-    if (service->state() != State::ready) continue;
-    const auto silence_ms = recorder_.silence_ms(service->spec().name, now);
-    const auto heard_ns = silence_ms ? now - ms_to_ns(*silence_ms) : 0;
-    const auto silent_s = ns_to_seconds(
-        now - std::max({heard_ns, *service->ready_ns(), service->killed_ns(), forgiven_ns_}));
-    if (silent_s < launch_.silent_s) continue;
-    log::warning("{} has given no sign of life for {:.1f} s; killed", service->spec().name,
-                 silent_s);
-    service->kill();
-  }
+/// While the rig stops, nobody is replaced for being silent.
+Service::Look RigRunner::look_at(const Service& service, std::int64_t now) const {
+  Service::Look look{.needs_are_ready = needs_are_ready(service)};
+  if (phase_ == Phase::stopping || phase_ == Phase::done)
+    look.heard_ns = now;
+  else if (const auto silence_ms = recorder_.silence_ms(service.spec().name, now))
+    look.heard_ns = now - ms_to_ns(*silence_ms);
+  return look;
 }
 
 void RigRunner::progress(std::int64_t now) {
@@ -210,17 +204,17 @@ void RigRunner::progress(std::int64_t now) {
   next_progress_ns_ = now + progress_period_ns();
 }
 
-void RigRunner::on_event(Service& service, Service::Event event) {
+void RigRunner::on_notice(Service& service, Notice notice) {
   if (phase_ == Phase::stopping) {
-    if (event != Service::Event::ready) stop_next();
+    if (notice != Notice::ready) stop_next();
     return;
   }
-  switch (event) {
-    case Service::Event::ready:
+  switch (notice) {
+    case Notice::ready:
       return on_ready(service);
-    case Service::Event::failed:
+    case Notice::failed:
       return on_failed(service);
-    case Service::Event::stopped:
+    case Notice::stopped:
       if (const auto pending = pending_.extract(service.spec().name))
         pending.mapped().reply(failure(service.spec().name + " ended by itself"));
   }
@@ -239,7 +233,7 @@ void RigRunner::on_ready(Service& service) {
 void RigRunner::come_up() {
   const auto now = now_ns();
   const auto has_begun = [&](const auto& service) {
-    return service->ever_ready() || need_not_be_waited_for(*service, now);
+    return service->was_ready() || need_not_be_waited_for(*service, now);
   };
   if (phase_ != Phase::starting || !(inherited_ || std::ranges::all_of(services_, has_begun)))
     return;
@@ -260,7 +254,7 @@ void RigRunner::on_failed(Service& service) {
   if (pending != pending_.end())
     pending_.extract(pending).mapped().reply(failure(fmt::format("{} failed: {}", name, sentence)));
   const bool reloaded = reload_ && reload_->begun.contains(name);  // the rig was there before
-  if (phase_ != Phase::starting || service.ever_ready() || reloaded) return;
+  if (phase_ != Phase::starting || service.was_ready() || reloaded) return;
   print_line(fmt::format("handcast: {} cannot start: {}", name, sentence));
   begin_stop(kExitConfig);
 }

@@ -79,9 +79,9 @@ class RigRunner {
   void start_those_held();
   void come_up();
   void forgive_a_standstill(std::int64_t now_ns);
-  void replace_the_silent(std::int64_t now_ns);
+  Service::Look look_at(const Service& service, std::int64_t now_ns) const;
   void progress(std::int64_t now_ns);
-  void on_event(Service& service, Service::Event event);
+  void on_notice(Service& service, Notice notice);
   void on_ready(Service& service);
   void on_failed(Service& service);
   void begin_stop(int exit_code);
@@ -135,8 +135,7 @@ class RigRunner {
   std::int64_t started_ns_ = 0;
   std::int64_t next_progress_ns_ = 0;
   std::int64_t last_tick_ns_ = 0;
-  std::int64_t forgiven_ns_ = 0;  ///< until then nobody was late
-  std::uint64_t revision_ = 0;    ///< of all services, as last saved
+  std::uint64_t revision_ = 0;  ///< of all services, as last saved
   mutable bool save_failed_ = false;
   std::map<std::string, Pending> pending_;
   std::optional<Reload> reload_;
