@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "supervisor/life/service.hpp"
 #include "supervisor/record/recorder.hpp"
+#include "supervisor/rig/service_table.hpp"
 
 namespace handcast::supervisor {
 
-using Services = std::vector<std::unique_ptr<Service>>;
-
-/// A rig at one moment: what its parts know of themselves.
+/// A rig at one moment.
 struct RigView {
   const std::string& name;
   const Services& services;
