@@ -9,16 +9,19 @@
 
 namespace handcast::supervisor {
 
-/// Calls back when descriptors become readable. One thread; callbacks may watch and forget, also
-/// themselves. A callback may be called once too often (its descriptor's number was reused in the
-/// same turn): it must not block on an empty descriptor.
+/// Calls functions when descriptors become readable or writable. One thread. A callback may watch
+/// and forget descriptors, its own included. It may be called once too often, if the number of its
+/// descriptor was reused in the same turn: it must not block on an empty descriptor.
 class EventLoop {
  public:
+  /// Errors: unavailable.
   static Result<EventLoop> open();
 
+  /// Calls back while `fd` is readable.
   void watch(int fd, std::function<void()> on_readable);
-  /// Calls back also while `fd`, which is watched, can be written to. An empty function: no more.
+  /// Also calls back while `fd`, which is watched, is writable. An empty function ends that.
   void watch_writing(int fd, std::function<void()> on_writable);
+  /// Ends all callbacks for `fd`. Does nothing if it is not watched.
   void forget(int fd);
   /// Waits for events and handles them.
   void turn();
@@ -33,11 +36,12 @@ class EventLoop {
   std::map<int, Handlers> handlers_;
 };
 
-/// A descriptor that is readable every `period_ns`. Read it to wait for the next time.
+/// A descriptor that becomes readable every `period_ns`, until it is read. Errors: unavailable.
 Result<UniqueFd> open_timer(std::int64_t period_ns);
-/// Blocks the signals that stop the rig (SIGINT, SIGTERM, SIGHUP) and makes them readable.
+/// Blocks the signals that stop a rig (SIGINT, SIGTERM, SIGHUP). The descriptor is readable when
+/// one has arrived. Errors: unavailable.
 Result<UniqueFd> open_stop_signals();
-/// Reads what is there and forgets it.
+/// Reads a non-blocking descriptor until it is empty.
 void drain(int fd);
 
 }  // namespace handcast::supervisor

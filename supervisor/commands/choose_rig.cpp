@@ -12,7 +12,7 @@
 namespace handcast::supervisor {
 namespace {
 
-/// Services may live without their supervisor.
+/// What to say if no rig is up. Services may live without their supervisor.
 std::string nobody_is_up() {
   const auto orphaned = orphaned_rigs();
   if (orphaned.empty()) return "no rig is up; `handcast up RIG.toml` starts one";

@@ -16,7 +16,7 @@
 namespace handcast::supervisor {
 namespace {
 
-/// Whose rig it is: with sudo, of the person in front of it.
+/// The user that a system unit runs as: with sudo, the person who called it.
 std::string user_name() {
   const char* before_sudo = std::getenv("SUDO_USER");
   const auto* entry = getpwuid(getuid());
@@ -73,13 +73,13 @@ int run_install_units(const Arguments& arguments) {
   const auto text = unit_text(spec);
   if (options->has("--print")) {
     fmt::print("{}", text);
-    return 0;
+    return kExitDone;
   }
   const auto file = unit_folder(spec) / unit_name(spec);
   if (const auto written = write_unit(file, text); !written) return complain(written.error());
   fmt::print("wrote {}; what is left to do:\n", file.string());
   print_next_steps(spec);
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

@@ -27,7 +27,7 @@ int run_latency(const Arguments& arguments) {
 
   const auto table = measure_latency(*history, *rates);
   fmt::print("{}", options->has("--json") ? to_json(table).dump(2) + "\n" : print_latency(table));
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

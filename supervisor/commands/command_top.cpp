@@ -30,14 +30,14 @@ int show_once(const std::string& rig, bool as_json) {
   if (as_json) {
     fmt::print("{}\n",
                json_of(model).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    return 0;
+    return kExitDone;
   }
   for (const auto& line : lay_out(model, {.columns = kPlainColumns}))
     fmt::print("{}\n", print(line, false));
-  return 0;
+  return kExitDone;
 }
 
-/// What is seen, and how far it is scrolled.
+/// The terminal, and how far it is scrolled.
 class Screen {
  public:
   void show(const TopModel& model) {
@@ -48,8 +48,7 @@ class Screen {
     terminal_.show(texts);
   }
 
-  /// Lets `model` be looked at until it is time for the next look; false: the person has seen
-  /// enough.
+  /// Shows `model` until it is time for the next look. False: the person wants to quit.
   bool watch(const TopModel& model, std::int64_t until_ns) {
     for (;;) {
       show(model);
@@ -97,8 +96,8 @@ int show_until_quit(const std::string& rig) {
   auto next_ns = now_ns();
   for (;;) {
     next_ns =
-        std::max(next_ns + kRefresh_ns, now_ns());  // a machine that was asleep does not catch up
-    if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return 0;
+        std::max(next_ns + kRefresh_ns, now_ns());  // no catching up after the machine was asleep
+    if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return kExitDone;
     looks.push_back(watcher.look());
     if (looks.size() > kLooksBack + 1) looks.pop_front();
   }

@@ -39,7 +39,7 @@ int run_trace(const Arguments& given) {
   fmt::print("{}: {} frames of {} services, {:.1f} MB; open it in https://ui.perfetto.dev\n", path,
              history->frames.size(), history->services.size(),
              static_cast<double>(trace.size()) * 1e-6);
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

@@ -11,25 +11,30 @@
 
 namespace handcast::supervisor {
 
-using Arguments = std::vector<std::string>;  ///< what stands behind the verb
+/// What follows the verb on the command line.
+using Arguments = std::vector<std::string>;
 
-/// What a verb is for: `handcast help` lists them so.
+/// What a verb is for. `handcast help` lists the verbs by group.
 enum class VerbGroup { run, look, change, set_up, score };
 
+/// A verb as `handcast help` describes it.
 struct VerbEntry {
   std::string_view name;
-  std::string_view usage;  ///< what stands behind "handcast "
+  std::string_view usage;  ///< what follows "handcast "
   std::string_view sentence;
   int (*run)(const Arguments&);  ///< null: a program of its own, handcast-NAME
   VerbGroup group = VerbGroup::set_up;
 };
 
-/// Every verb of this installation.
+/// Every verb.
 std::span<const VerbEntry> verbs();
-
-/// The folder of this program: where its daemons and other verbs are.
-std::filesystem::path program_folder();
+/// Their names.
 std::vector<std::string> verb_names();
+
+/// The folder of this program, which also holds the daemons and the verbs that are programs.
+std::filesystem::path program_folder();
+
+// The verbs of this program. Each returns an exit code (ipc/daemon/exit_code.hpp).
 
 int run_up(const Arguments& arguments);
 int run_config(const Arguments& arguments);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kLongestAnswer = 1 << 24;
 
-/// What came back: a line and the descriptors that came with it.
+/// What has been received so far.
 struct Received {
   std::string line;
   std::vector<UniqueFd> descriptors;
@@ -52,8 +52,8 @@ void take_descriptors(msghdr& message, std::vector<UniqueFd>& descriptors) {
   }
 }
 
-/// Takes what is there. Errors: unavailable (the rig went away, or this program has no room for the
-/// descriptors).
+/// Receives what can be received without waiting. Errors: unavailable (the rig went away, or this
+/// program cannot have as many descriptors), bad_data.
 Result<void> receive(int socket, Received& received) {
   std::array<char, 1 << 16> bytes;
   alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(kMostDescriptors * sizeof(int))> room;
@@ -76,7 +76,7 @@ Result<void> receive(int socket, Received& received) {
   return {};
 }
 
-/// Errors: as receive; timeout where the line was not whole in time.
+/// Receives until the line is complete. Errors: as receive(); timeout.
 Result<void> receive_line(int socket, Received& received, Deadline deadline) {
   while (!received.line.ends_with('\n')) {
     if (auto readable = wait_for(socket, deadline); !readable) return readable;
@@ -97,7 +97,7 @@ Result<UniqueFd> send_to(const std::string& rig, const Request& request) {
   return socket;
 }
 
-/// Whether the supervisor still answers, asked over a connection of its own.
+/// Whether the supervisor answers another request in time.
 bool is_awake(const std::string& rig, std::chrono::nanoseconds patience) {
   const auto socket = send_to(rig, {});
   Received received;

@@ -150,8 +150,8 @@ bool is_a_persons_fault(int error) {
   return error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR;
 }
 
-/// The new process borrows the supervisor's memory until it is the daemon (vfork): the rings'
-/// mappings are not copied, which is most of what a fork would cost.
+/// As vfork: the new process uses the supervisor's memory until exec. The rings' mappings are not
+/// copied, which is most of what a fork would cost.
 Result<pid_t> start(Plan& plan) {
   const SpawnActions actions(plan);
   const auto arguments = pointers_to(plan.arguments);
@@ -204,7 +204,7 @@ Child::~Child() {
   poll(&ended, 1, -1);
 }
 
-// By the pidfd, never by the number: that of an adopted process may belong to another by now.
+// By the pidfd, never by the number: another process may have the number of an adopted one by now.
 void Child::signal(int number) {
   if (!reaped_ && pidfd_) syscall(SYS_pidfd_send_signal, pidfd_.get(), number, nullptr, 0);
 }
@@ -235,7 +235,7 @@ std::optional<Exit> Child::try_reap_adopted() {
   if (ended_ns_ == 0) {
     if (!has_ended()) return std::nullopt;
     ended_ns_ = now_ns();
-    kill(-pid_, SIGKILL);  // its number was free for an instant at most
+    kill(-pid_, SIGKILL);  // its number has been free for an instant at most
   }
   reports_->read();
   auto exit = reports_->take(pid_);

@@ -16,10 +16,10 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::size_t kMostRemembered =
-    1024;  ///< the keeper also reports grandchildren, whom nobody asks about
+/// The keeper also reports grandchildren, which nobody asks about.
+constexpr std::size_t kMostRemembered = 1024;
 
-/// The number in the variable, which is then unset: services must not hold the socket.
+/// The number in the variable, which is unset: services must not hold the socket.
 int take_number(const char* variable) {
   const char* value = std::getenv(variable);
   const std::string_view text = value ? value : "";

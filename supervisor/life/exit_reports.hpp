@@ -13,26 +13,29 @@ namespace handcast::supervisor {
 /// The variable that holds the number of the supervisor's end of the keeper's socket.
 inline constexpr const char* kKeeperVariable = "HANDCAST_KEEPER_FD";
 
-/// One process's end as the keeper sends it: si_pid, si_code and si_status of its siginfo_t.
+/// The end of one process as the keeper sends it: si_pid, si_code and si_status of its siginfo_t.
 struct ExitReport {
   pid_t pid = 0;
   int code = 0;
   int status = 0;
 };
 
-/// How processes ended that are not this supervisor's children: its keeper, which inherits the
-/// orphans of a supervisor that died, takes their exit status and sends it on (a datagram each,
-/// over a socket pair whose end is in HANDCAST_KEEPER_FD).
+/// How processes ended that are not children of this supervisor. They are children of its keeper,
+/// which inherits the services of a supervisor that died. The keeper takes their exit status and
+/// sends each as a datagram over a socket pair.
 class ExitReports {
  public:
+  /// Takes the socket that kKeeperVariable names, and unsets the variable. Without a keeper nothing
+  /// is ever reported.
   static ExitReports from_environment();
 
-  /// -1 where there is no keeper (any more). Readable when something was reported; does not block.
+  /// Readable when something was reported. Does not block. -1 if there is no keeper.
   int fd() const { return socket_.get(); }
+  /// Reads what was reported.
   void read();
-  /// The keeper's process number, for as long as it is this process's parent; else -1.
+  /// The keeper's process number; -1 if it is not the parent of this process.
   pid_t keeper() const;
-  /// Taken once. Empty: not reported (yet).
+  /// How a process ended, once; empty if that was not reported.
   std::optional<Exit> take(pid_t pid);
 
  private:
@@ -40,8 +43,7 @@ class ExitReports {
   std::map<pid_t, Exit> exits_;
 };
 
-/// How a process ended that somebody else has reaped, where the kernel tells (from Linux 6.15 on).
-/// Empty until it is reaped.
+/// How a process ended that another process has reaped. Empty until then, and before Linux 6.15.
 std::optional<Exit> exit_told_by_kernel(int pidfd);
 
 }  // namespace handcast::supervisor

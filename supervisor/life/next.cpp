@@ -29,7 +29,7 @@ Step next(ServiceState state, const Event& event, std::int64_t now_ns, const Rul
 // How a worker begins.
 
 void Transition::operator()(const event::Hold&) {
-  if (!life_of(worker_)) worker_ = worker::Held{};
+  if (std::holds_alternative<worker::Stopped>(worker_)) worker_ = worker::Held{};
 }
 
 void Transition::operator()(const event::Start&) {
@@ -192,7 +192,7 @@ void Transition::warn_of_death(Exit exit, const Decision& decision) {
 
 void Transition::operator()(const event::Tick& event) {
   tick_spare();
-  std::visit([&](auto worker) { tick(worker, event); }, worker_);  // a copy: it may be replaced
+  std::visit([&](auto state) { tick(state, event); }, worker_);  // a copy: it may be replaced
 }
 
 void Transition::tick(const worker::Waiting& waiting, const event::Tick&) {

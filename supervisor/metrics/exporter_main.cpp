@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// handcast-exporter: a rig's figures for Prometheus. A service of the rig like the others, but it
-// looks on as `handcast top` does.
+// handcast-exporter: serves a rig's figures to Prometheus. It is a service of the rig and gets its
+// figures as `handcast top` does.
 #include <fmt/format.h>
 
 #include <optional>
@@ -27,9 +27,9 @@ constexpr std::string_view kName = "exporter";
 constexpr std::string_view kHelp =
     "handcast-exporter — Serves a rig's figures to Prometheus on this machine.\n\n"
     "usage: handcast-exporter --config RIG.toml [--set path=value]...\n\n"
-    "`handcast up RIG.toml` starts it where supervisor.metrics_port is not 0.\n";
+    "`handcast up RIG.toml` starts it if supervisor.metrics_port is not 0.\n";
 
-/// Where the supervisor sees that this process lives. Empty if there is no supervisor.
+/// The ring that shows the supervisor that this process lives. Empty if there is no supervisor.
 Heart open_heart(const daemon::Supervision& supervision) {
   auto fd = supervision.ring(daemon::marks_stream_of(kName));
   if (!fd) return std::nullopt;

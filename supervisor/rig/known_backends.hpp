@@ -7,9 +7,10 @@
 
 namespace handcast::supervisor {
 
-/// Whether a daemon has this back end, which its program is asked for: that may take a moment, and
-/// the rig's data path does not pass through the supervisor. Errors: bad_config, with the back ends
-/// that there are; unavailable (the program does not answer).
+/// Checks that a daemon has this back end: runs its program with --backends. That may take a
+/// moment, which does not disturb the rig: its data does not pass through the supervisor. Errors:
+/// bad_config (the sentence lists the back ends that it has), unavailable (the program does not
+/// answer).
 Result<void> check_backend(const std::filesystem::path& program_folder, const std::string& service,
                            const std::string& backend);
 

@@ -25,7 +25,7 @@ void give_status(LiveRig& rig, const Reply& reply) {
   reply(answer);
 }
 
-/// Read-only: a tool that is given them cannot disturb the rig by accident.
+/// Gives read-only descriptors: a tool cannot disturb the rig by accident.
 void give_rings(const LiveRig& rig, const Reply& reply) {
   auto answer = success();
   answer["rings"] = nlohmann::json::array();

@@ -62,7 +62,7 @@ Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOp
   return runner;
 }
 
-/// Who listens at the control socket is the supervisor of the rig.
+/// The process that listens at the control socket is the rig's supervisor.
 Result<void> RigRunner::claim_name() {
   auto control = ControlServer::listen(rig_.name, loop_,
                                        [this](const Request& request, ControlServer::Reply reply) {
@@ -171,7 +171,7 @@ void RigRunner::tick() {
   show_progress_now_and_then(now);
 }
 
-/// After each turn of the event loop: what can wait until those who died have successors.
+/// After each turn of the event loop: what can wait until services that died have been replaced.
 void RigRunner::follow_up() {
   come_up();
   begin_what_may();
@@ -181,7 +181,8 @@ void RigRunner::follow_up() {
   save();
 }
 
-/// A service that is no good does not keep the rig from being up; one that was taken over is.
+/// A service that does not get ready in time does not keep the rig from being up. A rig that was
+/// taken over is up already.
 void RigRunner::come_up() {
   if (rig_.phase != Phase::starting) return;
   if (!inherited_ && !rig_.services.has_come_up(now_ns())) return;
@@ -190,7 +191,7 @@ void RigRunner::come_up() {
   notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", rig_.name));
 }
 
-/// One that cannot start may stop the rig.
+/// Starts the services that wait for nothing any more. One that cannot start may stop the rig.
 void RigRunner::begin_what_may() {
   while (!rig_.stops()) {
     auto* service = rig_.services.next_to_begin(now_ns());
@@ -228,7 +229,7 @@ void RigRunner::on_notice(Service& service, Notice notice) {
   }
 }
 
-/// A rig that is not up yet does not start without a service that has never been ready.
+/// A rig that is not up yet stops if a service cannot start.
 void RigRunner::on_failed(Service& service) {
   if (requests_.on_failed(service)) return;
   if (rig_.phase != Phase::starting || service.was_ready()) return;
@@ -237,8 +238,8 @@ void RigRunner::on_failed(Service& service) {
   begin_stop(kExitConfig);
 }
 
-/// Leaves word for a successor. Not while the rig stops: services that were stopped shall not be
-/// taken for idle ones.
+/// Saves the rig for a successor. Not while the rig stops: a successor would leave the services
+/// stopped that were stopped by then.
 void RigRunner::save() {
   if (rig_.stops()) return;
   SavedRig saved{.name = rig_.name,
@@ -265,13 +266,13 @@ void RigRunner::begin_stop(int exit_code) {
   stop_next();
 }
 
-/// One after the other, in the reverse order of their needs.
+/// Services stop one after the other, in the reverse of their order.
 void RigRunner::stop_next() {
   if (auto* last = rig_.services.last_running()) return last->stop();
   finish();
 }
 
-/// All at once, and without waiting.
+/// Stops all services at once, without waiting for them.
 void RigRunner::hurry() {
   for (const auto& service : rig_.services.all()) {
     service->stop();
@@ -292,7 +293,7 @@ void RigRunner::finish() {
   forget_saved(rig_.name);
   forget_applied(rig_.name);
   log::info("rig '{}' has stopped", rig_.name);
-  control_->close_door();
+  control_->stop_accepting();
   requests_.on_done();
 }
 

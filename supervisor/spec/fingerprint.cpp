@@ -24,8 +24,8 @@ struct Reads {
   Paths paths;
 };
 
-/// The true person and motion (services/twin/twin.cpp): all that Twin::create fails for without
-/// them.
+/// The true person and motion (services/evaluation/twin/twin.cpp), without which Twin::create
+/// fails.
 const Paths kTruth{"twin.motion", "twin.hands", "twin.speed", "twin.seed", "twin.shape", "hand"};
 const Paths kEveryDaemon{"calibration"};
 
@@ -56,7 +56,7 @@ const std::vector<Reads>& table() {
   return kTable;
 }
 
-/// Files that are small and change under their names: their content counts as well.
+/// Files that are small and may change under their names: their content counts, too.
 const Paths kFiles{"calibration", "hand.left", "hand.right", "content.left", "content.right"};
 
 /// What only the supervisor reads.
@@ -74,8 +74,8 @@ bool is_in(std::string_view path, const Paths& paths) {
   return std::ranges::any_of(paths, [&](auto section) { return is_within(path, section); });
 }
 
-/// A service or back end that the table does not know depends on everything: it is restarted once
-/// too often, never too seldom.
+/// A service or back end that is not in the table depends on everything: it is restarted too often
+/// rather than too seldom.
 bool reads(std::string_view service, std::string_view backend, std::string_view path) {
   bool has_backends = false, knows_backend = false, found = is_in(path, kEveryDaemon),
        knows_service = false;
@@ -91,7 +91,7 @@ bool reads(std::string_view service, std::string_view backend, std::string_view 
   return found;
 }
 
-/// FNV-1a over texts in a row, each with its end.
+/// FNV-1a over a sequence of texts, each with its end.
 class Hash {
  public:
   void add(std::string_view text) {
@@ -121,7 +121,7 @@ std::string* backend_in(std::string_view service, const config::Listing& listing
 }  // namespace
 
 std::string fingerprint_of(std::string_view service, const config::Rig& rig) {
-  auto copy = rig;  // a listing borrows what could be written to
+  auto copy = rig;  // a listing refers to values that can be written
   const auto listing = config::list_settings(copy);
   const auto backend = backend_of(service, rig);
   Hash hash;

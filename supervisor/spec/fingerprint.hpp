@@ -7,10 +7,10 @@
 
 namespace handcast::supervisor {
 
-/// A short text that changes when a setting changes on which the service depends: those of its own
-/// section and of the sections it reads (the twin's for every back end named twin, the cascade's
-/// for the projector, …). What only the supervisor reads
-/// ([supervisor], and of [X.process] the standby) is not in it.
+/// A short text that changes when a setting changes that the service reads: those of its own
+/// section and of other sections (the twin's for every back end named twin, the cascade's for the
+/// projector, and so on). Settings that only the supervisor reads ([supervisor], and the standby of
+/// [X.process]) are left out.
 std::string fingerprint_of(std::string_view service, const config::Rig& rig);
 
 /// The back end that the rig asks for; "" for a service without back ends.

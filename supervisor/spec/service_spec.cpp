@@ -12,16 +12,15 @@
 namespace handcast::supervisor {
 namespace {
 
-// The largest images a ring has room for. The supervisor does not read calibrations, so these are
-// not the rig's own sizes.
+// The largest images that a ring has room for. They are not the rig's own sizes: the supervisor
+// does not read calibrations.
 constexpr int kCameraWidth_px = 1280, kCameraHeight_px = 1024;
 constexpr int kProjectorWidth_px = 1024, kProjectorHeight_px = 768;
 
-constexpr int kMarkSlots =
-    254;  ///< the most a ring can have: the recorder may be late by a quarter of a second at 946 Hz
-
-constexpr int kImageSlots =
-    8;  ///< three readers with two leases each, and two for the writer: a loan never fails
+/// The most that a ring can have: the recorder may be late by a quarter of a second at 946 Hz.
+constexpr int kMarkSlots = 254;
+/// Three readers with two leases each, and two for the writer: a loan never fails.
+constexpr int kImageSlots = 8;
 
 constexpr bool kNewestOnly = false, kWithHistory = true;
 

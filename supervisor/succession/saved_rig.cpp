@@ -76,7 +76,7 @@ SavedRing ring_from(const json& object) {
   return {object.at("stream"), object.at("inode"), object.at("fd")};
 }
 
-/// A name that nobody knows means the least: it is to be started.
+/// An unknown name counts as starting.
 State state_named(const std::string& name) {
   const auto found = std::ranges::find(kStateNames, name);
   return found == kStateNames.end() ? State::starting
@@ -93,7 +93,7 @@ SavedService service_from(const json& object) {
           .restarts = object.at("restarts")};
 }
 
-/// Throws what the JSON library throws where a member is missing or of another kind.
+/// Throws json::exception if a member is missing or of another type.
 SavedRig rig_from(const json& object) {
   SavedRig rig{.name = object.at("name"),
                .rig_file = object.at("rig_file").get<std::string>(),
@@ -107,7 +107,7 @@ SavedRig rig_from(const json& object) {
   return rig;
 }
 
-/// What must hold before signals are sent and descriptors replaced by these numbers.
+/// Why signals must not be sent to these processes, or these descriptors replaced; "" if they may.
 std::string problem_of(const SavedRig& rig, const std::string& name) {
   if (rig.name != name) return fmt::format("it is of a rig named '{}'", rig.name);
   for (const auto& ring : rig.rings)
@@ -119,7 +119,7 @@ std::string problem_of(const SavedRig& rig, const std::string& name) {
   return "";
 }
 
-/// Whether the file is as save() leaves it: nobody else could have written it.
+/// Why the file is not as save() leaves it; "" if it is, so that nobody else could have written it.
 std::string problem_of(int fd) {
   struct stat status {};
   if (fstat(fd, &status) != 0) return std::strerror(errno);

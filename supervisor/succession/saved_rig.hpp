@@ -11,16 +11,16 @@
 
 namespace handcast::supervisor {
 
+/// A ring as a supervisor saves it for a successor.
 struct SavedRing {
   std::string stream;
-  std::uint64_t inode =
-      0;        ///< of the memory file: tells it from whatever else has the number by now
-  int fd = -1;  ///< its number in every service
+  std::uint64_t inode = 0;  ///< of the memory file: tells it from another file with the same number
+  int fd = -1;              ///< its number in every service
 };
 
-/// What a supervisor leaves for its successor, so that services and picture go on when it dies.
-/// Written at every change to RIG.state in the runtime folder (0600, replaced as a whole), removed
-/// at an orderly stop.
+/// A rig as its supervisor saves it for a successor, so that services and picture go on when it
+/// dies. It is written to RIG.state in the runtime folder at every change (mode 0600, replaced as a
+/// whole), and removed when the rig stops.
 struct SavedRig {
   std::string name;
   std::filesystem::path rig_file;
@@ -31,11 +31,12 @@ struct SavedRig {
   std::vector<SavedService> services;
 };
 
-/// Errors: unavailable (it cannot be written: the rig goes on, its supervisor just has no heir).
+/// Writes the file. Errors: unavailable; the rig goes on, but no successor can take it over.
 Result<void> save(const SavedRig& rig);
-/// Empty where nothing was left, or it was left before the machine last started. Errors: bad_data
-/// (it makes no sense).
+/// Reads the file. Empty if there is none, or if it was written before the machine last started.
+/// Errors: bad_data (it makes no sense, or others could have written it).
 Result<std::optional<SavedRig>> load_saved(const std::string& rig);
+/// Removes the file.
 void forget_saved(const std::string& rig);
 
 }  // namespace handcast::supervisor
