@@ -31,8 +31,9 @@
 ///          marks, or an empty one. The supervisor replaces a daemon that has been silent for
 ///          supervisor.silent_s.
 ///
-///   exit   See exit_code.hpp. 0: stopped as asked. 100: not restarted. Everything else, a signal
-///          included: restarted.
+///   exit   See exit_code.hpp. 0 (stopped as asked, or nothing left to do) and 100 (a person must
+///          change something) are final. After everything else, a signal included, the daemon is
+///          restarted.
 ///
 ///   SIGTERM, SIGINT   Stop.
 namespace handcast::daemon {

@@ -17,13 +17,14 @@ class Supervision {
   /// Takes over what the environment hands to this process. `name` is the daemon's: "camera".
   static Supervision from_environment(std::string name);
 
-  /// The time of the rig's start (CLOCK_MONOTONIC); the time of this call's object if the daemon
-  /// was started by hand.
+  /// The time of the rig's start (CLOCK_MONOTONIC). If the daemon was started by hand: when this
+  /// object was made.
   std::int64_t epoch_ns() const { return epoch_ns_; }
 
-  /// A new descriptor of a ring's segment. Errors: bad_config (it was not handed over),
+  /// A new descriptor of a ring's segment. Errors: bad_config (the ring was not handed over),
   /// unavailable.
   Result<UniqueFd> ring(std::string_view stream) const;
+  /// Whether a ring was handed over.
   bool has_ring(std::string_view stream) const;
 
   /// Whether this process is a spare whose turn has not come.
@@ -36,7 +37,7 @@ class Supervision {
 
   /// Whether a heart-beat is due.
   bool beat_is_due(std::int64_t now_ns) const;
-  /// Something was published in the ring of the stage marks.
+  /// Call it whenever something is published in the ring of the stage marks.
   void note_beat(std::int64_t now_ns) { last_beat_ns_ = now_ns; }
 
  private:
@@ -45,7 +46,7 @@ class Supervision {
   std::string name_;
   Rings rings_;
   std::int64_t epoch_ns_ = 0;
-  UniqueFd ready_;  ///< until it was told
+  UniqueFd ready_;  ///< closed when the supervisor has been told
   UniqueFd turn_;   ///< of a spare whose turn has not come
   std::int64_t last_beat_ns_ = 0;
 };

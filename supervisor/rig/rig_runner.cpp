@@ -54,10 +54,9 @@ Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOp
   auto loop = EventLoop::open();
   if (!loop) return tl::make_unexpected(loop.error());
   std::unique_ptr<RigRunner> runner(new RigRunner(rig, std::move(options), std::move(*loop)));
-  const auto opened =
-      runner->claim_name().and_then([&] { return runner->watch_signals_and_time(); }).and_then([&] {
-        return runner->make_parts();
-      });
+  auto opened = runner->claim_name();
+  if (opened) opened = runner->watch_signals_and_time();
+  if (opened) opened = runner->make_parts();
   if (!opened) return tl::make_unexpected(opened.error());
   return runner;
 }

@@ -162,6 +162,28 @@ TEST_F(ServiceTest, OneWhoseHeartStopsIsKilledAfterTwoSecondsNotEarlierAndReplac
   EXPECT_EQ(pose.last_exit()->code, SIGKILL);
 }
 
+TEST_F(ServiceTest, OneThatDoesNotListenIsKilledWhenItsTimeIsOverAndNotEarlier) {
+  launch_.stop_s = 3000;
+  auto& pose = service("trap '' TERM; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  const auto asked_ns = now_ns();
+  pose.stop();
+  pose.tick(asked_ns + seconds_to_ns(2999), {});
+  EXPECT_EQ(pose.state(), State::stopping);
+  pose.tick(asked_ns + seconds_to_ns(3001), {});
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_EQ(pose.last_exit()->code, SIGKILL);
+}
+
+TEST_F(ServiceTest, TheSecondDeathWaitsFiftyMillisecondsAndAQuarterAtMost) {
+  auto& pose = service("exit 111");
+  pose.start();
+  run_until([&] { return pose.retry_s(now_ns()).has_value(); });
+  EXPECT_EQ(pose.restarts(), 1) << "the first restart came at once";
+  EXPECT_LE(*pose.retry_s(now_ns()), 0.0625);
+}
+
 TEST_F(ServiceTest, WhatASuccessorNeedsToKnowIsSaved) {
   auto& pose = service(kWorks);
   const auto before = pose.revision();
