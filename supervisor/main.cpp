@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The `handcast` command: like git, it runs what it knows and hands every other verb to a program
-// beside itself.
+// The `handcast` command: like git, it runs the verbs that it knows and becomes the program
+// handcast-VERB for every other one.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,8 +10,7 @@
 
 #include "config/settings/join.hpp"
 #include "ipc/base/version.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/verbs.hpp"
+#include "supervisor/commands/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -32,7 +31,7 @@ void print_overview() {
   fmt::print("\n`handcast help VERB` says how a verb is used.\n");
 }
 
-/// Becomes handcast-VERB. Returns only where there is no such program.
+/// Becomes handcast-VERB. Returns only if there is no such program.
 int become_program(const std::string& verb, const Arguments& arguments) {
   const bool plain = verb.find('/') == std::string::npos;
   const auto program = (program_folder() / ("handcast-" + verb)).string();
@@ -54,19 +53,19 @@ const VerbEntry* find_verb(const std::string& name) {
 int help(const Arguments& arguments) {
   if (arguments.empty()) {
     print_overview();
-    return 0;
+    return kExitDone;
   }
   const auto verb = find_verb(arguments.front());
   if (!verb || !verb->run) return become_program(arguments.front(), {"--help"});
   fmt::print("usage: handcast {}\n\n{}\n", verb->usage, verb->sentence);
-  return 0;
+  return kExitDone;
 }
 
 int dispatch(const std::string& name, const Arguments& arguments) {
   if (name == "help" || name == "--help" || name == "-h") return help(arguments);
   if (name == "--version") {
     fmt::print("handcast {}\n{}", version(), absent_features());
-    return 0;
+    return kExitDone;
   }
   const auto verb = find_verb(name);
   if (!verb || !verb->run) return become_program(name, arguments);
@@ -81,7 +80,7 @@ int main(int argc, char** argv) {
   using namespace handcast::supervisor;
   if (argc < 2) {
     print_overview();
-    return kExitUsage;
+    return handcast::kExitUsage;
   }
   return dispatch(argv[1], Arguments(argv + 2, argv + argc));
 }

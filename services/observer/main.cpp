@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "config/settings/files.hpp"
+#include "ipc/daemon/contract.hpp"
 #include "services/observer/judge.hpp"
 #include "services/observer/live_score.hpp"
 #include "services/runtime/context.hpp"
@@ -17,13 +17,12 @@ static bool has_truth(const config::Rig& rig) {
   return rig.camera.backend == "twin" && rig.pose.backend == "twin";
 }
 
-/// Writes observer.json to the folder HANDCAST_OUT. Without this variable the scores are only
-/// logged.
+/// Writes observer.json to the folder for kept files. Without one the scores are only logged.
 static void save(const observer::LiveScore& scores, service::Context& context) {
-  const char* folder = std::getenv("HANDCAST_OUT");
-  if (folder == nullptr || scores.empty()) return;
-  const auto written = config::write_whole(std::filesystem::path(folder) / "observer.json",
-                                           scores.to_json().dump(2) + "\n");
+  const auto folder = daemon::out_folder();
+  if (!folder || scores.empty()) return;
+  const auto written =
+      config::write_whole(*folder / "observer.json", scores.to_json().dump(2) + "\n");
   if (!written) context.tolerate({Errc::bad_data, "observer: " + written.error().what});
 }
 

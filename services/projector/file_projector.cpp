@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "ipc/base/log.hpp"
+#include "ipc/daemon/contract.hpp"
 #include "renderer/content/picture.hpp"
 #include "services/projector/light_clock.hpp"
 
@@ -15,8 +15,8 @@ namespace {
 constexpr std::int64_t kEvery = 100;  ///< every kEvery-th frame is written
 constexpr std::int64_t kKept = 100;   ///< number of files, then the oldest is overwritten
 
-/// Writes the light as images, to see it without hardware: PNG files in light/ of the folder
-/// HANDCAST_OUT, or of the current folder if that variable is not set.
+/// Writes the light as images, to see it without hardware: PNG files in light/ of the folder for
+/// kept files, or of the current folder if there is none.
 class FileProjector final : public Projector {
  public:
   FileProjector(const config::Projector& settings, fs::path folder)
@@ -51,8 +51,7 @@ class FileProjector final : public Projector {
 }  // namespace
 
 Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig) {
-  const char* out = std::getenv("HANDCAST_OUT");
-  const fs::path folder = fs::path(out != nullptr ? out : ".") / "light";
+  const fs::path folder = daemon::out_folder().value_or(".") / "light";
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)

@@ -2,11 +2,12 @@
 #include <cstdio>
 #include <exception>
 
+#include "ipc/base/exit_code.hpp"
 #include "ipc/base/version.hpp"
+#include "ipc/daemon/stop_signal.hpp"
 #include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
 #include "services/runtime/scheduling.hpp"
-#include "services/runtime/stop_signal.hpp"
 
 namespace handcast::service {
 namespace {
@@ -26,7 +27,7 @@ void print_help(const Description& description) {
 
 int serve(const Description& description, const CommandLine& line,
           const std::function<void(Context&)>& body) {
-  install_stop_signals();
+  daemon::install_stop_signals();
   auto rig = must(config::load_rig(line.config_file, line.settings));
   for (const auto& note :
        must(apply_scheduling(config::process_of(rig, description.name), description.name)))
@@ -35,7 +36,7 @@ int serve(const Description& description, const CommandLine& line,
   Context context(std::string(description.name), std::move(rig), calibration);
   body(context);
   log::info("stopped");
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace
@@ -48,13 +49,13 @@ int run(const Description& description, int argc, char** argv,
   switch (line.task) {
     case Task::help:
       print_help(description);
-      return 0;
+      return kExitDone;
     case Task::version:
       fmt::print("handcast-{} {}\n", description.name, version());
-      return 0;
+      return kExitDone;
     case Task::backends:
       for (const auto name : description.backends) fmt::print("{}\n", name);
-      return 0;
+      return kExitDone;
     case Task::serve:
       break;
   }

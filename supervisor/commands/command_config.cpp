@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 
 #include "config/rig.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
-#include "supervisor/verbs.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/verbs.hpp"
 
 namespace handcast::supervisor {
 
@@ -17,7 +16,7 @@ int run_config(const Arguments& arguments) {
     return complain(kExitUsage, "config: " + options.error().what + "; `handcast help config`");
   if (options->has("--reference")) {
     fmt::print("{}", config::print_reference());
-    return 0;
+    return kExitDone;
   }
   const bool print = options->has("--print"), check = options->has("--check");
   if (print == check)
@@ -31,7 +30,7 @@ int run_config(const Arguments& arguments) {
           : config::load_rig(options->words.front(), settings);
   if (!rig) return complain(rig.error());
   fmt::print("{}", print ? config::print_rig(*rig) : options->words.front() + " is in order\n");
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

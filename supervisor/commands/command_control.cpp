@@ -3,32 +3,32 @@
 #include <fmt/format.h>
 
 #include "config/settings/join.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/choose_rig.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/control/control_client.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
 #include "supervisor/rig/status.hpp"
 #include "supervisor/succession/adoption.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 struct Talk {
-  int exit_code = 0;
+  int exit_code = kExitDone;
   nlohmann::json answer;
 };
 
-/// Finds the rig, asks it, complains about what goes wrong.
+/// Chooses the rig and asks it. Complains about what goes wrong.
 Talk talk(const std::string& rig_name, const Request& request) {
   const auto rig = choose_rig(rig_name);
-  if (!rig) return {complain(kExitNotRunning, rig.error().what), {}};
+  if (!rig) return {complain(rig.error()), {}};
   auto answer = ask(*rig, request);
-  if (answer) return {0, std::move(*answer)};
-  const bool refused = answer.error().code == Errc::bad_data;
-  return {complain(refused ? kExitConfig : kExitNotRunning, answer.error().what), {}};
+  if (!answer) return {complain(answer.error()), {}};
+  return {kExitDone, std::move(*answer)};
 }
 
-/// "reloaded: camera, landmarks restarted; pose, projector untouched".
+/// The answer to a reload as text: "reloaded: camera, landmarks restarted; pose, projector
+/// untouched".
 std::string print_reload(const nlohmann::json& answer) {
   std::vector<std::string> parts;
   for (const auto* what : {"restarted", "started", "stopped", "untouched"})
@@ -40,8 +40,8 @@ std::string print_reload(const nlohmann::json& answer) {
                                                  : "nothing changed";
 }
 
-/// Asks for what the words say; `done` tells the person that it is done, {0} and {1} being the
-/// service and the back end.
+/// Runs a verb that takes a service, or a service and a back end. `done` is printed when it is
+/// done, with {0} for the service and {1} for the back end.
 int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words, Request request,
                    const char* done) {
   const auto options = sort_options(
@@ -52,7 +52,7 @@ int ask_with_words(const char* verb, const Arguments& arguments, std::size_t wor
   if (words > 0) request.service = options->words[0];
   if (words > 1) request.backend = options->words[1];
   const int exit_code = talk(options->value("--rig"), request).exit_code;
-  if (exit_code == 0)
+  if (exit_code == kExitDone)
     fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, request.backend));
   return exit_code;
 }
@@ -60,12 +60,12 @@ int ask_with_words(const char* verb, const Arguments& arguments, std::size_t wor
 }  // namespace
 
 int run_down(const Arguments& arguments) {
-  constexpr double kStop_s = 3;  // as the rig file has it where it does not say
+  constexpr double kStop_s = 3;  // the default of supervisor.stop_s
   const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}});
   if (const auto rig = options ? abandoned_rig(options->value("--rig")) : std::nullopt) {
     fmt::print("rig '{}' had no supervisor; services stopped: {}\n", *rig,
                stop_orphans(*rig, kStop_s));
-    return 0;
+    return kExitDone;
   }
   return ask_with_words("down", arguments, 0, {.verb = Verb::down, .service = {}, .backend = {}},
                         "the rig has stopped");
@@ -86,7 +86,7 @@ int run_reload(const Arguments& arguments) {
     return complain(kExitUsage, "reload: " + options.error().what + "; `handcast help reload`");
   const auto [exit_code, answer] =
       talk(options->value("--rig"), {.verb = Verb::reload, .service = {}, .backend = {}});
-  if (exit_code == 0) fmt::print("{}\n", print_reload(answer));
+  if (exit_code == kExitDone) fmt::print("{}\n", print_reload(answer));
   return exit_code;
 }
 
@@ -96,10 +96,10 @@ int run_status(const Arguments& arguments) {
     return complain(kExitUsage, "status: " + options.error().what + "; `handcast help status`");
   auto [exit_code, answer] =
       talk(options->value("--rig"), {.verb = Verb::status, .service = {}, .backend = {}});
-  if (exit_code != 0) return exit_code;
+  if (exit_code != kExitDone) return exit_code;
   const auto& status = answer["status"];
   fmt::print("{}", options->has("--json") ? status.dump(2) + "\n" : print_status(status));
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

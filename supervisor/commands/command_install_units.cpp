@@ -8,16 +8,15 @@
 #include <fstream>
 
 #include "config/rig.hpp"
-#include "supervisor/control/runtime_folder.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/base/runtime_folder.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/succession/service_unit.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-/// Whose rig it is: with sudo, of the person in front of it.
+/// The user that a system unit runs as: with sudo, the person who called it.
 std::string user_name() {
   const char* before_sudo = std::getenv("SUDO_USER");
   const auto* entry = getpwuid(getuid());
@@ -74,13 +73,13 @@ int run_install_units(const Arguments& arguments) {
   const auto text = unit_text(spec);
   if (options->has("--print")) {
     fmt::print("{}", text);
-    return 0;
+    return kExitDone;
   }
   const auto file = unit_folder(spec) / unit_name(spec);
   if (const auto written = write_unit(file, text); !written) return complain(written.error());
   fmt::print("wrote {}; what is left to do:\n", file.string());
   print_next_steps(spec);
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "supervisor/control/control_client.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/choose_rig.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/trace/history_request.hpp"
 #include "supervisor/trace/latency_table.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 
@@ -20,7 +19,7 @@ int run_latency(const Arguments& arguments) {
   if (!seconds) return complain(kExitUsage, "latency: " + seconds.error().what);
 
   const auto rig = choose_rig(options->value("--rig"));
-  if (!rig) return complain(kExitNotRunning, rig.error().what);
+  if (!rig) return complain(rig.error());
   const auto history = ask_for_history(*rig, *seconds);
   if (!history) return complain(history.error());
   const auto rates = ask_for_rates(*rig);
@@ -28,7 +27,7 @@ int run_latency(const Arguments& arguments) {
 
   const auto table = measure_latency(*history, *rates);
   fmt::print("{}", options->has("--json") ? to_json(table).dump(2) + "\n" : print_latency(table));
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

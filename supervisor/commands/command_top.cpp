@@ -4,13 +4,12 @@
 #include <deque>
 
 #include "ipc/base/clock.hpp"
-#include "supervisor/control/control_client.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/choose_rig.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/top/top_layout.hpp"
 #include "supervisor/top/top_look.hpp"
 #include "supervisor/top/top_terminal.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -25,20 +24,20 @@ int show_once(const std::string& rig, bool as_json) {
   const auto before = watcher.look();
   if (before.missing.empty()) sleep_until_ns(before.taken_ns + kOnce_ns);
   const auto now = watcher.look();
-  if (now.status.is_null()) return complain(kExitNotRunning, now.missing);
+  if (now.status.is_null()) return complain(kExitRetry, now.missing);
 
   const auto model = compare(before, now);
   if (as_json) {
     fmt::print("{}\n",
                json_of(model).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-    return 0;
+    return kExitDone;
   }
   for (const auto& line : lay_out(model, {.columns = kPlainColumns}))
     fmt::print("{}\n", print(line, false));
-  return 0;
+  return kExitDone;
 }
 
-/// What is seen, and how far it is scrolled.
+/// The terminal, and how far it is scrolled.
 class Screen {
  public:
   void show(const TopModel& model) {
@@ -49,8 +48,7 @@ class Screen {
     terminal_.show(texts);
   }
 
-  /// Lets `model` be looked at until it is time for the next look; false: the person has seen
-  /// enough.
+  /// Shows `model` until it is time for the next look. False: the person wants to quit.
   bool watch(const TopModel& model, std::int64_t until_ns) {
     for (;;) {
       show(model);
@@ -98,8 +96,8 @@ int show_until_quit(const std::string& rig) {
   auto next_ns = now_ns();
   for (;;) {
     next_ns =
-        std::max(next_ns + kRefresh_ns, now_ns());  // a machine that was asleep does not catch up
-    if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return 0;
+        std::max(next_ns + kRefresh_ns, now_ns());  // no catching up after the machine was asleep
+    if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return kExitDone;
     looks.push_back(watcher.look());
     if (looks.size() > kLooksBack + 1) looks.pop_front();
   }
@@ -113,7 +111,7 @@ int run_top(const Arguments& arguments) {
   if (!options)
     return complain(kExitUsage, "top: " + options.error().what + "; `handcast help top`");
   const auto rig = choose_rig(options->value("--rig"));
-  if (!rig) return complain(kExitNotRunning, rig.error().what);
+  if (!rig) return complain(rig.error());
   const bool once = options->has("--once") || options->has("--json") || !Terminal::present();
   return once ? show_once(*rig, options->has("--json")) : show_until_quit(*rig);
 }

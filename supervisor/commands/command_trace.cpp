@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <fstream>
 
-#include "supervisor/control/control_client.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/choose_rig.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/trace/history_request.hpp"
 #include "supervisor/trace/perfetto.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 
@@ -27,7 +26,7 @@ int run_trace(const Arguments& given) {
   if (!seconds) return complain(kExitUsage, "trace: " + seconds.error().what);
 
   const auto rig = choose_rig(options->value("--rig"));
-  if (!rig) return complain(kExitNotRunning, rig.error().what);
+  if (!rig) return complain(rig.error());
   const auto history = ask_for_history(*rig, *seconds);
   if (!history) return complain(history.error());
 
@@ -36,11 +35,11 @@ int run_trace(const Arguments& given) {
   std::ofstream file(path, std::ios::binary);
   file.write(trace.data(), static_cast<std::streamsize>(trace.size()));
   file.close();
-  if (!file) return complain(kExitFailure, fmt::format("{} cannot be written", path));
+  if (!file) return complain(kExitRetry, fmt::format("{} cannot be written", path));
   fmt::print("{}: {} frames of {} services, {:.1f} MB; open it in https://ui.perfetto.dev\n", path,
              history->frames.size(), history->services.size(),
              static_cast<double>(trace.size()) * 1e-6);
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace handcast::supervisor

@@ -3,18 +3,18 @@
 
 #include <cstdlib>
 
-#include "ipc/base/log.hpp"
-#include "supervisor/options.hpp"
+#include "ipc/daemon/contract.hpp"
+#include "supervisor/base/options.hpp"
+#include "supervisor/commands/verbs.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/rig_runner.hpp"
 #include "supervisor/succession/keeper.hpp"
-#include "supervisor/verbs.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::string_view kNoKeeper = "--no-keeper";  ///< for systemd, which is a keeper itself
-constexpr std::string_view kKept = "--kept";           ///< for the keeper, not for a person
+constexpr std::string_view kKept = "--kept";           ///< added by the keeper
 
 bool take_successor_mark() {
   const bool is_successor = std::getenv(kSuccessorVariable) != nullptr;
@@ -22,12 +22,36 @@ bool take_successor_mark() {
   return is_successor;
 }
 
-/// The same command once more, under a keeper.
+/// Becomes the keeper of this very command.
 int keep_up(const Arguments& arguments) {
   Arguments command{(program_folder() / "handcast").string(), "up"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   command.emplace_back(kKept);
   return keep(command);
+}
+
+/// How the rig is to be run. The folder of --out is passed on to the services.
+RunOptions run_options(const Options& options, std::optional<double> seconds) {
+  RunOptions run{.rig_file = std::filesystem::absolute(options.words.front()),
+                 .settings = options.all("--set"),
+                 .program_folder = program_folder(),
+                 .seconds = seconds,
+                 .out = {},
+                 .is_successor = take_successor_mark()};
+  if (options.has("--out")) {
+    run.out = std::filesystem::absolute(options.value("--out"));
+    setenv(daemon::kOutVariable, run.out->c_str(), 1);
+  }
+  return run;
+}
+
+int run(RunOptions options) {
+  const auto applied = applied_before(options.rig_file, options.settings);
+  const auto rig = applied ? *applied : config::load_rig(options.rig_file, options.settings);
+  if (!rig) return complain(rig.error());
+  auto runner = RigRunner::open(*rig, std::move(options));
+  if (!runner) return complain(runner.error());
+  return (*runner)->run();
 }
 
 }  // namespace
@@ -45,25 +69,7 @@ int run_up(const Arguments& arguments) {
     seconds = *parsed;
   }
   if (!options->has(kKept) && !options->has(kNoKeeper)) return keep_up(arguments);
-
-  RunOptions run{.rig_file = std::filesystem::absolute(options->words.front()),
-                 .settings = options->all("--set"),
-                 .program_folder = program_folder(),
-                 .seconds = seconds,
-                 .out = {},
-                 .is_successor = take_successor_mark()};
-  if (options->has("--out")) {
-    run.out = std::filesystem::absolute(options->value("--out"));
-    setenv(
-        "HANDCAST_OUT", run.out->c_str(),
-        1);  // the services write there too: part of their contract (services/runtime/context.hpp)
-  }
-  const auto applied = applied_before(run.rig_file, run.settings);
-  const auto rig = applied ? *applied : config::load_rig(run.rig_file, run.settings);
-  if (!rig) return complain(rig.error());
-  auto runner = RigRunner::open(*rig, std::move(run));
-  if (!runner) return complain(runner.error());
-  return (*runner)->run();
+  return run(run_options(*options, seconds));
 }
 
 }  // namespace handcast::supervisor

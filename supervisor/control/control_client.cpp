@@ -10,17 +10,15 @@
 #include <cerrno>
 #include <cstring>
 
-#include "config/settings/join.hpp"
 #include "ipc/base/clock.hpp"
-#include "supervisor/control/runtime_folder.hpp"
-#include "supervisor/succession/adoption.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::size_t kLongestAnswer = 1 << 24;
 
-/// What came back: a line and the descriptors that came with it.
+/// What has been received so far.
 struct Received {
   std::string line;
   std::vector<UniqueFd> descriptors;
@@ -54,8 +52,8 @@ void take_descriptors(msghdr& message, std::vector<UniqueFd>& descriptors) {
   }
 }
 
-/// Takes what is there. Errors: unavailable (the rig went away, or this program has no room for the
-/// descriptors).
+/// Receives what can be received without waiting. Errors: unavailable (the rig went away, or this
+/// program cannot have as many descriptors), bad_data.
 Result<void> receive(int socket, Received& received) {
   std::array<char, 1 << 16> bytes;
   alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(kMostDescriptors * sizeof(int))> room;
@@ -78,7 +76,7 @@ Result<void> receive(int socket, Received& received) {
   return {};
 }
 
-/// Errors: as receive; timeout where the line was not whole in time.
+/// Receives until the line is complete. Errors: as receive(); timeout.
 Result<void> receive_line(int socket, Received& received, Deadline deadline) {
   while (!received.line.ends_with('\n')) {
     if (auto readable = wait_for(socket, deadline); !readable) return readable;
@@ -99,7 +97,7 @@ Result<UniqueFd> send_to(const std::string& rig, const Request& request) {
   return socket;
 }
 
-/// Whether the supervisor still answers, asked over a connection of its own.
+/// Whether the supervisor answers another request in time.
 bool is_awake(const std::string& rig, std::chrono::nanoseconds patience) {
   const auto socket = send_to(rig, {});
   Received received;
@@ -128,30 +126,6 @@ Result<Answer> read_answer(const std::string& rig, Verb verb, Received received)
 }
 
 }  // namespace
-
-/// Services may live without their supervisor.
-static std::string nobody_is_up() {
-  const auto orphaned = orphaned_rigs();
-  if (orphaned.empty()) return "no rig is up; `handcast up RIG.toml` starts one";
-  return fmt::format(
-      "no supervisor is up, but services of {} live; `handcast up RIG.toml` takes them over, "
-      "`handcast down` ends them",
-      config::join(orphaned, ", "));
-}
-
-Result<std::string> choose_rig(const std::string& name) {
-  const auto rigs = living_rigs();
-  if (!rigs) return tl::make_unexpected(rigs.error());
-  if (rigs->empty()) return fail(Errc::unavailable, nobody_is_up());
-  if (name.empty() && rigs->size() == 1) return rigs->front();
-  if (name.empty())
-    return fail(Errc::unavailable, fmt::format("several rigs are up, choose one with --rig: {}",
-                                               config::join(*rigs, ", ")));
-  if (std::ranges::find(*rigs, name) == rigs->end())
-    return fail(Errc::unavailable, fmt::format("no rig named '{}' is up; there is: {}", name,
-                                               config::join(*rigs, ", ")));
-  return name;
-}
 
 Result<nlohmann::json> ask(const std::string& rig, const Request& request) {
   auto answer = ask_with_descriptors(rig, request);

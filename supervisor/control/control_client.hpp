@@ -8,16 +8,12 @@
 
 namespace handcast::supervisor {
 
-/// The rig to talk to: `name`, or where it is empty the only one that is up. Errors: unavailable,
-/// with who is up.
-Result<std::string> choose_rig(const std::string& name);
-
-/// Asks a rig and waits for its answer's object: as long as the services take, but no longer than
-/// its supervisor is awake. Errors: unavailable (it is not up, it went away, it hangs), bad_data
-/// (its refusal).
+/// Sends a request to a rig and waits for the answer: as long as the services take, but only while
+/// the supervisor is awake. Errors: unavailable (the rig is not up, it went away, its supervisor
+/// hangs), bad_data (the rig refused; the sentence is its own).
 Result<nlohmann::json> ask(const std::string& rig, const Request& request);
-/// The same with the descriptors that belong to the answer; what else came is closed. Of a
-/// supervisor that has not said anything for the time of `patience` it is taken that it hangs.
+/// The same, with the descriptors that belong to the answer; all others are closed. A supervisor
+/// that sends nothing for the time of `patience` is taken to hang.
 Result<Answer> ask_with_descriptors(const std::string& rig, const Request& request,
                                     std::chrono::nanoseconds patience = std::chrono::seconds(10));
 

@@ -24,7 +24,7 @@ double number_of(const nlohmann::json& object, const char* key) {
   return found != object.end() && found->is_number() ? found->get<double>() : 0;
 }
 
-/// What the verb needs and the request lacks; empty if it is whole.
+/// What the verb needs and the request does not have; "" if it is complete.
 std::string_view lack_of(const Request& request) {
   const bool on_service = request.verb == Verb::restart || request.verb == Verb::swap;
   if (on_service && request.service.empty()) return "\"service\"";
@@ -60,7 +60,7 @@ std::string print_request(const Request& request) {
   return to_line(object);
 }
 
-// What a person typed need not be UTF-8.
+// Bytes that are no UTF-8, which a person may have typed, are replaced.
 std::string to_line(const nlohmann::json& object) {
   return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

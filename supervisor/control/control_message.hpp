@@ -8,28 +8,29 @@
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
 
-/// What goes over a rig's control socket: one JSON object a line, a request and its answer.
-///   {"verb":"status"}                                      → {"ok":true,"status":{…}}
-///   {"verb":"down"}                                        → {"ok":true}, when everything has
-///   stopped
-///   {"verb":"restart","service":"pose"}                    → {"ok":true}, when it is ready again
-///   {"verb":"swap","service":"pose","backend":"replay"}    → {"ok":true}, when the new back end is
-///   ready
-///   {"verb":"reload"}                                      → {"ok":true,"restarted":["pose"],…},
-///   when all are ready again
-///   {"verb":"rings"}                                       →
-///   {"ok":true,"rings":["camera.frames",…]} and their descriptors
-///   {"verb":"history","seconds":10}                        → {"ok":true} and the descriptor of a
-///   snapshot (history.hpp)
-/// Descriptors come with the answer's first byte (SCM_RIGHTS). What cannot be done:
-/// {"ok":false,"error":"one sentence"}.
+/// What goes over a rig's control socket: a request and its answer, each one JSON object on a line.
+///
+///   {"verb":"status"}                                    {"ok":true,"status":{...}}
+///   {"verb":"down"}                                      {"ok":true} when everything has stopped
+///   {"verb":"restart","service":"pose"}                  {"ok":true} when it is ready again
+///   {"verb":"swap","service":"pose","backend":"replay"}  {"ok":true} when the back end is ready
+///   {"verb":"reload"}                                    {"ok":true,"restarted":["pose"],...}
+///                                                        when all are ready again
+///   {"verb":"rings"}                                     {"ok":true,"rings":["camera.frames",...]}
+///                                                        and their descriptors
+///   {"verb":"history","seconds":10}                      {"ok":true} and the descriptor of a
+///                                                        snapshot (record/history.hpp)
+///
+/// Descriptors come with the first byte of the answer (SCM_RIGHTS). The answer to what cannot be
+/// done is {"ok":false,"error":"one sentence"}.
 namespace handcast::supervisor {
 
-inline constexpr std::size_t kMostDescriptors =
-    253;  ///< that the kernel passes on with one answer (SCM_MAX_FD)
+/// The most that the kernel passes on with one answer (SCM_MAX_FD).
+inline constexpr std::size_t kMostDescriptors = 253;
 
 enum class Verb { status, down, restart, swap, reload, rings, history };
 
+/// What a rig is asked for.
 struct Request {
   Verb verb = Verb::status;
   std::string service;  ///< restart, swap
@@ -43,13 +44,16 @@ struct Answer {
   std::vector<UniqueFd> descriptors;
 };
 
-/// Errors: bad_data with a sentence that says what is wrong with the line.
+/// Reads a request. Errors: bad_data, with a sentence that says what is wrong with the line.
 Result<Request> parse_request(std::string_view line);
+/// The reverse, without the newline.
 std::string print_request(const Request& request);
 /// A request or an answer as it goes over the socket, without the newline.
 std::string to_line(const nlohmann::json& object);
 
+/// {"ok":true}; more may be added.
 nlohmann::json success();
+/// {"ok":false} with the sentence.
 nlohmann::json failure(std::string sentence);
 
 }  // namespace handcast::supervisor

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <vector>
 
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::size_t kLongestRequest = 1 << 16;
 constexpr std::size_t kMostUnsent = 1 << 22;
 constexpr std::size_t kMostClients = 64;
 
-/// Under a lock on the folder, so that of two rigs that start at once only one finds the name free.
+/// Locks the folder: if two rigs start at once, only one of them finds the name free.
 Result<UniqueFd> bind_to(const std::filesystem::path& path, const std::string& rig) {
   const UniqueFd lock(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   flock(lock.get(), LOCK_EX);
@@ -36,7 +36,7 @@ Result<UniqueFd> bind_to(const std::filesystem::path& path, const std::string& r
 
   UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto address = address_of(path);
-  // The mode of the file that bind makes. Its folder keeps others out already.
+  // The socket's mode becomes that of the file. Others cannot enter its folder anyway.
   if (!listener || fchmod(listener.get(), 0600) != 0 ||
       bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
       ::listen(listener.get(), 16) != 0)
@@ -76,7 +76,7 @@ ControlServer::ControlServer(UniqueFd listener, std::filesystem::path path, Even
   loop_.watch(listener_.get(), [this] { accept(); });
 }
 
-void ControlServer::close_door() {
+void ControlServer::stop_accepting() {
   if (!listener_) return;
   unlink(path_.c_str());
   loop_.forget(listener_.get());
@@ -84,7 +84,7 @@ void ControlServer::close_door() {
 }
 
 ControlServer::~ControlServer() {
-  close_door();
+  stop_accepting();
   for (const auto& [id, client] : clients_) loop_.forget(client.socket.get());
 }
 
@@ -119,9 +119,9 @@ void ControlServer::answer_line(std::uint64_t id, const std::string& line) {
               }));
 }
 
-// Not a larger socket buffer in place of `unsent`: the kernel's limit for those (net.core.wmem_max)
-// is below what a status with every service's last lines can take. Descriptors go with a first byte
-// that is sent now, so that none is kept for a slow client.
+// A larger socket buffer would not replace `unsent`: the kernel's limit (net.core.wmem_max) is
+// below the size of a status with the last lines of every service. Descriptors are sent at once or
+// not at all: none is kept for a slow client.
 void ControlServer::send(std::uint64_t id, const nlohmann::json& answer,
                          const std::vector<int>& descriptors) {
   const auto found = clients_.find(id);
@@ -136,8 +136,8 @@ void ControlServer::send(std::uint64_t id, const nlohmann::json& answer,
     loop_.watch_writing(client.socket.get(), [this, id] { send_rest(id); });
 }
 
-/// As much as fits into the socket's buffer. False: the client can get nothing any more, or not
-/// these descriptors.
+/// Sends as much as fits into the socket's buffer. False: the client is gone, or these descriptors
+/// cannot be sent.
 bool ControlServer::send_some(Client& client, const std::vector<int>& descriptors) {
   if (descriptors.size() > kMostDescriptors) return false;
   iovec text{.iov_base = client.unsent.data(), .iov_len = client.unsent.size()};

@@ -9,21 +9,21 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
+#include "supervisor/base/event_loop.hpp"
 #include "supervisor/control/control_message.hpp"
-#include "supervisor/event_loop.hpp"
 
 namespace handcast::supervisor {
 
-/// The rig's end of the control socket, on the event loop. The socket file goes with the object. It
-/// waits for nobody: what a client has not read yet is kept for it up to a limit; a client that
-/// lets more pile up is dropped.
+/// The rig's end of the control socket, on the event loop. The socket file is removed with the
+/// object. The server never blocks: answers that a client has not read yet are kept up to a limit,
+/// and a client beyond the limit is dropped.
 class ControlServer {
  public:
-  /// Answers the request, now or later; does nothing if the client has left. Must not outlive the
-  /// server.
+  /// Answers a request, now or later. Does nothing if the client has left. Must not be called after
+  /// the server's end.
   class Reply {
    public:
-    /// `descriptors` stay the caller's; the client gets its own of them.
+    /// The client gets duplicates of `descriptors`.
     void operator()(const nlohmann::json& answer, const std::vector<int>& descriptors = {}) const {
       send_(answer, descriptors);
     }
@@ -36,12 +36,12 @@ class ControlServer {
   };
   using OnRequest = std::function<void(const Request&, Reply)>;
 
-  /// Errors: unavailable (a rig of this name is up), bad_config (its name, the folder).
+  /// Errors: unavailable (a rig of this name is up), bad_config (the name, or the runtime folder).
   static Result<std::unique_ptr<ControlServer>> listen(const std::string& rig, EventLoop& loop,
                                                        OnRequest on_request);
   ~ControlServer();
-  /// Lets nobody in any more and gives the name free. Those inside still get their answers.
-  void close_door();
+  /// Stops accepting and frees the name. Pending requests are still answered.
+  void stop_accepting();
 
  private:
   struct Client {

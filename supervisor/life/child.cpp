@@ -16,22 +16,16 @@
 #include <cstring>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/daemon/contract.hpp"
+#include "ipc/daemon/words.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::int64_t kReportWait_ns = 300'000'000;
 
-/// Of the supervisor's own contracts, with its daemons (each gets its own), with its keeper and
-/// with systemd.
-constexpr std::array<std::string_view, 8> kNotInherited{"HANDCAST_RINGS=",
-                                                        "HANDCAST_READY_FD=",
-                                                        "HANDCAST_EPOCH_NS=",
-                                                        "HANDCAST_STANDBY_FD=",
-                                                        "HANDCAST_KEEPER_FD=",
-                                                        "NOTIFY_SOCKET=",
-                                                        "LISTEN_",
-                                                        "WATCHDOG_"};
+/// How the variables of the supervisor's contracts with its keeper and with systemd begin.
+constexpr std::array kNotForServices{kKeeperVariable, "NOTIFY_SOCKET=", "LISTEN_", "WATCHDOG_"};
 
 struct Pipe {
   UniqueFd read, write;
@@ -59,15 +53,27 @@ Result<Pipe> open_pipe(ReadBy reader) {
   return Pipe{UniqueFd(ends[0]), UniqueFd(ends[1])};
 }
 
+bool begins_with_any(std::string_view entry, const auto& names) {
+  return std::ranges::any_of(names, [&](const char* name) { return entry.starts_with(name); });
+}
+
 std::vector<std::string> inherited_environment() {
   std::vector<std::string> environment;
-  for (char** entry = environ; *entry; ++entry) {
-    const std::string_view text = *entry;
-    const bool ours = std::ranges::any_of(
-        kNotInherited, [&](std::string_view name) { return text.starts_with(name); });
-    if (!ours) environment.emplace_back(text);
-  }
+  for (char** entry = environ; *entry; ++entry)
+    if (!begins_with_any(*entry, daemon::kHandoverVariables) &&
+        !begins_with_any(*entry, kNotForServices))
+      environment.emplace_back(*entry);
   return environment;
+}
+
+/// Puts the handover into the environment and lets its descriptors be inherited.
+void hand_over(const daemon::Handover& handover, Plan& plan) {
+  plan.environment = inherited_environment();
+  for (auto& variable : daemon::to_environment(handover))
+    plan.environment.push_back(std::move(variable));
+  for (const auto& [stream, fd] : handover.rings) plan.inherited.push_back(fd);
+  plan.inherited.push_back(handover.ready_fd);
+  if (handover.standby_fd >= 0) plan.inherited.push_back(handover.standby_fd);
 }
 
 Result<Plan> make_plan(const ChildSpec& spec) {
@@ -83,23 +89,16 @@ Result<Plan> make_plan(const ChildSpec& spec) {
   plan.log = std::move(*log);
   plan.ready = std::move(*ready);
 
-  std::string rings;
-  for (const auto& [stream, fd] : spec.rings) {
-    rings += fmt::format("{}{}={}", rings.empty() ? "" : ",", stream, fd);
-    plan.inherited.push_back(fd);
+  if (spec.spare) {
+    auto turn = open_pipe(ReadBy::service);
+    if (!turn) return tl::make_unexpected(turn.error());
+    plan.turn = std::move(*turn);
   }
-  plan.inherited.push_back(plan.ready.write.get());
-  plan.environment = inherited_environment();
-  plan.environment.push_back("HANDCAST_RINGS=" + rings);
-  plan.environment.push_back(fmt::format("HANDCAST_READY_FD={}", plan.ready.write.get()));
-  plan.environment.push_back(fmt::format("HANDCAST_EPOCH_NS={}", spec.epoch_ns));
-  if (!spec.spare) return plan;
-
-  auto turn = open_pipe(ReadBy::service);
-  if (!turn) return tl::make_unexpected(turn.error());
-  plan.turn = std::move(*turn);
-  plan.inherited.push_back(plan.turn.read.get());
-  plan.environment.push_back(fmt::format("HANDCAST_STANDBY_FD={}", plan.turn.read.get()));
+  hand_over({.rings = spec.rings,
+             .ready_fd = plan.ready.write.get(),
+             .standby_fd = plan.turn.read.get(),
+             .epoch_ns = spec.epoch_ns},
+            plan);
   return plan;
 }
 
@@ -151,8 +150,8 @@ bool is_a_persons_fault(int error) {
   return error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR;
 }
 
-/// The new process borrows the supervisor's memory until it is the daemon (vfork): the rings'
-/// mappings are not copied, which is most of what a fork would cost.
+/// As vfork: the new process uses the supervisor's memory until exec. The rings' mappings are not
+/// copied, which is most of what a fork would cost.
 Result<pid_t> start(Plan& plan) {
   const SpawnActions actions(plan);
   const auto arguments = pointers_to(plan.arguments);
@@ -205,13 +204,13 @@ Child::~Child() {
   poll(&ended, 1, -1);
 }
 
-// By the pidfd, never by the number: that of an adopted process may belong to another by now.
+// By the pidfd, never by the number: another process may have the number of an adopted one by now.
 void Child::signal(int number) {
   if (!reaped_ && pidfd_) syscall(SYS_pidfd_send_signal, pidfd_.get(), number, nullptr, 0);
 }
 
 void Child::give_turn() {
-  if (turn_ && ::write(turn_.get(), "1", 1) == 1) turn_.reset();
+  if (turn_ && daemon::give_turn(turn_.get())) turn_.reset();
 }
 
 bool Child::has_ended() const {
@@ -236,7 +235,7 @@ std::optional<Exit> Child::try_reap_adopted() {
   if (ended_ns_ == 0) {
     if (!has_ended()) return std::nullopt;
     ended_ns_ = now_ns();
-    kill(-pid_, SIGKILL);  // its number was free for an instant at most
+    kill(-pid_, SIGKILL);  // its number has been free for an instant at most
   }
   reports_->read();
   auto exit = reports_->take(pid_);

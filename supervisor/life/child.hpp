@@ -11,31 +11,31 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/succession/adoption.hpp"
-#include "supervisor/succession/exit_reports.hpp"
+#include "ipc/daemon/handover.hpp"
+#include "supervisor/base/exit.hpp"
+#include "supervisor/life/exit_reports.hpp"
+#include "supervisor/life/saved_service.hpp"
 
 namespace handcast::supervisor {
 
-/// What a daemon is started with: see the contract in services/runtime/context.hpp.
+/// What a daemon is started with (ipc/daemon/contract.hpp).
 struct ChildSpec {
   std::filesystem::path program;
   std::vector<std::string> arguments;
-  std::vector<std::pair<std::string, int>>
-      rings;  ///< stream and the supervisor's descriptor of its segment
+  daemon::Rings rings;  ///< the supervisor's descriptors, which the daemon inherits
   std::int64_t epoch_ns = 0;
   bool spare = false;      ///< it prepares everything and waits for its turn
   bool log_errors = true;  ///< stderr is read with stdout; otherwise it is this process's own
 };
 
-/// One process of a daemon, leader of its own session. It outlives a supervisor that dies;
+/// One process of a daemon, leader of its own session. It goes on if the supervisor dies;
 /// destroying the object kills it and waits for its end.
 class Child {
  public:
-  /// Errors: bad_config (no such program), unavailable (no process or descriptor to be had).
+  /// Starts a process. Errors: bad_config (no such program), unavailable (no process or descriptor
+  /// left).
   static Result<Child> spawn(const ChildSpec& spec);
-  /// A process that somebody else started. `reports` must outlive it; how it ended may stay
-  /// unknown.
+  /// A process that an earlier supervisor started. `reports` must outlive the object.
   static Child adopt(AdoptedProcess process, ExitReports& reports);
   Child(Child&& other) noexcept
       : pid_(std::exchange(other.pid_, -1)),
@@ -50,21 +50,24 @@ class Child {
   ~Child();
 
   pid_t pid() const { return pid_; }
-  int pidfd() const { return pidfd_.get(); }  ///< readable when the process has ended
-  int log_fd() const {
-    return log_.get();
-  }  ///< what it writes to stdout and stderr; does not block
-  int ready_fd() const {
-    return ready_.get();
-  }  ///< one newline when it is ready ('s' from a spare); does not block; -1 of an adopted one
+  bool is_adopted() const { return reports_ != nullptr; }
+  /// Readable when the process has ended.
+  int pidfd() const { return pidfd_.get(); }
+  /// What the process writes to stdout and stderr. Does not block.
+  int log_fd() const { return log_.get(); }
+  /// What the process says (read_words() in ipc/daemon/words.hpp). Does not block. -1 for an
+  /// adopted process.
+  int ready_fd() const { return ready_.get(); }
+  /// Does nothing if the process has been reaped.
   void signal(int number);
-  /// Lets a spare go to work. Without its turn it ends when this object, or the supervisor, is
+  /// Gives a spare its turn. A spare without its turn ends when this object, or the supervisor, is
   /// gone.
   void give_turn();
 
-  /// Empty while it lives (of an adopted one: also until its end was reported, 300 ms at most). At
-  /// its end: kills what is left of its process group, then takes the exit status.
+  /// How the process ended; empty while it lives. Kills what is left of its process group first.
+  /// The end of an adopted process is known when it was reported, or is unknown after 300 ms.
   std::optional<Exit> try_reap();
+  /// Whether the process has ended, reaped or not.
   bool has_ended() const;
 
  private:
@@ -78,7 +81,8 @@ class Child {
   UniqueFd pidfd_, log_, ready_, turn_;
 };
 
-/// The standard output of a short command, which is killed after `limit_ms`. Errors: unavailable.
+/// The standard output of a short command. Errors: bad_config (no such program), unavailable (it
+/// did not end within `limit_ms`, and was killed).
 Result<std::string> output_of(const std::filesystem::path& program,
                               const std::vector<std::string>& arguments, int limit_ms);
 

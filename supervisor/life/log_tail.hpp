@@ -9,26 +9,26 @@
 
 namespace handcast::supervisor {
 
-/// The last lines a service wrote. Bytes go in as they arrive, whole lines come out.
+/// The last lines that a service wrote.
 class LogTail {
  public:
   static constexpr std::size_t kLines = 200;
   static constexpr std::size_t kLongestLine = 4096;  ///< bytes; what is longer is cut into lines
 
-  static constexpr int kReadsAtOnce =
-      16;  ///< of one that lives: it may write faster than its lines are printed
-  static constexpr int kAllReads =
-      std::numeric_limits<int>::max();  ///< of one that is dead: its rest has an end
+  /// For a process that lives: it may write faster than its lines are printed.
+  static constexpr int kReadsAtOnce = 16;
+  /// For a process that has ended: what is left is limited by the pipe.
+  static constexpr int kAllReads = std::numeric_limits<int>::max();
 
-  /// `on_line` is called for each line that `bytes` completes.
+  /// Takes bytes as they arrive. Calls `on_line` for each line that they complete.
   void append(std::string_view bytes, const std::function<void(std::string_view)>& on_line);
-  /// Appends what can be read without waiting. False where there will be no more.
+  /// Appends what can be read from a non-blocking descriptor. False: there will be no more.
   bool read_from(int fd, const std::function<void(std::string_view)>& on_line,
                  int most_reads = kReadsAtOnce);
   /// The newest `count` lines, oldest first.
   std::vector<std::string> last(std::size_t count) const;
-  /// What the newest line says, without the time, program and level that handcast's log puts in
-  /// front. "" if there is none.
+  /// The newest line without the time, program and level that handcast's log puts in front. "" if
+  /// there is none.
   std::string last_sentence() const;
 
  private:

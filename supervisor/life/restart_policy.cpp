@@ -46,4 +46,6 @@ Decision decide(DeathRecord record, const Death& death, double jitter) {
   return decision;
 }
 
+double jitter_at(std::int64_t now_ns) { return static_cast<double>(now_ns % 1009) / 1008; }
+
 }  // namespace handcast::supervisor

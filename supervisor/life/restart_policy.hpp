@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "supervisor/exit.hpp"
+#include "supervisor/base/exit.hpp"
 
 namespace handcast::supervisor {
 
@@ -15,19 +15,19 @@ struct Death {
   Exit exit;
 };
 
-/// What is remembered of a service's deaths.
+/// The deaths of a service so far.
 struct DeathRecord {
   int streak = 0;                       ///< deaths since it was last healthy
   std::vector<std::int64_t> recent_ns;  ///< deaths within the storm window, oldest first
 };
 
+/// What follows from a death.
 struct Decision {
   enum class Action {
     restart,  ///< after wait_ns
-    degrade,  ///< it dies too often: reported, retried after wait_ns, while the rest of the rig
-              ///< goes on
+    degrade,  ///< it dies too often: after wait_ns, while the rest of the rig goes on
     fail,     ///< exit 100: a person must change something
-    retire    ///< exit 0 without being asked: its work is done
+    retire    ///< exit 0 that nobody asked for: its work is done
   };
   Action action = Action::restart;
   std::int64_t wait_ns = 0;
@@ -41,11 +41,14 @@ inline constexpr std::int64_t kHealthyAfter_ns = 30'000'000'000;
 inline constexpr std::int64_t kStormWindow_ns = 60'000'000'000;
 inline constexpr std::size_t kStormDeaths = 10;
 
-/// The first restart comes at once, the next after 50 ms, 100 ms, … up to 5 s; 30 s of health make
-/// the next one the first again. Ten deaths within a minute are a storm, however they were spaced:
-/// neither health nor a quick restart clears that count, time does. `jitter` (0..1, drawn by the
-/// caller) makes a wait up to a quarter longer, so that services that died together do not come
-/// back together.
+/// The first restart comes at once, the next after 50 ms, 100 ms, ... up to 5 s. After 30 s of
+/// health the next restart is a first one again. Ten deaths within a minute are a storm, however
+/// they are spaced: only time clears that count, not health. `jitter` (0..1) makes a wait up to a
+/// quarter longer, so that services that died together do not come back together.
 Decision decide(DeathRecord record, const Death& death, double jitter = 0);
+
+/// A jitter for decide() out of the last digits of the time, which differ even between services
+/// that die together.
+double jitter_at(std::int64_t now_ns);
 
 }  // namespace handcast::supervisor

@@ -6,6 +6,8 @@
 
 namespace handcast::supervisor {
 
+/// What `handcast status` calls the state of a service. What the supervisor itself distinguishes is
+/// in service_state.hpp.
 enum class State {
   stopped,   ///< as asked, or its work is done
   starting,  ///< started and not ready, or about to be started (again)

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "ipc/base/log.hpp"
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {

@@ -9,14 +9,16 @@
 
 namespace handcast::supervisor {
 
-/// Writes the rig as it is applied, settings and all, to RIG.toml in the runtime folder: what
-/// services read when they are started again. The person's own file may be half edited at that
-/// moment; it counts when it is reloaded. Errors: unavailable.
+/// Writes the rig as it is applied, with all settings, to RIG.toml in the runtime folder. Services
+/// read that file whenever they are started; the person's own file may be half edited at that
+/// moment and counts only when it is reloaded. Returns the path. Errors: unavailable, bad_config
+/// (the folder).
 Result<std::filesystem::path> write_applied(const config::Rig& rig);
-/// The rig that this very command (file and --set) started and whose services live without their
-/// supervisor, as it was applied: a successor goes on with it whatever the file says by now.
+/// The applied rig that the same command (file and --set) has started, if its services live without
+/// a supervisor: a successor goes on with it, whatever the file says by now.
 std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
                                           const std::vector<std::string>& settings);
+/// Removes the file.
 void forget_applied(const std::string& rig);
 
 }  // namespace handcast::supervisor

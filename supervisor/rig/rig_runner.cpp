@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
+// A rig in the order of its life: it is opened, it runs, it stops.
 #include "supervisor/rig/rig_runner.hpp"
 
 #include <fmt/format.h>
-#include <sys/signalfd.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <stdlib.h>
 
-#include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "ipc/ring/row_owner.hpp"
-#include "supervisor/console.hpp"
-#include "supervisor/life/service_spec.hpp"
+#include "ipc/daemon/contract.hpp"
+#include "supervisor/base/console.hpp"
 #include "supervisor/rig/applied_rig.hpp"
+#include "supervisor/rig/takeover.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::int64_t kTick_ns = 50'000'000;
-constexpr std::int64_t kStoodStill_ns =
-    1'000'000'000;  ///< a tick this late: the supervisor, or the machine, was stopped
+/// A tick this late: the supervisor, or the machine, was stopped.
+constexpr std::int64_t kStoodStill_ns = 1'000'000'000;
 
 std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
 
@@ -40,44 +39,40 @@ Result<void> write_report(const std::filesystem::path& folder, const nlohmann::j
 }  // namespace
 
 RigRunner::RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop)
-    : name_(rig.name),
-      rig_(rig),
-      options_(std::move(options)),
+    : options_(std::move(options)),
       loop_(std::move(loop)),
-      recorder_(rig.supervisor.history_s),
-      started_ns_(now_ns()) {
-  launch_.program_folder = options_.program_folder;
-  launch_.epoch_ns = started_ns_;
-  launch_.ready_s = rig.supervisor.ready_s;
-  launch_.stop_s = rig.supervisor.stop_s;
-  launch_.silent_s = rig.supervisor.silent_s;
-  launch_.reports = &reports_;
+      rig_(rig, loop_, [this](Service& service, Notice notice) { on_notice(service, notice); }),
+      requests_(
+          rig_,
+          {.read_file = [this] { return config::load_rig(options_.rig_file, options_.settings); },
+           .stop = [this] { begin_stop(kExitDone); }}) {
+  rig_.launch.program_folder = options_.program_folder;
+  rig_.launch.reports = &reports_;
 }
 
 Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOptions options) {
   auto loop = EventLoop::open();
   if (!loop) return tl::make_unexpected(loop.error());
   std::unique_ptr<RigRunner> runner(new RigRunner(rig, std::move(options), std::move(*loop)));
-
-  auto control = ControlServer::listen(
-      rig.name, runner->loop_,
-      [runner = runner.get()](const Request& request, ControlServer::Reply reply) {
-        runner->on_request(request, std::move(reply));
-      });
-  if (!control) return tl::make_unexpected(control.error());
-  runner->control_ = std::move(*control);
-  if (const auto opened = runner->open_descriptors(); !opened)
-    return tl::make_unexpected(opened.error());
-  auto applied = write_applied(rig);
-  if (!applied) return tl::make_unexpected(applied.error());
-  runner->launch_.rig_file = std::move(*applied);
-  if (const auto made = runner->inherit_or_make(rig); !made)
-    return tl::make_unexpected(made.error());
-  store_with_systemd(runner->launch_.rings);
+  auto opened = runner->claim_name();
+  if (opened) opened = runner->watch_signals_and_time();
+  if (opened) opened = runner->make_parts();
+  if (!opened) return tl::make_unexpected(opened.error());
   return runner;
 }
 
-Result<void> RigRunner::open_descriptors() {
+/// The process that listens at the control socket is the rig's supervisor.
+Result<void> RigRunner::claim_name() {
+  auto control = ControlServer::listen(rig_.name, loop_,
+                                       [this](const Request& request, ControlServer::Reply reply) {
+                                         requests_.answer(request, std::move(reply));
+                                       });
+  if (!control) return tl::make_unexpected(control.error());
+  control_ = std::move(*control);
+  return {};
+}
+
+Result<void> RigRunner::watch_signals_and_time() {
   std::signal(SIGPIPE, SIG_IGN);
   auto signals = open_stop_signals();
   if (!signals) return tl::make_unexpected(signals.error());
@@ -98,30 +93,67 @@ Result<void> RigRunner::open_descriptors() {
   });
   loop_.watch(signals_.get(), [this] {
     drain(signals_.get());
-    if (phase_ != Phase::stopping) return begin_stop(0);
-    for (const auto& service : services_) service->kill();  // asked twice: in a hurry
+    if (rig_.stops()) return hurry();  // asked twice
+    begin_stop(kExitDone);
   });
   return {};
 }
 
-Result<void> RigRunner::make_rings(const config::Rig& rig) {
-  const auto specs = services_of(rig);
-  if (auto added = add_rings(specs); !added) return added;
-  for (const auto& spec : specs) add_service(spec, services_.size());
+/// Rings, applied file and services: new ones, or those of a supervisor that died. Nothing is
+/// started here.
+Result<void> RigRunner::make_parts() {
+  auto adopted = adopt(rig_.name);
+  if (!adopted) return tl::make_unexpected(adopted.error());
+  reports_.read();
+  end_strays(reports_, *adopted, options_.program_folder);
+
+  const auto specs = services_of(rig_.config);
+  if (const auto made = make_rings_and_file(*adopted, specs); !made) {
+    if (!*adopted) return made;
+    return fail(made.error().code, fmt::format("what lives of rig '{0}' cannot be taken over: {1}; "
+                                               "`handcast down --rig {0}` ends it",
+                                               rig_.name, made.error().what));
+  }
+  for (const auto& spec : specs) rig_.services.add(spec);
+  if (*adopted) {
+    continue_run((*adopted)->saved);
+    take_services(std::move(**adopted), rig_);
+  }
+  store_with_systemd(rig_.launch.rings);
   return {};
 }
 
+Result<void> RigRunner::make_rings_and_file(std::optional<AdoptedRig>& adopted,
+                                            const std::vector<ServiceSpec>& specs) {
+  if (adopted)
+    if (auto taken = take_rings(*adopted, rig_, specs); !taken) return taken;
+  if (const auto made = rig_.make_rings(specs); !made) return tl::make_unexpected(made.error());
+  auto applied = write_applied(rig_.config);
+  if (!applied) return tl::make_unexpected(applied.error());
+  rig_.launch.rig_file = std::move(*applied);
+  return {};
+}
+
+/// The rig is as old as its services' clock; --seconds counts from its start, or from now if a
+/// person has just said it.
+void RigRunner::continue_run(const SavedRig& saved) {
+  inherited_ = true;
+  rig_.launch.epoch_ns = rig_.started_ns = saved.epoch_ns;
+  if (!options_.is_successor && options_.seconds)
+    *options_.seconds += ns_to_seconds(now_ns() - rig_.started_ns);
+  if (options_.out || saved.out.empty()) return;
+  options_.out = saved.out;
+  setenv(daemon::kOutVariable, saved.out.c_str(), 1);
+}
+
 int RigRunner::run() {
-  for (const auto& service : services_)
+  for (const auto& service : rig_.services.all())
     if (!service->first_start_ns()) service->hold();
   last_tick_ns_ = now_ns();
   // A reload was cut short, or `handcast up` came with other settings.
-  if (inherited_) reload(rig_, false, ControlServer::Reply([](const auto&, const auto&) {}));
-  follow_up();
-  while (phase_ != Phase::done) {
-    loop_.turn();
-    follow_up();
-  }
+  if (inherited_)
+    requests_.reload(rig_.config, false, ControlServer::Reply([](const auto&, const auto&) {}));
+  for (follow_up(); rig_.phase != Phase::done; follow_up()) loop_.turn();
   return exit_code_;
 }
 
@@ -129,55 +161,41 @@ void RigRunner::tick() {
   const auto now = now_ns();
   watchdog_.tick(now);
   forgive_a_standstill(now);
-  recorder_.poll();
-  for (const auto& service : services_) service->tick(now, needs_are_ready(*service));
-  if (phase_ == Phase::stopping || phase_ == Phase::done) return;
-  if (options_.seconds && now - started_ns_ >= seconds_to_ns(*options_.seconds))
-    return begin_stop(0);
-  replace_the_silent(now);
-  continue_reload(now);
-  progress(now);
+  rig_.recorder.poll();
+  for (const auto& service : rig_.services.all()) service->tick(now, rig_.look_at(*service, now));
+  if (rig_.stops()) return;
+  if (options_.seconds && now - rig_.started_ns >= seconds_to_ns(*options_.seconds))
+    return begin_stop(kExitDone);
+  requests_.tick(now);
+  show_progress_now_and_then(now);
 }
 
-/// After each turn of the event loop: what can wait until those who died have successors.
+/// After each turn of the event loop: what can wait until services that died have been replaced.
 void RigRunner::follow_up() {
   come_up();
-  if (phase_ == Phase::starting || phase_ == Phase::up) start_those_held();
-  std::uint64_t revision = 0;
-  for (const auto& service : services_) revision += service->revision();
-  if (revision == std::exchange(revision_, revision) || phase_ == Phase::done) return;
-  for (const auto& ring : rings_) ipc::sweep_dead_rows(ring);
+  begin_what_may();
+  const auto revision = rig_.services.revision();
+  if (revision == std::exchange(revision_, revision) || rig_.phase == Phase::done) return;
+  rig_.rings.sweep_dead_rows();
   save();
 }
 
-bool RigRunner::needs_are_ready(const Service& service) const {
-  return std::ranges::all_of(service.spec().needs, [this](const auto& name) {
-    const auto* need = find(name);
-    return !need || need->state() == State::ready;
-  });
+/// A service that does not get ready in time does not keep the rig from being up. A rig that was
+/// taken over is up already.
+void RigRunner::come_up() {
+  if (rig_.phase != Phase::starting) return;
+  if (!inherited_ && !rig_.services.has_come_up(now_ns())) return;
+  rig_.phase = Phase::up;
+  log::info("rig '{}' is up", rig_.name);
+  notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", rig_.name));
 }
 
-/// Whether nothing is to be waited for: each need is ready, has given up, or has had its time.
-bool RigRunner::may_begin(const Service& service, std::int64_t now) const {
-  return std::ranges::all_of(service.spec().needs, [&](const auto& name) {
-    const auto* need = find(name);
-    return !need || need_not_be_waited_for(*need, now);
-  });
-}
-
-bool RigRunner::need_not_be_waited_for(const Service& service, std::int64_t now) const {
-  if (service.state() != State::starting && service.state() != State::stopping) return true;
-  return service.first_start_ns() &&
-         now - *service.first_start_ns() > seconds_to_ns(launch_.ready_s);
-}
-
-void RigRunner::start_those_held() {
-  const auto now = now_ns();
-  for (std::size_t i = 0; i < services_.size(); ++i) {
-    const bool held = services_[i]->state() == State::starting && !services_[i]->first_start_ns();
-    if (held && may_begin(*services_[i], now)) services_[i]->start();
-    if (phase_ != Phase::starting && phase_ != Phase::up)
-      return;  // one that cannot start stops the rig
+/// Starts the services that wait for nothing any more. One that cannot start may stop the rig.
+void RigRunner::begin_what_may() {
+  while (!rig_.stops()) {
+    auto* service = rig_.services.next_to_begin(now_ns());
+    if (!service) return;
+    service->start();
   }
 }
 
@@ -186,140 +204,96 @@ void RigRunner::forgive_a_standstill(std::int64_t now) {
   if (late_ns < kStoodStill_ns) return;
   log::warning("everything stood still for {:.1f} s; nobody is late for it",
                ns_to_seconds(late_ns));
-  forgiven_ns_ = now;
-  for (const auto& service : services_) service->forgive(late_ns);
+  for (const auto& service : rig_.services.all()) service->forgive(late_ns);
 }
 
-void RigRunner::replace_the_silent(std::int64_t now) {
-  for (const auto& service : services_) {
-    if (service->state() != State::ready) continue;
-    const auto silence_ms = recorder_.silence_ms(service->spec().name, now);
-    const auto heard_ns = silence_ms ? now - ms_to_ns(*silence_ms) : 0;
-    const auto silent_s = ns_to_seconds(
-        now - std::max({heard_ns, *service->ready_ns(), service->killed_ns(), forgiven_ns_}));
-    if (silent_s < launch_.silent_s) continue;
-    log::warning("{} has given no sign of life for {:.1f} s; killed", service->spec().name,
-                 silent_s);
-    service->kill();
-  }
-}
-
-void RigRunner::progress(std::int64_t now) {
-  if (now < next_progress_ns_ || phase_ != Phase::up) return;
-  if (next_progress_ns_ > 0) show_progress(progress_line(view()));
+void RigRunner::show_progress_now_and_then(std::int64_t now) {
+  if (now < next_progress_ns_ || rig_.phase != Phase::up) return;
+  if (next_progress_ns_ > 0) show_progress(progress_line(rig_.view()));
   next_progress_ns_ = now + progress_period_ns();
 }
 
-void RigRunner::on_event(Service& service, Service::Event event) {
-  if (phase_ == Phase::stopping) {
-    if (event != Service::Event::ready) stop_next();
+void RigRunner::on_notice(Service& service, Notice notice) {
+  if (rig_.stops()) {
+    if (notice != Notice::ready) stop_next();
     return;
   }
-  switch (event) {
-    case Service::Event::ready:
-      return on_ready(service);
-    case Service::Event::failed:
+  switch (notice) {
+    case Notice::ready:
+      return requests_.on_ready(service);
+    case Notice::stopped:
+      return requests_.on_stopped(service);
+    case Notice::failed:
       return on_failed(service);
-    case Service::Event::stopped:
-      if (const auto pending = pending_.extract(service.spec().name))
-        pending.mapped().reply(failure(service.spec().name + " ended by itself"));
   }
 }
 
-void RigRunner::on_ready(Service& service) {
-  if (const auto pending = pending_.extract(service.spec().name)) {
-    const auto& [reply, wanted, before, reason] = pending.mapped();
-    reply(reason.empty() ? success()
-                         : failure(fmt::format("{} did not start with '{}', '{}' goes on: {}",
-                                               service.spec().name, wanted, before, reason)));
-  }
-}
-
-/// A service that is no good does not keep the rig from being up; one that was taken over is.
-void RigRunner::come_up() {
-  const auto now = now_ns();
-  const auto has_begun = [&](const auto& service) {
-    return service->ever_ready() || need_not_be_waited_for(*service, now);
-  };
-  if (phase_ != Phase::starting || !(inherited_ || std::ranges::all_of(services_, has_begun)))
-    return;
-  phase_ = Phase::up;
-  log::info("rig '{}' is up", name_);
-  notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", name_));
-}
-
+/// A rig that is not up yet stops if a service cannot start.
 void RigRunner::on_failed(Service& service) {
-  const auto& name = service.spec().name;
-  const auto sentence = service.log().last_sentence();
-  const auto pending = pending_.find(name);
-  if (pending != pending_.end() && !pending->second.wanted.empty() &&
-      pending->second.reason.empty()) {
-    pending->second.reason = sentence;
-    return give_backend(service, pending->second.before, false);
-  }
-  if (pending != pending_.end())
-    pending_.extract(pending).mapped().reply(failure(fmt::format("{} failed: {}", name, sentence)));
-  const bool reloaded = reload_ && reload_->begun.contains(name);  // the rig was there before
-  if (phase_ != Phase::starting || service.ever_ready() || reloaded) return;
-  print_line(fmt::format("handcast: {} cannot start: {}", name, sentence));
+  if (requests_.on_failed(service)) return;
+  if (rig_.phase != Phase::starting || service.was_ready()) return;
+  print_line(fmt::format("handcast: {} cannot start: {}", service.spec().name,
+                         service.log().last_sentence()));
   begin_stop(kExitConfig);
 }
 
+/// Saves the rig for a successor. Not while the rig stops: a successor would leave the services
+/// stopped that were stopped by then.
+void RigRunner::save() {
+  if (rig_.stops()) return;
+  SavedRig saved{.name = rig_.name,
+                 .rig_file = options_.rig_file,
+                 .settings = options_.settings,
+                 .out = options_.out ? options_.out->string() : "",
+                 .epoch_ns = rig_.launch.epoch_ns,
+                 .rings = rig_.rings.saved(),
+                 .services = {}};
+  for (const auto& service : rig_.services.all()) saved.services.push_back(service->saved());
+  const auto written = supervisor::save(saved);
+  if (!written && !std::exchange(save_failed_, true))
+    log::warning("no successor could take over: {}", written.error().what);
+}
+
 void RigRunner::begin_stop(int exit_code) {
+  if (rig_.stops()) return;
   exit_code_ = exit_code;
-  phase_ = Phase::stopping;
+  rig_.phase = Phase::stopping;
   notify_systemd("STOPPING=1");
-  for (const auto& [name, pending] : std::exchange(pending_, {}))
-    pending.reply(failure("the rig stops"));
-  if (const auto reload = std::exchange(reload_, {})) reload->reply(failure("the rig stops"));
-  for (const auto& service : services_)
+  requests_.on_stopping();
+  for (const auto& service : rig_.services.all())
     if (!service->is_running()) service->stop();  // takes back a start that was due
   stop_next();
 }
 
+/// Services stop one after the other, in the reverse of their order.
 void RigRunner::stop_next() {
-  const auto last = std::find_if(services_.rbegin(), services_.rend(),
-                                 [](const auto& service) { return service->is_running(); });
-  if (last != services_.rend()) return (*last)->stop();
+  if (auto* last = rig_.services.last_running()) return last->stop();
   finish();
 }
 
-void RigRunner::finish() {
-  if (phase_ == Phase::done) return;
-  phase_ = Phase::done;
-  recorder_.poll();
-  if (options_.out && exit_code_ == 0) {
-    if (const auto written = write_report(*options_.out, live_report(view())); !written) {
-      log::error("{}", written.error().what);
-      exit_code_ = kExitConfig;  // not kExitFailure: the rig is not to be started again
-    }
+/// Stops all services at once, without waiting for them.
+void RigRunner::hurry() {
+  for (const auto& service : rig_.services.all()) {
+    service->stop();
+    service->hurry();
   }
-  forget_saved(name_);
-  forget_applied(name_);
-  log::info("rig '{}' has stopped", name_);
-  control_->close_door();
-  for (const auto& reply : waiting_for_stop_) reply(success());
 }
 
-void RigRunner::save() const {
-  if (phase_ == Phase::stopping)
-    return;  // one who takes over here shall not take the services that were stopped for idle ones
-  SavedRig saved{.name = name_,
-                 .rig_file = options_.rig_file,
-                 .settings = options_.settings,
-                 .out = options_.out ? options_.out->string() : "",
-                 .epoch_ns = launch_.epoch_ns,
-                 .rings = {},
-                 .services = {}};
-  for (const auto& ring : rings_) {
-    struct stat status {};
-    if (fstat(ring.fd(), &status) == 0)
-      saved.rings.push_back({ring.stream(), status.st_ino, ring.fd()});
+void RigRunner::finish() {
+  if (rig_.phase == Phase::done) return;
+  rig_.phase = Phase::done;
+  rig_.recorder.poll();
+  if (options_.out && exit_code_ == kExitDone) {
+    if (const auto written = write_report(*options_.out, live_report(rig_.view())); !written) {
+      log::error("{}", written.error().what);
+      exit_code_ = kExitConfig;  // not kExitRetry: the rig is not to be started again
+    }
   }
-  for (const auto& service : services_) saved.services.push_back(service->saved());
-  const auto written = supervisor::save(saved);
-  if (!written && !std::exchange(save_failed_, true))
-    log::warning("no successor could take over: {}", written.error().what);
+  forget_saved(rig_.name);
+  forget_applied(rig_.name);
+  log::info("rig '{}' has stopped", rig_.name);
+  control_->stop_accepting();
+  requests_.on_done();
 }
 
 }  // namespace handcast::supervisor

@@ -55,8 +55,8 @@ json service_status(const Service& service, const RigView& rig) {
   return status;
 }
 
-// Every service marks each message it publishes, so the marks give the rates of the rings without
-// touching their payloads.
+// Every service marks each message that it publishes, so the marks give the rates of the rings
+// without a look at the messages.
 json ring_status(const Service& service, const RigView& rig) {
   const auto& frames = rig.recorder.ledger().frames(service.spec().name);
   return {{"asked_hz", asked(service.spec())},
@@ -83,7 +83,8 @@ std::string text_of(const json& value, std::string_view unit = "") {
   return fmt::format("{:.6g}{}", value.get<double>(), unit);
 }
 
-/// "died 10 times within 60 s; tried again in 4.2 s".
+/// What is wrong with a service: "died 10 times within 60 s; tried again in 4.2 s". "" if nothing
+/// is.
 std::string print_trouble(const json& service) {
   std::string text =
       service.contains("reason") && !service["reason"].is_null() ? text_of(service["reason"]) : "";

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "supervisor/life/service.hpp"
 #include "supervisor/record/recorder.hpp"
+#include "supervisor/rig/service_table.hpp"
 
 namespace handcast::supervisor {
 
-using Services = std::vector<std::unique_ptr<Service>>;
-
-/// A rig at one moment: what its parts know of themselves.
+/// A rig at one moment.
 struct RigView {
   const std::string& name;
   const Services& services;
@@ -23,13 +19,13 @@ struct RigView {
   std::int64_t now_ns = 0;
 };
 
-/// What `handcast status --json` prints.
+/// The status of a rig, as `handcast status --json` prints it.
 nlohmann::json status_of(const RigView& rig);
-/// The same for a person to read.
+/// A status as text.
 std::string print_status(const nlohmann::json& status);
-/// "up 12 s  camera 240 Hz  pose 110 Hz  …  restarts 0".
+/// One line of figures: "up 12 s  camera 240 Hz  pose 110 Hz  ...  restarts 0".
 std::string progress_line(const RigView& rig);
-/// What is kept of a whole run (live.json).
+/// The figures of a whole run (live.json).
 nlohmann::json live_report(const RigView& rig);
 
 }  // namespace handcast::supervisor

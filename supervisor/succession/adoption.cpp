@@ -16,17 +16,17 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/process.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-using Stored =
-    std::vector<std::pair<std::string, UniqueFd>>;  ///< rings by their streams' names, from systemd
+/// Rings from systemd's store, by stream.
+using Stored = std::vector<std::pair<std::string, UniqueFd>>;
 
-// The order makes it certain: once the pidfd is open, its number cannot go to another process
-// unnoticed.
+// In this order: once the pidfd is open, it does not matter if the number goes to another process.
 UniqueFd pidfd_of(const SavedService& saved) {
   if (saved.pid == 0) return {};
   UniqueFd pidfd(static_cast<int>(syscall(SYS_pidfd_open, saved.pid, 0)));
@@ -51,8 +51,8 @@ bool ends_before(const AdoptedProcess& process, Deadline deadline) {
   return poll(&ended, 1, static_cast<int>(ns_to_ms(left_ns)) + 1) == 1;
 }
 
-/// With all that is left of its process group, for a process that was just seen alive: its number
-/// is still its own.
+/// Kills a process that was just seen alive, so that its number is still its own, and its process
+/// group.
 void kill_now(const AdoptedProcess& process) {
   kill(-process.saved.pid, SIGKILL);
   send_signal(process, SIGKILL);
@@ -64,7 +64,7 @@ bool is_inode(int fd, std::uint64_t inode) {
   return fd >= 0 && fstat(fd, &status) == 0 && status.st_ino == inode;
 }
 
-/// The memory of a ring, opened anew: a description of its own, which shares no lock with the
+/// Opens the memory of a ring again. The open file is a new one: it shares no lock with the
 /// service's.
 Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>& living,
                         const Stored& stored) {
@@ -82,7 +82,7 @@ Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>
               fmt::format("ring '{}' cannot be opened ({})", ring.stream, reason));
 }
 
-/// Under the very number that the services know it by: children inherit rings by number.
+/// Gives a descriptor the number that the services know it by: children inherit rings by number.
 Result<UniqueFd> place(UniqueFd fd, int number) {
   if (fd.get() == number) return fd;
   if (fcntl(number, F_GETFD) != -1)
@@ -96,7 +96,7 @@ Result<UniqueFd> place(UniqueFd fd, int number) {
 Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved,
                                              const std::vector<AdoptedProcess>& living,
                                              const Stored& stored) {
-  int above_all = 3;  // out of each other's way until each has its place
+  int above_all = 3;  // a number that no ring needs
   for (const auto& ring : saved.rings) above_all = std::max(above_all, ring.fd + 1);
 
   std::vector<UniqueFd> memories;
@@ -120,15 +120,14 @@ Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved,
   return rings;
 }
 
-/// A pipe can be opened again, for reading too. Until now nobody did: what the service said
-/// meanwhile is lost.
+/// Opens the reading end of a service's output again. What it wrote while nobody read is lost.
 UniqueFd reopen_log(pid_t pid) {
   return UniqueFd(
       ::open(fmt::format("/proc/{}/fd/1", pid).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
 }
 
-/// Those that were starting cannot say any more that they are ready, so they are ended, to be
-/// started anew.
+/// A service that was starting cannot say any more that it is ready: its pipe is gone. It is
+/// killed, to be started again.
 std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
   std::vector<AdoptedProcess> ready;
   for (auto& process : living) {
@@ -155,14 +154,13 @@ std::string names_of(const std::vector<AdoptedProcess>& processes) {
 }  // namespace
 
 Result<ipc::Segment> make_ring(const ipc::RingSpec& spec) {
-  constexpr int kFirstNumber =
-      100;  // a supervisor has some 40 descriptors of its own before it adopts
+  constexpr int kFirstNumber = 100;  // a supervisor has some 40 descriptors of its own
   const auto made = ipc::Segment::create(spec);
   if (!made) return tl::make_unexpected(made.error());
   UniqueFd fd(fcntl(made->fd(), F_DUPFD_CLOEXEC, kFirstNumber));
   if (!fd)
     return fail(Errc::unavailable,
-                fmt::format("ring '{}': no descriptor: {}", spec.stream, std::strerror(errno)));
+                fmt::format("no descriptor from {} on: {}", kFirstNumber, std::strerror(errno)));
   return ipc::Segment::open(std::move(fd));
 }
 
@@ -176,7 +174,7 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   if (living.empty() && stored.empty()) return std::nullopt;
   auto rings = take_rings(**saved, living, stored);
   if (!rings && living.empty())
-    return std::nullopt;  // what systemd kept is not all that is needed, and nobody uses it
+    return std::nullopt;  // systemd did not keep all of them, and nobody uses them
   if (!rings)
     return fail(
         rings.error().code,

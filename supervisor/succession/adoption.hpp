@@ -5,46 +5,39 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
-#include "ipc/base/unique_fd.hpp"
 #include "ipc/shm/segment.hpp"
 #include "supervisor/succession/saved_rig.hpp"
 
-// contract
 namespace handcast::supervisor {
 
-/// A new ring under a number which a successor, that must give it the same one, has not used for
-/// anything else before. Errors: as Segment::create.
+/// A new ring. Its descriptor has a number that no supervisor uses for its own descriptors: a
+/// successor must be able to give the ring the same number. Errors: as Segment::create; unavailable
+/// (no descriptor left).
 Result<ipc::Segment> make_ring(const ipc::RingSpec& spec);
 
-/// A living service of a supervisor that died, identified beyond doubt: the pidfd was opened before
-/// the start time was compared.
-struct AdoptedProcess {
-  SavedService saved;
-  UniqueFd pidfd;
-  UniqueFd log;  ///< the reading end of its output, opened again; does not block
-};
-
+/// What a supervisor that died has left.
 struct AdoptedRig {
   SavedRig saved;
-  std::vector<ipc::Segment> rings;       ///< under the numbers they have in the services
-                                         ///< (saved.rings[i].fd): children inherit them
+  /// Under the descriptors that they have in the services (saved.rings[i].fd): children inherit
+  /// them.
+  std::vector<ipc::Segment> rings;
   std::vector<AdoptedProcess> services;  ///< those that live
 };
 
-/// What still lives of the rig `name`; empty where nothing does. The rings come from the living
-/// services (/proc/PID/fd/N, inode compared) or from systemd's store. Rows and locks of the dead
-/// are made free. Errors: bad_data, unavailable: then what lives can only be stopped
+/// What still lives of the rig `name`; empty if nothing does. The rings are opened through the
+/// living services (/proc/PID/fd/N, inode compared) or come from systemd's store. What dead readers
+/// hold is freed. Errors: bad_data, unavailable; what lives can only be stopped then
 /// (stop_orphans).
 Result<std::optional<AdoptedRig>> adopt(const std::string& name);
 
-/// Ends every service of a rig that has no supervisor, asking first. How many there were.
+/// Ends every service of a rig that has no supervisor: asks each to stop, and kills it after
+/// `stop_s`. Returns how many there were.
 int stop_orphans(const std::string& name, double stop_s);
 
-/// The rigs of this user whose services live while no supervisor answers for them, in the order of
-/// their names.
+/// The names of this user's rigs whose services live without a supervisor, sorted.
 std::vector<std::string> orphaned_rigs();
-/// The one of them that `name` means (empty: the only one), if no supervisor takes it over within a
-/// second, as one with a keeper does.
+/// The orphaned rig that `name` means ("": the only one), if no supervisor takes it over within a
+/// second. A supervisor with a keeper does.
 std::optional<std::string> abandoned_rig(const std::string& name);
 
 }  // namespace handcast::supervisor

@@ -18,9 +18,9 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/console.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/succession/exit_reports.hpp"
+#include "supervisor/base/console.hpp"
+#include "supervisor/base/exit.hpp"
+#include "supervisor/life/exit_reports.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -30,10 +30,10 @@ constexpr std::int64_t kShortLife_ns = 1'000'000'000;
 constexpr std::int64_t kFirstPause_ns = 50'000'000;
 constexpr std::int64_t kMinute_ns = 60'000'000'000;
 constexpr int kDeathsInAMinute = 10;
-constexpr std::int64_t kFarewell_ns =
-    1'000'000'000;  ///< for what is left after the supervisor has ended by itself
+/// For the children that are left when the supervisor has ended by itself.
+constexpr std::int64_t kFarewell_ns = 1'000'000'000;
 
-/// When the supervisor died, and what follows from it.
+/// The deaths of the supervisor.
 class Deaths {
  public:
   void note(std::int64_t started_ns, std::int64_t died_ns) {
@@ -45,7 +45,7 @@ class Deaths {
              return died_ns > 0 && now - died_ns < kMinute_ns;
            }) == kDeathsInAMinute;
   }
-  /// None after a life of some length, and none the first time.
+  /// How long the next start waits: not at all after a life of some length, nor the first time.
   std::int64_t pause_ns() const {
     return short_lives_ < 2 ? 0 : kFirstPause_ns << (std::min(short_lives_, 6) - 2);
   }
@@ -56,8 +56,7 @@ class Deaths {
   int short_lives_ = 0;
 };
 
-/// Everything the supervisor is started with, made once: later nothing is allocated that could be
-/// missing.
+/// What the supervisor is started with. Made once, so that no later start needs memory.
 struct Plan {
   std::vector<std::string> arguments, environment;
   std::vector<char*> argument_pointers, environment_pointers;
@@ -75,7 +74,7 @@ struct Plan {
     for (auto& text : environment) environment_pointers.push_back(text.data());
     argument_pointers.push_back(nullptr);
     environment_pointers.insert(environment_pointers.end(),
-                                {nullptr, nullptr});  // room for the successor's word
+                                {nullptr, nullptr});  // room for kSuccessorVariable
   }
   void for_a_successor() {
     environment_pointers[environment_pointers.size() - 2] = successor.data();
@@ -93,7 +92,7 @@ class Keeper {
       const auto started_ns = now_ns();
       start();
       while (supervisor_ > 0) handle(wait_for_signal(kMinute_ns));
-      const bool cannot_now = is_successor_ && exit_ && exit_->code == kExitFailure;
+      const bool cannot_now = is_successor_ && exit_ && exit_->code == kExitRetry;
       if (exit_ && !exit_->signalled && !cannot_now) return see_off(exit_->code);
       deaths_.note(started_ns, now_ns());
       if (deaths_.too_many(now_ns())) return give_up();
@@ -126,13 +125,13 @@ class Keeper {
     supervisor_ = fork();
     if (supervisor_ == 0) become_supervisor();
     if (supervisor_ < 0) return;
-    setpgid(supervisor_, supervisor_);  // here too: whichever process comes first
+    setpgid(supervisor_, supervisor_);  // in both processes, whichever runs first
     for (const int number : kStopSignals)
       if (sigismember(&asked_, number) == 1) kill(supervisor_, number);
   }
 
-  // The stop signals stay blocked beyond exec: one that comes before the supervisor listens waits
-  // for it.
+  // The stop signals stay blocked across exec: one that comes early is delivered when the
+  // supervisor is ready for it.
   [[noreturn]] void become_supervisor() {
     setpgid(0, 0);
     signal(SIGTTOU, SIG_IGN);  // it writes to the terminal from the background
@@ -144,10 +143,10 @@ class Keeper {
     execve(plan_.argument_pointers[0], plan_.argument_pointers.data(),
            plan_.environment_pointers.data());
     print_line(fmt::format("handcast: {}: {}", plan_.arguments[0], std::strerror(errno)));
-    _exit(kExitFailure);
+    _exit(kExitRetry);
   }
 
-  /// A signal's number; 0 after `span_ns` without one.
+  /// The number of a signal that arrived; 0 if none did within `span_ns`.
   int wait_for_signal(std::int64_t span_ns) const {
     const timespec span{span_ns / 1'000'000'000, span_ns % 1'000'000'000};
     return std::max(sigtimedwait(&awaited_, nullptr, &span), 0);
@@ -160,8 +159,7 @@ class Keeper {
     if (supervisor_ > 0) kill(supervisor_, signal_number);
   }
 
-  /// Of the children that ended: the supervisor's end is our business, the others' that of the next
-  /// supervisor.
+  /// Notes the end of the supervisor, and reports that of every other child.
   void reap() {
     for (siginfo_t info{}; waitid(P_ALL, 0, &info, WEXITED | WNOHANG) == 0 && info.si_pid != 0;
          info = {}) {
@@ -172,7 +170,7 @@ class Keeper {
       }
       const ExitReport report{info.si_pid, info.si_code, info.si_status};
       send(here_.get(), &report, sizeof report,
-           MSG_DONTWAIT | MSG_NOSIGNAL);  // where nobody reads for long, it is lost
+           MSG_DONTWAIT | MSG_NOSIGNAL);  // lost if nobody has read for long
     }
   }
 
@@ -196,19 +194,20 @@ class Keeper {
                     "again; what lives of its services goes on: "
                     "`handcast up` takes them over, `handcast down` ends them",
                     kDeathsInAMinute));
-    return kExitFailure;
+    return kExitRetry;
   }
 
-  UniqueFd here_;   ///< reports go in here
-  UniqueFd there_;  ///< and come out here, for whichever supervisor lives; held open so that
-                    ///< nothing is lost between two
+  UniqueFd here_;  ///< reports are sent here
+  /// Reports are received here, by the supervisor that lives. Held open so that none is lost
+  /// between two supervisors.
+  UniqueFd there_;
   Plan plan_;
   Deaths deaths_;
   sigset_t stop_signals_{}, awaited_{};
-  sigset_t asked_{};  ///< stop signals that came: a successor gets them too, since its predecessor
-                      ///< did not stop the rig
+  /// Stop signals that came. A successor gets them, too: its predecessor did not stop the rig.
+  sigset_t asked_{};
   pid_t supervisor_ = -1;
-  bool is_successor_ = false;  ///< what runs took over from one that died: its services may live
+  bool is_successor_ = false;  ///< of a supervisor that died, whose services may live
   std::optional<Exit> exit_;
 };
 
@@ -218,7 +217,7 @@ int keep(const std::vector<std::string>& arguments) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     print_line(fmt::format("handcast: no socket for the keeper: {}", std::strerror(errno)));
-    return kExitFailure;
+    return kExitRetry;
   }
   return Keeper(arguments, UniqueFd(ends[0]), UniqueFd(ends[1])).run();
 }

@@ -3,20 +3,18 @@
 #include <string>
 #include <vector>
 
-// contract
 namespace handcast::supervisor {
 
-/// Becomes the keeper of a supervisor: starts `arguments` (the path of a program, this one again,
-/// and what it gets) in a process group of its own, starts it again when it dies by a signal (or, a
-/// successor, cannot take over now: kExitFailure), inherits and reaps the services it leaves behind
-/// (PR_SET_CHILD_SUBREAPER), hands SIGINT, SIGTERM and SIGHUP on. Does nothing else: what does
-/// nothing does not break. The supervisor's exit code, or kExitFailure where it dies too often.
+/// Makes this process the keeper of a supervisor, the program `arguments[0]` with its arguments.
+/// The keeper starts the supervisor in a process group of its own and starts it again if it dies by
+/// a signal, or if it is a successor that cannot take over now (kExitRetry). It reaps the services
+/// of a supervisor that died (PR_SET_CHILD_SUBREAPER), reports their ends (life/exit_reports.hpp),
+/// and passes SIGINT, SIGTERM and SIGHUP on. It does nothing else, so that little can break.
+/// Returns the supervisor's exit code, or kExitRetry if the supervisor dies too often.
 int keep(const std::vector<std::string>& arguments);
 
-/// Holds the number of the supervisor's end of the keeper's socket: see exit_reports.hpp.
-inline constexpr const char* kKeeperVariable = "HANDCAST_KEEPER_FD";
-/// Set for a supervisor that follows one that died under the same keeper: what that one was asked
-/// to do goes on.
+/// The variable that is set for a supervisor that follows one that died under the same keeper: what
+/// that one was asked to do goes on.
 inline constexpr const char* kSuccessorVariable = "HANDCAST_SUCCESSOR";
 
 }  // namespace handcast::supervisor

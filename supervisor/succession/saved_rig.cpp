@@ -11,10 +11,9 @@
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -77,7 +76,7 @@ SavedRing ring_from(const json& object) {
   return {object.at("stream"), object.at("inode"), object.at("fd")};
 }
 
-/// A name that nobody knows means the least: it is to be started.
+/// An unknown name counts as starting.
 State state_named(const std::string& name) {
   const auto found = std::ranges::find(kStateNames, name);
   return found == kStateNames.end() ? State::starting
@@ -94,7 +93,7 @@ SavedService service_from(const json& object) {
           .restarts = object.at("restarts")};
 }
 
-/// Throws what the JSON library throws where a member is missing or of another kind.
+/// Throws json::exception if a member is missing or of another type.
 SavedRig rig_from(const json& object) {
   SavedRig rig{.name = object.at("name"),
                .rig_file = object.at("rig_file").get<std::string>(),
@@ -108,7 +107,7 @@ SavedRig rig_from(const json& object) {
   return rig;
 }
 
-/// What must hold before signals are sent and descriptors replaced by these numbers.
+/// Why signals must not be sent to these processes, or these descriptors replaced; "" if they may.
 std::string problem_of(const SavedRig& rig, const std::string& name) {
   if (rig.name != name) return fmt::format("it is of a rig named '{}'", rig.name);
   for (const auto& ring : rig.rings)
@@ -120,7 +119,7 @@ std::string problem_of(const SavedRig& rig, const std::string& name) {
   return "";
 }
 
-/// Whether the file is as save() leaves it: nobody else could have written it.
+/// Why the file is not as save() leaves it; "" if it is, so that nobody else could have written it.
 std::string problem_of(int fd) {
   struct stat status {};
   if (fstat(fd, &status) != 0) return std::strerror(errno);
@@ -167,22 +166,6 @@ Result<std::optional<SavedRig>> load_saved(const std::string& name) {
 
 void forget_saved(const std::string& rig) {
   if (const auto path = state_of(rig)) unlink(path->c_str());
-}
-
-// "PID (name) state ppid ...": the name may hold anything, so count behind it. The state is
-// field 3.
-std::optional<std::uint64_t> start_ticks_of(pid_t pid) {
-  constexpr int kStartField = 22;
-  const auto text = text_of_proc(fmt::format("/proc/{}/stat", pid));
-  const auto behind_name = text.rfind(") ");
-  if (behind_name == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(behind_name + 2));
-  std::string field;
-  for (int number = 3; number <= kStartField; ++number) {
-    if (!(fields >> field)) return std::nullopt;
-    if (number == 3 && (field == "Z" || field == "X")) return std::nullopt;
-  }
-  return std::strtoull(field.c_str(), nullptr, 10);
 }
 
 }  // namespace handcast::supervisor

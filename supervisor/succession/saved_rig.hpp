@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <sys/types.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,32 +7,20 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
-#include "supervisor/life/state.hpp"
+#include "supervisor/life/saved_service.hpp"
 
-// contract
 namespace handcast::supervisor {
 
+/// A ring as a supervisor saves it for a successor.
 struct SavedRing {
   std::string stream;
-  std::uint64_t inode =
-      0;        ///< of the memory file: tells it from whatever else has the number by now
-  int fd = -1;  ///< its number in every service
+  std::uint64_t inode = 0;  ///< of the memory file: tells it from another file with the same number
+  int fd = -1;              ///< its number in every service
 };
 
-struct SavedService {
-  std::string name;
-  pid_t pid = 0;  ///< of the process that works (not of a spare); 0: none
-  std::uint64_t started_ticks =
-      0;  ///< of that process (/proc/PID/stat, field 22): numbers are used again
-  State state = State::starting;
-  std::string swapped;      ///< the back end that `handcast swap` gave it; "" for the rig's own
-  std::string fingerprint;  ///< of the settings it runs with (fingerprint.hpp)
-  int restarts = 0;
-};
-
-/// What a supervisor leaves for its successor, so that services and picture go on when it dies.
-/// Written at every change to RIG.state in the runtime folder (0600, replaced as a whole), removed
-/// at an orderly stop.
+/// A rig as its supervisor saves it for a successor, so that services and picture go on when it
+/// dies. It is written to RIG.state in the runtime folder at every change (mode 0600, replaced as a
+/// whole), and removed when the rig stops.
 struct SavedRig {
   std::string name;
   std::filesystem::path rig_file;
@@ -45,14 +31,12 @@ struct SavedRig {
   std::vector<SavedService> services;
 };
 
-/// Errors: unavailable (it cannot be written: the rig goes on, its supervisor just has no heir).
+/// Writes the file. Errors: unavailable; the rig goes on, but no successor can take it over.
 Result<void> save(const SavedRig& rig);
-/// Empty where nothing was left, or it was left before the machine last started. Errors: bad_data
-/// (it makes no sense).
+/// Reads the file. Empty if there is none, or if it was written before the machine last started.
+/// Errors: bad_data (it makes no sense, or others could have written it).
 Result<std::optional<SavedRig>> load_saved(const std::string& rig);
+/// Removes the file.
 void forget_saved(const std::string& rig);
-
-/// Start time of a process in clock ticks since boot; empty where there is none (or only a zombie).
-std::optional<std::uint64_t> start_ticks_of(pid_t pid);
 
 }  // namespace handcast::supervisor

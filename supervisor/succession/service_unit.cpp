@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::string_view kForSystem = "#system#", kForUser = "#user#";
 
-/// One word of a command line: systemd expands %x and $X, and takes quotes and backslashes as a
-/// shell does.
+/// Quotes one word of a command line. systemd expands %x and $X, and reads quotes and backslashes
+/// as a shell does.
 std::string word(const std::string& text) {
   std::string quoted = "\"";
   for (const char character : text) {
@@ -42,7 +42,7 @@ std::string replaced(std::string line, const std::map<std::string, std::string>&
   return line;
 }
 
-/// The line without the mark in front, where it has that mark.
+/// Removes the mark in front of a line. False: the line does not have it.
 bool take_mark(std::string& line, std::string_view mark) {
   if (!line.starts_with(mark)) return false;
   line.erase(0, line.size() > mark.size() ? mark.size() + 1 : mark.size());

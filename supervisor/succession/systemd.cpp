@@ -52,8 +52,8 @@ std::optional<Address> address_of_systemd() {
   return address;
 }
 
-/// One datagram, with a descriptor or without (-1). A queue that is full gets a moment, no more: a
-/// rig does not stand still for want of a listener.
+/// Sends one datagram, with a descriptor or without (-1). Waits only for a moment if systemd's
+/// queue is full: the rig must not stand still for it.
 void send_to_systemd(std::string_view state, int fd) {
   auto address = address_of_systemd();
   const UniqueFd socket(address ? ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0) : -1);
@@ -80,7 +80,7 @@ void send_to_systemd(std::string_view state, int fd) {
   sendmsg(socket.get(), &message, MSG_NOSIGNAL);
 }
 
-/// "camera.frames:pose.hands" as names, one for each of `count` descriptors.
+/// The names in $LISTEN_FDNAMES ("camera.frames:pose.hands"), one for each of `count` descriptors.
 std::vector<std::string> passed_names(int count) {
   const char* value = std::getenv("LISTEN_FDNAMES");
   std::string_view text = value ? value : "";
@@ -97,8 +97,8 @@ std::vector<std::string> passed_names(int count) {
 
 void notify_systemd(std::string_view state) { send_to_systemd(state, -1); }
 
-// systemd keeps each open file it is given, also one of a memory it holds already: what it had
-// under the name goes first.
+// systemd keeps each open file that it is given, even a second one of the same memory. What it has
+// under the name is removed first.
 void store_with_systemd(const std::vector<std::pair<std::string, int>>& rings) {
   for (const auto& [stream, fd] : rings) {
     notify_systemd(fmt::format("FDSTOREREMOVE=1\nFDNAME={}", stream));
@@ -117,7 +117,7 @@ std::vector<std::pair<std::string, UniqueFd>> taken_from_systemd() {
       if (fcntl(fd.get(), F_SETFD, FD_CLOEXEC) == 0)
         taken.emplace_back(std::move(names[static_cast<std::size_t>(i)]), std::move(fd));
       else
-        fd.release();  // there is nothing
+        fd.release();  // not an open descriptor
     }
   }
   for (const char* variable : {"LISTEN_PID", "LISTEN_FDS", "LISTEN_FDNAMES"}) unsetenv(variable);

@@ -9,24 +9,22 @@
 
 #include "ipc/base/unique_fd.hpp"
 
-// contract
 namespace handcast::supervisor {
 
-/// What systemd is told (sd_notify's protocol, a datagram to $NOTIFY_SOCKET). Without systemd
-/// nothing happens.
-void notify_systemd(std::string_view state);  ///< "READY=1\nSTATUS=…", "WATCHDOG=1", "STOPPING=1"
-/// Gives the rings' memory to systemd to keep (FDSTORE=1, FDNAME=stream), so that they outlive even
-/// the last process.
+/// Tells systemd a state, "READY=1\nSTATUS=...", "WATCHDOG=1" or "STOPPING=1": sd_notify's
+/// protocol, a datagram to $NOTIFY_SOCKET. Does nothing without systemd.
+void notify_systemd(std::string_view state);
+/// Gives the rings' memory to systemd to keep (FDSTORE=1, FDNAME=stream): the rings outlive even
+/// the last process. Does nothing without systemd.
 void store_with_systemd(const std::vector<std::pair<std::string, int>>& rings);
-/// What systemd gave back ($LISTEN_FDS, $LISTEN_FDNAMES), once.
+/// Takes what systemd gives back ($LISTEN_FDS, $LISTEN_FDNAMES), by stream. Empty the second time.
 std::vector<std::pair<std::string, UniqueFd>> taken_from_systemd();
 
-/// Half of the time after which systemd takes this process for hung ($WATCHDOG_USEC); empty where
-/// it does not watch.
+/// Half of the time after which systemd takes this process to hang ($WATCHDOG_USEC); empty if
+/// systemd does not watch it.
 std::optional<std::int64_t> watchdog_period_ns();
 
-/// Tells systemd as often as it wants to hear it that this process lives. Without systemd nothing
-/// happens.
+/// Tells systemd as often as needed that this process lives. Does nothing without systemd.
 class Watchdog {
  public:
   Watchdog();

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "supervisor/control/control_client.hpp"
-#include "supervisor/life/service_spec.hpp"
+#include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
 

@@ -40,7 +40,7 @@ TEST_F(Lifecycle, DownStopsTheRigAndReturnsWhenItHasStopped) {
   EXPECT_THAT(traces(), IsEmpty());
   EXPECT_EQ(rig->wait(), 0);
   const auto status = handcast({"status"});
-  EXPECT_EQ(status.exit_code, 3);
+  EXPECT_EQ(status.exit_code, 111);
   EXPECT_THAT(status.log, HasSubstr("no rig is up"));
 }
 

@@ -95,7 +95,7 @@ TEST_F(Traces, WhatCannotBeAskedIsToldInASentence) {
   EXPECT_EQ(handcast({"trace", "-o", "x", "--seconds", "never"}).exit_code, 2);
   EXPECT_EQ(handcast({"latency", "--seconds", "-1"}).exit_code, 2);
   const auto nobody = handcast({"trace", "-o", file_.string()});
-  EXPECT_EQ(nobody.exit_code, 3);
+  EXPECT_EQ(nobody.exit_code, 111);
   EXPECT_THAT(nobody.log, HasSubstr("no rig is up"));
   EXPECT_FALSE(std::filesystem::exists(file_));
   const auto rig = up();

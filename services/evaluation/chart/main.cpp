@@ -8,6 +8,7 @@
 #include <ctime>
 #include <exception>
 
+#include "ipc/base/exit_code.hpp"
 #include "ipc/base/version.hpp"
 #include "services/evaluation/chart/write.hpp"
 #include "services/evaluation/page/machine.hpp"
@@ -35,18 +36,22 @@ int main(int argc, char** argv) try {
   app.add_option("--title", order.imprint.title, "Heading of the page");
   app.add_option("--gnuplot", order.gnuplot, "The gnuplot program (default: gnuplot)");
   app.set_version_flag("--version", fmt::format("handcast chart {}", version()));
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? kExitDone : kExitUsage;
+  }
 
   const auto written = chart::write_charts(order);
   if (!written) {
     fmt::print(stderr, "handcast chart: {}\n", written.error().what);
-    return written.error().code == Errc::unavailable ? 111 : 100;
+    return exit_code_of(written.error());
   }
   for (const auto& sentence : written->lacking)
     fmt::print(stderr, "handcast chart: {}\n", sentence);
   fmt::print("{}\n", written->page.string());
-  return 0;
+  return kExitDone;
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast chart: %s\n", problem.what());
-  return 111;
+  return kExitRetry;
 }

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <exception>
 
+#include "ipc/base/exit_code.hpp"
 #include "services/evaluation/page/machine.hpp"
 #include "services/evaluation/report/report.hpp"
 
@@ -24,16 +25,20 @@ int main(int argc, char** argv) try {
                  "frames/; the report is written to it")
       ->required();
   app.add_option("--title", imprint.title, "Heading of the page");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? kExitDone : kExitUsage;
+  }
 
   const auto page = report::write_report(folder, imprint);
   if (!page) {
     fmt::print(stderr, "handcast report: {}\n", page.error().what);
-    return page.error().code == Errc::bad_config ? 100 : 111;
+    return exit_code_of(page.error());
   }
   fmt::print("{}\n", page->string());
-  return 0;
+  return kExitDone;
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast report: %s\n", problem.what());
-  return 111;
+  return kExitRetry;
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "ipc/base/exit_code.hpp"
 #include "ipc/base/version.hpp"
 #include "services/evaluation/simulate/run.hpp"
 
@@ -12,22 +13,22 @@ int main(int argc, char** argv) try {
   const auto options = simulate::parse_options(argc, argv);
   if (!options) {
     fmt::print(stderr, "handcast simulate: {}\n", options.error().what);
-    return 2;
+    return kExitUsage;
   }
   if (options->help) {
     fmt::print("{}", simulate::kHelp);
-    return 0;
+    return kExitDone;
   }
   if (options->version) {
     fmt::print("handcast simulate {}\n", version());
-    return 0;
+    return kExitDone;
   }
   if (const auto done = simulate::run(*options); !done) {
     fmt::print(stderr, "handcast simulate: {}\n", done.error().what);
-    return done.error().code == Errc::bad_config ? 100 : 111;
+    return exit_code_of(done.error());
   }
-  return 0;
+  return kExitDone;
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast simulate: %s\n", problem.what());
-  return 111;
+  return handcast::kExitRetry;
 }

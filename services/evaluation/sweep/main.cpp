@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "ipc/base/exit_code.hpp"
 #include "ipc/base/version.hpp"
 #include "services/evaluation/sweep/merge.hpp"
 #include "services/evaluation/sweep/runner.hpp"
@@ -22,8 +23,7 @@ struct CommandLine {
   bool fresh = false, list = false, merge = false, quiet = false;
 };
 
-constexpr int kExitRunsFailed = 1;
-constexpr int kExitStopped = 130;
+constexpr int kExitStopped = 130;  ///< as a shell names the end of a program by Ctrl-C
 
 const char* const kFooter = R"(A plan is a TOML file. The paths in it are relative to the file.
   rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24    joints_only = false
@@ -49,7 +49,7 @@ void stop_on_signals() {
 
 int complain(const Error& error) {
   fmt::print(stderr, "handcast sweep: {}\n", error.what);
-  return error.code == Errc::bad_config ? 100 : 111;
+  return exit_code_of(error);
 }
 
 std::filesystem::path output_of(const CommandLine& line, const Plan& plan, const Shard& shard) {
@@ -66,7 +66,7 @@ int list_runs(const Plan& plan, const std::vector<Run>& runs, const Shard& shard
     fmt::print("{:6}  {}{}\n", run.index, describe_run(plan, run),
                absent ? fmt::format("  [left out: {}]", *absent) : "");
   }
-  return 0;
+  return kExitDone;
 }
 
 int report(const Plan& plan, const Outcome& outcome, const std::filesystem::path& file) {
@@ -74,7 +74,7 @@ int report(const Plan& plan, const Outcome& outcome, const std::filesystem::path
              plan.name, outcome.scored, outcome.failed, outcome.kept, outcome.absent, outcome.left,
              file.string());
   if (outcome.left > 0) return kExitStopped;
-  return outcome.failed > 0 ? kExitRunsFailed : 0;
+  return outcome.failed > 0 ? kExitBadResult : kExitDone;
 }
 
 int sweep(const CommandLine& line) {
@@ -104,7 +104,7 @@ int merge_files(const CommandLine& line) {
   fmt::print("{} runs, {} of them failed: {}\n", merged->rows, merged->failed, line.output);
   if (!merged->missing.empty())
     fmt::print(stderr, "handcast sweep: no file has runs {}\n", print_indices(merged->missing));
-  return merged->missing.empty() && merged->failed == 0 ? 0 : kExitRunsFailed;
+  return merged->missing.empty() && merged->failed == 0 ? kExitDone : kExitBadResult;
 }
 
 }  // namespace
@@ -129,7 +129,11 @@ int main(int argc, char** argv) try {
   app.add_flag("--merge", line.merge, "Merges the results of shards into one file");
   app.add_flag("--quiet", line.quiet, "Prints no progress");
   app.set_version_flag("--version", fmt::format("handcast sweep {}", handcast::version()));
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? handcast::kExitDone : handcast::kExitUsage;
+  }
   if (line.merge) return merge_files(line);
   if (line.files.size() > 1)
     return complain(
@@ -137,5 +141,5 @@ int main(int argc, char** argv) try {
   return sweep(line);
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast sweep: %s\n", problem.what());
-  return 111;
+  return handcast::kExitRetry;
 }

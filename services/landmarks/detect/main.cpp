@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "ipc/base/exit_code.hpp"
 #include "ipc/base/version.hpp"
 #include "services/landmarks/detect/run.hpp"
 
@@ -21,10 +22,10 @@ int detect(const Options& options) {
   const auto text = run(options);
   if (!text) {
     fmt::print(stderr, "handcast detect: {}\n", text.error().what);
-    return text.error().code == Errc::bad_config ? 100 : 111;
+    return exit_code_of(text.error());
   }
   fmt::print("{}", *text);
-  return 0;
+  return kExitDone;
 }
 
 }  // namespace
@@ -58,9 +59,13 @@ int main(int argc, char** argv) try {
   app.add_flag("--json", options.json, "Prints JSON");
   app.add_flag("--quiet", options.quiet, "No progress line");
   app.set_version_flag("--version", fmt::format("handcast detect {}", version()));
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? kExitDone : kExitUsage;
+  }
   return detect::detect(options);
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast detect: %s\n", problem.what());
-  return 111;
+  return handcast::kExitRetry;
 }

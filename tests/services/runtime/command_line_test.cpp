@@ -3,15 +3,11 @@
 
 #include <gmock/gmock.h>
 
-#include "services/runtime/environment.hpp"
-
 namespace handcast::service {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Pair;
 
 Result<CommandLine> parse(std::vector<const char*> arguments) {
   arguments.insert(arguments.begin(), "handcast-camera");
@@ -38,13 +34,6 @@ TEST(CommandLine, QuestionsNeedNoConfiguration) {
   EXPECT_EQ(parse({"--backends"})->task, CommandLine::Task::backends);
   EXPECT_EQ(parse({"--version"})->task, CommandLine::Task::version);
   EXPECT_EQ(parse({"--help"})->task, CommandLine::Task::help);
-}
-
-TEST(Environment, RingsAreReadAndNonsenseIsLeftOut) {
-  EXPECT_THAT(parse_rings("camera.frames=5,pose.hands=61"),
-              ElementsAre(Pair("camera.frames", 5), Pair("pose.hands", 61)));
-  EXPECT_THAT(parse_rings(""), IsEmpty());
-  EXPECT_THAT(parse_rings("=5,a,b=,c=x,d=-1,e=7z,f=7"), ElementsAre(Pair("f", 7)));
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "ipc/base/exit_code.hpp"
+#include "ipc/daemon/contract.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "services/runtime/context.hpp"
 
@@ -30,9 +32,7 @@ class Run : public testing::Test {
     folder_ = name;
     rig_ = (folder_ / "rig.toml").string();
     write_rig("name = \"desk\"\n");
-    for (const auto* variable :
-         {"HANDCAST_RINGS", "HANDCAST_READY_FD", "HANDCAST_EPOCH_NS", "HANDCAST_STANDBY_FD"})
-      unsetenv(variable);
+    for (const char* variable : daemon::kHandoverVariables) unsetenv(variable);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -103,9 +103,9 @@ TEST_F(Run, WhatRestartingMayHelpIsExitHundredAndEleven) {
   const auto fail_with = [](Errc code) {
     return [code](Context&) { must(Result<int>(fail(code, "the tracker is unplugged"))); };
   };
-  EXPECT_EXIT(_exit(daemon(fail_with(Errc::disconnected))), ExitedWithCode(kExitRestart),
+  EXPECT_EXIT(_exit(daemon(fail_with(Errc::disconnected))), ExitedWithCode(kExitRetry),
               "the tracker is unplugged");
-  EXPECT_EXIT(_exit(daemon(fail_with(Errc::unavailable))), ExitedWithCode(kExitRestart), "");
+  EXPECT_EXIT(_exit(daemon(fail_with(Errc::unavailable))), ExitedWithCode(kExitRetry), "");
   EXPECT_EXIT(_exit(daemon(fail_with(Errc::bad_config))), ExitedWithCode(kExitConfig), "");
 }
 
@@ -118,7 +118,7 @@ TEST_F(Run, ADamagedFileAtStartUpIsExitHundredForItStaysDamaged) {
 
 TEST_F(Run, AnExceptionIsASentenceAndExitHundredAndEleven) {
   const auto throws = [](Context&) { throw std::runtime_error("a library's own words"); };
-  EXPECT_EXIT(_exit(daemon(throws)), ExitedWithCode(kExitRestart), "error.*a library's own words");
+  EXPECT_EXIT(_exit(daemon(throws)), ExitedWithCode(kExitRetry), "error.*a library's own words");
 }
 
 TEST_F(Run, TimeoutsAndBadItemsAreToleratedAndALostDeviceIsNot) {
@@ -127,7 +127,7 @@ TEST_F(Run, TimeoutsAndBadItemsAreToleratedAndALostDeviceIsNot) {
     context.tolerate({Errc::bad_data, "half a frame"});
     context.tolerate({Errc::disconnected, "camera gone"});
   };
-  EXPECT_EXIT(_exit(daemon(body)), ExitedWithCode(kExitRestart), "camera gone");
+  EXPECT_EXIT(_exit(daemon(body)), ExitedWithCode(kExitRetry), "camera gone");
 }
 
 TEST_F(Run, AThousandTimeoutsAreOneLineOfLog) {

@@ -7,9 +7,9 @@
 #include <future>
 #include <memory>
 
+#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/control/control_client.hpp"
 #include "supervisor/control/control_server.hpp"
-#include "supervisor/control/runtime_folder.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 
 namespace handcast::supervisor {

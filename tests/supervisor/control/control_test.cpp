@@ -230,22 +230,5 @@ TEST_F(Control, TheSocketFileGoesWithTheServer) {
   EXPECT_TRUE(std::filesystem::is_empty(runtime_folder().value()));
 }
 
-TEST_F(Control, WithoutARigTheSentenceSaysHowToStartOne) {
-  const auto rig = choose_rig("");
-  ASSERT_FALSE(rig);
-  EXPECT_THAT(rig.error().what, HasSubstr("handcast up"));
-}
-
-TEST_F(Control, TheOnlyRigNeedsNoNameAndOneOfSeveralDoes) {
-  const auto desk = ControlServer::listen("desk", loop_, refuse);
-  EXPECT_EQ(choose_rig("").value(), "desk");
-  const auto wall = ControlServer::listen("wall", loop_, refuse);
-  const auto unnamed = choose_rig("");
-  ASSERT_FALSE(unnamed);
-  EXPECT_THAT(unnamed.error().what, HasSubstr("desk, wall"));
-  EXPECT_EQ(choose_rig("wall").value(), "wall");
-  EXPECT_FALSE(choose_rig("floor"));
-}
-
 }  // namespace
 }  // namespace handcast::supervisor

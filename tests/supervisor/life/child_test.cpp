@@ -8,7 +8,8 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 
-#include "supervisor/event_loop.hpp"
+#include "supervisor/base/event_loop.hpp"
+#include "supervisor/base/process.hpp"
 
 namespace handcast::supervisor {
 namespace {

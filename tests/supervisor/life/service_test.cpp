@@ -13,6 +13,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/ring/writer.hpp"
+#include "supervisor/base/process.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -32,7 +33,7 @@ class ServiceTest : public testing::Test {
     timer_ = open_timer(5'000'000).value();
     loop_.watch(timer_.get(), [this] {
       drain(timer_.get());
-      for (const auto& service : services_) service->tick(now_ns(), needs_are_ready_);
+      for (const auto& service : services_) service->tick(now_ns(), look());
       ++ticks_;
     });
   }
@@ -47,9 +48,10 @@ class ServiceTest : public testing::Test {
     chmod(program.c_str(), 0755);
     services_.push_back(std::make_unique<Service>(
         ServiceSpec{.name = "pose", .stream = "pose.hands", .backend = "twin", .process = process_},
-        launch_, loop_, [this](Service&, Service::Event event) { events_.push_back(event); }));
+        launch_, loop_, [this](Service&, Notice notice) { notices_.push_back(notice); }));
     return *services_.back();
   }
+  Service::Look look() const { return {.needs_are_ready = needs_are_ready_, .heard_ns = now_ns()}; }
   void run_until(const std::function<bool()>& done) {
     const auto limit = Deadline::in(std::chrono::seconds(30));
     while (!done() && !limit.passed()) loop_.turn();
@@ -61,7 +63,7 @@ class ServiceTest : public testing::Test {
   Launch launch_;
   config::Process process_;
   std::vector<std::unique_ptr<Service>> services_;
-  std::vector<Service::Event> events_;
+  std::vector<Notice> notices_;
   bool needs_are_ready_ = true;
   int ticks_ = 0;
 };
@@ -75,7 +77,7 @@ TEST_F(ServiceTest, IsReadyWhenItSaysSoAndStopsWhenAsked) {
   run_until([&] { return pose.state() == State::ready; });
   pose.stop();
   run_until([&] { return pose.state() == State::stopped; });
-  EXPECT_THAT(events_, ElementsAre(Service::Event::ready, Service::Event::stopped));
+  EXPECT_THAT(notices_, ElementsAre(Notice::ready, Notice::stopped));
   EXPECT_EQ(pose.restarts(), 0);
   EXPECT_EQ(pose.pid(), 0);
 }
@@ -113,7 +115,7 @@ TEST_F(ServiceTest, ExitHundredIsFinalAndItsLastWordsAreKept) {
   run_until([&] { return pose.state() == State::failed; });
   EXPECT_EQ(pose.log().last_sentence(), "the folder is empty");
   EXPECT_EQ(pose.restarts(), 0);
-  EXPECT_THAT(events_, ElementsAre(Service::Event::failed));
+  EXPECT_THAT(notices_, ElementsAre(Notice::failed));
 }
 
 TEST_F(ServiceTest, ABackEndOnTrialThatDiesIsNotTriedAgainAndTheOldOneWorksOn) {
@@ -139,10 +141,47 @@ TEST_F(ServiceTest, AStandstillOfTheSupervisorIsHeldAgainstNobody) {
   auto& pose = service("exec sleep 1000");
   pose.start();
   pose.forgive(seconds_to_ns(30));
-  pose.tick(now_ns() + seconds_to_ns(45));
+  pose.tick(now_ns() + seconds_to_ns(45), {});
   EXPECT_FALSE(pose.last_exit());
-  pose.tick(now_ns() + seconds_to_ns(55));
+  pose.tick(now_ns() + seconds_to_ns(55), {});
   run_until([&] { return pose.restarts() > 0; });
+}
+
+// The watchdog is wired: with the time of the tick and the settings of the rig.
+TEST_F(ServiceTest, OneWhoseHeartStopsIsKilledAfterTwoSecondsNotEarlierAndReplaced) {
+  launch_.silent_s = 2;
+  auto& pose = service(kWorks);
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  const auto heard_ns = now_ns() + seconds_to_ns(100);
+  pose.tick(heard_ns + seconds_to_ns(1.99), {.heard_ns = heard_ns});
+  EXPECT_EQ(pose.state(), State::ready);
+  pose.tick(heard_ns + seconds_to_ns(2.01), {.heard_ns = heard_ns});
+  EXPECT_EQ(pose.state(), State::starting) << "killed";
+  run_until([&] { return pose.restarts() == 1 && pose.state() == State::ready; });
+  EXPECT_EQ(pose.last_exit()->code, SIGKILL);
+}
+
+TEST_F(ServiceTest, OneThatDoesNotListenIsKilledWhenItsTimeIsOverAndNotEarlier) {
+  launch_.stop_s = 3000;
+  auto& pose = service("trap '' TERM; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  const auto asked_ns = now_ns();
+  pose.stop();
+  pose.tick(asked_ns + seconds_to_ns(2999), {});
+  EXPECT_EQ(pose.state(), State::stopping);
+  pose.tick(asked_ns + seconds_to_ns(3001), {});
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_EQ(pose.last_exit()->code, SIGKILL);
+}
+
+TEST_F(ServiceTest, TheSecondDeathWaitsFiftyMillisecondsAndAQuarterAtMost) {
+  auto& pose = service("exit 111");
+  pose.start();
+  run_until([&] { return pose.retry_s(now_ns()).has_value(); });
+  EXPECT_EQ(pose.restarts(), 1) << "the first restart came at once";
+  EXPECT_LE(*pose.retry_s(now_ns()), 0.0625);
 }
 
 TEST_F(ServiceTest, WhatASuccessorNeedsToKnowIsSaved) {
@@ -272,7 +311,6 @@ class ServiceWithSpare : public ServiceTest {
   void SetUp() override {
     ServiceTest::SetUp();
     process_.standby = true;
-    launch_.silent_s = 20;
   }
   Service& ready_service() {
     auto& pose = service(kSpares);

@@ -3,10 +3,13 @@
 // their lives.
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <fstream>
+#include <sstream>
 
+#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/control/control_client.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 #include "tests/system/command.hpp"
@@ -79,6 +82,12 @@ class BareRig : public testing::Test {
     })) << rig.log();
   }
 
+  std::filesystem::path applied_file() const { return runtime_folder().value() / "desk.toml"; }
+  static std::string text_of(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
   static json services() {
     const auto answer = ask("desk", {.verb = Verb::status, .service = {}, .backend = {}});
     return answer ? (*answer)["status"]["services"] : json();
@@ -180,6 +189,79 @@ TEST_F(BareRig, AReloadWhoseServiceCannotStartDoesNotStopARigThatIsNotUpYet) {
   ASSERT_FALSE(reloaded);
   EXPECT_THAT(reloaded.error().what, HasSubstr("observer is failed"));
   EXPECT_EQ(services()["camera"]["state"], "ready");
+}
+
+/// The supervisor cannot make a ring as long as the object lives: a ring's descriptor is 100 or
+/// more.
+class NoNewRings {
+ public:
+  explicit NoNewRings(pid_t pid) : pid_(pid) {
+    const rlimit few{.rlim_cur = 100, .rlim_max = kMost};
+    prlimit(pid_, RLIMIT_NOFILE, &few, nullptr);
+  }
+  ~NoNewRings() {
+    const rlimit enough{.rlim_cur = kMost, .rlim_max = kMost};
+    prlimit(pid_, RLIMIT_NOFILE, &enough, nullptr);
+  }
+
+ private:
+  static constexpr rlim_t kMost = 1024;
+  pid_t pid_;
+};
+
+TEST_F(BareRig, AReloadThatCannotBeAppliedChangesNothing) {
+  const auto rig = ready_rig();
+  const auto applied = text_of(applied_file());
+  const auto camera = pid_of("camera");
+  write_rig(std::string("[camera]\nrate_hz = 50\n") + kObserver);
+  {
+    const NoNewRings none(rig->supervisor());
+    const auto refused = reload();
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("ring marks.observer"));
+  }
+  EXPECT_TRUE(text_of(applied_file()) == applied);
+  EXPECT_FALSE(services().contains("observer"));
+  EXPECT_EQ(pid_of("camera"), camera);
+  const auto again = reload();
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_FALSE(text_of(applied_file()) == applied);
+  EXPECT_EQ(services()["observer"]["state"], "ready");
+}
+
+TEST_F(BareRig, AnUpThatCannotTakeOverLeavesTheAppliedFileAsItWas) {
+  auto rig = ready_rig();
+  const auto applied = text_of(applied_file());
+  const auto supervisor = rig->supervisor();
+  rig->signal(SIGKILL);
+  rig->wait();
+  kill(supervisor, SIGKILL);
+  ASSERT_TRUE(eventually([&] { return !is_alive(supervisor); }));
+  auto state_file = applied_file();
+  state_file.replace_extension(".state");
+  auto state = json::parse(text_of(state_file));
+  for (auto& ring : state["rings"]) ring["inode"] = 1;
+  std::ofstream(state_file, std::ios::trunc) << state;
+  write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
+  rig = std::make_unique<Command>(
+      scratch_.path(),
+      system_test::Arguments{"up", file_.string(), "--set", "camera.exposure_ms=1"});
+  EXPECT_EQ(rig->wait(), 111);
+  EXPECT_THAT(rig->log(), HasSubstr("cannot be taken over"));
+  EXPECT_TRUE(text_of(applied_file()) == applied);
+}
+
+TEST_F(BareRig, WhoAsksTwiceToStopNeedNotWaitAndNobodyIsStartedAgain) {
+  write_program(programs_ / "handcast-observer",
+                "trap '' TERM; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
+  write_rig(std::string("[supervisor]\nsilent_s = 300\nstop_s = 60\n") + kObserver);
+  const auto rig = ready_rig();
+  rig->signal(SIGTERM);
+  EXPECT_TRUE(eventually([] { return services()["observer"]["state"] == "stopping"; }));
+  EXPECT_EQ(services()["camera"]["state"], "ready") << "its turn comes later";
+  rig->signal(SIGTERM);
+  EXPECT_EQ(rig->wait(), 0) << rig->log();
+  EXPECT_THAT(rig->log(), Not(HasSubstr("started again")));
 }
 
 // What SIGKILL does not end at once: here an orphan whose end nobody reaps, since the keeper stands

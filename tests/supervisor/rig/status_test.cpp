@@ -49,7 +49,7 @@ TEST(Status, AServiceWhoseProgramIsMissingIsToldWithItsReason) {
   Services services;
   services.push_back(std::make_unique<Service>(
       ServiceSpec{.name = "pose", .stream = "", .backend = "twin", .asked_hz = 0}, launch, loop,
-      [](Service&, Service::Event) {}));
+      [](Service&, Notice) {}));
   services.front()->start();
   const std::string name = "desk";
   const Recorder recorder;

@@ -14,8 +14,9 @@
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/ring_view.hpp"
 #include "ipc/ring/writer.hpp"
-#include "supervisor/control/runtime_folder.hpp"
-#include "supervisor/event_loop.hpp"
+#include "supervisor/base/event_loop.hpp"
+#include "supervisor/base/process.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/life/child.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 

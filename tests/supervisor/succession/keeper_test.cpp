@@ -13,8 +13,8 @@
 #include <sstream>
 
 #include "ipc/base/clock.hpp"
-#include "supervisor/exit.hpp"
-#include "supervisor/succession/saved_rig.hpp"
+#include "supervisor/base/exit.hpp"
+#include "supervisor/base/process.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
@@ -86,7 +86,7 @@ TEST_F(KeeperTest, ItsSupervisorsExitCodeIsItsOwn) {
 
 TEST_F(KeeperTest, AProgramThatIsNotThereIsASentence) {
   keep_script("", "/nowhere/handcast");
-  EXPECT_EQ(wait(), kExitFailure);
+  EXPECT_EQ(wait(), kExitRetry);
   EXPECT_THAT(log(), HasSubstr("/nowhere/handcast"));
 }
 
@@ -108,13 +108,13 @@ TEST_F(KeeperTest, ASuccessorThatCannotTakeOverNowIsTriedAgain) {
 
 TEST_F(KeeperTest, AFirstSupervisorThatCannotStartIsNotTriedAgain) {
   keep_script("echo life >> $NOTES; exit 111");
-  EXPECT_EQ(wait(), kExitFailure);
+  EXPECT_EQ(wait(), kExitRetry);
   EXPECT_THAT(notes(), ElementsAre("life"));
 }
 
 TEST_F(KeeperTest, OneThatDiesAgainAndAgainIsGivenUpWithASentence) {
   keep_script("echo life >> $NOTES; kill -ABRT $$");
-  EXPECT_EQ(wait(), kExitFailure);
+  EXPECT_EQ(wait(), kExitRetry);
   EXPECT_THAT(notes(), SizeIs(10));
   EXPECT_THAT(log(), HasSubstr("`handcast down` ends them"));
 }

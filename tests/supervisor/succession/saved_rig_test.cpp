@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "supervisor/control/runtime_folder.hpp"
+#include "supervisor/base/runtime_folder.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 
 namespace handcast::supervisor {
@@ -148,24 +148,6 @@ TEST_F(SavedRigTest, AFullFolderIsAnErrorAndTheOldStateStays) {
   ASSERT_FALSE(saved);
   EXPECT_EQ(saved.error().code, Errc::unavailable);
   EXPECT_EQ(load_saved("desk").value()->epoch_ns, 42);
-}
-
-TEST(StartTicks, TellAProcessFromNoneAndFromAZombie) {
-  const auto mine = start_ticks_of(getpid());
-  ASSERT_TRUE(mine);
-  EXPECT_GT(*mine, 0u);
-  const pid_t child = fork();
-  if (child == 0) {
-    pause();
-    _exit(0);
-  }
-  EXPECT_GE(start_ticks_of(child).value_or(0), *mine);
-  kill(child, SIGKILL);
-  siginfo_t info{};
-  waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT);
-  EXPECT_EQ(start_ticks_of(child), std::nullopt);
-  waitpid(child, nullptr, 0);
-  EXPECT_EQ(start_ticks_of(child), std::nullopt);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "supervisor/options.hpp"
+#include "supervisor/base/options.hpp"
 #include "supervisor/trace/latency_table.hpp"
 #include "tests/supervisor/record/marked_frames.hpp"
 

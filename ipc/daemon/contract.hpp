@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+/// The contract between the supervisor and the daemons that it starts. It is also the way to run a
+/// daemon by hand in a test.
+///
+///   argv   --config FILE [--set path=value]...
+///
+///   env    HANDCAST_RINGS=camera.frames=5,pose.hands=6
+///              The descriptors of the rings' segments, by stream.
+///          HANDCAST_READY_FD=7
+///              The daemon writes '\n' here when it is ready. A spare writes 's' when it is
+///              prepared and again every half second until it gets its turn.
+///          HANDCAST_EPOCH_NS=123456789
+///              The time of the rig's start (CLOCK_MONOTONIC, ns), the same for every daemon of the
+///              rig: time zero of the twin and of recordings.
+///          HANDCAST_STANDBY_FD=8
+///              Set for a spare. It prepares everything that a second process may have, then waits
+///              here for the byte '1', its turn. If the other end is closed, it ends with exit 0.
+///          HANDCAST_OUT=DIR
+///              Where files to be kept are written (scores, pictures). Unset: nowhere.
+///
+///   life   A daemon publishes a message in the ring marks.NAME at least every kBeatEvery_ns: stage
+///          marks, or an empty one. The supervisor replaces a daemon that has been silent for
+///          supervisor.silent_s.
+///
+///   exit   See ipc/base/exit_code.hpp. 0 (stopped as asked, or nothing left to do) and 100 (a
+///   person must
+///          change something) are final. After everything else, a signal included, the daemon is
+///          restarted.
+///
+///   SIGTERM, SIGINT   Stop.
+namespace handcast::daemon {
+
+inline constexpr const char* kRingsVariable = "HANDCAST_RINGS";
+inline constexpr const char* kReadyVariable = "HANDCAST_READY_FD";
+inline constexpr const char* kEpochVariable = "HANDCAST_EPOCH_NS";
+inline constexpr const char* kStandbyVariable = "HANDCAST_STANDBY_FD";
+inline constexpr const char* kOutVariable = "HANDCAST_OUT";
+
+/// The variables that differ from daemon to daemon: none is inherited from the supervisor's own
+/// environment.
+inline constexpr std::array kHandoverVariables{kRingsVariable, kReadyVariable, kEpochVariable,
+                                               kStandbyVariable};
+
+inline constexpr char kReadyWord = '\n';    ///< on the ready descriptor
+inline constexpr char kPreparedWord = 's';  ///< on the ready descriptor, from a spare
+inline constexpr char kTurnWord = '1';      ///< on the standby descriptor
+
+inline constexpr std::int64_t kBeatEvery_ns = 100'000'000;
+inline constexpr std::int64_t kPreparedEvery_ns = 500'000'000;
+
+/// The stream of a daemon's stage marks, which are also its heart-beat.
+inline std::string marks_stream_of(std::string_view daemon) {
+  return "marks." + std::string(daemon);
+}
+
+/// The folder for files to be kept; empty if nothing is to be kept.
+inline std::optional<std::filesystem::path> out_folder() {
+  const char* folder = std::getenv(kOutVariable);
+  return folder ? std::optional<std::filesystem::path>(folder) : std::nullopt;
+}
+
+}  // namespace handcast::daemon

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ipc/daemon/handover.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+
+#include "ipc/daemon/contract.hpp"
+
+namespace handcast::daemon {
+namespace {
+
+template <class Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::string_view value_of(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value ? value : "";
+}
+
+int descriptor_in(const char* variable) {
+  return std::max(parse_number<int>(value_of(variable)).value_or(-1), -1);
+}
+
+}  // namespace
+
+std::string print_rings(const Rings& rings) {
+  std::string text;
+  for (const auto& [stream, fd] : rings)
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", stream, fd);
+  return text;
+}
+
+Rings parse_rings(std::string_view text) {
+  Rings rings;
+  while (!text.empty()) {
+    const auto comma = text.find(',');
+    const auto entry = text.substr(0, comma);
+    text = comma == std::string_view::npos ? std::string_view{} : text.substr(comma + 1);
+    const auto equals = entry.find('=');
+    if (equals == 0 || equals == std::string_view::npos) continue;
+    if (const auto fd = parse_number<int>(entry.substr(equals + 1)); fd && *fd >= 0)
+      rings.emplace_back(entry.substr(0, equals), *fd);
+  }
+  return rings;
+}
+
+std::optional<int> find_ring(const Rings& rings, std::string_view stream) {
+  const auto found =
+      std::ranges::find_if(rings, [&](const auto& ring) { return ring.first == stream; });
+  return found == rings.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::string> to_environment(const Handover& handover) {
+  std::vector<std::string> variables{
+      fmt::format("{}={}", kRingsVariable, print_rings(handover.rings))};
+  const auto add = [&](const char* name, auto value) {
+    variables.push_back(fmt::format("{}={}", name, value));
+  };
+  if (handover.ready_fd >= 0) add(kReadyVariable, handover.ready_fd);
+  if (handover.epoch_ns) add(kEpochVariable, *handover.epoch_ns);
+  if (handover.standby_fd >= 0) add(kStandbyVariable, handover.standby_fd);
+  return variables;
+}
+
+Handover from_environment() {
+  return {.rings = parse_rings(value_of(kRingsVariable)),
+          .ready_fd = descriptor_in(kReadyVariable),
+          .standby_fd = descriptor_in(kStandbyVariable),
+          .epoch_ns = parse_number<std::int64_t>(value_of(kEpochVariable))};
+}
+
+}  // namespace handcast::daemon

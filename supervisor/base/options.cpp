@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/base/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace handcast::supervisor {
+
+Result<Options> sort_options(const std::vector<std::string>& arguments, const OptionTable& table) {
+  const auto is_in = [](const auto& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  Options options;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const auto& argument = arguments[i];
+    if (!argument.starts_with("--"))
+      options.words.push_back(argument);
+    else if (is_in(table.flags, argument))
+      options.values[argument].emplace_back();
+    else if (!is_in(table.with_value, argument))
+      return fail(Errc::bad_data, fmt::format("unknown option '{}'", argument));
+    else if (i + 1 == arguments.size())
+      return fail(Errc::bad_data, fmt::format("{} needs a value", argument));
+    else
+      options.values[argument].push_back(arguments[++i]);
+  }
+  if (options.words.size() < table.least_words)
+    return fail(Errc::bad_data, "an argument is missing");
+  if (options.words.size() > table.most_words)
+    return fail(Errc::bad_data, fmt::format("'{}' is one argument too many", options.words.back()));
+  return options;
+}
+
+Result<double> parse_seconds(const std::string& text) {
+  constexpr double kMost_s = 1e9;
+  double seconds = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  if (whole && seconds > 0 && seconds <= kMost_s) return seconds;
+  return fail(Errc::bad_data,
+              fmt::format("--seconds {}: expected a time above 0 and up to {:g}", text, kMost_s));
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/base/runtime_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr std::string_view kSuffix = ".sock";
+constexpr std::string_view kNameCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+
+Result<void> check_owner(const std::filesystem::path& folder) {
+  struct stat status {};
+  if (lstat(folder.c_str(), &status) != 0)
+    return fail(Errc::bad_config, fmt::format("{}: {}", folder.string(), std::strerror(errno)));
+  if (!S_ISDIR(status.st_mode) || status.st_uid != getuid() || (status.st_mode & 077) != 0)
+    return fail(Errc::bad_config, fmt::format("{} must be a folder of yours that nobody else may "
+                                              "enter (mode 0700); remove it or mend it",
+                                              folder.string()));
+  return {};
+}
+
+bool somebody_listens(const std::filesystem::path& socket) {
+  const auto connection = connect_to(socket);
+  return connection || connection.error().code != Errc::unavailable;
+}
+
+}  // namespace
+
+Result<std::filesystem::path> runtime_folder() {
+  const char* base = std::getenv("XDG_RUNTIME_DIR");
+  const auto folder =
+      std::filesystem::path(base && *base ? base : "/tmp") / fmt::format("handcast-{}", getuid());
+  if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+    return fail(Errc::bad_config,
+                fmt::format("cannot make {}: {}", folder.string(), std::strerror(errno)));
+  if (const auto owned = check_owner(folder); !owned) return tl::make_unexpected(owned.error());
+  return folder;
+}
+
+Result<std::filesystem::path> socket_of(std::string_view rig) {
+  if (rig.empty() || rig.find_first_not_of(kNameCharacters) != std::string_view::npos)
+    return fail(Errc::bad_config,
+                fmt::format("'{}' cannot name a rig: letters, digits, '_' and '-' can", rig));
+  const auto folder = runtime_folder();
+  if (!folder) return tl::make_unexpected(folder.error());
+  auto path = *folder / fmt::format("{}{}", rig, kSuffix);
+  if (path.native().size() >= sizeof(sockaddr_un::sun_path))
+    return fail(
+        Errc::bad_config,
+        fmt::format("{} is too long for a socket; give the rig a shorter name", path.string()));
+  return path;
+}
+
+Result<std::vector<std::string>> living_rigs() {
+  const auto folder = runtime_folder();
+  if (!folder) return tl::make_unexpected(folder.error());
+  std::vector<std::string> rigs;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(*folder, error))
+    if (entry.path().extension() == kSuffix && somebody_listens(entry.path()))
+      rigs.push_back(entry.path().stem().string());
+  std::ranges::sort(rigs);
+  return rigs;
+}
+
+sockaddr_un address_of(const std::filesystem::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+  return address;
+}
+
+Result<UniqueFd> connect_to(const std::filesystem::path& path) {
+  UniqueFd socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const auto address = address_of(path);
+  if (!socket ||
+      ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return errno == EAGAIN
+               ? fail(Errc::timeout,
+                      fmt::format("the supervisor at {} lets nobody in: it hangs", path.string()))
+               : fail(Errc::unavailable,
+                      fmt::format("nobody answers at {}: {}", path.string(), std::strerror(errno)));
+  if (!is_of_this_user(socket.get()))
+    return fail(
+        Errc::bad_config,
+        fmt::format("who listens at {} is another user; nothing is said to it", path.string()));
+  return socket;
+}
+
+bool is_of_this_user(int socket) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == getuid();
+}
+
+Result<void> replace_file(const std::filesystem::path& path, const std::string& text) {
+  const auto fresh = path.string() + ".new";
+  unlink(fresh.c_str());
+  const UniqueFd file(
+      ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
+  const bool written =
+      file && ::write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  if (written && rename(fresh.c_str(), path.c_str()) == 0) return {};
+  auto error = fail(Errc::unavailable,
+                    fmt::format("{} cannot be written: {}", path.string(), std::strerror(errno)));
+  unlink(fresh.c_str());
+  return error;
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "ipc/base/result.hpp"
+
+namespace handcast::supervisor {
+
+/// The rig that a command is meant for: `name`, or, if that is empty, the only rig that is up.
+/// Errors: unavailable (no such rig, or several; the sentence names those that are up), bad_config
+/// (the runtime folder).
+Result<std::string> choose_rig(const std::string& name);
+
+}  // namespace handcast::supervisor

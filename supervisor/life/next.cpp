@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/life/next.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ipc/base/clock.hpp"
+#include "supervisor/life/transition.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+/// Since when the worker has been ready; empty if it never was.
+std::optional<std::int64_t> ready_since(const Worker& worker) {
+  if (const auto* ready = std::get_if<worker::Ready>(&worker)) return ready->ready_ns;
+  if (const auto* killed = std::get_if<worker::Killed>(&worker)) return killed->ready_ns;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Step next(ServiceState state, const Event& event, std::int64_t now_ns, const Rules& rules) {
+  Transition transition(std::move(state), now_ns, rules);
+  std::visit(transition, event);
+  return std::move(transition).take();
+}
+
+// How a worker begins.
+
+void Transition::operator()(const event::Hold&) {
+  if (std::holds_alternative<worker::Stopped>(worker_)) worker_ = worker::Held{};
+}
+
+void Transition::operator()(const event::Start&) {
+  if (!life_of(worker_)) start();
+}
+
+void Transition::operator()(const event::Inherited& event) {
+  past_.restarts = event.restarts;
+  if (event.state == State::failed)
+    worker_ = worker::Failed{};
+  else if (event.state == State::stopped)
+    worker_ = worker::Stopped{};
+  else
+    return;
+  past_.first_start_ns = now_;
+}
+
+void Transition::operator()(const event::Adopted& event) {
+  past_.first_start_ns = now_;
+  became_ready({.started_ns = event.started_ns, .origin = Origin::adopted});
+}
+
+void Transition::start(bool on_trial) {
+  if (past_.first_start_ns)
+    ++past_.restarts;
+  else
+    past_.first_start_ns = now_;
+  const auto origin = spare_is_prepared() ? Origin::promoted : Origin::spawned;
+  worker_ = worker::Starting{.life = {now_, origin, on_trial}, .late_ns = now_ + rules_.ready_ns};
+  if (origin == Origin::spawned) return act(action::Spawn{});
+  spare_ = spare::None{};
+  act(action::Promote{});
+}
+
+// How it gets ready.
+
+void Transition::operator()(const event::SaidReady& event) {
+  const auto* starting = std::get_if<worker::Starting>(&worker_);
+  if (!starting) return;
+  if (!rules_.publishes || event.published) return became_ready(starting->life);
+  worker_ = worker::AwaitingMessage{.life = starting->life, .looked_ns = now_};
+}
+
+void Transition::became_ready(Life life) {
+  life.on_trial = false;
+  worker_ = worker::Ready{.life = life, .ready_ns = now_, .quiet_from_ns = now_};
+  past_.was_ready = true;
+  want_spare(life);
+  act(action::Tell{Notice::ready});
+}
+
+// How it stops.
+
+void Transition::operator()(const event::Stop&) {
+  dismiss_spare();
+  if (life_of(worker_)) return ask_to_stop(worker::Stopping::Then::stay);
+  became_stopped();
+}
+
+void Transition::operator()(const event::Restart& event) {
+  using Then = worker::Stopping::Then;
+  dismiss_spare();
+  if (life_of(worker_)) return ask_to_stop(event.on_trial ? Then::start_on_trial : Then::start);
+  start(event.on_trial);
+}
+
+void Transition::ask_to_stop(worker::Stopping::Then then) {
+  if (auto* stopping = std::get_if<worker::Stopping>(&worker_)) {
+    stopping->then = then;
+    return;
+  }
+  worker_ =
+      worker::Stopping{.life = *life_of(worker_), .kill_ns = now_ + rules_.stop_ns, .then = then};
+  act(action::AskToStop{});
+}
+
+void Transition::operator()(const event::Hurry&) {
+  auto* stopping = std::get_if<worker::Stopping>(&worker_);
+  if (stopping) {
+    stopping->kill_ns.reset();
+    act(action::Kill{});
+  }
+  if ((stopping || std::holds_alternative<worker::AwaitingSpare>(worker_)) && is_running(spare_))
+    act(action::KillSpare{});
+}
+
+/// The service has stopped when both of its processes have.
+void Transition::became_stopped() {
+  if (is_running(spare_)) {
+    worker_ = worker::AwaitingSpare{};
+    return;
+  }
+  worker_ = worker::Stopped{};
+  act(action::Tell{Notice::stopped});
+}
+
+// How it ends.
+
+void Transition::operator()(const event::Ended& event) {
+  using Then = worker::Stopping::Then;
+  if (!life_of(worker_)) return;
+  past_.last_exit = event.exit;
+  const auto* stopping = std::get_if<worker::Stopping>(&worker_);
+  if (!stopping) return died(event.exit, true);
+  act(action::ReadLastWords{});
+  if (stopping->then == Then::stay) return became_stopped();
+  start(stopping->then == Then::start_on_trial);
+}
+
+void Transition::operator()(const event::NotStarted& event) {
+  if (!life_of(worker_)) return;
+  past_.last_exit = event.exit;
+  died(event.exit, false);
+}
+
+/// What happens when a service dies, or cannot be started, and nobody asked it to stop. Its
+/// successor comes first; everything else can wait.
+void Transition::died(Exit exit, bool may_start_at_once) {
+  using What = Decision::Action;
+  const bool on_trial = life_of(worker_)->on_trial;
+  auto decision =
+      decide(std::move(past_.deaths), {now_, ready_since(worker_), exit}, jitter_at(now_));
+  past_.deaths = std::move(decision.record);
+  if (on_trial || decision.action == What::fail)
+    return give_up(exit, worker::Failed{}, Notice::failed);
+  if (decision.action == What::retire) return give_up(exit, worker::Stopped{}, Notice::stopped);
+
+  const bool is_quick =
+      decision.action == What::restart && (decision.wait_ns == 0 || spare_is_prepared());
+  if (is_quick && may_start_at_once)
+    start();
+  else
+    worker_ = worker::Waiting{.due_ns = now_ + decision.wait_ns,
+                              .degraded = decision.action == What::degrade};
+  act(action::ReadLastWords{});
+  warn_of_death(exit, decision);
+}
+
+void Transition::give_up(Exit exit, const Worker& end, Notice notice) {
+  worker_ = end;
+  dismiss_spare();
+  act(action::ReadLastWords{});
+  act(action::Warn{
+      fmt::format("{} ended ({}) and is not started again", rules_.name, exit.describe())});
+  act(action::Tell{notice});
+}
+
+void Transition::warn_of_death(Exit exit, const Decision& decision) {
+  const auto* life = life_of(worker_);
+  if (life && life->origin == Origin::promoted)
+    return act(
+        action::Warn{fmt::format("{} died ({}); its spare goes on", rules_.name, exit.describe())});
+  const bool degraded = decision.action == Decision::Action::degrade;
+  act(action::Warn{fmt::format("{} died ({}){}; started again after {:g} ms", rules_.name,
+                               exit.describe(), degraded ? ", too often" : "",
+                               ns_to_ms(decision.wait_ns))});
+}
+
+// What time brings.
+
+void Transition::operator()(const event::Tick& event) {
+  tick_spare();
+  std::visit([&](auto state) { tick(state, event); }, worker_);  // a copy: it may be replaced
+}
+
+void Transition::tick(const worker::Waiting& waiting, const event::Tick&) {
+  if (now_ >= waiting.due_ns) start();
+}
+
+void Transition::tick(const worker::Starting& starting, const event::Tick&) {
+  if (now_ < starting.late_ns) return;
+  kill_worker(fmt::format("{} was not ready within {:g} s; killed", rules_.name,
+                          ns_to_seconds(now_ - starting.life.started_ns)));
+}
+
+/// A service whose needs are not ready may wait with its first message.
+void Transition::tick(const worker::AwaitingMessage& awaiting, const event::Tick& event) {
+  if (event.published) return became_ready(awaiting.life);
+  const auto dry_ns = awaiting.dry_ns + (event.needs_are_ready ? now_ - awaiting.looked_ns : 0);
+  worker_ = worker::AwaitingMessage{.life = awaiting.life, .looked_ns = now_, .dry_ns = dry_ns};
+  if (dry_ns < rules_.ready_ns) return;
+  kill_worker(fmt::format("{} said it was ready and has published nothing for {:g} s; killed",
+                          rules_.name, ns_to_seconds(rules_.ready_ns)));
+}
+
+/// The watchdog.
+void Transition::tick(const worker::Ready& ready, const event::Tick& event) {
+  const auto silence_ns = now_ - std::max(event.heard_ns.value_or(0), ready.quiet_from_ns);
+  if (silence_ns < rules_.silent_ns) return;
+  kill_worker(fmt::format("{} has given no sign of life for {:.1f} s; killed", rules_.name,
+                          ns_to_seconds(silence_ns)));
+}
+
+void Transition::tick(const worker::Stopping& stopping, const event::Tick&) {
+  if (!stopping.kill_ns || now_ < *stopping.kill_ns) return;
+  std::get<worker::Stopping>(worker_).kill_ns.reset();
+  act(action::Warn{fmt::format("{} does not stop; killed", rules_.name)});
+  act(action::Kill{});
+}
+
+void Transition::kill_worker(std::string why) {
+  worker_ = worker::Killed{.life = *life_of(worker_), .ready_ns = ready_since(worker_)};
+  act(action::Warn{std::move(why)});
+  act(action::Kill{});
+}
+
+/// Deadlines move on with the clock. What waits for its restart does so as before.
+void Transition::operator()(const event::StoodStill& event) {
+  if (auto* starting = std::get_if<worker::Starting>(&worker_))
+    starting->late_ns += event.span_ns;
+  else if (auto* awaiting = std::get_if<worker::AwaitingMessage>(&worker_))
+    awaiting->looked_ns += event.span_ns;
+  else if (auto* ready = std::get_if<worker::Ready>(&worker_))
+    ready->quiet_from_ns = now_;
+  else if (auto* stopping = std::get_if<worker::Stopping>(&worker_); stopping && stopping->kill_ns)
+    *stopping->kill_ns += event.span_ns;
+  shift_spare(event.span_ns);
+}
+
+void Transition::operator()(const event::SettingsChanged&) {
+  if (!rules_.wants_standby) return dismiss_spare();
+  if (const auto* ready = std::get_if<worker::Ready>(&worker_)) want_spare(ready->life);
+}
+
+}  // namespace handcast::supervisor

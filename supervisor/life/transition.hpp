@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// For next.cpp and next_spare.cpp alone.
+#pragma once
+#include <utility>
+
+#include "supervisor/life/next.hpp"
+
+namespace handcast::supervisor {
+
+/// One step of a service: what it was becomes what it is.
+class Transition {
+ public:
+  Transition(ServiceState state, std::int64_t now_ns, const Rules& rules)
+      : worker_(state.worker),
+        spare_(state.spare),
+        past_(std::move(state.past)),
+        now_(now_ns),
+        rules_(rules) {}
+  Step take() && { return {{worker_, spare_, std::move(past_)}, std::move(actions_)}; }
+
+  void operator()(const event::Hold&);
+  void operator()(const event::Start&);
+  void operator()(const event::Stop&);
+  void operator()(const event::Hurry&);
+  void operator()(const event::Restart&);
+  void operator()(const event::SettingsChanged&);
+  void operator()(const event::Inherited&);
+  void operator()(const event::Adopted&);
+  void operator()(const event::StoodStill&);
+  void operator()(const event::SaidReady&);
+  void operator()(const event::Ended&);
+  void operator()(const event::NotStarted&);
+  void operator()(const event::SpareSpoke&);
+  void operator()(const event::SpareEnded&);
+  void operator()(const event::SpareNotStarted&);
+  void operator()(const event::Tick&);
+
+ private:
+  void act(Action action) { actions_.push_back(std::move(action)); }
+
+  // The worker (next.cpp).
+  void start(bool on_trial = false);
+  void ask_to_stop(worker::Stopping::Then then);
+  void became_stopped();
+  void became_ready(Life life);
+  void died(Exit exit, bool may_start_at_once);
+  void give_up(Exit exit, const Worker& end, Notice notice);
+  void warn_of_death(Exit exit, const Decision& decision);
+  void kill_worker(std::string why);
+  void tick(const worker::Waiting& waiting, const event::Tick& event);
+  void tick(const worker::Starting& starting, const event::Tick& event);
+  void tick(const worker::AwaitingMessage& awaiting, const event::Tick& event);
+  void tick(const worker::Ready& ready, const event::Tick& event);
+  void tick(const worker::Stopping& stopping, const event::Tick& event);
+  void tick(const auto& /*other*/, const event::Tick&) {}  // time changes nothing
+
+  // The spare (next_spare.cpp).
+  bool spare_is_prepared() const { return std::holds_alternative<spare::Prepared>(spare_); }
+  void want_spare(const Life& life);
+  void dismiss_spare();
+  void tick_spare();
+  void kill_spare(const std::string& why);
+  void replace_spare(const Death& death);
+  void shift_spare(std::int64_t span_ns);
+
+  Worker worker_;
+  Spare spare_;
+  Past past_;
+  std::int64_t now_;
+  const Rules& rules_;
+  std::vector<Action> actions_;
+};
+
+}  // namespace handcast::supervisor

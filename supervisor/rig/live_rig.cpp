@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/rig/live_rig.hpp"
+
+#include "ipc/base/clock.hpp"
+#include "ipc/daemon/contract.hpp"
+
+namespace handcast::supervisor {
+
+LiveRig::LiveRig(const config::Rig& rig, EventLoop& loop, Service::OnNotice on_notice)
+    : name(rig.name),
+      config(rig),
+      started_ns(now_ns()),
+      launch{.epoch_ns = started_ns},
+      recorder(rig.supervisor.history_s),
+      services(launch, loop, std::move(on_notice)) {
+  take_settings(rig);
+}
+
+Result<daemon::Rings> LiveRig::make_rings(const std::vector<ServiceSpec>& specs) {
+  auto made = rings.add(rings_of(specs));
+  if (!made) return made;
+  launch.rings = rings.descriptors();
+  for (const auto& spec : specs)
+    if (const auto fd = daemon::find_ring(launch.rings, daemon::marks_stream_of(spec.name)))
+      if (auto followed = recorder.follow(spec.name, *fd); !followed)
+        return fail_in("the recorder", followed.error());
+  return made;
+}
+
+void LiveRig::take_settings(const config::Rig& rig) {
+  launch.ready_s = rig.supervisor.ready_s;
+  launch.stop_s = rig.supervisor.stop_s;
+  launch.silent_s = rig.supervisor.silent_s;
+  recorder.remember(rig.supervisor.history_s);
+}
+
+/// While the rig stops, nobody is replaced for being silent.
+Service::Look LiveRig::look_at(const Service& service, std::int64_t now) const {
+  Service::Look look{.needs_are_ready = services.needs_are_ready(service)};
+  if (stops())
+    look.heard_ns = now;
+  else if (const auto silence_ms = recorder.silence_ms(service.spec().name, now))
+    look.heard_ns = now - ms_to_ns(*silence_ms);
+  return look;
+}
+
+RigView LiveRig::view() const { return {name, services.all(), recorder, started_ns, now_ns()}; }
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/rig/requests.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "config/settings/join.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using Reply = ControlServer::Reply;
+
+void give_status(LiveRig& rig, const Reply& reply) {
+  rig.recorder.poll();
+  auto answer = success();
+  answer["status"] = status_of(rig.view());
+  reply(answer);
+}
+
+/// Gives read-only descriptors: a tool cannot disturb the rig by accident.
+void give_rings(const LiveRig& rig, const Reply& reply) {
+  auto answer = success();
+  answer["rings"] = nlohmann::json::array();
+  std::vector<UniqueFd> owned;
+  std::vector<int> descriptors;
+  for (const auto& [stream, fd] : rig.launch.rings) {
+    owned.emplace_back(::open(fmt::format("/proc/self/fd/{}", fd).c_str(), O_RDONLY | O_CLOEXEC));
+    if (!owned.back())
+      return reply(failure(
+          fmt::format("ring '{}' cannot be opened again: {}", stream, std::strerror(errno))));
+    answer["rings"].push_back(stream);
+    descriptors.push_back(owned.back().get());
+  }
+  reply(answer, descriptors);
+}
+
+void give_history(LiveRig& rig, const Request& request, const Reply& reply) {
+  rig.recorder.poll();
+  const auto longest_s = ns_to_seconds(now_ns());
+  const auto since_ns = now_ns() - seconds_to_ns(std::min(request.seconds, longest_s));
+  const auto snapshot = rig.recorder.history().snapshot(since_ns);
+  if (!snapshot) return reply(failure(snapshot.error().what));
+  reply(success(), {snapshot->get()});
+}
+
+std::string no_service(const LiveRig& rig, const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& each : rig.services.all()) names.push_back(each->spec().name);
+  return fmt::format("rig '{}' has no service '{}'; it has: {}", rig.name, name,
+                     config::join(names, ", "));
+}
+
+}  // namespace
+
+Requests::Requests(LiveRig& rig, Host host) : rig_(rig), host_(std::move(host)), changes_(rig) {}
+
+void Requests::answer(const Request& request, Reply reply) {
+  switch (request.verb) {
+    case Verb::status:
+      return give_status(rig_, reply);
+    case Verb::down:
+      waiting_for_stop_.push_back(std::move(reply));
+      return host_.stop();
+    case Verb::restart:
+    case Verb::swap:
+      return change(request, std::move(reply));
+    case Verb::reload:
+      return reload(host_.read_file(), true, std::move(reply));
+    case Verb::rings:
+      return give_rings(rig_, reply);
+    case Verb::history:
+      return give_history(rig_, request, reply);
+  }
+}
+
+void Requests::change(const Request& request, Reply reply) {
+  if (const auto reason = why_not_change(request); !reason.empty()) return reply(failure(reason));
+  auto& service = *rig_.services.find(request.service);
+  if (request.verb == Verb::restart) return changes_.restart(service, std::move(reply));
+  changes_.swap(service, request.backend, std::move(reply));
+}
+
+std::string Requests::why_not_change(const Request& request) const {
+  if (!rig_.services.find(request.service)) return no_service(rig_, request.service);
+  if (rig_.stops()) return "the rig stops";
+  if (reloading_) return "the rig is being reloaded; try again when that is done";
+  if (changes_.contains(request.service)) return request.service + " is being restarted already";
+  return {};
+}
+
+void Requests::reload(Result<config::Rig> wanted, bool revives, Reply reply) {
+  const auto refuse = [&](const std::string& sentence) {
+    log::warning("not reloaded: {}", sentence);
+    reply(failure(sentence));
+  };
+  if (const auto reason = why_not_reload(); !reason.empty()) return refuse(reason);
+  if (!wanted) return refuse(wanted.error().what);
+  auto begun = Reload::begin(rig_, std::move(*wanted), revives);
+  if (!begun) return refuse(begun.error().what);
+  reloading_.emplace(Reloading{std::move(*begun), std::move(reply)});
+  tick(now_ns());
+}
+
+std::string Requests::why_not_reload() const {
+  if (rig_.stops()) return "the rig stops";
+  if (reloading_) return "the rig is being reloaded already";
+  if (const auto service = changes_.any(); !service.empty())
+    return service + " is being restarted; try again when that is done";
+  return {};
+}
+
+void Requests::tick(std::int64_t now) {
+  if (!reloading_ || !reloading_->reload.advance(now)) return;
+  auto done = *std::exchange(reloading_, {});
+  done.reply(done.reload.finish());
+}
+
+bool Requests::on_failed(Service& service) {
+  return changes_.on_failed(service) ||
+         (reloading_ && reloading_->reload.waits_for(service.spec().name));
+}
+
+void Requests::on_stopping() {
+  changes_.refuse_all("the rig stops");
+  if (const auto reloading = std::exchange(reloading_, {}))
+    reloading->reply(failure("the rig stops"));
+}
+
+void Requests::on_done() {
+  for (const auto& reply : waiting_for_stop_) reply(success());
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/spec/service_spec.hpp"
+
+#include "ipc/daemon/contract.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "ipc/msg/projection.hpp"
+#include "ipc/msg/stage_mark.hpp"
+#include "supervisor/spec/fingerprint.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+// The largest images that a ring has room for. They are not the rig's own sizes: the supervisor
+// does not read calibrations.
+constexpr int kCameraWidth_px = 1280, kCameraHeight_px = 1024;
+constexpr int kProjectorWidth_px = 1024, kProjectorHeight_px = 768;
+
+/// The most that a ring can have: the recorder may be late by a quarter of a second at 946 Hz.
+constexpr int kMarkSlots = 254;
+/// Three readers with two leases each, and two for the writer: a loan never fails.
+constexpr int kImageSlots = 8;
+
+constexpr bool kNewestOnly = false, kWithHistory = true;
+
+std::vector<ipc::RingSpec> all_streams() {
+  using ipc::RingSpec;
+  return {
+      RingSpec::of<msg::CameraFrame>("camera.frames", kImageSlots, kNewestOnly,
+                                     msg::CameraFrame::bytes(kCameraWidth_px, kCameraHeight_px)),
+      RingSpec::of<msg::HandPoses>("pose.hands", 64, kWithHistory),
+      RingSpec::of<msg::Landmarks>("landmarks.hands", 32, kWithHistory),
+      RingSpec::of<msg::Projection>(
+          "projection.frames", kImageSlots, kNewestOnly,
+          msg::Projection::bytes(kProjectorWidth_px, kProjectorHeight_px)),
+  };
+}
+
+ipc::RingSpec marks_of(const ServiceSpec& service) {
+  return ipc::RingSpec::of<msg::StageMarks>(daemon::marks_stream_of(service.name), kMarkSlots,
+                                            kWithHistory);
+}
+
+}  // namespace
+
+std::vector<ServiceSpec> services_of(const config::Rig& rig) {
+  std::vector<ServiceSpec> services{
+      {"camera", "camera.frames", rig.camera.backend, rig.camera.rate_hz},
+      {"pose", "pose.hands", rig.pose.backend, rig.twin.tracker.rate_hz, "twin"},
+      {"landmarks", "landmarks.hands", rig.landmarks.backend, 0, "", {"camera"}},
+      {"projector",
+       "projection.frames",
+       rig.projector.backend,
+       rig.projector.rate_hz,
+       "",
+       {"camera", "pose", "landmarks"}},
+  };
+  if (rig.observer.enabled)
+    services.push_back({"observer", "", "", rig.observer.rate_hz, "", {"projector"}});
+  if (rig.supervisor.metrics_port > 0) services.push_back({"exporter", "", "", 0});
+  for (auto& service : services) {
+    service.process = config::process_of(rig, service.name);
+    service.fingerprint = fingerprint_of(service.name, rig);
+  }
+  return services;
+}
+
+std::vector<ipc::RingSpec> rings_of(const std::vector<ServiceSpec>& services) {
+  std::vector<ipc::RingSpec> rings = all_streams();
+  for (const auto& service : services) rings.push_back(marks_of(service));
+  return rings;
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/life/exit_reports.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include <array>
+
+namespace handcast::supervisor {
+namespace {
+
+class ExitReportsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+    keeper_ = UniqueFd(ends[0]);
+    setenv(kKeeperVariable, std::to_string(ends[1]).c_str(), 1);
+    reports_ = ExitReports::from_environment();
+  }
+  void tell(ExitReport report) const {
+    ASSERT_EQ(send(keeper_.get(), &report, sizeof report, 0), static_cast<ssize_t>(sizeof report));
+  }
+
+  UniqueFd keeper_;
+  ExitReports reports_;
+};
+
+TEST_F(ExitReportsTest, EachEndIsToldOnce) {
+  tell({11, CLD_EXITED, 100});
+  tell({12, CLD_KILLED, SIGSEGV});
+  tell({13, CLD_DUMPED, SIGABRT});
+  EXPECT_EQ(reports_.take(11), std::nullopt);  // not read yet
+  reports_.read();
+  EXPECT_TRUE(reports_.take(11)->asks_for_a_person());
+  EXPECT_EQ(reports_.take(12)->describe(), "signal 11 (Segmentation fault)");
+  EXPECT_TRUE(reports_.take(13)->signalled);
+  EXPECT_EQ(reports_.take(11), std::nullopt);
+  EXPECT_EQ(reports_.take(99), std::nullopt);
+}
+
+TEST_F(ExitReportsTest, ServicesDoNotInheritTheSocket) {
+  EXPECT_EQ(getenv(kKeeperVariable), nullptr);
+  EXPECT_EQ(fcntl(reports_.fd(), F_GETFD), FD_CLOEXEC);
+}
+
+TEST_F(ExitReportsTest, OnlyAParentIsAKeeper) {
+  EXPECT_EQ(reports_.keeper(), -1);  // here it is the process itself
+  const pid_t child = fork();
+  if (child == 0) _exit(reports_.keeper() == getppid() ? 0 : 1);
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(ExitReportsTest, WhatIsNoReportIsPassedOver) {
+  send(keeper_.get(), "gossip", 6, 0);
+  tell({11, CLD_EXITED, 0});
+  reports_.read();
+  EXPECT_TRUE(reports_.take(11)->is_success());
+}
+
+TEST_F(ExitReportsTest, AKeeperThatDiesLeavesItsLastReports) {
+  tell({11, CLD_EXITED, 3});
+  keeper_.reset();
+  reports_.read();
+  EXPECT_EQ(reports_.take(11)->code, 3);
+  EXPECT_EQ(reports_.fd(), -1);
+  reports_.read();
+}
+
+TEST(ExitReports, WithoutAKeeperThereIsNothingToRead) {
+  for (const auto* value : {"", "two", "-1", "1", "9999", "12abc"}) {
+    setenv(kKeeperVariable, value, 1);
+    auto reports = ExitReports::from_environment();
+    EXPECT_EQ(reports.fd(), -1) << value;
+    reports.read();
+  }
+}
+
+TEST(ExitReports, ManyThatNobodyAsksAboutDoNotFillTheMemory) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
+  const UniqueFd keeper(ends[0]);
+  setenv(kKeeperVariable, std::to_string(ends[1]).c_str(), 1);
+  auto reports = ExitReports::from_environment();
+  int left = 0;
+  for (pid_t pid = 2; pid < 5000; ++pid) {
+    const ExitReport report{pid, CLD_EXITED, 0};
+    ASSERT_EQ(send(keeper.get(), &report, sizeof report, 0), static_cast<ssize_t>(sizeof report));
+    reports.read();
+  }
+  for (pid_t pid = 2; pid < 5000; ++pid) left += reports.take(pid) ? 1 : 0;
+  EXPECT_GT(left, 0);
+  EXPECT_LE(left, 1024);
+}
+
+TEST(ExitToldByKernel, IsThatOfAProcessSomebodyElseReaped) {
+  for (const int code : {0, 42}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      if (code == 0) kill(getpid(), SIGKILL);
+      _exit(code);
+    }
+    const UniqueFd pidfd(static_cast<int>(syscall(SYS_pidfd_open, child, 0)));
+    waitpid(child, nullptr, 0);
+    const auto exit = exit_told_by_kernel(pidfd.get());
+    if (!exit) GTEST_SKIP() << "this kernel does not tell (it does from Linux 6.15 on)";
+    EXPECT_EQ(exit->signalled, code == 0);
+    EXPECT_EQ(exit->code, code == 0 ? SIGKILL : code);
+  }
+}
+
+}  // namespace
+}  // namespace handcast::supervisor

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/spec/fingerprint.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <set>
+
+#include "config/settings/settings.hpp"
+#include "tests/scratch.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using testing::UnorderedElementsAreArray;
+using Paths = std::set<std::string>;
+
+const std::vector<std::string> kServices{"camera",    "pose",     "landmarks",
+                                         "projector", "observer", "exporter"};
+
+/// Every setting of the sections named, and the settings named.
+Paths settings_in(const std::vector<std::string>& names) {
+  config::Rig rig;
+  Paths paths;
+  for (const auto& section : config::list_settings(rig))
+    for (const auto& setting : section.settings)
+      for (const auto& name : names)
+        if (setting.path == name || setting.path.starts_with(name + "."))
+          paths.insert(setting.path);
+  return paths;
+}
+
+Paths without(Paths paths, const Paths& others) {
+  for (const auto& other : others) paths.erase(other);
+  return paths;
+}
+
+void alter(const config::Target& target) {
+  if (auto* const* flag = std::get_if<bool*>(&target)) **flag = !**flag;
+  if (auto* const* whole = std::get_if<int*>(&target)) **whole += 1;
+  if (auto* const* number = std::get_if<double*>(&target)) **number += 0.125;
+  if (auto* const* text = std::get_if<std::string*>(&target)) **text += "x";
+  if (auto* const* list = std::get_if<std::vector<double>*>(&target)) (*list)->push_back(3);
+  if (const auto* choice = std::get_if<config::ChoiceTarget>(&target))
+    choice->assign(choice->value, (choice->index(choice->value) + 1) % choice->words.size());
+}
+
+/// The settings that change the service's fingerprint when they change, one at a time.
+Paths read_by(const std::string& service, const config::Rig& rig) {
+  Paths paths;
+  const auto before = fingerprint_of(service, rig);
+  auto listed = rig;
+  for (const auto& section : config::list_settings(listed)) {
+    for (const auto& setting : section.settings) {
+      auto changed = rig;
+      const auto listing = config::list_settings(changed);
+      alter(config::find_setting(listing, setting.path)->target);
+      if (fingerprint_of(service, changed) != before) paths.insert(setting.path);
+    }
+  }
+  return paths;
+}
+
+config::Rig replay() {
+  config::Rig rig;
+  rig.camera.backend = rig.pose.backend = rig.landmarks.backend = "replay";
+  return rig;
+}
+
+config::Rig networks() {
+  config::Rig rig;
+  rig.landmarks.backend = "onednn";
+  return rig;
+}
+
+void expect_reads(const std::string& service, const config::Rig& rig,
+                  const std::vector<std::string>& names, const Paths& not_these = {}) {
+  auto all = names;
+  all.insert(all.end(), {"calibration"});
+  EXPECT_THAT(read_by(service, rig),
+              UnorderedElementsAreArray(without(settings_in(all), not_these)))
+      << service;
+}
+
+const std::vector<std::string> kTruth{"twin.motion", "twin.hands", "twin.speed",
+                                      "twin.seed",   "twin.shape", "hand"};
+
+std::vector<std::string> truth_and(std::vector<std::string> more) {
+  more.insert(more.end(), kTruth.begin(), kTruth.end());
+  return more;
+}
+
+TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakesOfThem) {
+  const config::Rig rig;
+  expect_reads("camera", rig, truth_and({"camera", "twin.image"}),
+               settings_in({"camera.replay", "camera.process.standby"}));
+  expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
+               settings_in({"pose.replay", "pose.process.standby"}));
+  expect_reads("landmarks", rig,
+               truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
+                          "camera.exposure_ms"}),
+               settings_in({"landmarks.replay", "landmarks.models", "landmarks.hands",
+                            "landmarks.definition", "landmarks.process.standby"}));
+}
+
+TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
+  expect_reads("landmarks", networks(), {"landmarks"},
+               settings_in({"landmarks.replay", "landmarks.process.standby"}));
+  config::Rig own;
+  own.landmarks.backend = "own";
+  expect_reads(
+      "landmarks", own, {"landmarks"},
+      settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
+}
+
+TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
+  expect_reads("camera", replay(), {"camera"}, {"camera.process.standby"});
+  expect_reads("pose", replay(), {"pose"}, {"pose.process.standby"});
+  expect_reads("landmarks", replay(), {"landmarks"},
+               settings_in({"landmarks.models", "landmarks.hands", "landmarks.definition",
+                            "landmarks.process.standby"}));
+}
+
+TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
+  expect_reads("projector", {}, {"projector", "content", "hand", "cascade"},
+               {"projector.process.standby"});
+}
+
+TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
+  expect_reads("observer", {}, truth_and({"observer", "camera.backend", "pose.backend"}),
+               {"observer.enabled", "observer.process.standby"});
+}
+
+TEST(Fingerprint, TheExporterDependsOnItsPort) {
+  expect_reads("exporter", {}, {"supervisor.metrics_port"});
+}
+
+TEST(Fingerprint, WhatOnlyTheSupervisorReadsIsInNone) {
+  for (const auto& service : kServices) {
+    const auto paths = read_by(service, {});
+    for (const auto* path : {"name", "supervisor.ready_s", "supervisor.stop_s",
+                             "supervisor.silent_s", "supervisor.history_s"})
+      EXPECT_FALSE(paths.contains(path)) << service << " " << path;
+  }
+}
+
+TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
+  Paths read;
+  for (const auto& service : kServices) {
+    read.merge(read_by(service, {}));
+    read.merge(read_by(service, replay()));
+    read.merge(read_by(service, networks()));
+  }
+  config::Rig rig;
+  for (const auto& section : config::list_settings(rig)) {
+    for (const auto& setting : section.settings) {
+      const auto& path = setting.path;
+      const bool supervisors = path == "name" || path == "observer.enabled" ||
+                               path.starts_with("supervisor.") || path.ends_with(".standby");
+      EXPECT_EQ(read.contains(path), !supervisors || path == "supervisor.metrics_port") << path;
+    }
+  }
+}
+
+TEST(Fingerprint, ABackEndThatNobodyThoughtOfDependsOnAllButTheSupervisorsSettings) {
+  config::Rig rig;
+  rig.camera.backend = "aravis";
+  const auto paths = read_by("camera", rig);
+  for (const auto* path :
+       {"camera.rate_hz", "camera.replay.directory", "cascade.fill.method", "twin.tracker.age_ms"})
+    EXPECT_TRUE(paths.contains(path)) << path;
+  EXPECT_FALSE(paths.contains("supervisor.ready_s"));
+  EXPECT_TRUE(read_by("content", {}).contains("content.left"));  // a service of another year
+}
+
+TEST(Fingerprint, AFileThatChangedUnderItsNameIsAChange) {
+  const test::Scratch scratch;
+  config::Rig rig;
+  rig.calibration = scratch.path() / "calibration.toml";
+  std::ofstream(rig.calibration) << "width_px = 720\n";
+  const auto before = fingerprint_of("pose", rig);
+  EXPECT_EQ(fingerprint_of("pose", rig), before);
+  std::ofstream(rig.calibration) << "width_px = 721\n";
+  EXPECT_NE(fingerprint_of("pose", rig), before);
+}
+
+TEST(Fingerprint, WithAnotherBackEndItIsThatOfARigThatAsksForIt) {
+  EXPECT_EQ(backend_of("pose", with_backend({}, "pose", "replay")), "replay");
+  EXPECT_EQ(backend_of("observer", {}), "");
+  EXPECT_NE(fingerprint_of("pose", with_backend({}, "pose", "replay")), fingerprint_of("pose", {}));
+}
+
+}  // namespace
+}  // namespace handcast::supervisor
