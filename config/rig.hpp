@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/renamed_settings.hpp"
 #include "config/sections/cascade.hpp"
 #include "config/sections/projector.hpp"
 #include "config/sections/sensors.hpp"
@@ -57,13 +58,16 @@ Process process_of(const Rig& rig, std::string_view service);
 /// Reads a rig file and applies `settings` ("path=value") on top. Paths become absolute: those of
 /// the file from its folder, those of `settings` from the current one. Every fault of the file is
 /// in the one error (bad_config), a line each: "FILE:LINE: camera.rate_hz: 0 is outside 1..2000
-/// Hz".
+/// Hz". Settings in an old form (renamed_settings) are read as their new one; each is told to
+/// `on_renamed`.
 Result<Rig> load_rig(const std::filesystem::path& file,
-                     const std::vector<std::string>& settings = {});
+                     const std::vector<std::string>& settings = {},
+                     const OnRenamed& on_renamed = log_renamed);
 
 /// The same from memory; `file` names it in messages and is what relative paths are relative to.
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
-                      const std::vector<std::string>& settings = {});
+                      const std::vector<std::string>& settings = {},
+                      const OnRenamed& on_renamed = log_renamed);
 
 /// The whole rig as commented TOML: what load_rig reads back to the same rig.
 std::string print_rig(const Rig& rig);

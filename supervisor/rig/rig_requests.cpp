@@ -8,7 +8,9 @@
 #include <cstring>
 #include <sstream>
 
+#include "config/renamed_settings.hpp"
 #include "config/settings/join.hpp"
+#include "config/settings/settings.hpp"
 #include "ipc/base/clock.hpp"
 #include "supervisor/rig/fingerprint.hpp"
 #include "supervisor/rig/rig_runner.hpp"
@@ -25,6 +27,26 @@ std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
+}
+
+/// The back end that `word` names now. Errors (bad_config): an old word that stands for a second
+/// setting, too, of which the rig has another value; a swap changes the back end alone.
+Result<std::string> current_backend(const std::string& service, const std::string& word,
+                                    config::Rig rig) {
+  std::string sentence;
+  const auto current =
+      config::current_form({service + ".backend", word}, "swap", config::renamed_settings(),
+                           [&](const std::string& renamed) { sentence = renamed; });
+  const auto listing = config::list_settings(rig);
+  for (std::size_t i = 1; i < current.size(); ++i) {
+    const auto has = config::print_value(*config::find_setting(listing, current[i].setting));
+    if (has != fmt::format("\"{}\"", current[i].value))
+      return fail(Errc::bad_config,
+                  fmt::format("{}, but the rig has {} = {}: change the rig file and use "
+                              "`handcast reload`",
+                              sentence, current[i].setting, has));
+  }
+  return current.front().value;
 }
 
 }  // namespace
@@ -102,10 +124,12 @@ void RigRunner::change(const Request& request, ControlServer::Reply reply) {
     pending_[request.service] = {std::move(reply), {}, {}, {}};
     return service->restart();
   }
-  if (const auto known = check_backend(request.service, request.backend); !known)
+  const auto backend = current_backend(request.service, request.backend, rig_);
+  if (!backend) return reply(failure(backend.error().what));
+  if (const auto known = check_backend(request.service, *backend); !known)
     return reply(failure(known.error().what));
-  pending_[request.service] = {std::move(reply), request.backend, service->spec().backend, {}};
-  give_backend(*service, request.backend, true);
+  pending_[request.service] = {std::move(reply), *backend, service->spec().backend, {}};
+  give_backend(*service, *backend, true);
 }
 
 void RigRunner::give_backend(Service& service, const std::string& backend, bool on_trial) {

@@ -15,7 +15,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   if (options->help) {
-    fmt::print("{}", simulate::kHelp);
+    fmt::print("{}", simulate::help());
     return 0;
   }
   if (options->version) {

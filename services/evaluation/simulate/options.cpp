@@ -8,9 +8,13 @@
 #include <map>
 #include <string_view>
 
+#include "services/landmarks/models/landmark_models.hpp"
+
 namespace handcast::simulate {
 
-const char* const kHelp =
+namespace {
+
+constexpr char kHelp[] =
     R"(handcast simulate RIG.toml [options]: runs a rig's cascade on its digital twin in virtual time and scores the light.
 
   --motion DIR|builtin:NAME  what the true hand does (sets twin.motion)
@@ -28,15 +32,13 @@ const char* const kHelp =
   --quiet                    no progress line
   --help, --version
 
-Landmarks come from the twin's model of a detector, or from a detector itself that looks at the twin's images:
-  --set landmarks.backend=onednn|opencv|own
-Its points are its own; how old they are when they arrive is set: twin.detector.age_ms and age_sd_ms, for every back end alike, so
-that a slow machine simulates a fast one. "detector" in --json says what it took here (ms_p50) and what it missed.
+Landmarks come from the twin's model of a detector, or from a landmark model that runs on the twin's images:
+  --set landmarks.backend={}
+The age of its landmarks is set by twin.detector.age_ms and age_sd_ms for every back end alike, so that a slow machine simulates a
+fast one. "detector" in --json has the time it took here (ms_p50) and the hands it missed.
 
 The same seed gives the same figures; only the times in frame_us, stage_us and detector.ms_p50 are this machine's.
 )";
-
-namespace {
 
 Result<double> number(std::string_view option, std::string_view text, double min, double max) {
   double value = 0;
@@ -92,6 +94,13 @@ std::map<std::string_view, Setter> setters(Options& options) {
 }
 
 }  // namespace
+
+std::string help() {
+  std::string models;
+  for (const auto& model : landmarks::landmark_models())
+    models += fmt::format("{}{}", models.empty() ? "" : "|", model.name);
+  return fmt::format(kHelp, models);
+}
 
 Result<Options> parse_options(int argc, const char* const* argv) {
   Options options;

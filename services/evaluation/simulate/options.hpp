@@ -20,7 +20,8 @@ struct Options {
   bool help = false, version = false, quiet = false;
 };
 
-extern const char* const kHelp;
+/// The text of --help.
+std::string help();
 
 /// Errors: bad_config, a sentence per fault.
 Result<Options> parse_options(int argc, const char* const* argv);

@@ -8,7 +8,7 @@
 namespace handcast::landmarks::training {
 namespace {
 
-constexpr int kSide = own::kSide_px;
+constexpr int kSide = handcast_network::kSide_px;
 constexpr int kPixels = kSide * kSide;
 
 /// A number from -1.7 to 1.7 of unit variance, near enough to normal: four evenly drawn ones

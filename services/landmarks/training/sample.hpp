@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_network.hpp"
 
 namespace handcast::landmarks::training {
 
@@ -11,17 +11,18 @@ namespace handcast::landmarks::training {
 /// same.
 struct Sample {
   static constexpr float kUnit =
-      170;  ///< `image` is (shown value + own::kShownShift) times this, rounded
+      170;  ///< `image` is (shown value + handcast_network::kShownShift) times this, rounded
 
-  own::Places tracker{};  ///< the tracker's joints as it reports them; see has_tracker
-  own::Places truth{};    ///< places in the crop, 0..1, may lie outside
-  std::array<std::uint8_t, own::kSide_px * own::kSide_px> image{};
+  handcast_network::Places tracker{};  ///< the tracker's joints as it reports them; see has_tracker
+  handcast_network::Places truth{};    ///< places in the crop, 0..1, may lie outside
+  std::array<std::uint8_t, handcast_network::kSide_px * handcast_network::kSide_px> image{};
   std::array<std::uint8_t, msg::kLandmarks>
       visible{};  ///< nothing lies before the joint but its own flesh
   std::uint8_t has_tracker = 0;
   std::uint8_t has_hand = 0;
   std::uint8_t reserved = 0;
 };
-static_assert(sizeof(Sample) == 4 * 42 * 2 + own::kSide_px * own::kSide_px + 24);
+static_assert(sizeof(Sample) ==
+              4 * 42 * 2 + handcast_network::kSide_px * handcast_network::kSide_px + 24);
 
 }  // namespace handcast::landmarks::training

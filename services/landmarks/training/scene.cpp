@@ -12,7 +12,7 @@ namespace {
 
 using renderer::JointFrames;
 
-constexpr int kFineSide = own::kSide_px * Scene::kFine;
+constexpr int kFineSide = handcast_network::kSide_px * Scene::kFine;
 constexpr int kShadowSide = 96;
 constexpr float kFront = -1;  // counter-clockwise from outside, on a screen whose y points down
 constexpr int kWrist = 1;
@@ -100,8 +100,8 @@ Scene::Scene(const calib::CameraModel& camera, const Region& region)
       inverse_depth_(kFineSide, kFineSide),
       fine_(kFineSide, kFineSide),
       shadow_depth_(kShadowSide, kShadowSide),
-      grey_(own::kSide_px * own::kSide_px),
-      cover_(own::kSide_px * own::kSide_px) {
+      grey_(handcast_network::kSide_px * handcast_network::kSide_px),
+      cover_(handcast_network::kSide_px * handcast_network::kSide_px) {
   clear(region);
 }
 
@@ -238,12 +238,12 @@ void Scene::draw(Dice& dice, const Light& light) {
 
 void Scene::gather() {
   static_assert(kFine == 2);
-  for (int y = 0; y < own::kSide_px; ++y) {
+  for (int y = 0; y < handcast_network::kSide_px; ++y) {
     const float *upper = fine_.row(2 * y), *lower = fine_.row(2 * y + 1);
     const float *near_upper = inverse_depth_.row(2 * y),
                 *near_lower = inverse_depth_.row(2 * y + 1);
-    for (int x = 0; x < own::kSide_px; ++x) {
-      const int i = y * own::kSide_px + x;
+    for (int x = 0; x < handcast_network::kSide_px; ++x) {
+      const int i = y * handcast_network::kSide_px + x;
       grey_[i] = 0.25f * (upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]);
       cover_[i] = 0.25f * static_cast<float>((near_upper[2 * x] > 0) + (near_upper[2 * x + 1] > 0) +
                                              (near_lower[2 * x] > 0) + (near_lower[2 * x + 1] > 0));

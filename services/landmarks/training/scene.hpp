@@ -5,7 +5,7 @@
 #include "calib/calibration.hpp"
 #include "renderer/base/image.hpp"
 #include "services/evaluation/twin/surface.hpp"
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_network.hpp"
 #include "services/landmarks/training/light.hpp"
 #include "services/landmarks/training/view.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/evaluation/twin/recording.hpp"
-#include "services/landmarks/finder/hints.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::landmarks::training {
 namespace {

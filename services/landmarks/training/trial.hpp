@@ -5,7 +5,7 @@
 
 #include "config/rig.hpp"
 #include "services/evaluation/twin/twin.hpp"
-#include "services/landmarks/finder/region.hpp"
+#include "services/landmarks/geometry/points.hpp"
 #include "services/landmarks/training/dice.hpp"
 
 namespace handcast::landmarks::training {

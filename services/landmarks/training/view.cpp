@@ -3,7 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_network.hpp"
 
 namespace handcast::landmarks::training {
 namespace {
@@ -126,7 +126,7 @@ Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vec
 Region draw_region(Dice& dice, const Points& truth_px, const Points* tracker_px) {
   const bool from_tracker = tracker_px && dice.chance(0.4f);
   const float size = from_tracker ? 0.3f : dice.chance(0.5f) ? 1.0f : 0.4f;
-  Region region = own::region_around(from_tracker ? *tracker_px : truth_px);
+  Region region = handcast_network::region_around(from_tracker ? *tracker_px : truth_px);
   region.angle_rad += dice.normal(0.25f * size);
   region.centre_px +=
       region.size_px * glm::vec2(dice.normal(0.06f * size), dice.normal(0.06f * size));

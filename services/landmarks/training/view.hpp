@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "calib/calibration.hpp"
-#include "services/landmarks/finder/region.hpp"
+#include "services/landmarks/geometry/points.hpp"
+#include "services/landmarks/geometry/region.hpp"
 #include "services/landmarks/training/pose.hpp"
 
 namespace handcast::landmarks::training {

@@ -41,6 +41,8 @@ void alter(const config::Target& target) {
   if (auto* const* number = std::get_if<double*>(&target)) **number += 0.125;
   if (auto* const* text = std::get_if<std::string*>(&target)) **text += "x";
   if (auto* const* list = std::get_if<std::vector<double>*>(&target)) (*list)->push_back(3);
+  if (const auto* choice = std::get_if<config::ChoiceTarget>(&target))
+    choice->assign(choice->value, (choice->index(choice->value) + 1) % choice->words.size());
 }
 
 /// The settings that change the service's fingerprint when they change, one at a time.
@@ -67,7 +69,7 @@ config::Rig replay() {
 
 config::Rig networks() {
   config::Rig rig;
-  rig.landmarks.backend = "onednn";
+  rig.landmarks.backend = "mediapipe";
   return rig;
 }
 
@@ -94,20 +96,21 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
                settings_in({"camera.replay", "camera.process.standby"}));
   expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
                settings_in({"pose.replay", "pose.process.standby"}));
-  expect_reads("landmarks", rig,
-               truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
-                          "camera.exposure_ms"}),
-               settings_in({"landmarks.replay", "landmarks.models", "landmarks.hands",
-                            "landmarks.definition", "landmarks.process.standby"}));
+  expect_reads(
+      "landmarks", rig,
+      truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
+                 "camera.exposure_ms"}),
+      settings_in({"landmarks.replay", "landmarks.executor", "landmarks.models", "landmarks.hands",
+                   "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
   expect_reads("landmarks", networks(), {"landmarks"},
                settings_in({"landmarks.replay", "landmarks.process.standby"}));
-  config::Rig own;
-  own.landmarks.backend = "own";
+  config::Rig handcast;
+  handcast.landmarks.backend = "handcast";
   expect_reads(
-      "landmarks", own, {"landmarks"},
+      "landmarks", handcast, {"landmarks"},
       settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
 }
 
@@ -115,8 +118,8 @@ TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
   expect_reads("camera", replay(), {"camera"}, {"camera.process.standby"});
   expect_reads("pose", replay(), {"pose"}, {"pose.process.standby"});
   expect_reads("landmarks", replay(), {"landmarks"},
-               settings_in({"landmarks.models", "landmarks.hands", "landmarks.definition",
-                            "landmarks.process.standby"}));
+               settings_in({"landmarks.executor", "landmarks.models", "landmarks.hands",
+                            "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
