@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "services/landmarks/models/landmark_models.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/hostile.hpp"
 
@@ -141,7 +142,7 @@ const std::map<std::string, Edit>& with_an_odd_hand() {
 }
 
 /// A detector that has a tracker, and one image after another.
-class HostileImages : public testing::TestWithParam<const char*> {
+class HostileImages : public testing::TestWithParam<std::string_view> {
  protected:
   void SetUp() override {
     if (is_mediapipe()) SKIP_WITHOUT_MODELS();
@@ -152,7 +153,7 @@ class HostileImages : public testing::TestWithParam<const char*> {
     ASSERT_TRUE(opened) << opened.error().what;
     detector_ = std::move(*opened);
   }
-  bool is_mediapipe() const { return GetParam() == std::string_view("onednn"); }
+  bool is_mediapipe() const { return GetParam() == "mediapipe"; }
 
   msg::Landmarks look(const Sight& sight, std::int64_t step_ns = kApart_ns) {
     return test::detect(*detector_, sight, time_ns_ += step_ns);
@@ -299,9 +300,14 @@ TEST_P(BadStretches, AreForgottenWithAFewGoodImagesWhereNoTrackerHelps) {
   expect_recovery(sight, 3);
 }
 
+std::vector<std::string_view> models() {
+  std::vector<std::string_view> names;
+  for (const auto& model : landmark_models()) names.push_back(model.name);
+  return names;
+}
 const auto backend_name = [](const auto& named) { return std::string(named.param); };
-INSTANTIATE_TEST_SUITE_P(Backends, BadStretches, testing::Values("own", "onednn"), backend_name);
-INSTANTIATE_TEST_SUITE_P(Backends, HostileImages, testing::Values("own", "onednn"), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, BadStretches, testing::ValuesIn(models()), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, HostileImages, testing::ValuesIn(models()), backend_name);
 
 }  // namespace
 }  // namespace handcast::landmarks

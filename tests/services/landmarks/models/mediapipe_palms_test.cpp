@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The palm network's answer as palms. The anchors and the decoding are MediaPipe's; the network
-// itself is in test_hand_finder.
-#include "services/landmarks/finder/palm.hpp"
+#include "services/landmarks/models/mediapipe_palms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +23,7 @@ struct Answer {
   }
 };
 
-TEST(Palm, HasTheAnchorsOfTheLiteNetwork) {
+TEST(MediapipePalms, HasTheAnchorsOfTheLiteNetwork) {
   const auto anchors = palm_anchors();
   ASSERT_EQ(anchors.size(), 2016u);
   EXPECT_FLOAT_EQ(anchors[0].x, 0.5f / 24);
@@ -36,11 +34,11 @@ TEST(Palm, HasTheAnchorsOfTheLiteNetwork) {
   EXPECT_FLOAT_EQ(anchors[2015].y, 11.5f / 12);
 }
 
-TEST(Palm, AnEmptyAnswerIsNoPalm) {
+TEST(MediapipePalms, AnEmptyAnswerIsNoPalm) {
   EXPECT_TRUE(decode_palms(Answer().boxes, Answer().logits).empty());
 }
 
-TEST(Palm, AnswersAreRelativeToTheirAnchor) {
+TEST(MediapipePalms, AnswersAreRelativeToTheirAnchor) {
   Answer answer;
   answer.put(1152 + 6 * (12 * 4 + 7), 3, 4.8f, -9.6f, 48);
   const auto palms = decode_palms(answer.boxes, answer.logits);
@@ -51,7 +49,7 @@ TEST(Palm, AnswersAreRelativeToTheirAnchor) {
   EXPECT_NEAR(palms[0].extent.x, 0.25f, 1e-5);
 }
 
-TEST(Palm, OverlappingCandidatesBecomeTheirMeanByScore) {
+TEST(MediapipePalms, OverlappingCandidatesBecomeTheirMeanByScore) {
   Answer answer;
   answer.put(600, 0.1f, 10, 0, 40);
   answer.put(601, 5, 0, 0, 40);
@@ -64,14 +62,14 @@ TEST(Palm, OverlappingCandidatesBecomeTheirMeanByScore) {
   EXPECT_NEAR(palms[0].score, strong, 1e-4);
 }
 
-TEST(Palm, ABoxWithoutAnExtentIsNone) {
+TEST(MediapipePalms, ABoxWithoutAnExtentIsNone) {
   Answer answer;
   answer.put(5, 9, 0, 0, -3);
   answer.put(6, 9, 0, 0, 0);
   EXPECT_TRUE(decode_palms(answer.boxes, answer.logits).empty());
 }
 
-TEST(Palm, TheHandIsLookedForAboveItsPalm) {
+TEST(MediapipePalms, TheHandIsLookedForAboveItsPalm) {
   Answer answer;
   answer.put(600, 5, 0, 0, 40);
   const Region shown = region_of_image(720, 540);

@@ -1,69 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the networks are shown the image, and what they are shown of it.
+// Which place of the image each pixel of a crop shows, and how bright it is.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
-#include "services/landmarks/finder/crop.hpp"
+#include "services/landmarks/crop/crop.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {
 namespace {
-
-constexpr float kPi = std::numbers::pi_v<float>;
-
-glm::vec2 turned(glm::vec2 v, float angle_rad) {
-  return {std::cos(angle_rad) * v.x - std::sin(angle_rad) * v.y,
-          std::sin(angle_rad) * v.x + std::cos(angle_rad) * v.y};
-}
-
-/// An open hand, fingers up, its wrist at (0, 0), its palm `palm_px` long.
-Points open_hand(float palm_px) {
-  Points points{};
-  for (int finger = 0; finger < 5; ++finger)
-    for (int k = 0; k < 4; ++k)
-      points[1 + 4 * finger + k] = palm_px * glm::vec2(0.25f * static_cast<float>(2 - finger),
-                                                       -1.0f - 0.3f * static_cast<float>(k));
-  return points;
-}
-
-Points placed(Points points, glm::vec2 at_px, float angle_rad) {
-  for (auto& point : points) point = at_px + turned(point, angle_rad);
-  return points;
-}
-
-TEST(Region, AHandThatPointsUpIsNotTurned) {
-  EXPECT_NEAR(region_of_landmarks(placed(open_hand(100), {300, 400}, 0)).angle_rad, 0, 1e-4);
-}
-
-TEST(Region, TurnsAndMovesWithTheHand) {
-  const Region upright = region_of_landmarks(placed(open_hand(100), {300, 400}, 0));
-  for (const float angle_rad : {0.4f, -1.2f, kPi / 2, 3.0f}) {
-    const Region region = region_of_landmarks(placed(open_hand(100), {300, 400}, angle_rad));
-    EXPECT_NEAR(std::remainder(region.angle_rad - angle_rad, 2 * kPi), 0, 1e-4);
-    EXPECT_NEAR(region.size_px, upright.size_px, 0.01);
-    const glm::vec2 expected =
-        glm::vec2(300, 400) + turned(upright.centre_px - glm::vec2(300, 400), angle_rad);
-    EXPECT_NEAR(glm::distance(region.centre_px, expected), 0, 0.02);
-  }
-}
-
-TEST(Region, HoldsTheWholeHandUpright) {
-  const Points points = placed(open_hand(120), {500, 380}, 2.2f);
-  const Region region = region_of_landmarks(points);
-  for (const auto& point : points) {
-    const glm::vec2 place = region.to_place(point);
-    EXPECT_LT(std::max(std::abs(place.x), std::abs(place.y)), 0.5f);
-  }
-  EXPECT_LT(region.to_place(points[12]).y, region.to_place(points[0]).y)
-      << "the fingers are above the wrist";
-}
-
-TEST(Region, PlacesAndPixelsAreInverse) {
-  const Region region{{310, 222}, 187, 0.7f};
-  const glm::vec2 place(0.31f, -0.22f);
-  EXPECT_NEAR(glm::distance(region.to_place(region.to_image(place)), place), 0, 1e-5);
-}
 
 /// How much brighter than it should be a crop is, of a picture whose brightness changes by `slope`
 /// a pixel along one axis.

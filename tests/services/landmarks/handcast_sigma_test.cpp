@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What our own network says of its errors, against the twin's truth, as the detector publishes it.
+// The sigmas of handcast's model, as the detector publishes them, against the twin's truth.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 
 #include "ipc/msg/owned.hpp"
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/finder/hints.hpp"
 #include "services/landmarks/training/trial.hpp"
 
 namespace handcast::landmarks {
@@ -24,10 +23,10 @@ struct Coordinate {
 
 /// The detector shown the twin's images of hands and trackers it was not trained on; each twice,
 /// for the second look is what lasts.
-class OwnSigma : public testing::Test {
+class HandcastSigma : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    rig_.landmarks.backend = "own";
+    rig_.landmarks.backend = "handcast";
     rig_.landmarks.models = "/none";
     const auto detector = open_detector(rig_, calib::reference_rig(), 0);
     ASSERT_TRUE(detector) << detector.error().what;
@@ -80,13 +79,13 @@ class OwnSigma : public testing::Test {
   static inline std::uint64_t id_ = 0;
 };
 
-TEST_F(OwnSigma, IsSaidOfEveryLandmark) {
+TEST_F(HandcastSigma, IsSaidOfEveryLandmark) {
   EXPECT_GT(seen_.size(), 3u * kImages * 2 * msg::kLandmarks) << "hands were found";
   EXPECT_TRUE(std::ranges::all_of(
       seen_, [](const Coordinate& c) { return c.sigma_px > 0 && c.sigma_px < 200; }));
 }
 
-TEST_F(OwnSigma, HoldsTheErrorAsOftenAsAStandardDeviationShould) {
+TEST_F(HandcastSigma, HoldsTheErrorAsOftenAsAStandardDeviationShould) {
   // Of a Laplace distribution 76 and 94 %, of a normal one 68 and 95 %; on images as clean as these
   // the network is more careful than that.
   EXPECT_GT(share_within(1), 0.76);
@@ -96,7 +95,7 @@ TEST_F(OwnSigma, HoldsTheErrorAsOftenAsAStandardDeviationShould) {
       << "and a sigma that is off by that would be noticed";
 }
 
-TEST_F(OwnSigma, IsLargerWhereTheErrorIs) {
+TEST_F(HandcastSigma, IsLargerWhereTheErrorIs) {
   auto sorted = seen_;
   std::ranges::sort(sorted, {}, &Coordinate::sigma_px);
   const std::size_t fifth = sorted.size() / 5;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tracker tells the detector.
-#include "services/landmarks/finder/hints.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 #include <gtest/gtest.h>
 

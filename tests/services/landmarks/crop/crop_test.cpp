@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A crop is what its definition says, pixel by pixel: everywhere in the image, at every size and
 // turn.
-#include "services/landmarks/finder/crop.hpp"
+#include "services/landmarks/crop/crop.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The network's points and the tracker's joints are defined differently.
-#include "services/landmarks/finder/joint_convention.hpp"
+#include "services/landmarks/tracker/joint_convention.hpp"
 
 #include <gtest/gtest.h>
-
-#include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {
 namespace {
@@ -30,7 +27,7 @@ Points moved(Points points, int i, glm::vec2 by_px) {
   return points;
 }
 
-/// `seconds` of looks at a hand and at its tracker, 100 a second.
+/// Shows a hand and its tracker for `seconds`, 100 times a second.
 void rest(JointConventionOffsets& offsets, const Points& network_px, const Points& tracker_px,
           double seconds, float step_px = 0) {
   glm::vec2 way(0);
@@ -42,7 +39,7 @@ void rest(JointConventionOffsets& offsets, const Points& network_px, const Point
   }
 }
 
-TEST(Definition, TipsAndTheJointsBelowThemStayWhereTheyWereSeen) {
+TEST(JointConvention, TipsAndTheJointsBelowThemStayWhereTheyWereSeen) {
   JointConventionOffsets offsets;
   rest(offsets, hand(), moved(hand(), 8, {30, 0}), 30);
   const Points moved_px = offsets.to_tracker(hand());
@@ -50,7 +47,7 @@ TEST(Definition, TipsAndTheJointsBelowThemStayWhereTheyWereSeen) {
     EXPECT_EQ(moved_px[i], hand()[i]) << i;
 }
 
-TEST(Definition, OneTableServesBothHandsAndBothSides) {
+TEST(JointConvention, OneTableServesBothHandsAndBothSides) {
   const JointConventionOffsets offsets;
   const Points seen = offsets.to_tracker(hand()),
                other = mirrored(offsets.to_tracker(mirrored(hand())));
@@ -59,7 +56,7 @@ TEST(Definition, OneTableServesBothHandsAndBothSides) {
   EXPECT_GT(glm::distance(seen[2], hand()[2]), 10) << "the thumb's knuckle is another one";
 }
 
-TEST(Definition, AHandThatWasGoneHasNotRested) {
+TEST(JointConvention, AHandThatWasGoneHasNotRested) {
   JointConventionOffsets once, twice;
   const Points other = moved(hand(), 9, {5, 0});
   once.learn(0, hand(), other);
@@ -67,24 +64,24 @@ TEST(Definition, AHandThatWasGoneHasNotRested) {
   EXPECT_EQ(once.offsets(), twice.offsets());
 }
 
-TEST(Definition, AnErrorThatShiftsTurnsOrScalesTheTrackersHandIsNotLearnt) {
+TEST(JointConvention, AnErrorThatShiftsTurnsOrScalesTheTrackersHandIsNotLearnt) {
   Points wrong = hand();
   for (auto& point : wrong)
     point = glm::vec2(17, -40) +
             1.08f * glm::vec2(0.98f * point.x - 0.2f * point.y, 0.2f * point.x + 0.98f * point.y);
-  const auto residual = definition_residual(hand(), wrong);
+  const auto residual = convention_residual(hand(), wrong);
   ASSERT_TRUE(residual);
   for (const auto& offset : *residual) EXPECT_NEAR(glm::length(offset), 0, 1e-3);
 }
 
-TEST(Definition, AResidualIsToldInTheHandsOwnFrame) {
-  const auto residual = definition_residual(moved(hand(), 0, {0, -15}), hand());
+TEST(JointConvention, AResidualIsToldInTheHandsOwnFrame) {
+  const auto residual = convention_residual(moved(hand(), 0, {0, -15}), hand());
   ASSERT_TRUE(residual);
   EXPECT_NEAR((*residual)[0].x, 15.0f / 135, 1e-3) << "towards the fingers, in palm lengths";
   EXPECT_NEAR((*residual)[0].y, 0, 1e-3);
 }
 
-TEST(Definition, IsLearntSlowlyAndNeverFar) {
+TEST(JointConvention, IsLearntSlowlyAndNeverFar) {
   const Points tracker = moved(hand(), 17, {0, 60});  // 0.4 palm lengths
   const auto learnt = [&](double seconds) {
     JointConventionOffsets offsets;
@@ -97,16 +94,16 @@ TEST(Definition, IsLearntSlowlyAndNeverFar) {
   EXPECT_NEAR(learnt(200), JointConventionOffsets::kReach, 1e-4);
 }
 
-TEST(Definition, IsNotLearntWhileTheHandMoves) {
+TEST(JointConvention, IsNotLearntWhileTheHandMoves) {
   JointConventionOffsets offsets;
   const Points before = offsets.offsets();
   rest(offsets, hand(), moved(hand(), 17, {0, 60}), 10, 1.0f);  // 100 px/s
   EXPECT_EQ(offsets.offsets(), before);
 }
 
-TEST(Definition, AHandTooSmallToTellIsLeftAlone) {
+TEST(JointConvention, AHandTooSmallToTellIsLeftAlone) {
   Points point{};
-  EXPECT_FALSE(definition_residual(point, hand()));
+  EXPECT_FALSE(convention_residual(point, hand()));
   EXPECT_EQ(JointConventionOffsets().to_tracker(point), point);
 }
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_network.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "services/landmarks/finder/exponential.hpp"
+#include "services/landmarks/crop/crop.hpp"
+#include "services/landmarks/models/exponential.hpp"
 
-namespace handcast::landmarks::own {
+namespace handcast::landmarks::handcast_network {
 namespace {
 
 using testing::Each;
@@ -53,7 +54,7 @@ glm::vec2 middle_of_light(std::span<const float> image, glm::vec2 place) {
 }
 
 class EitherSide : public testing::TestWithParam<msg::Side> {};
-INSTANTIATE_TEST_SUITE_P(OwnNetwork, EitherSide,
+INSTANTIATE_TEST_SUITE_P(HandcastNetwork, EitherSide,
                          testing::Values(msg::Side::left, msg::Side::right));
 
 TEST_P(EitherSide, WhatTheNetworkIsShownLiesWherePlacesSayToATenthOfAPixel) {
@@ -94,7 +95,7 @@ TEST_P(EitherSide, APeakInAHeatMapLeadsBackToThePixelItStandsFor) {
   for (const glm::vec2 point : points) EXPECT_LT(glm::distance(point, expected), 0.01f);
 }
 
-TEST(OwnNetwork, ReadsSigmaWhereTheHeatIsAndPresenceEverywhere) {
+TEST(HandcastNetwork, ReadsSigmaWhereTheHeatIsAndPresenceEverywhere) {
   constexpr int kCells = kHeatCells * kHeatCells;
   std::vector<float> output((2 * msg::kLandmarks + 1) * kCells, 0.0f);
   for (int i = 0; i < msg::kLandmarks; ++i) {
@@ -107,7 +108,7 @@ TEST(OwnNetwork, ReadsSigmaWhereTheHeatIsAndPresenceEverywhere) {
   EXPECT_NEAR(answer.presence, 1 / (1 + std::exp(-2.0f)), 1e-5f);
 }
 
-TEST(OwnNetwork, ADarkerPictureIsShownAlike) {
+TEST(HandcastNetwork, ADarkerPictureIsShownAlike) {
   std::vector<std::uint8_t> bright(kImageSize), dark(kImageSize);
   for (std::size_t i = 0; i < bright.size(); ++i) {
     bright[i] = static_cast<std::uint8_t>(2 * (i % 100));
@@ -119,7 +120,7 @@ TEST(OwnNetwork, ADarkerPictureIsShownAlike) {
   EXPECT_THAT(one, testing::Pointwise(FloatNear(1e-4f), other));
 }
 
-TEST(OwnNetwork, TheTrackersMapsPeakAtItsJoints) {
+TEST(HandcastNetwork, TheTrackersMapsPeakAtItsJoints) {
   Places places;
   places.fill({(5 + 0.5f) / kMapCells, (9 + 0.5f) / kMapCells});
   std::vector<float> maps(msg::kLandmarks * kMapCells * kMapCells);
@@ -131,7 +132,7 @@ TEST(OwnNetwork, TheTrackersMapsPeakAtItsJoints) {
 }
 
 /// Processors are a hundred times slower at numbers too small for a normal float.
-TEST(OwnNetwork, TheTrackersMapsAreGaussiansWithoutDenormalNumbers) {
+TEST(HandcastNetwork, TheTrackersMapsAreGaussiansWithoutDenormalNumbers) {
   Places places;
   for (std::size_t i = 0; i < places.size(); ++i)
     places[i] = {0.07f * static_cast<float>(i) - 0.2f, 1.1f - 0.05f * static_cast<float>(i)};
@@ -146,7 +147,7 @@ TEST(OwnNetwork, TheTrackersMapsAreGaussiansWithoutDenormalNumbers) {
   }
 }
 
-TEST(OwnNetwork, AJointThatIsNoNumberLeavesItsMapEmpty) {
+TEST(HandcastNetwork, AJointThatIsNoNumberLeavesItsMapEmpty) {
   Places places;
   places.fill({0.5f, NAN});
   std::vector<float> maps(msg::kLandmarks * kMapCells * kMapCells, 1.0f);
@@ -154,7 +155,7 @@ TEST(OwnNetwork, AJointThatIsNoNumberLeavesItsMapEmpty) {
   EXPECT_THAT(maps, Each(0.0f));
 }
 
-TEST(OwnNetwork, ALeftHandIsShownMirrored) {
+TEST(HandcastNetwork, ALeftHandIsShownMirrored) {
   std::vector<std::uint8_t> pixels(kImageSize);
   for (std::size_t i = 0; i < pixels.size(); ++i)
     pixels[i] = static_cast<std::uint8_t>(i * 37 % 251);
@@ -168,7 +169,7 @@ TEST(OwnNetwork, ALeftHandIsShownMirrored) {
   }
 }
 
-TEST(OwnNetwork, ReadsTheMeansThatItsHeatSays) {
+TEST(HandcastNetwork, ReadsTheMeansThatItsHeatSays) {
   constexpr int kCells = kHeatCells * kHeatCells;
   std::vector<float> output((2 * msg::kLandmarks + 1) * kCells);
   for (std::size_t i = 0; i < output.size(); ++i)
@@ -196,7 +197,7 @@ TEST(Exponential, IsRightToAFloatsRounding) {
     EXPECT_EQ(exponential(x), exponential(-87.0f)) << x;
 }
 
-TEST(OwnNetwork, ItsRegionHoldsEveryLandmarkUpright) {
+TEST(HandcastNetwork, ItsRegionHoldsEveryLandmarkUpright) {
   const Region wide{{200, 300}, 100, 0.5f};
   Points points = spots_in(wide);
   points[0] = wide.to_image({0, 0.4f});
@@ -210,4 +211,4 @@ TEST(OwnNetwork, ItsRegionHoldsEveryLandmarkUpright) {
 }
 
 }  // namespace
-}  // namespace handcast::landmarks::own
+}  // namespace handcast::landmarks::handcast_network
