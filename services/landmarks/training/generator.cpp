@@ -13,7 +13,7 @@ Result<Generator> Generator::create(int people, std::uint64_t seed) {
   return Generator(std::move(*drawn), seed);
 }
 
-/// A second hand beside the first or over it, before or behind.
+/// Adds a second hand beside the first or over it, in front of it or behind.
 void Generator::add_other_hand(Dice& dice, const JointFrames& first, const Light& light) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
@@ -50,7 +50,7 @@ void Generator::make_hand(Dice& dice) {
   }
 }
 
-/// No hand: the network is to say so, whatever the tracker says.
+/// An image without a hand; the tracker may still have one.
 void Generator::make_other(Dice& dice) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
