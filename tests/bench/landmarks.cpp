@@ -41,11 +41,17 @@ double thread_time_ms() {
   return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
+/// Empty for a subject whose multiplications are not counted.
+std::string counted(double mmac, double value) {
+  return mmac > 0 ? fmt::format("{:.1f}", value) : "";
+}
+
 void print(const Subject& subject, const Times& times) {
-  fmt::print("{:<26} {:<8} {:7.1f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.1f}\n", subject.name,
-             subject.executor, subject.mmac, percentile(times.wall_ms, 0), median(times.wall_ms),
-             percentile(times.wall_ms, 0.99), median(times.thread_ms),
-             percentile(times.thread_ms, 0.99), subject.mmac / median(times.thread_ms));
+  fmt::print("{:<26} {:<8} {:>7} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:>8}\n", subject.name,
+             subject.executor, counted(subject.mmac, subject.mmac), percentile(times.wall_ms, 0),
+             median(times.wall_ms), percentile(times.wall_ms, 0.99), median(times.thread_ms),
+             percentile(times.thread_ms, 0.99),
+             counted(subject.mmac, subject.mmac / median(times.thread_ms)));
 }
 
 void measure(const std::vector<Subject>& subjects, int rounds, Medians& medians) {

@@ -29,8 +29,9 @@ class Network {
   };
   virtual ~Network() = default;
 
-  /// In the order of the file.
+  /// The inputs in the order of the file.
   virtual std::span<const Port> inputs() const = 0;
+  /// The outputs in the order of the file.
   virtual std::span<const Port> outputs() const = 0;
 
   /// The elements of input `i`, row-major in its shape: to be written before run().

@@ -23,6 +23,7 @@ class HandcastModel final : public LandmarkModel {
   Region region_around(const Points& points_px) const override {
     return handcast_network::region_around(points_px);
   }
+  /// See LandmarkModel. Reads `side` and `tracker_px`.
   Result<LandmarkEstimate> estimate(renderer::GreyView image, const Region& region, msg::Side side,
                                     const std::optional<Points>& tracker_px,
                                     EstimateTimes& times) override;

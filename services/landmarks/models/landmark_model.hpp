@@ -48,13 +48,15 @@ class LandmarkModel {
     /// pixels beside them.
     bool finds_tracker_joints = false;
   };
+  /// Those of this model; they never change.
   virtual Traits traits() const = 0;
 
   /// The region for a hand that was at these points a moment ago, or that the tracker has there.
   virtual Region region_around(const Points& points_px) const = 0;
 
-  /// `side`: which hand it is taken for. `tracker_px`: the tracker's joints in the image; nothing
-  /// if the tracker does not see the hand. Adds to `times`. Errors: bad_data.
+  /// Estimates the landmarks of the hand in `region`. `side`: which hand it is taken for.
+  /// `tracker_px`: the tracker's joints in the image; nothing if the tracker does not see the hand.
+  /// Adds to `times`. Errors: bad_data.
   virtual Result<LandmarkEstimate> estimate(renderer::GreyView image, const Region& region,
                                             msg::Side side, const std::optional<Points>& tracker_px,
                                             EstimateTimes& times) = 0;

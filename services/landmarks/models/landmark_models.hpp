@@ -29,9 +29,9 @@ struct OpenedModel {
 
 /// A row of the table of landmark models.
 struct LandmarkModelRow {
-  std::string_view name;      ///< as landmarks.backend has it
-  std::string_view sentence;  ///< what it is
-  Result<OpenedModel> (*open)(const ModelOptions& options);
+  std::string_view name;                                     ///< as landmarks.backend has it
+  std::string_view sentence;                                 ///< what it is
+  Result<OpenedModel> (*open)(const ModelOptions& options);  ///< see open_landmark_model()
 };
 
 /// All landmark models.

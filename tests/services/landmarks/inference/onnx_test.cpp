@@ -66,7 +66,7 @@ TEST(OnnxReader, AConstantOfBothWholeAndOtherNumbersIsRefused) {
   file.message(7, graph);
   const auto model = onnx::parse_model(std::move(file).take());
   ASSERT_FALSE(model);
-  EXPECT_THAT(model.error().what, HasSubstr("both whole and other numbers"));
+  EXPECT_THAT(model.error().what, HasSubstr("both integers and floats"));
 }
 
 TEST(OnnxReader, FlippedBytesNeverCrashTheReaderOrTheExecutor) {
@@ -110,7 +110,7 @@ TEST(Networks, AWeightThatIsNotFiniteIsRefused) {
 TEST(Networks, ACycleIsRefused) {
   onnx::Model model = little_model();
   model.nodes[0].inputs[0] = "y";
-  expect_refused(model, "made by no node before it");
+  expect_refused(model, "computed by no node before it");
 }
 
 TEST(Networks, AMissingWeightIsRefused) {
@@ -122,7 +122,7 @@ TEST(Networks, AMissingWeightIsRefused) {
 TEST(Networks, AWeightWithTooFewNumbersIsRefused) {
   onnx::Model model = little_model();
   model.constants["w"].floats.pop_back();
-  expect_refused(model, "declared as [3,2,3,3] and holds 53 numbers");
+  expect_refused(model, "declared as [3,2,3,3] and has 53 values");
 }
 
 TEST(Networks, ABatchOfTwoAndAFreeExtentAreRefused) {
@@ -153,13 +153,13 @@ TEST(Networks, AFileThatAsksForMoreMemoryThanAnyNetworkIsRefused) {
   EXPECT_THAT(network.error().what, HasSubstr("MB of memory"));
 }
 
-TEST(Networks, AnOutputThatNothingCalculatesIsNamed) {
+TEST(Networks, AnOutputThatNoNodeComputesIsNamed) {
   onnx::Model model = little_model();
   model.constants["k"] = random_tensor({1, 3}, 4);
   model.outputs.push_back({"k", {1, 3}});
   const auto network = open_network(config::Executor::onednn, ModelFile(model).path());
   ASSERT_FALSE(network);
-  EXPECT_THAT(network.error().what, HasSubstr("nothing calculates 'k'"));
+  EXPECT_THAT(network.error().what, HasSubstr("no node computes 'k'"));
 }
 
 TEST(Networks, AnUnknownOperatorIsNamed) {
@@ -175,7 +175,7 @@ TEST(Networks, AMissingFileAndGarbageAreNamed) {
   for (const auto executor : executors()) {
     EXPECT_THAT(open_network(executor, "/no/such.onnx").error().what,
                 HasSubstr("network '/no/such.onnx': there is no such file"));
-    EXPECT_THAT(open_network(executor, garbage.path()).error().what, HasSubstr("no ONNX file"));
+    EXPECT_THAT(open_network(executor, garbage.path()).error().what, HasSubstr("not an ONNX file"));
   }
 }
 

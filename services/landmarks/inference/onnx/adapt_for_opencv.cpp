@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/landmarks/inference/onnx/opencv_mend.hpp"
+#include "services/landmarks/inference/onnx/adapt_for_opencv.hpp"
 
 #include <limits>
 #include <set>
@@ -26,7 +26,8 @@ const Tensor* constant(const Model& model, const Node& node, std::size_t input) 
   return found == model.constants.end() ? nullptr : &found->second;
 }
 
-/// A bound that is no constant stays what it is: for OpenCV to refuse, not to be left out.
+/// Moves the bounds of a Clip to attributes. A bound that is not a constant stays an input, which
+/// OpenCV refuses.
 void bounds_to_attributes(const Model& model, Node& node) {
   const auto is_known = [&](std::size_t input) {
     const Tensor* bound = constant(model, node, input);
@@ -42,8 +43,7 @@ void bounds_to_attributes(const Model& model, Node& node) {
   node.inputs.resize(1);
 }
 
-/// Only the squeezing of [1,c,1,1] to [1,c] is known, which is what pooling over the whole image
-/// leaves behind.
+/// Replaces a Squeeze of [1,c,1,1] to [1,c], the usual one after global pooling.
 void squeeze_to_flatten(const Model& model, Node& node) {
   const Tensor* axes = constant(model, node, 1);
   if (!axes || axes->integers != std::vector<std::int64_t>{2, 3}) return;
@@ -82,7 +82,7 @@ void drop_unused_constants(Model& model) {
 
 }  // namespace
 
-void mend_for_opencv(Model& model) {
+void adapt_for_opencv(Model& model) {
   for (Node& node : model.nodes) {
     if (node.op == "Clip") bounds_to_attributes(model, node);
     if (node.op == "Squeeze") squeeze_to_flatten(model, node);
