@@ -29,7 +29,7 @@ struct Member {
   Value value;
 };
 
-/// The whole document as one table. The only function of the house that knows a TOML library.
+/// The whole document as one table. The only function that uses a TOML library.
 /// Errors (bad_config): "FILE:LINE:COLUMN: …" where the text is not TOML.
 Result<Value> parse_document(std::string_view toml, std::string_view file);
 

@@ -11,8 +11,8 @@ namespace handcast::landmarks {
 
 /// Finds the hands of one image after another. It looks for a hand where it was in the last image,
 /// moved on with the tracker; otherwise where the tracker has it; otherwise, every few images,
-/// where the palm network finds one, or if there is none, where a hand was last. One thread, no
-/// allocation while hands are followed.
+/// where the palm network finds one. Without a palm network, it looks where a hand was last. One
+/// thread, no allocation while hands are followed.
 class HandFinder {
  public:
   /// A hand with a smaller presence, or a smaller mean confidence, is not reported.

@@ -28,7 +28,7 @@ fs::path installed_folder() {
 
 fs::path models_folder(const std::string& configured) {
   if (!configured.empty()) return configured;
-  if (const auto named = from_environment("HANDCAST_MODELS"); !named.empty()) return named;
+  if (auto named = from_environment("HANDCAST_MODELS"); !named.empty()) return named;
   std::error_code ignored;
   if (fs::is_directory(installed_folder(), ignored)) return installed_folder();
   return users_folder();

@@ -22,7 +22,7 @@ struct Coordinate {
 };
 
 /// The detector shown the twin's images of hands and trackers it was not trained on; each twice,
-/// for the second look is what lasts.
+/// because the second detection is what a stream shows.
 class HandcastSigma : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -34,7 +34,7 @@ class HandcastSigma : public testing::Test {
          {"builtin:fist", "builtin:pinch", "builtin:open_close", "builtin:rotate"}) {
       auto trials = Trials::open(motion, 3);
       ASSERT_TRUE(trials) << trials.error().what;
-      for (int i = 0; i < kImages; ++i) look(**detector, trials->make(i, kImages).value());
+      for (int i = 0; i < kImages; ++i) detect(**detector, trials->make(i, kImages).value());
     }
   }
   static void TearDownTestSuite() { seen_.clear(); }
@@ -50,7 +50,7 @@ class HandcastSigma : public testing::Test {
   static inline std::vector<Coordinate> seen_;
 
  private:
-  static void look(Detector& detector, const Trial& trial) {
+  static void detect(Detector& detector, const Trial& trial) {
     const auto& camera = calib::reference_rig().camera;
     msg::Owned<msg::CameraFrame> frame(msg::CameraFrame::bytes(camera.width_px, camera.height_px));
     frame->width_px = trial.image.width();

@@ -20,11 +20,8 @@ class EveryModel : public testing::TestWithParam<LandmarkModelRow> {
   void SetUp() override {
     if (GetParam().name == "mediapipe") SKIP_WITHOUT_MODELS();
   }
-  std::unique_ptr<LandmarkModel> open(config::Executor executor) {
-    auto opened =
-        open_landmark_model(GetParam().name, {.executor = executor, .folder = test::models()});
-    EXPECT_TRUE(opened) << opened.error().what;
-    return opened ? std::move(opened->landmarks) : nullptr;
+  Result<OpenedModel> open(config::Executor executor) {
+    return open_landmark_model(GetParam().name, {.executor = executor, .folder = test::models()});
   }
   /// In the region around the true landmarks.
   static LandmarkEstimate estimate(LandmarkModel& model, const Trial& trial) {
@@ -44,25 +41,31 @@ INSTANTIATE_TEST_SUITE_P(, EveryModel,
                          [](const auto& named) { return std::string(named.param.name); });
 
 TEST_P(EveryModel, EstimatesAHandInEveryExecutorAlike) {
-  const auto reference = estimate(*open(executors().front()), trial());
+  const auto first = open(executors().front());
+  ASSERT_TRUE(first) << first.error().what;
+  const auto reference = estimate(*first->landmarks, trial());
   EXPECT_GT(reference.presence, 0.9f);
   EXPECT_LT(distance_px(reference.points_px, trial().truth_px),
             0.15f * palm_length_px(trial().truth_px));
   for (const auto executor : executors()) {
-    const auto other = estimate(*open(executor), trial());
+    const auto opened = open(executor);
+    ASSERT_TRUE(opened) << opened.error().what;
+    const auto other = estimate(*opened->landmarks, trial());
     EXPECT_LT(distance_px(reference.points_px, other.points_px), 0.01f);
     EXPECT_NEAR(reference.presence, other.presence, 1e-4f);
   }
 }
 
 TEST_P(EveryModel, HasTheTraitsItSays) {
-  const auto model = open(executors().front());
-  const auto traits = model->traits();
-  const auto hand = estimate(*model, trial());
+  const auto opened = open(executors().front());
+  ASSERT_TRUE(opened) << opened.error().what;
+  LandmarkModel& model = *opened->landmarks;
+  const auto traits = model.traits();
+  const auto hand = estimate(model, trial());
   EXPECT_EQ(hand.left_score != 0.5f, traits.scores_sides);
   Trial other = trial();
   other.tracker_px = shifted(other.tracker_px, {60, 0});
-  const auto elsewhere = estimate(*model, other);
+  const auto elsewhere = estimate(model, other);
   EXPECT_EQ(hand.points_px != elsewhere.points_px, traits.reads_tracker);
   EXPECT_GE(traits.passes_at_first, 1);
 }

@@ -25,8 +25,8 @@ class Shipped : public testing::Test {
     network_ = std::move(*opened);
   }
 
-  handcast_network::Answer look(const Sample& sample,
-                                const std::optional<handcast_network::Places>& tracker) {
+  handcast_network::Answer estimate(const Sample& sample,
+                                    const std::optional<handcast_network::Places>& tracker) {
     const auto image = network_->input(0);
     for (std::size_t i = 0; i < sample.image.size(); ++i)
       image[i] = sample.image[i] / Sample::kUnit - handcast_network::kShownShift;
@@ -79,8 +79,8 @@ TEST_F(Shipped, FindsLandmarksAndTheTrackerHelpsIt) {
       return distance_px(places, sample.truth) * handcast_network::kSide_px;
     };
     errors.tracker.push_back(off(sample.tracker));
-    errors.with.push_back(off(look(sample, sample.tracker).places));
-    errors.without.push_back(off(look(sample, std::nullopt).places));
+    errors.with.push_back(off(estimate(sample, sample.tracker).places));
+    errors.without.push_back(off(estimate(sample, std::nullopt).places));
   }
   EXPECT_LT(median(errors.with), 3.0f);
   EXPECT_LT(mean(errors.with), 0.5f * mean(errors.tracker));
@@ -93,7 +93,7 @@ TEST_F(Shipped, ItsSigmasSayHowFarOffItIs) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
     if (!sample.has_hand) continue;
     const handcast_network::Answer answer =
-        look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt);
+        estimate(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt);
     for (int i = 0; i < msg::kLandmarks; ++i)
       for (int axis = 0; axis < 2; ++axis, ++all) {
         const float off =
@@ -111,8 +111,8 @@ TEST_F(Shipped, TellsAHandFromNone) {
   for (int n = 0; n < 2 * kImages; ++n) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
     const bool says_hand =
-        look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt).presence >
-        0.5f;
+        estimate(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt)
+            .presence > 0.5f;
     ++(sample.has_hand ? hands : others);
     if (says_hand) ++(sample.has_hand ? seen : imagined);
   }
