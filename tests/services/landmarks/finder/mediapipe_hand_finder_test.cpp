@@ -2,6 +2,8 @@
 // HandFinder with MediaPipe Hands on real captures and on hostile pictures.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/mediapipe_model.hpp"
 #include "services/landmarks/models/mediapipe_regions.hpp"
@@ -65,7 +67,8 @@ TipInItsFinger measure(const test::Grey& image, const Points& points, int tip) {
   const auto way = [&](glm::vec2 from, glm::vec2 direction) {
     float length = 0;
     const auto is_hand = [&](glm::vec2 at) {
-      return image.at(static_cast<int>(at.x + 0.5f), static_cast<int>(at.y + 0.5f)) > 30;
+      return image.at(static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y))) >
+             30;
     };
     while (length < 40 && is_hand(from + direction * (length + 0.5f))) length += 0.5f;
     return length;
