@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "config/sections/executor.hpp"
 #include "config/sections/process.hpp"
 #include "config/settings/field.hpp"
 
@@ -62,7 +63,7 @@ void describe(Visitor& visitor, Pose& pose) {
   visitor.section("process", pose.process, "The process of the service.");
 }
 
-/// How MediaPipe's landmarks are defined.
+/// What the landmarks of `mediapipe` mean.
 enum class LandmarkDefinition {
   tracker,  ///< wrist and knuckles moved to where the tracker's joints are
   network,  ///< as the network defines them
@@ -73,6 +74,7 @@ constexpr std::array<std::string_view, 2> words_of(LandmarkDefinition) {
 
 struct Landmarks {
   std::string backend = "twin";
+  Executor executor = Executor::onednn;
   std::string models;
   int hands = 2;
   LandmarkDefinition definition = LandmarkDefinition::tracker;
@@ -82,24 +84,27 @@ struct Landmarks {
 
 template <class Visitor>
 void describe(Visitor& visitor, Landmarks& landmarks) {
-  visitor.field("backend", landmarks.backend,
-                "Who finds the 21 landmarks; `handcast-landmarks --backends` lists what this build "
-                "has. onednn, opencv: MediaPipe Hands on the "
-                "camera's images, run by oneDNN or by OpenCV. own: handcast's own network, which "
-                "also looks at the tracker's joints and needs no "
-                "file from outside. twin: the twin's model of a detector. replay: recorded ones.");
+  visitor.field(
+      "backend", landmarks.backend,
+      "What finds the 21 landmarks; `handcast-landmarks --backends` lists what this build "
+      "has. handcast: handcast's own network, which also reads the tracker's joints and "
+      "needs no file from outside. mediapipe: MediaPipe Hands lite. twin: the twin's "
+      "model of a detector. replay: a recording.");
+  visitor.field("executor", landmarks.executor,
+                "handcast, mediapipe: the library that runs the networks. onednn is the faster "
+                "one; opencv needs a build with OpenCV's dnn module.");
   visitor.field("models", landmarks.models,
-                "onednn, opencv: folder of the networks' files, which scripts/get-models fetches; "
-                "relative to the rig file. Empty: the folder "
-                "HANDCAST_MODELS names, else share/handcast/models of the installation, else "
-                "~/.local/share/handcast/models. own: the palm "
-                "network there, if any, finds hands that the tracker does not see.");
+                "handcast, mediapipe: folder of MediaPipe's files, which scripts/get-models "
+                "fetches; relative to the rig file. Empty: the folder in HANDCAST_MODELS, else "
+                "share/handcast/models of the installation, else ~/.local/share/handcast/models. "
+                "mediapipe needs them; handcast uses the palm network, if it is there, to find "
+                "hands that the tracker does not see.");
   visitor.field("hands", landmarks.hands, between(1, 2),
-                "onednn, opencv, own: how many hands are looked for.");
+                "handcast, mediapipe: the largest number of hands.");
   visitor.field("definition", landmarks.definition,
-                "onednn, opencv: network: points as the network defines them. tracker: wrist and "
-                "knuckles moved to where the tracker's joints "
-                "are defined, which is what the cascade compares them with.");
+                "mediapipe: where the landmarks are. network: where the network defines them. "
+                "tracker: wrist and knuckles are moved to the tracker's joints, with which the "
+                "cascade compares them.");
   visitor.section("replay", landmarks.replay,
                   "For backend = \"replay\": landmarks_{left,right}.npy, (n,21,2) or with sigmas "
                   "(n,21,3), with landmarks_timestamps.npy.");

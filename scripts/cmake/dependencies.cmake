@@ -53,7 +53,7 @@ endfunction()
 
 find_package(OpenCV QUIET COMPONENTS dnn)
 handcast_found(found OpenCV_dnn_FOUND)
-handcast_feature(OPENCV_DNN "executor opencv of the landmark networks (libopencv-dev)" ${found})
+handcast_feature(OPENCV_DNN "executor opencv of the landmark models (libopencv-dev)" ${found})
 if(HANDCAST_WITH_OPENCV_DNN)
   target_include_directories(opencv_dnn SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 endif()

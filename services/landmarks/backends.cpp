@@ -1,48 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
+#include <vector>
 
 #include "services/evaluation/twin/settings.hpp"
 #include "services/landmarks/detector.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
 
 namespace handcast::landmarks {
 
-Result<std::unique_ptr<Detector>> open_onednn(const config::Rig&, const calib::Calibration&,
-                                              const std::int64_t& epoch_ns);
-Result<std::unique_ptr<Detector>> open_opencv(const config::Rig&, const calib::Calibration&,
-                                              const std::int64_t& epoch_ns);
-Result<std::unique_ptr<Detector>> open_own(const config::Rig&, const calib::Calibration&,
-                                           const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig&,
+                                                        const calib::Calibration&,
+                                                        const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Detector>> open_twin(const config::Rig&, const calib::Calibration&,
                                             const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Detector>> open_replay(const config::Rig&, const calib::Calibration&,
                                               const std::int64_t& epoch_ns);
 
-static constexpr std::array kBackends{
-    DetectorBackend{.name = "onednn",
-                    .sentence = "MediaPipe Hands lite, run by oneDNN.",
-                    .open = open_onednn,
-                    .reads = {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
-    DetectorBackend{.name = "opencv",
-                    .sentence = "MediaPipe Hands lite, run by OpenCV.",
-                    .open = open_opencv,
-                    .reads = {"landmarks.models", "landmarks.hands", "landmarks.definition"}},
-    DetectorBackend{.name = "own",
-                    .sentence = "handcast's own network, which also takes the tracker's joints.",
-                    .open = open_own,
-                    .reads = {"landmarks.models", "landmarks.hands"}},
-    DetectorBackend{.name = "twin",
-                    .sentence = "Models a landmark detector that sees the twin's hand.",
-                    .open = open_twin,
-                    .reads = twin::kWorldSettings +
-                             config::SettingList{"twin.detector", "twin.image.delivery_ms",
-                                                 "camera.rate_hz", "camera.exposure_ms"}},
-    DetectorBackend{.name = "replay",
-                    .sentence = "Plays recorded landmarks.",
-                    .open = open_replay,
-                    .reads = {"landmarks.replay"}},
-};
+static constexpr DetectorBackend kTwin{
+    .name = "twin",
+    .sentence = "Models a landmark detector that sees the twin's hand.",
+    .open = open_twin,
+    .reads = twin::kWorldSettings + config::SettingList{"twin.detector", "twin.image.delivery_ms",
+                                                        "camera.rate_hz", "camera.exposure_ms"}};
 
-std::span<const DetectorBackend> detector_backends() { return kBackends; }
+static constexpr DetectorBackend kReplay{.name = "replay",
+                                         .sentence = "Plays recorded landmarks.",
+                                         .open = open_replay,
+                                         .reads = {"landmarks.replay"}};
+
+/// One row for each landmark model, all with open_network_detector, which opens the model that
+/// landmarks.backend names.
+static std::vector<DetectorBackend> make_table() {
+  std::vector<DetectorBackend> table;
+  for (const auto& model : landmark_models())
+    table.push_back({.name = model.name,
+                     .sentence = model.sentence,
+                     .open = open_network_detector,
+                     .reads = model.reads});
+  table.push_back(kTwin);
+  table.push_back(kReplay);
+  return table;
+}
+
+std::span<const DetectorBackend> detector_backends() {
+  static const std::vector<DetectorBackend> kBackends = make_table();
+  return kBackends;
+}
 
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,

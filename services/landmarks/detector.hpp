@@ -10,7 +10,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/landmarks.hpp"
-#include "services/landmarks/finder/hand_finder.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::landmarks {
@@ -20,22 +20,25 @@ class Detector {
  public:
   virtual ~Detector() = default;
 
-  /// The landmarks of `frame`, with its id and origin; an image without a hand gives count 0.
-  /// `hints`: what the tracker says of the hands at that time, undistorted camera px. A detection
-  /// that is not done by the deadline is a timeout and goes on: the next call waits for it,
-  /// whatever frame it is given, and returns the landmarks of the frame it was begun with. (A
-  /// network at work is not cut short: it is done a few ms after the deadline.) Errors: timeout,
-  /// bad_data (this image cannot be used).
+  /// The landmarks of `frame`, with its id and origin; count is 0 if there is no hand. `hints`: the
+  /// tracker's hands at the time of the frame, in undistorted camera pixels.
+  ///
+  /// A detection that is not done by the deadline is a timeout, and goes on: the next call waits
+  /// for it, whatever frame it is given, and returns the landmarks of the first frame. (A network
+  /// is not interrupted: it returns a few ms after the deadline.) Errors: timeout; bad_data (this
+  /// image cannot be used).
   virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints,
                                         Deadline deadline) = 0;
 };
 
-/// Opened with the rig, its calibration and its epoch (ns).
+/// A row of the table of detectors, opened with the rig, its calibration and its epoch (ns).
 using DetectorBackend = service::Backend<Detector, config::Rig, calib::Calibration, std::int64_t>;
 
+/// All detectors: the landmark models, the twin, recordings.
 std::span<const DetectorBackend> detector_backends();
 
-/// Opens the back end that rig.landmarks.backend names.
+/// Opens the detector that rig.landmarks.backend names. `epoch_ns`: the start of the rig. Errors:
+/// bad_config.
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
                                                 std::int64_t epoch_ns);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/finder/hints.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 #include "services/runtime/context.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-/// Every sample of the tracker up to now. A rig without a tracker has no such ring, a damaged one
-/// says so once a second.
+/// Takes all samples of the tracker that have arrived. A rig without a tracker has no such ring;
+/// errors of the ring are reported once a second.
 static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPoses>>& poses,
                        landmarks::TrackerHints& tracker) {
   if (!poses) return;
@@ -17,8 +17,8 @@ static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPo
   if (sample.error().code != Errc::timeout) context.tolerate(sample.error());
 }
 
-/// Landmarks of the newest camera frame, back to back: landmarks.hands. Frames that came meanwhile
-/// are passed over.
+/// Publishes the landmarks of the newest camera frame on landmarks.hands, back to back. Frames that
+/// arrive during a detection are skipped.
 static void run_landmarks(service::Context& context) {
   if (service::is_exclusive(context.rig().landmarks.backend, landmarks::detector_backends()))
     context.stand_by({"camera.frames", "pose.hands", "landmarks.hands"});

@@ -4,19 +4,20 @@
 #include <algorithm>
 
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/finder/hints.hpp"
-#include "services/landmarks/finder/joint_convention.hpp"
-#include "services/landmarks/finder/models.hpp"
-#include "services/landmarks/finder/own_finder.hpp"
+#include "services/landmarks/finder/hand_finder.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
+#include "services/landmarks/models/models_folder.hpp"
+#include "services/landmarks/tracker/joint_convention.hpp"
 
 namespace handcast::landmarks {
 namespace {
 
-/// A network on the images themselves.
+/// A landmark model on the camera's images.
 class NetworkDetector final : public Detector {
  public:
-  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool as_the_tracker)
-      : finder_(std::move(finder)), camera_(camera), as_the_tracker_(as_the_tracker) {}
+  /// `converts`: moves the model's points to the tracker's joints.
+  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool converts)
+      : finder_(std::move(finder)), camera_(camera), converts_(converts) {}
 
   Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints,
                                 Deadline) override {
@@ -45,10 +46,9 @@ class NetworkDetector final : public Detector {
   msg::HandLandmarks message_of(const FoundHand& hand, const Hints& hints, std::int64_t time_ns) {
     const auto side = static_cast<std::size_t>(hand.side);
     Points points_px = undistorted(camera_, hand.points_px);
-    if (as_the_tracker_) {
-      if (hints[side] && is_well_seen(hand))
-        definitions_[side].learn(time_ns, points_px, *hints[side]);
-      points_px = definitions_[side].to_tracker(points_px);
+    if (converts_) {
+      if (hints[side] && is_well_seen(hand)) offsets_[side].learn(time_ns, points_px, *hints[side]);
+      points_px = offsets_[side].to_tracker(points_px);
     }
     msg::HandLandmarks message{hand.side, hand.presence, {}};
     for (std::size_t i = 0; i < points_px.size(); ++i)
@@ -59,7 +59,7 @@ class NetworkDetector final : public Detector {
   }
 
   bool is_well_seen(const FoundHand& hand) const {
-    return mean_of(hand.confidences) >= HandFinder::kSteadyConfidence &&
+    return mean_of(hand.confidences) >= kSteadyConfidence &&
            std::ranges::all_of(hand.points_px,
                                [this](glm::vec2 point_px) { return is_in_image(point_px); });
   }
@@ -72,42 +72,23 @@ class NetworkDetector final : public Detector {
 
   HandFinder finder_;
   calib::CameraModel camera_;
-  bool as_the_tracker_;
-  std::array<JointConventionOffsets, msg::kMaxHands> definitions_;
+  bool converts_;
+  std::array<JointConventionOffsets, msg::kMaxHands> offsets_;
 };
-
-Result<std::unique_ptr<Detector>> open_with(const char* backend, const config::Rig& rig,
-                                            const calib::Calibration& calibration) {
-  const auto& settings = rig.landmarks;
-  auto finder = HandFinder::open(backend, models_folder(settings.models), settings.hands);
-  if (!finder) return fail_in(fmt::format("landmarks '{}'", backend), finder.error());
-  return std::make_unique<NetworkDetector>(
-      std::move(*finder), calibration.camera,
-      settings.definition == config::LandmarkDefinition::tracker);
-}
 
 }  // namespace
 
-/// Its points are the tracker's joints already.
-Result<std::unique_ptr<Detector>> open_own(const config::Rig& rig,
-                                           const calib::Calibration& calibration,
-                                           const std::int64_t&) {
+Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
+                                                        const calib::Calibration& calibration,
+                                                        const std::int64_t&) {
   const auto& settings = rig.landmarks;
-  auto finder = own::open_finder(models_folder(settings.models), settings.hands);
-  if (!finder) return fail_in("landmarks 'own'", finder.error());
-  return std::make_unique<NetworkDetector>(std::move(*finder), calibration.camera, false);
-}
-
-Result<std::unique_ptr<Detector>> open_onednn(const config::Rig& rig,
-                                              const calib::Calibration& calibration,
-                                              const std::int64_t&) {
-  return open_with("onednn", rig, calibration);
-}
-
-Result<std::unique_ptr<Detector>> open_opencv(const config::Rig& rig,
-                                              const calib::Calibration& calibration,
-                                              const std::int64_t&) {
-  return open_with("opencv", rig, calibration);
+  auto model = open_landmark_model(
+      settings.backend, {.executor = settings.executor, .folder = models_folder(settings.models)});
+  if (!model) return fail_in(fmt::format("landmarks '{}'", settings.backend), model.error());
+  const bool converts = settings.definition == config::LandmarkDefinition::tracker &&
+                        !model->landmarks->traits().finds_tracker_joints;
+  return std::make_unique<NetworkDetector>(HandFinder(std::move(*model), settings.hands),
+                                           calibration.camera, converts);
 }
 
 }  // namespace handcast::landmarks

@@ -15,7 +15,7 @@ namespace {
 using Track =
     std::vector<msg::HandLandmarks>;  ///< one hand over the recording; empty: not recorded
 
-/// Recorded landmarks: the ones nearest in the recording's time to the image.
+/// Recorded landmarks: those nearest to the image in the time of the recording.
 class ReplayDetector final : public Detector {
  public:
   ReplayDetector(std::array<Track, msg::kMaxHands> hands, timing::Loop loop)
@@ -41,8 +41,8 @@ class ReplayDetector final : public Detector {
   timing::Loop loop_;
 };
 
-/// x, y and, where the recording has it, sigma. A landmark that is not a number was not seen; a
-/// hand without any was not there.
+/// The hand at one time stamp: x, y and, if the recording has them, sigmas. A landmark whose
+/// coordinates are not finite was not seen; a hand without a landmark is absent.
 msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side side) {
   const std::size_t columns = array.shape[2];
   msg::HandLandmarks hand;

@@ -8,8 +8,8 @@
 namespace handcast::landmarks {
 namespace {
 
-/// The twin's model of a detector in real time: it knows the answer at once and keeps it as long as
-/// a detector would take.
+/// The twin's model of a detector in real time. The answer is known at once and held back for as
+/// long as a detector takes.
 class TwinDetector final : public Detector {
  public:
   TwinDetector(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns)
@@ -37,8 +37,8 @@ class TwinDetector final : public Detector {
     under_way_->header = {seen.frame_id, detection.landmarks.header.origin_ns + epoch_ns_, 0};
   }
 
-  /// How old the newest frame can be where the camera holds its rate. One that is older does not
-  /// make the work shorter.
+  /// The largest age of the newest frame while the camera holds its rate. The work on an older
+  /// frame takes no less time.
   std::int64_t oldest_ns(std::uint64_t frame_id) const {
     return twin_->camera_arrival_ns(frame_id + 1) - twin_->camera_origin_ns(frame_id);
   }

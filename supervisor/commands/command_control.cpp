@@ -2,6 +2,7 @@
 // The verbs that talk to a rig that is up.
 #include <fmt/format.h>
 
+#include "config/renamed_settings.hpp"
 #include "config/settings/join.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
@@ -40,6 +41,15 @@ std::string print_reload(const nlohmann::json& answer) {
                                                  : "nothing changed";
 }
 
+/// The present name of the back end; an old one is reported.
+std::string current_backend(const Request& request) {
+  const auto report = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
+  return config::current_form({request.service + ".backend", request.backend}, "swap",
+                              config::renamed_settings(), report)
+      .front()
+      .value;
+}
+
 /// Runs a verb that takes a service, or a service and a back end. `done` is printed when it is
 /// done, with {0} for the service and {1} for the back end.
 int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words, Request request,
@@ -53,7 +63,7 @@ int ask_with_words(const char* verb, const Arguments& arguments, std::size_t wor
   if (words > 1) request.backend = options->words[1];
   const int exit_code = talk(options->value("--rig"), request).exit_code;
   if (exit_code == kExitDone)
-    fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, request.backend));
+    fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, current_backend(request)));
   return exit_code;
 }
 

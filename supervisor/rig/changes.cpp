@@ -15,12 +15,14 @@ void Changes::restart(Service& service, ControlServer::Reply reply) {
   service.restart();
 }
 
-void Changes::swap(Service& service, const std::string& backend, ControlServer::Reply reply) {
+void Changes::swap(Service& service, const std::string& word, ControlServer::Reply reply) {
   const auto name = service.spec().name;
-  if (const auto known = check_backend(rig_.launch.program_folder, name, backend); !known)
+  const auto backend = present_backend(name, word, rig_.config);
+  if (!backend) return reply(failure(backend.error().what));
+  if (const auto known = check_backend(rig_.launch.program_folder, name, *backend); !known)
     return reply(failure(known.error().what));
-  pending_[name] = {std::move(reply), backend, service.spec().backend};
-  give_backend(service, backend, true);
+  pending_[name] = {std::move(reply), *backend, service.spec().backend};
+  give_backend(service, *backend, true);
 }
 
 /// Restarts a service with another back end, and remembers with which settings that is.

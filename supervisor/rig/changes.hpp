@@ -15,8 +15,8 @@ class Changes {
   explicit Changes(LiveRig& rig) : rig_(rig) {}
 
   void restart(Service& service, ControlServer::Reply reply);
-  /// Refuses a back end that the service does not have.
-  void swap(Service& service, const std::string& backend, ControlServer::Reply reply);
+  /// `word`: a back end, maybe by its old name. Refuses one that the service does not have.
+  void swap(Service& service, const std::string& word, ControlServer::Reply reply);
 
   bool contains(std::string_view service) const { return pending_.contains(service); }
   /// A service that is being changed; "" if there is none.

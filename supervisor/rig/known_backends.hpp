@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "config/rig.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::supervisor {
@@ -13,5 +14,11 @@ namespace handcast::supervisor {
 /// answer).
 Result<void> check_backend(const std::filesystem::path& program_folder, const std::string& service,
                            const std::string& backend);
+
+/// The present name of the back end that `word` names for `service`. Errors (bad_config): an old
+/// word that also stands for a second setting, of which the rig has another value. A swap changes
+/// only the back end.
+Result<std::string> present_backend(const std::string& service, const std::string& word,
+                                    config::Rig rig);
 
 }  // namespace handcast::supervisor

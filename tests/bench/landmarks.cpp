@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a landmark network costs in each back end on one core, and a whole look at a hand: those of
-// a kind in turn, in one run.
+// The time of each landmark network, and of a whole estimate of each landmark model, in each
+// executor on one core. The executors of one network take turns.
 //   bench_landmarks [--goals FILE] [--rounds N] [NETWORK.onnx...]
 // Without files: the network that comes with handcast, those of ../shared/models (HANDCAST_MODELS
-// names another place), and whole looks.
+// names another folder), and the whole estimates.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -11,7 +11,7 @@
 #include <ctime>
 #include <map>
 
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_model.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/landmarks_subjects.hpp"
 #include "tests/bench/percentiles.hpp"
@@ -27,52 +27,58 @@ struct Options {
   std::vector<fs::path> files;
 };
 
-/// Wall time is what a hand waits; the thread's own time is that on a core which nothing else uses.
+/// Wall time, and the time of the thread, which other programs on the core do not add to.
 struct Times {
-  std::vector<double> wall_ms, own_ms;
+  std::vector<double> wall_ms, thread_ms;
 };
 
-/// The median of each subject's own time, by its name and back end.
+/// The median of each subject's thread time, by name and executor.
 using Medians = std::map<std::pair<std::string, std::string>, double>;
 
-double own_time_ms() {
+double thread_time_ms() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
+/// Empty for a subject whose multiplications are not counted.
+std::string counted(double mmac, double value) {
+  return mmac > 0 ? fmt::format("{:.1f}", value) : "";
+}
+
 void print(const Subject& subject, const Times& times) {
-  fmt::print("{:<22} {:<8} {:7.1f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.1f}\n", subject.name,
-             subject.backend, subject.mmac, percentile(times.wall_ms, 0), median(times.wall_ms),
-             percentile(times.wall_ms, 0.99), median(times.own_ms), percentile(times.own_ms, 0.99),
-             subject.mmac / median(times.own_ms));
+  fmt::print("{:<26} {:<8} {:>7} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:>8}\n", subject.name,
+             subject.executor, counted(subject.mmac, subject.mmac), percentile(times.wall_ms, 0),
+             median(times.wall_ms), percentile(times.wall_ms, 0.99), median(times.thread_ms),
+             percentile(times.thread_ms, 0.99),
+             counted(subject.mmac, subject.mmac / median(times.thread_ms)));
 }
 
 void measure(const std::vector<Subject>& subjects, int rounds, Medians& medians) {
   std::vector<Times> times(subjects.size());
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < subjects.size(); ++i) {
-      bool sound = subjects[i].run();  // back to back, as in a detector: the caches hold its own
-      const double before = own_time_ms();
+      bool sound = subjects[i].run();  // fills the caches, as in a detector
+      const double before = thread_time_ms();
       times[i].wall_ms.push_back(timed_us([&] { sound = subjects[i].run() && sound; }) / 1000);
-      times[i].own_ms.push_back(own_time_ms() - before);
-      if (!sound) fmt::print("{} in {}: a run failed\n", subjects[i].name, subjects[i].backend);
+      times[i].thread_ms.push_back(thread_time_ms() - before);
+      if (!sound) fmt::print("{} in {}: a run failed\n", subjects[i].name, subjects[i].executor);
     }
   for (std::size_t i = 0; i < subjects.size(); ++i) {
     print(subjects[i], times[i]);
-    medians[{subjects[i].name, subjects[i].backend}] = median(times[i].own_ms);
+    medians[{subjects[i].name, subjects[i].executor}] = median(times[i].thread_ms);
   }
 }
 
-/// Judged by the thread's own time: on a machine with other work the wall's tells of that work.
+/// Judged by thread time: on a machine with other work, wall time measures that work, too.
 std::vector<Goal> goals_of(const Medians& medians) {
   struct Limit {
-    const char *name, *goal;
+    std::string name, goal;
     double most_ms;
   };
   static const Limit kLimits[] = {
-      {"handcast", "our own network in onednn, one core, p50", 1},
-      {kOwnLook, "our own network's whole look, one core, p50", 1},
+      {"handcast", "handcast's network in onednn, one core, p50", 1},
+      {estimate_of("handcast"), "handcast's whole estimate, one core, p50", 1},
       {"hand_landmark_lite", "hand_landmark_lite in onednn, one core, p50", 4},
       {"palm_detection_lite", "palm_detection_lite in onednn, one core, p50", 6}};
   std::vector<Goal> goals;
@@ -97,12 +103,12 @@ bool is_there(const fs::path& file) {
 void measure_known(int rounds, Medians& medians) {
   const char* place = std::getenv("HANDCAST_MODELS");
   const fs::path folder = place && *place ? place : "../shared/models",
-                 own = landmarks::own::default_network_file();
-  for (const fs::path& file : {own, folder / "first_trial.onnx", folder / "hand_landmark_lite.onnx",
-                               folder / "palm_detection_lite.onnx"})
+                 shipped = landmarks::shipped_network_file();
+  for (const fs::path& file :
+       {shipped, folder / "first_trial.onnx", folder / "hand_landmark_lite.onnx",
+        folder / "palm_detection_lite.onnx"})
     if (is_there(file)) measure(network_subjects(file), rounds, medians);
-  measure(own_looks(own), rounds, medians);
-  measure(mediapipe_looks(folder), rounds, medians);
+  for (const auto& model : estimate_subjects(folder)) measure(model, rounds, medians);
 }
 
 Options parse(int argc, char** argv) {
@@ -124,8 +130,8 @@ Options parse(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace handcast::bench;
   const Options options = parse(argc, argv);
-  fmt::print("{:<22} {:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "one thread, ms", "",
-             "MMAC", "min", "p50", "p99", "own p50", "own p99", "GMAC/s");
+  fmt::print("{:<26} {:<8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "one thread, ms", "",
+             "MMAC", "min", "p50", "p99", "thr. p50", "thr. p99", "GMAC/s");
   Medians medians;
   for (const auto& file : options.files) measure(network_subjects(file), options.rounds, medians);
   if (options.files.empty()) measure_known(options.rounds, medians);

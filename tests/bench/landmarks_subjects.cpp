@@ -6,10 +6,10 @@
 #include <cmath>
 #include <memory>
 
-#include "services/landmarks/finder/hand_network.hpp"
-#include "services/landmarks/finder/models.hpp"
-#include "services/landmarks/finder/own_network.hpp"
+#include "config/settings/choice.hpp"
 #include "services/landmarks/inference/cost.hpp"
+#include "services/landmarks/inference/network.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -17,18 +17,18 @@ namespace {
 using namespace landmarks;
 namespace fs = std::filesystem;
 
-/// The next of a row of numbers that look random, 0..1.
+/// The next number of a pseudorandom sequence, 0..1.
 float noise(unsigned& seed) {
   seed = seed * 1664525u + 1013904223u;
   return static_cast<float>(seed >> 8) / 16777216.f;
 }
 
-/// A bright disc with noise, about as large as a hand, and a look at it.
+/// A bright disc about as large as a hand, with noise, and a region around it.
 struct Scene {
   renderer::Image<std::uint8_t> image{720, 540};
   Region region{{361.3f, 268.6f}, 250, 0.7f};
   Points joints_px{};
-  LandmarkModel::Times ignored;
+  EstimateTimes ignored;
 
   Scene() {
     unsigned seed = 1;
@@ -41,65 +41,59 @@ struct Scene {
   }
 };
 
-template <class Looker>
-Subject look_with(Looker looker, const char* name, const char* backend, const fs::path& file) {
-  const auto shared = std::make_shared<Looker>(std::move(looker));
+Subject estimate_with(std::unique_ptr<LandmarkModel> model, const std::string& name,
+                      std::string_view executor) {
+  const std::shared_ptr<LandmarkModel> shared = std::move(model);
   const auto scene = std::make_shared<Scene>();
-  LandmarkModel* with = shared.get();
-  return {name, backend, network_mmac(file).value_or(0), [shared, with, scene] {
-            return with
-                ->look(scene->image.view(), scene->region, msg::Side::left, scene->joints_px,
-                       scene->ignored)
+  return {name, std::string(executor), 0, [shared, scene] {
+            return shared
+                ->estimate(scene->image.view(), scene->region, msg::Side::left, scene->joints_px,
+                           scene->ignored)
                 .has_value();
           }};
 }
 
-void report(const std::string& name, const char* backend, const Error& error) {
-  fmt::print("{} in {}: not measured: {}\n", name, backend, error.what);
+void report(const std::string& name, std::string_view executor, const Error& error) {
+  fmt::print("{} in {}: not measured: {}\n", name, executor, error.what);
 }
 
 }  // namespace
 
+std::string estimate_of(const std::string& model) { return model + ", whole estimate"; }
+
 std::vector<Subject> network_subjects(const fs::path& file) {
   std::vector<Subject> subjects;
   const std::string name = file.stem().string();
-  for (const auto& backend : network_backends()) {
-    auto opened = backend.open(file);
+  for (const auto executor : executors()) {
+    const auto word = config::word_of(executor);
+    auto opened = open_network(executor, file);
     if (!opened) {
-      report(name, backend.name, opened.error());
+      report(name, word, opened.error());
       continue;
     }
     const std::shared_ptr<Network> network = std::move(*opened);
     unsigned seed = 1;
     for (std::size_t i = 0; i < network->inputs().size(); ++i)
       for (float& number : network->input(i)) number = noise(seed);
-    subjects.push_back({name, backend.name, network_mmac(file).value_or(0),
+    subjects.push_back({name, std::string(word), network_mmac(file).value_or(0),
                         [network] { return network->run().has_value(); }});
   }
   return subjects;
 }
 
-std::vector<Subject> own_looks(const fs::path& file) {
-  std::vector<Subject> subjects;
-  for (const auto& backend : network_backends()) {
-    auto opened = own::OwnNetwork::open(backend.name, file);
-    if (opened)
-      subjects.push_back(look_with(std::move(*opened), kOwnLook, backend.name, file));
-    else
-      report(kOwnLook, backend.name, opened.error());
-  }
-  return subjects;
-}
-
-std::vector<Subject> mediapipe_looks(const fs::path& models) {
-  std::vector<Subject> subjects;
-  for (const auto& backend : network_backends()) {
-    auto opened = HandNetwork::open(backend.name, models);
-    if (opened)
-      subjects.push_back(
-          look_with(std::move(*opened), kMediaPipeLook, backend.name, models / kHandModel));
-    else
-      report(kMediaPipeLook, backend.name, opened.error());
+std::vector<std::vector<Subject>> estimate_subjects(const fs::path& models) {
+  std::vector<std::vector<Subject>> subjects;
+  for (const auto& model : landmark_models()) {
+    subjects.emplace_back();
+    const auto name = estimate_of(std::string(model.name));
+    for (const auto executor : executors()) {
+      const auto word = config::word_of(executor);
+      auto opened = model.open({.executor = executor, .folder = models});
+      if (opened)
+        subjects.back().push_back(estimate_with(std::move(opened->landmarks), name, word));
+      else
+        report(name, word, opened.error());
+    }
   }
   return subjects;
 }

@@ -7,22 +7,21 @@
 
 namespace handcast::bench {
 
-/// Something that a landmark detector does again and again: it runs a network, or looks at a hand.
+/// Something that a landmark detector does over and over: run a network, or estimate a hand.
 struct Subject {
-  std::string name, backend;
-  double mmac = 0;
-  std::function<bool()> run;  ///< whether all went well
+  std::string name, executor;
+  double mmac = 0;            ///< of a network; 0: not counted
+  std::function<bool()> run;  ///< false if it failed
 };
 
-/// Says why where there is nothing to measure.
-/// The network of a file in each back end, on noise.
+/// The network of a file in each executor, on noise. What cannot be opened is reported and left
+/// out.
 std::vector<Subject> network_subjects(const std::filesystem::path& file);
-/// Whole looks in each back end: crop, network, reading of its answer. `models`: MediaPipe's
-/// folder.
-std::vector<Subject> own_looks(const std::filesystem::path& file);
-std::vector<Subject> mediapipe_looks(const std::filesystem::path& models);
+/// Whole estimates of each landmark model in each executor: crop, network, decoding. `models`:
+/// folder of MediaPipe's files.
+std::vector<std::vector<Subject>> estimate_subjects(const std::filesystem::path& models);
 
-inline constexpr const char* kOwnLook = "whole look, ours";
-inline constexpr const char* kMediaPipeLook = "whole look, MediaPipe";
+/// The name of a landmark model's estimate as a subject.
+std::string estimate_of(const std::string& model);
 
 }  // namespace handcast::bench

@@ -49,7 +49,7 @@ TEST_F(Refusals, AMissingRecordingIsNamedAndNothingKeepsRunning) {
   EXPECT_THAT(traces(), IsEmpty());
 }
 
-TEST_F(Refusals, AMissingNetworkOfOurOwnIsNamed) {
+TEST_F(Refusals, AMissingNetworkThatComesWithHandcastIsNamed) {
   const auto all = program_folder().parent_path() / "share" / "handcast",
              most = scratch_.path() / "assets";
   std::filesystem::create_directory(most);
@@ -57,7 +57,7 @@ TEST_F(Refusals, AMissingNetworkOfOurOwnIsNamed) {
     if (entry.path().filename() != "landmarks")
       std::filesystem::create_symlink(entry.path(), most / entry.path().filename());
   const Variable assets("HANDCAST_ASSETS", most);
-  const auto rig = up({"--set", "landmarks.backend=own"});
+  const auto rig = up({"--set", "landmarks.backend=handcast"});
   EXPECT_EQ(rig->wait(), 100);
   EXPECT_THAT(rig->log(), AllOf(HasSubstr("handcast: landmarks cannot start: "),
                                 HasSubstr("assets/landmarks/handcast.onnx"),

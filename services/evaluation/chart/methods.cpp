@@ -20,7 +20,7 @@ const std::array kOthers{
     Method{"paper_at_our_speed", "paper at our speed", kPaper},
     Method{"handcast", "handcast", kOurs},
     Method{"ideal", "ideal landmarks", kQuiet},
-    Method{.variant = "own_network", .label = "our network", .colour = kFast, .detects = true},
+    Method{.variant = "handcast_network", .label = "our network", .colour = kFast, .detects = true},
     Method{.variant = "mediapipe", .label = "MediaPipe", .colour = kFast, .detects = true},
 };
 

@@ -7,7 +7,7 @@
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/owned.hpp"
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/finder/hints.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::simulate {
 namespace {

@@ -16,7 +16,7 @@ int main(int argc, char** argv) try {
     return kExitUsage;
   }
   if (options->help) {
-    fmt::print("{}", simulate::kHelp);
+    fmt::print("{}", simulate::help());
     return kExitDone;
   }
   if (options->version) {

@@ -8,9 +8,13 @@
 #include <map>
 #include <string_view>
 
+#include "services/landmarks/models/landmark_models.hpp"
+
 namespace handcast::simulate {
 
-const char* const kHelp =
+namespace {
+
+constexpr char kHelp[] =
     R"(handcast simulate RIG.toml [options]: runs the cascade of a rig on its digital twin in virtual time and scores the light.
 
   --motion DIR|builtin:NAME  motion of the true hands: a recording or a built-in motion (sets twin.motion)
@@ -29,15 +33,13 @@ const char* const kHelp =
   --quiet                    prints no progress
   --help, --version
 
-Landmarks come from the twin's model of a detector, or from a real detector that runs on the twin's images:
-  --set landmarks.backend=onednn|opencv|own
-The age of its landmarks is simulated for every back end (twin.detector.age_ms and age_sd_ms), so that a slow machine can simulate
+Landmarks come from the twin's model of a detector, or from a landmark model that runs on the images of the twin:
+  --set landmarks.backend={}
+The age of the landmarks is simulated for every back end (twin.detector.age_ms and age_sd_ms), so that a slow machine can simulate
 a fast one. "detector" in the metrics has its run time on this machine (ms_p50) and the number of hands that it missed.
 
 The same seed gives the same figures, except for frame_us, stage_us and detector.ms_p50, which are times of this machine.
 )";
-
-namespace {
 
 Result<double> number(std::string_view option, std::string_view text, double min, double max) {
   double value = 0;
@@ -93,6 +95,13 @@ std::map<std::string_view, Setter> setters(Options& options) {
 }
 
 }  // namespace
+
+std::string help() {
+  std::string models;
+  for (const auto& model : landmarks::landmark_models())
+    models += fmt::format("{}{}", models.empty() ? "" : "|", model.name);
+  return fmt::format(kHelp, models);
+}
 
 Result<Options> parse_options(int argc, const char* const* argv) {
   Options options;

@@ -26,7 +26,8 @@ struct Options {
 };
 
 /// The text of --help.
-extern const char* const kHelp;
+/// The text of --help.
+std::string help();
 
 /// Parses the command line. Errors: bad_config (an unknown option, a missing value or rig file, a
 /// number out of range).

@@ -152,7 +152,10 @@ class Reader {
   }
 
   Choice choice(const std::string& path, const Value& value) {
-    config::apply_document(nested(path, value), file_.string(), listing_, faults_);
+    auto document = nested(path, value);
+    config::replace_renamed(document, file_.string(), config::renamed_settings(),
+                            config::log_renamed);
+    config::apply_document(document, file_.string(), listing_, faults_);
     const auto text = print(value);
     const bool file = config::names_a_file(path) && !text.empty() && !text.starts_with("builtin:");
     return {text, file ? (folder_ / text).lexically_normal().string() : text, value.line};

@@ -17,7 +17,7 @@ constexpr std::array kFinger{rgb(255, 196, 0), rgb(0, 220, 120), rgb(0, 200, 255
                              rgb(150, 120, 255), rgb(255, 90, 160)};
 constexpr Colour kWrist = rgb(255, 255, 255), kRegion = rgb(90, 140, 90),
                  kTracker = rgb(230, 80, 60);
-constexpr double kBrightest = 0.998;  ///< share of the pixels that stay below white
+constexpr double kBrightest = 0.998;  ///< fraction of the pixels that stay below white
 
 void dot(renderer::Texture& picture, glm::vec2 at, float radius, Colour colour) {
   if (!(std::abs(at.x) < 1e5f && std::abs(at.y) < 1e5f)) return;

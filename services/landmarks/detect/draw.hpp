@@ -3,12 +3,13 @@
 #include <span>
 
 #include "renderer/base/image.hpp"
-#include "services/landmarks/finder/hand_finder.hpp"
+#include "services/landmarks/finder/found_hand.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::detect {
 
-/// The picture, made bright enough to be seen, with each hand's bones and landmarks, the region it
-/// was looked for in (its upper edge thick) and the tracker's joints as crosses.
+/// The picture, brightened, with each hand's bones and landmarks, its region (with a thick upper
+/// edge) and the tracker's joints as crosses.
 renderer::Texture draw(renderer::GreyView picture, std::span<const landmarks::FoundHand> hands,
                        const landmarks::Hints& hints_px);
 

@@ -5,18 +5,35 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <map>
+#include <string>
+#include <vector>
 
+#include "config/settings/choice.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/version.hpp"
 #include "services/landmarks/detect/run.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
 
 namespace handcast::detect {
 namespace {
 
 const char* const kFooter =
-    R"(Each picture is looked at by itself, as the first image of a stream: where --joints says the hand is, else by the palm network.
-Points are pixels of the picture from the centre of its upper left one, as the network defines them; the lens is left as it is.
-Drawn with --out: bones and landmarks, the square the network was shown (its upper edge thick), the tracker's joints as crosses.)";
+    R"(Each picture is treated as the first image of a stream: a hand is looked for where --joints has it, otherwise where the palm network finds one.
+Points are pixels of the picture, (0, 0) is the centre of the upper left one; they are as the network defines them, with the lens's distortion.
+--out draws bones and landmarks, the square that the network was given (with a thick upper edge) and the tracker's joints as crosses.)";
+
+std::string backend_help() {
+  std::string text = "The landmark model.";
+  for (const auto& model : landmarks::landmark_models())
+    text += fmt::format(" {}: {}.", model.name, model.sentence);
+  return text;
+}
+
+std::vector<std::string> executor_words() {
+  const auto words = words_of(config::Executor{});
+  return {words.begin(), words.end()};
+}
 
 int detect(const Options& options) {
   const auto text = run(options);
@@ -38,23 +55,33 @@ int main(int argc, char** argv) try {
   app.footer(detect::kFooter);
   app.add_option("IMAGE", options.images, "PNG or JPEG pictures")->required();
   app.add_option("--joints", options.joints,
-                 "A tracker's joints in the picture: (21,2) px, or (42,2) in -1..1; one a picture")
+                 "A tracker's joints in the picture, one .npy file per picture: (21,2) in pixels, "
+                 "or (42,2) in -1..1")
       ->allow_extra_args(false);
-  app.add_option("--side", options.joints_side, "Whose joints they are")
+  app.add_option("--side", options.joints_side, "The side of the hand in --joints")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, msg::Side>{{"left", msg::Side::left}, {"right", msg::Side::right}}))
       ->default_str("left");
   app.add_option("--model", options.models,
-                 "Folder of the networks' files, see scripts/get-models");
-  app.add_option("--backend", options.backend,
-                 "onednn or opencv: MediaPipe Hands; own: handcast's own network, where --joints "
-                 "says or the palm network finds a hand")
-      ->capture_default_str();
-  app.add_option("--hands", options.hands, "How many are looked for")
+                 "The folder of MediaPipe's files; scripts/get-models fetches them");
+  app.add_option_function<std::string>(
+         "--backend", [&](const std::string& name) { detect::set_backend(options, name); },
+         detect::backend_help())
+      ->default_str(options.backend);
+  app.add_option_function<std::string>(
+         "--executor",
+         [&](const std::string& word) {
+           options.executor = *config::choice_named<config::Executor>(word);
+         },
+         "The library that runs the networks")
+      ->check(CLI::IsMember(detect::executor_words()))
+      ->default_str(std::string(config::word_of(options.executor)));
+  app.add_option("--hands", options.hands, "The largest number of hands")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
-  app.add_option("-o,--out", options.output, "Draws each result into this folder");
-  app.add_option("--repeat", options.repeat, "Looks this often and tells the median of the times")
+  app.add_option("-o,--out", options.output, "A folder for drawings of the results");
+  app.add_option("--repeat", options.repeat,
+                 "Repeats each detection and prints the median of the times")
       ->check(CLI::Range(1, 100000));
   app.add_flag("--json", options.json, "Prints JSON");
   app.add_flag("--quiet", options.quiet, "No progress line");

@@ -4,15 +4,15 @@
 
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
-#include "services/landmarks/finder/hand_finder.hpp"
+#include "services/landmarks/geometry/points.hpp"
 
 namespace handcast::detect {
 
 /// A PNG or JPEG picture as grey. Errors: bad_config.
 Result<renderer::Image<std::uint8_t>> read_grey(const std::filesystem::path& file);
 
-/// A tracker's joints in a picture as 21 points in px: (21,2) px, or (42,2) in Leap's order in
-/// -1..1, y up. Errors: bad_config, bad_data.
+/// A tracker's joints in a picture, as the 21 landmarks in pixels. The .npy file has the shape
+/// (21,2), in pixels, or (42,2), in Leap's order, -1..1 with y up. Errors: bad_config, bad_data.
 Result<landmarks::Points> read_joints(const std::filesystem::path& file, int width_px,
                                       int height_px);
 

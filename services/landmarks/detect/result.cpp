@@ -41,7 +41,7 @@ std::string print_text(const Result& result) {
       fmt::format("{}: {} hand{}, {:.2f} ms (crop {:.2f}, network {:.2f}{})\n",
                   result.image.string(), result.hands.size(), result.hands.size() == 1 ? "" : "s",
                   ns_to_ms(times.all_ns), ns_to_ms(times.crop_ns), ns_to_ms(times.network_ns),
-                  times.searches > 0 ? fmt::format(", palm {:.2f}", ns_to_ms(times.palm_ns)) : "");
+                  times.palm_runs > 0 ? fmt::format(", palm {:.2f}", ns_to_ms(times.palm_ns)) : "");
   for (const auto& hand : result.hands)
     text += fmt::format("  {} hand, presence {:.3f}; px from palm to tip:\n{}", name_of(hand.side),
                         hand.presence, table_of(hand.points_px));

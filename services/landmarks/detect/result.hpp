@@ -15,10 +15,12 @@ struct Result {
   landmarks::HandFinder::Times times;  ///< medians over the repetitions
 };
 
+/// "left" or "right".
 const char* name_of(msg::Side side);
 
-/// A line for the picture, a line a hand, a table of its points.
+/// One line for the picture; for each hand one line and a table of its points.
 std::string print_text(const Result& result);
+/// JSON of all pictures:
 /// {"images":[{"image","ms":{"all","crop","network","palm"},"hands":[{"side","presence","points_px":[[x,y],...]}]}]}
 std::string print_json(const std::vector<Result>& results);
 

@@ -11,8 +11,8 @@
 #include "services/landmarks/detect/draw.hpp"
 #include "services/landmarks/detect/picture.hpp"
 #include "services/landmarks/detect/result.hpp"
-#include "services/landmarks/finder/models.hpp"
-#include "services/landmarks/finder/own_finder.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
+#include "services/landmarks/models/models_folder.hpp"
 
 namespace handcast::detect {
 namespace {
@@ -30,7 +30,7 @@ Times median_of(std::vector<Times>& runs) {
   return median;
 }
 
-/// Where each picture's drawing goes, no two to the same file.
+/// The file of each picture's drawing, no two the same.
 std::vector<fs::path> drawings_of(const Options& options) {
   std::vector<fs::path> drawings;
   std::set<std::string> taken;
@@ -53,28 +53,34 @@ handcast::Result<void> save(const fs::path& file, const renderer::Texture& drawi
   return renderer::write_png(file, drawing.view());
 }
 
-handcast::Result<Result> look_at(landmarks::HandFinder& finder, const Options& options,
-                                 std::size_t i, const fs::path& drawing) {
+handcast::Result<landmarks::Hints> read_hints(const Options& options, std::size_t i,
+                                              renderer::GreyView picture) {
+  landmarks::Hints hints;
+  if (options.joints.empty()) return hints;
+  const auto joints = read_joints(options.joints[i], picture.width, picture.height);
+  if (!joints) return tl::make_unexpected(joints.error());
+  hints[static_cast<std::size_t>(options.joints_side)] = *joints;
+  return hints;
+}
+
+handcast::Result<Result> detect_in(landmarks::HandFinder& finder, const Options& options,
+                                   std::size_t i, const fs::path& drawing) {
   const auto picture = read_grey(options.images[i]);
   if (!picture) return tl::make_unexpected(picture.error());
-  landmarks::Hints hints;
-  if (!options.joints.empty()) {
-    const auto joints = read_joints(options.joints[i], picture->width(), picture->height());
-    if (!joints) return tl::make_unexpected(joints.error());
-    hints[static_cast<std::size_t>(options.joints_side)] = *joints;
-  }
+  const auto hints = read_hints(options, i, picture->view());
+  if (!hints) return tl::make_unexpected(hints.error());
   Result result{options.images[i], {}, {}};
   std::vector<Times> runs;
   for (int k = 0; k < options.repeat; ++k) {
     finder.forget();
-    const auto found = finder.find(picture->view(), hints, 0);
+    const auto found = finder.find(picture->view(), *hints, 0);
     if (!found) return tl::make_unexpected(found.error());
     result.hands.assign(found->begin(), found->end());
     runs.push_back(finder.times());
   }
   result.times = median_of(runs);
   if (!options.output.empty())
-    if (const auto saved = save(drawing, draw(picture->view(), result.hands, hints)); !saved)
+    if (const auto saved = save(drawing, draw(picture->view(), result.hands, *hints)); !saved)
       return tl::make_unexpected(saved.error());
   return result;
 }
@@ -88,11 +94,11 @@ handcast::Result<std::string> run(const Options& options) {
         fmt::format(
             "{} pictures, but {} files of joints; give one --joints a picture, in the same order",
             options.images.size(), options.joints.size()));
-  const fs::path models = landmarks::models_folder(options.models);
-  auto finder = options.backend == "own"
-                    ? landmarks::own::open_finder(models, options.hands)
-                    : landmarks::HandFinder::open(options.backend, models, options.hands);
-  if (!finder) return tl::make_unexpected(finder.error());
+  auto model = landmarks::open_landmark_model(
+      options.backend,
+      {.executor = options.executor, .folder = landmarks::models_folder(options.models)});
+  if (!model) return tl::make_unexpected(model.error());
+  landmarks::HandFinder finder(std::move(*model), options.hands);
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
   const auto drawings = drawings_of(options);
   std::vector<Result> results;
@@ -101,7 +107,7 @@ handcast::Result<std::string> run(const Options& options) {
     if (shows_progress)
       fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(),
                  options.images[i].filename().string());
-    auto result = look_at(*finder, options, i, drawings[i]);
+    auto result = detect_in(finder, options, i, drawings[i]);
     if (!result) return fail_in(options.images[i].string(), result.error());
     if (!options.json) text += print_text(*result);
     results.push_back(std::move(*result));

@@ -7,8 +7,8 @@
 
 namespace handcast::detect {
 
-/// Finds, draws and prints. What goes to standard output; progress goes to standard error. Errors:
-/// bad_config, bad_data, unavailable.
+/// Detects hands in the pictures and draws them; returns the text for standard output. Progress
+/// goes to standard error. Errors: bad_config, bad_data, unavailable.
 handcast::Result<std::string> run(const Options& options);
 
 }  // namespace handcast::detect

@@ -3,19 +3,21 @@
 #include <array>
 #include <optional>
 
-#include "services/landmarks/finder/landmark_model.hpp"
+#include "services/landmarks/models/landmark_model.hpp"
 
 namespace handcast::landmarks {
 
+/// One confidence per landmark, 0..1.
 using Confidences = std::array<float, msg::kLandmarks>;
 
-/// How far to believe each landmark of a hand looked for in `region`, 0..1: its presence; less
-/// where the network is uncertain, down to 0; less where the finger is not where the tracker has
-/// it. Then one of both is wrong: a covered finger looks like a folded one. The hand's place is no
-/// matter, trackers differ in that.
-Confidences confidences_of(const LandmarkModel::Seen& seen, const Region& region,
+/// The confidence in each landmark of a hand that was estimated in `region`: the hand's presence,
+/// reduced if the landmark's sigma is large or if its finger is not where the tracker has it. (If
+/// network and tracker disagree, one of them is wrong: a covered finger looks like a folded one.)
+/// Fingers are compared after a shift of the whole hand, because trackers differ in its position.
+Confidences confidences_of(const LandmarkEstimate& estimate, const Region& region,
                            const std::optional<Points>& tracker_px);
 
+/// The mean over all landmarks.
 float mean_of(const Confidences& confidences);
 
 }  // namespace handcast::landmarks

@@ -11,83 +11,57 @@ namespace handcast::landmarks {
 namespace {
 
 constexpr float kLeastRegion_px = 1;
-constexpr float kItsHint =
-    0.35f;  ///< how far off a tracker's hand may be to be this one, in regions
-constexpr float kSameHand = 0.35f;  ///< mean distance of the points, in palm lengths
-constexpr std::int64_t kForget_ns =
-    300'000'000;  ///< a hand that was last seen longer ago may be anywhere
 constexpr int kSearchEvery = 4, kSearchForMoreEvery = 60;  ///< images
-constexpr float kLeftScoreShare = 0.1f, kSureOfSide = 0.25f;
-constexpr int kAskSideEvery = 8;  ///< images, of a network that cannot tell it
+constexpr float kLeftScoreShare = 0.1f;                    ///< of a new image in the running mean
+constexpr float kSureOfSide = 0.25f;                       ///< distance of a left score from 0.5
+constexpr int kCompareSidesEvery = 8;  ///< images, with a model that does not score sides
 
 msg::Side other(msg::Side side) {
   return side == msg::Side::left ? msg::Side::right : msg::Side::left;
 }
 std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
 
-bool is_usable(const std::optional<Points>& hint_px) { return hint_px && is_finite(*hint_px); }
 bool any(const Hints& hints_px) { return std::ranges::any_of(hints_px, is_usable); }
 
-bool are_one_hand(const Points& a, const Points& b) {
-  return distance_px(a, b) < kSameHand * std::max(palm_length_px(a), palm_length_px(b));
-}
-
-/// Whether anything of it can lie in the image.
+/// Whether a part of the region can lie in the image.
 bool touches(const Region& region, renderer::GreyView image) {
   const glm::vec2 nearest =
       glm::clamp(region.centre_px, glm::vec2(0), glm::vec2(image.width - 1, image.height - 1));
   return glm::distance(nearest, region.centre_px) < 0.71f * region.size_px;
 }
 
-Points moved(Points points_px, glm::vec2 by_px) {
-  for (auto& point : points_px) point += by_px;
-  return points_px;
-}
-
 float sum_of(const std::array<float, msg::kLandmarks>& sigma_px) {
   return std::accumulate(sigma_px.begin(), sigma_px.end(), 0.0f);
 }
 
-/// As a share of the region.
+/// The sum of the sigmas relative to the region's side.
 float sigma_of(const FoundHand& hand) { return sum_of(hand.sigma_px) / hand.region.size_px; }
 
 }  // namespace
-
-Result<HandFinder> HandFinder::open(const std::string& backend, const std::filesystem::path& models,
-                                    int most_hands) {
-  auto hand = HandNetwork::open(backend, models);
-  if (!hand) return tl::make_unexpected(hand.error());
-  auto palm = PalmNetwork::open(backend, models);
-  if (!palm) return tl::make_unexpected(palm.error());
-  return HandFinder(std::make_unique<HandNetwork>(std::move(*hand)), std::move(*palm), most_hands);
-}
 
 Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, const Hints& hints_px,
                                                     std::int64_t time_ns) {
   times_ = {};
   const std::int64_t begin_ns = now_ns();
   found_.clear();
-  left_scores_.clear();
-  if (palm_ || any(hints_px))
-    std::erase_if(tracks_,
-                  [&](const Track& track) { return time_ns - track.seen_ns > kForget_ns; });
-  choose_candidates(hints_px);
-  for (auto& candidate : candidates_) {
-    if (found_.size() == static_cast<std::size_t>(most_hands_)) break;
+  if (model_.palms || any(hints_px)) tracks_.drop_old(time_ns);
+  const bool scores_sides = model_.landmarks->traits().scores_sides;
+  for (auto& candidate : tracks_.candidates(hints_px, *model_.landmarks)) {
+    if (has_most()) break;
     if (is_found(candidate.side)) candidate.side = other(candidate.side);
     const bool either =
-        !candidate.hint_px && !candidate.is_followed && !hand_->tells_sides() && found_.empty();
-    const auto looked =
-        either ? look_for_either_side(image, candidate.region) : look(image, candidate);
-    if (!looked) return tl::make_unexpected(looked.error());
+        !candidate.hint_px && !candidate.is_followed && !scores_sides && found_.empty();
+    const auto examined =
+        either ? examine_either_side(image, candidate.region) : examine(image, candidate);
+    if (!examined) return tl::make_unexpected(examined.error());
   }
-  drop_double(hints_px);
+  drop_duplicate(hints_px);
   if (search_is_due(hints_px)) {
     if (const auto searched = search(image); !searched)
       return tl::make_unexpected(searched.error());
   }
   settle_sides(hints_px);
-  remember(hints_px, time_ns);
+  tracks_.remember(found_, hints_px, *model_.landmarks, time_ns);
   times_.all_ns = now_ns() - begin_ns;
   return std::span<const FoundHand>(found_);
 }
@@ -97,125 +71,70 @@ void HandFinder::forget() {
   since_search_ = kLongAgo;
 }
 
-/// The followed hand that the tracker's hand of this side is: the one of the same side if it is
-/// near, else the nearest.
-std::optional<std::size_t> HandFinder::track_of(msg::Side side, const Points& hint_px) const {
-  std::optional<std::size_t> best;
-  float best_distance = 0;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    const Points& before_px = tracks_[i].hint_px.value_or(tracks_[i].points_px);
-    const float distance = glm::distance(centre_of(before_px), centre_of(hint_px));
-    if (distance > 0.5f * hand_->region_around(tracks_[i].points_px).size_px) continue;
-    if (tracks_[i].side == side) return i;
-    if (!best || distance < best_distance) best = i, best_distance = distance;
-  }
-  return best;
-}
-
-std::optional<Points> HandFinder::if_near(const std::optional<Points>& hint_px,
-                                          const Points& points_px) const {
-  if (!is_usable(hint_px)) return std::nullopt;
-  const float distance = glm::distance(centre_of(*hint_px), centre_of(points_px));
-  return distance < kItsHint * hand_->region_around(points_px).size_px ? hint_px : std::nullopt;
-}
-
 bool HandFinder::is_found(msg::Side side) const {
   return std::ranges::any_of(found_, [&](const FoundHand& hand) { return hand.side == side; });
 }
 
-/// First the hands that the tracker has and that were seen there, then where it has others, then
-/// those that only the image knows.
-void HandFinder::choose_candidates(const Hints& hints_px) {
-  candidates_.clear();
-  std::array<bool, msg::kMaxHands> followed{};
-  for (const auto side : {msg::Side::left, msg::Side::right}) {
-    const auto& hint_px = hints_px[index_of(side)];
-    if (!is_usable(hint_px)) continue;
-    const auto track = track_of(side, *hint_px);
-    if (!track || followed[*track] || !tracks_[*track].steady) {
-      if (track) followed[*track] = true;
-      candidates_.push_back({side, hand_->region_around(*hint_px), hint_px});
-      continue;
-    }
-    followed[*track] = true;
-    const Track& seen = tracks_[*track];
-    const glm::vec2 step_px =
-        seen.hint_px ? centre_of(*hint_px) - centre_of(*seen.hint_px) : glm::vec2(0);
-    const Points around_px = moved(seen.around_px, step_px);
-    candidates_.push_back({side, hand_->region_around(around_px), if_near(hint_px, around_px), true,
-                           seen.left_score});
-  }
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (followed[i]) continue;
-    const Track& seen = tracks_[i];
-    candidates_.push_back({seen.side, hand_->region_around(seen.points_px), std::nullopt,
-                           seen.steady, seen.left_score});
-  }
-  std::stable_partition(candidates_.begin(), candidates_.end(), [](const Candidate& candidate) {
-    return candidate.is_followed && candidate.hint_px;
-  });
-}
-
-/// Sets `region`: where it was looked for last.
-Result<LandmarkModel::Seen> HandFinder::look_at(renderer::GreyView image,
-                                                const Candidate& candidate, Region& region) {
-  LandmarkModel::Seen seen;
-  const int looks = candidate.is_followed ? 1 : hand_->first_looks();
-  for (int i = 0; i < looks; ++i) {
-    region = i == 0 ? candidate.region : hand_->region_around(seen.points_px);
-    if (!(region.size_px >= kLeastRegion_px) || !touches(region, image))
-      return LandmarkModel::Seen{};
-    auto answer = look_once(image, region, candidate.side, candidate.hint_px);
-    if (!answer) return answer;
-    seen = *answer;
-  }
-  return seen;
-}
-
-Result<LandmarkModel::Seen> HandFinder::look_once(renderer::GreyView image, const Region& region,
-                                                  msg::Side side,
-                                                  const std::optional<Points>& hint_px) {
-  LandmarkModel::Times times;
-  auto seen = hand_->look(image, region, side, hint_px, times);
-  ++times_.looks;
-  times_.crop_ns += times.crop_ns;
-  times_.network_ns += times.network_ns;
-  return seen;
-}
-
-Result<void> HandFinder::look(renderer::GreyView image, const Candidate& candidate) {
+/// Adds the candidate to the hands that are found, if it is a hand.
+Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& candidate) {
   Region region;
-  const auto seen = look_at(image, candidate, region);
-  if (!seen) return tl::make_unexpected(seen.error());
-  if (seen->presence < kLeastPresence || !is_finite(seen->points_px)) return {};
-  const Confidences confidences = confidences_of(*seen, region, candidate.hint_px);
+  const auto hand = estimate(image, candidate, region);
+  if (!hand) return tl::make_unexpected(hand.error());
+  if (hand->presence < kLeastPresence || !is_finite(hand->points_px)) return {};
+  const Confidences confidences = confidences_of(*hand, region, candidate.hint_px);
   if (mean_of(confidences) < kLeastConfidence) return {};
-  found_.push_back(
-      {candidate.side, seen->presence, seen->points_px, region, seen->sigma_px, confidences});
-  const float before = candidate.left_score < 0 ? seen->left_score : candidate.left_score;
-  const bool asks = candidate.is_followed && !candidate.hint_px && !hand_->tells_sides();
-  const Result<float> told =
-      asks ? left_score_of(image, candidate, found_.back()) : Result<float>(seen->left_score);
-  if (!told) return tl::make_unexpected(told.error());
-  left_scores_.push_back(before + kLeftScoreShare * (*told - before));
+  found_.push_back({candidate.side, hand->presence, hand->points_px, region, hand->sigma_px,
+                    confidences, hand->left_score});
+  const float before = candidate.left_score < 0 ? hand->left_score : candidate.left_score;
+  const auto now = left_score_of(image, candidate, found_.back());
+  if (!now) return tl::make_unexpected(now.error());
+  found_.back().left_score = before + kLeftScoreShare * (*now - before);
   return {};
 }
 
-/// Of a network that is told the side and is surer of the right one: now and then, whether it would
-/// be surer of the other.
-Result<float> HandFinder::left_score_of(renderer::GreyView image, const Candidate& candidate,
-                                        const FoundHand& hand) {
-  if (++since_side_ < kAskSideEvery) return candidate.left_score;
-  since_side_ = 0;
-  const auto mirrored = look_once(image, hand.region, other(hand.side), std::nullopt);
-  if (!mirrored) return tl::make_unexpected(mirrored.error());
-  const bool is_so = sum_of(hand.sigma_px) <= sum_of(mirrored->sigma_px);
-  return is_so == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
+/// The last estimate of the candidate; `region` is set to the part of the image it was made in.
+Result<LandmarkEstimate> HandFinder::estimate(renderer::GreyView image,
+                                              const HandCandidate& candidate, Region& region) {
+  LandmarkEstimate last;
+  const int passes = candidate.is_followed ? 1 : model_.landmarks->traits().passes_at_first;
+  for (int i = 0; i < passes; ++i) {
+    region = i == 0 ? candidate.region : model_.landmarks->region_around(last.points_px);
+    if (!(region.size_px >= kLeastRegion_px) || !touches(region, image)) return LandmarkEstimate{};
+    auto next = run_model(image, region, candidate.side, candidate.hint_px);
+    if (!next) return next;
+    last = *next;
+  }
+  return last;
 }
 
-/// Two looks that ended on one hand: the one stays that lies nearer to its own joints of the
-/// tracker, or is the surer one.
-void HandFinder::drop_double(const Hints& hints_px) {
+Result<LandmarkEstimate> HandFinder::run_model(renderer::GreyView image, const Region& region,
+                                               msg::Side side,
+                                               const std::optional<Points>& hint_px) {
+  EstimateTimes times;
+  auto estimate = model_.landmarks->estimate(image, region, side, hint_px, times);
+  ++times_.model_runs;
+  times_.crop_ns += times.crop_ns;
+  times_.network_ns += times.network_ns;
+  return estimate;
+}
+
+/// The left score of a hand in this image. A model that does not score sides is run on the mirrored
+/// hand, too, every few images: the smaller sigma decides.
+Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCandidate& candidate,
+                                        const FoundHand& hand) {
+  if (!candidate.is_followed || candidate.hint_px || model_.landmarks->traits().scores_sides)
+    return hand.left_score;
+  if (++since_side_ < kCompareSidesEvery) return candidate.left_score;
+  since_side_ = 0;
+  const auto mirrored = run_model(image, hand.region, other(hand.side), std::nullopt);
+  if (!mirrored) return tl::make_unexpected(mirrored.error());
+  const bool is_right_side = sum_of(hand.sigma_px) <= sum_of(mirrored->sigma_px);
+  return is_right_side == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
+}
+
+/// Two candidates may end on one hand. The one that stays is nearer to its hint or, without hints,
+/// has the larger presence.
+void HandFinder::drop_duplicate(const Hints& hints_px) {
   if (found_.size() < 2) return;
   if (!are_one_hand(found_[0].points_px, found_[1].points_px)) return;
   const auto& first = hints_px[index_of(found_[0].side)];
@@ -226,88 +145,66 @@ void HandFinder::drop_double(const Hints& hints_px) {
     keep_first =
         distance_px(*first, found_[0].points_px) <= distance_px(*second, found_[1].points_px);
   found_.erase(found_.begin() + (keep_first ? 1 : 0));
-  left_scores_.erase(left_scores_.begin() + (keep_first ? 1 : 0));
 }
 
-/// Where no hand was found: every few images. For one more hand: seldom, and not while there is a
-/// tracker, which would know.
+/// Without a hand, the image is searched every few images. With one, a second is searched for
+/// rarely, and only without a tracker, which would have it.
 bool HandFinder::search_is_due(const Hints& hints_px) {
   ++since_search_;
-  if (!palm_) return false;
+  if (!model_.palms) return false;
   if (found_.empty()) return since_search_ >= kSearchEvery;
-  return !any(hints_px) && found_.size() < static_cast<std::size_t>(most_hands_) &&
-         since_search_ >= kSearchForMoreEvery;
+  return !any(hints_px) && !has_most() && since_search_ >= kSearchForMoreEvery;
 }
 
 Result<void> HandFinder::search(renderer::GreyView image) {
   since_search_ = 0;
-  ++times_.searches;
+  ++times_.palm_runs;
   const std::int64_t begin_ns = now_ns();
-  const auto regions = palm_->search(image);
+  const auto regions = model_.palms->search(image);
   times_.palm_ns = now_ns() - begin_ns;
   if (!regions) return tl::make_unexpected(regions.error());
   for (const auto& region : *regions) {
-    if (found_.size() >= static_cast<std::size_t>(most_hands_)) break;
+    if (has_most()) break;
     const std::size_t before = found_.size();
-    if (auto looked = look_for_either_side(image, region); !looked) return looked;
+    if (auto examined = examine_either_side(image, region); !examined) return examined;
     if (found_.size() == before) continue;
-    drop_double({});
+    drop_duplicate({});
     if (found_.size() == 2 && found_[0].side == found_[1].side)
       found_[1].side = other(found_[0].side);
   }
   return {};
 }
 
-/// By the network's word; of one that cannot tell, by which side it is surer of.
-Result<void> HandFinder::look_for_either_side(renderer::GreyView image, const Region& region) {
+/// Examines a region that may hold a left or a right hand. The model's score decides; if it has
+/// none, the side with the smaller sigma.
+Result<void> HandFinder::examine_either_side(renderer::GreyView image, const Region& region) {
   const std::size_t before = found_.size();
-  if (auto looked = look(image, {msg::Side::left, region, std::nullopt}); !looked) return looked;
-  if (hand_->tells_sides()) {
+  if (auto examined = examine(image, {msg::Side::left, region, std::nullopt}); !examined)
+    return examined;
+  if (model_.landmarks->traits().scores_sides) {
     if (found_.size() > before)
-      found_.back().side = left_scores_.back() >= 0.5f ? msg::Side::left : msg::Side::right;
+      found_.back().side = found_.back().left_score >= 0.5f ? msg::Side::left : msg::Side::right;
     return {};
   }
-  if (auto looked = look(image, {msg::Side::right, region, std::nullopt}); !looked) return looked;
+  if (auto examined = examine(image, {msg::Side::right, region, std::nullopt}); !examined)
+    return examined;
   if (found_.size() < before + 2) return {};
   const bool is_left = sigma_of(found_[before]) <= sigma_of(found_[before + 1]);
   found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(before + (is_left ? 1 : 0)));
-  left_scores_.pop_back();
   return {};
 }
 
-/// A hand that the tracker does not know changes its side where the network says so for long, and
-/// that side is free.
+/// The side of a hand that the tracker does not have changes if its left score has long said so and
+/// there is no hand of that side.
 void HandFinder::settle_sides(const Hints& hints_px) {
-  for (std::size_t i = 0; i < found_.size(); ++i) {
-    if (is_usable(hints_px[index_of(found_[i].side)])) continue;
-    const float score = left_scores_[i] - 0.5f;
-    const auto seen = score > 0 ? msg::Side::left : msg::Side::right;
-    if (std::abs(score) < kSureOfSide || seen == found_[i].side ||
-        is_usable(hints_px[index_of(seen)]))
+  for (auto& hand : found_) {
+    if (is_usable(hints_px[index_of(hand.side)])) continue;
+    const float score = hand.left_score - 0.5f;
+    const auto likely = score > 0 ? msg::Side::left : msg::Side::right;
+    if (std::abs(score) < kSureOfSide || likely == hand.side ||
+        is_usable(hints_px[index_of(likely)]))
       continue;
-    if (found_.size() == 1) found_[i].side = seen;
-  }
-}
-
-/// A hand that was not found is kept for a while: the next image may be a better one.
-void HandFinder::remember(const Hints& hints_px, std::int64_t time_ns) {
-  std::erase_if(tracks_, [&](const Track& track) {
-    return std::ranges::any_of(found_, [&](const FoundHand& hand) {
-      return hand.side == track.side || are_one_hand(hand.points_px, track.points_px);
-    });
-  });
-  for (auto& track : tracks_) track.steady = false;
-  for (std::size_t i = 0; i < found_.size(); ++i) {
-    const auto hint_px = if_near(hints_px[index_of(found_[i].side)], found_[i].points_px);
-    const bool steady = mean_of(found_[i].confidences) >= kSteadyConfidence;
-    Track track{found_[i].side, found_[i].points_px, found_[i].points_px,
-                hint_px,        left_scores_[i],     time_ns,
-                steady};
-    if (hint_px) {
-      for (std::size_t k = 0; k < track.around_px.size(); ++k)
-        if (found_[i].confidences[k] < kSureConfidence) track.around_px[k] = (*hint_px)[k];
-    }
-    tracks_.push_back(track);
+    if (found_.size() == 1) hand.side = likely;
   }
 }
 

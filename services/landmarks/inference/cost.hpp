@@ -6,8 +6,8 @@
 
 namespace handcast::landmarks {
 
-/// The multiplications of a network's convolutions and matrix products by weights, in millions.
-/// Errors: as of open_network("onednn").
+/// The multiplications with weights in a network's convolutions and matrix products, in millions.
+/// Errors: those of open_network(Executor::onednn).
 Result<double> network_mmac(const std::filesystem::path& file);
 
 }  // namespace handcast::landmarks

@@ -6,18 +6,21 @@
 #include <string>
 #include <vector>
 
+#include "config/sections/executor.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::landmarks {
 
-/// A neural network as read from an ONNX file: float tensors in, float tensors out, batch 1. One
-/// thread, one core.
+/// A neural network read from an ONNX file: float tensors in, float tensors out, batch size 1. Runs
+/// on one core. One thread.
 class Network {
  public:
+  /// An input or an output.
   struct Port {
     std::string name;
-    std::vector<int> shape;  ///< as the file declares it, the batch's 1 included
+    std::vector<int> shape;  ///< as the file declares it, with the batch size
 
+    /// The number of elements.
     std::size_t size() const {
       std::size_t count = 1;
       for (const int extent : shape) count *= static_cast<std::size_t>(extent);
@@ -26,30 +29,27 @@ class Network {
   };
   virtual ~Network() = default;
 
+  /// The inputs in the order of the file.
   virtual std::span<const Port> inputs() const = 0;
+  /// The outputs in the order of the file.
   virtual std::span<const Port> outputs() const = 0;
 
-  /// Where to write input `i` before run(), row-major in its shape.
+  /// The elements of input `i`, row-major in its shape: to be written before run().
   virtual std::span<float> input(std::size_t i) = 0;
-  /// Errors: bad_data (an output is not finite).
+  /// Computes the outputs. Errors: bad_data (an output is not finite).
   virtual Result<void> run() = 0;
-  /// Valid until the next run(), row-major in its shape.
+  /// The elements of output `i`, row-major in its shape; valid until the next run().
   virtual std::span<const float> output(std::size_t i) const = 0;
 };
 
-/// What runs a network. Errors of open: bad_config, naming the file (missing, no ONNX, an operator
-/// or a shape it cannot run, weights that are not finite). A network has been run once when it is
-/// returned: the first run() is no slower than the rest.
-struct NetworkBackend {
-  const char* name;
-  Result<std::unique_ptr<Network>> (*open)(const std::filesystem::path& file);
-};
+/// The executors that this build has.
+std::vector<config::Executor> executors();
 
-std::span<const NetworkBackend> network_backends();
-
-/// `backend`: one of network_backends(). Errors: as of open, and bad_config where there is no such
-/// back end.
-Result<std::unique_ptr<Network>> open_network(const std::string& backend,
+/// Opens a network and runs it once, so that its first run() is no slower than the others. Errors
+/// (bad_config): this build does not have the executor; the file is missing or is not an ONNX file,
+/// or it has an operator or a shape that the executor does not support, or weights that are not
+/// finite.
+Result<std::unique_ptr<Network>> open_network(config::Executor executor,
                                               const std::filesystem::path& file);
 
 }  // namespace handcast::landmarks

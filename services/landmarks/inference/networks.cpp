@@ -1,31 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
+#include "config/settings/choice.hpp"
 #include "services/landmarks/inference/network.hpp"
 
 namespace handcast::landmarks {
 
+using config::Executor;
+
 Result<std::unique_ptr<Network>> open_onednn_network(const std::filesystem::path& file);
 Result<std::unique_ptr<Network>> open_opencv_network(const std::filesystem::path& file);
 
-static constexpr std::array kBackends{
-    NetworkBackend{"onednn", open_onednn_network},
-    NetworkBackend{"opencv", open_opencv_network},
+namespace {
+
+struct Row {
+  Executor executor;
+  std::string_view library;
+  Result<std::unique_ptr<Network>> (*open)(const std::filesystem::path& file);  ///< null: absent
 };
 
-std::span<const NetworkBackend> network_backends() { return kBackends; }
+constexpr std::array kTable{
+    Row{Executor::onednn, "oneDNN", open_onednn_network},
+#ifdef HANDCAST_WITH_OPENCV_DNN
+    Row{Executor::opencv, "OpenCV's dnn module", open_opencv_network},
+#else
+    Row{Executor::opencv, "OpenCV's dnn module (HANDCAST_WITH_OPENCV_DNN)", nullptr},
+#endif
+};
 
-Result<std::unique_ptr<Network>> open_network(const std::string& backend,
+}  // namespace
+
+std::vector<Executor> executors() {
+  std::vector<Executor> present;
+  for (const Row& row : kTable)
+    if (row.open) present.push_back(row.executor);
+  return present;
+}
+
+Result<std::unique_ptr<Network>> open_network(Executor executor,
                                               const std::filesystem::path& file) {
-  std::string known;
-  for (const NetworkBackend& entry : network_backends()) {
-    if (backend == entry.name) return entry.open(file);
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
-  }
+  const Row& row = *std::ranges::find(kTable, executor, &Row::executor);
+  if (row.open) return row.open(file);
   return fail(Errc::bad_config,
-              fmt::format("networks: no back end '{}'; this build has: {}", backend, known));
+              fmt::format("the executor '{}' needs {}, and this build of handcast is without it",
+                          config::word_of(executor), row.library));
 }
 
 }  // namespace handcast::landmarks

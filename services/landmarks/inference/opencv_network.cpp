@@ -8,8 +8,8 @@
 #include <opencv2/dnn.hpp>
 
 #include "services/landmarks/inference/network.hpp"
+#include "services/landmarks/inference/onnx/adapt_for_opencv.hpp"
 #include "services/landmarks/inference/onnx/model.hpp"
-#include "services/landmarks/inference/onnx/opencv_mend.hpp"
 
 namespace handcast::landmarks {
 
@@ -22,7 +22,7 @@ std::vector<Network::Port> ports_of(const std::vector<onnx::Port>& ports) {
   return result;
 }
 
-/// OpenCV names a layer after the output it makes, with a prefix that its versions change.
+/// OpenCV names a layer after its output, with a prefix that depends on OpenCV's version.
 std::string layer_of(const std::vector<std::string>& layers, const std::string& output) {
   const auto ends_with_it = [&](const std::string& layer) {
     return layer == output || layer.ends_with("!" + output);
@@ -31,8 +31,8 @@ std::string layer_of(const std::vector<std::string>& layers, const std::string& 
   return found == layers.end() ? std::string() : *found;
 }
 
-/// OpenCV's dnn module. It runs in OpenCV's own threads, of which it keeps one: cv::setNumThreads
-/// is the whole process's.
+/// The executor `opencv`: OpenCV's dnn module with one thread. cv::setNumThreads applies to the
+/// whole process.
 class OpencvNetwork final : public Network {
  public:
   explicit OpencvNetwork(const onnx::Model& model)
@@ -43,7 +43,7 @@ class OpencvNetwork final : public Network {
   Result<void> load(const std::vector<std::uint8_t>& file) try {
     cv::setNumThreads(1);
     cv::utils::logging::setLogLevel(
-        cv::utils::logging::LOG_LEVEL_SILENT);  // it throws the same sentence
+        cv::utils::logging::LOG_LEVEL_SILENT);  // the exception has the same text
     net_ = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(file.data()), file.size());
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
@@ -51,7 +51,7 @@ class OpencvNetwork final : public Network {
     for (const Port& port : outputs_) {
       layers_.push_back(layer_of(layers, port.name));
       if (layers_.back().empty())
-        return fail(Errc::bad_config, fmt::format("OpenCV has lost its output '{}'", port.name));
+        return fail(Errc::bad_config, fmt::format("OpenCV has no output '{}'", port.name));
     }
     return run();
   } catch (const std::exception& error) {
@@ -79,13 +79,13 @@ class OpencvNetwork final : public Network {
   }
 
  private:
-  /// What an exception of OpenCV says, without its second line about the place in OpenCV's source.
+  /// The text of an exception without its second line, a place in OpenCV's source.
   static std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
   Result<void> check_output(std::size_t i) {
     const std::size_t size = outputs_[i].size();
     if (results_[i].total() != size || results_[i].type() != CV_32F)
-      return fail(Errc::bad_config, fmt::format("OpenCV makes {} numbers for '{}', not {}",
+      return fail(Errc::bad_config, fmt::format("OpenCV computes {} values of '{}', not {}",
                                                 results_[i].total(), outputs_[i].name, size));
     const std::span<const float> values = output(i);
     if (!std::all_of(values.begin(), values.end(),
@@ -106,7 +106,7 @@ class OpencvNetwork final : public Network {
 Result<std::unique_ptr<Network>> open_opencv_network(const std::filesystem::path& file) {
   auto model = onnx::read_model(file);
   if (!model) return tl::make_unexpected(model.error());
-  onnx::mend_for_opencv(*model);
+  onnx::adapt_for_opencv(*model);
   auto network = std::make_unique<OpencvNetwork>(*model);
   if (auto loaded = network->load(onnx::write_model(*model)); !loaded)
     return fail(Errc::bad_config,

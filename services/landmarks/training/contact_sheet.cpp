@@ -6,7 +6,7 @@
 namespace handcast::landmarks::training {
 namespace {
 
-constexpr int kZoom = 2, kColumns = 10, kTile = own::kSide_px * kZoom;
+constexpr int kZoom = 2, kColumns = 10, kTile = handcast_network::kSide_px * kZoom;
 
 std::uint32_t colour(int red, int green, int blue) {
   return 0xff000000u | static_cast<std::uint32_t>(red | green << 8 | blue << 16);
@@ -24,7 +24,8 @@ void draw_sample(renderer::Texture& sheet, int left, int top, const Sample& samp
   for (int y = 0; y < kTile; ++y)
     for (int x = 0; x < kTile; ++x) {
       const int grey =
-          sample.image[static_cast<std::size_t>(y / kZoom * own::kSide_px + x / kZoom)];
+          sample
+              .image[static_cast<std::size_t>(y / kZoom * handcast_network::kSide_px + x / kZoom)];
       sheet.at(left + x, top + y) = colour(grey, grey, grey);
     }
   for (std::size_t i = 0; i < sample.truth.size(); ++i) {

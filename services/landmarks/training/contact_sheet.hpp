@@ -6,8 +6,8 @@
 
 namespace handcast::landmarks::training {
 
-/// A picture of the first `count` images: labels green (hidden ones dark), the tracker's joints
-/// red. Errors: unavailable.
+/// Writes a picture of the first `count` images of the generator in rows of ten: true landmarks
+/// green, hidden ones blue, the tracker's joints red. Errors: unavailable.
 Result<void> write_contact_sheet(Generator& generator, int count,
                                  const std::filesystem::path& file);
 

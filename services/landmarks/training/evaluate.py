@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How far landmark detectors are off, from the lines of handcast-evaluate-landmarks.
+"""The errors of landmark models, from the lines of handcast-evaluate-landmarks.
 
 handcast-evaluate-landmarks --models MODELS --motion A --motion B --picture 1_camera.png | python3 evaluate.py [--tips TIPS.json]
 """
@@ -12,16 +12,16 @@ import numpy as np
 FINGERS = [[4 * f + k for k in range(1, 5)] for f in range(5)]
 TIPS = [4, 8, 12, 16, 20]
 LEVELS = (0.5, 0.68, 0.9, 0.95)
-DETECTORS = {
+TITLES = {
     "tracker": "tracker's joints",
     "mediapipe": "MediaPipe lite",
     "mediapipe_corrected": "MediaPipe lite, offsets removed",
-    "own": "ours",
-    "own_corrected": "ours, offsets removed",
-    "own_one_look": "ours, one look",
-    "own_alone": "ours without the tracker",
-    "own_wrong_tracker": "ours, tracker in another pose",
-    "own_wrong_region": "ours without it, same region",
+    "handcast": "handcast",
+    "handcast_corrected": "handcast, offsets removed",
+    "handcast_one_pass": "handcast, one pass",
+    "handcast_alone": "handcast without the tracker",
+    "handcast_wrong_tracker": "handcast, tracker in another pose",
+    "handcast_wrong_region": "handcast without the tracker, region of that pose",
 }
 
 
@@ -34,7 +34,7 @@ def hand_frame(points):
 
 
 def without_offsets(points, truth, sources):
-    """Each landmark's median offset in the hand's frame, found on one half of every recording, is taken from the other."""
+    """Subtracts each landmark's median offset in the hand's frame: that of one half of every recording from the other half."""
     frames = [hand_frame(t) for t in truth]
     offsets = np.array([(p - t) @ r.T / n for p, t, (r, n) in zip(points, truth, frames)])
     half = np.zeros(len(points), bool)
@@ -70,15 +70,15 @@ class Renders:
             self.points[name] = np.array([line["seen"][name]["points"] for line in lines])
             self.sigma[name] = np.array([line["seen"][name]["sigma"] for line in lines])
             self.presence[name] = np.array([line["seen"][name]["presence"] for line in lines])
-        for name in ("mediapipe", "own"):
+        for name in ("mediapipe", "handcast"):
             if name in self.points:
                 self.points[name + "_corrected"] = without_offsets(self.points[name], self.truth, self.sources)
 
     def table(self):
         boxes = np.ptp(self.truth, axis=1).max(1)
         print(f"{len(self.truth)} renders of {', '.join(np.unique(self.sources))}; hand box {np.median(boxes):.0f} px (median)\n")
-        print("| detector | mean | median | p95 | open | folded | frames > 25 px |\n|---|---|---|---|---|---|---|")
-        for name in DETECTORS:
+        print("| model | mean | median | p95 | open | folded | frames > 25 px |\n|---|---|---|---|---|---|---|")
+        for name in TITLES:
             if name in self.points:
                 self.row(name)
 
@@ -87,13 +87,13 @@ class Renders:
         fingers = finger_errors(errors)
         wild = 100 * (errors.mean(1) > 25).mean()
         print(
-            f"| {DETECTORS[name]} | {errors.mean():.2f} | {np.median(errors):.2f} | {np.percentile(errors, 95):.1f} "
+            f"| {TITLES[name]} | {errors.mean():.2f} | {np.median(errors):.2f} | {np.percentile(errors, 95):.1f} "
             f"| {fingers[~self.folded].mean():.1f} | {fingers[self.folded].mean():.1f} | {wild:.1f} % |"
         )
 
     def by_motion(self):
-        names = [name for name in ("mediapipe", "own", "own_alone") if name in self.points]
-        print("\nBy motion: mean / median / p95\n\n| motion | fingers folded | " + " | ".join(DETECTORS[name] for name in names) + " |")
+        names = [name for name in ("mediapipe", "handcast", "handcast_alone") if name in self.points]
+        print("\nBy motion: mean / median / p95\n\n| motion | fingers folded | " + " | ".join(TITLES[name] for name in names) + " |")
         print("|---" * (len(names) + 2) + "|")
         for source in np.unique(self.sources):
             rows = self.sources == source
@@ -101,11 +101,11 @@ class Renders:
             cells = [f"{e.mean():.1f} / {np.median(e):.1f} / {np.percentile(e, 95):.0f}" for e in errors]
             print(f"| {source} | {100 * self.folded[rows].mean():.0f} % | " + " | ".join(cells) + " |")
 
-    def calibration(self, name="own"):
-        """A Laplace distribution of scale b has the share 1 - exp(-t / b) within t; sigma = sqrt(2) b."""
+    def calibration(self, name="handcast"):
+        """A Laplace distribution of scale b has the fraction 1 - exp(-t / b) within t; sigma = sqrt(2) b."""
         off = np.abs(self.points[name] - self.truth)
         scale = self.sigma[name][:, :, None] / np.sqrt(2)
-        print(f"\nCoverage of {DETECTORS[name]}: share of coordinates within the interval that should hold it")
+        print(f"\nCoverage of {TITLES[name]}: fraction of the coordinates within the interval that should hold it")
         for level in LEVELS:
             inside = off < -np.log(1 - level) * scale
             print(f"  {100 * level:.0f} %: {100 * inside.mean():.1f} %")
@@ -116,8 +116,8 @@ class Renders:
 
 
 def pictures(lines, tips):
-    print("\nReal pictures: finger tips, px from where a person sees them")
-    for name in DETECTORS:
+    print("\nReal pictures: distance of finger tips from where a person marked them, px")
+    for name in TITLES:
         off = {}
         for line in lines:
             points = line["tracker"] if name == "tracker" else line["seen"].get(name, {}).get("points")
@@ -128,12 +128,12 @@ def pictures(lines, tips):
         if off:
             every = np.concatenate(list(off.values()))
             per_picture = ", ".join(f"{k}: {np.mean(v):.1f}" for k, v in off.items())
-            print(f"  {DETECTORS[name]}: mean {every.mean():.1f}, median {np.median(every):.1f}, worst {every.max():.1f} ({per_picture})")
+            print(f"  {TITLES[name]}: mean {every.mean():.1f}, median {np.median(every):.1f}, worst {every.max():.1f} ({per_picture})")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--tips", help="JSON: {picture: {landmark: [x, y]}}, as a person sees them")
+    parser.add_argument("--tips", help="JSON: {picture: {landmark: [x, y]}}, marked by a person")
     args = parser.parse_args()
     lines = [json.loads(line) for line in sys.stdin]
     rendered = [line for line in lines if "truth" in line]
@@ -144,7 +144,7 @@ def main():
             renders.table()
             renders.by_motion()
             renders.calibration()
-            renders.calibration("own_alone")
+            renders.calibration("handcast_alone")
             print()
     real = [line for line in lines if "truth" not in line]
     if real and args.tips:

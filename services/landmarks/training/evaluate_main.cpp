@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// handcast-evaluate-landmarks: runs landmark models on test pictures and prints their estimates,
+// one JSON object per picture and line, for evaluate.py.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,29 +8,37 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "config/settings/choice.hpp"
 #include "renderer/content/picture.hpp"
 #include "services/landmarks/detect/draw.hpp"
 #include "services/landmarks/detect/picture.hpp"
-#include "services/landmarks/finder/hand_network.hpp"
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
+#include "services/landmarks/models/models_folder.hpp"
 #include "services/landmarks/training/trial.hpp"
 
-/// Shows detectors pictures and prints what they see, one JSON object a line; evaluate.py counts.
 namespace handcast::landmarks::training {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-struct Detectors {
-  own::OwnNetwork own;
-  std::optional<HandNetwork> mediapipe;
+struct NamedModel {
+  std::string name;
+  std::unique_ptr<LandmarkModel> model;
 };
 
-struct Seen {
-  Points points_px{};
-  std::array<float, msg::kLandmarks> sigma_px{};
-  float presence = 0;
+/// What a model is given of a picture's hand.
+struct Condition {
+  Points start_px{};                 ///< around them is the region of the first pass
+  std::optional<Points> tracker_px;  ///< the model's input
+  int passes = 2;
+};
+
+/// The last estimate of a model under one condition.
+struct Answer {
+  std::string name;  ///< of model and condition, as evaluate.py knows them
+  LandmarkEstimate estimate;
+  Region region;
 };
 
 json to_json(const Points& points_px) {
@@ -37,91 +47,81 @@ json to_json(const Points& points_px) {
   return list;
 }
 
-json to_json(const Seen& seen) {
-  return {
-      {"points", to_json(seen.points_px)}, {"sigma", seen.sigma_px}, {"presence", seen.presence}};
+json to_json(const std::vector<Answer>& answers) {
+  json object = json::object();
+  for (const auto& [name, estimate, region] : answers)
+    object[name] = {{"points", to_json(estimate.points_px)},
+                    {"sigma", estimate.sigma_px},
+                    {"presence", estimate.presence}};
+  return object;
 }
 
-/// As often as `looks`; the first time around `start_px`, then around what was seen.
-Result<Seen> look_own(own::OwnNetwork& network, renderer::GreyView image, msg::Side side,
-                      const Points& start_px, const std::optional<Points>& tracker_px, int looks) {
-  Seen seen{start_px, {}, 0};
-  for (int i = 0; i < looks; ++i) {
-    LandmarkModel::Times times;
-    const auto answer =
-        network.look(image, own::region_around(seen.points_px), side, tracker_px, times);
-    if (!answer) return tl::make_unexpected(answer.error());
-    seen = {answer->points_px, answer->sigma_px, answer->presence};
+Result<Answer> run(const std::string& name, LandmarkModel& model, renderer::GreyView image,
+                   msg::Side side, const Condition& condition) {
+  Answer answer{name, {.points_px = condition.start_px}, {}};
+  for (int i = 0; i < condition.passes; ++i) {
+    EstimateTimes times;
+    answer.region = model.region_around(answer.estimate.points_px);
+    auto estimate = model.estimate(image, answer.region, side, condition.tracker_px, times);
+    if (!estimate) return tl::make_unexpected(estimate.error());
+    answer.estimate = *estimate;
   }
-  return seen;
+  return answer;
 }
 
-Result<Seen> look_mediapipe(HandNetwork& network, renderer::GreyView image, const Points& start_px,
-                            int looks) {
-  Seen seen{start_px, {}, 0};
-  for (int i = 0; i < looks; ++i) {
-    HandNetwork::Times times;
-    const auto answer = network.look(image, region_of_landmarks(seen.points_px), times);
-    if (!answer) return tl::make_unexpected(answer.error());
-    seen = {answer->points_px, {}, answer->presence};
+/// The answers of every model to one picture; those that fail are left out. `wrong_px`: the joints
+/// of a tracker that has the hand in another pose.
+std::vector<Answer> run_all(const std::vector<NamedModel>& models, renderer::GreyView image,
+                            msg::Side side, const Points& tracker_px,
+                            const std::optional<Points>& wrong_px) {
+  std::vector<Answer> answers;
+  for (const auto& [name, model] : models) {
+    std::vector<std::pair<std::string, Condition>> conditions{{name, {tracker_px, tracker_px}}};
+    if (model->traits().reads_tracker) {
+      conditions.push_back({name + "_one_pass", {tracker_px, tracker_px, 1}});
+      conditions.push_back({name + "_alone", {tracker_px, std::nullopt}});
+      if (wrong_px) {
+        conditions.push_back({name + "_wrong_tracker", {*wrong_px, wrong_px}});
+        conditions.push_back({name + "_wrong_region", {*wrong_px, std::nullopt}});
+      }
+    }
+    for (const auto& [title, condition] : conditions)
+      if (auto answer = run(title, *model, image, side, condition))
+        answers.push_back(std::move(*answer));
   }
-  return seen;
+  return answers;
 }
 
-/// What every detector makes of one picture; `wrong_px`: a tracker that shows another pose.
-Result<json> look_at(Detectors& detectors, renderer::GreyView image, msg::Side side,
-                     const Points& tracker_px, const std::optional<Points>& wrong_px) {
-  json result;
-  const auto note = [&](const char* name, const Result<Seen>& seen) {
-    if (seen) result[name] = to_json(*seen);
-    return seen.has_value();
-  };
-  auto& own = detectors.own;
-  note("own", look_own(own, image, side, tracker_px, tracker_px, 2));
-  note("own_one_look", look_own(own, image, side, tracker_px, tracker_px, 1));
-  note("own_alone", look_own(own, image, side, tracker_px, std::nullopt, 2));
-  if (wrong_px) {
-    note("own_wrong_tracker", look_own(own, image, side, *wrong_px, wrong_px, 2));
-    note("own_wrong_region", look_own(own, image, side, *wrong_px, std::nullopt, 2));
-  }
-  if (detectors.mediapipe)
-    note("mediapipe", look_mediapipe(*detectors.mediapipe, image, tracker_px, 2));
-  return result;
-}
-
-Result<void> run_motion(Detectors& detectors, const std::string& motion, int count,
+Result<void> run_motion(const std::vector<NamedModel>& models, const std::string& motion, int count,
                         std::uint64_t seed) {
   auto trials = Trials::open(motion, seed);
   if (!trials) return tl::make_unexpected(trials.error());
   for (int i = 0; i < count; ++i) {
     const auto trial = trials->make(i, count);
     if (!trial) continue;
-    auto seen = look_at(detectors, trial->image.view(), trial->side, trial->tracker_px,
-                        trial->other_pose_px);
-    if (!seen) return tl::make_unexpected(seen.error());
+    const auto answers =
+        run_all(models, trial->image.view(), trial->side, trial->tracker_px, trial->other_pose_px);
     json line{{"source", fs::path(motion).filename().string()},
               {"truth", to_json(trial->truth_px)},
               {"tracker", to_json(trial->tracker_px)},
               {"folded", trial->folded},
-              {"seen", *seen}};
+              {"seen", to_json(answers)}};
     fmt::print("{}\n", line.dump());
   }
   return {};
 }
 
-Result<void> draw_into(const fs::path& file, renderer::GreyView picture, const json& points,
+Result<void> draw_into(const fs::path& file, renderer::GreyView picture, const Answer& answer,
                        const Points& tracker_px) {
-  FoundHand hand;
-  for (std::size_t i = 0; i < hand.points_px.size(); ++i)
-    hand.points_px[i] = {points[i][0].get<float>(), points[i][1].get<float>()};
-  hand.region = own::region_around(hand.points_px);
+  const FoundHand hand{.points_px = answer.estimate.points_px, .region = answer.region};
   Hints hints;
   hints[0] = tracker_px;
   return renderer::write_png(file, detect::draw(picture, std::span(&hand, 1), hints).view());
 }
 
-/// A picture NAME_camera.png of a left hand with NAME_joints_2d_left.npy beside it.
-Result<void> run_picture(Detectors& detectors, const fs::path& file, const fs::path& drawings) {
+/// `file`: NAME_camera.png, a picture of a left hand; NAME_joints_2d_left.npy lies beside it.
+Result<void> run_picture(const std::vector<NamedModel>& models, const fs::path& file,
+                         const fs::path& drawings) {
   std::string name = file.filename().string();
   name.resize(name.find('_'));
   const auto picture = detect::read_grey(file);
@@ -129,61 +129,73 @@ Result<void> run_picture(Detectors& detectors, const fs::path& file, const fs::p
   const auto tracker_px = detect::read_joints(file.parent_path() / (name + "_joints_2d_left.npy"),
                                               picture->width(), picture->height());
   if (!tracker_px) return tl::make_unexpected(tracker_px.error());
-  const auto seen = look_at(detectors, picture->view(), msg::Side::left, *tracker_px, std::nullopt);
-  if (!seen) return tl::make_unexpected(seen.error());
-  fmt::print("{}\n",
-             json{{"source", name}, {"tracker", to_json(*tracker_px)}, {"seen", *seen}}.dump());
+  const auto answers = run_all(models, picture->view(), msg::Side::left, *tracker_px, std::nullopt);
+  const json line{{"source", name}, {"tracker", to_json(*tracker_px)}, {"seen", to_json(answers)}};
+  fmt::print("{}\n", line.dump());
   if (drawings.empty()) return {};
-  for (const auto& [detector, answer] : seen->items()) {
-    auto drawn = draw_into(drawings / fmt::format("{}_{}.png", name, detector), picture->view(),
-                           answer["points"], *tracker_px);
+  for (const auto& answer : answers) {
+    auto drawn = draw_into(drawings / fmt::format("{}_{}.png", name, answer.name), picture->view(),
+                           answer, *tracker_px);
     if (!drawn) return drawn;
   }
   return {};
 }
 
-Result<Detectors> open(const std::string& backend, const std::string& network,
-                       const std::string& models) {
-  auto own_network = own::OwnNetwork::open(
-      backend, network.empty() ? own::default_network_file() : fs::path(network));
-  if (!own_network) return tl::make_unexpected(own_network.error());
-  Detectors detectors{std::move(*own_network), {}};
-  if (models.empty()) return detectors;
-  auto mediapipe = HandNetwork::open(backend, models);
-  if (!mediapipe) return tl::make_unexpected(mediapipe.error());
-  detectors.mediapipe = std::move(*mediapipe);
-  return detectors;
+Result<std::vector<NamedModel>> open(const std::vector<std::string>& names,
+                                     const ModelOptions& options) {
+  std::vector<NamedModel> models;
+  for (const auto& name : names) {
+    auto opened = open_landmark_model(name, options);
+    if (!opened) return tl::make_unexpected(opened.error());
+    models.push_back({name, std::move(opened->landmarks)});
+  }
+  return models;
+}
+
+std::vector<std::string> all_models() {
+  std::vector<std::string> names;
+  for (const auto& model : landmark_models()) names.emplace_back(model.name);
+  return names;
 }
 
 }  // namespace
 }  // namespace handcast::landmarks::training
 
 int main(int argc, char** argv) try {
+  using namespace handcast;
   using namespace handcast::landmarks::training;
-  std::string backend = "opencv", network, models, drawings;
-  std::vector<std::string> motions, pictures;
+  landmarks::ModelOptions options{.folder = landmarks::models_folder("")};
+  std::filesystem::path drawings;
+  std::string executor(config::word_of(options.executor));
+  std::vector<std::string> names = all_models(), motions, pictures;
   int count = 200;
   CLI::App app{
-      "What landmark detectors see on renders of motions and on real pictures: JSON lines for "
+      "Runs landmark models on renders of motions and on real pictures; prints JSON lines for "
       "evaluate.py."};
-  app.add_option("--backend", backend, "What runs the networks");
-  app.add_option("--network", network,
-                 "Our network's file, if not the one that comes with handcast");
-  app.add_option("--models", models, "Folder of MediaPipe's network, to compare with");
+  app.add_option("--backend", names, "The landmark models to compare")->capture_default_str();
+  app.add_option("--executor", executor, "The library that runs the networks")
+      ->capture_default_str();
+  app.add_option("--network", options.handcast_network,
+                 "The file of handcast's network, if not the one that comes with handcast");
+  app.add_option("--models", options.folder, "The folder of MediaPipe's files");
   app.add_option("--motion", motions, "Folders of recordings of a left hand, or builtin:NAME");
   app.add_option("--picture", pictures,
-                 "Files NAME_camera.png of a left hand, NAME_joints_2d_left.npy beside them");
-  app.add_option("--drawings", drawings, "A folder to draw what is seen in the pictures into");
+                 "Pictures NAME_camera.png of a left hand, with NAME_joints_2d_left.npy beside "
+                 "them");
+  app.add_option("--drawings", drawings, "A folder for drawings of the results on pictures");
   app.add_option("--count", count, "Frames of each motion")->check(CLI::Range(10, 100000));
   CLI11_PARSE(app, argc, argv);
 
-  auto detectors = open(backend, network, models);
-  handcast::Result<void> done;
-  if (!detectors) done = tl::make_unexpected(detectors.error());
+  const auto chosen = config::choice_named<config::Executor>(executor);
+  if (!chosen) throw std::runtime_error(fmt::format("there is no executor '{}'", executor));
+  options.executor = *chosen;
+  const auto models = open(names, options);
+  Result<void> done;
+  if (!models) done = tl::make_unexpected(models.error());
   for (std::size_t i = 0; done && i < motions.size(); ++i)
-    done = run_motion(*detectors, motions[i], count, i + 1);
+    done = run_motion(*models, motions[i], count, i + 1);
   for (std::size_t i = 0; done && i < pictures.size(); ++i)
-    done = run_picture(*detectors, pictures[i], drawings);
+    done = run_picture(*models, pictures[i], drawings);
   if (!done) fmt::print(stderr, "handcast-evaluate-landmarks: {}\n", done.error().what);
   return done ? 0 : 1;
 } catch (const std::exception& problem) {

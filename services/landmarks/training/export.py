@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a trained landmark network as an ONNX file of plain operators; normalisations become part of the convolutions.
+"""Writes a trained landmark network as an ONNX file of basic operators; normalisations are folded into the convolutions.
 
 python3 export.py out/training/training.pt out/training/handcast.onnx
 """

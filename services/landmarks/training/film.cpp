@@ -8,11 +8,11 @@
 namespace handcast::landmarks::training {
 namespace {
 
-constexpr int kSide = own::kSide_px;
+constexpr int kSide = handcast_network::kSide_px;
 constexpr int kPixels = kSide * kSide;
 
-/// A number from -1.7 to 1.7 of unit variance, near enough to normal: four evenly drawn ones
-/// summed.
+/// An approximately normal number with mean 0 and variance 1, -3.5..3.5: the sum of four uniform
+/// ones.
 inline float rough_normal(std::uint64_t bits) {
   const std::uint64_t sum =
       (bits & 0xffff) + ((bits >> 16) & 0xffff) + ((bits >> 32) & 0xffff) + (bits >> 48);
@@ -41,7 +41,7 @@ void put_behind(const float* wall, const float* cover, float* image) {
 
 int clamped(int i) { return std::clamp(i, 0, kSide - 1); }
 
-/// Shapes a projector's picture is made of; -> 0..1.
+/// The brightness of a pattern of the projector, 0..1. `kind`: 0..4.
 float pattern_at(int kind, float x, float y) {
   const float sx = std::sin(x), sy = std::sin(y);
   switch (kind) {
@@ -67,7 +67,7 @@ void Film::begin(const std::vector<float>& grey, const std::vector<float>& cover
   cover_ = cover;
 }
 
-/// Multiplies smooth noise of `cells` across into an image.
+/// Multiplies an image by smooth noise of `cells` cells along a side.
 void Film::blend_waves(Dice& dice, int cells, float strength, std::vector<float>& image) {
   const int knots = cells + 1;
   knots_.resize(static_cast<std::size_t>(knots) * knots);
@@ -97,7 +97,7 @@ void Film::texture(Dice& dice) {
   if (dice.chance(0.5f)) blend_waves(dice, 56, dice.between(0, 0.06f), image_);
 }
 
-/// An ellipse or a box, evenly bright or like a lit ball.
+/// An ellipse or a box, uniformly bright or shaded like a ball.
 void Film::add_thing(Dice& dice) {
   const float x = dice.between(0, kSide), y = dice.between(0, kSide),
               angle = dice.between(0, 3.14f);
@@ -175,7 +175,7 @@ void Film::blur_across(float sigma_px) {
                  kSide);
 }
 
-/// The mean along a short straight way.
+/// The mean along a short straight line.
 void Film::smear(float length_px, float angle_rad) {
   const int steps = static_cast<int>(length_px) + 2;
   std::ranges::fill(other_, 0.0f);

@@ -7,19 +7,27 @@
 
 namespace handcast::landmarks::training {
 
-/// What happens to a crop between the scene and the network: what lies behind, light of the
-/// projector, the lens, the sensor. All images are kSide_px squared. Keeps buffers; one thread.
+/// Turns the light of a scene into the pixels of a camera: background, light of the projector, lens
+/// and sensor. Each step changes the image of the last begin(). All images have kSide_px x kSide_px
+/// pixels (handcast_network.hpp). Keeps its buffers; one thread.
 class Film {
  public:
   Film();
 
+  /// Starts with a scene's light and the fraction of each pixel that it covers, 0..1.
   void begin(const std::vector<float>& grey, const std::vector<float>& cover);
-  void texture(Dice& dice);     ///< skin finer than the mesh
-  void background(Dice& dice);  ///< a wall, things on it
-  void leak(Dice& dice);        ///< the projector's picture, faintly, on hand and wall
-  void cover(Dice& dice);       ///< something dark in front of a part
-  void blur(Dice& dice);        ///< out of focus, moving
-  void develop(Dice& dice, std::vector<std::uint8_t>& pixels);  ///< gain, saturation, noise, 8 bit
+  /// Adds a skin texture finer than the mesh.
+  void texture(Dice& dice);
+  /// Adds a wall, and objects on it, behind the scene.
+  void background(Dice& dice);
+  /// Adds the projector's picture, faintly, to hand and wall.
+  void leak(Dice& dice);
+  /// Puts something dark in front of a part of the image.
+  void cover(Dice& dice);
+  /// Adds defocus and motion blur.
+  void blur(Dice& dice);
+  /// Applies gain, noise and saturation and writes 8-bit pixels.
+  void develop(Dice& dice, std::vector<std::uint8_t>& pixels);
 
  private:
   void blend_waves(Dice& dice, int cells, float strength, std::vector<float>& image);

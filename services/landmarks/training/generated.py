@@ -9,7 +9,7 @@ import torch
 
 from network import LANDMARKS, SIDE
 
-UNIT, SHIFT = 170.0, 0.4  # sample.hpp, own_network.hpp
+UNIT, SHIFT = 170.0, 0.4  # sample.hpp, handcast_network.hpp
 SAMPLE = np.dtype(
     [
         ("tracker", "<f4", (LANDMARKS, 2)),
@@ -34,7 +34,7 @@ class Batch:
 
 
 def batches(program, seed, first, size, people):
-    """Endless batches from image number `first` on; the program runs beside, a few batches ahead."""
+    """Yields batches from image number `first` on, without end; the program runs a few batches ahead."""
     command = [program, "--seed", str(seed), "--first", str(first), "--count", str(1 << 40), "--people", str(people)]
     child = subprocess.Popen(command, stdout=subprocess.PIPE)
     queue = Queue(8)

@@ -13,7 +13,7 @@ Result<Generator> Generator::create(int people, std::uint64_t seed) {
   return Generator(std::move(*drawn), seed);
 }
 
-/// A second hand beside the first or over it, before or behind.
+/// Adds a second hand beside the first or over it, in front of it or behind.
 void Generator::add_other_hand(Dice& dice, const JointFrames& first, const Light& light) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
@@ -36,8 +36,8 @@ void Generator::make_hand(Dice& dice) {
   sample_.has_hand = 1;
   sample_.has_tracker = dice.chance(0.75f);
   const Region region = draw_region(dice, truth_px, sample_.has_tracker ? &tracker_px : nullptr);
-  sample_.truth = own::to_places(region, msg::Side::right, truth_px);
-  sample_.tracker = own::to_places(region, msg::Side::right, tracker_px);
+  sample_.truth = handcast_network::to_places(region, msg::Side::right, truth_px);
+  sample_.tracker = handcast_network::to_places(region, msg::Side::right, tracker_px);
 
   const Light light(dice, glm::vec3(joints[9][3]));
   scene_.clear(region);
@@ -50,7 +50,7 @@ void Generator::make_hand(Dice& dice) {
   }
 }
 
-/// No hand: the network is to say so, whatever the tracker says.
+/// An image without a hand; the tracker may still have one.
 void Generator::make_other(Dice& dice) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
@@ -59,7 +59,8 @@ void Generator::make_other(Dice& dice) {
   const Region region = draw_region(dice, tracker_px, nullptr);
   sample_.has_hand = 0;
   sample_.has_tracker = dice.chance(0.5f);
-  sample_.tracker = sample_.truth = own::to_places(region, msg::Side::right, tracker_px);
+  sample_.tracker = sample_.truth =
+      handcast_network::to_places(region, msg::Side::right, tracker_px);
   sample_.visible.fill(0);
   scene_.clear(region);
   scene_.draw(dice, Light(dice, glm::vec3(joints[9][3])));
@@ -73,10 +74,10 @@ void Generator::finish(Dice& dice) {
   if (dice.chance(0.05f)) film_.cover(dice);
   film_.blur(dice);
   film_.develop(dice, pixels_);
-  const auto shown = own::shown_values(pixels_);
+  const auto shown = handcast_network::shown_values(pixels_);
   for (std::size_t i = 0; i < sample_.image.size(); ++i)
     sample_.image[i] = static_cast<std::uint8_t>(
-        std::lround((shown[pixels_[i]] + own::kShownShift) * Sample::kUnit));
+        std::lround((shown[pixels_[i]] + handcast_network::kShownShift) * Sample::kUnit));
 }
 
 const Sample& Generator::make(std::uint64_t number) {

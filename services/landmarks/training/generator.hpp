@@ -6,13 +6,14 @@
 
 namespace handcast::landmarks::training {
 
-/// Makes training images: synthetic infrared crops of right hands with the places of the tracker's
-/// joints in them. Image n of a seed is always the same. One thread.
+/// Makes training images: synthetic infrared crops of right hands, labelled with the places of the
+/// joints. The image depends on the seed and its number alone. One thread.
 class Generator {
  public:
-  /// Draws the people first. Errors: the hand model cannot be read.
+  /// Draws `people` different hands. Errors: the hand model cannot be read.
   static Result<Generator> create(int people, std::uint64_t seed);
 
+  /// Image `number`; valid until the next call.
   const Sample& make(std::uint64_t number);
 
  private:

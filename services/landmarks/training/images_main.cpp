@@ -7,23 +7,22 @@
 
 #include "services/landmarks/training/contact_sheet.hpp"
 
-/// Writes training images to standard output until nobody reads them.
+// handcast-training-images: writes training images to standard output.
 int main(int argc, char** argv) try {
   using namespace handcast::landmarks::training;
   std::uint64_t seed = 1, first = 0, count = 1000;
   int people = 160, preview = 0;
   std::string picture = "training.png";
   CLI::App app{
-      "Synthetic infrared images of hands with their landmarks, for training: Sample structs "
-      "(sample.hpp) one after another."};
-  app.add_option("--seed", seed, "Everything random is drawn from this number");
-  app.add_option("--first", first,
-                 "Number of the first image: to go on where an earlier run ended");
-  app.add_option("--count", count, "How many images");
-  app.add_option("--people", people, "How many different hands")->check(CLI::Range(1, 1000));
-  app.add_option("--preview", preview, "Draw so many images with their labels instead")
+      "Makes synthetic infrared images of hands with their landmarks for the training; writes them "
+      "as a row of Sample structs (sample.hpp) to standard output."};
+  app.add_option("--seed", seed, "The seed of everything random");
+  app.add_option("--first", first, "The number of the first image, to continue an earlier run");
+  app.add_option("--count", count, "The number of images");
+  app.add_option("--people", people, "The number of different hands")->check(CLI::Range(1, 1000));
+  app.add_option("--preview", preview, "Instead, draws so many images with their labels")
       ->check(CLI::Range(0, 1000));
-  app.add_option("--picture", picture, "The file to draw into");
+  app.add_option("--picture", picture, "The file of --preview");
   CLI11_PARSE(app, argc, argv);
 
   auto generator = Generator::create(people, seed);

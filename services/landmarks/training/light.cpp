@@ -8,8 +8,8 @@
 namespace handcast::landmarks::training {
 namespace {
 
-/// How much of the sky over each point the ball takes: r^2 cos / d^2. d is taken from d^2 by a line
-/// that fits 13 to 60 mm.
+/// Adds the fraction of the hemisphere over each point that a ball occludes: r^2 cos / d^2. The
+/// root of d^2 is approximated by a line, for 13 to 60 mm.
 HANDCAST_CLONES
 void add_occlusion(const glm::vec3* positions, const glm::vec3* normals, std::size_t count,
                    glm::vec3 ball, float* occlusion) {

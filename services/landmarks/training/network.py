@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The landmark network: plain convolutions from a grey crop and the tracker's maps to one heat map per landmark."""
+"""handcast's landmark network: convolutions from a grey crop and the tracker's maps to one heat map per landmark."""
 import math
 
 import torch
@@ -11,7 +11,7 @@ MAP = 24  # cells of a tracker map
 CELLS = 12  # cells of a heat map
 LANDMARKS = 21
 WIDTHS = (16, 32, 64, 96)
-CODE = 64  # numbers that say how the tracker's joints lie to each other
+CODE = 64  # numbers that encode the layout of the tracker's joints
 MAP_SIGMA = 1.2  # of a tracker map's Gaussian, in its cells
 
 
@@ -20,7 +20,7 @@ def conv(inputs, outputs, stride=1):
 
 
 class Block(nn.Module):
-    """Two convolutions around which the input is carried (He et al. 2016)."""
+    """A residual block of two convolutions (He et al. 2016)."""
 
     def __init__(self, width):
         super().__init__()
@@ -32,16 +32,16 @@ class Block(nn.Module):
 
 
 def ramps():
-    """Weights that read a tracker map: where its Gaussian is, across and down, -1..1, and how much of it lies in the map: (576,3)."""
+    """Weights that read a tracker map: the place of its Gaussian, x and y in -1..1, and the part of it in the map: (576,3)."""
     down, across = torch.meshgrid(*2 * [torch.linspace(-1, 1, MAP)], indexing="ij")
     read = torch.stack([across.flatten(), down.flatten(), torch.ones(MAP * MAP)], 1)
     return read / (2 * math.pi * MAP_SIGMA**2)
 
 
 class Layout(nn.Module):
-    """How the tracker's joints lie to each other, which tells what it takes a wrist or a knuckle to be: maps -> (n,width,1,1).
+    """The layout of the tracker's joints, which shows where it defines wrist and knuckles: maps -> (n,width,1,1).
 
-    Convolutions see one place at a time; this is a distance over half the crop, of which a few per cent matter."""
+    Convolutions are local; this needs distances of half the crop to a few per cent."""
 
     def __init__(self, width):
         super().__init__()
@@ -57,8 +57,8 @@ class Layout(nn.Module):
 
 
 class LandmarkNetwork(nn.Module):
-    """image (n,1,96,96), tracker maps (n,21,24,24; all 0: there is no tracker) -> (n,43,12,12): 21 heat maps before the softmax,
-    21 maps of log sigma (crop sides), and one whose mean is the logit of there being a hand."""
+    """image (n,1,96,96), tracker maps (n,21,24,24; all 0 if there is no tracker) -> (n,43,12,12): 21 heat maps before the softmax,
+    21 maps of log sigma (as a fraction of the crop), and one whose mean is the logit of presence."""
 
     def __init__(self, widths=WIDTHS):
         super().__init__()

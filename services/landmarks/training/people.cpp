@@ -13,8 +13,8 @@ glm::vec3 draw_shift(Dice& dice, float deviation_mm) {
   return {dice.normal(deviation_mm), dice.normal(deviation_mm), dice.normal(deviation_mm)};
 }
 
-/// Hands differ, and so do trackers' ideas of where in a hand a joint is: wrist, thumb's root and
-/// knuckles by a centimetre.
+/// Hands differ, and so do trackers in where they define the joints: wrist, root of the thumb and
+/// knuckles by up to a centimetre.
 HandShape draw_shape(Dice& dice) {
   HandShape shape = HandShape::mean();
   std::array<float, 5> length;
@@ -37,7 +37,7 @@ HandShape draw_shape(Dice& dice) {
   return shape;
 }
 
-/// A point and its normal as seen from a joint at rest, millimetres.
+/// A point in millimetres and its normal, in the axes of a joint at rest.
 struct Seen {
   glm::vec3 place_mm, normal;
 };

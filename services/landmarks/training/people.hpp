@@ -9,23 +9,23 @@
 
 namespace handcast::landmarks::training {
 
-/// What of the skin reflects differently.
+/// Parts of the skin that reflect differently.
 enum class Skin : std::uint8_t { plain, nail, knuckle, crease };
 
 /// One person's right hand.
 struct Person {
   renderer::HandMesh mesh;
   twin::Articulation articulation;
-  std::array<float, renderer::kJoints> radius_m;
-  std::vector<Skin> skin;       ///< of each vertex
-  std::vector<float> behind_m;  ///< how far each vertex lies behind the wrist
+  std::array<float, renderer::kJoints> radius_m;  ///< of the flesh around each joint
+  std::vector<Skin> skin;                         ///< of each vertex
+  std::vector<float> behind_m;                    ///< distance of each vertex behind the wrist
 };
 
-/// Different lengths of fingers and palm, slim and broad hands. A quarter of a second each. Errors:
-/// the hand model cannot be read.
+/// Draws hands that differ in the lengths of fingers and palm and in their widths. Takes a quarter
+/// of a second for each. Errors: the hand model cannot be read.
 Result<std::vector<Person>> draw_people(int count, std::uint64_t seed);
 
-/// Finger f, phalanx k (0 proximal): the joint it begins at.
+/// The joints at the root of each finger's first phalanx and at its tip, thumb first.
 inline constexpr std::array<int, 5> kFirstPhalanx{3, 7, 12, 17, 22};
 inline constexpr std::array<int, 5> kTip{5, 10, 15, 20, 25};
 

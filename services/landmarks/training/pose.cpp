@@ -10,8 +10,7 @@ namespace {
 using renderer::JointFrames;
 using twin::Bend;
 
-constexpr float kFlesh =
-    0.6f;  ///< how near the middles of two parts may come, of the sum of their radii
+constexpr float kFlesh = 0.6f;  ///< least distance of two parts, as a fraction of their radii's sum
 constexpr int kPerPhalanx = 3;
 
 struct Ball {
@@ -21,7 +20,7 @@ struct Ball {
 
 glm::vec3 place(const JointFrames& joints, int joint) { return glm::vec3(joints[joint][3]); }
 
-/// From a joint to the next one.
+/// Adds balls from a joint to the next one.
 void add_bone(const Person& person, const JointFrames& joints, int joint,
               std::vector<Ball>& balls) {
   for (int i = 0; i < kPerPhalanx; ++i) {
@@ -46,7 +45,7 @@ void curl(Dice& dice, Bend& bend, int finger, float amount) {
                           1.65f * amount + dice.normal(0.07f), 0.95f * amount + dice.normal(0.06f)};
 }
 
-/// Each joint for itself, but for the last one, which follows the one before.
+/// Bends each joint independently, except the last one, which follows the middle one.
 void bend_freely(Dice& dice, Bend& bend, int finger) {
   const float middle = dice.between(-0.05f, 1.75f);
   bend.flexion[finger] = {dice.between(-0.35f, 1.5f), middle,
@@ -71,7 +70,7 @@ float fingertip_gap_m(const JointFrames& joints, int finger) {
   return glm::distance(place(joints, kTip[0]), place(joints, kTip[finger]));
 }
 
-/// Brings the tips of thumb and finger together by trial.
+/// Brings the tips of thumb and finger together by random search.
 void pinch(Dice& dice, const Person& person, Bend& bend, int finger) {
   bend.flexion[finger] = {dice.between(0.35f, 1.1f), dice.between(0.45f, 1.25f),
                           dice.between(0.15f, 0.7f)};
@@ -156,8 +155,8 @@ bool penetrates(const Person& person, const JointFrames& joints) {
     fingers[finger].push_back({place(joints, kTip[finger]), 0.8f * person.radius_m[kTip[finger]]});
     if (finger > 0) add_bone(person, joints, first - 1, palm);
   }
-  // Roots lie side by side in one flesh: a finger begins in its middle phalanx, the thumb in its
-  // last.
+  // The roots of the fingers share their flesh: a finger counts from its middle phalanx, the thumb
+  // from its last.
   const auto outer = [&](int finger) {
     return std::span<const Ball>(fingers[finger]).subspan(kPerPhalanx);
   };

@@ -3,25 +3,25 @@
 #include <array>
 #include <cstdint>
 
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_network.hpp"
 
 namespace handcast::landmarks::training {
 
-/// One training image as the program writes it: little-endian, no padding. generated.py reads the
-/// same.
+/// One training image in the format of handcast-training-images: little-endian, no padding.
+/// generated.py reads it.
 struct Sample {
-  static constexpr float kUnit =
-      170;  ///< `image` is (shown value + own::kShownShift) times this, rounded
+  /// `image` is the network's input plus handcast_network::kShownShift, times this, rounded.
+  static constexpr float kUnit = 170;
 
-  own::Places tracker{};  ///< the tracker's joints as it reports them; see has_tracker
-  own::Places truth{};    ///< places in the crop, 0..1, may lie outside
-  std::array<std::uint8_t, own::kSide_px * own::kSide_px> image{};
-  std::array<std::uint8_t, msg::kLandmarks>
-      visible{};  ///< nothing lies before the joint but its own flesh
+  handcast_network::Places tracker{};  ///< the tracker's joints; they count if has_tracker is 1
+  handcast_network::Places truth{};    ///< the labels; may be outside 0..1
+  std::array<std::uint8_t, handcast_network::kSide_px * handcast_network::kSide_px> image{};
+  std::array<std::uint8_t, msg::kLandmarks> visible{};  ///< 1: nothing but flesh hides the joint
   std::uint8_t has_tracker = 0;
   std::uint8_t has_hand = 0;
   std::uint8_t reserved = 0;
 };
-static_assert(sizeof(Sample) == 4 * 42 * 2 + own::kSide_px * own::kSide_px + 24);
+static_assert(sizeof(Sample) ==
+              4 * 42 * 2 + handcast_network::kSide_px * handcast_network::kSide_px + 24);
 
 }  // namespace handcast::landmarks::training

@@ -12,20 +12,20 @@ namespace {
 
 using renderer::JointFrames;
 
-constexpr int kFineSide = own::kSide_px * Scene::kFine;
+constexpr int kFineSide = handcast_network::kSide_px * Scene::kFine;
 constexpr int kShadowSide = 96;
 constexpr float kFront = -1;  // counter-clockwise from outside, on a screen whose y points down
 constexpr int kWrist = 1;
 constexpr std::size_t kBallsPerHand = 35;
 
-/// Nearly a sine of so many turns (two parabolas); turns > -64.
+/// A wave of period 1, close to a sine (two parabolas); turns > -64.
 inline float wave_at(float turns) {
   turns += 64;
   const float u = 2 * (turns - static_cast<float>(static_cast<int>(turns))) - 1;
   return 4 * u * (1 - std::abs(u));
 }
 
-/// Waves of brightness through a hand's skin: veins, stains, hair.
+/// Variations of the skin's brightness: veins, stains, hair.
 class Grain {
  public:
   explicit Grain(Dice& dice) {
@@ -52,7 +52,7 @@ class Grain {
   std::array<Wave, 4> waves_;
 };
 
-/// A glove has no nails, knuckles or creases, but a weave.
+/// Sets the albedo of each vertex. A glove has no nails, knuckles or creases, but a weave.
 void paint_skin(Dice& dice, const Person& person, float tone, bool gloved,
                 std::vector<float>& albedo) {
   const Grain grain(dice);
@@ -79,7 +79,7 @@ std::vector<glm::vec3> balls_in(const JointFrames& joints) {
   return balls;
 }
 
-/// Bends what lies behind the wrist about it: over the first 25 mm more and more.
+/// Bends the part behind the wrist about the wrist, gradually over the first 25 mm.
 void bend_wrist(const Person& person, const glm::mat4& camera_from_wrist,
                 const glm::mat4& camera_from_arm, Surface& surface) {
   const glm::mat4 bent = camera_from_arm * glm::inverse(camera_from_wrist);
@@ -100,8 +100,8 @@ Scene::Scene(const calib::CameraModel& camera, const Region& region)
       inverse_depth_(kFineSide, kFineSide),
       fine_(kFineSide, kFineSide),
       shadow_depth_(kShadowSide, kShadowSide),
-      grey_(own::kSide_px * own::kSide_px),
-      cover_(own::kSide_px * own::kSide_px) {
+      grey_(handcast_network::kSide_px * handcast_network::kSide_px),
+      cover_(handcast_network::kSide_px * handcast_network::kSide_px) {
   clear(region);
 }
 
@@ -177,8 +177,8 @@ void Scene::add_arm(Dice& dice, const Person& person, const glm::mat4& camera_fr
   light.shade(shot.surface, shot.grey);
 }
 
-/// What the lamp cannot see of a hand because of the hand: percentage-closer filtering over 3x3
-/// texels (Reeves et al. 1987).
+/// Darkens the parts of each hand that the hand itself hides from the lamp: percentage-closer
+/// filtering over 3x3 texels (Reeves et al. 1987).
 void Scene::cast_shadows(const Light& light, float depth) {
   const glm::vec3 middle = shots_[0].surface.positions[0];
   const glm::mat4 lamp_from_camera = glm::lookAt(light.lamp_m(), middle, glm::vec3(0, 1, 0));
@@ -238,12 +238,12 @@ void Scene::draw(Dice& dice, const Light& light) {
 
 void Scene::gather() {
   static_assert(kFine == 2);
-  for (int y = 0; y < own::kSide_px; ++y) {
+  for (int y = 0; y < handcast_network::kSide_px; ++y) {
     const float *upper = fine_.row(2 * y), *lower = fine_.row(2 * y + 1);
     const float *near_upper = inverse_depth_.row(2 * y),
                 *near_lower = inverse_depth_.row(2 * y + 1);
-    for (int x = 0; x < own::kSide_px; ++x) {
-      const int i = y * own::kSide_px + x;
+    for (int x = 0; x < handcast_network::kSide_px; ++x) {
+      const int i = y * handcast_network::kSide_px + x;
       grey_[i] = 0.25f * (upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1]);
       cover_[i] = 0.25f * static_cast<float>((near_upper[2 * x] > 0) + (near_upper[2 * x + 1] > 0) +
                                              (near_lower[2 * x] > 0) + (near_lower[2 * x + 1] > 0));

@@ -5,29 +5,35 @@
 #include "calib/calibration.hpp"
 #include "renderer/base/image.hpp"
 #include "services/evaluation/twin/surface.hpp"
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_network.hpp"
 #include "services/landmarks/training/light.hpp"
 #include "services/landmarks/training/view.hpp"
 
 namespace handcast::landmarks::training {
 
-/// Lit hands with their forearms and sleeves, drawn straight into the crop. Keeps buffers; one
+/// Lit hands with their forearms and sleeves, drawn directly into the crop. Keeps its buffers; one
 /// thread.
 class Scene {
  public:
-  static constexpr int kFine = 2;  ///< samples across a pixel of the crop
+  static constexpr int kFine = 2;  ///< samples along a side of a crop pixel
 
+  /// An empty scene.
   Scene(const calib::CameraModel& camera, const Region& region);
 
+  /// Removes all hands; the crop shows `region` now.
   void clear(const Region& region);
+  /// Adds a hand with its forearm. `in_camera`: its joints in camera axes (metres).
   void add_hand(Dice& dice, const Person& person, const renderer::JointFrames& in_camera,
                 const Light& light);
+  /// Draws all hands, with shadows in some images.
   void draw(Dice& dice, const Light& light);
 
-  /// Light from hands and arms, and the share of each pixel they cover. kSide_px squared.
+  /// The light of hands and arms in each pixel, kSide_px x kSide_px; valid until the next draw().
   const std::vector<float>& grey() const { return grey_; }
+  /// The fraction of each pixel that hands and arms cover, 0..1.
   const std::vector<float>& cover() const { return cover_; }
-  /// Nothing but its own flesh lies before a point of the first hand.
+  /// Whether a point of the first hand (camera axes, metres) is visible in the crop. Flesh of
+  /// `radius_m` in front of it does not hide it.
   bool sees(const glm::vec3& place_m, float radius_m) const;
 
  private:
@@ -36,7 +42,7 @@ class Scene {
     const std::vector<std::array<std::uint16_t, 3>>* triangles = nullptr;
     std::vector<float> grey;
     twin::ScreenVertices screen;
-    twin::Forearm arm;  ///< whose triangles they may be
+    twin::Forearm arm;  ///< `triangles` may point into it
     bool is_arm = false;
   };
   Shot& next_shot();
@@ -49,7 +55,7 @@ class Scene {
   calib::CameraModel camera_;
   glm::mat2 fine_from_image_{1};
   glm::vec2 fine_origin_{0};
-  std::deque<Shot> shots_;  ///< a shot may point into itself: it stays where it is
+  std::deque<Shot> shots_;  ///< a deque, because a shot may point into itself
   std::size_t shot_count_ = 0;
   renderer::Image<float> inverse_depth_, fine_, shadow_depth_;
   std::vector<float> grey_, cover_;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trains the landmark network on images from handcast-training-images, as they are made. Ctrl-C and start again: it goes on.
+"""Trains the landmark network on images from handcast-training-images, while they are made. After Ctrl-C, the same command continues.
 
 python3 train.py --program build/bin/handcast-training-images --minutes 240 --folder out/training
 """
@@ -18,7 +18,7 @@ from network import CELLS, LandmarkNetwork, decode, tracker_maps
 
 PIXELS = 96  # errors are reported in px of the crop
 WARM_UP = 200  # steps
-DECAY = 0.998  # of the running mean of the weights, which is what is shipped
+DECAY = 0.998  # of the running mean of the weights, which is exported
 
 
 def heat_targets(truth):
@@ -32,7 +32,7 @@ def heat_targets(truth):
 
 
 def losses(out, batch):
-    """-> loss, mean error of landmarks in the crop (px). Landmarks beside the crop teach only their sigma."""
+    """-> loss, mean error of landmarks in the crop (px). Landmarks outside the crop train only their sigma."""
     places, log_sigma, hand, heat = decode(out)
     here = batch.has_hand > 0
     inside = ((batch.truth > 0) & (batch.truth < 1)).all(2) & here[:, None]
@@ -63,7 +63,7 @@ class Training:
         for name in ("network", "mean", "optimizer"):
             getattr(self, name).load_state_dict(state[name])
         self.steps, self.images, self.seconds = state["steps"], state["images"], state["seconds"]
-        print(f"goes on after {self.images} images, {self.seconds / 60:.0f} minutes", flush=True)
+        print(f"continues after {self.images} images, {self.seconds / 60:.0f} minutes", flush=True)
 
     def save(self):
         state = {name: getattr(self, name).state_dict() for name in ("network", "mean", "optimizer")}
@@ -124,9 +124,9 @@ class Training:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", default="build/bin/handcast-training-images", help="makes the images")
-    parser.add_argument("--folder", default="out/training", help="where the state is kept and the network goes")
-    parser.add_argument("--minutes", type=float, default=240, help="how long, all starts together")
+    parser.add_argument("--program", default="build/bin/handcast-training-images", help="the program that makes the images")
+    parser.add_argument("--folder", default="out/training", help="folder of the state and the network")
+    parser.add_argument("--minutes", type=float, default=240, help="duration, the sum of all runs")
     parser.add_argument("--batch", type=int, default=32)
     parser.add_argument("--rate", type=float, default=3e-3, help="the highest learning rate")
     parser.add_argument("--seed", type=int, default=1)
@@ -141,7 +141,7 @@ def main():
         training.run()
     except KeyboardInterrupt:
         training.save()
-        raise SystemExit("stopped; the same command goes on") from None
+        raise SystemExit("stopped; the same command continues") from None
     export(training.mean, Path(args.folder) / "handcast.onnx")
     print(f"trained on {training.images} images: {args.folder}/handcast.onnx", flush=True)
 

@@ -5,7 +5,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/evaluation/twin/recording.hpp"
-#include "services/landmarks/finder/hints.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::landmarks::training {
 namespace {
@@ -29,8 +29,8 @@ glm::mat3 turn(Dice& dice, float deviation_rad) {
   return glm::mat3(glm::rotate(glm::mat4(1), dice.normal(deviation_rad), axis));
 }
 
-/// A tracker's errors in space: joints bent about any axis, the hand turned and of another size.
-/// Not the model that training uses.
+/// Adds a tracker's errors in space: joints bent about any axis, the hand turned and of another
+/// size. This is not the model of the training.
 void disturb(Dice& dice, Joints& joints) {
   for (int finger = 0; finger < 5; ++finger)
     for (int k = 1; k < 4; ++k) {
@@ -57,7 +57,7 @@ std::array<bool, 5> folded_of(const Joints& joints) {
 }  // namespace
 
 static Result<double> duration_of(const std::string& motion) {
-  constexpr double kBuiltin_s = 4.8;  // shows all that any of them does, or most of it
+  constexpr double kBuiltin_s = 4.8;  // most of each motion
   if (motion.starts_with("builtin:")) return kBuiltin_s;
   const auto recording = twin::read_recording(motion);
   if (!recording) return tl::make_unexpected(recording.error());

@@ -5,30 +5,31 @@
 
 #include "config/rig.hpp"
 #include "services/evaluation/twin/twin.hpp"
-#include "services/landmarks/finder/region.hpp"
+#include "services/landmarks/geometry/points.hpp"
 #include "services/landmarks/training/dice.hpp"
 
 namespace handcast::landmarks::training {
 
-/// One picture to test detectors on: a frame of a recording as the twin's camera sees it, and what
-/// a tracker would say. Image px.
+/// One test picture for landmark models: a frame of a motion in the twin's camera, with true
+/// landmarks and a simulated tracker's joints, in image pixels.
 struct Trial {
   renderer::Image<std::uint8_t> image;
   msg::Side side = msg::Side::left;
   Points truth_px{};
-  Points
-      tracker_px{};  ///< off by about a fifth of the palm, fingers bent wrongly by about 10 degrees
-  Points other_pose_px{};        ///< as above, of a hand that is in another pose
+  /// Misplaced by about a fifth of the palm, fingers bent by about 10 degrees too much or too
+  /// little.
+  Points tracker_px{};
+  Points other_pose_px{};        ///< the same errors, and the hand of another frame
   std::array<bool, 5> folded{};  ///< the finger's tip is nearer to its root than 0.8 of its length
 };
 
-/// Frames of one of the twin's motions (a recording's folder or builtin:NAME), evenly spaced. No
-/// training image is made from a recording, and the person is the recording's.
+/// Frames of one of the twin's motions (a recording's folder or builtin:NAME) at equal intervals.
+/// No training image shows the motion or the person of a recording. One thread.
 class Trials {
  public:
-  /// Errors: as of Twin::create.
+  /// Errors: those of Twin::create.
   static Result<Trials> open(const std::string& motion, std::uint64_t seed);
-  /// Number `i` of `count`; nothing where the motion has no hand then.
+  /// Picture `i` of `count`; nothing if there is no hand at that time.
   std::optional<Trial> make(int i, int count);
 
  private:

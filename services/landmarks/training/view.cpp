@@ -3,7 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "services/landmarks/finder/own_network.hpp"
+#include "services/landmarks/models/handcast_network.hpp"
 
 namespace handcast::landmarks::training {
 namespace {
@@ -21,7 +21,8 @@ glm::mat4 turn(float angle_rad, const glm::vec3& axis) {
   return glm::rotate(glm::mat4(1), angle_rad, axis);
 }
 
-/// Hand axes (y out of the back, -z to the tips) to camera axes: upright, its back to the camera.
+/// From hand axes (y out of the back, -z to the tips) to camera axes: fingers up, back to the
+/// camera.
 glm::mat4 upright() { return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}; }
 
 glm::vec3 middle_of(const JointFrames& joints) {
@@ -30,7 +31,7 @@ glm::vec3 middle_of(const JointFrames& joints) {
   return sum / static_cast<float>(msg::kLandmarks);
 }
 
-/// Errors of every angle, some fingers altogether wrong.
+/// Errors of every angle; in some postures, a few fingers are grossly wrong.
 Posture disturbed(Dice& dice, Posture posture) {
   auto& bend = posture.bend;
   const bool gross = dice.chance(0.14f);
@@ -47,8 +48,7 @@ Posture disturbed(Dice& dice, Posture posture) {
   return posture;
 }
 
-/// How far off the whole hand is in the image: a shift, and a slight affine distortion about the
-/// wrist.
+/// Misplaces the whole hand in the image: a shift, and a slight affine distortion about the wrist.
 void misplace(Dice& dice, Points& points_px, float palm_px) {
   const float kind = dice.uniform();
   const float shift_px = palm_px * (kind < 0.5f ? 0.14f : kind < 0.8f ? 0.28f : 0.02f);
@@ -103,7 +103,7 @@ Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vec
   const Person& model =
       dice.chance(0.75f)
           ? person
-          : people[dice.pick(static_cast<int>(people.size()))];  // its idea of the person
+          : people[dice.pick(static_cast<int>(people.size()))];  // the person that it assumes
   const bool other_pose = dice.chance(0.2f);
   const Posture posture =
       other_pose ? draw_pose(dice, model).posture : disturbed(dice, pose.posture);
@@ -119,14 +119,14 @@ Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vec
   misplace(dice, points_px, std::max(60.0f, palm_length_px(project(camera, in_camera))));
   if (dice.chance(0.02f))
     for (int k = 5; k < 9; ++k)
-      std::swap(points_px[k], points_px[k + 4]);  // index and middle taken for each other
+      std::swap(points_px[k], points_px[k + 4]);  // index and middle finger exchanged
   return points_px;
 }
 
 Region draw_region(Dice& dice, const Points& truth_px, const Points* tracker_px) {
   const bool from_tracker = tracker_px && dice.chance(0.4f);
   const float size = from_tracker ? 0.3f : dice.chance(0.5f) ? 1.0f : 0.4f;
-  Region region = own::region_around(from_tracker ? *tracker_px : truth_px);
+  Region region = handcast_network::region_around(from_tracker ? *tracker_px : truth_px);
   region.angle_rad += dice.normal(0.25f * size);
   region.centre_px +=
       region.size_px * glm::vec2(dice.normal(0.06f * size), dice.normal(0.06f * size));

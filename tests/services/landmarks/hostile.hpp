@@ -6,7 +6,7 @@
 #include "ipc/msg/owned.hpp"
 #include "services/evaluation/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/finder/hints.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 /// The twin's images, what its tracker says of them, and what can be done to them.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "services/landmarks/models/landmark_models.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/hostile.hpp"
 
@@ -114,7 +115,7 @@ const std::map<std::string, Edit>& with_half_a_hand() {
   return kEdits;
 }
 
-/// All of it is left, but it looks as none in training did.
+/// All of it is left, but it looks like none in the training.
 const std::map<std::string, Edit>& with_an_odd_hand() {
   static const auto glove = [](auto share) {
     return [=](const Grey& image, const Points& hand_px) {
@@ -141,7 +142,7 @@ const std::map<std::string, Edit>& with_an_odd_hand() {
 }
 
 /// A detector that has a tracker, and one image after another.
-class HostileImages : public testing::TestWithParam<const char*> {
+class HostileImages : public testing::TestWithParam<std::string_view> {
  protected:
   void SetUp() override {
     if (is_mediapipe()) SKIP_WITHOUT_MODELS();
@@ -152,13 +153,13 @@ class HostileImages : public testing::TestWithParam<const char*> {
     ASSERT_TRUE(opened) << opened.error().what;
     detector_ = std::move(*opened);
   }
-  bool is_mediapipe() const { return GetParam() == std::string_view("onednn"); }
+  bool is_mediapipe() const { return GetParam() == "mediapipe"; }
 
-  msg::Landmarks look(const Sight& sight, std::int64_t step_ns = kApart_ns) {
+  msg::Landmarks detect(const Sight& sight, std::int64_t step_ns = kApart_ns) {
     return test::detect(*detector_, sight, time_ns_ += step_ns);
   }
   Verdict read(const Sight& sight, std::int64_t step_ns = kApart_ns) {
-    return judge(look(sight, step_ns), msg::Side::left, *sight.truth_px[0]);
+    return judge(detect(sight, step_ns), msg::Side::left, *sight.truth_px[0]);
   }
   static Sight edited(const Sight& sight, const Edit& edit) {
     return {edit(sight.image, *sight.truth_px[0]), sight.tracker_px, sight.truth_px, sight.seconds};
@@ -198,7 +199,7 @@ class HostileImages : public testing::TestWithParam<const char*> {
 
 TEST_P(HostileImages, WhereThereIsNoHandNoneIsFoundThoughTheTrackerHasOne) {
   for (const auto& [what, edit] : without_a_hand())
-    for (const auto& sight : good()) EXPECT_EQ(look(edited(sight, edit)).count, 0u) << what;
+    for (const auto& sight : good()) EXPECT_EQ(detect(edited(sight, edit)).count, 0u) << what;
 }
 
 TEST_P(HostileImages, AFaceIsNoHand) {
@@ -207,7 +208,7 @@ TEST_P(HostileImages, AFaceIsNoHand) {
     const glm::vec2 middle(sight.image.width() / 2, sight.image.height() / 2);
     Sight shown = test::shifted({face, {}, {}}, glm::ivec2(centre_of(*sight.truth_px[0]) - middle));
     shown.tracker_px = sight.tracker_px;
-    EXPECT_EQ(look(shown).count, 0u);
+    EXPECT_EQ(detect(shown).count, 0u);
   }
 }
 
@@ -256,7 +257,7 @@ TEST_P(HostileImages, HandsThatCrossKeepTheirSides) {
   for (int step = 0; step < kSteps; ++step) {
     const double seconds = 0.2 + 0.1 * step;
     const Sight sight = world.at(seconds);
-    const auto seen = look(sight, seconds_to_ns(0.1));
+    const auto seen = detect(sight, seconds_to_ns(0.1));
     for (const auto side : {msg::Side::left, msg::Side::right}) {
       const auto one = static_cast<std::size_t>(side);
       const Verdict verdict = judge(seen, side, *sight.truth_px[one]);
@@ -299,9 +300,14 @@ TEST_P(BadStretches, AreForgottenWithAFewGoodImagesWhereNoTrackerHelps) {
   expect_recovery(sight, 3);
 }
 
+std::vector<std::string_view> models() {
+  std::vector<std::string_view> names;
+  for (const auto& model : landmark_models()) names.push_back(model.name);
+  return names;
+}
 const auto backend_name = [](const auto& named) { return std::string(named.param); };
-INSTANTIATE_TEST_SUITE_P(Backends, BadStretches, testing::Values("own", "onednn"), backend_name);
-INSTANTIATE_TEST_SUITE_P(Backends, HostileImages, testing::Values("own", "onednn"), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, BadStretches, testing::ValuesIn(models()), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, HostileImages, testing::ValuesIn(models()), backend_name);
 
 }  // namespace
 }  // namespace handcast::landmarks

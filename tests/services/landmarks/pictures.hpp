@@ -14,8 +14,8 @@
 #include "renderer/base/image.hpp"
 #include "renderer/content/picture.hpp"
 #include "services/landmarks/detect/picture.hpp"
-#include "services/landmarks/finder/hand_finder.hpp"
-#include "services/landmarks/finder/models.hpp"
+#include "services/landmarks/geometry/points.hpp"
+#include "services/landmarks/models/mediapipe_files.hpp"
 
 /// Pictures for the tests of the landmark detector: real captures from outside, and synthetic ones.
 namespace handcast::test {
@@ -26,8 +26,8 @@ using Grey = renderer::Image<std::uint8_t>;
 inline std::filesystem::path models() {
   const char* named = std::getenv("HANDCAST_MODELS");
   const std::filesystem::path folder = named && *named ? named : "../shared/models";
-  const bool here = std::filesystem::exists(folder / landmarks::kHandModel) &&
-                    std::filesystem::exists(folder / landmarks::kPalmModel);
+  const bool here = std::filesystem::exists(folder / landmarks::kMediapipeHandFile) &&
+                    std::filesystem::exists(folder / landmarks::kMediapipePalmFile);
   return here ? folder : std::filesystem::path();
 }
 

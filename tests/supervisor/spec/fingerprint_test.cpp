@@ -69,7 +69,7 @@ config::Rig replay() {
 
 config::Rig networks() {
   config::Rig rig;
-  rig.landmarks.backend = "onednn";
+  rig.landmarks.backend = "mediapipe";
   return rig;
 }
 
@@ -96,20 +96,21 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
                settings_in({"camera.replay", "camera.process.standby"}));
   expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
                settings_in({"pose.replay", "pose.process.standby"}));
-  expect_reads("landmarks", rig,
-               truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
-                          "camera.exposure_ms"}),
-               settings_in({"landmarks.replay", "landmarks.models", "landmarks.hands",
-                            "landmarks.definition", "landmarks.process.standby"}));
+  expect_reads(
+      "landmarks", rig,
+      truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
+                 "camera.exposure_ms"}),
+      settings_in({"landmarks.replay", "landmarks.executor", "landmarks.models", "landmarks.hands",
+                   "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
   expect_reads("landmarks", networks(), {"landmarks"},
                settings_in({"landmarks.replay", "landmarks.process.standby"}));
-  config::Rig own;
-  own.landmarks.backend = "own";
+  config::Rig handcast;
+  handcast.landmarks.backend = "handcast";
   expect_reads(
-      "landmarks", own, {"landmarks"},
+      "landmarks", handcast, {"landmarks"},
       settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
 }
 
@@ -117,8 +118,8 @@ TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
   expect_reads("camera", replay(), {"camera"}, {"camera.process.standby"});
   expect_reads("pose", replay(), {"pose"}, {"pose.process.standby"});
   expect_reads("landmarks", replay(), {"landmarks"},
-               settings_in({"landmarks.models", "landmarks.hands", "landmarks.definition",
-                            "landmarks.process.standby"}));
+               settings_in({"landmarks.executor", "landmarks.models", "landmarks.hands",
+                            "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums and products of two values, functions of one number, PRelu, Softmax, reductions, MatMul.
+// Elementwise operators of one and two values, PRelu, Softmax, reductions, MatMul.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,17 +30,17 @@ Value with_rank(Builder& builder, const Value& value, std::size_t rank) {
   return {plain_desc(widened(shape, rank)), builder.plain(value).buffer};
 }
 
-/// oneDNN spreads the second operand only: the larger one comes first, where the order does not
-/// matter.
+/// oneDNN broadcasts the second operand only. If the operator commutes, the larger operand becomes
+/// the first.
 std::pair<Value, Value> operands(Builder& builder, const Node& node) {
-  if (node.inputs.size() != 2) refuse(node, "has not two operands");
+  if (node.inputs.size() != 2) refuse(node, "does not have two operands");
   Value a = builder.operand(node, 0), b = builder.operand(node, 1);
   const std::size_t rank = std::max(a.desc.dims().size(), b.desc.dims().size());
   a = with_rank(builder, a, rank);
   b = with_rank(builder, b, rank);
   const bool commutes = node.op != "Sub" && node.op != "Div";
-  if (commutes && !spreads_over(b.desc.dims(), a.desc.dims())) std::swap(a, b);
-  if (!spreads_over(b.desc.dims(), a.desc.dims()))
+  if (commutes && !broadcasts_to(b.desc.dims(), a.desc.dims())) std::swap(a, b);
+  if (!broadcasts_to(b.desc.dims(), a.desc.dims()))
     refuse(node, fmt::format("combines {} and {}, which is not supported",
                              onnx::to_string(a.desc.dims()), onnx::to_string(b.desc.dims())));
   if (a.desc.dims() == b.desc.dims()) b = builder.in_layout(b, a.desc);
@@ -50,10 +50,10 @@ std::pair<Value, Value> operands(Builder& builder, const Node& node) {
 std::size_t emit_binary(Builder& builder, const Node& node, std::span<const Node> tail) {
   const auto [a, b] = operands(builder, node);
   std::vector<PostOp> post = post_ops(builder, tail, node.outputs[0], a.desc.dims());
-  // A sum as a post-op would have to lie where the result lies; only activations are taken along.
-  const auto unfit = std::find_if(post.begin(), post.end(),
-                                  [](const PostOp& op) { return op.kind != PostOp::kBend; });
-  post.erase(unfit, post.end());
+  // A sum as a post-op would have to share the memory of the result; only activations are fused.
+  const auto end_of_activations = std::find_if(
+      post.begin(), post.end(), [](const PostOp& op) { return op.kind != PostOp::kActivation; });
+  post.erase(end_of_activations, post.end());
   const dnnl::binary::primitive_desc chosen({binary_of(node), a.desc, b.desc, a.desc},
                                             attributes_with(post), builder.engine());
   const Value output = builder.make(a.desc);
@@ -64,11 +64,11 @@ std::size_t emit_binary(Builder& builder, const Node& node, std::span<const Node
   return post.size();
 }
 
-std::size_t emit_bend(Builder& builder, const Node& node, std::span<const Node>) {
+std::size_t emit_activation(Builder& builder, const Node& node, std::span<const Node>) {
   const Value input = builder.operand(node, 0);
-  const Bend bend = *bend_of(builder, node);
-  const dnnl::eltwise_forward::desc operation(prop_kind::forward_inference, bend.algorithm,
-                                              input.desc, bend.alpha, bend.beta);
+  const Activation activation = *activation_of(builder, node);
+  const dnnl::eltwise_forward::desc operation(prop_kind::forward_inference, activation.algorithm,
+                                              input.desc, activation.alpha, activation.beta);
   const dnnl::eltwise_forward::primitive_desc chosen(operation, own_scratchpad(), builder.engine());
   const Value output = builder.make_over(input);
   builder.program().add_step(dnnl::eltwise_forward(chosen),
@@ -83,8 +83,8 @@ std::size_t emit_prelu(Builder& builder, const Node& node, std::span<const Node>
   const onnx::Tensor* slopes = builder.constant(node, 1);
   const Shape shape = input.desc.dims();
   if (!slopes || slopes->floats.empty() ||
-      !spreads_over(widened(slopes->shape, shape.size()), shape))
-    refuse(node, "has slopes that do not fit");
+      !broadcasts_to(widened(slopes->shape, shape.size()), shape))
+    refuse(node, "has slopes that cannot be broadcast to its input");
   const memory::desc given = plain_desc(widened(slopes->shape, shape.size()));
   const dnnl::prelu_forward::desc operation(prop_kind::forward_inference, input.desc,
                                             any_desc(given.dims()));
@@ -109,7 +109,7 @@ std::size_t emit_softmax(Builder& builder, const Node& node, std::span<const Nod
   const Value input = builder.plain(builder.operand(node, 0));
   const std::size_t rank = input.desc.dims().size();
   const std::int64_t axis = axis_of(node, node.integer("axis", -1), rank);
-  // Until operator set 12 every axis from this one on was meant: the same where it is the last.
+  // Up to operator set 12 a Softmax is over all axes from this one on: the same if it is the last.
   if (axis + 1 != static_cast<std::int64_t>(rank)) refuse(node, "is not over the last axis");
   const dnnl::softmax_forward::desc operation(prop_kind::forward_inference, input.desc,
                                               static_cast<int>(axis));
@@ -186,15 +186,15 @@ std::size_t emit_matmul(Builder& builder, const Node& node, std::span<const Node
 }
 
 constexpr Operator kOperators[] = {
-    {"Add", emit_binary},       {"Sub", emit_binary},       {"Mul", emit_binary},
-    {"Div", emit_binary},       {"Max", emit_binary},       {"Min", emit_binary},
-    {"Relu", emit_bend},        {"Sigmoid", emit_bend},     {"Tanh", emit_bend},
-    {"Exp", emit_bend},         {"Log", emit_bend},         {"Sqrt", emit_bend},
-    {"Abs", emit_bend},         {"Neg", emit_bend},         {"Reciprocal", emit_bend},
-    {"Softplus", emit_bend},    {"HardSwish", emit_bend},   {"Clip", emit_bend},
-    {"LeakyRelu", emit_bend},   {"Elu", emit_bend},         {"PRelu", emit_prelu},
-    {"Softmax", emit_softmax},  {"ReduceSum", emit_reduce}, {"ReduceMean", emit_reduce},
-    {"ReduceMax", emit_reduce}, {"ReduceMin", emit_reduce}, {"MatMul", emit_matmul},
+    {"Add", emit_binary},           {"Sub", emit_binary},           {"Mul", emit_binary},
+    {"Div", emit_binary},           {"Max", emit_binary},           {"Min", emit_binary},
+    {"Relu", emit_activation},      {"Sigmoid", emit_activation},   {"Tanh", emit_activation},
+    {"Exp", emit_activation},       {"Log", emit_activation},       {"Sqrt", emit_activation},
+    {"Abs", emit_activation},       {"Neg", emit_activation},       {"Reciprocal", emit_activation},
+    {"Softplus", emit_activation},  {"HardSwish", emit_activation}, {"Clip", emit_activation},
+    {"LeakyRelu", emit_activation}, {"Elu", emit_activation},       {"PRelu", emit_prelu},
+    {"Softmax", emit_softmax},      {"ReduceSum", emit_reduce},     {"ReduceMean", emit_reduce},
+    {"ReduceMax", emit_reduce},     {"ReduceMin", emit_reduce},     {"MatMul", emit_matmul},
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ memory::desc desc_like(const memory::desc& like, const Shape& shape) {
   check_size(shape);
   std::vector<std::size_t> order(shape.size());
   std::iota(order.rbegin(), order.rend(),
-            std::size_t{0});  // of axes that lie alike, the last one innermost
+            std::size_t{0});  // of axes with equal strides, the last is the innermost
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return layout.strides[a] < layout.strides[b];
   });
@@ -77,14 +77,14 @@ Value Builder::operand(const Node& node, std::size_t input) {
   if (const auto found = values_.find(name); found != values_.end()) return found->second;
   const onnx::Tensor* tensor = constant(node, input);
   if (!tensor || tensor->floats.empty())
-    refuse(node, fmt::format("cannot calculate with '{}'", name));
+    refuse(node, fmt::format("cannot use '{}', which is not a float tensor", name));
   const memory::desc desc = plain_desc(tensor->shape.empty() ? Shape{1} : tensor->shape);
   return values_[name] = weights(tensor->floats, desc, desc);
 }
 
 const Value& Builder::value(const std::string& name) const {
   const auto found = values_.find(name);
-  if (found == values_.end()) throw Refused{fmt::format("nothing calculates '{}'", name)};
+  if (found == values_.end()) throw Refused{fmt::format("no node computes '{}'", name)};
   return found->second;
 }
 
@@ -101,7 +101,7 @@ std::optional<std::vector<std::int64_t>> Builder::integers(const Node& node,
   const onnx::Tensor* tensor = constant(node, input);
   if (!tensor) return std::nullopt;
   if (!tensor->floats.empty())
-    refuse(node, fmt::format("needs whole numbers in '{}'", node.inputs[input]));
+    refuse(node, fmt::format("needs integers in '{}'", node.inputs[input]));
   return tensor->integers;
 }
 
@@ -117,8 +117,7 @@ Value Builder::in_layout(const Value& value, const memory::desc& desc) {
   return result;
 }
 
-/// No name of the buffer is used after this group, and this group uses it once: not as its input as
-/// well.
+/// Whether no value in the buffer is used after the present group, and at most once in it.
 bool Builder::may_overwrite(int buffer) const {
   if (program_.is_fixed(buffer)) return false;
   int uses = 0;
@@ -146,7 +145,7 @@ Value Builder::to_overwrite(const Value& value, const memory::desc& desc) {
 Value Builder::weights(const std::vector<float>& numbers, const memory::desc& given,
                        const memory::desc& desc) {
   if (given.get_size() != numbers.size() * sizeof(float))
-    throw Refused{"weights of another size than the graph's"};
+    throw Refused{"weights have another size than in the graph"};
   const Value result{desc, program_.add_fixed_buffer(desc.get_size())};
   const bool as_given = given == desc;
   const Value source =

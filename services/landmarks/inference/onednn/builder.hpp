@@ -14,74 +14,87 @@ namespace handcast::landmarks::onednn {
 using onnx::Node;
 using onnx::Shape;
 
-/// Thrown while a program is built, caught where the network is opened.
+/// An exception: the network cannot be run. It is thrown while a program is built and caught where
+/// the network is opened.
 struct Refused {
   std::string what;
 };
 
-/// A node that cannot be run: "Conv 'x' <why>".
+/// Throws Refused about a node: "Conv 'x' <why>".
 [[noreturn]] void refuse(const Node& node, const std::string& why);
 
-/// oneDNN's own scratchpads belong to the thread that made the primitive; ours to the program.
+/// Attributes of a primitive whose scratchpad belongs to the program. (A scratchpad of oneDNN would
+/// belong to the thread that made the primitive.)
 dnnl::primitive_attr own_scratchpad();
 
-/// Row-major.
+/// A row-major layout.
 dnnl::memory::desc plain_desc(const Shape& shape);
-/// The axes in the order in which those of `like` lie; row-major where `like` lies in blocks.
+/// A layout with the axes in the same order as in `like`; row-major if `like` is blocked.
 dnnl::memory::desc desc_like(const dnnl::memory::desc& like, const Shape& shape);
-/// Any layout: the primitive chooses.
+/// A layout that the primitive chooses.
 dnnl::memory::desc any_desc(const Shape& shape);
 
-/// Where the operators put their steps: knows each ONNX value by name, and moves values between
-/// layouts.
+/// Builds a program: the operators add their steps here. Finds ONNX values by name and converts
+/// them between layouts.
 class Builder {
  public:
+  /// `model` must outlive the builder; `groups`: those of fuse().
   Builder(const onnx::Model& model, const std::vector<Group>& groups);
 
-  /// Which of the groups the steps belong to that come now.
+  /// Says that the next steps belong to this group.
   void begin(int group) { now_ = group; }
 
+  /// The program so far.
   Program& program() { return program_; }
+  /// oneDNN's engine of the program.
   const dnnl::engine& engine() const { return program_.engine(); }
 
-  /// An input of a node; a constant too. Refuses where there is none or it holds whole numbers.
+  /// An input of a node; it may be a constant. Throws Refused if there is none or it holds
+  /// integers.
   Value operand(const Node& node, std::size_t input);
-  /// An input that must be a constant; null where it is left out.
+  /// An input that must be a constant; null if the node does not have it.
   const onnx::Tensor* constant(const Node& node, std::size_t input) const;
-  /// The same as a list of whole numbers; none where it is left out.
+  /// The same as a list of integers; nothing if the node does not have it.
   std::optional<std::vector<std::int64_t>> integers(const Node& node, std::size_t input) const;
 
+  /// Names a value that the steps so far compute.
   void define(const std::string& name, const Value& value) { values_[name] = value; }
-  /// Refuses a name that no step makes.
+  /// The value of this name. Throws Refused if no step computes it.
   const Value& value(const std::string& name) const;
 
-  /// Room for a new value.
+  /// Memory for a new value.
   Value make(const dnnl::memory::desc& desc);
-  /// `value` in the layout of `desc`: itself where it lies so, else through a reorder.
+  /// `value` in the layout of `desc`: itself if it has that layout, otherwise the result of a
+  /// reorder.
   Value in_layout(const Value& value, const dnnl::memory::desc& desc);
+  /// `value` in row-major layout.
   Value plain(const Value& value) { return in_layout(value, plain_desc(shape_of(value))); }
-  /// The same, in memory that may be overwritten: its own where nothing needs it any more, else a
-  /// copy's.
+  /// `value` in the layout of `desc`, in memory that may be overwritten: itself if no later step
+  /// needs it, otherwise a copy.
   Value to_overwrite(const Value& value, const dnnl::memory::desc& desc);
-  /// Room for what is made of `value` number by number: its own where nothing needs it any more.
+  /// Memory for the result of an elementwise operation on `value`: that of `value` if no later step
+  /// needs it.
   Value make_over(const Value& value) {
     return may_overwrite(value.buffer) ? value : make(value.desc);
   }
-  /// Numbers known at load, in the layout of `desc`; `given` is how they lie now.
+  /// A constant in the layout of `desc`; `given` is the layout of `numbers`.
   Value weights(const std::vector<float>& numbers, const dnnl::memory::desc& given,
                 const dnnl::memory::desc& desc);
 
+  /// Adds to the number of multiplications with weights.
   void count_multiplications(double count) { multiplications_ += count; }
+  /// The number of multiplications with weights in one run.
   double multiplications() const { return multiplications_; }
 
+  /// The shape of a value.
   static Shape shape_of(const Value& value) { return value.desc.dims(); }
 
  private:
   bool may_overwrite(int buffer) const;
 
   const onnx::Model& model_;
-  std::map<std::string, std::vector<int>>
-      users_;  ///< the groups that use a value, a group once for each use
+  /// The groups that use each value; a group that uses it twice is listed twice.
+  std::map<std::string, std::vector<int>> users_;
   int now_ = 0;
   double multiplications_ = 0;
   Program program_;

@@ -19,7 +19,7 @@ bool can_follow(const Node& node) {
   return std::find(kOps.begin(), kOps.end(), node.op) != kOps.end();
 }
 
-/// Who uses a value: the nodes' numbers, and -1 for the world outside.
+/// The users of each value: numbers of nodes, and -1 for an output of the network.
 using Users = std::map<std::string, std::vector<int>>;
 
 Users users_of(const onnx::Model& model) {
@@ -30,8 +30,8 @@ Users users_of(const onnx::Model& model) {
   return users;
 }
 
-/// The node that may join a group whose result is `value`: the value's only user, taking it as what
-/// it adds to or bends.
+/// The node that may join a group whose result is `value`: the only user of the value, an addition
+/// or an activation of it.
 std::optional<int> next_in_chain(const onnx::Model& model, const Users& users,
                                  const std::string& value) {
   const auto found = users.find(value);
@@ -57,8 +57,9 @@ Group group_led_by(int head, const onnx::Model& model, const Users& users, std::
 
 }  // namespace
 
-/// A group stands where its last node stood, so that the other operands of its additions are there.
-/// Where two chains meet in an addition, the later one takes it; convolutions choose before sums.
+/// A group takes the place of its last node in the order, so that the other operands of its
+/// additions are computed before it. If two chains meet in an addition, it joins the later one;
+/// convolutions are grouped before additions.
 std::vector<Group> fuse(const onnx::Model& model) {
   const Users users = users_of(model);
   std::vector<bool> taken(model.nodes.size(), false);

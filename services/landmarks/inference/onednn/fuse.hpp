@@ -6,18 +6,19 @@
 
 namespace handcast::landmarks::onednn {
 
-/// A node, and the additions and activations after it that nothing else looks into: they may run
-/// while its result is in registers.
+/// A node and the additions and activations after it whose inputs no other node uses. They may run
+/// while the node's result is in registers.
 struct Group {
   onnx::Node head;
-  std::vector<onnx::Node> tail;  ///< each takes the result of the one before it
+  std::vector<onnx::Node> tail;  ///< each uses the result of the one before it
 
+  /// The name of the group's result.
   const std::string& output() const {
     return tail.empty() ? head.outputs[0] : tail.back().outputs[0];
   }
 };
 
-/// The graph as groups, in an order that makes every input before it is used.
+/// The graph as groups, in an order in which every input is computed before it is used.
 std::vector<Group> fuse(const onnx::Model& model);
 
 }  // namespace handcast::landmarks::onednn

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moves numbers without changing them. Most of it is only another description of the same
-// memory.
+// Operators that rearrange elements. Most of them only describe the same memory differently.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ std::size_t axis_of(const Node& node, std::int64_t axis, std::size_t rank) {
 void define_reshaped(Builder& builder, const Node& node, const Shape& shape) {
   const Value input = builder.operand(node, 0);
   if (onnx::elements(shape) != onnx::elements(input.desc.dims()))
-    refuse(node, fmt::format("turns {} into {}", onnx::to_string(input.desc.dims()),
+    refuse(node, fmt::format("cannot reshape {} to {}", onnx::to_string(input.desc.dims()),
                              onnx::to_string(shape)));
   const Value plain = builder.plain(input);
   builder.define(node.outputs[0], {plain_desc(shape.empty() ? Shape{1} : shape), plain.buffer});
@@ -38,9 +37,10 @@ std::size_t emit_transpose(Builder& builder, const Node& node, std::span<const N
   Shape order(rank);
   for (std::size_t i = 0; i < rank; ++i) order[i] = static_cast<std::int64_t>(rank - 1 - i);
   order = node.integers("perm", order);
-  // ONNX says where each axis of the result comes from, oneDNN where each axis of the input goes.
+  // ONNX lists the source of each axis of the result, oneDNN the target of each axis of the input.
   std::vector<int> target(rank, -1);
-  if (order.size() != rank) refuse(node, "orders another number of axes than its input has");
+  if (order.size() != rank)
+    refuse(node, "has a permutation of another number of axes than its input");
   for (std::size_t i = 0; i < rank; ++i)
     target[axis_of(node, order[i], rank)] = static_cast<int>(i);
   if (std::find(target.begin(), target.end(), -1) != target.end())
@@ -59,10 +59,10 @@ std::size_t emit_reshape(Builder& builder, const Node& node, std::span<const Nod
     if (shape[i] == 0 && i < from.size()) shape[i] = from[i];
     if (shape[i] == -1) continue;
     if (shape[i] < 1 || shape[i] > onnx::kMostElements / known)
-      refuse(node, "has a shape that is none: " + onnx::to_string(*wanted));
+      refuse(node, "has an invalid shape: " + onnx::to_string(*wanted));
     known *= shape[i];
   }
-  if (std::count(shape.begin(), shape.end(), -1) > 1) refuse(node, "leaves two extents open");
+  if (std::count(shape.begin(), shape.end(), -1) > 1) refuse(node, "has two free extents");
   std::replace(shape.begin(), shape.end(), std::int64_t{-1}, onnx::elements(from) / known);
   define_reshaped(builder, node, shape);
   return 0;
@@ -78,7 +78,7 @@ std::size_t emit_flatten(Builder& builder, const Node& node, std::span<const Nod
   return 0;
 }
 
-/// The axes of Squeeze and Unsqueeze: an attribute until operator set 12, an input since.
+/// The axes of Squeeze and Unsqueeze are an attribute up to operator set 12, an input since 13.
 std::optional<Shape> axes_of(const Builder& builder, const Node& node) {
   if (node.has("axes")) return node.integers("axes", {});
   return builder.integers(node, 1);
@@ -103,7 +103,7 @@ std::size_t emit_unsqueeze(Builder& builder, const Node& node, std::span<const N
   const Shape from = builder.operand(node, 0).desc.dims();
   const Shape axes = axes_of(builder, node).value_or(Shape{});
   const std::size_t rank = from.size() + axes.size();
-  if (rank > 6) refuse(node, "makes more than six axes");
+  if (rank > 6) refuse(node, "has more than six axes");
   std::vector<bool> fresh(rank, false);
   for (const std::int64_t axis : axes) fresh[axis_of(node, axis, rank)] = true;
   if (std::count(fresh.begin(), fresh.end(), true) != static_cast<std::ptrdiff_t>(axes.size()))
@@ -120,15 +120,15 @@ std::size_t emit_concat(Builder& builder, const Node& node, std::span<const Node
   std::vector<dnnl::memory::desc> descs;
   for (std::size_t i = 0; i < node.inputs.size(); ++i)
     descs.push_back(parts.emplace_back(builder.operand(node, i)).desc);
-  if (parts.empty()) refuse(node, "joins nothing");
+  if (parts.empty()) refuse(node, "has no inputs");
   const Shape first = descs[0].dims();
   const std::size_t axis = axis_of(node, node.integer("axis", 0), first.size());
   for (const auto& desc : descs) {
     Shape shape = desc.dims();
     if (shape.size() == first.size()) shape[axis] = first[axis];
     if (shape != first)
-      refuse(node,
-             fmt::format("joins {} and {}", onnx::to_string(first), onnx::to_string(desc.dims())));
+      refuse(node, fmt::format("cannot join {} and {}", onnx::to_string(first),
+                               onnx::to_string(desc.dims())));
   }
   const dnnl::concat::primitive_desc chosen(static_cast<int>(axis), descs, builder.engine(),
                                             own_scratchpad());
@@ -141,13 +141,13 @@ std::size_t emit_concat(Builder& builder, const Node& node, std::span<const Node
   return 0;
 }
 
-/// Copies the part of `whole` that begins at `offsets`, or writes it, where `whole` is what is
-/// written.
+/// The layout of the part of `whole` that begins at `offsets`.
 dnnl::memory::desc part_of(const Value& whole, const Shape& shape, const Shape& offsets) {
   return whole.desc.submemory_desc(shape, offsets);
 }
 
-/// The padding stays zero in a buffer of its own; each run copies the middle.
+/// The result has a fixed buffer, whose border stays zero; each run copies the input into its
+/// middle.
 std::size_t emit_pad(Builder& builder, const Node& node, std::span<const Node>) {
   const Value input = builder.operand(node, 0);
   const Shape from = input.desc.dims();
@@ -158,7 +158,7 @@ std::size_t emit_pad(Builder& builder, const Node& node, std::span<const Node>) 
       node.number("value", 0) == 0 && (!with || (with->floats.size() == 1 && with->floats[0] == 0));
   if (node.text("mode", "constant") != "constant" || !zero || pads.size() != 2 * from.size() ||
       node.has_input(3))
-    refuse(node, "pads with something else than zeros, or some axes only");
+    refuse(node, "pads with other values than zeros, or only some axes");
   Shape shape = from;
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (std::min(pads[i], pads[i + from.size()]) < 0 ||
@@ -183,7 +183,7 @@ struct Range {
   std::int64_t begin, count;
 };
 
-/// ONNX counts negative places from the end and cuts what lies beyond.
+/// In ONNX, negative indices count from the end, and indices beyond the ends are clamped.
 Range range_of(std::int64_t begin, std::int64_t end, std::int64_t extent) {
   const auto within = [extent](std::int64_t place) {
     return std::clamp<std::int64_t>(place < 0 ? place + extent : place, 0, extent);
@@ -191,7 +191,7 @@ Range range_of(std::int64_t begin, std::int64_t end, std::int64_t extent) {
   return {within(begin), within(end) - within(begin)};
 }
 
-/// What a Slice cuts along which axes: attributes until operator set 9, inputs since.
+/// The ranges of a Slice are attributes up to operator set 9, inputs since 10.
 struct Cuts {
   Shape starts, ends, axes;
 };
@@ -208,7 +208,7 @@ Cuts cuts_of(const Builder& builder, const Node& node, std::size_t rank) {
   const bool single =
       std::all_of(steps.begin(), steps.end(), [](std::int64_t step) { return step == 1; });
   if (cuts.starts.size() != cuts.ends.size() || cuts.axes.size() != cuts.starts.size() || !single)
-    refuse(node, "cuts in steps, or unclearly");
+    refuse(node, "has steps other than 1, or ranges that do not match its axes");
   return cuts;
 }
 
@@ -219,7 +219,7 @@ std::size_t emit_slice(Builder& builder, const Node& node, std::span<const Node>
   for (std::size_t i = 0; i < cuts.starts.size(); ++i) {
     const std::size_t axis = axis_of(node, cuts.axes[i], shape.size());
     const Range range = range_of(cuts.starts[i], cuts.ends[i], input.desc.dims()[axis]);
-    if (range.count < 1) refuse(node, "cuts out nothing");
+    if (range.count < 1) refuse(node, "has an empty result");
     shape[axis] = range.count;
     offsets[axis] = range.begin;
   }
@@ -240,7 +240,7 @@ std::size_t emit_split(Builder& builder, const Node& node, std::span<const Node>
     whole += std::clamp<std::int64_t>(size, 0, onnx::kMostElements);
   if (sizes.size() != node.outputs.size() || whole != from[axis] ||
       *std::min_element(sizes.begin(), sizes.end()) < 1)
-    refuse(node, fmt::format("splits {} into other parts", onnx::to_string(from)));
+    refuse(node, fmt::format("cannot split {} into its parts", onnx::to_string(from)));
   Shape offsets(from.size(), 0);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     Shape shape = from;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own walk over the graph, on oneDNN's primitives: shapes and layouts are settled once, weights
-// are reordered once.
+// The executor `onednn`: runs a graph with oneDNN's primitives. Shapes, layouts and the order of
+// the weights are determined once, when the network is opened.
 #include "services/landmarks/inference/network.hpp"
 
 #include <fmt/format.h>
@@ -20,8 +20,8 @@ namespace handcast::landmarks {
 
 namespace {
 
-/// Debian's oneDNN runs on OpenMP, which keeps a number of threads for each calling thread: one,
-/// while this lives.
+/// While it exists, OpenMP uses one thread for the calling thread. (Debian's oneDNN runs on
+/// OpenMP.)
 class OneThread {
  public:
   OneThread() { omp_set_num_threads(1); }
@@ -33,8 +33,7 @@ class OneThread {
   int before_ = omp_get_max_threads();
 };
 
-/// Numbers too small for a normal float count as 0 while this lives: one of them makes a processor
-/// a hundred times slower.
+/// While it exists, denormal floats count as 0. An operation on one takes a hundred times as long.
 class NoDenormals {
  public:
 #if defined(__x86_64__)

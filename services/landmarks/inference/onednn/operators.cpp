@@ -37,7 +37,7 @@ std::size_t emit(Builder& builder, const Node& node, std::span<const Node> tail)
   if (found != table().end()) return found->emit(builder, node, tail);
   std::vector<std::string_view> names;
   for (const Operator& entry : table()) names.emplace_back(entry.name);
-  throw Refused{fmt::format("it uses the operator {}, which this back end cannot run; known are {}",
+  throw Refused{fmt::format("it uses the operator {}, which is not supported; supported are {}",
                             node.op, fmt::join(names, ", "))};
 }
 

@@ -7,24 +7,30 @@
 
 namespace handcast::landmarks::onednn {
 
-/// Adds the steps of a node and defines its outputs. `tail`: the nodes that may run with it;
-/// returns how many it took along, the last of which names the output.
+/// Adds the steps of a node and defines its outputs. `tail`: the nodes that may be fused with it.
+/// Returns how many of them were fused; the last of these names the output.
 using Emit = std::size_t (*)(Builder& builder, const Node& node, std::span<const Node> tail);
 
+/// A row of the tables of operators.
 struct Operator {
-  const char* name;
+  const char* name;  ///< in ONNX
   Emit emit;
 };
 
+/// Layers with weights: convolution.cpp.
 std::span<const Operator> convolution_operators();
+/// Windows without weights: pooling.cpp.
 std::span<const Operator> pooling_operators();
+/// Elementwise operators, reductions, products: arithmetic.cpp.
 std::span<const Operator> arithmetic_operators();
+/// Operators that rearrange elements: layout.cpp.
 std::span<const Operator> layout_operators();
 
-/// The name of what a node makes together with the first `taken` of its tail.
+/// The name of the result of a node fused with the first `taken` nodes of its tail.
 const std::string& output_of(const Node& node, std::span<const Node> tail, std::size_t taken);
 
-/// Runs a node; refuses an operator that none of the tables has.
+/// Adds the steps of a node by its row in the tables. Throws Refused if they do not have its
+/// operator.
 std::size_t emit(Builder& builder, const Node& node, std::span<const Node> tail);
 
 }  // namespace handcast::landmarks::onednn

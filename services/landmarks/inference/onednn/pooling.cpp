@@ -32,7 +32,7 @@ void add_pool(Builder& builder, const Node& node, algorithm kind, const Window& 
 std::size_t emit_pool(Builder& builder, const Node& node, std::span<const Node>) {
   const Shape input = builder.operand(node, 0).desc.dims();
   if (input.size() < 3 || node.outputs.size() != 1)
-    refuse(node, "has an input that is no image, or asks for places");
+    refuse(node, "has an input that is not an image, or a second output");
   Window window = window_of(node, input, node.integers("kernel_shape", {}));
   const bool with_padding = node.integer("count_include_pad", 0) != 0;
   const algorithm average = with_padding ? algorithm::pooling_avg_include_padding
@@ -45,7 +45,7 @@ std::size_t emit_pool(Builder& builder, const Node& node, std::span<const Node>)
 
 std::size_t emit_global_pool(Builder& builder, const Node& node, std::span<const Node>) {
   const Shape input = builder.operand(node, 0).desc.dims();
-  if (input.size() < 3 || input.size() > 5) refuse(node, "has an input that is no image");
+  if (input.size() < 3 || input.size() > 5) refuse(node, "has an input that is not an image");
   const Shape extents = spatial(input), ones(extents.size(), 1), zeros(extents.size(), 0);
   const algorithm kind =
       node.op == "GlobalMaxPool" ? algorithm::pooling_max : algorithm::pooling_avg_exclude_padding;
@@ -54,7 +54,7 @@ std::size_t emit_global_pool(Builder& builder, const Node& node, std::span<const
   return 0;
 }
 
-/// The shape that a Resize makes: from its sizes (input 3) or its scales (input 2; input 1 of
+/// The shape of a Resize's result: from its sizes (input 3) or its scales (input 2, or input 1 of
 /// Upsample).
 Shape resized(const Builder& builder, const Node& node, const Shape& input) {
   const bool old = node.op == "Upsample";
@@ -71,12 +71,13 @@ Shape resized(const Builder& builder, const Node& node, const Shape& input) {
   const bool fits = shape.size() == input.size() && shape.size() >= 3 && shape.size() <= 5 &&
                     shape[0] == input[0] && shape[1] == input[1];
   if (!fits || onnx::elements(shape) == 0)
-    refuse(node, fmt::format("makes {} of {}", onnx::to_string(shape), onnx::to_string(input)));
+    refuse(node,
+           fmt::format("cannot resize {} to {}", onnx::to_string(input), onnx::to_string(shape)));
   return shape;
 }
 
-/// oneDNN samples at the pixels' centres (half_pixel). For enlargements by whole numbers that is
-/// also what the other ways of saying "nearest" come to.
+/// oneDNN samples at the centres of pixels (half_pixel). For integer factors, the other modes of
+/// "nearest" have the same result.
 algorithm resampling_of(const Node& node, const Shape& input, const Shape& result) {
   const std::string mode = node.text("mode", "nearest");
   const std::string where = node.text("coordinate_transformation_mode",

@@ -11,26 +11,26 @@ using dnnl::algorithm;
 
 namespace {
 
-/// Clip's bounds: attributes until operator set 10, inputs since.
-Bend clip(const Builder& builder, const Node& node) {
+/// The bounds of a Clip are attributes up to operator set 10, inputs since 11.
+Activation clip(const Builder& builder, const Node& node) {
   const auto bound = [&](const char* attribute, std::size_t input, float otherwise) {
     const onnx::Tensor* tensor = builder.constant(node, input);
     if (!tensor) return node.number(attribute, otherwise);
-    if (tensor->floats.size() != 1) refuse(node, "has a bound that is no single number");
+    if (tensor->floats.size() != 1) refuse(node, "has a bound that is not a single number");
     return tensor->floats[0];
   };
   return {algorithm::eltwise_clip, bound("min", 1, std::numeric_limits<float>::lowest()),
           bound("max", 2, std::numeric_limits<float>::max())};
 }
 
-using MakeBend = std::function<Bend(const Builder&, const Node&)>;
+using MakeActivation = std::function<Activation(const Builder&, const Node&)>;
 
-MakeBend fixed(Bend bend) {
-  return [bend](const Builder&, const Node&) { return bend; };
+MakeActivation fixed(Activation activation) {
+  return [activation](const Builder&, const Node&) { return activation; };
 }
 
-const std::map<std::string, MakeBend>& bends() {
-  static const std::map<std::string, MakeBend> table{
+const std::map<std::string, MakeActivation>& activations() {
+  static const std::map<std::string, MakeActivation> table{
       {"Relu", fixed({algorithm::eltwise_relu})},
       {"Sigmoid", fixed({algorithm::eltwise_logistic})},
       {"Tanh", fixed({algorithm::eltwise_tanh})},
@@ -45,34 +45,36 @@ const std::map<std::string, MakeBend>& bends() {
       {"Clip", clip},
       {"LeakyRelu",
        [](const Builder&, const Node& node) {
-         return Bend{algorithm::eltwise_relu, node.number("alpha", 0.01f)};
+         return Activation{algorithm::eltwise_relu, node.number("alpha", 0.01f)};
        }},
       {"Elu",
        [](const Builder&, const Node& node) {
-         return Bend{algorithm::eltwise_elu, node.number("alpha", 1)};
+         return Activation{algorithm::eltwise_elu, node.number("alpha", 1)};
        }},
   };
   return table;
 }
 
-/// The other operand of an addition to `result`; nothing where it does not spread over it.
+/// The other operand of an addition to `result`; nothing if it cannot be broadcast to it.
 std::optional<PostOp> addition(Builder& builder, const Node& node, const std::string& result,
                                const Shape& shape) {
   const Value other = builder.operand(node, node.inputs[0] == result ? 1 : 0);
-  const Shape own = Builder::shape_of(other);
-  if (own == shape) return PostOp{PostOp::kSum, other, {}};
-  const bool as_it_lies = other.desc == plain_desc(own);
-  if (own.size() > shape.size() || !as_it_lies || !spreads_over(widened(own, shape.size()), shape))
+  const Shape added = Builder::shape_of(other);
+  if (added == shape) return PostOp{PostOp::kSum, other, {}};
+  const bool is_plain = other.desc == plain_desc(added);
+  if (added.size() > shape.size() || !is_plain ||
+      !broadcasts_to(widened(added, shape.size()), shape))
     return std::nullopt;
-  return PostOp{PostOp::kSpreadAdd, {plain_desc(widened(own, shape.size())), other.buffer}, {}};
+  return PostOp{
+      PostOp::kBroadcastAdd, {plain_desc(widened(added, shape.size())), other.buffer}, {}};
 }
 
-/// Slopes of one a channel.
+/// A PRelu with one slope per channel; nothing if it has others.
 std::optional<PostOp> prelu(Builder& builder, const Node& node, const Shape& shape) {
   const onnx::Tensor* tensor = builder.constant(node, 1);
   if (!tensor || shape.size() < 2 || static_cast<std::int64_t>(tensor->floats.size()) != shape[1])
     return std::nullopt;
-  if (!spreads_over(widened(tensor->shape, shape.size()), shape)) return std::nullopt;
+  if (!broadcasts_to(widened(tensor->shape, shape.size()), shape)) return std::nullopt;
   Shape per_channel(shape.size(), 1);
   per_channel[1] = shape[1];
   const auto desc = plain_desc(per_channel);
@@ -81,9 +83,9 @@ std::optional<PostOp> prelu(Builder& builder, const Node& node, const Shape& sha
 
 }  // namespace
 
-std::optional<Bend> bend_of(const Builder& builder, const Node& node) {
-  const auto found = bends().find(node.op);
-  if (found == bends().end()) return std::nullopt;
+std::optional<Activation> activation_of(const Builder& builder, const Node& node) {
+  const auto found = activations().find(node.op);
+  if (found == activations().end()) return std::nullopt;
   return found->second(builder, node);
 }
 
@@ -93,7 +95,7 @@ Shape widened(const Shape& shape, std::size_t rank) {
   return result;
 }
 
-bool spreads_over(const Shape& from, const Shape& to) {
+bool broadcasts_to(const Shape& from, const Shape& to) {
   if (from.size() != to.size()) return false;
   for (std::size_t i = 0; i < from.size(); ++i)
     if (from[i] != to[i] && from[i] != 1) return false;
@@ -111,8 +113,8 @@ std::vector<PostOp> post_ops(Builder& builder, std::span<const Node> tail,
       op = addition(builder, node, name, shape);
     } else if (node.op == "PRelu") {
       op = prelu(builder, node, shape);
-    } else if (const auto bend = bend_of(builder, node)) {
-      op = PostOp{PostOp::kBend, {}, *bend};
+    } else if (const auto activation = activation_of(builder, node)) {
+      op = PostOp{PostOp::kActivation, {}, *activation};
     }
     if (!op || (op->kind == PostOp::kSum && std::exchange(has_sum, true))) break;
     ops.push_back(*op);
@@ -128,14 +130,14 @@ dnnl::primitive_attr attributes_with(std::span<const PostOp> ops) {
       case PostOp::kSum:
         list.append_sum();
         break;
-      case PostOp::kSpreadAdd:
+      case PostOp::kBroadcastAdd:
         list.append_binary(algorithm::binary_add, op.other.desc);
         break;
       case PostOp::kPrelu:
         list.append_prelu(1 << 1);
         break;
-      case PostOp::kBend:
-        list.append_eltwise(1, op.bend.algorithm, op.bend.alpha, op.bend.beta);
+      case PostOp::kActivation:
+        list.append_eltwise(1, op.activation.algorithm, op.activation.alpha, op.activation.beta);
         break;
     }
   }
@@ -144,18 +146,19 @@ dnnl::primitive_attr attributes_with(std::span<const PostOp> ops) {
   return attributes;
 }
 
-Landing land(Builder& builder, std::span<const PostOp> ops, const dnnl::memory::desc& desc) {
-  Landing landing;
+ResultPlace place_result(Builder& builder, std::span<const PostOp> ops,
+                         const dnnl::memory::desc& desc) {
+  ResultPlace place;
   for (int i = 0; i < static_cast<int>(ops.size()); ++i) {
     const int role = DNNL_ARG_ATTR_MULTIPLE_POST_OP(i);
-    if (ops[i].kind == PostOp::kSum) landing.output = builder.to_overwrite(ops[i].other, desc);
-    if (ops[i].kind == PostOp::kSpreadAdd)
-      landing.arguments.push_back({role | DNNL_ARG_SRC_1, ops[i].other});
+    if (ops[i].kind == PostOp::kSum) place.output = builder.to_overwrite(ops[i].other, desc);
+    if (ops[i].kind == PostOp::kBroadcastAdd)
+      place.arguments.push_back({role | DNNL_ARG_SRC_1, ops[i].other});
     if (ops[i].kind == PostOp::kPrelu)
-      landing.arguments.push_back({role | DNNL_ARG_WEIGHTS, ops[i].other});
+      place.arguments.push_back({role | DNNL_ARG_WEIGHTS, ops[i].other});
   }
-  if (landing.output.buffer < 0) landing.output = builder.make(desc);
-  return landing;
+  if (place.output.buffer < 0) place.output = builder.make(desc);
+  return place;
 }
 
 }  // namespace handcast::landmarks::onednn

@@ -6,40 +6,43 @@
 
 namespace handcast::landmarks::onednn {
 
-/// y = algorithm(x; alpha, beta) of each number.
-struct Bend {
+/// An elementwise function: y = algorithm(x; alpha, beta).
+struct Activation {
   dnnl::algorithm algorithm = dnnl::algorithm::undef;
   float alpha = 0, beta = 0;
 };
 
-/// What a node does to each number alone; nothing where it is no such node.
-std::optional<Bend> bend_of(const Builder& builder, const Node& node);
+/// The elementwise function of a node; nothing if it is another kind of node.
+std::optional<Activation> activation_of(const Builder& builder, const Node& node);
 
-/// One node that a primitive does to its result before it writes it.
+/// A node that a primitive applies to its result before writing it.
 struct PostOp {
-  enum Kind { kSum, kSpreadAdd, kPrelu, kBend } kind;
-  Value other;  ///< kSum: what lies where the result will lie; kSpreadAdd: what is added to it;
-                ///< kPrelu: the slopes
-  Bend bend;
+  enum Kind { kSum, kBroadcastAdd, kPrelu, kActivation } kind;
+  /// kSum: what is added, in the memory of the result; kBroadcastAdd: what is added; kPrelu: the
+  /// slopes.
+  Value other;
+  Activation activation;
 };
 
-/// What of `tail` can follow the value `result` of the given shape so.
+/// The nodes of `tail` that can be applied to the value `result` of this shape.
 std::vector<PostOp> post_ops(Builder& builder, std::span<const Node> tail,
                              const std::string& result, const Shape& shape);
 
+/// Attributes of a primitive that applies `ops`.
 dnnl::primitive_attr attributes_with(std::span<const PostOp> ops);
 
-/// The result's place and the arguments that the operations need: with a sum, the result overwrites
-/// (a copy of) what is added.
-struct Landing {
+/// The memory of a result and the arguments of its post-ops.
+struct ResultPlace {
   Value output;
   std::vector<Argument> arguments;
 };
-Landing land(Builder& builder, std::span<const PostOp> ops, const dnnl::memory::desc& desc);
+/// With a kSum, the result overwrites what is added, or a copy of it.
+ResultPlace place_result(Builder& builder, std::span<const PostOp> ops,
+                         const dnnl::memory::desc& desc);
 
-/// `shape` with extents of 1 in front, up to `rank`.
+/// `shape` with extents of 1 in front, so that it has `rank` axes.
 Shape widened(const Shape& shape, std::size_t rank);
-/// Whether each extent of `from` is that of `to`, or 1.
-bool spreads_over(const Shape& from, const Shape& to);
+/// Whether each extent of `from` is that of `to` or 1.
+bool broadcasts_to(const Shape& from, const Shape& to);
 
 }  // namespace handcast::landmarks::onednn

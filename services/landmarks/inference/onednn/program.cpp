@@ -18,13 +18,13 @@ int Program::add_buffer(std::size_t bytes) {
   return static_cast<int>(buffers_.size()) - 1;
 }
 
-void Program::reckon(std::size_t bytes) {
+void Program::claim(std::size_t bytes) {
   if (bytes > kMostBytes - bytes_) throw TooLarge{};
   bytes_ += bytes;
 }
 
 int Program::add_fixed_buffer(std::size_t bytes) {
-  reckon(bytes);
+  claim(bytes);
   buffers_.push_back({.bytes = bytes, .fixed = zeroed_bytes(bytes)});
   return static_cast<int>(buffers_.size()) - 1;
 }
@@ -58,8 +58,8 @@ void Program::note_lifetimes() {
   }
 }
 
-/// The largest first, each at the lowest offset where nothing that lives at the same time lies.
-/// Returns the size of the whole.
+/// Places the largest buffers first, each at the lowest offset that no buffer in use at the same
+/// time overlaps. Returns the size of the arena.
 std::size_t Program::place_buffers() {
   std::vector<int> order(buffers_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -101,7 +101,7 @@ void Program::bind() {
 void Program::finish() {
   note_lifetimes();
   const std::size_t bytes = std::max<std::size_t>(place_buffers(), 64);
-  reckon(bytes);
+  claim(bytes);
   arena_ = zeroed_bytes(bytes);
   bind();
 }

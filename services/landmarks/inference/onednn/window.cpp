@@ -9,7 +9,7 @@ namespace handcast::landmarks::onednn {
 
 namespace {
 
-constexpr std::int64_t kLargest = 4096;  ///< kernel, stride, dilation
+constexpr std::int64_t kLargest = 4096;  ///< extent of a kernel, stride, dilation, padding
 
 void check_range(const Node& node, const char* what, const Shape& values, std::size_t count,
                  std::int64_t least) {
@@ -19,9 +19,10 @@ void check_range(const Node& node, const char* what, const Shape& values, std::s
     if (value < least || value > kLargest) refuse(node, fmt::format("has {} of {}", what, value));
 }
 
-/// auto_pad SAME: as much as makes the result ceil(input / stride), the odd one before or after.
+/// Sets the padding of auto_pad SAME: the result has ceil(input / stride) extents, and an odd row
+/// of padding is before or after.
 void pad_to_same(const Node& node, Window& window, const Shape& input, bool odd_before) {
-  if (node.op == "ConvTranspose") refuse(node, "is padded automatically, which is not supported");
+  if (node.op == "ConvTranspose") refuse(node, "has auto_pad, which is not supported");
   for (std::size_t i = 0; i < window.kernel.size(); ++i) {
     const std::int64_t steps = (input[i + 2] + window.strides[i] - 1) / window.strides[i];
     const std::int64_t reach = window.dilations[i] * (window.kernel[i] - 1) + 1;
@@ -46,7 +47,7 @@ Window window_of(const Node& node, const Shape& input, const Shape& kernel) {
     refuse(node, fmt::format("has a kernel of {} over {}", onnx::to_string(kernel),
                              onnx::to_string(input)));
   if (node.integers("kernel_shape", kernel) != kernel)
-    refuse(node, "has weights of another size than its kernel");
+    refuse(node, "has weights of another shape than its kernel");
   Window window{kernel,
                 node.integers("strides", Shape(axes, 1)),
                 node.integers("dilations", Shape(axes, 1)),
@@ -71,12 +72,12 @@ Shape extents_after(const Node& node, Window& window, const Shape& input, bool c
     const std::int64_t stride = window.strides[i],
                        reach = window.dilations[i] * (window.kernel[i] - 1) + 1;
     if (std::max(window.before[i], window.after[i]) > reach)
-      refuse(node, "is padded beyond its kernel");
+      refuse(node, "has more padding than its kernel covers");
     const std::int64_t room = input[i + 2] + window.before[i] + window.after[i] - reach;
     if (room < 0)
       refuse(node, fmt::format("has a kernel larger than its input, {}", onnx::to_string(input)));
     std::int64_t steps = room / stride;
-    // A window may hang over the end, but must begin inside the input or the padding before it.
+    // A window may reach beyond the end, but must begin in the input or the padding before it.
     if (ceil && room % stride != 0 && (steps + 1) * stride < input[i + 2] + window.before[i])
       ++steps;
     window.after[i] += std::max<std::int64_t>(steps * stride - room, 0);

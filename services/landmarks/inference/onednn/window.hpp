@@ -4,24 +4,25 @@
 
 namespace handcast::landmarks::onednn {
 
-/// How a window moves over an image: for convolutions and pools. One number per spatial axis.
+/// The window of a convolution or a pool. One number per spatial axis.
 struct Window {
-  Shape kernel, strides, dilations, before, after;  ///< before, after: padding
+  Shape kernel, strides, dilations;
+  Shape before, after;  ///< padding
 
-  /// oneDNN counts the gaps, ONNX the steps.
+  /// oneDNN's dilations: the gaps between samples, where ONNX counts the steps.
   Shape gaps() const;
 };
 
-/// Refuses what no network means: strides of 0, padding beyond the kernel.
+/// The window of a node. Throws Refused if it is not valid (strides of 0, another number of axes).
 Window window_of(const Node& node, const Shape& input, const Shape& kernel);
 
-/// The spatial extents that come out; `ceil`: a window that hangs over the edge counts, and
-/// `window.after` grows to hold it.
+/// The spatial extents of the result. `ceil`: windows that reach beyond the edge count, and
+/// `window.after` is enlarged for them. Throws Refused if the padding exceeds the kernel.
 Shape extents_after(const Node& node, Window& window, const Shape& input, bool ceil = false);
 
-/// The extents after the first two.
+/// The spatial extents: all but the first two.
 Shape spatial(const Shape& shape);
-/// [batch, channels, extents...]
+/// The shape [batch, channels, extents...].
 Shape image_shape(std::int64_t batch, std::int64_t channels, const Shape& extents);
 
 }  // namespace handcast::landmarks::onednn

@@ -31,12 +31,12 @@ Result<void> check_constants(const Model& model) {
     const bool finite = std::all_of(tensor.floats.begin(), tensor.floats.end(),
                                     [](float value) { return std::isfinite(value); });
     if (!finite)
-      return wrong(fmt::format("the weights '{}' hold numbers that are not finite", name));
+      return wrong(fmt::format("the weights '{}' have values that are not finite", name));
   }
   return {};
 }
 
-/// What would make a program divide by zero or ask for the whole memory, whatever the operator.
+/// Checks the attributes with which any operator could divide by zero or exhaust the memory.
 Result<void> check_attributes(const Node& node) {
   struct Limits {
     const char* attribute;
@@ -62,20 +62,20 @@ Result<void> check_nodes(const Model& model) {
     if (!known.insert(port.name).second)
       return wrong(fmt::format("'{}' is given twice", port.name));
   for (const Node& node : model.nodes) {
-    if (node.outputs.empty()) return wrong(fmt::format("a node ({}) makes nothing", node.op));
+    if (node.outputs.empty()) return wrong(fmt::format("a node ({}) has no outputs", node.op));
     if (auto sound = check_attributes(node); !sound) return sound;
     for (const std::string& input : node.inputs)
       if (!input.empty() && !known.contains(input))
-        return wrong(
-            fmt::format("{} needs '{}', which is no weight, no input and made by no node before it",
-                        node.title(), input));
+        return wrong(fmt::format(
+            "{} needs '{}', which is not a weight, not an input and computed by no node before it",
+            node.title(), input));
     for (const std::string& output : node.outputs)
       if (!output.empty() && !known.insert(output).second)
-        return wrong(fmt::format("'{}' is made twice", output));
+        return wrong(fmt::format("'{}' is computed twice", output));
   }
   for (const Port& port : model.outputs)
     if (!known.contains(port.name))
-      return wrong(fmt::format("nothing makes its output '{}'", port.name));
+      return wrong(fmt::format("no node computes its output '{}'", port.name));
   return {};
 }
 
@@ -83,7 +83,7 @@ Result<void> check_nodes(const Model& model) {
 
 Result<void> check_model(const Model& model) {
   if (model.opset < kOldestOpset || model.opset > kNewestOpset)
-    return wrong(fmt::format("it is written for operator set {}; known are {} to {}", model.opset,
+    return wrong(fmt::format("it uses operator set {}; supported are {} to {}", model.opset,
                              kOldestOpset, kNewestOpset));
   if (model.inputs.empty() || model.outputs.empty())
     return wrong("its graph has no inputs or no outputs");

@@ -4,8 +4,8 @@
 
 namespace handcast::landmarks::onnx {
 
-/// That the graph is one: known extents, each value made once and before it is used, finite
-/// constants.
+/// Checks that the graph is valid: fixed extents, each value computed once and before it is used,
+/// finite constants. Errors: bad_config.
 Result<void> check_model(const Model& model);
 
 }  // namespace handcast::landmarks::onnx

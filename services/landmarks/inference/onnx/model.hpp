@@ -12,23 +12,28 @@
 
 namespace handcast::landmarks::onnx {
 
-using Shape = std::vector<std::int64_t>;  ///< empty: a scalar
+/// The extents of a tensor; a scalar has none.
+using Shape = std::vector<std::int64_t>;
 
-/// No tensor of a network for one core comes near it; a file that asks for more is broken.
+/// The most elements of a tensor. Networks for one core have far fewer; a file with more is
+/// damaged.
 constexpr std::int64_t kMostElements = std::int64_t{1} << 26;
 
-/// The product of the extents; 0 where one is below 1 or the product is beyond kMostElements.
+/// The product of the extents; 0 if an extent is below 1 or the product above kMostElements.
 std::int64_t elements(const Shape& shape);
+/// "[1,3,224,224]".
 std::string to_string(const Shape& shape);
 
-/// A constant: numbers, or whole numbers (shapes, axes); the other list is empty.
+/// A constant: floats or integers (shapes, axes); the other list is empty.
 struct Tensor {
   Shape shape;
   std::vector<float> floats;
   std::vector<std::int64_t> integers;
 };
 
+/// An attribute of a node. Its kind says which member holds the value.
 struct Attribute {
+  /// AttributeProto.AttributeType of the file.
   enum Kind : int {
     kNumber = 1,
     kInteger = 2,
@@ -36,7 +41,7 @@ struct Attribute {
     kTensor = 4,
     kNumbers = 6,
     kIntegers = 7
-  };  ///< as numbered in the file
+  };
   Kind kind = kInteger;
   std::int64_t integer = 0;
   float number = 0;
@@ -46,42 +51,50 @@ struct Attribute {
   Tensor tensor;
 };
 
+/// A node of the graph.
 struct Node {
-  std::string op;
-  std::vector<std::string> inputs;  ///< an empty name: an optional input left out
+  std::string op;                   ///< the name of its operator
+  std::vector<std::string> inputs;  ///< values by name; empty: an optional input that is not there
   std::vector<std::string> outputs;
   std::map<std::string, Attribute> attributes;
 
+  /// Whether it has this attribute.
   bool has(const std::string& attribute) const { return attributes.contains(attribute); }
+  /// The integer of an attribute; `otherwise` if it does not have it. The next three are alike.
   std::int64_t integer(const std::string& attribute, std::int64_t otherwise) const;
+  /// The float of an attribute.
   float number(const std::string& attribute, float otherwise) const;
+  /// The text of an attribute.
   std::string text(const std::string& attribute, const std::string& otherwise) const;
+  /// The integers of an attribute.
   std::vector<std::int64_t> integers(const std::string& attribute,
                                      const std::vector<std::int64_t>& otherwise) const;
+  /// Whether it has input `i`.
   bool has_input(std::size_t i) const { return i < inputs.size() && !inputs[i].empty(); }
   /// "Conv 'name of its first output'", for messages.
   std::string title() const;
 };
 
+/// An input or an output of the network.
 struct Port {
   std::string name;
   Shape shape;
 };
 
-/// What handcast uses of an ONNX file. Each value has one maker, and nodes stand after those that
-/// make their inputs.
+/// The parts of an ONNX file that handcast uses. Each value is computed by one node, and nodes come
+/// after those that compute their inputs.
 struct Model {
   std::int64_t opset = 0;
   std::vector<Node> nodes;
   std::map<std::string, Tensor> constants;
-  std::vector<Port> inputs, outputs;  ///< a free batch is read as 1
+  std::vector<Port> inputs, outputs;  ///< a free batch size is read as 1
 };
 
-/// Errors: bad_config, a sentence that starts with the file's name.
+/// Reads and checks a file. Errors: bad_config, a sentence that begins with the file's name.
 Result<Model> read_model(const std::filesystem::path& file);
-/// The same from memory; errors name no file.
+/// The same from memory; errors do not name a file.
 Result<Model> parse_model(std::span<const std::uint8_t> bytes);
-/// The model as an ONNX file's bytes.
+/// The model as the bytes of an ONNX file.
 std::vector<std::uint8_t> write_model(const Model& model);
 
 }  // namespace handcast::landmarks::onnx

@@ -16,7 +16,7 @@ namespace handcast::landmarks::onnx {
 
 namespace {
 
-/// Thrown inside this file only: parse_model() turns it into an error.
+/// An exception inside this file: parse_model() turns it into an error.
 struct Broken {
   std::string what;
 };
@@ -29,7 +29,7 @@ void each_field(Bytes message, const char* what, Visit&& visit) {
   WireReader reader(message);
   while (const auto field = reader.next()) visit(*field);
   if (reader.broken())
-    broken(fmt::format("it is no ONNX file, or a damaged one (the {} is cut off)", what));
+    broken(fmt::format("it is not an ONNX file, or damaged (the {} is cut off)", what));
 }
 
 void append_integers(const Field& field, std::vector<std::int64_t>& list) {
@@ -37,7 +37,7 @@ void append_integers(const Field& field, std::vector<std::int64_t>& list) {
   WireReader packed(field.bytes);
   while (!packed.at_end()) {
     const auto value = packed.varint();
-    if (!value) broken("it is damaged (a list of whole numbers is cut off)");
+    if (!value) broken("it is damaged (a list of integers is cut off)");
     list.push_back(static_cast<std::int64_t>(*value));
   }
 }
@@ -90,7 +90,7 @@ void append_raw(Bytes raw, std::int64_t type, Tensor& tensor) {
       return;
     default:
       broken(
-          fmt::format("a constant has numbers of type {}; known are float, float16, double, int32, "
+          fmt::format("a constant has type {}; supported are float, float16, double, int32, "
                       "int64 and bool",
                       type));
   }
@@ -98,13 +98,13 @@ void append_raw(Bytes raw, std::int64_t type, Tensor& tensor) {
 
 void check_size(const Tensor& tensor, const std::string& name) {
   if (!tensor.floats.empty() && !tensor.integers.empty())
-    broken(fmt::format("the constant '{}' holds both whole and other numbers", name));
+    broken(fmt::format("the constant '{}' has both integers and floats", name));
   const std::size_t given = tensor.floats.size() + tensor.integers.size();
-  // A list of nothing is what exporters write for "no region"; elements() is 0 of one that is too
-  // large as well.
+  // Exporters write an empty list for "no region"; elements() is also 0 for a tensor that is too
+  // large.
   const bool of_nothing = std::ranges::find(tensor.shape, 0) != tensor.shape.end();
   if (given != static_cast<std::size_t>(elements(tensor.shape)) || (given == 0 && !of_nothing))
-    broken(fmt::format("the constant '{}' is declared as {} and holds {} numbers", name,
+    broken(fmt::format("the constant '{}' is declared as {} and has {} values", name,
                        to_string(tensor.shape), given));
 }
 
@@ -148,7 +148,7 @@ Tensor read_tensor(Bytes message, std::string& name) {
     }
   });
   if (outside)
-    broken(fmt::format("the constant '{}' lies in another file, which is not supported", name));
+    broken(fmt::format("the constant '{}' is in another file, which is not supported", name));
   append_raw(raw, type, tensor);
   for (const std::int64_t word : words) {
     if (type == kFloat16)
@@ -219,7 +219,7 @@ Node read_node(Bytes message) {
   return node;
 }
 
-/// TensorShapeProto. A free extent (a name, or nothing) is 0.
+/// TensorShapeProto. A free extent (one with a name, or with neither) is 0.
 Shape read_shape(Bytes message) {
   Shape shape;
   each_field(message, "shape", [&](const Field& field) {
@@ -284,7 +284,7 @@ void read_graph(Bytes message, Model& model) {
         break;
     }
   });
-  // Before IR version 4 constants were listed among the inputs as well.
+  // Before IR version 4, constants are listed among the inputs, too.
   std::erase_if(model.inputs,
                 [&](const Port& port) { return model.constants.contains(port.name); });
 }
@@ -307,10 +307,10 @@ Result<Model> parse_model(std::span<const std::uint8_t> bytes) try {
   each_field(bytes, "model", [&](const Field& field) {
     if (field.number == 8) read_opset(field.bytes, model);
     if (field.number != 7) return;
-    if (std::exchange(has_graph, true)) broken("it holds two graphs");
+    if (std::exchange(has_graph, true)) broken("it has two graphs");
     read_graph(field.bytes, model);
   });
-  if (!has_graph) broken("it is no ONNX file: it holds no graph");
+  if (!has_graph) broken("it is not an ONNX file: it has no graph");
   if (auto sound = check_model(model); !sound) return tl::make_unexpected(sound.error());
   return model;
 } catch (const Broken& error) {

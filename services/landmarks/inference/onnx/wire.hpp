@@ -9,6 +9,7 @@
 
 namespace handcast::landmarks::onnx {
 
+/// A part of a file in memory.
 using Bytes = std::span<const std::uint8_t>;
 
 /// One field of a message in protobuf's wire format.
@@ -18,8 +19,11 @@ struct Field {
   Bytes bytes;              ///< of a string, a message or a packed list
   bool is_bytes = false;
 
+  /// The bytes as text.
   std::string text() const { return {bytes.begin(), bytes.end()}; }
+  /// The value as a signed number.
   std::int64_t integer() const { return static_cast<std::int64_t>(value); }
+  /// The value as a float.
   float number32() const {
     const auto bits = static_cast<std::uint32_t>(value);
     float result;
@@ -28,17 +32,19 @@ struct Field {
   }
 };
 
-/// Walks the fields of a message. Never reads beyond its bytes, whatever they hold.
+/// Iterates over the fields of a message. Never reads beyond its bytes, whatever they contain.
 class WireReader {
  public:
   explicit WireReader(Bytes bytes) : rest_(bytes) {}
 
-  /// Nothing at the end and where the bytes make no sense; broken() tells the two apart.
+  /// The next field; nothing at the end, and if the bytes are not a message: see broken().
   std::optional<Field> next();
+  /// Whether the bytes are not a message.
   bool broken() const { return broken_; }
 
-  /// Reads one bare varint: the element of a packed list.
+  /// Reads one varint without a key: an element of a packed list.
   std::optional<std::uint64_t> varint();
+  /// Whether all bytes have been read.
   bool at_end() const { return rest_.empty(); }
 
  private:
@@ -49,15 +55,21 @@ class WireReader {
   bool broken_ = false;
 };
 
-/// Appends fields to a message.
+/// Writes a message by appending fields.
 class WireWriter {
  public:
+  /// Appends a varint.
   void varint(std::uint32_t field, std::uint64_t value);
+  /// Appends a float.
   void number32(std::uint32_t field, float value);
+  /// Appends bytes.
   void bytes(std::uint32_t field, Bytes content);
+  /// Appends a string.
   void text(std::uint32_t field, const std::string& content);
+  /// Appends a message as a field of this one.
   void message(std::uint32_t field, const WireWriter& content) { bytes(field, content.bytes_); }
 
+  /// The bytes of the message.
   std::vector<std::uint8_t> take() && { return std::move(bytes_); }
 
  private:

@@ -108,9 +108,9 @@ TEST_F(ChartsTest, ARealDetectorStandsWithItsAgeAtTheTimeOfOurFrames) {
   const std::string columns =
       "twin.speed,interior_mm_mean,interior_mm_p95,motion_to_photon_ms,software_ms,frame_us_p50,"
       "detector_age_ms";
-  const auto ladder =
-      write_sweep(scratch_.path(), "ladder", columns,
-                  {"handcast,1,1,2,6.9,1.2,9999,16.2,", "own_network,1,2,4,6.9,1.2,9999,4.1,"});
+  const auto ladder = write_sweep(
+      scratch_.path(), "ladder", columns,
+      {"handcast,1,1,2,6.9,1.2,9999,16.2,", "handcast_network,1,2,4,6.9,1.2,9999,4.1,"});
   const auto times =
       write_sweep(scratch_.path(), "times", columns, {"handcast,1,1,2,6.9,1.2,1000,16.2,"});
   ASSERT_TRUE(write_charts(order({ladder, times})));

@@ -168,7 +168,7 @@ TEST(DetectorTally, CountsMissedAndInventedHandsAndTheErrorOfTheOthers) {
 TEST(SimulatedDetector, AMissingModelIsOneSentence) {
   const test::Scratch empty;
   Options options = options_of("twin", 1);
-  options.settings = {"landmarks.backend=onednn", "landmarks.models=" + empty.path().string()};
+  options.settings = {"landmarks.backend=mediapipe", "landmarks.models=" + empty.path().string()};
   const auto done = run(options);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::bad_config);
@@ -182,8 +182,8 @@ TEST(SimulatedDetector, ABackEndThatIsNotThereIsNamedBesideThoseThatAre) {
   options.settings = {"landmarks.backend=eagle"};
   const auto done = run(options);
   ASSERT_FALSE(done);
-  EXPECT_THAT(done.error().what,
-              AllOf(HasSubstr("eagle"), HasSubstr("onednn"), Not(HasSubstr("\n"))));
+  EXPECT_THAT(done.error().what, AllOf(HasSubstr("eagle"), HasSubstr("handcast, mediapipe, twin"),
+                                       Not(HasSubstr("\n"))));
 }
 
 TEST(SimulatedDetector, ARecordingsLandmarksAreOfOtherImagesSoTheTwinsModelStandsIn) {
@@ -195,9 +195,9 @@ TEST(SimulatedDetector, ARecordingsLandmarksAreOfOtherImagesSoTheTwinsModelStand
 TEST(SimulatedDetector, TheSameSeedGivesTheSameFiguresTwice) {
   SKIP_WITHOUT_MODELS();
   const auto figures = [](const std::string& seed) {
-    auto json = run_rig(
-        "twin", "builtin:open_close", 0.1,
-        {"landmarks.backend=onednn", "landmarks.models=" + models().string(), "twin.seed=" + seed});
+    auto json = run_rig("twin", "builtin:open_close", 0.1,
+                        {"landmarks.backend=mediapipe", "landmarks.models=" + models().string(),
+                         "twin.seed=" + seed});
     for (const char* time : {"frame_us", "stage_us"}) json.erase(time);
     EXPECT_TRUE(json["detector"]["ms_p50"].is_number());
     json["detector"].erase("ms_p50");
@@ -211,10 +211,10 @@ TEST(SimulatedDetector, TheSameSeedGivesTheSameFiguresTwice) {
 TEST(SimulatedDetector, ARealOneFollowsTheTwinsHandAndItsAgeIsTheOneThatIsSet) {
   SKIP_WITHOUT_MODELS();
   const auto json = run_rig("twin", "builtin:wave", 0.5,
-                            {"landmarks.backend=onednn", "landmarks.models=" + models().string(),
+                            {"landmarks.backend=mediapipe", "landmarks.models=" + models().string(),
                              "twin.detector.age_ms=8", "twin.detector.age_sd_ms=0"});
   const auto& detector = json["detector"];
-  EXPECT_EQ(detector["backend"], "onednn");
+  EXPECT_EQ(detector["backend"], "mediapipe");
   EXPECT_EQ(detector["missed"], 0);
   EXPECT_LT(detector["error_px"]["p50"], 15);
   // Every third frame: the newest one is 1.2 to 3.1 ms old when a run begins.

@@ -40,6 +40,10 @@ TEST(SimulateOptions, WithoutARigItSaysWhatToType) {
   EXPECT_THAT(options.error().what, HasSubstr("config/rigs/twin.toml"));
 }
 
+TEST(SimulateOptions, TheHelpNamesEveryLandmarkModel) {
+  EXPECT_THAT(help(), HasSubstr("--set landmarks.backend=handcast|mediapipe\n"));
+}
+
 TEST(SimulateOptions, AMissingValueIsNoted) { EXPECT_FALSE(parse({"rig.toml", "--json"})); }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/services/evaluation/sweep/plans.hpp"
@@ -50,6 +51,24 @@ TEST(Plan, ARunHasTheSettingsOfThePlanItsVariantAndItsPlaceInTheGrid) {
   EXPECT_EQ(rig->twin.motion, "builtin:still");
   EXPECT_EQ(rig->twin.speed, 2.5);
   EXPECT_EQ(rig_of(*plan, runs[0])->cascade.filter.method, config::Rig().cascade.filter.method);
+}
+
+TEST(Plan, AnOldFormOfASettingIsReportedOnceAtItsLineAndRunInItsNewForm) {
+  testing::internal::CaptureStderr();
+  const auto plan =
+      plan_of("[settings]\nlandmarks.backend = \"opencv\"\n[grid]\ntwin.speed = [1, 2, 3]\n");
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto expansion = expand(*plan);
+  ASSERT_TRUE(expansion) << expansion.error().what;
+  for (const auto& run : expansion->runs) {
+    const auto rig = rig_of(*plan, run);
+    ASSERT_TRUE(rig) << rig.error().what;
+    EXPECT_EQ(rig->landmarks.backend, "mediapipe");
+    EXPECT_EQ(rig->landmarks.executor, config::Executor::opencv);
+  }
+  const auto log = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(log, HasSubstr("/plans/test.toml:3: landmarks.backend = \"opencv\" is now"));
+  EXPECT_EQ(std::ranges::count(log, '\n'), 1) << log;
 }
 
 TEST(Plan, WithoutVariantsAndGridItIsOneRunOfItsRig) {

@@ -23,7 +23,6 @@ class Detect : public testing::Test {
   void SetUp() override {
     SKIP_WITHOUT_MODELS();
     SKIP_WITHOUT_CAPTURES();
-    options_.backend = "opencv";
     options_.models = test::models();
     options_.quiet = true;
     for (const int number : {1, 6}) {
@@ -138,11 +137,11 @@ TEST_F(Detect, SaysWhatItCannotUse) {
   EXPECT_THAT(refused(options), HasSubstr("is missing; scripts/get-models"));
   options = options_;
   options.backend = "abacus";
-  EXPECT_THAT(refused(options), HasSubstr("no back end 'abacus'; this build has: onednn, opencv"));
+  EXPECT_THAT(refused(options), HasSubstr("no landmark model 'abacus'; there are: handcast, medi"));
 }
 
-TEST_F(Detect, OurOwnNetworkNeedsNoFileFromOutsideWhereATrackerIs) {
-  options_.backend = "own";
+TEST_F(Detect, HandcastsModelNeedsNoFileFromOutsideIfThereIsATracker) {
+  options_.backend = "handcast";
   options_.models = scratch_.path();
   options_.joints = joints_;
   const auto text = run(options_);
@@ -151,7 +150,25 @@ TEST_F(Detect, OurOwnNetworkNeedsNoFileFromOutsideWhereATrackerIs) {
   EXPECT_THAT(*text, HasSubstr("6_camera.png: 1 hand, "));
 }
 
-TEST_F(Detect, IsAVerbWithTheHousesExitCodes) {
+TEST(DetectOptions, AnOldNameOfABackEndIsTheCurrentOneAndMayNameTheExecutor) {
+  using config::Executor;
+  const auto set = [](const std::string& name) {
+    Options options;
+    testing::internal::CaptureStderr();
+    set_backend(options, name);
+    return std::tuple(options.backend, options.executor, testing::internal::GetCapturedStderr());
+  };
+  EXPECT_EQ(set("handcast"), std::tuple("handcast", Executor::onednn, ""));
+  EXPECT_EQ(set("own"),
+            std::tuple("handcast", Executor::onednn,
+                       "handcast detect: landmarks.backend = \"own\" is now \"handcast\"\n"));
+  EXPECT_EQ(set("opencv"),
+            std::tuple("mediapipe", Executor::opencv,
+                       "handcast detect: landmarks.backend = \"opencv\" is now \"mediapipe\" with "
+                       "landmarks.executor = \"opencv\"\n"));
+}
+
+TEST_F(Detect, IsAVerbWithTheUsualExitCodes) {
   const char* bin = std::getenv("HANDCAST_BIN");
   const std::string program = std::string(bin ? bin : "bin") + "/handcast-detect ";
   if (!fs::exists(program.substr(0, program.size() - 1)))
@@ -160,12 +177,11 @@ TEST_F(Detect, IsAVerbWithTheHousesExitCodes) {
     return WEXITSTATUS(std::system((program + arguments + " >/dev/null 2>&1").c_str()));
   };
   EXPECT_EQ(exit_code("--help"), 0);
-  EXPECT_EQ(
-      exit_code("--backend opencv --model " + options_.models + " " + options_.images[0].string()),
-      0);
-  EXPECT_EQ(exit_code("--backend opencv --model " + scratch_.path().string() + " " +
-                      options_.images[0].string()),
-            100);
+  const std::string image = " " + options_.images[0].string();
+  EXPECT_EQ(exit_code("--backend mediapipe --executor onednn --model " + options_.models + image),
+            0);
+  EXPECT_EQ(exit_code("--backend mediapipe --model " + scratch_.path().string() + image), 100);
+  EXPECT_NE(exit_code("--executor abacus --model " + options_.models + image), 0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/settings/choice.hpp"
 #include "tests/services/landmarks/inference/little_model.hpp"
 
 namespace handcast::landmarks {
@@ -197,14 +198,14 @@ void expect_near(std::span<const float> actual, const std::vector<float>& expect
     ASSERT_NEAR(actual[i], expected[i], 2e-5) << what << " at " << i;
 }
 
-class EveryBackEnd : public testing::TestWithParam<NetworkBackend> {};
-INSTANTIATE_TEST_SUITE_P(, EveryBackEnd,
-                         testing::ValuesIn(network_backends().begin(), network_backends().end()),
-                         [](const auto& entry) { return std::string(entry.param.name); });
+class EveryExecutor : public testing::TestWithParam<config::Executor> {};
+INSTANTIATE_TEST_SUITE_P(, EveryExecutor, testing::ValuesIn(executors()), [](const auto& named) {
+  return std::string(config::word_of(named.param));
+});
 
-TEST_P(EveryBackEnd, CalculatesWhatTheLoopsCalculate) {
+TEST_P(EveryExecutor, CalculatesWhatTheLoopsCalculate) {
   const onnx::Model model = every_layer();
-  const auto network = open_network(GetParam().name, ModelFile(model).path());
+  const auto network = open_network(GetParam(), ModelFile(model).path());
   ASSERT_TRUE(network) << network.error().what;
   for (unsigned seed = 20; seed < 25; ++seed) {
     fill((*network)->input(0), seed);
@@ -215,8 +216,8 @@ TEST_P(EveryBackEnd, CalculatesWhatTheLoopsCalculate) {
   }
 }
 
-TEST_P(EveryBackEnd, LeavesItsInputAsItWasAndForgetsThePreviousRun) {
-  const auto network = open_network(GetParam().name, ModelFile(every_layer()).path());
+TEST_P(EveryExecutor, LeavesItsInputAsItWasAndForgetsThePreviousRun) {
+  const auto network = open_network(GetParam(), ModelFile(every_layer()).path());
   ASSERT_TRUE(network) << network.error().what;
   Network& net = **network;
   const auto run_with = [&](unsigned seed) {
@@ -254,9 +255,9 @@ onnx::Model residual_model(bool needed_later) {
   return model;
 }
 
-TEST_P(EveryBackEnd, ASumIsNotWrittenOverWhatIsStillConvolved) {
+TEST_P(EveryExecutor, ASumIsNotWrittenOverWhatIsStillConvolved) {
   const onnx::Model model = residual_model(false);
-  const auto network = open_network(GetParam().name, ModelFile(model).path());
+  const auto network = open_network(GetParam(), ModelFile(model).path());
   ASSERT_TRUE(network) << network.error().what;
   fill((*network)->input(0), 3);
   ASSERT_TRUE((*network)->run());
@@ -267,9 +268,9 @@ TEST_P(EveryBackEnd, ASumIsNotWrittenOverWhatIsStillConvolved) {
   expect_near((*network)->output(0), y.values, "residual");
 }
 
-TEST_P(EveryBackEnd, ASumIsNotWrittenOverWhatIsNeededLater) {
+TEST_P(EveryExecutor, ASumIsNotWrittenOverWhatIsNeededLater) {
   const onnx::Model model = residual_model(true);
-  const auto network = open_network(GetParam().name, ModelFile(model).path());
+  const auto network = open_network(GetParam(), ModelFile(model).path());
   ASSERT_TRUE(network) << network.error().what;
   fill((*network)->input(0), 3);
   ASSERT_TRUE((*network)->run());
@@ -296,9 +297,9 @@ onnx::Model padded_model() {
   return model;
 }
 
-TEST_P(EveryBackEnd, PadsWithZerosEveryTime) {
+TEST_P(EveryExecutor, PadsWithZerosEveryTime) {
   const onnx::Model model = padded_model();
-  const auto network = open_network(GetParam().name, ModelFile(model).path());
+  const auto network = open_network(GetParam(), ModelFile(model).path());
   ASSERT_TRUE(network) << network.error().what;
   for (unsigned seed = 3; seed < 6; ++seed) {
     fill((*network)->input(0), seed);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/training/generator.hpp"
 
 /// What is asked of the network that is shipped, on images of people and poses that it was not
@@ -19,28 +20,29 @@ std::filesystem::path shipped() { return std::filesystem::path(HANDCAST_SHIPPED_
 class Shipped : public testing::Test {
  protected:
   void SetUp() override {
-    auto opened = open_network("opencv", shipped());
+    auto opened = open_network(config::Executor::onednn, shipped());
     ASSERT_TRUE(opened) << opened.error().what;
     network_ = std::move(*opened);
   }
 
-  own::Answer look(const Sample& sample, const std::optional<own::Places>& tracker) {
+  handcast_network::Answer estimate(const Sample& sample,
+                                    const std::optional<handcast_network::Places>& tracker) {
     const auto image = network_->input(0);
     for (std::size_t i = 0; i < sample.image.size(); ++i)
-      image[i] = sample.image[i] / Sample::kUnit - own::kShownShift;
-    own::write_tracker(tracker, network_->input(1));
+      image[i] = sample.image[i] / Sample::kUnit - handcast_network::kShownShift;
+    handcast_network::write_tracker(tracker, network_->input(1));
     EXPECT_TRUE(network_->run());
-    return own::read_answer(network_->output(0));
+    return handcast_network::read_answer(network_->output(0));
   }
 
   float presence_in(std::uint8_t (*pixel)(Dice&)) {
     Dice dice(1, 1);
-    std::vector<std::uint8_t> pixels(own::kSide_px * own::kSide_px);
+    std::vector<std::uint8_t> pixels(handcast_network::kSide_px * handcast_network::kSide_px);
     for (auto& p : pixels) p = pixel(dice);
-    own::write_image(pixels, msg::Side::right, network_->input(0));
-    own::write_tracker(std::nullopt, network_->input(1));
+    handcast_network::write_image(pixels, msg::Side::right, network_->input(0));
+    handcast_network::write_tracker(std::nullopt, network_->input(1));
     EXPECT_TRUE(network_->run());
-    return own::read_answer(network_->output(0)).presence;
+    return handcast_network::read_answer(network_->output(0)).presence;
   }
 
   std::unique_ptr<Network> network_;
@@ -73,12 +75,12 @@ TEST_F(Shipped, FindsLandmarksAndTheTrackerHelpsIt) {
   for (int n = 0; n < kImages; ++n) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
     if (!sample.has_hand || !sample.has_tracker) continue;
-    const auto off = [&](const own::Places& places) {
-      return distance_px(places, sample.truth) * own::kSide_px;
+    const auto off = [&](const handcast_network::Places& places) {
+      return distance_px(places, sample.truth) * handcast_network::kSide_px;
     };
     errors.tracker.push_back(off(sample.tracker));
-    errors.with.push_back(off(look(sample, sample.tracker).places));
-    errors.without.push_back(off(look(sample, std::nullopt).places));
+    errors.with.push_back(off(estimate(sample, sample.tracker).places));
+    errors.without.push_back(off(estimate(sample, std::nullopt).places));
   }
   EXPECT_LT(median(errors.with), 3.0f);
   EXPECT_LT(mean(errors.with), 0.5f * mean(errors.tracker));
@@ -90,8 +92,8 @@ TEST_F(Shipped, ItsSigmasSayHowFarOffItIs) {
   for (int n = 0; n < kImages; ++n) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
     if (!sample.has_hand) continue;
-    const own::Answer answer =
-        look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt);
+    const handcast_network::Answer answer =
+        estimate(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt);
     for (int i = 0; i < msg::kLandmarks; ++i)
       for (int axis = 0; axis < 2; ++axis, ++all) {
         const float off =
@@ -109,8 +111,8 @@ TEST_F(Shipped, TellsAHandFromNone) {
   for (int n = 0; n < 2 * kImages; ++n) {
     const Sample sample = generator().make(static_cast<std::uint64_t>(n));
     const bool says_hand =
-        look(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt).presence >
-        0.5f;
+        estimate(sample, sample.has_tracker ? std::optional(sample.tracker) : std::nullopt)
+            .presence > 0.5f;
     ++(sample.has_hand ? hands : others);
     if (says_hand) ++(sample.has_hand ? seen : imagined);
   }

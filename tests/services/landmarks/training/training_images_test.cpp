@@ -46,10 +46,11 @@ TEST(TrainingImages, AnotherSeedMakesOtherImages) {
 glm::vec2 middle_of_cover(const Scene& scene, const Region& region) {
   glm::vec2 sum(0);
   float weight = 0;
-  for (int y = 0; y < own::kSide_px; ++y)
-    for (int x = 0; x < own::kSide_px; ++x) {
-      const float cover = scene.cover()[y * own::kSide_px + x];
-      sum += cover * ((glm::vec2(x, y) + 0.5f) / static_cast<float>(own::kSide_px) - 0.5f);
+  for (int y = 0; y < handcast_network::kSide_px; ++y)
+    for (int x = 0; x < handcast_network::kSide_px; ++x) {
+      const float cover = scene.cover()[y * handcast_network::kSide_px + x];
+      sum += cover *
+             ((glm::vec2(x, y) + 0.5f) / static_cast<float>(handcast_network::kSide_px) - 0.5f);
       weight += cover;
     }
   return region.to_image(sum / weight);
@@ -84,17 +85,18 @@ TEST(TrainingImages, LabelsLieOnTheHand) {
     const Pose pose = draw_pose(dice, person);
     const auto joints = moved(draw_view(dice, pose.joints), pose.joints);
     const Points truth_px = project(camera, joints);
-    const Region region = own::region_around(truth_px);
+    const Region region = handcast_network::region_around(truth_px);
     const Light light(dice, glm::vec3(joints[9][3]));
     Scene scene(camera, region);
     scene.add_hand(dice, person, joints, light);
     scene.draw(dice, light);
-    const own::Places places = own::to_places(region, msg::Side::right, truth_px);
+    const handcast_network::Places places =
+        handcast_network::to_places(region, msg::Side::right, truth_px);
     for (int i = 0; i < msg::kLandmarks; ++i) {
       if (i > 0 && i % 4 == 0) continue;  // tips lie on the outline
-      const glm::ivec2 px =
-          glm::clamp(glm::ivec2(places[i] * float(own::kSide_px)), 0, own::kSide_px - 1);
-      on_hand += scene.cover()[px.y * own::kSide_px + px.x] > 0;
+      const glm::ivec2 px = glm::clamp(glm::ivec2(places[i] * float(handcast_network::kSide_px)), 0,
+                                       handcast_network::kSide_px - 1);
+      on_hand += scene.cover()[px.y * handcast_network::kSide_px + px.x] > 0;
       ++all;
     }
   }

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "services/landmarks/inference/onnx/model.hpp"
+
+namespace handcast::landmarks::onnx {
+
+/// Rewrites what OpenCV 4.6 does not support without changing the network's function: Clip with
+/// bounds as inputs, Squeeze with axes as an input, Gemm with weights that are not transposed.
+/// Removes constants that are no longer used.
+void adapt_for_opencv(Model& model);
+
+}  // namespace handcast::landmarks::onnx

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "ipc/msg/hand_poses.hpp"
+#include "services/landmarks/geometry/points.hpp"
+#include "services/landmarks/geometry/region.hpp"
+
+/// The inputs and the output of handcast's own landmark network (training/MODEL_CARD.md). The
+/// training uses the same functions. Functions without state; any thread.
+namespace handcast::landmarks::handcast_network {
+
+inline constexpr int kSide_px = 96;    ///< side of the crop
+inline constexpr int kMapCells = 24;   ///< cells along a side of a tracker map
+inline constexpr int kHeatCells = 12;  ///< cells along a side of a heat map
+
+/// The upright square around all 21 points (landmarks of a moment ago, or the tracker's joints),
+/// with a margin for their errors.
+Region region_around(const Points& points_px);
+
+/// The 21 points in the crop, 0..1 from its upper left corner. The network knows right hands only,
+/// so left hands are mirrored.
+using Places = std::array<glm::vec2, msg::kLandmarks>;
+/// From the image to the crop.
+Places to_places(const Region& region, msg::Side side, const Points& points_px);
+/// From the crop to the image.
+Points to_image(const Region& region, msg::Side side, const Places& places);
+
+/// The input value of each grey value: its ratio to the 98th percentile of the crop's `pixels`, at
+/// most kMostShown, less kShownShift.
+std::array<float, 256> shown_values(std::span<const std::uint8_t> pixels);
+inline constexpr float kMostShown = 1.5f, kShownShift = 0.4f;
+
+/// Fills the first input, kSide_px x kSide_px, from the pixels of a crop.
+void write_image(std::span<const std::uint8_t> pixels, msg::Side side, std::span<float> input);
+/// Fills the second input, kLandmarks x kMapCells x kMapCells: one map per joint of the tracker
+/// with a Gaussian at its place, or zeros if there is no tracker.
+void write_tracker(const std::optional<Places>& tracker, std::span<float> input);
+
+/// The decoded output.
+struct Answer {
+  Places places{};
+  std::array<float, msg::kLandmarks> sigma{};  ///< scale of a Laplace distribution per axis, as a
+                                               ///< fraction of the crop's side
+  float presence = 0;                          ///< 0..1: how likely there is a hand
+};
+/// Decodes the output, (2 x kLandmarks + 1) x kHeatCells x kHeatCells.
+Answer read_answer(std::span<const float> output);
+
+}  // namespace handcast::landmarks::handcast_network

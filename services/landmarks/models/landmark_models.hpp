@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "config/sections/executor.hpp"
+#include "config/settings/setting_list.hpp"
+#include "services/landmarks/models/landmark_model.hpp"
+#include "services/landmarks/models/mediapipe_palm_network.hpp"
+
+namespace handcast::landmarks {
+
+/// What a model is opened with.
+struct ModelOptions {
+  config::Executor executor = config::Executor::onednn;
+  std::filesystem::path folder;  ///< of MediaPipe's files; see models_folder()
+  std::filesystem::path
+      handcast_network;  ///< file of handcast's network; empty: the one that comes with handcast
+};
+
+/// A model, and the network that searches a whole image for hands that neither the tracker nor the
+/// last image shows.
+struct OpenedModel {
+  std::unique_ptr<LandmarkModel> landmarks;
+  std::optional<MediapipePalmNetwork> palms;
+};
+
+/// A row of the table of landmark models.
+struct LandmarkModelRow {
+  std::string_view name;      ///< as landmarks.backend has it
+  std::string_view sentence;  ///< what it is, for handcast-landmarks --backends
+  Result<OpenedModel> (*open)(const ModelOptions& options);  ///< see open_landmark_model()
+  config::SettingList reads;                                 ///< the settings that it depends on
+};
+
+/// All landmark models.
+std::span<const LandmarkModelRow> landmark_models();
+
+/// Opens the model called `name`. Errors: bad_config (no such model; a file is missing or holds
+/// another network; the executor cannot run it).
+Result<OpenedModel> open_landmark_model(std::string_view name, const ModelOptions& options);
+
+}  // namespace handcast::landmarks

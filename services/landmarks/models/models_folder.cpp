@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/landmarks/models/models_folder.hpp"
+
+#include <cstdlib>
+
+namespace handcast::landmarks {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path from_environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+fs::path users_folder() {
+  fs::path data = from_environment("XDG_DATA_HOME");
+  if (data.empty()) data = from_environment("HOME") / ".local" / "share";
+  return data / "handcast" / "models";
+}
+
+fs::path installed_folder() {
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  return (program.parent_path() / ".." / "share" / "handcast" / "models").lexically_normal();
+}
+
+}  // namespace
+
+fs::path models_folder(const std::string& configured) {
+  if (!configured.empty()) return configured;
+  if (auto named = from_environment("HANDCAST_MODELS"); !named.empty()) return named;
+  std::error_code ignored;
+  if (fs::is_directory(installed_folder(), ignored)) return installed_folder();
+  return users_folder();
+}
+
+}  // namespace handcast::landmarks

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every landmark model of the table does in every executor.
+#include "services/landmarks/models/landmark_models.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/landmarks/inference/network.hpp"
+#include "services/landmarks/training/trial.hpp"
+#include "tests/services/landmarks/pictures.hpp"
+
+namespace handcast::landmarks {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using training::Trial;
+
+class EveryModel : public testing::TestWithParam<LandmarkModelRow> {
+ protected:
+  void SetUp() override {
+    if (GetParam().name == "mediapipe") SKIP_WITHOUT_MODELS();
+  }
+  Result<OpenedModel> open(config::Executor executor) {
+    return open_landmark_model(GetParam().name, {.executor = executor, .folder = test::models()});
+  }
+  /// In the region around the true landmarks.
+  static LandmarkEstimate estimate(LandmarkModel& model, const Trial& trial) {
+    EstimateTimes times;
+    auto estimate = model.estimate(trial.image.view(), model.region_around(trial.truth_px),
+                                   trial.side, trial.tracker_px, times);
+    EXPECT_TRUE(estimate) << estimate.error().what;
+    return estimate.value_or(LandmarkEstimate{});
+  }
+  static const Trial& trial() {
+    static const Trial kTrial = *training::Trials::open("builtin:open_close", 1)->make(1, 10);
+    return kTrial;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(, EveryModel,
+                         testing::ValuesIn(landmark_models().begin(), landmark_models().end()),
+                         [](const auto& named) { return std::string(named.param.name); });
+
+TEST_P(EveryModel, EstimatesAHandInEveryExecutorAlike) {
+  const auto first = open(executors().front());
+  ASSERT_TRUE(first) << first.error().what;
+  const auto reference = estimate(*first->landmarks, trial());
+  EXPECT_GT(reference.presence, 0.9f);
+  EXPECT_LT(distance_px(reference.points_px, trial().truth_px),
+            0.15f * palm_length_px(trial().truth_px));
+  for (const auto executor : executors()) {
+    const auto opened = open(executor);
+    ASSERT_TRUE(opened) << opened.error().what;
+    const auto other = estimate(*opened->landmarks, trial());
+    EXPECT_LT(distance_px(reference.points_px, other.points_px), 0.01f);
+    EXPECT_NEAR(reference.presence, other.presence, 1e-4f);
+  }
+}
+
+TEST_P(EveryModel, HasTheTraitsItSays) {
+  const auto opened = open(executors().front());
+  ASSERT_TRUE(opened) << opened.error().what;
+  LandmarkModel& model = *opened->landmarks;
+  const auto traits = model.traits();
+  const auto hand = estimate(model, trial());
+  EXPECT_EQ(hand.left_score != 0.5f, traits.scores_sides);
+  Trial other = trial();
+  other.tracker_px = shifted(other.tracker_px, {60, 0});
+  const auto elsewhere = estimate(model, other);
+  EXPECT_EQ(hand.points_px != elsewhere.points_px, traits.reads_tracker);
+  EXPECT_GE(traits.passes_at_first, 1);
+}
+
+TEST(LandmarkModels, AnUnknownOneIsRefusedAndTheKnownOnesAreNamed) {
+  const auto opened = open_landmark_model("abacus", {});
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().code, Errc::bad_config);
+  EXPECT_THAT(opened.error().what,
+              AllOf(HasSubstr("'abacus'"), HasSubstr("there are: handcast, mediapipe")));
+}
+
+}  // namespace
+}  // namespace handcast::landmarks
