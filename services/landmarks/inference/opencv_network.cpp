@@ -17,6 +17,7 @@ namespace {
 
 std::vector<Network::Port> ports_of(const std::vector<onnx::Port>& ports) {
   std::vector<Network::Port> result;
+  result.reserve(ports.size());
   for (const onnx::Port& port : ports)
     result.push_back({port.name, {port.shape.begin(), port.shape.end()}});
   return result;

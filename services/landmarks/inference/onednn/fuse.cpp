@@ -76,6 +76,7 @@ std::vector<Group> fuse(const onnx::Model& model) {
   for (std::size_t i = 0; i < model.nodes.size(); ++i)
     if (!taken[i]) by_place.emplace(i, Group{model.nodes[i], {}});
   std::vector<Group> groups;
+  groups.reserve(by_place.size());
   for (auto& [place, group] : by_place) groups.push_back(std::move(group));
   return groups;
 }
