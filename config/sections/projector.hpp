@@ -20,7 +20,7 @@ struct Projector {
 template <class Visitor>
 void describe(Visitor& visitor, Projector& projector) {
   visitor.field("backend", projector.backend,
-                "The output device; `handcast-projector --backends` lists those of this build.");
+                "The output device; `handcast-projector --backends` lists them.");
   visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"),
                 "Frames per second requested from the projector.");
   visitor.field("latency_ms", projector.latency_ms, between(0, 200, "ms"),

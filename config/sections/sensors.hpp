@@ -35,7 +35,7 @@ struct Camera {
 template <class Visitor>
 void describe(Visitor& visitor, Camera& camera) {
   visitor.field("backend", camera.backend,
-                "The source of frames; `handcast-camera --backends` lists those of this build.");
+                "The source of frames; `handcast-camera --backends` lists them.");
   visitor.field("rate_hz", camera.rate_hz, between(1, 2000, "Hz"),
                 "Frames per second requested from the camera.");
   visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"),
@@ -56,7 +56,7 @@ struct Pose {
 template <class Visitor>
 void describe(Visitor& visitor, Pose& pose) {
   visitor.field("backend", pose.backend,
-                "The source of hand poses; `handcast-pose --backends` lists those of this build.");
+                "The source of hand poses; `handcast-pose --backends` lists them.");
   visitor.section("replay", pose.replay,
                   "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and "
                   "bones_{left,right}.npy.");

@@ -113,6 +113,18 @@ function(handcast_program name)
   endif()
 endfunction()
 
+# handcast_service(name ...): the daemon handcast-NAME, see handcast_program(). Its description is
+# made by the program itself and installed with it.
+function(handcast_service name)
+  handcast_program(handcast-${name} ${ARGN})
+  set(folder ${CMAKE_BINARY_DIR}/share/handcast/services)
+  add_custom_command(TARGET handcast-${name} POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
+    COMMAND handcast-${name} --describe > ${folder}/${name}.json
+    BYPRODUCTS ${folder}/${name}.json)
+  install(FILES ${folder}/${name}.json DESTINATION share/handcast/services)
+endfunction()
+
 # handcast_test([SUFFIX word] SOURCES a_test.cpp ... USES folder ... [LIBRARIES target ...] [NEEDS target ...] [TIMEOUT seconds]
 #               [LABELS ...])
 #

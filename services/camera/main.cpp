@@ -9,10 +9,10 @@ using service::must;
 /// Publishes the images of the camera to the ring camera.frames.
 static void run_camera(service::Context& context) {
   if (service::is_exclusive(context.rig().camera.backend, camera::camera_backends()))
-    context.stand_by({"camera.frames"});
+    context.stand_by();
   const auto source =
       must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns()));
-  context.stand_by({"camera.frames"});
+  context.stand_by();
   auto frames = must(context.writer<msg::CameraFrame>("camera.frames"));
 
   context.ready();
@@ -36,7 +36,11 @@ static void run_camera(service::Context& context) {
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"camera", "Delivers the frames of the infrared camera.",
-                                         service::names_of(camera::camera_backends())};
-  return service::run(description, argc, argv, run_camera);
+  return service::run({.name = "camera",
+                       .summary = "Delivers the frames of the infrared camera.",
+                       .paced_by = "its device",
+                       .publishes = {"camera.frames"},
+                       .settings = {"camera.rate_hz", "camera.exposure_ms"},
+                       .backends = service::describe_rows(camera::camera_backends())},
+                      argc, argv, run_camera);
 }

@@ -21,10 +21,10 @@ static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPo
 /// arrive during a detection are skipped.
 static void run_landmarks(service::Context& context) {
   if (service::is_exclusive(context.rig().landmarks.backend, landmarks::detector_backends()))
-    context.stand_by({"camera.frames", "pose.hands", "landmarks.hands"});
+    context.stand_by();
   const auto detector =
       must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns()));
-  context.stand_by({"camera.frames", "pose.hands", "landmarks.hands"});
+  context.stand_by();
   auto frames = must(context.reader<msg::CameraFrame>("camera.frames"));
   auto poses = context.reader<msg::HandPoses>("pose.hands");
   landmarks::TrackerHints tracker(context.calibration());
@@ -54,8 +54,11 @@ static void run_landmarks(service::Context& context) {
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"landmarks",
-                                         "Finds the landmarks of the hands in camera images.",
-                                         service::names_of(landmarks::detector_backends())};
-  return service::run(description, argc, argv, run_landmarks);
+  return service::run({.name = "landmarks",
+                       .summary = "Finds the landmarks of the hands in camera images.",
+                       .paced_by = "camera.frames",
+                       .publishes = {"landmarks.hands"},
+                       .subscribes = {"camera.frames", "pose.hands"},
+                       .backends = service::describe_rows(landmarks::detector_backends())},
+                      argc, argv, run_landmarks);
 }

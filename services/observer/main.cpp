@@ -5,6 +5,7 @@
 
 #include "config/settings/files.hpp"
 #include "ipc/daemon/contract.hpp"
+#include "services/evaluation/twin/settings.hpp"
 #include "services/observer/judge.hpp"
 #include "services/observer/live_score.hpp"
 #include "services/runtime/context.hpp"
@@ -43,7 +44,7 @@ static void run_observer(service::Context& context) {
   if (::nice(10) == -1) log::debug("the priority cannot be lowered");
   auto judge =
       must(observer::LiveJudge::create(context.rig(), context.calibration(), context.epoch_ns()));
-  context.stand_by({"projection.frames"});
+  context.stand_by();
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
   if (!has_truth(context.rig()))
     log::warning(
@@ -74,8 +75,19 @@ static void run_observer(service::Context& context) {
   save(scores, context);
 }
 
+/// The true hand comes from the twin's world, if there is one.
+static std::vector<std::string> settings() {
+  const auto world = twin::kWorldSettings.paths();
+  std::vector<std::string> all{"observer", "camera.backend", "pose.backend"};
+  all.insert(all.end(), world.begin(), world.end());
+  return all;
+}
+
 int main(int argc, char** argv) {
-  const service::Description description{
-      "observer", "Scores the projected light against the true hand of the twin.", {"twin"}};
-  return service::run(description, argc, argv, run_observer);
+  return service::run({.name = "observer",
+                       .summary = "Scores the projected light against the true hand of the twin.",
+                       .paced_by = "observer.rate_hz",
+                       .subscribes = {"projection.frames"},
+                       .settings = settings()},
+                      argc, argv, run_observer);
 }

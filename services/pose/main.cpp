@@ -9,11 +9,10 @@ using service::must;
 /// Publishes the samples of the hand tracker to the ring pose.hands, also those without a hand, so
 /// that readers see that the tracker works.
 static void run_pose(service::Context& context) {
-  if (service::is_exclusive(context.rig().pose.backend, pose::pose_backends()))
-    context.stand_by({"pose.hands"});
+  if (service::is_exclusive(context.rig().pose.backend, pose::pose_backends())) context.stand_by();
   const auto source =
       must(pose::open_pose_source(context.rig(), context.calibration(), context.epoch_ns()));
-  context.stand_by({"pose.hands"});
+  context.stand_by();
   auto hands = must(context.writer<msg::HandPoses>("pose.hands"));
 
   context.ready();
@@ -30,7 +29,10 @@ static void run_pose(service::Context& context) {
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"pose", "Delivers the hand poses of the tracker.",
-                                         service::names_of(pose::pose_backends())};
-  return service::run(description, argc, argv, run_pose);
+  return service::run({.name = "pose",
+                       .summary = "Delivers the hand poses of the tracker.",
+                       .paced_by = "its device",
+                       .publishes = {"pose.hands"},
+                       .backends = service::describe_rows(pose::pose_backends())},
+                      argc, argv, run_pose);
 }

@@ -29,12 +29,10 @@ static void run_projector(service::Context& context) {
   const auto& rig = context.rig();
   const auto pipeline =
       must(renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, context.calibration()));
-  const auto stand_by = [&] {
-    context.stand_by({"projection.frames", "camera.frames", "pose.hands", "landmarks.hands"});
-  };
-  if (service::is_exclusive(rig.projector.backend, projector::projector_backends())) stand_by();
+  if (service::is_exclusive(rig.projector.backend, projector::projector_backends()))
+    context.stand_by();
   const auto projector = must(projector::open_projector(rig));
-  stand_by();
+  context.stand_by();
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
@@ -67,8 +65,12 @@ static void run_projector(service::Context& context) {
 }
 
 int main(int argc, char** argv) {
-  const service::Description description{"projector",
-                                         "Projects light onto the hands that the sensors see.",
-                                         service::names_of(projector::projector_backends())};
-  return service::run(description, argc, argv, run_projector);
+  return service::run({.name = "projector",
+                       .summary = "Projects light onto the hands that the sensors see.",
+                       .paced_by = "projector.rate_hz",
+                       .publishes = {"projection.frames"},
+                       .subscribes = {"camera.frames", "pose.hands", "landmarks.hands"},
+                       .settings = {"projector", "content", "hand", "cascade"},
+                       .backends = service::describe_rows(projector::projector_backends())},
+                      argc, argv, run_projector);
 }

@@ -11,6 +11,7 @@
 #include "config/settings/join.hpp"
 #include "config/settings/setting_list.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/daemon/description.hpp"
 
 namespace handcast::service {
 
@@ -31,19 +32,17 @@ struct Backend {
   bool exclusive = false;
 };
 
-/// A row without its code: what a program tells about itself.
-struct BackendInfo {
-  std::string_view name;      ///< Backend::name
-  std::string_view sentence;  ///< Backend::sentence
-  config::SettingList reads;  ///< Backend::reads
-  bool exclusive = false;     ///< Backend::exclusive
-};
-
 /// The rows of a table without their code, in its order.
 template <class Row>
-std::vector<BackendInfo> describe_rows(std::span<const Row> table) {
-  std::vector<BackendInfo> rows;
-  for (const Row& row : table) rows.push_back({row.name, row.sentence, row.reads, row.exclusive});
+std::vector<daemon::BackendDescription> describe_rows(std::span<const Row> table) {
+  std::vector<daemon::BackendDescription> rows;
+  for (const Row& row : table) {
+    const auto reads = row.reads.paths();
+    rows.push_back({.name = std::string(row.name),
+                    .sentence = std::string(row.sentence),
+                    .settings = {reads.begin(), reads.end()},
+                    .exclusive = row.exclusive});
+  }
   return rows;
 }
 

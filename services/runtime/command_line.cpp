@@ -33,6 +33,8 @@ Result<CommandLine> parse_command_line(int argc, const char* const* argv) {
       line.task = Task::version;
     else if (option == "--backends")
       line.task = Task::backends;
+    else if (option == "--describe")
+      line.task = Task::describe;
     else if (!takes_value(option))
       return fail(Errc::bad_config,
                   fmt::format("unknown argument '{}'; --help lists the known ones", option));

@@ -9,7 +9,7 @@ namespace handcast::service {
 
 /// What a daemon was asked on its command line.
 struct CommandLine {
-  enum class Task { serve, help, version, backends };
+  enum class Task { serve, help, version, backends, describe };
 
   Task task = Task::serve;
   std::string config_file;            ///< --config FILE

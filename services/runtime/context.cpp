@@ -24,17 +24,19 @@ void give_up(const Error& error) {
   std::_Exit(exit_code_of(error));
 }
 
-Context::Context(std::string name, config::Rig rig, calib::Calibration calibration)
-    : name_(std::move(name)),
+Context::Context(const daemon::ServiceDescription& description, config::Rig rig,
+                 calib::Calibration calibration)
+    : description_(description),
       rig_(std::move(rig)),
       calibration_(calibration),
-      supervision_(daemon::Supervision::from_environment(name_)) {
-  wait_ = config::process_of(rig_, name_).wait;
+      supervision_(daemon::Supervision::from_environment(description.name)) {
+  description_.publishes.push_back(daemon::marks_stream_of(description.name));
+  wait_ = config::process_of(rig_, description.name).wait;
   if (!supervision_.is_spare()) open_marks();
 }
 
 void Context::open_marks() {
-  const auto stream = daemon::marks_stream_of(name_);
+  const auto stream = daemon::marks_stream_of(description_.name);
   if (!supervision_.has_ring(stream)) return;
   auto marks = writer<msg::StageMarks>(stream);
   if (marks)
@@ -43,17 +45,20 @@ void Context::open_marks() {
     log::warning("stage marks are dropped: {}", marks.error().what);
 }
 
-void Context::stand_by(std::initializer_list<std::string_view> streams) {
+void Context::stand_by() {
   if (!supervision_.is_spare()) return;
-  std::vector<std::string> needed(streams.begin(), streams.end());
-  needed.push_back(daemon::marks_stream_of(name_));
-  for (const auto& stream : needed)
-    if (auto segment = open_segment(stream)) mapped_.emplace(stream, std::move(*segment));
+  for (const auto* streams : {&description_.subscribes, &description_.publishes})
+    for (const auto& stream : *streams)
+      if (auto segment = open_segment(stream)) mapped_.emplace(stream, std::move(*segment));
   supervision_.await_turn();
   open_marks();
 }
 
-Result<ipc::Segment> Context::take_segment(std::string_view stream) {
+Result<ipc::Segment> Context::take_segment(std::string_view stream,
+                                           const std::vector<std::string>& described) {
+  if (std::ranges::find(described, stream) == described.end())
+    return fail(Errc::bad_config, fmt::format("ring '{}' is not in the description of {}", stream,
+                                              description_.name));
   if (const auto mapped = mapped_.extract(std::string(stream))) return std::move(mapped.mapped());
   return open_segment(stream);
 }

@@ -2,7 +2,6 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/daemon/description.hpp"
 #include "ipc/daemon/supervision.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/reader.hpp"
@@ -43,28 +43,30 @@ class Context {
   /// The time of the rig's start, the same for every daemon of the rig: time zero of the twin.
   std::int64_t epoch_ns() const { return supervision_.epoch_ns(); }
 
-  /// A spare gets it in its turn: see stand_by().
+  /// The ring's writer. A spare gets it in its turn: see stand_by(). Errors: bad_config (the
+  /// description does not name the ring, or there is none), those of ipc::Writer::attach().
   template <class T>
   Result<ipc::Writer<T>> writer(std::string_view stream) {
     stand_by();
-    auto segment = take_segment(stream);
+    auto segment = take_segment(stream, description_.publishes);
     if (!segment) return tl::make_unexpected(segment.error());
     return ipc::Writer<T>::attach(std::move(*segment));
   }
-  /// Without a `wait`: as the service's [NAME.process] says.
+  /// A reader of the ring. Without a `wait`: as the service's [NAME.process] says. Errors: see
+  /// writer().
   template <class T>
   Result<ipc::Reader<T>> reader(std::string_view stream,
                                 std::optional<ipc::Wait> wait = std::nullopt) {
-    auto segment = take_segment(stream);
+    auto segment = take_segment(stream, description_.subscribes);
     if (!segment) return tl::make_unexpected(segment.error());
     return ipc::Reader<T>::attach(std::move(*segment), wait.value_or(wait_));
   }
 
   /// A spare waits here for its turn, everybody else passes. Call it after all preparation that a
   /// second process may do at the same time (models, pictures, memory), before what only one may
-  /// have: writers, devices. The memory of `streams`, which it will need, is made ready before the
-  /// wait. A daemon that never calls it waits at its first writer, or in ready().
-  void stand_by(std::initializer_list<std::string_view> streams = {});
+  /// have: writers, devices. The memory of the rings in its description is mapped before the wait.
+  /// A daemon that never calls it waits at its first writer, or in ready().
+  void stand_by();
   /// Tells the supervisor that the daemon works: call it once, after everything that can fail at
   /// start-up.
   void ready();
@@ -78,14 +80,16 @@ class Context {
   void mark(const msg::Header& frame, std::span<const msg::StageMark> stages,
             const msg::MadeFrom& made_from = {});
 
-  Context(std::string name, config::Rig rig, calib::Calibration calibration);
+  Context(const daemon::ServiceDescription& description, config::Rig rig,
+          calib::Calibration calibration);
 
  private:
-  Result<ipc::Segment> take_segment(std::string_view stream);
+  Result<ipc::Segment> take_segment(std::string_view stream,
+                                    const std::vector<std::string>& described);
   Result<ipc::Segment> open_segment(std::string_view stream) const;
   void open_marks();
 
-  std::string name_;
+  daemon::ServiceDescription description_;
   config::Rig rig_;
   calib::Calibration calibration_;
   daemon::Supervision supervision_;
@@ -96,16 +100,13 @@ class Context {
   std::uint64_t complaints_ = 0;
 };
 
-/// What a daemon tells about itself: `--help`, `--version`, `--backends`.
-struct Description {
-  std::string_view name;                   ///< "camera"
-  std::string_view summary;                ///< one sentence for --help
-  std::vector<std::string_view> backends;  ///< names, in the order of the table
-};
+/// A daemon's description, completed with what every daemon reads: the calibration, its back end's
+/// name and its [NAME.process].
+daemon::ServiceDescription complete(daemon::ServiceDescription description);
 
 /// The main of every daemon: parses the command line, loads the rig, runs `body`, turns its errors
-/// into exit codes.
-int run(const Description& description, int argc, char** argv,
+/// into exit codes. `description` needs not be complete().
+int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body);
 
 }  // namespace handcast::service

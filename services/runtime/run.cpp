@@ -12,20 +12,21 @@
 namespace handcast::service {
 namespace {
 
-void print_help(const Description& description) {
+void print_help(const daemon::ServiceDescription& description) {
   fmt::print(
       "handcast-{} — {}\n\n"
       "usage: handcast-{} --config RIG.toml [--set path=value]...\n\n"
       "  --config FILE      the rig\n"
       "  --set path=value   a setting that overrides the file's; may be repeated\n"
-      "  --backends         the back ends of this build, one name a line\n"
+      "  --backends         the back ends of this build, one a line\n"
+      "  --describe         what it reads and publishes, as JSON\n"
       "  --version, --help\n\n"
       "`handcast up RIG.toml` starts this program together with the rest of the rig and hands it "
       "its rings.\n",
       description.name, description.summary, description.name);
 }
 
-int serve(const Description& description, const CommandLine& line,
+int serve(const daemon::ServiceDescription& description, const CommandLine& line,
           const std::function<void(Context&)>& body) {
   daemon::install_stop_signals();
   auto rig = must(config::load_rig(line.config_file, line.settings));
@@ -33,7 +34,7 @@ int serve(const Description& description, const CommandLine& line,
        must(apply_scheduling(config::process_of(rig, description.name), description.name)))
     log::warning("{}", note);
   auto calibration = must(calib::load_calibration(rig.calibration));
-  Context context(std::string(description.name), std::move(rig), calibration);
+  Context context(description, std::move(rig), calibration);
   body(context);
   log::info("stopped");
   return kExitDone;
@@ -41,7 +42,15 @@ int serve(const Description& description, const CommandLine& line,
 
 }  // namespace
 
-int run(const Description& description, int argc, char** argv,
+daemon::ServiceDescription complete(daemon::ServiceDescription description) {
+  auto& settings = description.settings;
+  settings.push_back("calibration");
+  if (!description.backends.empty()) settings.push_back(description.name + ".backend");
+  settings.push_back(description.name + ".process");
+  return description;
+}
+
+int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body) try {
   using Task = CommandLine::Task;
   log::set_program(description.name);
@@ -54,7 +63,10 @@ int run(const Description& description, int argc, char** argv,
       fmt::print("handcast-{} {}\n", description.name, version());
       return kExitDone;
     case Task::backends:
-      for (const auto name : description.backends) fmt::print("{}\n", name);
+      fmt::print("{}", daemon::print_backends(description));
+      return kExitDone;
+    case Task::describe:
+      fmt::print("{}", daemon::print_description(complete(description)));
       return kExitDone;
     case Task::serve:
       break;

@@ -37,7 +37,6 @@ struct Plan {
   std::vector<int> inherited;  ///< descriptors that exec does not close
   Pipe log, ready;
   Pipe turn;  ///< of a spare
-  bool log_errors = true;
 };
 
 tl::unexpected<Error> cannot(std::string_view what) {
@@ -78,7 +77,6 @@ void hand_over(const daemon::Handover& handover, Plan& plan) {
 
 Result<Plan> make_plan(const ChildSpec& spec) {
   Plan plan;
-  plan.log_errors = spec.log_errors;
   plan.arguments.push_back(spec.program.string());
   plan.arguments.insert(plan.arguments.end(), spec.arguments.begin(), spec.arguments.end());
 
@@ -117,8 +115,7 @@ class SpawnActions {
     posix_spawn_file_actions_init(&files_);
     posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDOUT_FILENO);
-    if (plan.log_errors)
-      posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDERR_FILENO);
     for (const int fd : plan.inherited)
       posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: exec does not close it
 
@@ -244,25 +241,6 @@ std::optional<Exit> Child::try_reap_adopted() {
   if (!exit && !hopeless) return std::nullopt;
   reaped_ = true;
   return exit.value_or(Exit{.unknown = true});
-}
-
-Result<std::string> output_of(const std::filesystem::path& program,
-                              const std::vector<std::string>& arguments, int limit_ms) {
-  auto child = Child::spawn({.program = program, .arguments = arguments, .log_errors = false});
-  if (!child) return tl::make_unexpected(child.error());
-
-  const auto deadline = Deadline::in(std::chrono::milliseconds(limit_ms));
-  std::string output;
-  std::array<char, 4096> bytes;
-  while (!deadline.passed()) {
-    pollfd readable{.fd = child->log_fd(), .events = POLLIN};
-    poll(&readable, 1, limit_ms);
-    const auto count = read(child->log_fd(), bytes.data(), bytes.size());
-    if (count == 0) return output;
-    if (count > 0) output.append(bytes.data(), static_cast<std::size_t>(count));
-  }
-  return fail(Errc::unavailable,
-              fmt::format("{} did not answer within {} ms", program.string(), limit_ms));
 }
 
 }  // namespace handcast::supervisor

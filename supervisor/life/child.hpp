@@ -24,8 +24,7 @@ struct ChildSpec {
   std::vector<std::string> arguments;
   daemon::Rings rings;  ///< the supervisor's descriptors, which the daemon inherits
   std::int64_t epoch_ns = 0;
-  bool spare = false;      ///< it prepares everything and waits for its turn
-  bool log_errors = true;  ///< stderr is read with stdout; otherwise it is this process's own
+  bool spare = false;  ///< it prepares everything and waits for its turn
 };
 
 /// One process of a daemon, leader of its own session. It goes on if the supervisor dies;
@@ -80,10 +79,5 @@ class Child {
   std::int64_t ended_ns_ = 0;       ///< of an adopted process: when its end was seen
   UniqueFd pidfd_, log_, ready_, turn_;
 };
-
-/// The standard output of a short command. Errors: bad_config (no such program), unavailable (it
-/// did not end within `limit_ms`, and was killed).
-Result<std::string> output_of(const std::filesystem::path& program,
-                              const std::vector<std::string>& arguments, int limit_ms);
 
 }  // namespace handcast::supervisor

@@ -11,6 +11,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/base/version.hpp"
 #include "ipc/daemon/contract.hpp"
+#include "ipc/daemon/description.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "ipc/daemon/supervision.hpp"
 #include "ipc/msg/stage_mark.hpp"
@@ -28,6 +29,13 @@ constexpr std::string_view kHelp =
     "handcast-exporter — Serves a rig's figures to Prometheus on this machine.\n\n"
     "usage: handcast-exporter --config RIG.toml [--set path=value]...\n\n"
     "`handcast up RIG.toml` starts it if supervisor.metrics_port is not 0.\n";
+
+daemon::ServiceDescription describe() {
+  return {.name = std::string(kName),
+          .summary = "Serves a rig's figures to Prometheus on this machine.",
+          .paced_by = "whoever asks",
+          .settings = {"supervisor.metrics_port"}};
+}
 
 /// The ring that shows the supervisor that this process lives. Empty if there is no supervisor.
 Heart open_heart(const daemon::Supervision& supervision) {
@@ -82,10 +90,14 @@ int main(int argc, char** argv) {
   using namespace handcast;
   log::set_program(supervisor::kName);
   const auto options = supervisor::sort_options(
-      {argv + 1, argv + argc},
-      {.with_value = {"--config", "--set"}, .flags = {"--help", "--version", "--backends"}});
+      {argv + 1, argv + argc}, {.with_value = {"--config", "--set"},
+                                .flags = {"--help", "--version", "--backends", "--describe"}});
   if (!options) return supervisor::give_up(options.error());
   if (options->has("--backends")) return kExitDone;  // it has none to choose from
+  if (options->has("--describe")) {
+    fmt::print("{}", daemon::print_description(supervisor::describe()));
+    return kExitDone;
+  }
   if (options->has("--help")) fmt::print("{}", supervisor::kHelp);
   if (options->has("--version")) fmt::print("handcast-exporter {}\n", version());
   if (options->has("--help") || options->has("--version")) return kExitDone;

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "supervisor/rig/known_backends.hpp"
+#include "supervisor/rig/present_backend.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
@@ -19,7 +19,7 @@ void Changes::swap(Service& service, const std::string& word, ControlServer::Rep
   const auto name = service.spec().name;
   const auto backend = present_backend(name, word, rig_.config);
   if (!backend) return reply(failure(backend.error().what));
-  if (const auto known = check_backend(rig_.launch.program_folder, name, *backend); !known)
+  if (const auto known = check_backend(rig_.catalogue, name, *backend); !known)
     return reply(failure(known.error().what));
   pending_[name] = {std::move(reply), *backend, service.spec().backend};
   give_backend(service, *backend, true);
@@ -28,7 +28,8 @@ void Changes::swap(Service& service, const std::string& word, ControlServer::Rep
 /// Restarts a service with another back end, and remembers with which settings that is.
 void Changes::give_backend(Service& service, const std::string& backend, bool on_trial) {
   auto spec = service.spec();
-  spec.fingerprint = fingerprint_of(spec.name, with_backend(rig_.config, spec.name, backend));
+  spec.fingerprint =
+      fingerprint_of(spec.name, with_backend(rig_.config, spec.name, backend), rig_.catalogue);
   service.update(spec);
   service.use_backend(backend, on_trial);
 }

@@ -9,6 +9,7 @@
 #include "supervisor/rig/ring_set.hpp"
 #include "supervisor/rig/service_table.hpp"
 #include "supervisor/rig/status.hpp"
+#include "supervisor/spec/catalogue.hpp"
 
 namespace handcast::supervisor {
 
@@ -35,6 +36,7 @@ struct LiveRig {
   Phase phase = Phase::starting;
   std::int64_t started_ns;
   Launch launch;
+  Catalogue catalogue;  ///< of the services that are installed
   RingSet rings;
   Recorder recorder;
   ServiceTable services;

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "supervisor/rig/known_backends.hpp"
+#include "supervisor/spec/catalogue.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
@@ -34,7 +34,7 @@ config::Rig with_swaps(const LiveRig& rig, config::Rig wanted) {
 
 ReloadPlan plan_reload(const LiveRig& rig, config::Rig wanted, bool revives) {
   ReloadPlan plan;
-  plan.specs = services_of(with_swaps(rig, wanted));
+  plan.specs = services_of(with_swaps(rig, wanted), rig.catalogue);
   plan.changed = config::print_rig(wanted) != config::print_rig(rig.config);
   plan.config = std::move(wanted);
   for (const auto& service : rig.services.all())
@@ -64,8 +64,7 @@ Result<void> check_reload(const LiveRig& rig, const ReloadPlan& plan) {
   for (const auto& spec : plan.specs) {
     const auto* service = rig.services.find(spec.name);
     if (!service || service->spec().backend == spec.backend) continue;
-    if (auto known = check_backend(rig.launch.program_folder, spec.name, spec.backend); !known)
-      return known;
+    if (auto known = check_backend(rig.catalogue, spec.name, spec.backend); !known) return known;
   }
   return {};
 }

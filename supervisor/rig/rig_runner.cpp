@@ -48,6 +48,7 @@ RigRunner::RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop)
            .stop = [this] { begin_stop(kExitDone); }}) {
   rig_.launch.program_folder = options_.program_folder;
   rig_.launch.reports = &reports_;
+  rig_.catalogue = read_catalogue(catalogue_folder(options_.program_folder));
 }
 
 Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOptions options) {
@@ -107,7 +108,7 @@ Result<void> RigRunner::make_parts() {
   reports_.read();
   end_strays(reports_, *adopted, options_.program_folder);
 
-  const auto specs = services_of(rig_.config);
+  const auto specs = services_of(rig_.config, rig_.catalogue);
   if (const auto made = make_rings_and_file(*adopted, specs); !made) {
     if (!*adopted) return made;
     return fail(made.error().code, fmt::format("what lives of rig '{0}' cannot be taken over: {1}; "

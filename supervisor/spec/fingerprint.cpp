@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "config/settings/files.hpp"
@@ -14,48 +15,8 @@
 namespace handcast::supervisor {
 namespace {
 
-using Paths =
-    std::vector<std::string_view>;  ///< sections (with those inside them) and single settings
-
-/// What a service depends on with one of its back ends.
-struct Reads {
-  std::string_view service;
-  std::string_view backend;  ///< "": with each
-  Paths paths;
-};
-
-/// The true person and motion (services/evaluation/twin/twin.cpp), without which Twin::create
-/// fails.
-const Paths kTruth{"twin.motion", "twin.hands", "twin.speed", "twin.seed", "twin.shape", "hand"};
-const Paths kEveryDaemon{"calibration"};
-
-const std::vector<Reads>& table() {
-  static const std::vector<Reads> kTable{
-      {"camera", "", {"camera.backend", "camera.rate_hz", "camera.exposure_ms", "camera.process"}},
-      {"camera", "replay", {"camera.replay"}},
-      {"camera", "twin", kTruth},
-      {"camera", "twin", {"twin.image"}},
-      {"pose", "", {"pose.backend", "pose.process"}},
-      {"pose", "replay", {"pose.replay"}},
-      {"pose", "twin", kTruth},
-      {"pose", "twin", {"twin.tracker"}},
-      {"landmarks", "", {"landmarks.backend", "landmarks.process"}},
-      {"landmarks", "replay", {"landmarks.replay"}},
-      {"landmarks", "handcast", {"landmarks.executor", "landmarks.models", "landmarks.hands"}},
-      {"landmarks",
-       "mediapipe",
-       {"landmarks.executor", "landmarks.models", "landmarks.hands", "landmarks.definition"}},
-      {"landmarks", "twin", kTruth},
-      {"landmarks",
-       "twin",
-       {"twin.detector", "twin.image.delivery_ms", "camera.rate_hz", "camera.exposure_ms"}},
-      {"projector", "", {"projector", "content", "hand", "cascade"}},
-      {"observer", "", {"observer", "camera.backend", "pose.backend"}},
-      {"observer", "", kTruth},
-      {"exporter", "", {"supervisor.metrics_port"}},
-  };
-  return kTable;
-}
+/// Sections (with those inside them) and single settings.
+using Paths = std::vector<std::string>;
 
 /// Files that are small and may change under their names: their content counts, too.
 const Paths kFiles{"calibration", "hand.left", "hand.right", "content.left", "content.right"};
@@ -72,24 +33,21 @@ bool is_within(std::string_view path, std::string_view section) {
 }
 
 bool is_in(std::string_view path, const Paths& paths) {
-  return std::ranges::any_of(paths, [&](auto section) { return is_within(path, section); });
+  return std::ranges::any_of(paths, [&](const auto& section) { return is_within(path, section); });
 }
 
-/// A service or back end that is not in the table depends on everything: it is restarted too often
-/// rather than too seldom.
-bool reads(std::string_view service, std::string_view backend, std::string_view path) {
-  bool has_backends = false, knows_backend = false, found = is_in(path, kEveryDaemon),
-       knows_service = false;
-  for (const auto& line : table()) {
-    if (line.service != service) continue;
-    knows_service = true;
-    has_backends = has_backends || !line.backend.empty();
-    if (!line.backend.empty() && line.backend != backend) continue;
-    knows_backend = knows_backend || !line.backend.empty();
-    found = found || is_in(path, line.paths);
-  }
-  if (!knows_service || (has_backends && !knows_backend)) return !is_within(path, "supervisor");
-  return found;
+/// What the service reads with this back end. Empty if the catalogue does not know one of them.
+std::optional<Paths> reads_of(std::string_view service, std::string_view backend,
+                              const Catalogue& catalogue) {
+  const auto found = catalogue.find(service);
+  if (found == catalogue.end()) return std::nullopt;
+  auto paths = found->second.settings;
+  const auto& backends = found->second.backends;
+  if (backends.empty()) return paths;
+  const auto row = std::ranges::find(backends, backend, &daemon::BackendDescription::name);
+  if (row == backends.end()) return std::nullopt;
+  paths.insert(paths.end(), row->settings.begin(), row->settings.end());
+  return paths;
 }
 
 /// FNV-1a over a sequence of texts, each with its end.
@@ -121,15 +79,16 @@ std::string* backend_in(std::string_view service, const config::Listing& listing
 
 }  // namespace
 
-std::string fingerprint_of(std::string_view service, const config::Rig& rig) {
+std::string fingerprint_of(std::string_view service, const config::Rig& rig,
+                           const Catalogue& catalogue) {
   auto copy = rig;  // a listing refers to values that can be written
   const auto listing = config::list_settings(copy);
-  const auto backend = backend_of(service, rig);
+  const auto reads = reads_of(service, backend_of(service, rig), catalogue);
   Hash hash;
   for (const auto& section : listing) {
     for (const auto& setting : section.settings) {
-      if (is_the_supervisors(service, setting.path) || !reads(service, backend, setting.path))
-        continue;
+      if (is_the_supervisors(service, setting.path)) continue;
+      if (reads ? !is_in(setting.path, *reads) : is_within(setting.path, "supervisor")) continue;
       hash.add(setting.path);
       hash.add(config::print_value(setting));
       if (is_in(setting.path, kFiles)) hash.add(content_of(setting));

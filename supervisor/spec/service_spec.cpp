@@ -44,7 +44,7 @@ ipc::RingSpec marks_of(const ServiceSpec& service) {
 
 }  // namespace
 
-std::vector<ServiceSpec> services_of(const config::Rig& rig) {
+std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& catalogue) {
   std::vector<ServiceSpec> services{
       {"camera", "camera.frames", rig.camera.backend, rig.camera.rate_hz},
       {"pose", "pose.hands", rig.pose.backend, rig.twin.tracker.rate_hz, "twin"},
@@ -61,7 +61,7 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig) {
   if (rig.supervisor.metrics_port > 0) services.push_back({"exporter", "", "", 0});
   for (auto& service : services) {
     service.process = config::process_of(rig, service.name);
-    service.fingerprint = fingerprint_of(service.name, rig);
+    service.fingerprint = fingerprint_of(service.name, rig, catalogue);
   }
   return services;
 }

@@ -6,6 +6,7 @@
 
 #include "config/rig.hpp"
 #include "ipc/shm/segment.hpp"
+#include "supervisor/spec/catalogue.hpp"
 
 namespace handcast::supervisor {
 
@@ -23,7 +24,7 @@ struct ServiceSpec {
 };
 
 /// The services of a rig, in an order in which each needs only those before it.
-std::vector<ServiceSpec> services_of(const config::Rig& rig);
+std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& catalogue);
 
 /// The rings of these services: what each publishes, and its stage marks.
 std::vector<ipc::RingSpec> rings_of(const std::vector<ServiceSpec>& services);

@@ -56,8 +56,8 @@ ipc::Segment marks_ring(const std::string& service) {
 struct MarkingService {
   MarkingService(const Marker& marker, const ipc::Segment& ring) : marker_(marker) {
     setenv("HANDCAST_RINGS", fmt::format("marks.{}={}", marker.service, ring.fd()).c_str(), 1);
-    context_ =
-        std::make_unique<service::Context>(marker.service, config::Rig{}, calib::reference_rig());
+    context_ = std::make_unique<service::Context>(
+        daemon::ServiceDescription{.name = marker.service}, config::Rig{}, calib::reference_rig());
   }
   void mark_a_frame() {
     clock_.start();

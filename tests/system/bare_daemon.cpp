@@ -5,8 +5,8 @@
 // main).
 #include <unistd.h>
 
-#include <cstring>
 #include <string>
+#include <string_view>
 
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/hand_poses.hpp"
@@ -29,8 +29,8 @@ void publish_one(ipc::Writer<Message>& writer, std::int64_t began_ns) {
 }
 
 template <class Message>
-void run(service::Context& context, const char* stream, std::int64_t began_ns) {
-  context.stand_by({stream});
+void run(service::Context& context, const std::string& stream, std::int64_t began_ns) {
+  context.stand_by();
   auto writer = service::must(context.writer<Message>(stream));
   publish_one(writer, began_ns);
   context.ready();
@@ -40,19 +40,33 @@ void run(service::Context& context, const char* stream, std::int64_t began_ns) {
   }
 }
 
-void run_as(const std::string& name, service::Context& context, std::int64_t began_ns) {
-  if (name == "camera") run<msg::CameraFrame>(context, "camera.frames", began_ns);
-  if (name == "pose") run<msg::HandPoses>(context, "pose.hands", began_ns);
-  if (name == "landmarks") run<msg::Landmarks>(context, "landmarks.hands", began_ns);
-  if (name == "projector") run<msg::Projection>(context, "projection.frames", began_ns);
+struct Role {
+  std::string service, stream;
+  void (*run)(service::Context& context, const std::string& stream, std::int64_t began_ns);
+};
+
+const Role kRoles[] = {
+    {"camera", "camera.frames", run<msg::CameraFrame>},
+    {"pose", "pose.hands", run<msg::HandPoses>},
+    {"landmarks", "landmarks.hands", run<msg::Landmarks>},
+    {"projector", "projection.frames", run<msg::Projection>},
+};
+
+/// The role of handcast-NAME; the camera's for any other name.
+const Role& role_of(std::string_view program) {
+  for (const auto& role : kRoles)
+    if (program.ends_with("-" + role.service)) return role;
+  return kRoles[0];
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const auto began_ns = now_ns();
-  const char* dash = std::strrchr(argv[0], '-');
-  const std::string name = dash ? dash + 1 : "camera";
-  return service::run({name, "Publishes and does nothing else.", {}}, argc, argv,
-                      [&](service::Context& context) { run_as(name, context, began_ns); });
+  const Role& role = role_of(argv[0]);
+  return service::run({.name = role.service,
+                       .summary = "Publishes and does nothing else.",
+                       .publishes = {role.stream}},
+                      argc, argv,
+                      [&](service::Context& context) { role.run(context, role.stream, began_ns); });
 }

@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   using namespace handcast;
-  return service::run({"observer", "Loops when it is told to.", {}}, argc, argv,
+  return service::run({.name = "observer", .summary = "Loops when it is told to."}, argc, argv,
                       [](service::Context& context) {
                         const char* file = std::getenv("HANDCAST_LOOP");
                         context.ready();

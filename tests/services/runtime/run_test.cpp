@@ -42,7 +42,12 @@ class Run : public testing::Test {
     arguments.insert(arguments.begin(), "handcast-pose");
     std::vector<char*> pointers;
     for (auto& argument : arguments) pointers.push_back(argument.data());
-    return run({"pose", "Samples the hand tracker.", {"twin", "replay"}},
+    return run({.name = "pose",
+                .summary = "Samples the hand tracker.",
+                .paced_by = "its device",
+                .publishes = {"pose.hands"},
+                .settings = {"hand"},
+                .backends = {{"twin", "Models one."}, {"replay", "Plays one."}}},
                static_cast<int>(pointers.size()), pointers.data(), body);
   }
   static void give_rings(const ipc::Segment& poses, const ipc::Segment& marks) {
@@ -206,10 +211,27 @@ TEST_F(Run, ARingOfAnotherTypeIsRefusedWithItsName) {
   EXPECT_EXIT(_exit(daemon(open_ring)), ExitedWithCode(kExitConfig), "another type of message");
 }
 
-TEST_F(Run, TheListOfBackEndsIsOneNameALine) {
+TEST_F(Run, ARingThatItsDescriptionDoesNotNameIsRefused) {
+  give_rings(poses_, marks_);
+  const auto read = [](Context& context) { must(context.reader<msg::HandPoses>("pose.hands")); };
+  EXPECT_EXIT(_exit(daemon(read)), ExitedWithCode(kExitConfig),
+              "ring 'pose.hands' is not in the description of pose");
+}
+
+TEST_F(Run, ItsDescriptionIsCompletedWithWhatEveryDaemonReads) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(daemon(do_nothing, {"--describe"}), 0);
+  const auto description =
+      daemon::parse_description(testing::internal::GetCapturedStdout()).value();
+  EXPECT_EQ(description.settings,
+            (std::vector<std::string>{"hand", "calibration", "pose.backend", "pose.process"}));
+  EXPECT_EQ(description.publishes, std::vector<std::string>{"pose.hands"});
+}
+
+TEST_F(Run, TheListOfBackEndsIsANameAndASentenceALine) {
   testing::internal::CaptureStdout();
   EXPECT_EQ(daemon(do_nothing, {"--backends"}), 0);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "twin\nreplay\n");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "twin    Models one.\nreplay  Plays one.\n");
 }
 
 /// A daemon that is started as a spare, and the supervisor's ends of its pipes.
@@ -236,7 +258,7 @@ TEST_F(Spare, PreparesItselfAndTakesWhatOnlyOneMayHaveInItsTurn) {
 
   std::thread spare([&] {
     daemon([](Context& context) {
-      context.stand_by({"pose.hands"});
+      context.stand_by();
       must(context.writer<msg::HandPoses>("pose.hands")).publish({});
       context.ready();
       context.mark({.origin_ns = 7}, {});

@@ -10,6 +10,7 @@
 
 #include "supervisor/base/event_loop.hpp"
 #include "supervisor/base/process.hpp"
+#include "tests/supervisor/life/output_of.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -82,13 +83,12 @@ TEST(Child, NothingOfTheSupervisorLeaksIntoAService) {
   sigset_t before;
   sigprocmask(SIG_SETMASK, nullptr, &before);
   const auto blocked_here = open_stop_signals();
-  const auto output = output_of(
-      "/bin/bash", {"-c", "ls -l /proc/self/fd; grep -i sigblk /proc/self/status"}, 20000);
+  const auto output =
+      test::output_of("/bin/bash", {"-c", "ls -l /proc/self/fd; grep -i sigblk /proc/self/status"});
   sigprocmask(SIG_SETMASK, &before, nullptr);
-  ASSERT_TRUE(output);
-  EXPECT_THAT(*output, Not(HasSubstr("secret")));
-  EXPECT_THAT(*output, Not(HasSubstr("signalfd")));
-  EXPECT_THAT(*output, HasSubstr("SigBlk:\t0000000000000000"));
+  EXPECT_THAT(output, Not(HasSubstr("secret")));
+  EXPECT_THAT(output, Not(HasSubstr("signalfd")));
+  EXPECT_THAT(output, HasSubstr("SigBlk:\t0000000000000000"));
 }
 
 TEST(Child, GrandchildrenEndWithTheService) {
@@ -188,16 +188,6 @@ TEST(Child, AServiceNeverWaitsForItsSupervisorToRead) {
   auto child =
       shell("for ((i = 0; i < 20000; ++i)); do echo 0123456789 2>/dev/null; done; exit 7").value();
   EXPECT_EQ(wait_for(child).code, 7) << "200 KB into a pipe of 64 KB that nobody reads";
-}
-
-TEST(Child, WhatACommandWritesToStderrIsNotItsAnswer) {
-  EXPECT_EQ(output_of("/bin/bash", {"-c", "echo a warning >&2; echo twin"}, 20000), "twin\n");
-}
-
-TEST(Child, ACommandThatDoesNotAnswerIsGivenUp) {
-  const auto output = output_of("/bin/bash", {"-c", "sleep 1000"}, 50);
-  ASSERT_FALSE(output);
-  EXPECT_THAT(output.error().what, HasSubstr("did not answer"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "supervisor/spec/fingerprint.hpp"
+#include "tests/supervisor/spec/built_catalogue.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -23,7 +24,8 @@ config::Rig desk() {
 class Plan : public testing::Test {
  protected:
   void SetUp() override {
-    for (const auto& spec : services_of(rig_.config))
+    rig_.catalogue = test::built_catalogue();
+    for (const auto& spec : services_of(rig_.config, rig_.catalogue))
       inherit(rig_.services.add(spec), State::stopped);
   }
   static void inherit(Service& service, State state, std::string swapped = "") {
@@ -58,7 +60,7 @@ TEST_F(Plan, AServiceThatHasNotBegunNeedsNoRestart) {
   auto wanted = desk();
   wanted.observer.enabled = true;
   EXPECT_THAT(plan_reload(rig_, wanted, true).started, ElementsAre("observer"));
-  for (auto& spec : services_of(wanted))
+  for (auto& spec : services_of(wanted, rig_.catalogue))
     if (spec.name == "observer") rig_.services.add(spec).hold();
   wanted.observer.rate_hz += 1;
   const auto plan = plan_reload(rig_, wanted, true);

@@ -5,8 +5,8 @@
 
 #include <fstream>
 
-#include "supervisor/life/child.hpp"
 #include "tests/scratch.hpp"
+#include "tests/supervisor/life/output_of.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -66,13 +66,11 @@ TEST_P(EachUnit, IsAcceptedBySystemd) {
   const test::Scratch scratch;
   const auto file = scratch.path() / unit_name(desk(GetParam()));
   std::ofstream(file) << unit_text(desk(GetParam()));
-  const auto verdict = output_of("/bin/bash",
-                                 {"-c", "systemd-analyze verify --man=no --recursive-errors=no " +
-                                            file.string() + " 2>&1; echo exit $?"},
-                                 30000);
-  ASSERT_TRUE(verdict);
-  EXPECT_THAT(*verdict, AllOf(HasSubstr("exit 0"),
-                              Not(HasSubstr("desk.service"))));  // a complaint names the unit
+  const auto verdict =
+      test::output_of("/bin/bash", {"-c", "systemd-analyze verify --man=no --recursive-errors=no " +
+                                              file.string() + "; echo exit $?"});
+  EXPECT_THAT(verdict, AllOf(HasSubstr("exit 0"),
+                             Not(HasSubstr("desk.service"))));  // a complaint names the unit
 }
 
 TEST(ServiceUnit, OfTheMachineIsShutInAndHasARuntimeFolder) {

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/spec/catalogue.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "config/settings/files.hpp"
+#include "config/settings/settings.hpp"
+#include "supervisor/spec/service_spec.hpp"
+#include "tests/scratch.hpp"
+#include "tests/supervisor/spec/built_catalogue.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Whether a rig file has this setting or section.
+bool is_in_a_rig(const std::string& path) {
+  config::Rig rig;
+  const auto listing = config::list_settings(rig);
+  if (config::find_setting(listing, path)) return true;
+  return std::ranges::any_of(listing, [&](const auto& section) {
+    return section.path == path || section.path.starts_with(path + ".");
+  });
+}
+
+Catalogue one_camera() {
+  return {{"camera",
+           {.name = "camera",
+            .summary = "Sees.",
+            .backends = {{.name = "twin", .sentence = "Draws."},
+                         {.name = "aravis", .sentence = "Opens.", .exclusive = true}}}}};
+}
+
+class Files : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(scratch_.path() / name) << text;
+  }
+  Catalogue read() {
+    testing::internal::CaptureStderr();
+    auto catalogue = read_catalogue(scratch_.path());
+    log_ = testing::internal::GetCapturedStderr();
+    return catalogue;
+  }
+  test::Scratch scratch_;
+  std::string log_;
+};
+
+TEST_F(Files, AreReadAsTheyWereWritten) {
+  write("camera.json", daemon::print_description(one_camera().at("camera")));
+  write("notes.txt", "not a description");
+  const auto catalogue = read();
+  ASSERT_TRUE(catalogue.contains("camera"));
+  EXPECT_TRUE(catalogue.at("camera").backends.at(1).exclusive);
+  EXPECT_THAT(log_, IsEmpty());
+}
+
+TEST_F(Files, ThatAreBrokenAreNamedAndLeftOut) {
+  write("camera.json", R"({"name": "camera")");
+  write("pose.json", daemon::print_description(one_camera().at("camera")));
+  EXPECT_THAT(read(), IsEmpty());
+  EXPECT_THAT(log_, HasSubstr("camera.json"));
+  EXPECT_THAT(log_, HasSubstr("pose.json: describes the service 'camera'"));
+  EXPECT_THAT(log_, HasSubstr("restarts all of them"));
+}
+
+TEST(CheckBackend, ListsThoseThatThereAre) {
+  EXPECT_TRUE(check_backend(one_camera(), "camera", "aravis"));
+  EXPECT_THAT(check_backend(one_camera(), "camera", "webcam").error().what,
+              HasSubstr("camera has no back end 'webcam'; it has: twin, aravis"));
+}
+
+TEST(CheckBackend, LetsAServiceWithoutADescriptionPass) {
+  EXPECT_TRUE(check_backend(one_camera(), "pose", "leap"));
+}
+
+TEST(BuiltCatalogue, NamesOnlySettingsThatARigHas) {
+  for (const auto& [name, service] : test::built_catalogue()) {
+    for (const auto& path : service.settings) EXPECT_TRUE(is_in_a_rig(path)) << name << " " << path;
+    for (const auto& backend : service.backends)
+      for (const auto& path : backend.settings)
+        EXPECT_TRUE(is_in_a_rig(path)) << name << " " << backend.name << " " << path;
+  }
+}
+
+TEST(BuiltCatalogue, PublishesTheRingsThatTheSupervisorMakes) {
+  const auto catalogue = test::built_catalogue();
+  config::Rig rig;
+  rig.observer.enabled = true;
+  for (const auto& spec : services_of(rig, catalogue)) {
+    ASSERT_TRUE(catalogue.contains(spec.name)) << spec.name;
+    const auto& published = catalogue.at(spec.name).publishes;
+    EXPECT_EQ(published.empty() ? "" : published.front(), spec.stream) << spec.name;
+    EXPECT_LE(published.size(), 1u) << spec.name;
+  }
+}
+
+TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
+  const auto catalogue = test::built_catalogue();
+  for (const auto& spec : services_of({}, catalogue))
+    for (const auto& need : spec.needs) {
+      const auto& published = catalogue.at(need).publishes;
+      const auto& subscribed = catalogue.at(spec.name).subscribes;
+      EXPECT_NE(std::ranges::find(subscribed, published.front()), subscribed.end())
+          << spec.name << " waits for " << need << ", whose ring it does not read";
+    }
+}
+
+TEST(BuiltCatalogue, BecomesATablePerService) {
+  const auto page = print_backends(one_camera());
+  EXPECT_THAT(page, HasSubstr("## camera\n\nSees.\n"));
+  EXPECT_THAT(page, HasSubstr("| `aravis` | Opens. |  | one process at a time |"));
+}
+
+TEST(BuiltCatalogue, IsInTheReferenceInTheTree) {
+  const char* source = std::getenv("HANDCAST_SOURCE");
+  const auto page =
+      config::read_text(std::filesystem::path(source ? source : ".") / "config/REFERENCE.md");
+  ASSERT_TRUE(page) << page.error().what;
+  EXPECT_TRUE(*page == config::print_reference() + print_backends(test::built_catalogue()))
+      << "config/REFERENCE.md is out of date. Update it:\n"
+         "  build/bin/handcast config --reference > config/REFERENCE.md";
+}
+
+}  // namespace
+}  // namespace handcast::supervisor
