@@ -32,9 +32,8 @@
 ///          supervisor.silent_s.
 ///
 ///   exit   See ipc/base/exit_code.hpp. 0 (stopped as asked, or nothing left to do) and 100 (a
-///   person must
-///          change something) are final. After everything else, a signal included, the daemon is
-///          restarted.
+///          person must change something) are final. After everything else, a signal included, the
+///          daemon is restarted.
 ///
 ///   SIGTERM, SIGINT   Stop.
 namespace handcast::daemon {
