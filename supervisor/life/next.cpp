@@ -183,7 +183,7 @@ void Transition::warn_of_death(Exit exit, const Decision& decision) {
     return act(
         action::Warn{fmt::format("{} died ({}); its spare goes on", rules_.name, exit.describe())});
   const bool degraded = decision.action == Decision::Action::degrade;
-  act(action::Warn{fmt::format("{} died ({}){}; started again after {:g} ms", rules_.name,
+  act(action::Warn{fmt::format("{} died ({}){}; started again after {:.0f} ms", rules_.name,
                                exit.describe(), degraded ? ", too often" : "",
                                ns_to_ms(decision.wait_ns))});
 }

@@ -82,7 +82,7 @@ void Transition::replace_spare(const Death& death) {
   }
   const auto wait_ns = decision.action == What::restart ? decision.wait_ns : kLongestWait_ns;
   spare_ = spare::Due{now_ + wait_ns};
-  act(action::Warn{fmt::format("the spare of {} ended ({}); another one in {:g} ms", rules_.name,
+  act(action::Warn{fmt::format("the spare of {} ended ({}); another one in {:.0f} ms", rules_.name,
                                death.exit.describe(), ns_to_ms(wait_ns))});
 }
 

@@ -99,7 +99,7 @@ class Keeper {
       const auto pause_ns = deaths_.pause_ns();
       log::warning("the supervisor died ({}); started again{}",
                    exit_ ? exit_->describe() : "no process to be had",
-                   pause_ns > 0 ? fmt::format(" after {:g} ms", ns_to_ms(pause_ns)) : "");
+                   pause_ns > 0 ? fmt::format(" after {:.0f} ms", ns_to_ms(pause_ns)) : "");
       for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns;)
         handle(wait_for_signal(until_ns - now_ns()));
       plan_.for_a_successor();
