@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "calib/calibration.hpp"
 #include "calib/rigid.hpp"
 #include "config/settings/files.hpp"
@@ -13,6 +16,9 @@ namespace handcast::calib {
 using config::between;
 using config::Range;
 
+/// The largest width and height of an image: its buffers stay far below a gigabyte.
+constexpr int kMostPixels = 8192;
+
 struct CameraSection {
   int width_px, height_px;
   std::vector<double> focal_px, centre_px, distortion;
@@ -20,8 +26,9 @@ struct CameraSection {
 
 template <class Visitor>
 void describe(Visitor& visitor, CameraSection& camera) {
-  visitor.field("width_px", camera.width_px, between(16, 16384, "px"), "Width of the image.");
-  visitor.field("height_px", camera.height_px, between(16, 16384, "px"), "Height of the image.");
+  visitor.field("width_px", camera.width_px, between(16, kMostPixels, "px"), "Width of the image.");
+  visitor.field("height_px", camera.height_px, between(16, kMostPixels, "px"),
+                "Height of the image.");
   visitor.field("focal_px", camera.focal_px, between(1, 1e6, "px"), "Focal lengths fx, fy.");
   visitor.field("centre_px", camera.centre_px, between(-1e5, 1e5, "px"),
                 "Principal point cx, cy; (0, 0) is the centre of the top-left pixel.");
@@ -35,10 +42,10 @@ struct TransformSection {
 
 template <class Visitor>
 void describe(Visitor& visitor, TransformSection& rows) {
-  visitor.field("x", rows.x, between(-100, 100),
+  visitor.field("x", rows.x, between(-1e5, 1e5),
                 "Camera x (right) of the tracker's three axes and of its origin.");
-  visitor.field("y", rows.y, between(-100, 100), "Camera y (down) of these.");
-  visitor.field("z", rows.z, between(-100, 100), "Camera z (forward) of these.");
+  visitor.field("y", rows.y, between(-1e5, 1e5), "Camera y (down) of these.");
+  visitor.field("z", rows.z, between(-1e5, 1e5), "Camera z (forward) of these.");
 }
 
 struct ProjectorSection {
@@ -48,8 +55,10 @@ struct ProjectorSection {
 
 template <class Visitor>
 void describe(Visitor& visitor, ProjectorSection& projector) {
-  visitor.field("width_px", projector.width_px, between(16, 16384, "px"), "Width of the image.");
-  visitor.field("height_px", projector.height_px, between(16, 16384, "px"), "Height of the image.");
+  visitor.field("width_px", projector.width_px, between(16, kMostPixels, "px"),
+                "Width of the image.");
+  visitor.field("height_px", projector.height_px, between(16, kMostPixels, "px"),
+                "Height of the image.");
   visitor.field("x", projector.x, Range{},
                 "First row of the homography from undistorted camera pixels to projector pixels.");
   visitor.field("y", projector.y, Range{}, "Second row.");
@@ -73,6 +82,7 @@ void describe(Visitor& visitor, File& file) {
 namespace {
 
 constexpr double kRigidTolerance = 1e-3;
+constexpr double kFarthestTracker_m = 10;
 
 template <class Matrix>
 std::vector<double> row_of(const Matrix& matrix, int row) {
@@ -122,6 +132,55 @@ Calibration to_calibration(const File& file) {
   return calibration;
 }
 
+/// Where the pixels of the projector lie in the undistorted camera image, on a grid. Empty if one
+/// of them lies nowhere, that is on or behind the horizon of the homography.
+std::vector<glm::dvec2> screen_in_camera(const Calibration& calibration) {
+  constexpr int kSteps = 16;
+  const glm::dmat3 camera_from_projector = glm::inverse(calibration.projector_from_camera);
+  const glm::dvec2 last(calibration.projector_width_px - 1, calibration.projector_height_px - 1);
+  std::vector<glm::dvec2> grid;
+  double side = 0;  // of the horizon, at the first point
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j) {
+      const auto at =
+          camera_from_projector * glm::dvec3(last * glm::dvec2(j, i) / double{kSteps}, 1);
+      if (grid.empty()) side = at.z;
+      const glm::dvec2 px = glm::dvec2(at) / at.z;
+      if (!(at.z * side > 0) || !std::isfinite(px.x) || !std::isfinite(px.y)) return {};
+      grid.push_back(px);
+    }
+  return grid;
+}
+
+/// Why no coaxial rig can have this homography. Empty if one can.
+std::string fault_of_homography(const Calibration& calibration) {
+  constexpr double kLeastShare = 0.01;
+  const auto grid = screen_in_camera(calibration);
+  if (grid.empty()) return "the horizon of the homography crosses the projector's image";
+  const glm::dvec2 size(calibration.camera.width_px, calibration.camera.height_px);
+  int inside = 0;
+  for (const glm::dvec2& px : grid) {
+    const glm::dvec2 place = px / size;  // 0..1 in the image
+    if (!(glm::all(glm::greaterThan(place, glm::dvec2(-1.5))) &&
+          glm::all(glm::lessThan(place, glm::dvec2(2.5)))))
+      return fmt::format(
+          "the homography puts projector pixels far outside the camera image, e.g. "
+          "at ({:.4g}, {:.4g})",
+          px.x, px.y);
+    inside += glm::all(glm::greaterThan(place, glm::dvec2(0))) &&
+              glm::all(glm::lessThan(place, glm::dvec2(1)));
+  }
+  if (inside < kLeastShare * static_cast<double>(grid.size()))
+    return "the homography puts the projector's image beside the camera image";
+  const auto [low_x, high_x] = std::minmax_element(
+      grid.begin(), grid.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  const auto [low_y, high_y] = std::minmax_element(
+      grid.begin(), grid.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+  if ((high_x->x - low_x->x) * (high_y->y - low_y->y) < kLeastShare * size.x * size.y)
+    return "the homography shrinks the projector's image to a spot";
+  return {};
+}
+
 void check(const Calibration& calibration, std::string_view file, config::Faults& faults) {
   if (const double off = distance_from_rigid(calibration.camera_from_tracker);
       !(off < kRigidTolerance))
@@ -129,6 +188,12 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
         fmt::format("{}: camera_from_tracker: its first three columns are not a right-handed "
                     "rotation (off by {:.2g}; {} is allowed)",
                     file, off, kRigidTolerance));
+  if (const double away_m = glm::length(glm::dvec3(calibration.camera_from_tracker[3]));
+      !(away_m < kFarthestTracker_m))
+    faults.add(
+        fmt::format("{}: camera_from_tracker: the tracker is {:.3g} m away from the camera; "
+                    "at most {} m are possible. Is it in millimetres?",
+                    file, away_m, kFarthestTracker_m));
   if (calibration.camera.folds())
     faults.add(
         fmt::format("{}: camera.distortion: the lens folds the image: near its edge, two "
@@ -137,6 +202,8 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
   if (!(std::abs(glm::determinant(calibration.projector_from_camera)) > 1e-9))
     faults.add(fmt::format(
         "{}: projector: the rows x, y, w of the homography are linearly dependent", file));
+  else if (const auto fault = fault_of_homography(calibration); !fault.empty())
+    faults.add(fmt::format("{}: projector: {}", file, fault));
 }
 
 }  // namespace

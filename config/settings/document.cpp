@@ -38,9 +38,34 @@ Value convert(const toml::node& node, int line) {
   return {OtherValue{}, line};
 }
 
+/// The line of the first key with more than `most` dots, which toml++ and convert() would follow by
+/// recursion; 0 if there is none. Dots inside quotes do not count; other recursion is limited by
+/// toml++ itself.
+int line_of_deep_key(std::string_view toml, int most) {
+  int line = 1, dots = 0;
+  char quote = 0;
+  for (const char c : toml) {
+    if (c == '\n') ++line, dots = 0, quote = 0;
+    if (quote) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '=' || c == ',' || c == '[' || c == '{' || c == '#') {
+      dots = 0;
+    } else if (c == '.' && ++dots > most) {
+      return line;
+    }
+  }
+  return 0;
+}
+
 }  // namespace
 
 Result<Value> parse_document(std::string_view toml, std::string_view file) {
+  constexpr int kMostDots = 32;
+  if (const int line = line_of_deep_key(toml, kMostDots); line > 0)
+    return fail(Errc::bad_config,
+                fmt::format("{}:{}: a key has more than {} parts", file, line, kMostDots));
   try {
     return convert_table(toml::parse(toml, file), 1);
   } catch (const toml::parse_error& error) {

@@ -8,7 +8,8 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <sstream>
+
+#include "ipc/base/input_file.hpp"
 
 namespace handcast::config {
 namespace {
@@ -22,14 +23,7 @@ bool is_written_in_place(const std::filesystem::path& file) {
 }  // namespace
 
 Result<std::string> read_text(const std::filesystem::path& file) {
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (!stream.is_open() || stream.bad() || !text)
-    return fail(Errc::bad_config,
-                fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-  return std::move(text).str();
+  return read_input(file, kMostText);
 }
 
 Result<void> write_whole(const std::filesystem::path& file, const std::string& text) {

@@ -7,7 +7,7 @@
 
 namespace handcast::config {
 
-/// The contents of a file. Errors: bad_config (the file cannot be read).
+/// The contents of a text file. Errors: bad_config (see read_input()).
 Result<std::string> read_text(const std::filesystem::path& file);
 
 /// Writes a file by replacing it, so that a reader never sees a part of it. A link, pipe or device

@@ -16,7 +16,8 @@ struct Rect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   /// @}
 
-  /// Size in pixels; may be negative if the rectangle is empty().
+  /// Size in pixels. Negative only if an edge was set so: never in a result of within() or
+  /// overlap().
   /// @{
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
@@ -26,12 +27,13 @@ struct Rect {
   /// This rectangle with every edge moved outwards by `px`.
   Rect grown(int px) const { return {x0 - px, y0 - px, x1 + px, y1 + px}; }
   /// The part inside an image of `width` x `height` pixels; empty() if there is none.
-  Rect within(int width, int height) const {
-    return {std::max(x0, 0), std::max(y0, 0), std::min(x1, width), std::min(y1, height)};
-  }
-  /// The intersection of both; empty() if there is none.
+  Rect within(int width, int height) const { return overlap({0, 0, width, height}); }
+  /// The intersection of both; empty() and inside `o` if there is none.
   Rect overlap(const Rect& o) const {
-    return {std::max(x0, o.x0), std::max(y0, o.y0), std::min(x1, o.x1), std::min(y1, o.y1)};
+    const int left = std::clamp(x0, o.x0, std::max(o.x0, o.x1)),
+              top = std::clamp(y0, o.y0, std::max(o.y0, o.y1));
+    return {left, top, std::clamp(x1, left, std::max(left, o.x1)),
+            std::clamp(y1, top, std::max(top, o.y1))};
   }
   /// The smallest rectangle that contains both; an empty one is ignored.
   Rect joined(const Rect& o) const {

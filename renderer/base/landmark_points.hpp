@@ -31,9 +31,12 @@ inline LandmarkPoints sum(const LandmarkPoints& a, const LandmarkPoints& b) {
 /// The position of a detected landmark as a vector.
 inline glm::vec2 position_px(const msg::Landmark& point) { return {point.x_px, point.y_px}; }
 
-/// True if the landmark has a confidence above 0 and a finite position.
+/// True if the landmark has a confidence above 0 and a position that a camera can see: the largest
+/// image has 8192 pixels.
 inline bool was_seen(const msg::Landmark& point) {
-  return point.confidence > 0 && std::isfinite(point.x_px) && std::isfinite(point.y_px);
+  constexpr float kFarthest_px = 1e5f;
+  return point.confidence > 0 && std::abs(point.x_px) < kFarthest_px &&
+         std::abs(point.y_px) < kFarthest_px;
 }
 
 }  // namespace handcast::renderer

@@ -65,6 +65,11 @@ std::uint16_t Untangler::root_of(std::uint16_t place) {
   return place;
 }
 
+bool Untangler::is_joined(const Triangle& triangle) {
+  const std::uint16_t root = root_of(place_of_[triangle[0]]);
+  return root_of(place_of_[triangle[1]]) == root && root_of(place_of_[triangle[2]]) == root;
+}
+
 std::uint16_t Untangler::join(const Triangle& triangle) {
   std::uint16_t root = root_of(place_of_[triangle[0]]);
   for (const std::uint16_t v : {triangle[1], triangle[2]}) {
@@ -118,9 +123,13 @@ int Untangler::untangle(std::span<const glm::vec2> before, std::span<glm::vec2> 
   if (smooth(before, after, facing_sign)) return 0;
   find_turned_over(before, after, facing_sign);
   start(before, after);
-  for (std::size_t next = 0; next < waiting_.size(); ++next)
-    if (turned_over(waiting_[next], before, after, facing_sign))
-      move(join(triangles_[waiting_[next]]), before, after);
+  // Each turn of the loop that appends joins two clusters, so there are fewer than there are
+  // places.
+  for (std::size_t next = 0; next < waiting_.size(); ++next) {
+    const Triangle& triangle = triangles_[waiting_[next]];
+    if (turned_over(waiting_[next], before, after, facing_sign) && !is_joined(triangle))
+      move(join(triangle), before, after);
+  }
   find_turned_over(before, after, facing_sign);
   return static_cast<int>(waiting_.size());
 }

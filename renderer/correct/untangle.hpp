@@ -44,6 +44,7 @@ class Untangler {
   bool smooth(std::span<const glm::vec2> before, std::span<glm::vec2> after, float facing_sign);
   void start(std::span<const glm::vec2> before, std::span<const glm::vec2> after);
   std::uint16_t root_of(std::uint16_t place);
+  bool is_joined(const Triangle& triangle);
   std::uint16_t join(const Triangle& triangle);
   void move(std::uint16_t root, std::span<const glm::vec2> before, std::span<glm::vec2> after);
 

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
 
+#include "renderer/hand/gltf_file.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/hand/mesh_charts.hpp"
 
-// The only file that includes tinygltf. The loader of tinygltf checks the JSON but not that
-// accessors stay inside their buffers: ArrayReader does.
 namespace handcast::renderer {
 namespace {
 
 constexpr std::size_t kMaxVertices = 65535;
 
-/// Reads accessors as rows of `width` numbers. An accessor that cannot be read gives an empty
-/// vector; the reason of the first failure is kept.
+/// Reads accessors, which tinygltf does not check, as rows of `width` numbers. An accessor that
+/// cannot be read gives an empty vector; the reason of the first failure is kept.
 class ArrayReader {
  public:
   explicit ArrayReader(const tinygltf::Model& model) : model_(model) {}
@@ -256,6 +253,22 @@ void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive,
   read_triangles(reader, primitive, first, count, hand);
 }
 
+/// Why the mesh cannot be a hand in metres. Empty if it can.
+std::string fault_of_size(const HandMesh& hand) {
+  constexpr float kFarthest_m = 1, kShortest_m = 0.02f;
+  constexpr std::size_t kWrist = 1;
+  const glm::vec3 wrist(hand.rest[kWrist][3]);
+  float farthest_m = 0;
+  for (const auto& joint : hand.rest)
+    farthest_m = std::max(farthest_m, glm::length(glm::vec3(joint[3]) - wrist));
+  for (const auto& position : hand.positions)
+    farthest_m = std::max(farthest_m, glm::length(position - wrist));
+  if (farthest_m < kFarthest_m && farthest_m > kShortest_m) return {};
+  return fmt::format(
+      "its mesh reaches {:.3g} m from the wrist; a hand in metres reaches {} to {} m", farthest_m,
+      kShortest_m, kFarthest_m);
+}
+
 /// Vertices without a normal get the mean normal of their triangles, weighted by area.
 void fill_missing_normals(HandMesh& hand) {
   std::vector<glm::vec3> sum(hand.vertex_count());
@@ -267,29 +280,6 @@ void fill_missing_normals(HandMesh& hand) {
   for (std::size_t v = 0; v < hand.vertex_count(); ++v)
     if (hand.normals[v] == glm::vec3(0))
       hand.normals[v] = sum[v] / std::max(glm::length(sum[v]), 1e-20f);
-}
-
-/// Keeps tinygltf from decoding pictures, which are not used.
-bool ignore_picture(tinygltf::Image*, int, std::string*, std::string*, int, int,
-                    const unsigned char*, int, void*) {
-  return true;
-}
-
-bool parse(const std::filesystem::path& file, tinygltf::Model& model, std::string& error) {
-  std::ifstream in(file, std::ios::binary);
-  std::array<char, 4> magic{};
-  in.read(magic.data(), magic.size());
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(ignore_picture, nullptr);
-  std::string warning;
-  try {
-    return std::string_view(magic.data(), 4) == "glTF"
-               ? loader.LoadBinaryFromFile(&model, &error, &warning, file.string())
-               : loader.LoadASCIIFromFile(&model, &error, &warning, file.string());
-  } catch (const std::exception& exception) {
-    error = exception.what();
-    return false;
-  }
 }
 
 const tinygltf::Node* first_skinned_node(const tinygltf::Model& model) {
@@ -306,25 +296,21 @@ Result<HandMesh> load_hand(const std::filesystem::path& file, Side side) {
   const auto refuse = [&](const std::string& why) {
     return fail(Errc::bad_config, fmt::format("hand '{}': {}", file.string(), why));
   };
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return refuse("there is no such file");
-  tinygltf::Model model;
-  std::string error;
-  if (!parse(file, model, error))
-    return refuse(
-        fmt::format("it is not a valid glTF file ({})", error.substr(0, error.find('\n'))));
-  const tinygltf::Node* node = first_skinned_node(model);
+  const auto model = read_gltf(file);
+  if (!model) return tl::make_unexpected(model.error());
+  const tinygltf::Node* node = first_skinned_node(*model);
   if (!node) return refuse("it contains no skinned mesh");
 
   HandMesh hand;
   hand.side = side;
-  ArrayReader reader(model);
-  const auto ours = read_skeleton(reader, model, model.skins[node->skin], hand);
-  for (const tinygltf::Primitive& primitive : model.meshes[node->mesh].primitives)
+  ArrayReader reader(*model);
+  const auto ours = read_skeleton(reader, *model, model->skins[node->skin], hand);
+  for (const tinygltf::Primitive& primitive : model->meshes[node->mesh].primitives)
     if (!reader.trouble() && (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode < 0))
       read_primitive(reader, primitive, ours, hand);
   if (reader.trouble()) return refuse(*reader.trouble());
   if (hand.triangles.empty()) return refuse("its skinned mesh has no triangles");
+  if (const auto fault = fault_of_size(hand); !fault.empty()) return refuse(fault);
   fill_missing_normals(hand);
   number_charts(hand);
   return hand;

@@ -6,6 +6,7 @@
 
 #include "renderer/correct/deform.hpp"
 #include "renderer/draw/cpu/cpu_painter.hpp"
+#include "renderer/predict/plausible_pose.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -48,6 +49,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascad
 Pipeline::Pipeline(const config::Cascade& settings, const config::Content& content,
                    const calib::Calibration& calibration, HandPipeline left, HandPipeline right)
     : settings_(settings),
+      camera_from_tracker_(calibration.camera_from_tracker),
       shading_(static_cast<float>(content.shading)),
       screen_{0, 0, calibration.projector_width_px, calibration.projector_height_px},
       both_{std::move(left), std::move(right)},
@@ -62,7 +64,9 @@ void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
   const auto poses = sides_.named(
       reported, {both_[0].expected_pose(origin_ns), both_[1].expected_pose(origin_ns)});
   for (HandPipeline& hand : both_)
-    if (const msg::HandPose* pose = poses.find(hand.side())) hand.push(now_ns, origin_ns, *pose);
+    if (const msg::HandPose* pose = poses.find(hand.side());
+        pose && is_plausible(*pose, camera_from_tracker_))
+      hand.push(now_ns, origin_ns, *pose);
 }
 
 void Pipeline::push(std::int64_t now_ns, const msg::Landmarks& reported) {

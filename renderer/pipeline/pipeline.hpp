@@ -41,7 +41,8 @@ class Pipeline {
                                                   const Oracle& oracle = {});
 
   /// Takes a message that arrived at `now_ns`. A message with an origin more than 50 ms later than
-  /// that is dropped: all messages until its origin would count as older.
+  /// that is dropped: all messages until its origin would count as older. So is a pose that is not
+  /// plausible (is_plausible()).
   /// @{
   void push(std::int64_t now_ns, const msg::HandPoses& reported);
   void push(std::int64_t now_ns, const msg::Landmarks& reported);
@@ -97,6 +98,7 @@ class Pipeline {
   std::span<const FrameHand> frame_hands();
 
   config::Cascade settings_;
+  glm::dmat4 camera_from_tracker_;
   float shading_;
   Rect screen_;
   HandSides sides_;

@@ -153,7 +153,7 @@ TEST(CalibrationFile, SaysWhatIsWrongAndWhere) {
   const auto rig = load_calibration(file_with("[camera]\nwidth_px = 0\nfocal_px = [5]\n"));
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, Errc::bad_config);
-  EXPECT_THAT(rig.error().what, HasSubstr("toml:2: camera.width_px: 0 is outside 16..16384 px"));
+  EXPECT_THAT(rig.error().what, HasSubstr("toml:2: camera.width_px: 0 is outside 16..8192 px"));
   EXPECT_THAT(rig.error().what,
               HasSubstr("toml:3: camera.focal_px: must be a list of 2 numbers, not of 1"));
 }
@@ -190,6 +190,38 @@ TEST(CalibrationFile, RefusesAHomographyWithoutAnInverse) {
       load_calibration(file_with("[projector]\nx = [1, 0, 0]\ny = [2, 0, 0]\nw = [0, 0, 1]\n"));
   ASSERT_FALSE(rig);
   EXPECT_THAT(rig.error().what, HasSubstr("homography"));
+}
+
+TEST(CalibrationFile, RefusesAHomographyThatNoCoaxialRigHas) {
+  const std::pair<const char*, const char*> kFaults[] = {
+      {"x = [-1, 0, 0]", "beside the camera image"},
+      {"x = [1e300, 0, 0]", "homography"},
+      {"w = [0, 0, 1e-9]", "homography"},
+      {"w = [0.01, 0.01, -3]", "the horizon of the homography"},
+      {"x = [100, 0, -36000]\ny = [0, 100, -27000]", "shrinks the projector's image to a spot"},
+      {"x = [0.1, 0, 0]\ny = [0, 0.1, 0]", "far outside the camera image"},
+  };
+  for (const auto& [rows, sentence] : kFaults) {
+    const auto rig = load_calibration(file_with(std::string("[projector]\n") + rows));
+    ASSERT_FALSE(rig) << rows;
+    EXPECT_THAT(rig.error().what, HasSubstr(sentence)) << rows;
+  }
+}
+
+TEST(CalibrationFile, AcceptsAMirrorAndAScreenThatCoversAPart) {
+  for (const char* rows : {"x = [-1.42, 0, 1023]\ny = [0, 1.42, 0]\nw = [0, 0, 1]",
+                           "x = [0.7, 0, 500]\ny = [0, 0.7, 300]\nw = [0, 0, 1]",
+                           "x = [4, 0, -700]\ny = [0, 4, -500]\nw = [0, 0, 1]"}) {
+    const auto rig = load_calibration(file_with(std::string("[projector]\n") + rows));
+    EXPECT_TRUE(rig) << rows << ": " << rig.error().what;
+  }
+}
+
+TEST(CalibrationFile, RefusesATrackerFarAway) {
+  const auto rig = load_calibration(
+      file_with("[camera_from_tracker]\nx = [1, 0, 0, 350]\ny = [0, 1, 0, 0]\nz = [0, 0, 1, 0]\n"));
+  ASSERT_FALSE(rig);
+  EXPECT_THAT(rig.error().what, HasSubstr("350 m away from the camera"));
 }
 
 TEST(CalibrationFile, IsNamedWhenItIsMissing) {

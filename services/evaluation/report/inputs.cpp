@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+
+#include "ipc/base/input_file.hpp"
 
 namespace handcast::report {
 namespace fs = std::filesystem;
@@ -14,12 +15,17 @@ using nlohmann::json;
 
 Source read_source(const fs::path& folder, const std::string& name) {
   Source source{name, std::nullopt, ""};
-  std::ifstream stream(folder / name, std::ios::binary);
-  if (!stream) {
+  std::error_code unknown;
+  if (!fs::exists(folder / name, unknown)) {
     source.problem = fmt::format("{} is missing", name);
     return source;
   }
-  auto content = json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  const auto text = read_input(folder / name, kMostText);
+  if (!text) {
+    source.problem = text.error().what;
+    return source;
+  }
+  auto content = json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (content.is_object())
     source.content = std::move(content);
   else

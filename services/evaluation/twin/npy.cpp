@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include "ipc/base/input_file.hpp"
 #include "services/evaluation/twin/recording.hpp"
 
 namespace handcast::twin {
@@ -23,14 +24,6 @@ struct Layout {
 
 tl::unexpected<Error> damaged(const path& file, std::string_view what) {
   return fail(Errc::bad_data, fmt::format("{}: {}", file.string(), what));
-}
-
-Result<std::string> read_all(const path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    return fail(Errc::bad_config,
-                fmt::format("{}: there is no such file, or it cannot be read", file.string()));
-  return std::string((std::istreambuf_iterator<char>(in)), {});
 }
 
 /// The header from the value of `key` on; empty if the key is missing.
@@ -126,7 +119,7 @@ Result<void> write_array(const path& file, std::string_view type,
 }  // namespace
 
 Result<Npy> read_npy(const path& file) {
-  const auto bytes = read_all(file);
+  const auto bytes = read_input(file, kMostArray);
   if (!bytes) return tl::make_unexpected(bytes.error());
   const auto layout = parse_layout(file, *bytes);
   if (!layout) return tl::make_unexpected(layout.error());

@@ -108,7 +108,35 @@ Result<std::vector<msg::HandPose>> read_hand(const path& folder, std::size_t sid
                               pose.error().what));
     poses.push_back(*pose);
   }
+  const auto scaled = check_scale(poses, array_file(folder, "joints", side));
+  if (!scaled) return tl::make_unexpected(scaled.error());
   return poses;
+}
+
+/// The distance from the wrist to the knuckle of the middle finger, which no motion changes; the
+/// median of all samples.
+double palm_length_m(const std::vector<msg::HandPose>& poses) {
+  std::vector<double> lengths;
+  for (const msg::HandPose& pose : poses) {
+    const auto& wrist = pose.joints[kWrist].position_m;
+    const auto& knuckle = pose.joints[kMiddleMetacarpal + 1].position_m;
+    lengths.push_back(
+        std::hypot(knuckle[0] - wrist[0], knuckle[1] - wrist[1], knuckle[2] - wrist[2]));
+  }
+  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+/// Refuses a recording in another unit. A palm is 60 to 120 mm long.
+Result<void> check_scale(const std::vector<msg::HandPose>& poses, const path& file) {
+  constexpr double kShortest_mm = 25, kLongest_mm = 300;
+  if (poses.empty()) return {};
+  const double length_mm = 1000 * palm_length_m(poses);
+  if (length_mm > kShortest_mm && length_mm < kLongest_mm) return {};
+  return fail(Errc::bad_data,
+              fmt::format("{}: the palm is {:.3g} mm long; joints must be in millimetres{}",
+                          file.string(), length_mm, length_mm < 1 ? ", are they in metres?" : ""));
 }
 
 struct LeapArrays {

@@ -32,6 +32,17 @@ Palm decode(std::span<const float> values, glm::vec2 anchor, float logit) {
   return palm;
 }
 
+/// True if the palm has an extent and lies near the image, in units of its side. Written so that a
+/// comparison with NaN refuses.
+bool is_plausible(const Palm& palm) {
+  constexpr float kFarthest = 100;
+  const auto is_near = [](glm::vec2 at) {
+    return std::abs(at.x) < kFarthest && std::abs(at.y) < kFarthest;
+  };
+  return palm.extent.x > 0 && palm.extent.y > 0 && is_near(palm.extent) && is_near(palm.centre) &&
+         std::ranges::all_of(palm.points, is_near);
+}
+
 float overlap(const Palm& a, const Palm& b) {
   const glm::vec2 low = glm::max(a.centre - 0.5f * a.extent, b.centre - 0.5f * b.extent);
   const glm::vec2 high = glm::min(a.centre + 0.5f * a.extent, b.centre + 0.5f * b.extent);
@@ -73,15 +84,14 @@ std::vector<Palm> decode_palms(std::span<const float> boxes, std::span<const flo
     if (logits[i] >= least_logit)
       candidates.push_back(
           decode(boxes.subspan(i * kPalmValues, kPalmValues), anchors[i], logits[i]));
-  std::erase_if(candidates,
-                [](const Palm& palm) { return !(palm.extent.x > 0 && palm.extent.y > 0); });
+  std::erase_if(candidates, [](const Palm& palm) { return !is_plausible(palm); });
   std::ranges::stable_sort(candidates, std::greater(), &Palm::score);
 
   std::vector<Palm> palms;
   while (!candidates.empty()) {
     const Palm best = candidates.front();
     const auto others =
-        std::stable_partition(candidates.begin(), candidates.end(),
+        std::stable_partition(candidates.begin() + 1, candidates.end(),
                               [&](const Palm& palm) { return overlap(palm, best) > kSamePalm; });
     palms.push_back(merged({candidates.begin(), others}));
     candidates.erase(candidates.begin(), others);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/tracker/tracker_hints.hpp"
 
+#include "renderer/predict/plausible_pose.hpp"
+
 namespace handcast::landmarks {
 namespace {
 
@@ -10,9 +12,11 @@ constexpr std::int64_t kLost_ns = 100'000'000;
 }  // namespace
 
 void TrackerHints::push(const msg::HandPoses& poses) {
-  for (std::uint32_t i = 0; i < poses.count && i < poses.hands.size(); ++i)
-    histories_[poses.hands[i].side == msg::Side::left ? 0 : 1].push(poses.header.origin_ns,
-                                                                    poses.hands[i]);
+  for (std::uint32_t i = 0; i < poses.count && i < poses.hands.size(); ++i) {
+    const msg::HandPose& pose = poses.hands[i];
+    if (!renderer::is_plausible(pose, calibration_.camera_from_tracker)) continue;
+    histories_[pose.side == msg::Side::left ? 0 : 1].push(poses.header.origin_ns, pose);
+  }
 }
 
 Hints TrackerHints::at(std::int64_t time_ns) const {

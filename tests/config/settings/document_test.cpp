@@ -83,5 +83,21 @@ TEST(Suggest, FindsTheNearestNameButNotAFarOne) {
   EXPECT_EQ(suggest("qqqqqqqq", {"rate_hz", "age_ms"}), "");
 }
 
+TEST(Document, AKeyWithThousandsOfPartsIsRefusedAndDotsElsewhereAreNot) {
+  std::string key = "a";
+  for (int i = 0; i < 40'000; ++i) key += ".a";
+  const auto deep = parse_document("name = 1\n" + key + " = 1\n", "rig.toml");
+  ASSERT_FALSE(deep);
+  EXPECT_EQ(deep.error().what, "rig.toml:2: a key has more than 32 parts");
+  EXPECT_FALSE(parse_document("[" + key + "]\n", "rig.toml"));
+  EXPECT_FALSE(parse_document("x = { " + key + " = 1 }\n", "rig.toml"));
+
+  const std::string dots(100, '.');
+  EXPECT_TRUE(parse_document("a = \"" + dots + "\" # " + dots.substr(0, 20) + "\n", "rig.toml"));
+  std::string numbers = "0.5";
+  for (int i = 0; i < 100; ++i) numbers += ", 0.5";
+  EXPECT_TRUE(parse_document("a = [" + numbers + "]\n", "rig.toml"));
+}
+
 }  // namespace
 }  // namespace handcast::config

@@ -145,7 +145,7 @@ TEST_F(HandFile, MissingJointsAreNamed) {
 }
 
 TEST_F(HandFile, AFileThatIsNotThereIsSaid) {
-  EXPECT_THAT(refusal(path("nothing.glb")), HasSubstr("no such file"));
+  EXPECT_THAT(refusal(path("nothing.glb")), HasSubstr("No such file"));
 }
 
 TEST_F(HandFile, AFileThatIsNoGltfIsSaid) {
@@ -153,6 +153,29 @@ TEST_F(HandFile, AFileThatIsNoGltfIsSaid) {
     std::ofstream(path("odd.glb"), std::ios::binary) << content;
     EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("not a valid glTF file"));
   }
+}
+
+TEST_F(HandFile, JsonThatIsNestedTooDeeplyIsRefused) {
+  const std::string deep(100'000, '[');
+  std::ofstream(path("deep.gltf")) << R"({"asset": {"version": "2.0"}, "extras": )" << deep;
+  EXPECT_THAT(refusal(path("deep.gltf")), HasSubstr("nested more than 64 deep"));
+}
+
+TEST_F(HandFile, AMeshThatIsNotInMetresIsRefused) {
+  for (const float scale : {100.0f, 0.001f, 1e37f}) {
+    HandMesh hand = mean_hand(Side::left);
+    for (auto& position : hand.positions) position *= scale;
+    for (auto& joint : hand.rest) joint[3] *= glm::vec4(glm::vec3(std::min(scale, 1e3f)), 1);
+    ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+    EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("from the wrist; a hand in metres")) << scale;
+  }
+}
+
+TEST_F(HandFile, OneVertexFarAwayIsRefused) {
+  HandMesh hand = mean_hand(Side::left);
+  hand.positions[7].x = -7.7e36f;
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("from the wrist"));
 }
 
 TEST_F(HandFile, AMeshWithoutSkinIsSaid) {

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
+#include "ipc/base/input_file.hpp"
 #include "services/landmarks/inference/onnx/check.hpp"
 #include "services/landmarks/inference/onnx/model.hpp"
 #include "services/landmarks/inference/onnx/wire.hpp"
@@ -318,13 +317,10 @@ Result<Model> parse_model(std::span<const std::uint8_t> bytes) try {
 }
 
 Result<Model> read_model(const std::filesystem::path& file) {
-  const std::string place = fmt::format("network '{}'", file.string());
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    return fail(Errc::bad_config, place + ": there is no such file, or it cannot be read");
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
-  auto model = parse_model(bytes);
-  if (!model) return fail_in(place, model.error());
+  const auto bytes = read_input(file, kMostModel);
+  if (!bytes) return fail_in("network", bytes.error());
+  auto model = parse_model({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
+  if (!model) return fail_in(fmt::format("network '{}'", file.string()), model.error());
   return model;
 }
 

@@ -72,7 +72,7 @@ TEST_F(NpyFiles, TheHeaderOfAVersion2FileIsRead) {
 }
 
 TEST_F(NpyFiles, EveryFaultIsNamedTogetherWithItsFile) {
-  EXPECT_THAT(complaint(file("absent.npy")), HasSubstr("no such file"));
+  EXPECT_THAT(complaint(file("absent.npy")), HasSubstr("No such file"));
   ASSERT_TRUE(write_npy_f32(file("good.npy"), {2, 2}, {1, 2, 3, 4}));
   const std::string good = bytes_of(file("good.npy"));
   const auto broken = [&](const std::string& what, const std::string& with) {

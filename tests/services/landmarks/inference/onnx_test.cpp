@@ -174,7 +174,7 @@ TEST(Networks, AMissingFileAndGarbageAreNamed) {
   const ModelFile garbage(std::vector<std::uint8_t>{'n', 'o', ' ', 'm', 'o', 'd', 'e', 'l'});
   for (const auto executor : executors()) {
     EXPECT_THAT(open_network(executor, "/no/such.onnx").error().what,
-                HasSubstr("network '/no/such.onnx': there is no such file"));
+                HasSubstr("network: /no/such.onnx: cannot be read: No such file"));
     EXPECT_THAT(open_network(executor, garbage.path()).error().what, HasSubstr("not an ONNX file"));
   }
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace handcast::landmarks {
@@ -60,6 +61,17 @@ TEST(MediapipePalms, OverlappingCandidatesBecomeTheirMeanByScore) {
   const float weak = 0.52498f, strong = 0.99331f;
   EXPECT_NEAR(palms[0].centre.x, palm_anchors()[600].x + weak / (weak + strong) * 10 / 192, 1e-4);
   EXPECT_NEAR(palms[0].score, strong, 1e-4);
+}
+
+TEST(MediapipePalms, BoxesThatAreHugeOrNotFiniteAreNone) {
+  for (const float odd : {1e38f, 1e20f, -1e20f, std::numeric_limits<float>::infinity(),
+                          std::numeric_limits<float>::quiet_NaN()}) {
+    Answer answer;
+    answer.put(600, 5, 0, 0, odd);
+    answer.put(700, 5, odd, 0, 40);
+    answer.put(1100, 1, 0, 0, 40);
+    EXPECT_EQ(decode_palms(answer.boxes, answer.logits).size(), 1u) << odd;
+  }
 }
 
 TEST(MediapipePalms, ABoxWithoutAnExtentIsNone) {
