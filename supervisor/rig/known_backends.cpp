@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "config/renamed_settings.hpp"
-#include "config/settings/join.hpp"
 #include "config/settings/settings.hpp"
+#include "ipc/base/join.hpp"
 #include "supervisor/life/child.hpp"
 
 namespace handcast::supervisor {
@@ -35,7 +35,7 @@ Result<void> check_backend(const std::filesystem::path& program_folder, const st
   if (known.empty()) return fail(Errc::bad_config, service + " has no back ends to choose from");
   if (std::ranges::find(known, backend) != known.end()) return {};
   return fail(Errc::bad_config, fmt::format("{} has no back end '{}'; it has: {}", service, backend,
-                                            config::join(known, ", ")));
+                                            join(known, ", ")));
 }
 
 Result<std::string> present_backend(const std::string& service, const std::string& word,

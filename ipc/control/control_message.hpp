@@ -23,7 +23,7 @@
 ///
 /// Descriptors come with the first byte of the answer (SCM_RIGHTS). The answer to what cannot be
 /// done is {"ok":false,"error":"one sentence"}.
-namespace handcast::supervisor {
+namespace handcast::control {
 
 /// The most that the kernel passes on with one answer (SCM_MAX_FD).
 inline constexpr std::size_t kMostDescriptors = 253;
@@ -56,4 +56,4 @@ nlohmann::json success();
 /// {"ok":false} with the sentence.
 nlohmann::json failure(std::string sentence);
 
-}  // namespace handcast::supervisor
+}  // namespace handcast::control
