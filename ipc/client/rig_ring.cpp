@@ -14,7 +14,7 @@
 namespace handcast::client {
 namespace {
 
-/// The names in an answer to Verb::rings; what is not a text counts as a name that is empty.
+/// The names in an answer to Verb::rings; anything else than a text counts as a nameless ring.
 std::vector<std::string> names_in(const nlohmann::json& answer) {
   std::vector<std::string> names;
   if (const auto rings = answer.find("rings"); rings != answer.end() && rings->is_array())
@@ -34,7 +34,7 @@ Result<RigRing> rig_ring(const std::string& rig, std::string_view stream,
 
   const auto names = names_in(answer->object);
   const auto found = std::ranges::find(names, stream);
-  if (found == names.end())
+  if (stream.empty() || found == names.end())
     return fail(Errc::bad_config, fmt::format("rig '{}' has no stream '{}'; it has: {}", *chosen,
                                               stream, join(names, ", ")));
   // ask_with_descriptors() has checked that there is a descriptor for each name.
@@ -42,6 +42,9 @@ Result<RigRing> rig_ring(const std::string& rig, std::string_view stream,
       std::move(answer->descriptors[static_cast<std::size_t>(found - names.begin())]));
   if (!segment)
     return fail_in(fmt::format("stream '{}' of rig '{}'", stream, *chosen), segment.error());
+  if (segment->stream() != stream)
+    return fail(Errc::bad_data, fmt::format("rig '{}' gave the ring of '{}' for stream '{}'",
+                                            *chosen, segment->stream(), stream));
   return RigRing{*chosen, std::move(*segment)};
 }
 
