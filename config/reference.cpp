@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "config/rig.hpp"
-#include "config/settings/join.hpp"
 #include "config/settings/settings.hpp"
+#include "ipc/base/join.hpp"
 
 namespace handcast::config {
 namespace {

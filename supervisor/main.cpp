@@ -8,7 +8,7 @@
 #include <array>
 #include <utility>
 
-#include "config/settings/join.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/version.hpp"
 #include "supervisor/commands/verbs.hpp"
 
@@ -42,7 +42,7 @@ int become_program(const std::string& verb, const Arguments& arguments) {
     execv(program.c_str(), pointers.data());
   }
   return complain(kExitUsage, fmt::format("there is no verb '{}'; there are: {}", verb,
-                                          config::join(verb_names(), ", ")));
+                                          join(verb_names(), ", ")));
 }
 
 const VerbEntry* find_verb(const std::string& name) {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <tuple>
 
-#include "config/settings/join.hpp"
+#include "ipc/base/join.hpp"
 
 namespace handcast::config {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "config/settings/join.hpp"
+#include "ipc/base/join.hpp"
 
 namespace handcast::config {
 namespace {

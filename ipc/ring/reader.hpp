@@ -58,6 +58,18 @@ class Reader {
     return Reader(std::move(*ring));
   }
 
+  /// Takes the segment, which may be mapped read-only, and reads it without a reader row: for
+  /// programs outside the rig. Nothing is written to the ring, so any number of such readers fits
+  /// and none can disturb the writer or another reader. Messages are copied. The writer does not
+  /// wake such a reader: with Wait::futex and Wait::eventfd it looks every millisecond, and sees a
+  /// message at once only if the writer wakes another reader. Errors: bad_data (the ring carries
+  /// another type), unavailable (the memory cannot be protected, no descriptor, or no thread).
+  static Result<Reader> watch(Segment segment, Wait wait = Wait::futex) {
+    auto ring = RingReader::watch(std::move(segment), shape_of<T>(), wait);
+    if (!ring) return tl::make_unexpected(std::move(ring.error()));
+    return Reader(std::move(*ring));
+  }
+
   /// The message after the last one seen, in order; waits for it until the deadline. Messages that
   /// were overwritten are skipped and counted. Errors: timeout, bad_data (the memory of the ring is
   /// inconsistent), unavailable (no memory for a copy).

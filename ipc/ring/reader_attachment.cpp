@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
 
@@ -58,7 +60,20 @@ Result<std::shared_ptr<ReaderAttachment>> ReaderAttachment::take(Segment segment
       new ReaderAttachment(std::move(segment), row.number, row.owner));
 }
 
-ReaderAttachment::~ReaderAttachment() { release_row(control_words_of(segment_), row_, owner_); }
+Result<std::shared_ptr<ReaderAttachment>> ReaderAttachment::watch(Segment segment) {
+  if (auto restricted = segment.restrict_to(Access::look); !restricted)
+    return tl::make_unexpected(restricted.error());
+  return std::shared_ptr<ReaderAttachment>(new ReaderAttachment(std::move(segment), kNoRow, 0));
+}
+
+ReaderAttachment::~ReaderAttachment() {
+  if (has_row()) release_row(control_words_of(segment_), row_, owner_);
+}
+
+void ReaderAttachment::sleep(ReaderCore<RealAtomics>& core, std::int64_t until_ns) const {
+  if (has_row()) return core.wait(until_ns);
+  core.doze(std::min(until_ns, now_ns() + kGlance_ns));
+}
 
 void ReaderAttachment::end(const Lease& lease) {
   if (core_.release(lease)) return;

@@ -13,13 +13,20 @@
 
 namespace handcast::ipc {
 
-/// The attachment of a reader to a ring: the mapping, the reader row, and the buffers for copies.
-/// The reader and all messages that it holds share it, so no lease outlives its row or its memory.
+/// The longest sleep of a reader without a row, which nobody wakes.
+inline constexpr std::int64_t kGlance_ns = 1'000'000;
+
+/// The attachment of a reader to a ring: the mapping, the reader row if it has one, and the buffers
+/// for copies. The reader and all messages that it holds share it, so no lease outlives its row or
+/// its memory.
 class ReaderAttachment {
  public:
   /// Takes the segment and claims a reader row. Errors: unavailable (all rows are taken, the
   /// messages cannot be protected, or the start time of this process cannot be read).
   static Result<std::shared_ptr<ReaderAttachment>> take(Segment segment);
+  /// Takes the segment and claims no row: the mapping is read-only, messages can only be copied,
+  /// and the counters are private. Errors: unavailable (the memory cannot be protected).
+  static Result<std::shared_ptr<ReaderAttachment>> watch(Segment segment);
   ~ReaderAttachment();  ///< Releases the row.
   ReaderAttachment(const ReaderAttachment&) = delete;
   ReaderAttachment& operator=(const ReaderAttachment&) = delete;
@@ -30,8 +37,12 @@ class ReaderAttachment {
   ReaderCore<RealAtomics>& core() { return core_; }
   /// The buffers for copies. The thread of the reader only.
   BufferPool& buffers() { return buffers_; }
-  /// The counters of the row. The thread of the reader only.
-  ReaderTally& tally() const { return reader_tally(segment_, row_); }
+  /// The counters of the row, or those of a reader without one. The thread of the reader only.
+  ReaderTally& tally() { return has_row() ? reader_tally(segment_, row_) : own_tally_; }
+  /// Sleeps until `core` may have a new message or `until_ns` is reached; may return early. Without
+  /// a row it cannot request a wake-up, and sleeps at most kGlance_ns. `core` is core() or
+  /// another_core(), on its thread.
+  void sleep(ReaderCore<RealAtomics>& core, std::int64_t until_ns) const;
   /// A second core on the same row with its own position in the stream, for the thread of a
   /// WakeBridge.
   ReaderCore<RealAtomics> another_core() const {
@@ -44,13 +55,17 @@ class ReaderAttachment {
   std::uint64_t revoked() const { return revoked_.load(std::memory_order_relaxed); }
 
  private:
+  static constexpr int kNoRow = -1;
+
   ReaderAttachment(Segment segment, int row, std::uint64_t owner);
+  bool has_row() const { return row_ != kNoRow; }
 
   Segment segment_;
   int row_;
   std::uint64_t owner_;
   ReaderCore<RealAtomics> core_;
   BufferPool buffers_;
+  ReaderTally own_tally_;
   std::atomic<std::uint64_t> revoked_{0};
 };
 

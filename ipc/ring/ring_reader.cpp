@@ -26,8 +26,8 @@ void pause() {
 
 /// The wait function of a WakeBridge: waits on the futex, with its own position in the stream.
 std::function<bool()> wait_for_news(const std::shared_ptr<ReaderAttachment>& attachment) {
-  return [core = attachment->another_core()]() mutable {
-    core.wait(now_ns() + kSlice_ns);
+  return [attachment = attachment.get(), core = attachment->another_core()]() mutable {
+    attachment->sleep(core, now_ns() + kSlice_ns);
     if (!core.something_new()) return false;
     // Before the descriptor is made readable: later messages are reported by the next call.
     core.catch_up();
@@ -62,7 +62,19 @@ Result<std::unique_ptr<RingReader>> RingReader::attach(Segment segment, const Me
                                                        Wait wait, Hold hold) {
   if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits)
     return tl::make_unexpected(fits.error());
-  auto attachment = ReaderAttachment::take(std::move(segment));
+  return over(ReaderAttachment::take(std::move(segment)), shape, wait, hold);
+}
+
+Result<std::unique_ptr<RingReader>> RingReader::watch(Segment segment, const MessageShape& shape,
+                                                      Wait wait) {
+  if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits)
+    return tl::make_unexpected(fits.error());
+  return over(ReaderAttachment::watch(std::move(segment)), shape, wait, Hold::copy);
+}
+
+Result<std::unique_ptr<RingReader>> RingReader::over(
+    Result<std::shared_ptr<ReaderAttachment>> attachment, const MessageShape& shape, Wait wait,
+    Hold hold) {
   if (!attachment) return tl::make_unexpected(attachment.error());
   std::unique_ptr<RingReader> reader(new RingReader(std::move(*attachment), shape, wait, hold));
   if (wait != Wait::eventfd) return reader;
@@ -201,7 +213,7 @@ void RingReader::wait(Deadline deadline) {
     if (from_ns == window->from_ns) spin(std::min(window->until_ns, deadline.time_ns()));
     return;
   }
-  attachment_->core().wait(slice_end_ns);
+  attachment_->sleep(attachment_->core(), slice_end_ns);
 }
 
 void RingReader::spin(std::int64_t until_ns) const {

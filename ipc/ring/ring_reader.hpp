@@ -33,6 +33,8 @@ class RingReader {
   /// @{
   static Result<std::unique_ptr<RingReader>> attach(Segment segment, const MessageShape& shape,
                                                     Wait wait, Hold hold);
+  static Result<std::unique_ptr<RingReader>> watch(Segment segment, const MessageShape& shape,
+                                                   Wait wait);
 
   Result<Held> next(Deadline deadline);
   Result<Held> latest(Deadline deadline);
@@ -47,6 +49,9 @@ class RingReader {
   /// @}
 
  private:
+  static Result<std::unique_ptr<RingReader>> over(
+      Result<std::shared_ptr<ReaderAttachment>> attachment, const MessageShape& shape, Wait wait,
+      Hold hold);
   RingReader(std::shared_ptr<ReaderAttachment> attachment, const MessageShape& shape, Wait wait,
              Hold hold);
 

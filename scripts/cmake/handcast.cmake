@@ -12,6 +12,11 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O3")
 
+include(GNUInstallDirs)
+# Programs look for their files here as seen from their own folder, in the build and in an
+# installation.
+cmake_path(SET HANDCAST_INSTALL_SHAREDIR NORMALIZE "${CMAKE_INSTALL_BINDIR}/../share/handcast")
+
 set(HANDCAST_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
 # A compiler cache helps those who build often, precompiled headers those who build once: the two do
@@ -95,7 +100,7 @@ function(handcast_module)
     set(scope INTERFACE)
     add_library(${target} INTERFACE)
   endif()
-  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:include/handcast>)
+  target_include_directories(${target} ${scope} ${CMAKE_SOURCE_DIR})
   target_link_libraries(${target} ${scope} ${ARG_LIBRARIES})
   handcast_use(${target} ${scope} ${ARG_USES})
 endfunction()
@@ -109,7 +114,7 @@ function(handcast_program name)
   handcast_use(${name} PRIVATE ${ARG_USES})
   handcast_precompile(${name})
   if(NOT ARG_NOT_INSTALLED)
-    install(TARGETS ${name} RUNTIME DESTINATION bin)
+    install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()
 endfunction()
 
@@ -122,7 +127,7 @@ function(handcast_service name)
     COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
     COMMAND handcast-${name} --describe > ${folder}/${name}.json
     BYPRODUCTS ${folder}/${name}.json)
-  install(FILES ${folder}/${name}.json DESTINATION share/handcast/services)
+  install(FILES ${folder}/${name}.json DESTINATION ${HANDCAST_INSTALL_SHAREDIR}/services)
 endfunction()
 
 # handcast_test([SUFFIX word] SOURCES a_test.cpp ... USES folder ... [LIBRARIES target ...] [NEEDS target ...] [TIMEOUT seconds]

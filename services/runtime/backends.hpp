@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "config/settings/join.hpp"
 #include "config/settings/setting_list.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/result.hpp"
 #include "ipc/daemon/description.hpp"
 
@@ -63,7 +63,7 @@ Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::stri
   for (const auto& row : table)
     if (row.name == name) return row.open(args...);
   return fail(Errc::bad_config, fmt::format("{}: no back end '{}'; this build has: {}", what, name,
-                                            config::join(names_of(table), ", ")));
+                                            join(names_of(table), ", ")));
 }
 
 /// Whether a spare must not open this back end before its turn.

@@ -3,39 +3,25 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "config/settings/join.hpp"
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/base/join.hpp"
+#include "ipc/control/choose_rig.hpp"
+#include "ipc/control/runtime_folder.hpp"
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
-namespace {
-
-/// What to say if no rig is up. Services may live without their supervisor.
-std::string nobody_is_up() {
-  const auto orphaned = orphaned_rigs();
-  if (orphaned.empty()) return "no rig is up; `handcast up RIG.toml` starts one";
-  return fmt::format(
-      "no supervisor is up, but services of {} live; `handcast up RIG.toml` takes them over, "
-      "`handcast down` ends them",
-      config::join(orphaned, ", "));
-}
-
-}  // namespace
 
 Result<std::string> choose_rig(const std::string& name) {
-  const auto rigs = living_rigs();
-  if (!rigs) return tl::make_unexpected(rigs.error());
-  if (rigs->empty()) return fail(Errc::unavailable, nobody_is_up());
-  if (name.empty() && rigs->size() == 1) return rigs->front();
-  if (name.empty())
-    return fail(Errc::unavailable, fmt::format("several rigs are up, choose one with --rig: {}",
-                                               config::join(*rigs, ", ")));
-  if (std::ranges::find(*rigs, name) == rigs->end())
-    return fail(Errc::unavailable, fmt::format("no rig named '{}' is up; there is: {}", name,
-                                               config::join(*rigs, ", ")));
-  return name;
+  auto rig = control::choose_rig(name);
+  const auto living = control::living_rigs();
+  if (rig || !living) return rig;
+  if (name.empty() && living->size() > 1) rig.error().what += "; choose one with --rig";
+  if (!living->empty()) return rig;
+  const auto orphaned = orphaned_rigs();
+  if (orphaned.empty()) return rig;
+  return fail(Errc::unavailable,
+              fmt::format("no supervisor is up, but services of {} live; `handcast up RIG.toml` "
+                          "takes them over, `handcast down` ends them",
+                          join(orphaned, ", ")));
 }
 
 }  // namespace handcast::supervisor

@@ -6,9 +6,8 @@
 
 namespace handcast::supervisor {
 
-/// The rig that a command is meant for: `name`, or, if that is empty, the only rig that is up.
-/// Errors: unavailable (no such rig, or several; the sentence names those that are up), bad_config
-/// (the runtime folder).
+/// The rig that a command is meant for: control::choose_rig(), with a sentence of its own for
+/// services that live without their supervisor. Errors: as control::choose_rig().
 Result<std::string> choose_rig(const std::string& name);
 
 }  // namespace handcast::supervisor

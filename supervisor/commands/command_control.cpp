@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "config/renamed_settings.hpp"
-#include "config/settings/join.hpp"
+#include "ipc/base/join.hpp"
+#include "ipc/control/control_client.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/control/control_client.hpp"
 #include "supervisor/rig/status.hpp"
 #include "supervisor/succession/adoption.hpp"
 
@@ -20,10 +20,10 @@ struct Talk {
 };
 
 /// Chooses the rig and asks it. Complains about what goes wrong.
-Talk talk(const std::string& rig_name, const Request& request) {
+Talk talk(const std::string& rig_name, const control::Request& request) {
   const auto rig = choose_rig(rig_name);
   if (!rig) return {complain(rig.error()), {}};
-  auto answer = ask(*rig, request);
+  auto answer = control::ask(*rig, request);
   if (!answer) return {complain(answer.error()), {}};
   return {kExitDone, std::move(*answer)};
 }
@@ -34,15 +34,15 @@ std::string print_reload(const nlohmann::json& answer) {
   std::vector<std::string> parts;
   for (const auto* what : {"restarted", "started", "stopped", "untouched"})
     if (const auto names = answer.value(what, std::vector<std::string>()); !names.empty())
-      parts.push_back(config::join(names, ", ") + " " + what);
+      parts.push_back(join(names, ", ") + " " + what);
   const bool acted = !parts.empty() && (parts.size() > 1 ||
                                         answer.value("untouched", nlohmann::json::array()).empty());
-  return acted || answer.value("changed", false) ? "reloaded: " + config::join(parts, "; ")
+  return acted || answer.value("changed", false) ? "reloaded: " + join(parts, "; ")
                                                  : "nothing changed";
 }
 
 /// The present name of the back end; an old one is reported.
-std::string current_backend(const Request& request) {
+std::string current_backend(const control::Request& request) {
   const auto report = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
   return config::current_form({request.service + ".backend", request.backend}, "swap",
                               config::renamed_settings(), report)
@@ -52,8 +52,8 @@ std::string current_backend(const Request& request) {
 
 /// Runs a verb that takes a service, or a service and a back end. `done` is printed when it is
 /// done, with {0} for the service and {1} for the back end.
-int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words, Request request,
-                   const char* done) {
+int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words,
+                   control::Request request, const char* done) {
   const auto options = sort_options(
       arguments, {.with_value = {"--rig"}, .flags = {}, .least_words = words, .most_words = words});
   if (!options)
@@ -77,16 +77,18 @@ int run_down(const Arguments& arguments) {
                stop_orphans(*rig, kStop_s));
     return kExitDone;
   }
-  return ask_with_words("down", arguments, 0, {.verb = Verb::down, .service = {}, .backend = {}},
+  return ask_with_words("down", arguments, 0,
+                        {.verb = control::Verb::down, .service = {}, .backend = {}},
                         "the rig has stopped");
 }
 int run_restart(const Arguments& arguments) {
   return ask_with_words("restart", arguments, 1,
-                        {.verb = Verb::restart, .service = {}, .backend = {}},
+                        {.verb = control::Verb::restart, .service = {}, .backend = {}},
                         "{0} is ready again");
 }
 int run_swap(const Arguments& arguments) {
-  return ask_with_words("swap", arguments, 2, {.verb = Verb::swap, .service = {}, .backend = {}},
+  return ask_with_words("swap", arguments, 2,
+                        {.verb = control::Verb::swap, .service = {}, .backend = {}},
                         "{0} is ready with '{1}'");
 }
 
@@ -95,7 +97,7 @@ int run_reload(const Arguments& arguments) {
   if (!options)
     return complain(kExitUsage, "reload: " + options.error().what + "; `handcast help reload`");
   const auto [exit_code, answer] =
-      talk(options->value("--rig"), {.verb = Verb::reload, .service = {}, .backend = {}});
+      talk(options->value("--rig"), {.verb = control::Verb::reload, .service = {}, .backend = {}});
   if (exit_code == kExitDone) fmt::print("{}\n", print_reload(answer));
   return exit_code;
 }
@@ -105,7 +107,7 @@ int run_status(const Arguments& arguments) {
   if (!options)
     return complain(kExitUsage, "status: " + options.error().what + "; `handcast help status`");
   auto [exit_code, answer] =
-      talk(options->value("--rig"), {.verb = Verb::status, .service = {}, .backend = {}});
+      talk(options->value("--rig"), {.verb = control::Verb::status, .service = {}, .backend = {}});
   if (exit_code != kExitDone) return exit_code;
   const auto& status = answer["status"];
   fmt::print("{}", options->has("--json") ? status.dump(2) + "\n" : print_status(status));

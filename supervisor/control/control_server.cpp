@@ -13,7 +13,7 @@
 #include <cstring>
 #include <vector>
 
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/control/runtime_folder.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -26,7 +26,7 @@ constexpr std::size_t kMostClients = 64;
 Result<UniqueFd> bind_to(const std::filesystem::path& path, const std::string& rig) {
   const UniqueFd lock(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   flock(lock.get(), LOCK_EX);
-  const auto other = connect_to(path);
+  const auto other = control::connect_to(path);
   if (!other && other.error().code == Errc::bad_config) return tl::make_unexpected(other.error());
   if (other || other.error().code == Errc::timeout)
     return fail(
@@ -35,7 +35,7 @@ Result<UniqueFd> bind_to(const std::filesystem::path& path, const std::string& r
   unlink(path.c_str());  // left by a supervisor that was killed
 
   UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  const auto address = address_of(path);
+  const auto address = control::address_of(path);
   // The socket's mode becomes that of the file. Others cannot enter its folder anyway.
   if (!listener || fchmod(listener.get(), 0600) != 0 ||
       bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
@@ -59,7 +59,7 @@ std::vector<std::string> take_lines(std::string& text) {
 Result<std::unique_ptr<ControlServer>> ControlServer::listen(const std::string& rig,
                                                              EventLoop& loop,
                                                              OnRequest on_request) {
-  const auto path = socket_of(rig);
+  const auto path = control::socket_of(rig);
   if (!path) return tl::make_unexpected(path.error());
   auto listener = bind_to(*path, rig);
   if (!listener) return tl::make_unexpected(listener.error());
@@ -90,7 +90,7 @@ ControlServer::~ControlServer() {
 
 void ControlServer::accept() {
   UniqueFd socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-  if (!socket || !is_of_this_user(socket.get()) || clients_.size() >= kMostClients) return;
+  if (!socket || !control::is_of_this_user(socket.get()) || clients_.size() >= kMostClients) return;
   const auto id = next_id_++;
   loop_.watch(socket.get(), [this, id] { read(id); });
   clients_.emplace(id, Client{std::move(socket), {}, {}});
@@ -111,8 +111,8 @@ void ControlServer::read(std::uint64_t id) {
 }
 
 void ControlServer::answer_line(std::uint64_t id, const std::string& line) {
-  const auto request = parse_request(line);
-  if (!request) return send(id, failure(request.error().what));
+  const auto request = control::parse_request(line);
+  if (!request) return send(id, control::failure(request.error().what));
   on_request_(*request,
               Reply([this, id](const nlohmann::json& answer, const std::vector<int>& descriptors) {
                 send(id, answer, descriptors);
@@ -129,7 +129,7 @@ void ControlServer::send(std::uint64_t id, const nlohmann::json& answer,
   auto& client = found->second;
   const bool is_slow = !client.unsent.empty();
   if (is_slow && !descriptors.empty()) return drop(id);
-  client.unsent += to_line(answer) + "\n";
+  client.unsent += control::to_line(answer) + "\n";
   if (!is_slow && !send_some(client, descriptors)) return drop(id);
   if (client.unsent.size() > kMostUnsent) return drop(id);
   if (!is_slow && !client.unsent.empty())
@@ -139,12 +139,13 @@ void ControlServer::send(std::uint64_t id, const nlohmann::json& answer,
 /// Sends as much as fits into the socket's buffer. False: the client is gone, or these descriptors
 /// cannot be sent.
 bool ControlServer::send_some(Client& client, const std::vector<int>& descriptors) {
-  if (descriptors.size() > kMostDescriptors) return false;
+  if (descriptors.size() > control::kMostDescriptors) return false;
   iovec text{.iov_base = client.unsent.data(), .iov_len = client.unsent.size()};
   msghdr message{};
   message.msg_iov = &text;
   message.msg_iovlen = 1;
-  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(kMostDescriptors * sizeof(int))> room{};
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(control::kMostDescriptors * sizeof(int))>
+      room{};
   if (!descriptors.empty()) {
     const auto size = descriptors.size() * sizeof(int);
     message.msg_control = room.data();

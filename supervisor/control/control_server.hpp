@@ -9,8 +9,8 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
+#include "ipc/control/control_message.hpp"
 #include "supervisor/base/event_loop.hpp"
-#include "supervisor/control/control_message.hpp"
 
 namespace handcast::supervisor {
 
@@ -34,7 +34,7 @@ class ControlServer {
    private:
     Send send_;
   };
-  using OnRequest = std::function<void(const Request&, Reply)>;
+  using OnRequest = std::function<void(const control::Request&, Reply)>;
 
   /// Errors: unavailable (a rig of this name is up), bad_config (the name, or the runtime folder).
   static Result<std::unique_ptr<ControlServer>> listen(const std::string& rig, EventLoop& loop,

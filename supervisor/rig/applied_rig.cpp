@@ -4,14 +4,15 @@
 #include <unistd.h>
 
 #include "ipc/base/log.hpp"
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/control/runtime_folder.hpp"
+#include "supervisor/base/replace_file.hpp"
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 Result<std::filesystem::path> applied_file(const std::string& rig) {
-  auto path = socket_of(rig);
+  auto path = control::socket_of(rig);
   if (path) path->replace_extension(".toml");
   return path;
 }

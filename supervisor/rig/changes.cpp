@@ -18,9 +18,9 @@ void Changes::restart(Service& service, ControlServer::Reply reply) {
 void Changes::swap(Service& service, const std::string& word, ControlServer::Reply reply) {
   const auto name = service.spec().name;
   const auto backend = present_backend(name, word, rig_.config);
-  if (!backend) return reply(failure(backend.error().what));
+  if (!backend) return reply(control::failure(backend.error().what));
   if (const auto known = check_backend(rig_.catalogue, name, *backend); !known)
-    return reply(failure(known.error().what));
+    return reply(control::failure(known.error().what));
   pending_[name] = {std::move(reply), *backend, service.spec().backend};
   give_backend(service, *backend, true);
 }
@@ -38,14 +38,15 @@ void Changes::on_ready(const Service& service) {
   const auto pending = pending_.extract(service.spec().name);
   if (!pending) return;
   const auto& [reply, wanted, before, reason] = pending.mapped();
-  reply(reason.empty() ? success()
-                       : failure(fmt::format("{} did not start with '{}', '{}' goes on: {}",
-                                             pending.key(), wanted, before, reason)));
+  reply(reason.empty()
+            ? control::success()
+            : control::failure(fmt::format("{} did not start with '{}', '{}' goes on: {}",
+                                           pending.key(), wanted, before, reason)));
 }
 
 void Changes::on_stopped(const Service& service) {
   if (const auto pending = pending_.extract(service.spec().name))
-    pending.mapped().reply(failure(pending.key() + " ended by itself"));
+    pending.mapped().reply(control::failure(pending.key() + " ended by itself"));
 }
 
 bool Changes::on_failed(Service& service) {
@@ -59,12 +60,13 @@ bool Changes::on_failed(Service& service) {
     return true;
   }
   pending_.extract(found).mapped().reply(
-      failure(fmt::format("{} failed: {}", service.spec().name, sentence)));
+      control::failure(fmt::format("{} failed: {}", service.spec().name, sentence)));
   return false;
 }
 
 void Changes::refuse_all(const std::string& sentence) {
-  for (const auto& [name, pending] : std::exchange(pending_, {})) pending.reply(failure(sentence));
+  for (const auto& [name, pending] : std::exchange(pending_, {}))
+    pending.reply(control::failure(sentence));
 }
 
 }  // namespace handcast::supervisor

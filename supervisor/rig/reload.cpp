@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "config/settings/join.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
-#include "supervisor/control/control_message.hpp"
+#include "ipc/control/control_message.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/succession/systemd.hpp"
 
@@ -101,7 +101,7 @@ void Reload::note_what_has_settled(std::int64_t now) {
 
 nlohmann::json Reload::finish() {
   for (const auto& name : plan_.stopped) rig_->services.remove(name);
-  auto answer = failures_.empty() ? success() : failure(config::join(failures_, "\n"));
+  auto answer = failures_.empty() ? control::success() : control::failure(join(failures_, "\n"));
   answer["changed"] = plan_.changed;
   answer["restarted"] = plan_.restarted;
   answer["started"] = plan_.started;
@@ -113,7 +113,7 @@ nlohmann::json Reload::finish() {
       answer["untouched"].push_back(name);
   }
   log::info("rig '{}' reloaded; restarted: {}", rig_->name,
-            plan_.restarted.empty() ? "nothing" : config::join(plan_.restarted, ", "));
+            plan_.restarted.empty() ? "nothing" : join(plan_.restarted, ", "));
   return answer;
 }
 

@@ -9,13 +9,16 @@
 #include <cstring>
 #include <utility>
 
-#include "config/settings/join.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
+using control::failure;
+using control::success;
+using control::Verb;
 using Reply = ControlServer::Reply;
 
 void give_status(LiveRig& rig, const Reply& reply) {
@@ -42,7 +45,7 @@ void give_rings(const LiveRig& rig, const Reply& reply) {
   reply(answer, descriptors);
 }
 
-void give_history(LiveRig& rig, const Request& request, const Reply& reply) {
+void give_history(LiveRig& rig, const control::Request& request, const Reply& reply) {
   rig.recorder.poll();
   const auto longest_s = ns_to_seconds(now_ns());
   const auto since_ns = now_ns() - seconds_to_ns(std::min(request.seconds, longest_s));
@@ -54,15 +57,14 @@ void give_history(LiveRig& rig, const Request& request, const Reply& reply) {
 std::string no_service(const LiveRig& rig, const std::string& name) {
   std::vector<std::string> names;
   for (const auto& each : rig.services.all()) names.push_back(each->spec().name);
-  return fmt::format("rig '{}' has no service '{}'; it has: {}", rig.name, name,
-                     config::join(names, ", "));
+  return fmt::format("rig '{}' has no service '{}'; it has: {}", rig.name, name, join(names, ", "));
 }
 
 }  // namespace
 
 Requests::Requests(LiveRig& rig, Host host) : rig_(rig), host_(std::move(host)), changes_(rig) {}
 
-void Requests::answer(const Request& request, Reply reply) {
+void Requests::answer(const control::Request& request, Reply reply) {
   switch (request.verb) {
     case Verb::status:
       return give_status(rig_, reply);
@@ -81,14 +83,14 @@ void Requests::answer(const Request& request, Reply reply) {
   }
 }
 
-void Requests::change(const Request& request, Reply reply) {
+void Requests::change(const control::Request& request, Reply reply) {
   if (const auto reason = why_not_change(request); !reason.empty()) return reply(failure(reason));
   auto& service = *rig_.services.find(request.service);
   if (request.verb == Verb::restart) return changes_.restart(service, std::move(reply));
   changes_.swap(service, request.backend, std::move(reply));
 }
 
-std::string Requests::why_not_change(const Request& request) const {
+std::string Requests::why_not_change(const control::Request& request) const {
   if (!rig_.services.find(request.service)) return no_service(rig_, request.service);
   if (rig_.stops()) return "the rig stops";
   if (reloading_) return "the rig is being reloaded; try again when that is done";

@@ -12,8 +12,8 @@
 
 namespace handcast::supervisor {
 
-/// Answers what is asked over the control socket (control_message.hpp): at once, or when what was
-/// asked for is done.
+/// Answers what is asked over the control socket (ipc/control/control_message.hpp): at once, or
+/// when what was asked for is done.
 class Requests {
  public:
   struct Host {
@@ -22,7 +22,7 @@ class Requests {
   };
   Requests(LiveRig& rig, Host host);
 
-  void answer(const Request& request, ControlServer::Reply reply);
+  void answer(const control::Request& request, ControlServer::Reply reply);
   /// Makes this rig the one that is applied; `revives`: services that have given up are tried
   /// again.
   void reload(Result<config::Rig> wanted, bool revives, ControlServer::Reply reply);
@@ -39,9 +39,9 @@ class Requests {
   void on_done();
 
  private:
-  void change(const Request& request, ControlServer::Reply reply);
+  void change(const control::Request& request, ControlServer::Reply reply);
   std::string why_not_reload() const;
-  std::string why_not_change(const Request& request) const;
+  std::string why_not_change(const control::Request& request) const;
 
   struct Reloading {
     Reload reload;

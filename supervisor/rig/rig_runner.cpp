@@ -64,10 +64,10 @@ Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOp
 
 /// The process that listens at the control socket is the rig's supervisor.
 Result<void> RigRunner::claim_name() {
-  auto control = ControlServer::listen(rig_.name, loop_,
-                                       [this](const Request& request, ControlServer::Reply reply) {
-                                         requests_.answer(request, std::move(reply));
-                                       });
+  auto control = ControlServer::listen(
+      rig_.name, loop_, [this](const control::Request& request, ControlServer::Reply reply) {
+        requests_.answer(request, std::move(reply));
+      });
   if (!control) return tl::make_unexpected(control.error());
   control_ = std::move(*control);
   return {};

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "config/settings/files.hpp"
-#include "config/settings/join.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 
 namespace handcast::supervisor {
@@ -31,7 +31,7 @@ std::vector<std::string> names_of(const std::vector<daemon::BackendDescription>&
 
 std::string row(const daemon::BackendDescription& backend) {
   const auto reads =
-      backend.settings.empty() ? "" : fmt::format("`{}`", config::join(backend.settings, "` `"));
+      backend.settings.empty() ? "" : fmt::format("`{}`", join(backend.settings, "` `"));
   return fmt::format("| `{}` | {} | {} | {} |\n", backend.name, backend.sentence, reads,
                      backend.exclusive ? "one process at a time" : "");
 }
@@ -68,7 +68,7 @@ Result<void> check_backend(const Catalogue& catalogue, const std::string& servic
   if (std::ranges::find(backends, backend, &daemon::BackendDescription::name) != backends.end())
     return {};
   return fail(Errc::bad_config, fmt::format("{} has no back end '{}'; it has: {}", service, backend,
-                                            config::join(names_of(backends), ", ")));
+                                            join(names_of(backends), ", ")));
 }
 
 std::string print_backends(const Catalogue& catalogue) {

@@ -15,9 +15,9 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/control/runtime_folder.hpp"
 #include "ipc/ring/row_owner.hpp"
 #include "supervisor/base/process.hpp"
-#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
@@ -203,15 +203,16 @@ int stop_orphans(const std::string& name, double stop_s) {
 
 std::vector<std::string> orphaned_rigs() {
   std::vector<std::string> rigs;
-  const auto folder = runtime_folder();
+  const auto folder = control::runtime_folder();
   std::error_code error;
   if (!folder) return rigs;
   for (const auto& entry : std::filesystem::directory_iterator(*folder, error)) {
     if (entry.path().extension() != ".state") continue;
     const auto name = entry.path().stem().string();
-    const auto socket = socket_of(name);
+    const auto socket = control::socket_of(name);
     const bool has_supervisor =
-        socket && (connect_to(*socket) || connect_to(*socket).error().code == Errc::timeout);
+        socket && (control::connect_to(*socket) ||
+                   control::connect_to(*socket).error().code == Errc::timeout);
     const auto saved = load_saved(name);
     if (!has_supervisor && saved && *saved && !living_of(**saved).empty()) rigs.push_back(name);
   }
@@ -223,7 +224,7 @@ std::optional<std::string> abandoned_rig(const std::string& name) {
   for (const auto limit = Deadline::in(std::chrono::seconds(1));; usleep(50'000)) {
     auto rigs = orphaned_rigs();
     if (!name.empty()) std::erase_if(rigs, [&](const auto& rig) { return rig != name; });
-    const auto living = living_rigs();
+    const auto living = control::living_rigs();
     if (rigs.size() != 1 || (name.empty() && living && !living->empty())) return std::nullopt;
     if (limit.passed()) return rigs.front();
   }

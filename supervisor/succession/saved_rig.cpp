@@ -13,7 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/unique_fd.hpp"
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/control/runtime_folder.hpp"
+#include "supervisor/base/replace_file.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -26,7 +27,7 @@ constexpr int kLeastFd = 3, kMostFd = 1 << 20;  ///< below: stdin, stdout, stder
 constexpr pid_t kLeastPid = 2, kMostPid = 1 << 22;
 
 Result<std::filesystem::path> state_of(const std::string& rig) {
-  auto path = socket_of(rig);
+  auto path = control::socket_of(rig);
   if (path) path->replace_extension(".state");
   return path;
 }

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "ipc/base/clock.hpp"
-#include "supervisor/control/control_client.hpp"
+#include "ipc/control/control_client.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -55,7 +55,7 @@ RigLook RigWatcher::look() {
 }
 
 void RigWatcher::ask_supervisor() {
-  auto answer = ask_with_descriptors(rig_, {.verb = Verb::status}, kPatience);
+  auto answer = control::ask_with_descriptors(rig_, {.verb = control::Verb::status}, kPatience);
   if (!answer || !answer->object.contains("status") || !answer->object["status"].is_object()) {
     missing_ = answer ? "its answer is invalid" : answer.error().what;
     return;
@@ -68,7 +68,7 @@ void RigWatcher::ask_supervisor() {
 }
 
 void RigWatcher::open_rings() {
-  auto answer = ask_with_descriptors(rig_, {.verb = Verb::rings}, kPatience);
+  auto answer = control::ask_with_descriptors(rig_, {.verb = control::Verb::rings}, kPatience);
   if (!answer) {
     missing_ = answer.error().what;
     return;

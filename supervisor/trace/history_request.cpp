@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include "supervisor/control/control_client.hpp"
+#include "ipc/control/control_client.hpp"
 #include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
 
 Result<HistorySnapshot> ask_for_history(const std::string& rig, double seconds) {
-  Request request{.verb = Verb::history};
+  control::Request request{.verb = control::Verb::history};
   request.seconds = seconds;
-  auto answer = ask_with_descriptors(rig, request);
+  auto answer = control::ask_with_descriptors(rig, request);
   if (!answer) return tl::make_unexpected(answer.error());
   if (answer->descriptors.size() != 1)
     return fail(Errc::bad_data, fmt::format("the answer of rig '{}' contains no history", rig));
@@ -19,7 +19,7 @@ Result<HistorySnapshot> ask_for_history(const std::string& rig, double seconds) 
 }
 
 Result<std::map<std::string, double>> ask_for_rates(const std::string& rig) {
-  const auto answer = ask(rig, Request{.verb = Verb::status});
+  const auto answer = control::ask(rig, control::Request{.verb = control::Verb::status});
   if (!answer) return tl::make_unexpected(answer.error());
   std::map<std::string, double> rates;
   for (const auto& service : services_of({}, {})) {

@@ -11,14 +11,14 @@
 
 #include <vector>
 
-#include "supervisor/control/control_client.hpp"
+#include "ipc/control/control_client.hpp"
 #include "tests/bench/rings_transports.hpp"
 
 namespace handcast::bench {
 namespace {
 
-using supervisor::Request;
-using supervisor::Verb;
+using control::Request;
+using control::Verb;
 
 constexpr auto kRigName = "bare";
 constexpr int kPrepare_us = 100'000;  // what a bare spare needs to be prepared, and more
@@ -91,7 +91,7 @@ const std::map<std::string, std::string>& BareRig::streams() {
 }
 
 nlohmann::json BareRig::status() const {
-  const auto answer = supervisor::ask(kRigName, Request{.verb = Verb::status});
+  const auto answer = control::ask(kRigName, Request{.verb = Verb::status});
   return answer ? (*answer)["status"] : nlohmann::json();
 }
 
@@ -110,7 +110,7 @@ pid_t BareRig::pid_of(const std::string& service) const {
 }
 
 ipc::RingView BareRig::view_of(const std::string& stream) const {
-  auto answer = must(supervisor::ask_with_descriptors(kRigName, Request{.verb = Verb::rings}));
+  auto answer = must(control::ask_with_descriptors(kRigName, Request{.verb = Verb::rings}));
   const auto& names = answer.object["rings"];
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == stream) return must(ipc::RingView::open(std::move(answer.descriptors.at(i))));

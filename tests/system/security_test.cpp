@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "supervisor/control/control_client.hpp"
+#include "ipc/control/control_client.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {
@@ -30,7 +30,7 @@ class Security : public SystemTest {
   /// What every ring's descriptor is for a tool.
   std::vector<UniqueFd> rings() const {
     setenv("XDG_RUNTIME_DIR", scratch_.path().c_str(), 1);
-    auto answer = supervisor::ask_with_descriptors("twin", {.verb = supervisor::Verb::rings});
+    auto answer = control::ask_with_descriptors("twin", {.verb = control::Verb::rings});
     unsetenv("XDG_RUNTIME_DIR");
     EXPECT_TRUE(answer);
     return answer ? std::move(answer->descriptors) : std::vector<UniqueFd>();

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "config/settings/join.hpp"
+#include "ipc/base/join.hpp"
 #include "services/evaluation/sweep/table.hpp"
 
 namespace handcast::sweep {
@@ -83,7 +83,7 @@ std::string print_indices(const std::vector<std::size_t>& ascending) {
                                   : fmt::format("{}-{}", ascending[first], ascending[last]));
     first = last + 1;
   }
-  return config::join(texts, ", ");
+  return join(texts, ", ");
 }
 
 }  // namespace handcast::sweep

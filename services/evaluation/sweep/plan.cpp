@@ -8,8 +8,8 @@
 #include "config/rig.hpp"
 #include "config/settings/document.hpp"
 #include "config/settings/files.hpp"
-#include "config/settings/join.hpp"
 #include "config/settings/load.hpp"
+#include "ipc/base/join.hpp"
 
 namespace handcast::sweep {
 
@@ -70,7 +70,7 @@ std::string print(const Value& value) {
   std::vector<std::string> texts;
   if (const auto* array = std::get_if<config::Array>(&value.data))
     for (const auto& element : *array) texts.push_back(print(element));
-  return fmt::format("[{}]", config::join(texts, ", "));
+  return fmt::format("[{}]", join(texts, ", "));
 }
 
 /// A document that sets one path, which the loader of rigs can check.

@@ -186,6 +186,19 @@ TEST(VertexCorrection, AKnotThatSmoothingDoesNotMendIsShiftedAsOne) {
   }
 }
 
+// Where a float has no room for a pixel, joined corners still look turned over.
+TEST(VertexCorrection, UntanglingEndsAlsoFarOutsideTheScreen) {
+  RealHand hand;
+  Untangler untangler(hand.mesh);
+  std::mt19937 random(13);
+  for (const float far : {1e6f, 1e9f, 1e20f, 1e38f}) {
+    auto vertices = hand.vertices_px;
+    std::normal_distribution<float> wild(0, far);
+    for (glm::vec2& vertex : vertices) vertex += glm::vec2(wild(random), wild(random));
+    untangler.untangle(hand.vertices_px, vertices, -1);
+  }
+}
+
 TEST(VertexCorrection, UntanglingMovesSliversOnly) {
   RealHand hand;
   Untangler untangler(hand.mesh);

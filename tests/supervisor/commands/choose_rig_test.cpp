@@ -26,7 +26,7 @@ TEST_F(ChooseRig, TheOnlyRigNeedsNoNameAndOneOfSeveralDoes) {
   const auto wall = ControlServer::listen("wall", loop_, refuse);
   const auto unnamed = choose_rig("");
   ASSERT_FALSE(unnamed);
-  EXPECT_THAT(unnamed.error().what, HasSubstr("desk, wall"));
+  EXPECT_THAT(unnamed.error().what, HasSubstr("desk, wall; choose one with --rig"));
   EXPECT_EQ(choose_rig("wall").value(), "wall");
   EXPECT_FALSE(choose_rig("floor"));
 }

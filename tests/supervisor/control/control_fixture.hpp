@@ -7,12 +7,14 @@
 #include <future>
 #include <memory>
 
-#include "supervisor/base/runtime_folder.hpp"
-#include "supervisor/control/control_client.hpp"
+#include "ipc/control/control_client.hpp"
+#include "ipc/control/runtime_folder.hpp"
 #include "supervisor/control/control_server.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 
 namespace handcast::supervisor {
+
+using namespace control;
 
 /// A runtime folder of the test's own, and a rig "desk" that answers in it.
 class Control : public testing::Test {

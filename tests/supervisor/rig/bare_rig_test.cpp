@@ -9,8 +9,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "supervisor/base/runtime_folder.hpp"
-#include "supervisor/control/control_client.hpp"
+#include "ipc/control/control_client.hpp"
+#include "ipc/control/runtime_folder.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 #include "tests/system/command.hpp"
 #include "tests/system/variable.hpp"
@@ -82,24 +82,28 @@ class BareRig : public testing::Test {
     })) << rig.log();
   }
 
-  std::filesystem::path applied_file() const { return runtime_folder().value() / "desk.toml"; }
+  std::filesystem::path applied_file() const {
+    return control::runtime_folder().value() / "desk.toml";
+  }
   static std::string text_of(const std::filesystem::path& file) {
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();
     return text.str();
   }
   static json services() {
-    const auto answer = ask("desk", {.verb = Verb::status, .service = {}, .backend = {}});
+    const auto answer =
+        control::ask("desk", {.verb = control::Verb::status, .service = {}, .backend = {}});
     return answer ? (*answer)["status"]["services"] : json();
   }
   static pid_t pid_of(const std::string& service) {
     return services()[service]["pid"].get<pid_t>();
   }
   static Result<json> reload() {
-    return ask("desk", {.verb = Verb::reload, .service = {}, .backend = {}});
+    return control::ask("desk", {.verb = control::Verb::reload, .service = {}, .backend = {}});
   }
   static Result<json> restart(const std::string& service) {
-    return ask("desk", {.verb = Verb::restart, .service = service, .backend = {}});
+    return control::ask("desk",
+                        {.verb = control::Verb::restart, .service = service, .backend = {}});
   }
 
   RuntimeScratch scratch_;

@@ -10,13 +10,13 @@
 #include <sys/wait.h>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/control/runtime_folder.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/ring_view.hpp"
 #include "ipc/ring/writer.hpp"
 #include "supervisor/base/event_loop.hpp"
 #include "supervisor/base/process.hpp"
-#include "supervisor/base/runtime_folder.hpp"
 #include "supervisor/life/child.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 

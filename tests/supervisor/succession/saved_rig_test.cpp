@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/control/runtime_folder.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 
 namespace handcast::supervisor {
@@ -32,7 +32,7 @@ SavedRig desk() {
 
 class SavedRigTest : public testing::Test {
  protected:
-  std::filesystem::path file() const { return *runtime_folder() / "desk.state"; }
+  std::filesystem::path file() const { return *control::runtime_folder() / "desk.state"; }
   std::string text() const {
     std::ostringstream text;
     text << std::ifstream(file()).rdbuf();

@@ -148,6 +148,21 @@ TEST_F(RecordingFiles, WhatIsWrittenIsReadBack) {
   }
 }
 
+TEST_F(RecordingFiles, ARecordingInMetresOrMicrometresIsRefusedWithTheSizeOfTheHand) {
+  for (const float scale : {1e-3f, 1e3f}) {
+    Recording odd = made_up_recording();
+    for (auto& hand : odd.hands)
+      for (auto& pose : hand)
+        for (auto& joint : pose.joints)
+          for (float& coordinate : joint.position_m) coordinate *= scale;
+    ASSERT_TRUE(write_recording(folder_, odd));
+    const auto read = read_recording(folder_);
+    ASSERT_FALSE(read) << scale;
+    EXPECT_THAT(read.error().what, HasSubstr("joints_left.npy: the palm is "));
+    EXPECT_EQ(read.error().what.find("are they in metres?") != std::string::npos, scale < 1);
+  }
+}
+
 TEST_F(RecordingFiles, TimesThatDoNotAscendAreRefused) {
   ASSERT_TRUE(write_recording(folder_, made_up_recording()));
   ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {0, 10, 20, 20, 40}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/control/runtime_folder.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace handcast::supervisor {
+namespace handcast::control {
 namespace {
 
 constexpr std::string_view kSuffix = ".sock";
@@ -104,18 +104,4 @@ bool is_of_this_user(int socket) {
   return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == getuid();
 }
 
-Result<void> replace_file(const std::filesystem::path& path, const std::string& text) {
-  const auto fresh = path.string() + ".new";
-  unlink(fresh.c_str());
-  const UniqueFd file(
-      ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
-  const bool written =
-      file && ::write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  if (written && rename(fresh.c_str(), path.c_str()) == 0) return {};
-  auto error = fail(Errc::unavailable,
-                    fmt::format("{} cannot be written: {}", path.string(), std::strerror(errno)));
-  unlink(fresh.c_str());
-  return error;
-}
-
-}  // namespace handcast::supervisor
+}  // namespace handcast::control

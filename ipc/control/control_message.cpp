@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/control/control_message.hpp"
+#include "ipc/control/control_message.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "config/settings/join.hpp"
+#include "ipc/base/join.hpp"
 
-namespace handcast::supervisor {
+namespace handcast::control {
 namespace {
 
 constexpr std::array<std::string_view, 7> kVerbs{"status", "down",  "restart", "swap",
@@ -43,7 +43,7 @@ Result<Request> parse_request(std::string_view line) {
   const auto verb = std::ranges::find(kVerbs, name);
   if (verb == kVerbs.end())
     return fail(Errc::bad_data,
-                fmt::format("no verb '{}'; there are: {}", name, config::join(kVerbs, ", ")));
+                fmt::format("no verb '{}'; there are: {}", name, join(kVerbs, ", ")));
 
   const Request request{static_cast<Verb>(verb - kVerbs.begin()), text_of(object, "service"),
                         text_of(object, "backend"), number_of(object, "seconds")};
@@ -70,4 +70,4 @@ nlohmann::json failure(std::string sentence) {
   return {{"ok", false}, {"error", std::move(sentence)}};
 }
 
-}  // namespace handcast::supervisor
+}  // namespace handcast::control

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/control/control_client.hpp"
+#include "ipc/control/control_client.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -11,9 +11,9 @@
 #include <cstring>
 
 #include "ipc/base/clock.hpp"
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/control/runtime_folder.hpp"
 
-namespace handcast::supervisor {
+namespace handcast::control {
 namespace {
 
 constexpr std::size_t kLongestAnswer = 1 << 24;
@@ -149,4 +149,4 @@ Result<Answer> ask_with_descriptors(const std::string& rig, const Request& reque
   }
 }
 
-}  // namespace handcast::supervisor
+}  // namespace handcast::control

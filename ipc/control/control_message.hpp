@@ -23,25 +23,26 @@
 ///
 /// Descriptors come with the first byte of the answer (SCM_RIGHTS). The answer to what cannot be
 /// done is {"ok":false,"error":"one sentence"}.
-namespace handcast::supervisor {
+namespace handcast::control {
 
 /// The most that the kernel passes on with one answer (SCM_MAX_FD).
 inline constexpr std::size_t kMostDescriptors = 253;
 
+/// What can be asked for; see the top of this file.
 enum class Verb { status, down, restart, swap, reload, rings, history };
 
 /// What a rig is asked for.
 struct Request {
-  Verb verb = Verb::status;
-  std::string service;  ///< restart, swap
-  std::string backend;  ///< swap
-  double seconds = 0;   ///< history: how far back
+  Verb verb = Verb::status;  ///< what
+  std::string service;       ///< restart, swap
+  std::string backend;       ///< swap
+  double seconds = 0;        ///< history: how far back
 };
 
 /// A rig's answer, and the descriptors that come with it.
 struct Answer {
-  nlohmann::json object;
-  std::vector<UniqueFd> descriptors;
+  nlohmann::json object;              ///< the line that it came as
+  std::vector<UniqueFd> descriptors;  ///< close-on-exec, in the order of the answer
 };
 
 /// Reads a request. Errors: bad_data, with a sentence that says what is wrong with the line.
@@ -56,4 +57,4 @@ nlohmann::json success();
 /// {"ok":false} with the sentence.
 nlohmann::json failure(std::string sentence);
 
-}  // namespace handcast::supervisor
+}  // namespace handcast::control

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace handcast::config {
+namespace handcast {
 
 /// Joins texts with `separator` between them. fmt::join of fmt 9 is not used because g++ 12 reports
 /// a false overflow in it.
@@ -17,4 +17,4 @@ std::string join(const Texts& texts, std::string_view separator) {
   return joined;
 }
 
-}  // namespace handcast::config
+}  // namespace handcast

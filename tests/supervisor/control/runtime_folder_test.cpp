@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may come in: the runtime folder, its sockets, and the users at both ends of them.
-#include "supervisor/base/runtime_folder.hpp"
+#include "ipc/control/runtime_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/socket.h>

@@ -13,7 +13,7 @@
 /// The folder in which the rigs of a user are found. Of each rig it holds RIG.sock (the control
 /// socket), RIG.toml (the rig as it is applied) and RIG.state (what a successor of the supervisor
 /// needs).
-namespace handcast::supervisor {
+namespace handcast::control {
 
 /// The folder ${XDG_RUNTIME_DIR:-/tmp}/handcast-UID, which is made if it is missing. Errors:
 /// bad_config (it belongs to another user, or others may enter it).
@@ -34,10 +34,7 @@ Result<UniqueFd> connect_to(const std::filesystem::path& path);
 /// Whether the process at the other end of a Unix socket belongs to this user.
 bool is_of_this_user(int socket);
 
-/// Writes a file that only this user can read, as a whole or not at all. Errors: unavailable.
-Result<void> replace_file(const std::filesystem::path& path, const std::string& text);
-
 /// The address of a Unix socket at a path.
 sockaddr_un address_of(const std::filesystem::path& path);
 
-}  // namespace handcast::supervisor
+}  // namespace handcast::control

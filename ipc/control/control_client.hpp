@@ -4,9 +4,9 @@
 #include <string>
 
 #include "ipc/base/result.hpp"
-#include "supervisor/control/control_message.hpp"
+#include "ipc/control/control_message.hpp"
 
-namespace handcast::supervisor {
+namespace handcast::control {
 
 /// Sends a request to a rig and waits for the answer: as long as the services take, but only while
 /// the supervisor is awake. Errors: unavailable (the rig is not up, it went away, its supervisor
@@ -17,4 +17,4 @@ Result<nlohmann::json> ask(const std::string& rig, const Request& request);
 Result<Answer> ask_with_descriptors(const std::string& rig, const Request& request,
                                     std::chrono::nanoseconds patience = std::chrono::seconds(10));
 
-}  // namespace handcast::supervisor
+}  // namespace handcast::control

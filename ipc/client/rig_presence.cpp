@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ipc/client/rig_presence.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/client/rig_ring.hpp"
+#include "ipc/control/runtime_folder.hpp"
+
+namespace handcast::client {
+namespace {
+
+constexpr auto kPatience = std::chrono::milliseconds(100);
+
+/// False if nobody listens at the control socket. A supervisor that hangs is there.
+bool has_supervisor(const std::string& rig) {
+  const auto socket = control::socket_of(rig);
+  if (!socket) return false;
+  const auto connection = control::connect_to(*socket);
+  return connection || connection.error().code == Errc::timeout;
+}
+
+}  // namespace
+
+RigPresence::RigPresence(std::string rig, std::string stream, std::int64_t ring_created_ns,
+                         PresenceTimes times)
+    : rig_(std::move(rig)),
+      stream_(std::move(stream)),
+      ring_created_ns_(ring_created_ns),
+      times_(times) {
+  heard();
+}
+
+void RigPresence::heard() {
+  next_check_ns_ = now_ns() + times_.silence_ns;
+  absent_since_ns_ = 0;
+}
+
+Result<void> RigPresence::silent() {
+  const auto now = now_ns();
+  if (now < next_check_ns_) return {};
+  next_check_ns_ = now + times_.silence_ns;
+  if (!has_supervisor(rig_)) return absent(now);
+  absent_since_ns_ = 0;
+  return same_ring();
+}
+
+Result<void> RigPresence::absent(std::int64_t now) {
+  if (absent_since_ns_ == 0) absent_since_ns_ = now;
+  if (now - absent_since_ns_ < times_.absence_ns) return {};
+  return fail(Errc::disconnected, fmt::format("rig '{}' is no longer up", rig_));
+}
+
+Result<void> RigPresence::same_ring() const {
+  const auto ring = rig_ring(rig_, stream_, kPatience);
+  const bool other =
+      ring ? ring->segment.created_ns() != ring_created_ns_ : ring.error().code == Errc::bad_config;
+  if (!other) return {};
+  return fail(
+      Errc::disconnected,
+      fmt::format("rig '{}' has been started anew; open its stream '{}' again", rig_, stream_));
+}
+
+}  // namespace handcast::client

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include "ipc/base/result.hpp"
+#include "ipc/shm/segment.hpp"
+
+namespace handcast::client {
+
+/// A ring of a rig that is up, mapped read-only.
+struct RigRing {
+  std::string rig;       ///< name of the rig
+  ipc::Segment segment;  ///< the memory of the ring
+};
+
+/// Requests the ring of a stream from a rig. An empty name means the only rig that is up. Waits for
+/// the answer at most `patience`. Errors: unavailable (no such rig is up, it does not answer, or
+/// there is no memory to map the ring), bad_config (the runtime folder, or no stream of this name;
+/// the sentence names those that there are), bad_data (the answer or the ring is unusable, e.g. of
+/// another version).
+Result<RigRing> rig_ring(const std::string& rig, std::string_view stream,
+                         std::chrono::nanoseconds patience = std::chrono::seconds(2));
+
+}  // namespace handcast::client

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+# What `cmake --install` adds to the programs and their files: rigs, documents, and the client
+# library, with which programs of other people read a rig's streams. Nothing in it names the place
+# it was built or installed in.
+include(CMakePackageConfigHelpers)
+
+set(share ${HANDCAST_INSTALL_SHAREDIR})
+install(DIRECTORY config/rigs config/sweeps DESTINATION ${share})
+install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts)
+install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
+
+# The documents, in the folders that their links lead to.
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE
+  DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
+foreach(file
+    config/REFERENCE.md config/assets/readme.png ipc/ring/README.md
+    services/landmarks/training/MODEL_CARD.md
+    tests/client/CMakeLists.txt tests/client/read_projections.cpp)
+  cmake_path(GET file PARENT_PATH folder)
+  install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
+endforeach()
+
+# The client library: five modules in one archive, and the headers that its programs include. Those
+# of ipc/control are not among them, because they need a library for JSON.
+add_library(handcast_client STATIC)
+set_target_properties(handcast_client PROPERTIES EXPORT_NAME client LINKER_LANGUAGE CXX)
+foreach(module ipc/base ipc/shm ipc/ring ipc/control ipc/client)
+  handcast_target_of(${module} target)
+  target_sources(handcast_client PRIVATE $<TARGET_OBJECTS:${target}>)
+endforeach()
+target_compile_features(handcast_client PUBLIC cxx_std_20)
+target_link_libraries(handcast_client PUBLIC fmt::fmt tl::expected Threads::Threads)
+target_include_directories(handcast_client INTERFACE
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/handcast>)
+
+install(TARGETS handcast_client EXPORT handcastTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(module ipc/base ipc/msg ipc/shm ipc/ring ipc/client)
+  install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/ipc
+    FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE)
+endforeach()
+
+# find_package(handcast)
+set(made ${CMAKE_BINARY_DIR}/package)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/handcast)
+install(EXPORT handcastTargets NAMESPACE handcast:: DESTINATION ${package})
+configure_package_config_file(scripts/cmake/handcastConfig.cmake.in ${made}/handcastConfig.cmake
+  INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${made}/handcastConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${made}/handcastConfig.cmake ${made}/handcastConfigVersion.cmake
+  DESTINATION ${package})
+
+# pkg-config handcast
+set(pkgconfig ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH prefix_from_pc /${pkgconfig} /)
+string(REGEX REPLACE "/$" "" prefix_from_pc ${prefix_from_pc})
+configure_file(scripts/cmake/handcast.pc.in ${made}/handcast.pc @ONLY)
+install(FILES ${made}/handcast.pc DESTINATION ${pkgconfig})

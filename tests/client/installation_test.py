@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""An installed tree runs from anywhere, and programs of other people read a rig with its library.
+
+usage: installation_test.py BUILD_FOLDER
+
+Installs, moves the tree, builds read_projections.cpp with CMake and with pkg-config, and runs it
+against a rig that was started from the moved tree.
+"""
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parent
+REPOSITORY = SOURCE.parent.parent
+PATIENCE_S = 60  # ends what hangs
+PROGRAMS = {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks",
+            "handcast-projector", "handcast-observer", "handcast-simulate", "handcast-sweep",
+            "handcast-detect", "handcast-report", "handcast-chart"}
+OPTIONAL = {"handcast-exporter"}
+LINE = re.compile(r"frame (\d+) for ([\d.]+) ms:(?: image ([\d.]+) ms)?"
+                  r"(?: pose ([\d.]+) ms)?(?: landmarks ([\d.]+) ms)? old")
+
+build = scratch = tree = None
+
+
+def setUpModule():
+    global scratch, tree
+    scratch = pathlib.Path(tempfile.mkdtemp(prefix="handcast-"))
+    run("cmake", "--install", build, "--prefix", scratch / "installed", "--strip")
+    tree = scratch / "moved, with a space" / "handcast"
+    tree.parent.mkdir()
+    (scratch / "installed").rename(tree)
+
+
+def tearDownModule():
+    shutil.rmtree(scratch)
+
+
+def environment(**more):
+    """Nothing of the checkout, nothing of the person who runs the test."""
+    return {"PATH": os.environ["PATH"], "HOME": str(scratch), "XDG_RUNTIME_DIR": str(scratch),
+            **more}
+
+
+def run(*command, **env):
+    done = subprocess.run([str(word) for word in command], cwd=scratch, env=environment(**env),
+                          capture_output=True, text=True, timeout=PATIENCE_S)
+    if done.returncode != 0:
+        said = done.stdout + done.stderr
+        raise AssertionError(f"{command} ended with {done.returncode}:\n{said}")
+    return done.stdout
+
+
+def handcast(*arguments):
+    return run(tree / "bin/handcast", *arguments)
+
+
+def rig_file():
+    return tree / "share/handcast/rigs/twin.toml"
+
+
+def moment_ms():
+    return time.clock_gettime(time.CLOCK_MONOTONIC) * 1e3
+
+
+class TheInstalledTree(unittest.TestCase):
+    def test_holds_what_a_show_needs_and_no_program_of_the_tests_or_the_training(self):
+        programs = {file.name for file in (tree / "bin").iterdir()}
+        self.assertEqual(programs - OPTIONAL, PROGRAMS)
+        for file in ("share/handcast/hand_left.glb", "share/handcast/landmarks/handcast.onnx",
+                     "share/handcast/rigs/twin.toml", "share/doc/handcast/README.md",
+                     "share/doc/handcast/LICENSE"):
+            self.assertTrue((tree / file).is_file(), file)
+
+    def test_does_not_name_the_place_it_was_built_or_installed_in(self):
+        places = [str(place).encode() for place in (build, REPOSITORY, scratch / "installed")]
+        for file in filter(pathlib.Path.is_file, tree.rglob("*")):
+            if file.suffix == ".a":  # may hold debug information, which names the sources
+                continue
+            for place in places:
+                self.assertNotIn(place, file.read_bytes(), f"{file} names {place}")
+
+    def test_scores_a_rig(self):
+        frames = scratch / "frames"
+        said = handcast("simulate", rig_file(), "--seconds", "0.1", "--frames", frames)
+        self.assertRegex(said, r"interior error mean [\d.]+ mm")
+
+    def test_finds_the_network_of_the_detector(self):
+        picture = scratch / "picture.png"
+        picture.write_bytes((tree / "share/doc/handcast/config/assets/readme.png").read_bytes())
+        said = handcast("detect", "--backend", "handcast", "--json", "--quiet", picture)
+        self.assertIn("picture.png", said)
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
+    def test_sweeps_a_plan_and_draws_a_chart(self):
+        plan, results = scratch / "plan.toml", scratch / "plan.csv"
+        plan.write_text(f'rig = "{rig_file()}"\nseconds = 0.2\nwarm_up_s = 0.1\n')
+        handcast("sweep", plan, "-o", results, "--quiet")
+        handcast("chart", results, "--out", scratch / "charts")
+        self.assertTrue((scratch / "charts/charts.html").is_file())
+
+    def test_lets_systemd_run_the_programs_where_they_are_now(self):
+        unit = handcast("install-units", rig_file(), "--print")
+        command = f'"{tree}/bin/handcast" up --no-keeper "{rig_file()}"'
+        self.assertIn("ExecStart=" + command, unit)
+
+    def test_has_every_header_that_its_headers_include(self):
+        folder = tree / "include/handcast"
+        headers = sorted(str(file.relative_to(folder)) for file in folder.rglob("*.hpp"))
+        self.assertIn("ipc/client/stream.hpp", headers)
+        every = scratch / "every_header.cpp"
+        every.write_text("".join(f'#include "{header}"\n' for header in headers))
+        run("g++", "-std=c++20", "-Wall", "-Werror", "-fsyntax-only", *flags("--cflags"), every)
+
+
+def flags(*options):
+    said = run("pkg-config", *options, "handcast", PKG_CONFIG_PATH=str(tree / "lib/pkgconfig"))
+    return shlex.split(said)
+
+
+class AProgramOfSomebodyElse(unittest.TestCase):
+    """One after the other, on one rig."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.by_cmake = scratch / "example/read_projections"
+        folder = cls.by_cmake.parent
+        run("cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, f"-DCMAKE_PREFIX_PATH={tree}")
+        run("cmake", "--build", folder)
+        cls.by_pkg_config = scratch / "read_projections"
+        run("g++", "-std=c++20", SOURCE / "read_projections.cpp", "-o", cls.by_pkg_config,
+            *flags("--cflags", "--libs"))
+
+    def setUp(self):
+        self.processes = []
+        self.addCleanup(self.end_processes)
+
+    def end_processes(self):
+        for process in reversed(self.processes):
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGTERM)
+                process.wait(PATIENCE_S)
+            process.stdout.close()
+
+    def start(self, *command):
+        process = subprocess.Popen([str(word) for word in command], cwd=scratch, env=environment(),
+                                   text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                   start_new_session=True)
+        self.processes.append(process)
+        return process
+
+    def start_rig(self):
+        slow = ["camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false"]
+        rig = self.start(tree / "bin/handcast", "up", rig_file(),
+                         *(word for setting in slow for word in ("--set", setting)))
+        for line in rig.stdout:
+            if "projector" in line and "ready" in line:
+                break
+        return rig
+
+    def frames(self, reader, count):
+        """The next `count` frames: number, time of the light, ages of the inputs; all in ms."""
+        frames = []
+        while len(frames) < count:
+            line = reader.stdout.readline()
+            match = LINE.fullmatch(line.rstrip("\n"))
+            self.assertTrue(match, f"not a frame: {line!r}")
+            number, light_ms, *ages_ms = match.groups()
+            frames.append((int(number), float(light_ms), [float(age) for age in ages_ms if age]))
+        return frames
+
+    def test_without_a_rig_is_told_how_to_start_one(self):
+        said = self.start(self.by_cmake)
+        self.assertIn("no rig is up; `handcast up RIG.toml` starts one", said.stdout.read())
+        self.assertEqual(said.wait(PATIENCE_S), 1)
+
+    def test_reads_frames_until_the_rig_is_down(self):
+        began_ms = moment_ms()
+        self.start_rig()
+        readers = [self.start(self.by_cmake), self.start(self.by_pkg_config, "twin")]
+        for reader in readers:
+            frames = self.frames(reader, 30)
+            numbers = [number for number, _, _ in frames]
+            self.assertEqual(numbers, sorted(set(numbers)))
+            for _, light_ms, ages_ms in frames:
+                self.assertGreater(light_ms, began_ms)
+                self.assertLess(light_ms, moment_ms() + 1000)
+                for age_ms in ages_ms:
+                    self.assertGreater(age_ms, 0)
+                    self.assertLess(age_ms, light_ms - began_ms)
+            self.assertEqual(len(frames[-1][2]), 3, "image, pose and landmarks")
+        handcast("down")
+        for reader in readers:
+            last_line = reader.stdout.read().splitlines()[-1]
+            self.assertEqual(last_line, "read_projections: rig 'twin' is no longer up")
+            self.assertEqual(reader.wait(PATIENCE_S), 1)
+
+    def test_goes_on_while_the_supervisor_is_replaced_and_is_no_reader_of_the_rig(self):
+        rig = self.start_rig()
+        reader = self.start(self.by_cmake)
+        self.frames(reader, 5)
+        top = handcast("top", "--once", "--json")
+        self.assertNotIn("read_projections", top)
+        children = pathlib.Path(f"/proc/{rig.pid}/task/{rig.pid}/children")
+        os.kill(int(children.read_text().split()[0]), signal.SIGKILL)  # the supervisor
+        killed_ms = moment_ms()
+        while self.frames(reader, 1)[0][1] < killed_ms + 1000:
+            continue
+        other = self.start(self.by_pkg_config)  # finds the new supervisor
+        self.frames(other, 1)
+        handcast("down")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    build = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main(verbosity=2)

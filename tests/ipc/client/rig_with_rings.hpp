@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/ipc/ring_testing.hpp"
+#include "tests/supervisor/control/control_fixture.hpp"
+
+namespace handcast::client {
+
+/// A rig "desk" whose supervisor gives read-only descriptors of rings, as the real one does. It
+/// answers only inside while_it_turns().
+class RigWithRings : public supervisor::Control {
+ protected:
+  static ipc::Segment notes(const std::string& stream, int slots = 8) {
+    return ipc::testing::must(
+        ipc::Segment::create(ipc::RingSpec::of<ipc::testing::Note>(stream, slots, true)));
+  }
+  /// Lists `name` and gives the descriptor `fd`, which must stay open.
+  using Rings = std::vector<std::pair<nlohmann::json, int>>;
+  void give(Rings rings) {
+    server_.reset();
+    serve([rings = std::move(rings)](const control::Request&, const auto& reply) {
+      auto answer = control::success();
+      answer["rings"] = nlohmann::json::array();
+      std::vector<UniqueFd> owned;
+      std::vector<int> descriptors;
+      for (const auto& [name, fd] : rings) {
+        answer["rings"].push_back(name);
+        const auto path = "/proc/self/fd/" + std::to_string(fd);
+        owned.emplace_back(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+        descriptors.push_back(owned.back().get());
+      }
+      reply(answer, descriptors);
+    });
+  }
+};
+
+}  // namespace handcast::client
