@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <optional>
 
 #include "renderer/hand/maker/hand_shape.hpp"
 #include "services/evaluation/twin/leap_layout.hpp"
@@ -90,6 +91,35 @@ Result<msg::HandPose> pose_of(msg::Side side, const double* joints, const double
   return pose;
 }
 
+/// The distance from the wrist to the knuckle of the middle finger, which no motion changes; the
+/// median of the samples in which the two are apart. Empty if there is none.
+std::optional<double> palm_length_m(const std::vector<msg::HandPose>& poses) {
+  std::vector<double> lengths;
+  for (const msg::HandPose& pose : poses) {
+    const auto& wrist = pose.joints[kWrist].position_m;
+    const auto& knuckle = pose.joints[kMiddleMetacarpal + 1].position_m;
+    const double length_m =
+        std::hypot(knuckle[0] - wrist[0], knuckle[1] - wrist[1], knuckle[2] - wrist[2]);
+    if (length_m > 0) lengths.push_back(length_m);
+  }
+  if (lengths.empty()) return std::nullopt;
+  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+/// Refuses a recording in another unit. A palm is 60 to 120 mm long.
+Result<void> check_scale(const std::vector<msg::HandPose>& poses, const path& file) {
+  constexpr double kShortest_mm = 25, kLongest_mm = 300;
+  const auto length_m = palm_length_m(poses);
+  if (!length_m) return {};
+  const double length_mm = 1000 * *length_m;
+  if (length_mm > kShortest_mm && length_mm < kLongest_mm) return {};
+  return fail(Errc::bad_data,
+              fmt::format("{}: the palm is {:.3g} mm long; joints must be in millimetres{}",
+                          file.string(), length_mm, length_mm < 1 ? ", are they in metres?" : ""));
+}
+
 Result<std::vector<msg::HandPose>> read_hand(const path& folder, std::size_t side,
                                              std::size_t samples) {
   const auto joints = read_shaped(array_file(folder, "joints", side), {samples, kLeapJoints, 3});
@@ -111,32 +141,6 @@ Result<std::vector<msg::HandPose>> read_hand(const path& folder, std::size_t sid
   const auto scaled = check_scale(poses, array_file(folder, "joints", side));
   if (!scaled) return tl::make_unexpected(scaled.error());
   return poses;
-}
-
-/// The distance from the wrist to the knuckle of the middle finger, which no motion changes; the
-/// median of all samples.
-double palm_length_m(const std::vector<msg::HandPose>& poses) {
-  std::vector<double> lengths;
-  for (const msg::HandPose& pose : poses) {
-    const auto& wrist = pose.joints[kWrist].position_m;
-    const auto& knuckle = pose.joints[kMiddleMetacarpal + 1].position_m;
-    lengths.push_back(
-        std::hypot(knuckle[0] - wrist[0], knuckle[1] - wrist[1], knuckle[2] - wrist[2]));
-  }
-  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
-}
-
-/// Refuses a recording in another unit. A palm is 60 to 120 mm long.
-Result<void> check_scale(const std::vector<msg::HandPose>& poses, const path& file) {
-  constexpr double kShortest_mm = 25, kLongest_mm = 300;
-  if (poses.empty()) return {};
-  const double length_mm = 1000 * palm_length_m(poses);
-  if (length_mm > kShortest_mm && length_mm < kLongest_mm) return {};
-  return fail(Errc::bad_data,
-              fmt::format("{}: the palm is {:.3g} mm long; joints must be in millimetres{}",
-                          file.string(), length_mm, length_mm < 1 ? ", are they in metres?" : ""));
 }
 
 struct LeapArrays {

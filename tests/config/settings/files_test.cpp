@@ -30,7 +30,7 @@ TEST_F(Files, OneThatCannotBeReadIsSaidWithTheReason) {
   const auto why = [](const fs::path& file) { return read_text(file).error().what; };
   EXPECT_THAT(why(folder_ / "nowhere"),
               HasSubstr("nowhere: cannot be read: No such file or directory"));
-  EXPECT_THAT(why(folder_), HasSubstr("Is a directory"));
+  EXPECT_THAT(why(folder_), HasSubstr("it is a folder, not a file"));
   EXPECT_THAT(why(folder_ / std::string(300, 'x')), HasSubstr("File name too long"));
 }
 
