@@ -6,11 +6,11 @@
 
 namespace handcast::supervisor {
 
-/// Prints a line.
+/// Prints a line to stderr. On a terminal, it first erases the progress line.
 void print_line(std::string_view line);
-/// Replaces the progress line. Without a terminal: prints a line.
+/// Replaces the progress line. If stderr is not a terminal, prints a line.
 void show_progress(std::string_view line);
-/// Whether stderr is a terminal.
+/// True if stderr is a terminal.
 bool has_terminal();
 
 }  // namespace handcast::supervisor

@@ -183,7 +183,7 @@ TEST_F(Adoption, ServicesThatCannotBeTakenOverAreNamedAndLeftAlone) {
   EXPECT_EQ(refused->wait(), 111);
   EXPECT_THAT(refused->log(), AllOf(HasSubstr("camera (pid " + std::to_string(services[0]) + ")"),
                                     HasSubstr("cannot be taken over"),
-                                    HasSubstr("`handcast down --rig twin` ends them")));
+                                    HasSubstr("`handcast down --rig twin` stops them")));
   expect_all_alive(services);
   EXPECT_EQ(handcast({"down", "--rig", "twin"}).exit_code, 0);
 }

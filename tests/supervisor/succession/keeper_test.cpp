@@ -116,7 +116,7 @@ TEST_F(KeeperTest, OneThatDiesAgainAndAgainIsGivenUpWithASentence) {
   keep_script("echo life >> $NOTES; kill -ABRT $$");
   EXPECT_EQ(wait(), kExitRetry);
   EXPECT_THAT(notes(), SizeIs(10));
-  EXPECT_THAT(log(), HasSubstr("`handcast down` ends them"));
+  EXPECT_THAT(log(), HasSubstr("`handcast down` stops them"));
 }
 
 TEST_F(KeeperTest, TheSupervisorRunsInAProcessGroupOfItsOwn) {
