@@ -12,13 +12,14 @@
 namespace handcast::supervisor {
 namespace {
 
-/// What to say if no rig is up. Services may live without their supervisor.
-std::string nobody_is_up() {
+/// The message if no rig is up. Services may live without their supervisor.
+std::string no_rig_is_up() {
   const auto orphaned = orphaned_rigs();
   if (orphaned.empty()) return "no rig is up; `handcast up RIG.toml` starts one";
   return fmt::format(
-      "no supervisor is up, but services of {} live; `handcast up RIG.toml` takes them over, "
-      "`handcast down` ends them",
+      "no supervisor is up, but services of {} are running; `handcast up RIG.toml` takes them "
+      "over, "
+      "`handcast down` stops them",
       config::join(orphaned, ", "));
 }
 
@@ -27,13 +28,13 @@ std::string nobody_is_up() {
 Result<std::string> choose_rig(const std::string& name) {
   const auto rigs = living_rigs();
   if (!rigs) return tl::make_unexpected(rigs.error());
-  if (rigs->empty()) return fail(Errc::unavailable, nobody_is_up());
+  if (rigs->empty()) return fail(Errc::unavailable, no_rig_is_up());
   if (name.empty() && rigs->size() == 1) return rigs->front();
   if (name.empty())
     return fail(Errc::unavailable, fmt::format("several rigs are up, choose one with --rig: {}",
                                                config::join(*rigs, ", ")));
   if (std::ranges::find(*rigs, name) == rigs->end())
-    return fail(Errc::unavailable, fmt::format("no rig named '{}' is up; there is: {}", name,
+    return fail(Errc::unavailable, fmt::format("no rig named '{}' is up; running: {}", name,
                                                config::join(*rigs, ", ")));
   return name;
 }

@@ -6,9 +6,9 @@
 
 namespace handcast::supervisor {
 
-/// The rig that a command is meant for: `name`, or, if that is empty, the only rig that is up.
-/// Errors: unavailable (no such rig, or several; the sentence names those that are up), bad_config
-/// (the runtime folder).
+/// The rig that a command refers to: `name`, or, if that is empty, the only rig that is up. Errors:
+/// unavailable (there is no such rig, or there are several; the sentence names the rigs that are
+/// up), bad_config (the runtime folder).
 Result<std::string> choose_rig(const std::string& name);
 
 }  // namespace handcast::supervisor

@@ -37,7 +37,7 @@ int show_once(const std::string& rig, bool as_json) {
   return kExitDone;
 }
 
-/// The terminal, and how far it is scrolled.
+/// The terminal and its scroll position.
 class Screen {
  public:
   void show(const TopModel& model) {
@@ -48,7 +48,7 @@ class Screen {
     terminal_.show(texts);
   }
 
-  /// Shows `model` until it is time for the next look. False: the person wants to quit.
+  /// Shows `model` until `until_ns` and handles keys. Returns false if the user quits.
   bool watch(const TopModel& model, std::int64_t until_ns) {
     for (;;) {
       show(model);
@@ -95,8 +95,7 @@ int show_until_quit(const std::string& rig) {
   std::deque<RigLook> looks{watcher.look()};
   auto next_ns = now_ns();
   for (;;) {
-    next_ns =
-        std::max(next_ns + kRefresh_ns, now_ns());  // no catching up after the machine was asleep
+    next_ns = std::max(next_ns + kRefresh_ns, now_ns());  // skips what was missed during a suspend
     if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return kExitDone;
     looks.push_back(watcher.look());
     if (looks.size() > kLooksBack + 1) looks.pop_front();

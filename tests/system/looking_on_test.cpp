@@ -139,7 +139,7 @@ TEST_F(LookingOn, AMetricsPortThatIsTakenIsSaidAndNotTriedAgain) {
   const auto taken = take_port();
   const auto rig = up({"--set", "supervisor.metrics_port=" + std::to_string(taken.second)});
   EXPECT_EQ(rig->wait(), 100);
-  EXPECT_THAT(rig->log(), HasSubstr("set supervisor.metrics_port to another, or to 0"));
+  EXPECT_THAT(rig->log(), HasSubstr("set supervisor.metrics_port to another port, or to 0"));
 }
 
 TEST_F(LookingOn, NothingListensUnlessAskedFor) {
