@@ -120,7 +120,7 @@ def sample(rig, status, start_s, kills):
     for stream, ring in status["rings"].items():
         row[f"{stream}_hz"] = ring["held_hz"]
     row["light"] = status["rings"]["projection.frames"]["count"]
-    row["asked_hz"] = status["rings"]["projection.frames"]["asked_hz"] or 0
+    row["wanted_hz"] = status["rings"]["projection.frames"]["wanted_hz"] or 0
     row["restarts"] = sum(service["restarts"] for service in status["services"].values())
     return row
 
@@ -144,8 +144,8 @@ class Light:
     def see(self, row, projector, phase):
         last, self.before = self.before, row
         lived = projector["state"] == "ready" and last and projector["uptime_s"] > row["s"] - last["s"]
-        if lived and not self.disturbed and row["light"] >= last["light"] and row["asked_hz"]:
-            self.asked[phase] += (row["s"] - last["s"]) * row["asked_hz"]
+        if lived and not self.disturbed and row["light"] >= last["light"] and row["wanted_hz"]:
+            self.asked[phase] += (row["s"] - last["s"]) * row["wanted_hz"]
             self.made[phase] += row["light"] - last["light"]
         self.disturbed = False
 
@@ -242,7 +242,7 @@ def draw(rows, path):
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height * len(panels)}" font-family="sans-serif" font-size="11">',
              '<rect width="100%" height="100%" fill="white"/>']
     for number, (title, ending, scale) in enumerate(panels):
-        keys = sorted({key for row in rows for key in row if key.endswith(ending) and key != "asked_hz"})
+        keys = sorted({key for row in rows for key in row if key.endswith(ending) and key != "wanted_hz"})
         top = max([row[key] * scale for row in rows for key in keys if row.get(key) is not None] + [1e-9]) * 1.1
         y0 = height * number
         parts.append(f'<text x="{left}" y="{y0 + 16}" font-weight="bold">{title}</text>')

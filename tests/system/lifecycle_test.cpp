@@ -50,7 +50,7 @@ TEST_F(Lifecycle, ARunOfSomeSecondsEndsByItselfAndKeepsItsFigures) {
   EXPECT_EQ(rig->wait(), 0) << rig->log();
   const auto report = nlohmann::json::parse(std::ifstream(out / "live.json"), nullptr, false);
   EXPECT_GE(report["seconds"], 4);
-  EXPECT_EQ(report["rates"]["camera"]["asked_hz"], 60);
+  EXPECT_EQ(report["rates"]["camera"]["wanted_hz"], 60);
   EXPECT_GT(report["rates"]["camera"]["held_hz"], 0);
   EXPECT_EQ(report["services"]["pose"]["backend"], "twin");
   EXPECT_EQ(report["services"]["pose"]["restarts"], 0);

@@ -73,7 +73,7 @@ TEST_F(Reload, RestartsTheServicesThatReadWhatChangedAndTheLightGoesOn) {
   EXPECT_EQ(outcome.output,
             "reloaded: camera, landmarks restarted; pose, projector, observer untouched\n");
   EXPECT_THAT(changed_since(before), UnorderedElementsAre("camera", "landmarks"));
-  EXPECT_EQ(status()["rings"]["camera.frames"]["asked_hz"], 50);
+  EXPECT_EQ(status()["rings"]["camera.frames"]["wanted_hz"], 50);
   EXPECT_EQ(service("camera")["state"], "ready");
   expect_more_light();
 }

@@ -78,8 +78,8 @@ TEST_F(Traces, LatencyTellsEveryStageAndTheWayFromExposureToLight) {
   std::vector<std::string> services;
   for (const auto& service : figures["services"]) services.push_back(service["service"]);
   EXPECT_THAT(services, testing::ElementsAre("camera", "pose", "landmarks", "projector"));
-  EXPECT_EQ(figures["services"][0]["asked_hz"], 60);
-  EXPECT_TRUE(figures["services"][2]["asked_hz"].is_null());
+  EXPECT_EQ(figures["services"][0]["wanted_hz"], 60);
+  EXPECT_TRUE(figures["services"][2]["wanted_hz"].is_null());
   for (const auto* rows : {"stages", "end_to_end"}) {
     for (const auto& row : figures[rows]) {
       EXPECT_GT(row["count"], 0) << row;

@@ -116,9 +116,9 @@ TEST_F(BareRig, ASuccessorGoesOnWithTheRigAsItWasAppliedAndTheFileCountsWhenItIs
     replace_supervisor(*rig);
     EXPECT_EQ(pid_of("camera"), camera);
   }
-  EXPECT_THAT(
-      rig->log(),
-      HasSubstr("rig 'desk' goes on as it was applied; `handcast reload` reads " + file_.string()));
+  EXPECT_THAT(rig->log(),
+              HasSubstr("rig 'desk' continues with its applied settings; `handcast reload` reads " +
+                        file_.string()));
   write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
   replace_supervisor(*rig);
   EXPECT_EQ(pid_of("camera"), camera);

@@ -70,7 +70,7 @@ TEST(RingSet, ARingCannotChangeItsSizeOrType) {
   EXPECT_TRUE(rings.check_types({marks("camera", 16)}));
   const auto other =
       rings.check_types({ipc::RingSpec::of<msg::HandPoses>("marks.camera", 8, true)});
-  EXPECT_THAT(other.error().what, HasSubstr("another version's"));
+  EXPECT_THAT(other.error().what, HasSubstr("belongs to another version"));
 }
 
 TEST(RingSet, EachRingIsSavedWithItsFileAndNumber) {

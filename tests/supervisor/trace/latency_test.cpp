@@ -19,8 +19,8 @@ const Spans& way(const LatencyTable& table, const std::string& from, const std::
   return kNone;
 }
 
-LatencyTable table_of(const History& history, const std::map<std::string, double>& asked_hz = {}) {
-  return measure_latency(everything_in(history), asked_hz);
+LatencyTable table_of(const History& history, const std::map<std::string, double>& wanted_hz = {}) {
+  return measure_latency(everything_in(history), wanted_hz);
 }
 
 /// Frames of a camera at 100 Hz, delivered 3 ms after their exposure, those in `left_out` never.
