@@ -21,9 +21,9 @@ constexpr std::size_t kPlainColumns = 160;
 
 int show_once(const std::string& rig, bool as_json) {
   RigWatcher watcher(rig);
-  const auto before = watcher.look();
+  const auto before = watcher.observe();
   if (before.missing.empty()) sleep_until_ns(before.taken_ns + kOnce_ns);
-  const auto now = watcher.look();
+  const auto now = watcher.observe();
   if (now.status.is_null()) return complain(kExitRetry, now.missing);
 
   const auto model = compare(before, now);
@@ -92,12 +92,12 @@ class Screen {
 int show_until_quit(const std::string& rig) {
   RigWatcher watcher(rig);
   Screen screen;
-  std::deque<RigLook> looks{watcher.look()};
+  std::deque<RigLook> looks{watcher.observe()};
   auto next_ns = now_ns();
   for (;;) {
     next_ns = std::max(next_ns + kRefresh_ns, now_ns());  // skips what was missed during a suspend
     if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return kExitDone;
-    looks.push_back(watcher.look());
+    looks.push_back(watcher.observe());
     if (looks.size() > kLooksBack + 1) looks.pop_front();
   }
 }

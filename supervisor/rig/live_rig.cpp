@@ -31,7 +31,7 @@ void LiveRig::take_settings(const config::Rig& rig) {
   launch.ready_s = rig.supervisor.ready_s;
   launch.stop_s = rig.supervisor.stop_s;
   launch.silent_s = rig.supervisor.silent_s;
-  recorder.remember(rig.supervisor.history_s);
+  recorder.set_history(rig.supervisor.history_s);
 }
 
 Service::Look LiveRig::look_at(const Service& service, std::int64_t now) const {

@@ -189,7 +189,7 @@ TEST_F(Control, ASupervisorThatHangsIsTold) {
 
 TEST_F(Control, WhoLooksOnDoesNotWaitLongForASupervisorThatHangs) {
   serve(refuse);  // and the loop does not turn
-  EXPECT_THAT(RigWatcher("desk").look().missing, HasSubstr("has not answered for 1 s"));
+  EXPECT_THAT(RigWatcher("desk").observe().missing, HasSubstr("has not answered for 1 s"));
 }
 
 TEST_F(Control, WhatTakesLongIsWaitedForWhileTheSupervisorIsAwake) {
