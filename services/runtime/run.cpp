@@ -16,9 +16,9 @@ void print_help(const Description& description) {
   fmt::print(
       "handcast-{} — {}\n\n"
       "usage: handcast-{} --config RIG.toml [--set path=value]...\n\n"
-      "  --config FILE      the rig\n"
-      "  --set path=value   a setting that overrides the file's; may be repeated\n"
-      "  --backends         the back ends of this build, one name a line\n"
+      "  --config FILE      the rig file\n"
+      "  --set path=value   a setting that overrides that of the file; may be repeated\n"
+      "  --backends         prints the names of the back ends of this build, one per line\n"
       "  --version, --help\n\n"
       "`handcast up RIG.toml` starts this program together with the rest of the rig and hands it "
       "its rings.\n",
