@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `handcast up` writes to the person who started it, on stderr. On a terminal the last line is
-// a progress line that is replaced; other lines are printed above it.
+// The output of `handcast up` on stderr. On a terminal, the last line is a progress line that is
+// replaced; other lines are printed above it.
 #pragma once
 #include <string_view>
 

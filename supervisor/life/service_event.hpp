@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens to a service, and what is to be done about it.
+// The events of a service and the actions that follow from them.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that the supervisor remembers about one service, as a value. All times are of
-// now_ns().
+// The state of one service, as a value. All times are CLOCK_MONOTONIC.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For next.cpp and next_spare.cpp alone.
+// Only for next.cpp and next_spare.cpp.
 #pragma once
 #include <utility>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a supervisor does with the services and rings that one that died has left.
+// Takeover of the services and rings of a supervisor that died.
 #pragma once
 #include <filesystem>
 #include <optional>

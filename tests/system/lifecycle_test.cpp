@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rig from start to stop, as real processes.
+// The start and the stop of a rig of real processes.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -61,8 +61,8 @@ TEST_F(Lifecycle, ARunOfSomeSecondsEndsByItselfAndKeepsItsFigures) {
 TEST_F(Lifecycle, RestartingAServiceAgainAndAgainTakesNoDescriptors) {
   const auto rig = up();
   wait_until_light();
-  const auto before = descriptors_of(
-      rig->supervisor());  // maybe one more than needed: that of the last status request
+  const auto before =
+      descriptors_of(rig->supervisor());  // may include the connection of the last status request
   for (int i = 0; i < 3; ++i) EXPECT_EQ(handcast({"restart", "observer"}).exit_code, 0);
   EXPECT_EQ(service("observer")["restarts"], 3);
   EXPECT_TRUE(eventually([&] { return descriptors_of(rig->supervisor()) <= before; }))

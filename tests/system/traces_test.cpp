@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a running rig can tell about where its time went.
+// Traces and latencies of a running rig.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -63,7 +63,7 @@ TEST_F(Traces, ATraceFollowsAFrameFromItsExposureToTheLight) {
     EXPECT_EQ(way[0].name, "capture");
     EXPECT_EQ(way[0].annotations.at("frame_id"), way[1].annotations.at("frame_id"));
     EXPECT_LT(way[0].begin_ns, way[1].begin_ns);
-    EXPECT_LE(way[1].end_ns, way[2].begin_ns) << "a frame knows what was found before it was begun";
+    EXPECT_LE(way[1].end_ns, way[2].begin_ns) << "a frame uses only earlier detections";
   }
   EXPECT_GT(whole, 0);
   for (const auto& draw : seen.named("draw"))

@@ -21,7 +21,8 @@ ipc::RingSpec marks(const std::string& service, int slots = 8) {
   return ipc::RingSpec::of<msg::StageMarks>("marks." + service, slots, true);
 }
 
-/// This process may have no descriptor from this number on, as long as the object lives.
+/// Limits the descriptors of this process to those below a number during the lifetime of the
+/// object.
 class NoDescriptorsFrom {
  public:
   explicit NoDescriptorsFrom(int number) {
