@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Merges the goals that benchmarks wrote and prints them as a table.
+"""Merges the goals written by benchmarks and prints them as a table.
 
 usage: goals.py [--json FILE] GOALS.json...
 
@@ -21,7 +21,7 @@ def read(file):
 def table(goals):
     rows = [("goal", "value", "limit", "unit", "")]
     for goal in goals:
-        verdict = "met" if goal["met"] else "short"
+        verdict = "met" if goal["met"] else "missed"
         rows.append((goal["name"], f"{goal['value']:.4g}", f"{goal['limit']:.4g}", goal.get("unit", ""), verdict))
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     aligned = ("<", ">", ">", "<", "<")
@@ -29,8 +29,8 @@ def table(goals):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Merges the goals that benchmarks wrote and prints them as a table.")
-    parser.add_argument("--json", metavar="FILE", help="writes the merged goals here too")
+    parser = argparse.ArgumentParser(description="Merges the goals written by benchmarks and prints them as a table.")
+    parser.add_argument("--json", metavar="FILE", help="also writes the merged goals to FILE")
     parser.add_argument("files", nargs="+", metavar="GOALS.json")
     options = parser.parse_args()
     goals = [goal for file in options.files for goal in read(file)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Shared by the scripts beside it; sourced, not run.
+# Functions of the scripts in this folder. Source it.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cores=$(nproc)
@@ -27,5 +27,5 @@ help_if_asked() {
   done
 }
 
-# need_value "$@": the option in front has a value.
+# need_value "$@": checks that the option $1 is followed by a value.
 need_value() { [ $# -ge 2 ] || die "$1 needs a value; see --help"; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The work of scripts/soak: kills, samples, judges, draws. Standard library only."""
+"""The implementation of scripts/soak. Uses only the standard library."""
 import argparse
 import csv
 import json
@@ -36,7 +36,7 @@ def parse_options():
 
 
 class Rig:
-    """`handcast up` in a runtime folder of its own."""
+    """A process of `handcast up` with its own runtime folder."""
 
     def __init__(self, options):
         self.runtime = tempfile.TemporaryDirectory(prefix="handcast-soak-")
@@ -56,17 +56,17 @@ class Rig:
             if now and all(service["state"] == "ready" for service in now["services"].values()):
                 return now
             time.sleep(0.1)
-        raise SystemExit("soak: the rig does not get ready; see its log")
+        raise SystemExit(f"soak: the rig did not become ready; see {self.log.name}")
 
     def supervisor(self):
-        """The keeper's child that runs `handcast up` (the services are sessions of their own); without a keeper, none."""
+        """The keeper's child that runs `handcast up`: services lead their own sessions. None if there is no keeper."""
         for pid in children_of(self.process.pid):
             if name_of(pid).startswith("handcast") and session_of(pid) == session_of(self.process.pid):
                 return pid
         return None
 
     def members(self, status):
-        """Process numbers by name."""
+        """The pids by name."""
         members = {name: service["pid"] for name, service in status["services"].items() if service["pid"]}
         supervisor = self.supervisor()
         return {**members, "keeper" if supervisor else "supervisor": self.process.pid, **({"supervisor": supervisor} if supervisor else {})}
@@ -96,7 +96,7 @@ def name_of(pid):
 
 
 def session_of(pid):
-    """None for a child that has just died."""
+    """The session of a process; None if it has died."""
     try:
         return os.getsid(pid)
     except OSError:
@@ -104,7 +104,7 @@ def session_of(pid):
 
 
 def memory_kib(pid):
-    """What belongs to this process alone, and what it shares of the rings."""
+    """The anonymous memory of a process, and all its resident memory with the rings."""
     sizes = dict(line.split(":", 1) for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines())
     return int(sizes["RssAnon"].split()[0]), int(sizes["VmRSS"].split()[0])
 
@@ -116,11 +116,11 @@ def sample(rig, status, start_s, kills):
             row[f"{name}_own_kib"], row[f"{name}_rss_kib"] = memory_kib(pid)
             row[f"{name}_fds"] = len(os.listdir(f"/proc/{pid}/fd"))
         except (OSError, KeyError):
-            continue  # it is just being replaced
+            continue  # it is being restarted
     for stream, ring in status["rings"].items():
         row[f"{stream}_hz"] = ring["held_hz"]
     row["light"] = status["rings"]["projection.frames"]["count"]
-    row["asked_hz"] = status["rings"]["projection.frames"]["asked_hz"] or 0
+    row["wanted_hz"] = status["rings"]["projection.frames"]["wanted_hz"] or 0
     row["restarts"] = sum(service["restarts"] for service in status["services"].values())
     return row
 
@@ -134,27 +134,27 @@ def kill(pid):
 
 
 class Light:
-    """Frames missed over the stretches in which the projector itself lived, before the kills and during them."""
+    """Counts missed frames before and during the kills, in the times in which the projector itself lived."""
 
     def __init__(self):
-        self.asked, self.made = {"quiet": 0.0, "kills": 0.0}, {"quiet": 0, "kills": 0}
+        self.wanted, self.made = {"quiet": 0.0, "kills": 0.0}, {"quiet": 0, "kills": 0}
         self.before = None
         self.disturbed = False
 
     def see(self, row, projector, phase):
         last, self.before = self.before, row
         lived = projector["state"] == "ready" and last and projector["uptime_s"] > row["s"] - last["s"]
-        if lived and not self.disturbed and row["light"] >= last["light"] and row["asked_hz"]:
-            self.asked[phase] += (row["s"] - last["s"]) * row["asked_hz"]
+        if lived and not self.disturbed and row["light"] >= last["light"] and row["wanted_hz"]:
+            self.wanted[phase] += (row["s"] - last["s"]) * row["wanted_hz"]
             self.made[phase] += row["light"] - last["light"]
         self.disturbed = False
 
     def missed_percent(self, phase):
-        return max(0.0, 100 * (1 - self.made[phase] / self.asked[phase])) if self.asked[phase] else 0.0
+        return max(0.0, 100 * (1 - self.made[phase] / self.wanted[phase])) if self.wanted[phase] else 0.0
 
 
 def soak(rig, options):
-    """Rows of figures, and the light, until time is up or the rig is dead. The first tenth of the time is quiet."""
+    """Samples the rig until the time is over or the rig has ended. Kills nothing in the first tenth of the time."""
     chance = random.Random(options.seed)
     rows, light, kills = [], Light(), 0
     start_s = time.monotonic()
@@ -182,7 +182,7 @@ def soak(rig, options):
         if now_s >= next_supervisor_s:
             next_supervisor_s += options.kill_supervisor
             kills += kill(rig.supervisor())
-            light.disturbed = True  # a new supervisor counts anew
+            light.disturbed = True  # the counters of a new supervisor start at 0
         time.sleep(max(0.0, min(next_kill_s, next_sample_s, end_s) - time.monotonic()))
     return rows, light, kills
 
@@ -195,7 +195,7 @@ def print_progress(row):
 
 
 def slope_per_hour(points):
-    """Of the straight line nearest to the points (least squares)."""
+    """The slope of the straight line through the points (least squares)."""
     n = len(points)
     mean_x, mean_y = sum(x for x, _ in points) / n, sum(y for _, y in points) / n
     spread = sum((x - mean_x) ** 2 for x, _ in points)
@@ -207,13 +207,13 @@ def series(rows, key):
 
 
 def envelope(points):
-    """The highest sample of each of some ten stretches: a process that was just started has not grown yet, and hides nothing."""
+    """The highest sample of each of about ten parts: the low samples of processes that were just started do not count."""
     size = max(1, len(points) // STRETCHES)
     return [max(points[i : i + size], key=lambda point: point[1]) for i in range(0, len(points) - size + 1, size)]
 
 
 def grows(points):
-    """Whether the line rises by more than a tenth over the run, and its slope per hour."""
+    """True if the line rises by more than a tenth over the run; and its slope per hour."""
     judged = envelope(points[int(len(points) * WARM_UP_SHARE) :])
     if len(judged) < 4:
         return False, 0.0
@@ -224,7 +224,7 @@ def grows(points):
 
 
 def judge(rows):
-    """One line per curve, and whether all are flat."""
+    """Prints one line per curve. Returns True if all are flat."""
     keys = sorted({key for row in rows for key in row if key.endswith(("_own_kib", "_fds"))})
     flat = True
     for key in keys:
@@ -236,13 +236,13 @@ def judge(rows):
 
 
 def draw(rows, path):
-    panels = [("memory of its own, MiB", "_own_kib", 1 / 1024), ("descriptors", "_fds", 1), ("rates, Hz", "_hz", 1), ("missed frames of the light, %", "missed_percent", 1)]
+    panels = [("unshared memory, MiB", "_own_kib", 1 / 1024), ("descriptors", "_fds", 1), ("rates, Hz", "_hz", 1), ("missed frames of the light, %", "missed_percent", 1)]
     width, height, left = 900, 190, 60
     end_s = max(row["s"] for row in rows) or 1
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height * len(panels)}" font-family="sans-serif" font-size="11">',
              '<rect width="100%" height="100%" fill="white"/>']
     for number, (title, ending, scale) in enumerate(panels):
-        keys = sorted({key for row in rows for key in row if key.endswith(ending) and key != "asked_hz"})
+        keys = sorted({key for row in rows for key in row if key.endswith(ending) and key != "wanted_hz"})
         top = max([row[key] * scale for row in rows for key in keys if row.get(key) is not None] + [1e-9]) * 1.1
         y0 = height * number
         parts.append(f'<text x="{left}" y="{y0 + 16}" font-weight="bold">{title}</text>')

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The `handcast` command: like git, it runs the verbs that it knows and becomes the program
-// handcast-VERB for every other one.
+// The `handcast` command. Like git, it runs its own verbs and executes the program handcast-VERB
+// for all others.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,9 +16,9 @@ namespace handcast::supervisor {
 namespace {
 
 constexpr std::array kGroups{
-    std::pair{VerbGroup::run, "run a rig"}, std::pair{VerbGroup::look, "look at one that is up"},
-    std::pair{VerbGroup::change, "change one that is up"},
-    std::pair{VerbGroup::set_up, "set one up"}, std::pair{VerbGroup::score, "score one"}};
+    std::pair{VerbGroup::run, "run a rig"}, std::pair{VerbGroup::look, "observe a running rig"},
+    std::pair{VerbGroup::change, "change a running rig"},
+    std::pair{VerbGroup::set_up, "set up a rig"}, std::pair{VerbGroup::score, "score a rig"}};
 
 void print_overview() {
   fmt::print("handcast {} — light that stays on moving hands\n\nusage: handcast VERB ...\n",
@@ -28,10 +28,10 @@ void print_overview() {
     for (const auto& verb : verbs())
       if (verb.group == group) fmt::print("  {:<14} {}\n", verb.name, verb.sentence);
   }
-  fmt::print("\n`handcast help VERB` says how a verb is used.\n");
+  fmt::print("\n`handcast help VERB` prints the usage of a verb.\n");
 }
 
-/// Becomes handcast-VERB. Returns only if there is no such program.
+/// Executes handcast-VERB in place of this process. Returns only if there is no such program.
 int become_program(const std::string& verb, const Arguments& arguments) {
   const bool plain = verb.find('/') == std::string::npos;
   const auto program = (program_folder() / ("handcast-" + verb)).string();

@@ -24,9 +24,10 @@ Result<void> check_owner(const std::filesystem::path& folder) {
   if (lstat(folder.c_str(), &status) != 0)
     return fail(Errc::bad_config, fmt::format("{}: {}", folder.string(), std::strerror(errno)));
   if (!S_ISDIR(status.st_mode) || status.st_uid != getuid() || (status.st_mode & 077) != 0)
-    return fail(Errc::bad_config, fmt::format("{} must be a folder of yours that nobody else may "
-                                              "enter (mode 0700); remove it or mend it",
-                                              folder.string()));
+    return fail(Errc::bad_config,
+                fmt::format("{} must be a folder that belongs to you and that no other user has "
+                            "access to (mode 0700); remove it or correct it",
+                            folder.string()));
   return {};
 }
 
@@ -43,15 +44,16 @@ Result<std::filesystem::path> runtime_folder() {
       std::filesystem::path(base && *base ? base : "/tmp") / fmt::format("handcast-{}", getuid());
   if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
     return fail(Errc::bad_config,
-                fmt::format("cannot make {}: {}", folder.string(), std::strerror(errno)));
+                fmt::format("{} cannot be created: {}", folder.string(), std::strerror(errno)));
   if (const auto owned = check_owner(folder); !owned) return tl::make_unexpected(owned.error());
   return folder;
 }
 
 Result<std::filesystem::path> socket_of(std::string_view rig) {
   if (rig.empty() || rig.find_first_not_of(kNameCharacters) != std::string_view::npos)
-    return fail(Errc::bad_config,
-                fmt::format("'{}' cannot name a rig: letters, digits, '_' and '-' can", rig));
+    return fail(
+        Errc::bad_config,
+        fmt::format("'{}' is not a valid name of a rig; use letters, digits, '_' and '-'", rig));
   const auto folder = runtime_folder();
   if (!folder) return tl::make_unexpected(folder.error());
   auto path = *folder / fmt::format("{}{}", rig, kSuffix);
@@ -88,13 +90,15 @@ Result<UniqueFd> connect_to(const std::filesystem::path& path) {
       ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     return errno == EAGAIN
                ? fail(Errc::timeout,
-                      fmt::format("the supervisor at {} lets nobody in: it hangs", path.string()))
-               : fail(Errc::unavailable,
-                      fmt::format("nobody answers at {}: {}", path.string(), std::strerror(errno)));
+                      fmt::format("the supervisor at {} hangs: it accepts no connections",
+                                  path.string()))
+               : fail(Errc::unavailable, fmt::format("no supervisor answers at {}: {}",
+                                                     path.string(), std::strerror(errno)));
   if (!is_of_this_user(socket.get()))
-    return fail(
-        Errc::bad_config,
-        fmt::format("who listens at {} is another user; nothing is said to it", path.string()));
+    return fail(Errc::bad_config,
+                fmt::format("the process that listens at {} belongs to another user; the "
+                            "connection was closed",
+                            path.string()));
   return socket;
 }
 

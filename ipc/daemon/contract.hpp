@@ -31,18 +31,21 @@
 ///          marks, or an empty one. The supervisor replaces a daemon that has been silent for
 ///          supervisor.silent_s.
 ///
-///   exit   See ipc/base/exit_code.hpp. 0 (stopped as asked, or nothing left to do) and 100 (a
-///          person must change something) are final. After everything else, a signal included, the
+///   exit   See ipc/base/exit_code.hpp. 0 (stopped on request, or its work is done) and 100 (a
+///          person must change something) are final. After all other codes, and after a signal, the
 ///          daemon is restarted.
 ///
 ///   SIGTERM, SIGINT   Stop.
 namespace handcast::daemon {
 
+/// The names of the environment variables.
+/// @{
 inline constexpr const char* kRingsVariable = "HANDCAST_RINGS";
 inline constexpr const char* kReadyVariable = "HANDCAST_READY_FD";
 inline constexpr const char* kEpochVariable = "HANDCAST_EPOCH_NS";
 inline constexpr const char* kStandbyVariable = "HANDCAST_STANDBY_FD";
 inline constexpr const char* kOutVariable = "HANDCAST_OUT";
+/// @}
 
 /// The variables that differ from daemon to daemon: none is inherited from the supervisor's own
 /// environment.
@@ -53,7 +56,9 @@ inline constexpr char kReadyWord = '\n';    ///< on the ready descriptor
 inline constexpr char kPreparedWord = 's';  ///< on the ready descriptor, from a spare
 inline constexpr char kTurnWord = '1';      ///< on the standby descriptor
 
+/// The longest time between two messages of a daemon's stage marks.
 inline constexpr std::int64_t kBeatEvery_ns = 100'000'000;
+/// The period in which a prepared spare repeats kPreparedWord.
 inline constexpr std::int64_t kPreparedEvery_ns = 500'000'000;
 
 /// The stream of a daemon's stage marks, which are also its heart-beat.

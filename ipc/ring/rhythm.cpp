@@ -27,7 +27,7 @@ constexpr std::int64_t kLatest_ns = std::int64_t{1} << 62;
 
 }  // namespace
 
-void Rhythm::heard(std::uint64_t sequence, std::int64_t published_ns) {
+void Rhythm::received(std::uint64_t sequence, std::int64_t published_ns) {
   const bool plausible = published_ns > 0 && published_ns < kLatest_ns &&
                          sequence > last_sequence_ && published_ns > last_ns_;
   const auto period_ns =
@@ -35,22 +35,22 @@ void Rhythm::heard(std::uint64_t sequence, std::int64_t published_ns) {
                 : 0;
   last_sequence_ = sequence;
   last_ns_ = plausible ? published_ns : 0;
-  const bool paused = heard_ > 0 && period_ns > kPause * period_ns_;
+  const bool paused = periods_ > 0 && period_ns > kPause * period_ns_;
   if (period_ns < kShortestPeriod_ns || period_ns > kLongestPeriod_ns || paused) {
-    heard_ = 0;
+    periods_ = 0;
     return;
   }
-  if (heard_ == 0) {
+  if (periods_ == 0) {
     period_ns_ = period_ns;
     jitter_ns_ = 0;
   }
-  if (heard_ < kFirstPeriods) ++heard_;
+  if (periods_ < kFirstPeriods) ++periods_;
   jitter_ns_ += (std::llabs(period_ns - period_ns_) - jitter_ns_) / kAverageOver;
   period_ns_ += (period_ns - period_ns_) / kAverageOver;
 }
 
 std::optional<Rhythm::Window> Rhythm::window() const {
-  if (heard_ < kFirstPeriods || jitter_ns_ > kMostJitter_ns) return std::nullopt;
+  if (periods_ < kFirstPeriods || jitter_ns_ > kMostJitter_ns) return std::nullopt;
   const auto due_ns = last_ns_ + period_ns_;
   return Window{due_ns - kLead_ns - jitter_ns_, due_ns + kPatience_ns};
 }

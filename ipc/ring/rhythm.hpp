@@ -17,7 +17,7 @@ class Rhythm {
 
   /// Records a received message: its sequence and the time when it was published (CLOCK_MONOTONIC).
   /// Implausible times restart the averages.
-  void heard(std::uint64_t sequence, std::int64_t published_ns);
+  void received(std::uint64_t sequence, std::int64_t published_ns);
   /// When to poll for the next message; empty if the stream is new, or too fast, too slow or too
   /// irregular for polling to pay off.
   std::optional<Window> window() const;
@@ -27,7 +27,7 @@ class Rhythm {
   std::int64_t last_ns_ = 0;
   std::int64_t period_ns_ = 0;
   std::int64_t jitter_ns_ = 0;  ///< mean absolute deviation from the period
-  int heard_ = 0;               ///< number of consecutive periods in the averages
+  int periods_ = 0;             ///< number of consecutive periods in the averages
 };
 
 }  // namespace handcast::ipc

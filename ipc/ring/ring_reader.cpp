@@ -197,7 +197,7 @@ Result<Held> RingReader::counted(Held&& held) {
   const auto& header = header_of(*message);
   tally.received.store(++received_, std::memory_order_relaxed);
   tally.age_ns.store(age(header.origin_ns, now_ns()), std::memory_order_relaxed);
-  rhythm_.heard(taken.sequence, header.published_ns);
+  rhythm_.received(taken.sequence, header.published_ns);
   return message;
 }
 

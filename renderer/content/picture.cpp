@@ -38,6 +38,12 @@ struct PngFile {
   bool is_well() const { return !PNG_IMAGE_FAILED(png) && png.width > 0; }
 };
 
+Result<void> check_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) return {};
+  return fail(Errc::bad_config, fmt::format("There is no picture file '{}'.", file.string()));
+}
+
 /// The pixels as `format`. An error if the file is not a PNG or is broken.
 template <class Pixel>
 Result<Image<Pixel>> read_png(const std::filesystem::path& file, std::uint32_t format) {
@@ -134,9 +140,7 @@ bool begins_like_png(const std::filesystem::path& path) {
 }  // namespace
 
 Result<Texture> read_picture(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    return fail(Errc::bad_config, fmt::format("There is no picture file '{}'.", file.string()));
+  if (auto exists = check_file(file); !exists) return tl::make_unexpected(exists.error());
   auto picture =
       begins_like_png(file) ? read_png<std::uint32_t>(file, PNG_FORMAT_RGBA) : read_jpeg(file);
   if (!picture) return picture;
@@ -146,6 +150,7 @@ Result<Texture> read_picture(const std::filesystem::path& file) {
 }
 
 Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
+  if (auto exists = check_file(file); !exists) return tl::make_unexpected(exists.error());
   return read_png<std::uint8_t>(file, PNG_FORMAT_GRAY);
 }
 

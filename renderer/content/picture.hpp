@@ -16,8 +16,8 @@ namespace handcast::renderer {
 /// truncated, a JPEG in CMYK, larger than 8192 px on a side.
 Result<Texture> read_picture(const std::filesystem::path& file);
 
-/// Reads a PNG file as grey values. Errors (bad_config): not a readable PNG file, larger than 8192
-/// px on a side.
+/// Reads a PNG file as grey values. Errors (bad_config): no such file, not a readable PNG file,
+/// larger than 8192 px on a side.
 Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file);
 
 /// Writes RGBA8 as a PNG file without alpha. Errors: unavailable if the file cannot be written.

@@ -36,7 +36,7 @@ class LandmarkFilter {
 
   /// Whether the tracker reports the hand.
   enum class Tracker {
-    heard,   ///< samples arrive
+    reporting,  ///< samples arrive
     silent,  ///< no samples arrive: P is held where the hand was last seen, even if the hand moves
   };
   /// Sets the state of the tracker from now on. Filters that use every P alike ignore it.

@@ -36,7 +36,8 @@ Filtered LandmarkTrack::filter(std::int64_t now_ns, std::int64_t target_ns,
   if (is_silent) seen_again_ = 0;
   is_alone_ = is_silent || (is_alone_ && seen_again_ < kSeenAgain);
 
-  filter_->tracker_is(is_silent ? LandmarkFilter::Tracker::silent : LandmarkFilter::Tracker::heard);
+  filter_->tracker_is(is_silent ? LandmarkFilter::Tracker::silent
+                                : LandmarkFilter::Tracker::reporting);
   const auto filtered = filter_->at(now_ns, target_ns, predicted.landmarks);
   const LandmarkPoints landmarks = filtered.value_or(predicted.landmarks);
   moved_px_ = difference(landmarks, predicted.landmarks);

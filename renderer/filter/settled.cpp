@@ -72,7 +72,7 @@ class SettledFilter final : public LandmarkFilter {
   config::Filter settings_;
   std::unique_ptr<CarryFilter> inner_;
   std::optional<std::int64_t> newest_ns_;  ///< origin of the newest detection
-  Tracker state_ = Tracker::heard;
+  Tracker state_ = Tracker::reporting;
   bool something_new_ = false;
   JumpBlend blend_;
 };

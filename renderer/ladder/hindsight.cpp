@@ -18,6 +18,9 @@ constexpr float kRise_s = 0.1f, kFall_s = 0.3f;
 constexpr float kRegistration_s = 1.0f;
 /// Error of registration alone at the time of the image.
 constexpr float kRegisterNoise_px = 0.15f;
+/// Least divisor for estimated errors, which are 0 if predictions of a tracker without noise are
+/// exact.
+constexpr float kLeastEstimate_px = 1e-3f;
 
 float rms(const LandmarkPoints& a, const LandmarkPoints& b) {
   float sum = 0;
@@ -94,9 +97,9 @@ void Hindsight::compare(const Frame& frame, const LandmarkPoints& at_camera,
   };
   follow(motion_.hold_px, rms(frame.newest, at_target));
   follow(motion_.predict_px, rms(frame.at_target, at_target));
-  follow(motion_.register_px, frame.registered ? measured_px
-                                               : estimated_px * registration_errors_.measured_px /
-                                                     registration_errors_.estimated_px);
+  const float correction = registration_errors_.measured_px /
+                           std::max(registration_errors_.estimated_px, kLeastEstimate_px);
+  follow(motion_.register_px, frame.registered ? measured_px : estimated_px * correction);
 }
 
 }  // namespace handcast::renderer

@@ -76,15 +76,15 @@ std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t
                                                std::optional<std::int64_t> image_ns) {
   const auto predicted = track_.predict(now_ns, target_ns);
   if (!predicted) {
-    presence_.gone(target_ns);
-    sight_.gone(target_ns);
+    presence_.no_hand(target_ns);
+    sight_.no_hand(target_ns);
     return std::nullopt;
   }
   const Filtered filtered = landmarks_.filter(now_ns, target_ns, *predicted);
   HandFrame frame;
   frame.presence = presence_.at(target_ns, track_.newest_ns(), filtered.seen_ns);
   if (frame.presence == 0) {
-    sight_.gone(target_ns);
+    sight_.no_hand(target_ns);
     return std::nullopt;
   }
   frame.corrected = ladder_.take(track_, target_ns, image_ns, *predicted, filtered);

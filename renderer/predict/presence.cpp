@@ -47,14 +47,14 @@ float Presence::at(std::int64_t target_ns, std::int64_t sampled_ns,
   return light_.towards(target_ns, wanted);
 }
 
-void Presence::gone(std::int64_t target_ns) { light_.out(target_ns); }
+void Presence::no_hand(std::int64_t target_ns) { light_.out(target_ns); }
 
 float Sight::at(std::int64_t target_ns, bool seen) {
   if (seen) seen_ns_ = target_ns;
   return light_.towards(target_ns, seen_ns_ ? faded(target_ns - *seen_ns_, 0) : 0.0f);
 }
 
-void Sight::gone(std::int64_t target_ns) {
+void Sight::no_hand(std::int64_t target_ns) {
   seen_ns_.reset();
   light_.out(target_ns);
 }

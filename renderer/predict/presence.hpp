@@ -31,7 +31,7 @@ class Presence {
   /// origin of the newest detection; empty if no landmarks are used. Target times must ascend.
   float at(std::int64_t target_ns, std::int64_t sampled_ns, std::optional<std::int64_t> seen_ns);
   /// There is no hand at `target_ns`: its light is out.
-  void gone(std::int64_t target_ns);
+  void no_hand(std::int64_t target_ns);
 
  private:
   Dimmer light_;
@@ -46,7 +46,7 @@ class Sight {
   /// ascend.
   float at(std::int64_t target_ns, bool seen);
   /// There is no hand at `target_ns`: its light is out.
-  void gone(std::int64_t target_ns);
+  void no_hand(std::int64_t target_ns);
 
  private:
   std::optional<std::int64_t> seen_ns_;  ///< target time of the last frame that showed it

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What handcast is built with. scripts/setup installs all of it.
+# The libraries that handcast uses. scripts/setup installs all of them.
 
 find_package(PkgConfig REQUIRED)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
@@ -13,18 +13,18 @@ find_package(JPEG REQUIRED)
 pkg_check_modules(eigen3 REQUIRED IMPORTED_TARGET eigen3)
 find_package(TinyGLTF REQUIRED)
 
-# Debian's targets of OpenCV do not know where their headers are.
+# Debian's targets of OpenCV lack the path of their headers.
 find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs videoio)
 foreach(part core imgproc imgcodecs videoio)
   target_include_directories(opencv_${part} SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 endforeach()
 
-# oneDNN's own CMake file asks for OpenCL's headers as well.
+# oneDNN's own CMake file also requires OpenCL's headers.
 find_library(DNNL_LIBRARY dnnl REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to keep oneDNN to one thread
 
 # handcast_feature(NAME "what is absent without it" FOUND): HANDCAST_WITH_NAME is AUTO (on if it was
-# found), ON (an error if it was not found) or OFF. Each absence is said once here and by
+# found), ON (an error if it was not found) or OFF. Absent features are listed here and by
 # `handcast --version`.
 set(HANDCAST_ABSENT "")
 function(handcast_feature name sentence found)
@@ -33,7 +33,7 @@ function(handcast_feature name sentence found)
   if(with STREQUAL "AUTO")
     set(with ${found})
   elseif(with AND NOT found)
-    message(FATAL_ERROR "HANDCAST_WITH_${name} is ON and what it needs was not found; scripts/setup --tests installs it")
+    message(FATAL_ERROR "HANDCAST_WITH_${name} is ON, but its libraries were not found; scripts/setup --tests installs them")
   endif()
   set(HANDCAST_WITH_${name} ${with} PARENT_SCOPE)
   if(NOT with)
@@ -61,7 +61,7 @@ endif()
 
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
-handcast_feature(PROMETHEUS "figures for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})
+handcast_feature(PROMETHEUS "metrics for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})
 
 pkg_check_modules(ZeroMQ QUIET IMPORTED_TARGET libzmq)
 handcast_found(found ZeroMQ_FOUND)

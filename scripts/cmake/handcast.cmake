@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# How the modules of this repository are built. One module is one folder with one CMakeLists.txt and one target.
+# The functions with which modules, programs and tests are declared. A module is one folder with one CMakeLists.txt and one target.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -19,8 +19,8 @@ cmake_path(SET HANDCAST_INSTALL_SHAREDIR NORMALIZE "${CMAKE_INSTALL_BINDIR}/../s
 
 set(HANDCAST_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
-# A compiler cache helps those who build often, precompiled headers those who build once: the two do
-# not go together.
+# A compiler cache is faster for repeated builds, precompiled headers for a single build. They do not
+# work together.
 find_program(CCACHE ccache)
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
@@ -29,7 +29,7 @@ else()
   option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" ON)
 endif()
 
-# g++ 12 reports overflows of std::string that are none, at -O3.
+# g++ 12 at -O3 reports overflows of std::string that do not exist.
 add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow -Wno-restrict
   -Wno-array-bounds)
 if(HANDCAST_SANITIZE)
@@ -38,7 +38,7 @@ if(HANDCAST_SANITIZE)
   add_compile_definitions(HANDCAST_WITH_SANITIZER)
 endif()
 
-# handcast_precompile(target [OPTIONS flag ...] [TEST]): uses headers precompiled with the same flags.
+# handcast_precompile(target [OPTIONS flag ...] [TEST]): lets a target use headers precompiled with the same flags.
 function(handcast_precompile target)
   if(NOT HANDCAST_PRECOMPILE)
     return()
@@ -62,14 +62,14 @@ function(handcast_precompile target)
   target_precompile_headers(${target} REUSE_FROM ${from})
 endfunction()
 
-# handcast_source_options(a.cpp ... OPTIONS flag ...): flags of single sources.
+# handcast_source_options(a.cpp ... OPTIONS flag ...): sets the flags of single sources.
 function(handcast_source_options)
   cmake_parse_arguments(ARG "" "" "OPTIONS" ${ARGN})
   set_source_files_properties(${ARG_UNPARSED_ARGUMENTS} PROPERTIES
     COMPILE_OPTIONS "${ARG_OPTIONS}" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# The target of the module in FOLDER (relative to the root): renderer/mask -> handcast_renderer_mask
+# handcast_target_of(folder result): sets `result` to the target of the module in a folder: renderer/mask -> handcast_renderer_mask.
 function(handcast_target_of folder result)
   string(REPLACE "/" "_" name ${folder})
   set(${result} handcast_${name} PARENT_SCOPE)
@@ -84,8 +84,8 @@ endfunction()
 
 # handcast_module(SOURCES a.cpp ... USES folder ... [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...] [OPTIONS flag ...])
 #
-# The module of the current folder. USES names the folders whose headers it may include; `scripts/check_layers` reads it, too.
-# LIBRARIES are those of other projects that its headers need, PRIVATE_LIBRARIES those that only its sources need.
+# Declares the module of the current folder. USES: folders of modules whose headers it may include (`scripts/check_layers` checks this).
+# LIBRARIES: libraries of other projects that its headers need. PRIVATE_LIBRARIES: those that only its sources need.
 function(handcast_module)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES;LIBRARIES;PRIVATE_LIBRARIES;OPTIONS" ${ARGN})
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
@@ -133,8 +133,8 @@ endfunction()
 # handcast_test([SUFFIX word] SOURCES a_test.cpp ... USES folder ... [LIBRARIES target ...] [NEEDS target ...] [TIMEOUT seconds]
 #               [LABELS ...])
 #
-# One GoogleTest program and one ctest, named after its folder: tests/renderer/mask -> test_renderer_mask[_SUFFIX].
-# NEEDS are programs and files that it uses when it runs; the hands that the build makes are implied.
+# Declares a GoogleTest program and a ctest named after the folder: tests/renderer/mask -> test_renderer_mask[_SUFFIX].
+# NEEDS: targets of programs and files that the test uses when it runs; the hands made by the build are added automatically.
 function(handcast_test)
   cmake_parse_arguments(ARG "" "SUFFIX;TIMEOUT" "SOURCES;USES;LIBRARIES;NEEDS;LABELS" ${ARGN})
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
@@ -158,7 +158,7 @@ function(handcast_test)
     set(ARG_TIMEOUT 120)
   endif()
   if(HANDCAST_SANITIZE)
-    math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")  # a hang still ends; slowness is the sanitizer's
+    math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")  # sanitizers are slow; a hang still ends
   endif()
   set_tests_properties(${name} PROPERTIES
     TIMEOUT ${ARG_TIMEOUT}

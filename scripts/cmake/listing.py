@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the listing that a Markdown page marks with ```cpp NAME into a file.
+"""Writes the listing of a Markdown page that begins with ```cpp NAME to a file.
 
 usage: listing.py PAGE.md NAME FILE
 """

@@ -29,8 +29,7 @@ Result<std::vector<fs::path>> list_pictures(const fs::path& folder) {
 Result<renderer::Image<std::uint8_t>> read_picture(const fs::path& file, int width_px,
                                                    int height_px) {
   auto grey = renderer::read_grey_png(file);
-  if (!grey)
-    return fail(Errc::bad_config, fmt::format("'{}' is not a readable PNG image", file.string()));
+  if (!grey) return grey;
   if (grey->width() != width_px || grey->height() != height_px)
     return fail(Errc::bad_config,
                 fmt::format("'{}' is {} x {} px, but the calibration is for a camera of {} x {} px",

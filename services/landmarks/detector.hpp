@@ -23,10 +23,10 @@ class Detector {
   /// The landmarks of `frame`, with its id and origin; count is 0 if there is no hand. `hints`: the
   /// tracker's hands at the time of the frame, in undistorted camera pixels.
   ///
-  /// A detection that is not done by the deadline is a timeout, and goes on: the next call waits
-  /// for it, whatever frame it is given, and returns the landmarks of the first frame. (A network
-  /// is not interrupted: it returns a few ms after the deadline.) Errors: timeout; bad_data (this
-  /// image cannot be used).
+  /// If a detection is not finished by the deadline, detect() returns a timeout and the detection
+  /// continues: the next call ignores its frame, waits for the detection and returns the landmarks
+  /// of the earlier frame. (A network is not interrupted: it returns a few ms after the deadline.)
+  /// Errors: timeout; bad_data (this image cannot be used).
   virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints,
                                         Deadline deadline) = 0;
 };

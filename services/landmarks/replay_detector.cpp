@@ -15,7 +15,7 @@ namespace {
 using Track =
     std::vector<msg::HandLandmarks>;  ///< one hand over the recording; empty: not recorded
 
-/// Recorded landmarks: those nearest to the image in the time of the recording.
+/// Replays recorded landmarks: returns those that are nearest to the image in time.
 class ReplayDetector final : public Detector {
  public:
   ReplayDetector(std::array<Track, msg::kMaxHands> hands, timing::Loop loop)

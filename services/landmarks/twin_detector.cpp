@@ -8,8 +8,8 @@
 namespace handcast::landmarks {
 namespace {
 
-/// The twin's model of a detector in real time. The answer is known at once and held back for as
-/// long as a detector takes.
+/// The twin's model of a detector in real time. The result is computed at once and returned after
+/// the time that a detector takes.
 class TwinDetector final : public Detector {
  public:
   TwinDetector(std::unique_ptr<twin::Twin> twin, std::int64_t epoch_ns)
@@ -20,7 +20,7 @@ class TwinDetector final : public Detector {
     if (!under_way_) begin(frame.header);
     if (done_ns_ > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, "landmarks 'twin': still at work at the deadline");
+      return fail(Errc::timeout, "landmarks 'twin': not finished by the deadline");
     }
     sleep_until_ns(done_ns_);
     const msg::Landmarks landmarks = *under_way_;
@@ -37,8 +37,8 @@ class TwinDetector final : public Detector {
     under_way_->header = {seen.frame_id, detection.landmarks.header.origin_ns + epoch_ns_, 0};
   }
 
-  /// The largest age of the newest frame while the camera holds its rate. The work on an older
-  /// frame takes no less time.
+  /// The largest age of the newest frame while the camera keeps its rate. Older frames take the
+  /// same time.
   std::int64_t oldest_ns(std::uint64_t frame_id) const {
     return twin_->camera_arrival_ns(frame_id + 1) - twin_->camera_origin_ns(frame_id);
   }

@@ -7,16 +7,16 @@
 
 namespace handcast::service {
 
-/// What a daemon was asked on its command line.
+/// The command line of a daemon.
 struct CommandLine {
+  /// The task of the process: to work, or to print what one of the options asks for.
   enum class Task { serve, help, version, backends, describe };
-
-  Task task = Task::serve;
+  Task task = Task::serve;            ///< the last of these options, otherwise serve
   std::string config_file;            ///< --config FILE
   std::vector<std::string> settings;  ///< --set path=value, in their order
 };
 
-/// Errors: bad_config with a sentence naming the argument.
+/// Parses a command line. Errors: bad_config, with a sentence that names the argument.
 Result<CommandLine> parse_command_line(int argc, const char* const* argv);
 
 }  // namespace handcast::service

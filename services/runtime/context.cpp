@@ -17,8 +17,7 @@ bool worth_going_on(Errc code) { return code == Errc::timeout || code == Errc::b
 
 }  // namespace
 
-// Ends without destructors: a daemon has nothing to save that it would not lose to SIGKILL as well,
-// and its threads may still run.
+// Does not run destructors: a daemon has no state to save, and its threads may still run.
 void give_up(const Error& error) {
   log::error("{}", error.what);
   std::_Exit(exit_code_of(error));

@@ -21,30 +21,32 @@
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/writer.hpp"
 
-/// What a daemon stands on: its configuration, its rings, its readiness, its heart-beat, its stage
-/// marks. The contract with the supervisor is in ipc/daemon/contract.hpp.
+/// The environment of a daemon: configuration, rings, readiness, heartbeat and stage marks. The
+/// contract with the supervisor is in ipc/daemon/contract.hpp.
 namespace handcast::service {
 
-/// Ends a daemon with the error's sentence in the log and the error's exit code.
+/// Logs the error and ends the daemon with the error's exit code.
 [[noreturn]] void give_up(const Error& error);
 
-/// The value, or the end of the daemon: give_up().
+/// The value of `result`. Calls give_up() if it is an error.
 template <class T>
 T must(Result<T> result) {
   if (!result) give_up(result.error());
   return std::move(*result);
 }
 
-/// One daemon at work. One thread.
+/// The context of one daemon. One thread.
 class Context {
  public:
+  /// The configuration of the rig.
   const config::Rig& rig() const { return rig_; }
+  /// The calibration of the rig.
   const calib::Calibration& calibration() const { return calibration_; }
   /// The time of the rig's start, the same for every daemon of the rig: time zero of the twin.
   std::int64_t epoch_ns() const { return supervision_.epoch_ns(); }
 
-  /// The ring's writer. A spare gets it in its turn: see stand_by(). Errors: bad_config (the
-  /// description does not name the ring, or there is none), those of ipc::Writer::attach().
+  /// The writer of a ring. A spare waits for its turn first: see stand_by(). Errors: bad_config
+  /// (the description does not name the ring, or there is none), those of ipc::Writer::attach().
   template <class T>
   Result<ipc::Writer<T>> writer(std::string_view stream) {
     stand_by();
@@ -52,8 +54,8 @@ class Context {
     if (!segment) return tl::make_unexpected(segment.error());
     return ipc::Writer<T>::attach(std::move(*segment));
   }
-  /// A reader of the ring. Without a `wait`: as the service's [NAME.process] says. Errors: see
-  /// writer().
+  /// A reader of a ring. `wait`: how it waits for messages; empty: as set in [NAME.process].
+  /// Errors: see writer().
   template <class T>
   Result<ipc::Reader<T>> reader(std::string_view stream,
                                 std::optional<ipc::Wait> wait = std::nullopt) {
@@ -62,24 +64,27 @@ class Context {
     return ipc::Reader<T>::attach(std::move(*segment), wait.value_or(wait_));
   }
 
-  /// A spare waits here for its turn, everybody else passes. Call it after all preparation that a
-  /// second process may do at the same time (models, pictures, memory), before what only one may
-  /// have: writers, devices. The memory of the rings in its description is mapped before the wait.
-  /// A daemon that never calls it waits at its first writer, or in ready().
+  /// Waits for the turn of a spare; returns at once in other processes. Call it after all
+  /// preparations that two processes may do at the same time (models, pictures, memory) and before
+  /// opening resources that only one process may use: writers, devices. The memory of the rings in
+  /// the description is mapped before the wait. A daemon that does not call it waits in its first
+  /// writer(), or in ready().
   void stand_by();
-  /// Tells the supervisor that the daemon works: call it once, after everything that can fail at
-  /// start-up.
+  /// Reports to the supervisor that the daemon works. Call it once, after all steps of the start
+  /// that can fail.
   void ready();
-  /// False after SIGTERM or SIGINT. Beats the heart: call it at least every daemon::kBeatEvery_ns.
+  /// True until SIGTERM or SIGINT arrives. Publishes a heartbeat if one is due: call it at least
+  /// every daemon::kBeatEvery_ns.
   bool running();
-  /// An error of one turn of the loop: timeouts and bad items are counted (and logged, at most once
-  /// a second); a lost device or a bad configuration ends the process for the supervisor to act on.
+  /// Handles an error of one turn of the main loop. Timeouts and bad data are counted and logged at
+  /// most once per second; all other errors end the process, and the supervisor reacts.
   void tolerate(const Error& error);
-  /// Publishes what one frame's stages took, for traces, the report and `handcast status`.
-  /// `made_from`: of a projector frame.
+  /// Publishes the times of the stages of one frame, for traces, reports and `handcast status`.
+  /// `made_from`: the inputs of a projector frame.
   void mark(const msg::Header& frame, std::span<const msg::StageMark> stages,
             const msg::MadeFrom& made_from = {});
 
+  /// Takes the handover from the environment.
   Context(const daemon::ServiceDescription& description, config::Rig rig,
           calib::Calibration calibration);
 
@@ -94,18 +99,18 @@ class Context {
   calib::Calibration calibration_;
   daemon::Supervision supervision_;
   ipc::Wait wait_ = ipc::Wait::futex;
-  std::map<std::string, ipc::Segment, std::less<>> mapped_;  ///< a spare's, not asked for yet
+  std::map<std::string, ipc::Segment, std::less<>> mapped_;  ///< prepared by stand_by()
   std::unique_ptr<ipc::Writer<msg::StageMarks>> marks_;
   std::int64_t last_complaint_ns_ = 0;
   std::uint64_t complaints_ = 0;
 };
 
-/// A daemon's description, completed with what every daemon reads: the calibration, its back end's
-/// name and its [NAME.process].
+/// The description of a daemon, completed with the settings that every daemon reads: calibration,
+/// name of its back end, [NAME.process].
 daemon::ServiceDescription complete(daemon::ServiceDescription description);
 
-/// The main of every daemon: parses the command line, loads the rig, runs `body`, turns its errors
-/// into exit codes. `description` needs not be complete().
+/// The main function of all daemons: parses the command line, loads the rig and runs `body`.
+/// Returns the exit code. `description` need not be complete().
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body);
 

@@ -4,10 +4,10 @@
 
 namespace handcast::timing {
 
-/// The first k >= `from` with time_of(k) >= time_ns, where `time_of` does not decrease. Where it
-/// does here and there, as arrivals do that overtake one another: `from`, or a k with time_of(k -
-/// 1) < time_ns <= time_of(k), which need not be the first. Looks at O(log k) of them, so that a
-/// daemon that is restarted after hours finds its place at once.
+/// The first k >= `from` with time_of(k) >= time_ns, if `time_of` does not decrease. If it
+/// decreases at some places (as arrival times do if messages overtake each other), the result is
+/// `from` or a k with time_of(k - 1) < time_ns <= time_of(k), which need not be the first. Calls
+/// `time_of` O(log k) times, so a daemon that is restarted after hours finds its place quickly.
 template <class TimeOf>
 std::uint64_t first_at(std::uint64_t from, std::int64_t time_ns, const TimeOf& time_of) {
   if (time_of(from) >= time_ns) return from;

@@ -11,21 +11,24 @@
 
 namespace handcast::timing {
 
-inline constexpr std::int64_t kLoneStep_ns =
-    10'000'000;  ///< from the only item of a sensor to the end of its lap
+/// The duration of the only item of a sensor.
+inline constexpr std::int64_t kLoneStep_ns = 10'000'000;
 
-/// The time a recording takes, one for all its sensors: from the earliest item until the last
-/// sensor is through.
+/// One pass through a recording, common to all its sensors: from the earliest item to the end of
+/// the last one.
 struct Lap {
-  std::int64_t first_ns = 0, length_ns = 0;
+  std::int64_t first_ns = 0;   ///< time of the earliest item, on the clock of the recording
+  std::int64_t length_ns = 0;  ///< duration; 0: no item has been added
 
+  /// The lap of these sensors, each given by the times of its items.
   static Lap of(const std::vector<std::vector<std::int64_t>>& sensors_ns) {
     Lap lap;
     for (const auto& times_ns : sensors_ns) lap.add(times_ns, kLoneStep_ns);
     return lap;
   }
 
-  /// A sensor is through a mean step after its last item (`lone_step_ns` where it has only one).
+  /// Extends the lap by the items of a sensor. Its last item lasts for a mean step, or for
+  /// `lone_step_ns` if it is the only one.
   void add(const std::vector<std::int64_t>& times_ns, std::int64_t lone_step_ns) {
     if (times_ns.empty()) return;
     const auto steps = static_cast<std::int64_t>(times_ns.size()) - 1;
@@ -38,19 +41,21 @@ struct Lap {
   }
 };
 
-/// When the items of a sensor are due if its recording is played from `start_ns` on, over and over.
-/// A pure function of time: every daemon that starts at the rig's epoch is at the same place of the
-/// recording, also after a restart.
+/// The schedule of a sensor whose recording is played repeatedly from `start_ns` on. It is a pure
+/// function of time, so all daemons of a rig are at the same place of the recording, also after a
+/// restart.
 class Loop {
  public:
+  /// An item of the schedule.
   struct Item {
-    std::size_t index = 0;     ///< into the recording
-    std::uint64_t number = 0;  ///< counts on from lap to lap
-    std::int64_t due_ns = 0;
+    std::size_t index = 0;     ///< index into the recording
+    std::uint64_t number = 0;  ///< number of the item, counted over all laps
+    std::int64_t due_ns = 0;   ///< when to play it, on the clock of `start_ns`
   };
 
-  /// `times_ns` are of the clock of `lap`, which is made longer where they do not lie within it.
-  /// Errors (bad_config): no item, times that do not increase.
+  /// `times_ns`: the times of the items on the clock of `lap`, which is extended by them. `repeat`:
+  /// false: the schedule ends after one lap. `lone_step_ns`: see Lap::add(). Errors (bad_config):
+  /// there is no item; the times do not increase.
   static Result<Loop> make(std::vector<std::int64_t> times_ns, Lap lap, std::int64_t start_ns,
                            bool repeat, std::int64_t lone_step_ns) {
     if (times_ns.empty()) return fail(Errc::bad_config, "the recording is empty");
@@ -62,14 +67,14 @@ class Loop {
     return Loop(std::move(times_ns), start_ns, lap.length_ns, repeat);
   }
 
-  /// The first item due at `time_ns` or later; nothing where the recording is over.
+  /// The first item due at `time_ns` or later; empty if the recording has ended.
   std::optional<Item> at_or_after(std::int64_t time_ns) const {
     const std::int64_t played_ns = std::max<std::int64_t>(time_ns - start_ns_, 0);
     const auto found = std::lower_bound(times_ns_.begin(), times_ns_.end(), played_ns % lap_ns_);
     return item(played_ns / lap_ns_ * count() + (found - times_ns_.begin()));
   }
 
-  /// The item due nearest to `time_ns`.
+  /// The item whose due time is nearest to `time_ns`; empty if the recording has ended.
   std::optional<Item> nearest(std::int64_t time_ns) const {
     const auto after = at_or_after(time_ns);
     if (!after || after->number == 0) return after;

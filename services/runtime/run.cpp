@@ -16,10 +16,10 @@ void print_help(const daemon::ServiceDescription& description) {
   fmt::print(
       "handcast-{} — {}\n\n"
       "usage: handcast-{} --config RIG.toml [--set path=value]...\n\n"
-      "  --config FILE      the rig\n"
-      "  --set path=value   a setting that overrides the file's; may be repeated\n"
-      "  --backends         the back ends of this build, one a line\n"
-      "  --describe         what it reads and publishes, as JSON\n"
+      "  --config FILE      the rig file\n"
+      "  --set path=value   a setting that overrides that of the file; may be repeated\n"
+      "  --backends         prints the back ends of this build, one per line\n"
+      "  --describe         prints its rings, settings and back ends as JSON\n"
       "  --version, --help\n\n"
       "`handcast up RIG.toml` starts this program together with the rest of the rig and hands it "
       "its rings.\n",

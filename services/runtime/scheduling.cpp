@@ -35,7 +35,7 @@ Result<Note> use_cores(const std::vector<double>& cores, std::string_view servic
   }
   if (sched_setaffinity(0, sizeof set, &set) == 0) return Note{};
   return Note{
-      fmt::format("{}.process.cores: it runs on any core, those asked for are not given to it: {}",
+      fmt::format("{}.process.cores: the process runs on all cores, the wanted ones are denied: {}",
                   service, std::strerror(errno))};
 }
 
@@ -44,8 +44,8 @@ Note use_priority(int priority, std::string_view service) {
   const sched_param parameters{.sched_priority = priority};
   if (sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return {};
   return fmt::format(
-      "{}.process.priority: it runs at the usual priority, real time needs CAP_SYS_NICE or an "
-      "rtprio limit of {}: {}",
+      "{}.process.priority: the process runs at normal priority, real time needs CAP_SYS_NICE or "
+      "an rtprio limit of {}: {}",
       service, priority, std::strerror(errno));
 }
 
@@ -58,14 +58,15 @@ bool may_lock_all_memory() {
          (data[0].effective & (1u << CAP_IPC_LOCK)) != 0;
 }
 
-// Under a limit the lock might succeed now and a later allocation fail for it: then rather no lock.
+// If the memory lock is limited, it could succeed now and make a later allocation fail. So the
+// memory is only locked without a limit.
 Note lock_memory(bool wanted, std::string_view service) {
   if (!wanted) return {};
   errno = EPERM;
   if (may_lock_all_memory() && mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return {};
   return fmt::format(
-      "{}.process.lock_memory: its memory may be swapped out, locking needs CAP_IPC_LOCK or no "
-      "memlock limit: {}",
+      "{}.process.lock_memory: the memory is not locked, which needs CAP_IPC_LOCK or no memlock "
+      "limit: {}",
       service, std::strerror(errno));
 }
 

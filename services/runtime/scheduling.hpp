@@ -9,9 +9,9 @@
 
 namespace handcast::service {
 
-/// Runs this process on the cores, at the priority and in locked memory as its section says. What
-/// the system does not permit is left as it is: the notes are one sentence each, to be logged.
-/// Errors: bad_config (cores that this machine does not have).
+/// Applies the cores, the priority and the memory lock of [NAME.process] to this process. Returns a
+/// sentence, to be logged, for each setting that the system does not permit. Errors: bad_config
+/// (the machine does not have these cores).
 Result<std::vector<std::string>> apply_scheduling(const config::Process& process,
                                                   std::string_view service);
 

@@ -26,8 +26,7 @@ void print_line(std::string_view line) {
 
 void show_progress(std::string_view line) {
   if (has_terminal())
-    put(fmt::format("{}{}\r", kClearLine,
-                    line));  // what is printed next begins where this line did
+    put(fmt::format("{}{}\r", kClearLine, line));  // the next output overwrites this line
   else
     print_line(line);
 }

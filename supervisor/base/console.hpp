@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `handcast up` writes to the person who started it, on stderr. On a terminal the last line is
-// a progress line that is replaced; other lines are printed above it.
+// The output of `handcast up` on stderr. On a terminal, the last line is a progress line that is
+// replaced; other lines are printed above it.
 #pragma once
 #include <string_view>
 
 namespace handcast::supervisor {
 
-/// Prints a line.
+/// Prints a line to stderr. On a terminal, it first erases the progress line.
 void print_line(std::string_view line);
-/// Replaces the progress line. Without a terminal: prints a line.
+/// Replaces the progress line. If stderr is not a terminal, prints a line.
 void show_progress(std::string_view line);
-/// Whether stderr is a terminal.
+/// True if stderr is a terminal.
 bool has_terminal();
 
 }  // namespace handcast::supervisor

@@ -65,7 +65,7 @@ void EventLoop::turn() {
 void EventLoop::call(int fd, std::function<void()> Handlers::*which) {
   const auto found = handlers_.find(fd);
   if (found == handlers_.end()) return;
-  const auto handler = found->second.*which;  // a copy: it may forget itself
+  const auto handler = found->second.*which;  // a copy: it may call forget() for its descriptor
   if (handler) handler();
 }
 

@@ -9,17 +9,19 @@
 
 namespace handcast::supervisor {
 
-/// Calls functions when descriptors become readable or writable. One thread. A callback may watch
-/// and forget descriptors, its own included. It may be called once too often, if the number of its
-/// descriptor was reused in the same turn: it must not block on an empty descriptor.
+/// Calls functions when descriptors become readable or writable. One thread. A callback may call
+/// watch() and forget() for any descriptor, also its own. It must not block if its descriptor is
+/// not ready: if the number of a descriptor is reused within one turn, the new callback may be
+/// called for an event of the old one.
 class EventLoop {
  public:
   /// Errors: unavailable.
   static Result<EventLoop> open();
 
-  /// Calls back while `fd` is readable.
+  /// Calls `on_readable` at each turn in which `fd` is readable.
   void watch(int fd, std::function<void()> on_readable);
-  /// Also calls back while `fd`, which is watched, is writable. An empty function ends that.
+  /// Calls `on_writable` at each turn in which `fd` is writable; an empty function ends this. `fd`
+  /// must be watched by watch().
   void watch_writing(int fd, std::function<void()> on_writable);
   /// Ends all callbacks for `fd`. Does nothing if it is not watched.
   void forget(int fd);
@@ -36,10 +38,11 @@ class EventLoop {
   std::map<int, Handlers> handlers_;
 };
 
-/// A descriptor that becomes readable every `period_ns`, until it is read. Errors: unavailable.
+/// A timer: its descriptor becomes readable every `period_ns`, until it is read. Errors:
+/// unavailable.
 Result<UniqueFd> open_timer(std::int64_t period_ns);
-/// Blocks the signals that stop a rig (SIGINT, SIGTERM, SIGHUP). The descriptor is readable when
-/// one has arrived. Errors: unavailable.
+/// Blocks the signals that stop a rig (SIGINT, SIGTERM, SIGHUP) and opens a descriptor that is
+/// readable when one has arrived. Errors: unavailable.
 Result<UniqueFd> open_stop_signals();
 /// Reads a non-blocking descriptor until it is empty.
 void drain(int fd);

@@ -14,8 +14,8 @@
 
 namespace handcast::supervisor {
 
-// "PID (name) state ppid ...": the name may hold anything, so count behind it. The state is
-// field 3.
+// "PID (name) state ppid ...": the name may contain any characters, so fields are counted after it.
+// The state is field 3.
 std::optional<std::uint64_t> start_ticks_of(pid_t pid) {
   constexpr int kStartField = 22;
   std::ifstream file(fmt::format("/proc/{}/stat", pid));

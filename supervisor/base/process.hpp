@@ -7,12 +7,13 @@
 
 namespace handcast::supervisor {
 
-/// The start time of a process in clock ticks since boot (/proc/PID/stat, field 22): tells it from
-/// another process that has the same number later. Empty if there is none, or only a zombie.
+/// The start time of a process in clock ticks since boot (/proc/PID/stat, field 22). Together with
+/// the pid it identifies the process, because pids are reused. Empty if there is no such process,
+/// or only a zombie.
 std::optional<std::uint64_t> start_ticks_of(pid_t pid);
 
-/// A start time on the clock of now_ns(). Ticks count the time that the machine was asleep,
-/// now_ns() does not.
+/// Converts a start time to CLOCK_MONOTONIC (ns). Ticks include the time during which the machine
+/// was suspended, CLOCK_MONOTONIC does not.
 std::int64_t start_ns_of(std::uint64_t ticks);
 
 }  // namespace handcast::supervisor

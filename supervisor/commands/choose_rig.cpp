@@ -9,6 +9,19 @@
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
+namespace {
+
+/// The message if no rig is up but services live without their supervisor. Empty if none do.
+std::string orphans_are_up() {
+  const auto orphaned = orphaned_rigs();
+  if (orphaned.empty()) return {};
+  return fmt::format(
+      "no supervisor is up, but services of {} are running; `handcast up RIG.toml` takes them "
+      "over, `handcast down` stops them",
+      join(orphaned, ", "));
+}
+
+}  // namespace
 
 Result<std::string> choose_rig(const std::string& name) {
   auto rig = control::choose_rig(name);
@@ -16,12 +29,8 @@ Result<std::string> choose_rig(const std::string& name) {
   if (rig || !living) return rig;
   if (name.empty() && living->size() > 1) rig.error().what += "; choose one with --rig";
   if (!living->empty()) return rig;
-  const auto orphaned = orphaned_rigs();
-  if (orphaned.empty()) return rig;
-  return fail(Errc::unavailable,
-              fmt::format("no supervisor is up, but services of {} live; `handcast up RIG.toml` "
-                          "takes them over, `handcast down` ends them",
-                          join(orphaned, ", ")));
+  const auto sentence = orphans_are_up();
+  return sentence.empty() ? rig : fail(Errc::unavailable, sentence);
 }
 
 }  // namespace handcast::supervisor

@@ -37,7 +37,9 @@ int run_config(const Arguments& arguments) {
   }
   const bool print = options->has("--print"), check = options->has("--check");
   if (print == check)
-    return complain(kExitUsage, "config: one of --print, --check, --reference is needed");
+    return complain(
+        kExitUsage,
+        "config: one of --print, --check, --reference is needed; `handcast help config`");
   if (check && options->words.empty()) return complain(kExitUsage, "config: --check needs a file");
 
   const auto settings = options->all("--set");

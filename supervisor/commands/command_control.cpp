@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verbs that talk to a rig that is up.
+// The verbs that send a request to a running rig.
 #include <fmt/format.h>
 
 #include "config/renamed_settings.hpp"
@@ -14,13 +14,13 @@
 namespace handcast::supervisor {
 namespace {
 
-struct Talk {
+struct Outcome {
   int exit_code = kExitDone;
   nlohmann::json answer;
 };
 
-/// Chooses the rig and asks it. Complains about what goes wrong.
-Talk talk(const std::string& rig_name, const control::Request& request) {
+/// Chooses the rig and sends it a request. Prints errors.
+Outcome send(const std::string& rig_name, const control::Request& request) {
   const auto rig = choose_rig(rig_name);
   if (!rig) return {complain(rig.error()), {}};
   auto answer = control::ask(*rig, request);
@@ -41,7 +41,7 @@ std::string print_reload(const nlohmann::json& answer) {
                                                  : "nothing changed";
 }
 
-/// The present name of the back end; an old one is reported.
+/// The present name of the back end. Reports the use of an old name.
 std::string current_backend(const control::Request& request) {
   const auto report = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
   return config::current_form({request.service + ".backend", request.backend}, "swap",
@@ -50,8 +50,8 @@ std::string current_backend(const control::Request& request) {
       .value;
 }
 
-/// Runs a verb that takes a service, or a service and a back end. `done` is printed when it is
-/// done, with {0} for the service and {1} for the back end.
+/// Runs a verb with `words` arguments: a service and a back end. Prints `done` on success, with {0}
+/// for the service and {1} for the back end.
 int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words,
                    control::Request request, const char* done) {
   const auto options = sort_options(
@@ -61,7 +61,7 @@ int ask_with_words(const char* verb, const Arguments& arguments, std::size_t wor
                     fmt::format("{0}: {1}; `handcast help {0}`", verb, options.error().what));
   if (words > 0) request.service = options->words[0];
   if (words > 1) request.backend = options->words[1];
-  const int exit_code = talk(options->value("--rig"), request).exit_code;
+  const int exit_code = send(options->value("--rig"), request).exit_code;
   if (exit_code == kExitDone)
     fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, current_backend(request)));
   return exit_code;
@@ -97,7 +97,7 @@ int run_reload(const Arguments& arguments) {
   if (!options)
     return complain(kExitUsage, "reload: " + options.error().what + "; `handcast help reload`");
   const auto [exit_code, answer] =
-      talk(options->value("--rig"), {.verb = control::Verb::reload, .service = {}, .backend = {}});
+      send(options->value("--rig"), {.verb = control::Verb::reload, .service = {}, .backend = {}});
   if (exit_code == kExitDone) fmt::print("{}\n", print_reload(answer));
   return exit_code;
 }
@@ -107,7 +107,7 @@ int run_status(const Arguments& arguments) {
   if (!options)
     return complain(kExitUsage, "status: " + options.error().what + "; `handcast help status`");
   auto [exit_code, answer] =
-      talk(options->value("--rig"), {.verb = control::Verb::status, .service = {}, .backend = {}});
+      send(options->value("--rig"), {.verb = control::Verb::status, .service = {}, .backend = {}});
   if (exit_code != kExitDone) return exit_code;
   const auto& status = answer["status"];
   fmt::print("{}", options->has("--json") ? status.dump(2) + "\n" : print_status(status));

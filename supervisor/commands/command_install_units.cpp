@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets systemd run a rig: `handcast install-units RIG.toml`.
+// `handcast install-units`: writes a systemd unit that runs a rig.
 #include <fmt/format.h>
 #include <pwd.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@
 namespace handcast::supervisor {
 namespace {
 
-/// The user that a system unit runs as: with sudo, the person who called it.
+/// The user of a system unit: with sudo, the user who called it.
 std::string user_name() {
   const char* before_sudo = std::getenv("SUDO_USER");
   const auto* entry = getpwuid(getuid());
@@ -43,10 +43,11 @@ void print_next_steps(const UnitSpec& spec) {
   fmt::print("  {} enable --now {}\n", systemctl, unit_name(spec));
   if (spec.system)
     fmt::print(
-        "`handcast status` and the like find it with XDG_RUNTIME_DIR=/run/handcast, as user {}.\n",
+        "To use `handcast status` and the like, set XDG_RUNTIME_DIR=/run/handcast and be user "
+        "{}.\n",
         spec.user);
   else
-    fmt::print("  loginctl enable-linger    # to run also while nobody is logged in\n");
+    fmt::print("  loginctl enable-linger    # to run also while you are not logged in\n");
 }
 
 }  // namespace
@@ -77,7 +78,7 @@ int run_install_units(const Arguments& arguments) {
   }
   const auto file = unit_folder(spec) / unit_name(spec);
   if (const auto written = write_unit(file, text); !written) return complain(written.error());
-  fmt::print("wrote {}; what is left to do:\n", file.string());
+  fmt::print("wrote {}; next steps:\n", file.string());
   print_next_steps(spec);
   return kExitDone;
 }

@@ -21,9 +21,9 @@ constexpr std::size_t kPlainColumns = 160;
 
 int show_once(const std::string& rig, bool as_json) {
   RigWatcher watcher(rig);
-  const auto before = watcher.look();
+  const auto before = watcher.observe();
   if (before.missing.empty()) sleep_until_ns(before.taken_ns + kOnce_ns);
-  const auto now = watcher.look();
+  const auto now = watcher.observe();
   if (now.status.is_null()) return complain(kExitRetry, now.missing);
 
   const auto model = compare(before, now);
@@ -37,7 +37,7 @@ int show_once(const std::string& rig, bool as_json) {
   return kExitDone;
 }
 
-/// The terminal, and how far it is scrolled.
+/// The terminal and its scroll position.
 class Screen {
  public:
   void show(const TopModel& model) {
@@ -48,7 +48,7 @@ class Screen {
     terminal_.show(texts);
   }
 
-  /// Shows `model` until it is time for the next look. False: the person wants to quit.
+  /// Shows `model` until `until_ns` and handles keys. Returns false if the user quits.
   bool watch(const TopModel& model, std::int64_t until_ns) {
     for (;;) {
       show(model);
@@ -92,13 +92,12 @@ class Screen {
 int show_until_quit(const std::string& rig) {
   RigWatcher watcher(rig);
   Screen screen;
-  std::deque<RigLook> looks{watcher.look()};
+  std::deque<RigLook> looks{watcher.observe()};
   auto next_ns = now_ns();
   for (;;) {
-    next_ns =
-        std::max(next_ns + kRefresh_ns, now_ns());  // no catching up after the machine was asleep
+    next_ns = std::max(next_ns + kRefresh_ns, now_ns());  // skips what was missed during a suspend
     if (!screen.watch(compare(looks.front(), looks.back()), next_ns)) return kExitDone;
-    looks.push_back(watcher.look());
+    looks.push_back(watcher.observe());
     if (looks.size() > kLooksBack + 1) looks.pop_front();
   }
 }

@@ -13,7 +13,7 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::string_view kNoKeeper = "--no-keeper";  ///< for systemd, which is a keeper itself
+constexpr std::string_view kNoKeeper = "--no-keeper";  ///< for systemd, which acts as the keeper
 constexpr std::string_view kKept = "--kept";           ///< added by the keeper
 
 bool take_successor_mark() {
@@ -22,7 +22,7 @@ bool take_successor_mark() {
   return is_successor;
 }
 
-/// Becomes the keeper of this very command.
+/// Makes this process the keeper of the same command.
 int keep_up(const Arguments& arguments) {
   Arguments command{(program_folder() / "handcast").string(), "up"};
   command.insert(command.end(), arguments.begin(), arguments.end());
@@ -30,7 +30,7 @@ int keep_up(const Arguments& arguments) {
   return keep(command);
 }
 
-/// How the rig is to be run. The folder of --out is passed on to the services.
+/// The options of the command. Also passes the folder of --out on to the services.
 RunOptions run_options(const Options& options, std::optional<double> seconds) {
   RunOptions run{.rig_file = std::filesystem::absolute(options.words.front()),
                  .settings = options.all("--set"),

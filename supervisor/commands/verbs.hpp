@@ -11,31 +11,31 @@
 
 namespace handcast::supervisor {
 
-/// What follows the verb on the command line.
+/// The arguments after the verb.
 using Arguments = std::vector<std::string>;
 
-/// What a verb is for. `handcast help` lists the verbs by group.
+/// The purpose of a verb. `handcast help` lists the verbs by group.
 enum class VerbGroup { run, look, change, set_up, score };
 
-/// A verb as `handcast help` describes it.
+/// A row of the table of verbs.
 struct VerbEntry {
-  std::string_view name;
-  std::string_view usage;  ///< what follows "handcast "
-  std::string_view sentence;
-  int (*run)(const Arguments&);  ///< null: a program of its own, handcast-NAME
-  VerbGroup group = VerbGroup::set_up;
+  std::string_view name;                ///< "up"
+  std::string_view usage;               ///< the command line after "handcast "
+  std::string_view sentence;            ///< its purpose, for `handcast help`
+  int (*run)(const Arguments&);         ///< its function; null: the program handcast-NAME
+  VerbGroup group = VerbGroup::set_up;  ///< its group
 };
 
-/// Every verb.
+/// All verbs.
 std::span<const VerbEntry> verbs();
-/// Their names.
+/// The names of all verbs.
 std::vector<std::string> verb_names();
 
 /// The folder of this program, which also holds the daemons and the verbs that are programs.
 std::filesystem::path program_folder();
 
-// The verbs of this program. Each returns an exit code (ipc/base/exit_code.hpp).
-
+/// Runs a verb. Returns an exit code (ipc/base/exit_code.hpp).
+/// @{
 int run_up(const Arguments& arguments);
 int run_config(const Arguments& arguments);
 int run_down(const Arguments& arguments);
@@ -47,10 +47,11 @@ int run_trace(const Arguments& arguments);
 int run_latency(const Arguments& arguments);
 int run_top(const Arguments& arguments);
 int run_install_units(const Arguments& arguments);
+/// @}
 
-/// Prints "handcast: sentence" and returns the exit code.
+/// Prints "handcast: sentence" to stderr and returns the exit code.
 int complain(int exit_code, std::string_view sentence);
-/// The same with the error's sentence and exit code.
+/// The same with the sentence and the exit code of an error.
 int complain(const Error& error);
 
 }  // namespace handcast::supervisor

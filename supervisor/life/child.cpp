@@ -24,19 +24,19 @@ namespace {
 
 constexpr std::int64_t kReportWait_ns = 300'000'000;
 
-/// How the variables of the supervisor's contracts with its keeper and with systemd begin.
+/// The prefixes of the environment variables from the keeper and from systemd.
 constexpr std::array kNotForServices{kKeeperVariable, "NOTIFY_SOCKET=", "LISTEN_", "WATCHDOG_"};
 
 struct Pipe {
   UniqueFd read, write;
 };
 
-/// Everything the new process needs.
+/// The arguments, the environment and the descriptors of a new process.
 struct Plan {
   std::vector<std::string> arguments, environment;
   std::vector<int> inherited;  ///< descriptors that exec does not close
   Pipe log, ready;
-  Pipe turn;  ///< of a spare
+  Pipe turn;  ///< only for a spare
 };
 
 tl::unexpected<Error> cannot(std::string_view what) {
@@ -83,7 +83,7 @@ Result<Plan> make_plan(const ChildSpec& spec) {
   auto log = open_pipe(ReadBy::supervisor);
   auto ready = open_pipe(ReadBy::supervisor);
   if (!log || !ready) return tl::make_unexpected(log ? ready.error() : log.error());
-  fcntl(log->write.get(), F_SETFL, O_NONBLOCK);  // a service never waits for its supervisor to read
+  fcntl(log->write.get(), F_SETFL, O_NONBLOCK);  // a full pipe must not block the service
   plan.log = std::move(*log);
   plan.ready = std::move(*ready);
 
@@ -108,7 +108,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// posix_spawn's lists of what to do in the new process before it becomes the daemon.
+/// The file actions and attributes of posix_spawn().
 class SpawnActions {
  public:
   explicit SpawnActions(const Plan& plan) {
@@ -117,7 +117,7 @@ class SpawnActions {
     posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDERR_FILENO);
     for (const int fd : plan.inherited)
-      posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: exec does not close it
+      posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: clears FD_CLOEXEC
 
     sigset_t none, stops;
     sigemptyset(&none);
@@ -147,8 +147,8 @@ bool is_a_persons_fault(int error) {
   return error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR;
 }
 
-/// As vfork: the new process uses the supervisor's memory until exec. The rings' mappings are not
-/// copied, which is most of what a fork would cost.
+/// posix_spawn() shares the memory of the supervisor until exec, like vfork(). So it does not copy
+/// the mappings of the rings, which would take most of the time of a fork().
 Result<pid_t> start(Plan& plan) {
   const SpawnActions actions(plan);
   const auto arguments = pointers_to(plan.arguments);
@@ -201,7 +201,7 @@ Child::~Child() {
   poll(&ended, 1, -1);
 }
 
-// By the pidfd, never by the number: another process may have the number of an adopted one by now.
+// Uses the pidfd: the pid of an adopted process may have been reused.
 void Child::signal(int number) {
   if (!reaped_ && pidfd_) syscall(SYS_pidfd_send_signal, pidfd_.get(), number, nullptr, 0);
 }
@@ -222,7 +222,7 @@ std::optional<Exit> Child::try_reap() {
   if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
       info.si_pid == 0)
     return std::nullopt;
-  kill(-pid_, SIGKILL);  // before the status is taken: until then nobody else can have this number
+  kill(-pid_, SIGKILL);  // before it is reaped: until then the pid cannot be reused
   waitpid(pid_, nullptr, 0);
   reaped_ = true;
   return Exit{.signalled = info.si_code != CLD_EXITED, .code = info.si_status};
@@ -232,7 +232,7 @@ std::optional<Exit> Child::try_reap_adopted() {
   if (ended_ns_ == 0) {
     if (!has_ended()) return std::nullopt;
     ended_ns_ = now_ns();
-    kill(-pid_, SIGKILL);  // its number has been free for an instant at most
+    kill(-pid_, SIGKILL);  // the pid was freed only a moment ago
   }
   reports_->read();
   auto exit = reports_->take(pid_);

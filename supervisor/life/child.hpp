@@ -18,24 +18,25 @@
 
 namespace handcast::supervisor {
 
-/// What a daemon is started with (ipc/daemon/contract.hpp).
+/// The program and the environment of a daemon (ipc/daemon/contract.hpp).
 struct ChildSpec {
-  std::filesystem::path program;
-  std::vector<std::string> arguments;
-  daemon::Rings rings;  ///< the supervisor's descriptors, which the daemon inherits
-  std::int64_t epoch_ns = 0;
-  bool spare = false;  ///< it prepares everything and waits for its turn
+  std::filesystem::path program;       ///< path of the executable
+  std::vector<std::string> arguments;  ///< without argv[0]
+  daemon::Rings rings;                 ///< the supervisor's descriptors; the daemon inherits them
+  std::int64_t epoch_ns = 0;           ///< HANDCAST_EPOCH_NS
+  bool spare = false;                  ///< the daemon prepares itself and waits for its turn
 };
 
-/// One process of a daemon, leader of its own session. It goes on if the supervisor dies;
-/// destroying the object kills it and waits for its end.
+/// One process of a daemon, the leader of its own session. It continues to run if the supervisor
+/// dies. Destroying the object kills it and waits for its end.
 class Child {
  public:
-  /// Starts a process. Errors: bad_config (no such program), unavailable (no process or descriptor
-  /// left).
+  /// Starts a process. Errors: bad_config (no such program), unavailable (no more processes or
+  /// descriptors).
   static Result<Child> spawn(const ChildSpec& spec);
-  /// A process that an earlier supervisor started. `reports` must outlive the object.
+  /// Takes over a process that an earlier supervisor started. `reports` must outlive the object.
   static Child adopt(AdoptedProcess process, ExitReports& reports);
+  /// `other` has no process afterwards.
   Child(Child&& other) noexcept
       : pid_(std::exchange(other.pid_, -1)),
         reaped_(other.reaped_),
@@ -48,25 +49,28 @@ class Child {
   Child& operator=(Child&&) = delete;
   ~Child();
 
+  /// The pid; -1 after a move.
   pid_t pid() const { return pid_; }
+  /// True if an earlier supervisor started the process.
   bool is_adopted() const { return reports_ != nullptr; }
-  /// Readable when the process has ended.
+  /// A descriptor that is readable when the process has ended.
   int pidfd() const { return pidfd_.get(); }
-  /// What the process writes to stdout and stderr. Does not block.
+  /// The output of the process (stdout and stderr). Non-blocking.
   int log_fd() const { return log_.get(); }
-  /// What the process says (read_words() in ipc/daemon/words.hpp). Does not block. -1 for an
+  /// The words of the process (read_words() in ipc/daemon/words.hpp). Non-blocking. -1 for an
   /// adopted process.
   int ready_fd() const { return ready_.get(); }
-  /// Does nothing if the process has been reaped.
+  /// Sends a signal. Does nothing if the process has been reaped.
   void signal(int number);
-  /// Gives a spare its turn. A spare without its turn ends when this object, or the supervisor, is
-  /// gone.
+  /// Gives a spare its turn. A spare that has not got its turn ends when this object is destroyed
+  /// or the supervisor dies.
   void give_turn();
 
-  /// How the process ended; empty while it lives. Kills what is left of its process group first.
-  /// The end of an adopted process is known when it was reported, or is unknown after 300 ms.
+  /// How the process ended; empty while it lives. Kills the rest of its process group first. The
+  /// end of an adopted process is returned when the keeper has reported it, or as unknown after
+  /// 300 ms.
   std::optional<Exit> try_reap();
-  /// Whether the process has ended, reaped or not.
+  /// True if the process has ended, reaped or not.
   bool has_ended() const;
 
  private:
@@ -75,8 +79,8 @@ class Child {
 
   pid_t pid_ = -1;
   bool reaped_ = false;
-  ExitReports* reports_ = nullptr;  ///< of an adopted process
-  std::int64_t ended_ns_ = 0;       ///< of an adopted process: when its end was seen
+  ExitReports* reports_ = nullptr;  ///< set for an adopted process
+  std::int64_t ended_ns_ = 0;       ///< when the end of an adopted process was noticed
   UniqueFd pidfd_, log_, ready_, turn_;
 };
 

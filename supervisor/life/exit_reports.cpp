@@ -16,10 +16,11 @@
 namespace handcast::supervisor {
 namespace {
 
-/// The keeper also reports grandchildren, which nobody asks about.
+/// The keeper also reports grandchildren; their reports are never taken.
 constexpr std::size_t kMostRemembered = 1024;
 
-/// The number in the variable, which is unset: services must not hold the socket.
+/// The number in an environment variable, -1 if there is none. Unsets the variable, because
+/// services must not inherit it.
 int take_number(const char* variable) {
   const char* value = std::getenv(variable);
   const std::string_view text = value ? value : "";
@@ -39,7 +40,7 @@ bool is_report_socket(int fd) {
 
 Exit exit_of(int code, int status) { return {.signalled = code != CLD_EXITED, .code = status}; }
 
-/// PIDFD_GET_INFO of linux/pidfd.h, which the headers of this system may not have yet.
+/// The struct of PIDFD_GET_INFO (linux/pidfd.h), which older headers lack.
 struct PidfdInfo {
   std::uint64_t mask, cgroup;
   std::uint32_t pid, tgid, ppid, ruid, rgid, euid, egid, suid, sgid, fsuid, fsgid;
@@ -68,7 +69,7 @@ void ExitReports::read() {
     if (exits_.size() >= kMostRemembered) exits_.clear();
     exits_.insert_or_assign(report.pid, exit_of(report.code, report.status));
   }
-  if (size == 0) socket_.reset();  // the keeper is gone
+  if (size == 0) socket_.reset();  // the keeper has ended
 }
 
 pid_t ExitReports::keeper() const {

@@ -10,32 +10,33 @@
 
 namespace handcast::supervisor {
 
-/// The variable that holds the number of the supervisor's end of the keeper's socket.
+/// The environment variable with the number of the supervisor's end of the keeper's socket.
 inline constexpr const char* kKeeperVariable = "HANDCAST_KEEPER_FD";
 
-/// The end of one process as the keeper sends it: si_pid, si_code and si_status of its siginfo_t.
+/// The end of one process as the keeper sends it: a datagram with members of its siginfo_t.
 struct ExitReport {
-  pid_t pid = 0;
-  int code = 0;
-  int status = 0;
+  pid_t pid = 0;   ///< si_pid
+  int code = 0;    ///< si_code: CLD_EXITED, CLD_KILLED or CLD_DUMPED
+  int status = 0;  ///< si_status: the exit code, or the number of the signal
 };
 
-/// How processes ended that are not children of this supervisor. They are children of its keeper,
-/// which inherits the services of a supervisor that died. The keeper takes their exit status and
-/// sends each as a datagram over a socket pair.
+/// The ends of processes that are not children of this supervisor. The services of a supervisor
+/// that died become children of its keeper, which reaps them and sends an ExitReport for each over
+/// a socket pair.
 class ExitReports {
  public:
-  /// Takes the socket that kKeeperVariable names, and unsets the variable. Without a keeper nothing
-  /// is ever reported.
+  /// Takes the socket that kKeeperVariable names, and unsets the variable. Without a keeper there
+  /// are no reports.
   static ExitReports from_environment();
 
-  /// Readable when something was reported. Does not block. -1 if there is no keeper.
+  /// A descriptor that is readable when a report has arrived. Non-blocking. -1 if there is no
+  /// keeper.
   int fd() const { return socket_.get(); }
-  /// Reads what was reported.
+  /// Reads the reports that have arrived.
   void read();
-  /// The keeper's process number; -1 if it is not the parent of this process.
+  /// The pid of the keeper; -1 if it is not the parent of this process.
   pid_t keeper() const;
-  /// How a process ended, once; empty if that was not reported.
+  /// How a process ended; empty if that was not reported. Removes the report.
   std::optional<Exit> take(pid_t pid);
 
  private:
@@ -43,7 +44,8 @@ class ExitReports {
   std::map<pid_t, Exit> exits_;
 };
 
-/// How a process ended that another process has reaped. Empty until then, and before Linux 6.15.
+/// How a process ended that another process has reaped. Empty until it is reaped, and always before
+/// Linux 6.15.
 std::optional<Exit> exit_told_by_kernel(int pidfd);
 
 }  // namespace handcast::supervisor

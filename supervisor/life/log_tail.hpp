@@ -9,26 +9,28 @@
 
 namespace handcast::supervisor {
 
-/// The last lines that a service wrote.
+/// The newest lines of a service's output.
 class LogTail {
  public:
-  static constexpr std::size_t kLines = 200;
-  static constexpr std::size_t kLongestLine = 4096;  ///< bytes; what is longer is cut into lines
+  static constexpr std::size_t kLines = 200;         ///< number of lines that are kept
+  static constexpr std::size_t kLongestLine = 4096;  ///< bytes; longer lines are split
 
-  /// For a process that lives: it may write faster than its lines are printed.
+  /// The number of reads in one turn for a living process, which may write faster than its lines
+  /// are printed.
   static constexpr int kReadsAtOnce = 16;
-  /// For a process that has ended: what is left is limited by the pipe.
+  /// The number of reads for a process that has ended; the capacity of the pipe limits it.
   static constexpr int kAllReads = std::numeric_limits<int>::max();
 
-  /// Takes bytes as they arrive. Calls `on_line` for each line that they complete.
+  /// Appends bytes. Calls `on_line` for each line that they complete.
   void append(std::string_view bytes, const std::function<void(std::string_view)>& on_line);
-  /// Appends what can be read from a non-blocking descriptor. False: there will be no more.
+  /// Appends the bytes that a non-blocking descriptor has, in at most `most_reads` reads. Returns
+  /// false at the end of the file.
   bool read_from(int fd, const std::function<void(std::string_view)>& on_line,
                  int most_reads = kReadsAtOnce);
   /// The newest `count` lines, oldest first.
   std::vector<std::string> last(std::size_t count) const;
-  /// The newest line without the time, program and level that handcast's log puts in front. "" if
-  /// there is none.
+  /// The newest line without the prefix of handcast's log (time, program, level). "" if there is
+  /// none.
   std::string last_sentence() const;
 
  private:

@@ -11,7 +11,7 @@
 namespace handcast::supervisor {
 namespace {
 
-/// Since when the worker has been ready; empty if it never was.
+/// When the worker became ready; empty if it never was.
 std::optional<std::int64_t> ready_since(const Worker& worker) {
   if (const auto* ready = std::get_if<worker::Ready>(&worker)) return ready->ready_ns;
   if (const auto* killed = std::get_if<worker::Killed>(&worker)) return killed->ready_ns;
@@ -26,7 +26,7 @@ Step next(ServiceState state, const Event& event, std::int64_t now_ns, const Rul
   return std::move(transition).take();
 }
 
-// How a worker begins.
+// Start.
 
 void Transition::operator()(const event::Hold&) {
   if (std::holds_alternative<worker::Stopped>(worker_)) worker_ = worker::Held{};
@@ -64,7 +64,7 @@ void Transition::start(bool on_trial) {
   act(action::Promote{});
 }
 
-// How it gets ready.
+// Readiness.
 
 void Transition::operator()(const event::SaidReady& event) {
   const auto* starting = std::get_if<worker::Starting>(&worker_);
@@ -81,7 +81,7 @@ void Transition::became_ready(Life life) {
   act(action::Tell{Notice::ready});
 }
 
-// How it stops.
+// Stop.
 
 void Transition::operator()(const event::Stop&) {
   dismiss_spare();
@@ -116,7 +116,7 @@ void Transition::operator()(const event::Hurry&) {
     act(action::KillSpare{});
 }
 
-/// The service has stopped when both of its processes have.
+/// A service has stopped when both of its processes have ended.
 void Transition::became_stopped() {
   if (is_running(spare_)) {
     worker_ = worker::AwaitingSpare{};
@@ -126,7 +126,7 @@ void Transition::became_stopped() {
   act(action::Tell{Notice::stopped});
 }
 
-// How it ends.
+// End of the worker.
 
 void Transition::operator()(const event::Ended& event) {
   using Then = worker::Stopping::Then;
@@ -145,8 +145,8 @@ void Transition::operator()(const event::NotStarted& event) {
   died(event.exit, false);
 }
 
-/// What happens when a service dies, or cannot be started, and nobody asked it to stop. Its
-/// successor comes first; everything else can wait.
+/// Handles an unexpected death, or a start that failed. The next process is started first, because
+/// the outage lasts until it is ready.
 void Transition::died(Exit exit, bool may_start_at_once) {
   using What = Decision::Action;
   const bool on_trial = life_of(worker_)->on_trial;
@@ -188,11 +188,11 @@ void Transition::warn_of_death(Exit exit, const Decision& decision) {
                                ns_to_ms(decision.wait_ns))});
 }
 
-// What time brings.
+// Time.
 
 void Transition::operator()(const event::Tick& event) {
   tick_spare();
-  std::visit([&](auto state) { tick(state, event); }, worker_);  // a copy: it may be replaced
+  std::visit([&](auto state) { tick(state, event); }, worker_);  // a copy: worker_ may change
 }
 
 void Transition::tick(const worker::Waiting& waiting, const event::Tick&) {
@@ -205,19 +205,20 @@ void Transition::tick(const worker::Starting& starting, const event::Tick&) {
                           ns_to_seconds(now_ - starting.life.started_ns)));
 }
 
-/// A service whose needs are not ready may wait with its first message.
+/// The time during which its needs were not ready does not count: a service may need their messages
+/// for its first own one.
 void Transition::tick(const worker::AwaitingMessage& awaiting, const event::Tick& event) {
   if (event.published) return became_ready(awaiting.life);
   const auto dry_ns = awaiting.dry_ns + (event.needs_are_ready ? now_ - awaiting.looked_ns : 0);
   worker_ = worker::AwaitingMessage{.life = awaiting.life, .looked_ns = now_, .dry_ns = dry_ns};
   if (dry_ns < rules_.ready_ns) return;
-  kill_worker(fmt::format("{} said it was ready and has published nothing for {:g} s; killed",
+  kill_worker(fmt::format("{} reported ready, but published nothing for {:g} s; killed",
                           rules_.name, ns_to_seconds(rules_.ready_ns)));
 }
 
-/// The watchdog.
+/// The watchdog: kills a worker that has been silent for too long.
 void Transition::tick(const worker::Ready& ready, const event::Tick& event) {
-  const auto silence_ns = now_ - std::max(event.heard_ns.value_or(0), ready.quiet_from_ns);
+  const auto silence_ns = now_ - std::max(event.last_sign_ns.value_or(0), ready.quiet_from_ns);
   if (silence_ns < rules_.silent_ns) return;
   kill_worker(fmt::format("{} has given no sign of life for {:.1f} s; killed", rules_.name,
                           ns_to_seconds(silence_ns)));
@@ -236,7 +237,7 @@ void Transition::kill_worker(std::string why) {
   act(action::Kill{});
 }
 
-/// Deadlines move on with the clock. What waits for its restart does so as before.
+/// Shifts all deadlines. The time of a pending restart does not change.
 void Transition::operator()(const event::StoodStill& event) {
   if (auto* starting = std::get_if<worker::Starting>(&worker_))
     starting->late_ns += event.span_ns;

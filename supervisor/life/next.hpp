@@ -9,24 +9,25 @@
 
 namespace handcast::supervisor {
 
-/// What the rig file says about a service's life.
+/// The settings of the rig file that next() needs about a service.
 struct Rules {
-  std::string_view name;       ///< for sentences: "pose"
-  std::int64_t ready_ns = 0;   ///< how long a process may take to be ready, or prepared
-  std::int64_t stop_ns = 0;    ///< how long it may take to stop before it is killed
-  std::int64_t silent_ns = 0;  ///< how long it may give no sign of life
-  bool publishes = false;      ///< it has a stream: ready is one whose first message is there
+  std::string_view name;       ///< name of the service, for messages: "pose"
+  std::int64_t ready_ns = 0;   ///< time limit for a worker to be ready and a spare to be prepared
+  std::int64_t stop_ns = 0;    ///< time limit for a process to stop; then it is killed
+  std::int64_t silent_ns = 0;  ///< longest time without a heartbeat
+  bool publishes = false;      ///< it has a stream: it is not ready before its first message
   bool wants_standby = false;  ///< a spare is kept
 };
 
+/// The result of next().
 struct Step {
-  ServiceState state;
-  std::vector<Action> actions;  ///< in the order in which they are to be carried out
+  ServiceState state;           ///< the new state
+  std::vector<Action> actions;  ///< to be carried out in this order
 };
 
-/// What becomes of a service when something happens to it, and what is to be done. All that is
-/// decided about a service is decided here: a pure function. What follows from a death is
-/// Transition::died() in next.cpp, how long a restart waits is decide() in restart_policy.hpp.
+/// The state of a service after an event, and the actions that follow. A pure function that makes
+/// all decisions about a service. Transition::died() in next.cpp handles deaths; decide() in
+/// restart_policy.hpp determines the waiting time before a restart.
 Step next(ServiceState state, const Event& event, std::int64_t now_ns, const Rules& rules);
 
 }  // namespace handcast::supervisor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a service's spare.
+// The transitions of a service's spare.
 #include <fmt/format.h>
 
 #include "ipc/base/clock.hpp"
@@ -9,10 +9,10 @@
 namespace handcast::supervisor {
 namespace {
 
-/// After a promotion the machine is left to the new worker for a while.
+/// The wait for the next spare after a promotion: its start would slow down the new worker.
 constexpr std::int64_t kSpareAfterPromotion_ns = 1'000'000'000;
 
-/// Since when the spare was prepared; empty if it never was.
+/// When the spare became prepared; empty if it never was.
 std::optional<std::int64_t> prepared_since(const Spare& spare) {
   if (const auto* prepared = std::get_if<spare::Prepared>(&spare)) return prepared->prepared_ns;
   if (const auto* killed = std::get_if<spare::Killed>(&spare)) return killed->prepared_ns;
@@ -21,7 +21,7 @@ std::optional<std::int64_t> prepared_since(const Spare& spare) {
 
 }  // namespace
 
-/// For a worker with this life. A spare that is there already stays as it is.
+/// Schedules a spare for a worker with this life. Does not change an existing spare.
 void Transition::want_spare(const Life& life) {
   if (!rules_.wants_standby) return;
   const auto from_ns = now_ + (life.origin == Origin::promoted ? kSpareAfterPromotion_ns : 0);
@@ -67,8 +67,8 @@ void Transition::operator()(const event::SpareNotStarted& event) {
   replace_spare({now_, std::nullopt, {.code = kExitRetry}});
 }
 
-/// After the waits of the restart policy. A spare that dies too often, or whose work is done, is
-/// retried slowly.
+/// Schedules the next spare by the restart policy. After too many deaths, or after exit 0, it waits
+/// for kLongestWait_ns.
 void Transition::replace_spare(const Death& death) {
   using What = Decision::Action;
   auto decision = decide(std::move(past_.spare_deaths), death);

@@ -8,11 +8,11 @@
 
 namespace handcast::supervisor {
 
-/// How one life of a service ended.
+/// The end of one process of a service. Times are CLOCK_MONOTONIC.
 struct Death {
-  std::int64_t died_ns = 0;
-  std::optional<std::int64_t> ready_ns;  ///< empty: it was never ready
-  Exit exit;
+  std::int64_t died_ns = 0;              ///< when the process ended
+  std::optional<std::int64_t> ready_ns;  ///< when it became ready; empty: it was never ready
+  Exit exit;                             ///< how it ended
 };
 
 /// The deaths of a service so far.
@@ -21,34 +21,40 @@ struct DeathRecord {
   std::vector<std::int64_t> recent_ns;  ///< deaths within the storm window, oldest first
 };
 
-/// What follows from a death.
+/// The reaction to a death.
 struct Decision {
+  /// What to do with the service.
   enum class Action {
-    restart,  ///< after wait_ns
-    degrade,  ///< it dies too often: after wait_ns, while the rest of the rig goes on
-    fail,     ///< exit 100: a person must change something
-    retire    ///< exit 0 that nobody asked for: its work is done
+    restart,  ///< restart it after wait_ns
+    degrade,  ///< it dies too often: restart it after wait_ns, and report it as degraded
+    fail,     ///< exit 100: do not restart it, a person must change something
+    retire    ///< exit 0 without a request to stop: its work is done
   };
-  Action action = Action::restart;
-  std::int64_t wait_ns = 0;
-  DeathRecord record;  ///< to hand in at the next death
+  Action action = Action::restart;  ///< what to do
+  std::int64_t wait_ns = 0;         ///< time before the restart
+  DeathRecord record;               ///< the argument of decide() for the next death
 };
 
-inline constexpr std::int64_t kFirstWait_ns = 50'000'000;
-inline constexpr std::int64_t kLongestWait_ns = 5'000'000'000;
-inline constexpr double kMostJitter = 0.25;  ///< of a wait
+inline constexpr std::int64_t kFirstWait_ns = 50'000'000;       ///< wait before the second restart
+inline constexpr std::int64_t kLongestWait_ns = 5'000'000'000;  ///< limit of the doubled waits
+inline constexpr double kMostJitter = 0.25;                     ///< as a fraction of the wait
+/// A service that was ready for this long is healthy: its streak of deaths begins anew.
 inline constexpr std::int64_t kHealthyAfter_ns = 30'000'000'000;
+/// A service that dies kStormDeaths times within kStormWindow_ns is degraded.
+/// @{
 inline constexpr std::int64_t kStormWindow_ns = 60'000'000'000;
 inline constexpr std::size_t kStormDeaths = 10;
+/// @}
 
-/// The first restart comes at once, the next after 50 ms, 100 ms, ... up to 5 s. After 30 s of
-/// health the next restart is a first one again. Ten deaths within a minute are a storm, however
-/// they are spaced: only time clears that count, not health. `jitter` (0..1) makes a wait up to a
-/// quarter longer, so that services that died together do not come back together.
+/// Decides what to do after a death. The first restart is immediate, the next comes after 50 ms,
+/// 100 ms, ... up to 5 s. After 30 s of health, the waits begin anew. Ten deaths within a minute
+/// degrade the service, however they are spaced; health does not clear that count, only time does.
+/// `jitter` (0..1) makes a wait up to a quarter longer, so that services that died together are not
+/// restarted together.
 Decision decide(DeathRecord record, const Death& death, double jitter = 0);
 
-/// A jitter for decide() out of the last digits of the time, which differ even between services
-/// that die together.
+/// A jitter for decide() from the last digits of the time, which differ even between services that
+/// die together.
 double jitter_at(std::int64_t now_ns);
 
 }  // namespace handcast::supervisor

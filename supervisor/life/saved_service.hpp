@@ -12,21 +12,21 @@ namespace handcast::supervisor {
 
 /// A service as its supervisor saves it for a successor.
 struct SavedService {
-  std::string name;
-  pid_t pid = 0;                    ///< of the process that works (not of a spare); 0: none
-  std::uint64_t started_ticks = 0;  ///< of that process (start_ticks_of)
-  State state = State::starting;
-  std::string swapped;      ///< the back end that `handcast swap` gave it; "" for the rig's own
-  std::string fingerprint;  ///< of the settings it runs with (fingerprint_of)
-  int restarts = 0;
+  std::string name;                 ///< name of the service
+  pid_t pid = 0;                    ///< pid of the worker; 0: none
+  std::uint64_t started_ticks = 0;  ///< start time of the worker (start_ticks_of())
+  State state = State::starting;    ///< state of the service
+  std::string swapped;              ///< the back end set by `handcast swap`; "": that of the rig
+  std::string fingerprint;          ///< of the settings that the worker was started with
+  int restarts = 0;                 ///< number of restarts
 };
 
-/// A living service of a supervisor that died, identified beyond doubt: the pidfd was opened before
-/// the start time was compared.
+/// A living service of a supervisor that died. The pidfd was opened before the start time was
+/// compared, so it refers to the process that was saved.
 struct AdoptedProcess {
-  SavedService saved;
-  UniqueFd pidfd;
-  UniqueFd log;  ///< the reading end of its output, opened again; does not block
+  SavedService saved;  ///< the saved state
+  UniqueFd pidfd;      ///< readable when the process has ended
+  UniqueFd log;        ///< the reading end of its output, opened again; non-blocking
 };
 
 }  // namespace handcast::supervisor

@@ -14,13 +14,13 @@
 namespace handcast::supervisor {
 namespace {
 
-/// The ring of this stream, to look at; empty if there is none.
+/// A read-only view of the ring of this stream; empty if there is none.
 std::optional<ipc::RingView> look_at(std::string_view stream, const daemon::Rings& rings) {
   const auto fd = daemon::find_ring(rings, stream);
   if (!fd) return std::nullopt;
   auto view = ipc::RingView::open(UniqueFd(fcntl(*fd, F_DUPFD_CLOEXEC, 3)));
   if (view) return std::move(*view);
-  log::warning("{} cannot be watched: {}", stream, view.error().what);
+  log::warning("the ring {} cannot be observed: {}", stream, view.error().what);
   return std::nullopt;
 }
 
@@ -48,11 +48,11 @@ void Service::handle(const Event& event, std::int64_t now) {
   auto [state, actions] = next(std::move(state_), event, now, rules());
   state_ = std::move(state);
   if (!actions.empty()) ++revision_;
-  MaybeEvent follows;
+  MaybeEvent next_event;
   for (const auto& action : actions)
-    if (auto comes = std::visit([this](const auto& each) { return carry_out(each); }, action))
-      follows = std::move(comes);
-  if (follows) handle(*follows);
+    if (auto caused = std::visit([this](const auto& each) { return carry_out(each); }, action))
+      next_event = std::move(caused);
+  if (next_event) handle(*next_event);
 }
 
 Service::MaybeEvent Service::carry_out(const action::Spawn&) {
@@ -127,12 +127,12 @@ Result<Child> Service::spawn(bool spare) const {
 }
 
 void Service::watch_worker(Child child) {
-  const auto hear = [this](daemon::Words words) {
+  const auto on_words = [this](daemon::Words words) {
     if (words.ready) handle(event::SaidReady{has_published()});
   };
   worker_ = std::make_unique<WatchedChild>(
       std::move(child), log_, loop_,
-      WatchedChild::Listener{.on_words = hear,
+      WatchedChild::Listener{.on_words = on_words,
                              .on_end = [this](Exit exit) { worker_ended(exit); }});
 }
 
@@ -152,7 +152,7 @@ bool Service::has_published() const { return stream_ && stream_->epoch() != epoc
 
 void Service::inherit(const SavedService& saved) {
   if (!saved.swapped.empty()) spec_.backend = backend_override_ = saved.swapped;
-  spec_.fingerprint = saved.fingerprint;  // what it runs with, whatever the file says by now
+  spec_.fingerprint = saved.fingerprint;  // of the settings in use; the file may have changed
   handle(event::Inherited{saved.state, saved.restarts});
 }
 
@@ -178,7 +178,7 @@ void Service::tick(std::int64_t now, const Look& look) {
   if (worker_) worker_->check_end();
   handle(event::Tick{.published = has_published(),
                      .needs_are_ready = look.needs_are_ready,
-                     .heard_ns = look.heard_ns},
+                     .last_sign_ns = look.last_sign_ns},
          now);
 }
 

@@ -18,85 +18,100 @@
 
 namespace handcast::supervisor {
 
-/// What every service of a rig is started with.
+/// The parameters with which all services of a rig are started.
 struct Launch {
-  std::filesystem::path program_folder;
-  std::filesystem::path rig_file;
-  daemon::Rings rings;
-  std::int64_t epoch_ns = 0;
+  std::filesystem::path program_folder;  ///< folder of the daemons' executables
+  std::filesystem::path rig_file;        ///< --config of the daemons: the applied rig file
+  daemon::Rings rings;                   ///< the rings that they inherit
+  std::int64_t epoch_ns = 0;             ///< HANDCAST_EPOCH_NS
+  /// Time limits: see Rules.
+  /// @{
   double ready_s = 10, stop_s = 3, silent_s = 2;
-  ExitReports* reports = nullptr;  ///< for processes of an earlier supervisor
+  /// @}
+  ExitReports* reports = nullptr;  ///< the ends of processes of an earlier supervisor
 };
 
-/// One service over its many lives: its worker and its spare on the event loop. Ready is a service
-/// that said so and, if it publishes a stream, has published its first message.
+/// One service: its worker and its spare on the event loop, over all restarts. A service is ready
+/// when its worker has reported so and, if it publishes a stream, has published its first message.
 ///
-/// Nothing is decided here. What happens becomes an event, next() (next.hpp) says what follows, and
-/// the actions are carried out. One thread, that of the event loop.
+/// This class makes no decisions: it passes events to next() (next.hpp) and carries out the
+/// resulting actions. One thread, that of the event loop.
 class Service {
  public:
+  /// Called when the service becomes ready, stops or fails.
   using OnNotice = std::function<void(Service&, Notice)>;
 
   /// `launch` and `loop` must outlive the object.
   Service(ServiceSpec spec, const Launch& launch, EventLoop& loop, OnNotice on_notice);
   Service(const Service&) = delete;
 
-  /// It will be started when its needs are met: State::starting until then.
+  /// Marks the service to be started when its needs are met (State::starting). The rig calls
+  /// start().
   void hold() { handle(event::Hold{}); }
+  /// Starts the worker. Does nothing if there is one.
   void start() { handle(event::Start{}); }
-  /// Takes what an earlier supervisor knew of it: one that had failed or stopped stays so. Call it
-  /// before `adopt` and `start`.
+  /// Restores the state saved by an earlier supervisor: a service that had failed or stopped stays
+  /// failed or stopped. Call it before adopt() and start().
   void inherit(const SavedService& saved);
-  /// Goes on with a ready process that an earlier supervisor started.
+  /// Takes over a ready process that an earlier supervisor started.
   void adopt(AdoptedProcess process);
-  /// Asks it to stop, and kills it after stop_s. Notice::stopped follows, at once if nothing runs.
+  /// Asks the service to stop, and kills it after stop_s. Notice::stopped follows, immediately if
+  /// no process runs.
   void stop() { handle(event::Stop{}); }
-  /// Kills what was asked to stop.
+  /// Kills the processes that were asked to stop.
   void hurry() { handle(event::Hurry{}); }
-  /// Stops it and starts it again.
+  /// Stops the service and starts it again.
   void restart() { handle(event::Restart{}); }
-  /// Restarts it with another back end. On trial, a death before it is ready is final:
-  /// Notice::failed.
+  /// Restarts the service with another back end. If `on_trial` is set, it is not restarted when it
+  /// dies before it is ready: Notice::failed follows.
   void use_backend(std::string backend, bool on_trial);
-  /// Takes new settings, with which it will be started the next time. A back end other than the
-  /// swapped one is the rig file's.
+  /// Replaces the settings, which apply from the next start on. If `spec` has another back end than
+  /// use_backend() set, that of `spec` applies.
   void update(ServiceSpec spec);
 
-  /// What the rig sees of a service.
+  /// The rig's view of a service at one moment.
   struct Look {
-    bool needs_are_ready = true;             ///< the services that it needs
-    std::optional<std::int64_t> heard_ns{};  ///< its last sign of life; empty: there was none
+    bool needs_are_ready = true;  ///< the services that it needs are ready
+    /// The time of its last frame or heartbeat; empty if there was none.
+    std::optional<std::int64_t> last_sign_ns{};
   };
-  /// Acts on what is due. Call it a few dozen times a second.
+  /// Checks all time limits and waits. Call it a few dozen times per second.
   void tick(std::int64_t now_ns, const Look& look);
-  /// The supervisor, or the machine, stood still for this long: nobody is late for it.
+  /// Extends all time limits by the time for which the supervisor, or the machine, stood still.
   void forgive(std::int64_t span_ns) { handle(event::StoodStill{span_ns}); }
 
-  /// For the supervisor's successor.
+  /// The state for a successor of the supervisor.
   SavedService saved() const;
-  /// Counts up whenever saved() may have changed.
+  /// Incremented whenever saved() may have changed.
   std::uint64_t revision() const { return revision_; }
 
+  /// The settings. Their back end is the one set by use_backend(), if any.
   const ServiceSpec& spec() const { return spec_; }
+  /// The state of the worker.
   State state() const { return shown(state_.worker); }
-  /// Of the worker; 0: there is none.
+  /// The pid of the worker; 0 if there is none.
   pid_t pid() const { return worker_ ? worker_->pid() : 0; }
-  /// Of a spare that can be promoted; 0: there is none.
+  /// The pid of a spare that can be promoted; 0 if there is none.
   pid_t spare_pid() const;
+  /// True if there is a process, worker or spare.
   bool is_running() const { return worker_ || spare_; }
-  /// Whether it waits to be begun.
+  /// True between hold() and start().
   bool is_held() const { return std::holds_alternative<worker::Held>(state_.worker); }
+  /// Time since the worker was started; 0 if there is none.
   double uptime_s(std::int64_t now_ns) const;
-  /// When it was begun; empty: it never was.
+  /// When the service was first started; empty if it never was.
   std::optional<std::int64_t> first_start_ns() const { return state_.past.first_start_ns; }
+  /// Number of restarts, those under earlier supervisors included.
   int restarts() const { return state_.past.restarts; }
-  /// Whether it has been ready in this or an earlier life.
+  /// True if this or an earlier worker has been ready.
   bool was_ready() const { return state_.past.was_ready; }
+  /// How the last worker ended; empty if none has.
   const std::optional<Exit>& last_exit() const { return state_.past.last_exit; }
+  /// The newest output of the workers.
   const LogTail& log() const { return log_; }
-  /// Within the minute before the last.
+  /// Number of deaths in the minute before the last death, which is included.
   std::size_t recent_deaths() const { return state_.past.deaths.recent_ns.size(); }
-  /// Until it is started again; empty if that is not due.
+  /// Time until the next restart; empty if none is due.
   std::optional<double> retry_s(std::int64_t now_ns) const;
 
  private:
@@ -106,7 +121,7 @@ class Service {
   void handle(const Event& event);
   void handle(const Event& event, std::int64_t now_ns);
 
-  // Each carries an action out. What comes of it at once is a new event.
+  // Each carries out an action and returns the event that it causes at once, if any.
   MaybeEvent carry_out(const action::Spawn&);
   MaybeEvent carry_out(const action::Promote&);
   MaybeEvent carry_out(const action::AskToStop&);
@@ -128,16 +143,16 @@ class Service {
   const Launch& launch_;
   EventLoop& loop_;
   OnNotice on_notice_;
-  std::string backend_override_;  ///< `swap` put it in the place of the rig file's; "" for none
+  std::string backend_override_;  ///< set by use_backend(); "": the back end of the rig file
 
   ServiceState state_;
   std::uint64_t revision_ = 0;
 
   LogTail log_, spare_log_;
   std::unique_ptr<WatchedChild> worker_, spare_;
-  std::unique_ptr<WatchedChild> dead_;   ///< a worker that has ended, until its last words are read
-  std::optional<ipc::RingView> stream_;  ///< of what it publishes
-  std::uint64_t epoch_before_ = 0;       ///< of the stream, before this worker could publish
+  std::unique_ptr<WatchedChild> dead_;   ///< a worker that has ended, until its output is read
+  std::optional<ipc::RingView> stream_;  ///< the ring that it publishes
+  std::uint64_t epoch_before_ = 0;       ///< epoch of the ring before this worker could publish
 };
 
 }  // namespace handcast::supervisor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens to a service, and what is to be done about it.
+// The events of a service and the actions that follow from them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,91 +11,115 @@
 
 namespace handcast::supervisor {
 
+/// What happens to a service: the argument of next().
 namespace event {
 
-// Requests of the rig.
+// Requests of the rig, which Service documents by the functions of the same names.
 
-struct Hold {};   ///< it will be begun when its needs are met
-struct Start {};  ///< it is begun
+/// Service::hold().
+struct Hold {};
+/// Service::start().
+struct Start {};
+/// Service::stop().
 struct Stop {};
-struct Hurry {};  ///< what was asked to stop is killed now
-/// Stopped and started again.
+/// Service::hurry().
+struct Hurry {};
+/// Service::restart() and Service::use_backend().
 struct Restart {
-  bool on_trial = false;  ///< with a back end that may not work
+  bool on_trial = false;  ///< do not restart it if it dies before it is ready
 };
+/// Service::update(): the rules may have changed.
 struct SettingsChanged {};
-/// What an earlier supervisor remembered of it.
+/// Service::inherit(): the state saved by an earlier supervisor.
 struct Inherited {
-  State state = State::starting;
-  int restarts = 0;
+  State state = State::starting;  ///< SavedService::state
+  int restarts = 0;               ///< SavedService::restarts
 };
-/// A ready process of an earlier supervisor goes on.
+/// Service::adopt(): a ready process of an earlier supervisor.
 struct Adopted {
-  std::int64_t started_ns = 0;
+  std::int64_t started_ns = 0;  ///< when the process was started
 };
-/// The supervisor, or the machine, stood still for this long: nobody is late for it.
+/// Service::forgive(): the supervisor, or the machine, stood still.
 struct StoodStill {
-  std::int64_t span_ns = 0;
+  std::int64_t span_ns = 0;  ///< for how long
 };
 
-// What the worker and the spare do.
+// Events of the processes.
 
+/// The worker reported that it is ready.
 struct SaidReady {
-  bool published = false;  ///< its first message is there already
+  bool published = false;  ///< it has published its first message already
 };
+/// The worker ended.
 struct Ended {
-  Exit exit;
+  Exit exit;  ///< how it ended
 };
+/// The worker could not be started.
 struct NotStarted {
-  Exit exit;  ///< as if a process had ended so
+  Exit exit;  ///< the exit code of the error
 };
+/// The spare reported that it is prepared; it repeats this as its heartbeat.
 struct SpareSpoke {};
+/// The spare ended.
 struct SpareEnded {
-  Exit exit;
+  Exit exit;  ///< how it ended
 };
+/// The spare could not be started.
 struct SpareNotStarted {
-  std::string why;
+  std::string why;  ///< the sentence of the error
 };
-
-/// Time passes: a few dozen times a second.
+/// Time has passed; sent a few dozen times per second.
 struct Tick {
-  bool published = false;                  ///< since the worker was started
-  bool needs_are_ready = true;             ///< the services that it needs
-  std::optional<std::int64_t> heard_ns{};  ///< its last sign of life; empty: there was none
+  bool published = false;       ///< the worker has published a message since its start
+  bool needs_are_ready = true;  ///< the services that it needs are ready
+  /// The time of the worker's last frame or heartbeat; empty if there was none.
+  std::optional<std::int64_t> last_sign_ns{};
 };
 
 }  // namespace event
 
+/// Any event.
 using Event =
     std::variant<event::Hold, event::Start, event::Stop, event::Hurry, event::Restart,
                  event::SettingsChanged, event::Inherited, event::Adopted, event::StoodStill,
                  event::SaidReady, event::Ended, event::NotStarted, event::SpareSpoke,
                  event::SpareEnded, event::SpareNotStarted, event::Tick>;
 
-/// What a service tells its rig.
+/// A change of a service that the rig must know. After `failed`, it is not restarted.
 enum class Notice { ready, stopped, failed };
 
+/// What to do after an event: the results of next().
 namespace action {
 
-struct Spawn {};      ///< a worker
-struct Promote {};    ///< the spare becomes the worker
-struct AskToStop {};  ///< the worker
-struct Kill {};       ///< the worker
+/// Start a worker.
+struct Spawn {};
+/// Make the spare the worker.
+struct Promote {};
+/// Send SIGTERM to the worker.
+struct AskToStop {};
+/// Send SIGKILL to the worker.
+struct Kill {};
+/// Start a spare.
 struct SpawnSpare {};
+/// Send SIGTERM to the spare.
 struct AskSpareToStop {};
+/// Send SIGKILL to the spare.
 struct KillSpare {};
-/// Reads what the worker that ended has written: it comes before what is said of its end.
+/// Read the rest of the output of the worker that ended, so that it is printed before the message
+/// about its end.
 struct ReadLastWords {};
+/// Log a warning.
 struct Warn {
-  std::string sentence;
+  std::string sentence;  ///< the message
 };
-/// Always the last action: the rig may do anything with the service.
+/// Notify the rig. Always the last action, because the rig may change the service in return.
 struct Tell {
-  Notice notice = Notice::ready;
+  Notice notice = Notice::ready;  ///< the change
 };
 
 }  // namespace action
 
+/// Any action.
 using Action = std::variant<action::Spawn, action::Promote, action::AskToStop, action::Kill,
                             action::SpawnSpare, action::AskSpareToStop, action::KillSpare,
                             action::ReadLastWords, action::Warn, action::Tell>;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that the supervisor remembers about one service, as a value. All times are of
-// now_ns().
+// The state of one service, as a value. All times are CLOCK_MONOTONIC.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -12,138 +11,130 @@
 
 namespace handcast::supervisor {
 
-/// How a process came to be the worker.
+/// How a process became the worker: it was started, it was the spare, or an earlier supervisor had
+/// started it.
 enum class Origin { spawned, promoted, adopted };
 
-/// What holds for a worker as long as its process lives.
+/// The constant properties of a worker's process.
 struct Life {
-  std::int64_t started_ns = 0;
-  Origin origin = Origin::spawned;
-  bool on_trial = false;  ///< its back end has never been ready: if it dies now, it has failed
+  std::int64_t started_ns = 0;      ///< when it became the worker
+  Origin origin = Origin::spawned;  ///< how it became the worker
+  bool on_trial = false;  ///< its back end is new: if it dies before it is ready, it has failed
 };
 
 /// The states of the worker, the process that does the service's work.
 namespace worker {
 
-/// No process, and none is due: never begun, stopped as asked, or its work is done.
+/// No process: never started, stopped on request, or its work is done.
 struct Stopped {};
-
-/// No process: a person must change something first.
+/// No process, and no restart until a person changes something.
 struct Failed {};
-
-/// No process: it is begun when its needs are met. The rig decides when that is.
+/// No process: the rig will start it when its needs are met.
 struct Held {};
-
-/// No process: it died and is started again in a while.
+/// No process: it died and will be restarted.
 struct Waiting {
-  std::int64_t due_ns = 0;
-  bool degraded = false;  ///< it died too often
+  std::int64_t due_ns = 0;  ///< the time of the restart
+  bool degraded = false;    ///< it died too often
 };
-
-/// The process prepares itself.
+/// The process was started and has not reported ready.
 struct Starting {
-  Life life;
-  std::int64_t late_ns = 0;  ///< from then on it is too late to be ready
+  Life life;                 ///< its process
+  std::int64_t late_ns = 0;  ///< it is killed if it is not ready by then
 };
-
-/// The process said that it is ready and has not published anything yet.
+/// The process reported ready and has not published a message yet.
 struct AwaitingMessage {
-  Life life;
-  std::int64_t looked_ns = 0;  ///< when its stream was last looked at
-  std::int64_t dry_ns = 0;     ///< how long it published nothing although its needs were ready
+  Life life;                   ///< its process
+  std::int64_t looked_ns = 0;  ///< when its stream was last checked
+  std::int64_t dry_ns = 0;     ///< how long it published nothing while its needs were ready
 };
-
 /// The process works.
 struct Ready {
-  Life life;
-  std::int64_t ready_ns = 0;
-  std::int64_t quiet_from_ns = 0;  ///< silence counts from here at the earliest
+  Life life;                       ///< its process
+  std::int64_t ready_ns = 0;       ///< when it became ready
+  std::int64_t quiet_from_ns = 0;  ///< silence before this time does not count
 };
-
-/// The process was killed because it was late or silent. Its end is not known yet.
+/// The process was killed because it was late or silent, and has not ended yet.
 struct Killed {
-  Life life;
-  std::optional<std::int64_t> ready_ns{};  ///< empty: it was never ready
+  Life life;                               ///< its process
+  std::optional<std::int64_t> ready_ns{};  ///< when it became ready; empty: it never was
 };
-
 /// The process was asked to stop.
 struct Stopping {
+  /// What follows: nothing, or another start.
   enum class Then { stay, start, start_on_trial };
-
-  Life life;
-  std::optional<std::int64_t> kill_ns{};  ///< empty: it was killed
-  Then then = Then::stay;
+  Life life;                              ///< its process
+  std::optional<std::int64_t> kill_ns{};  ///< when it is killed; empty: it has been
+  Then then = Then::stay;                 ///< what follows
 };
-
-/// The process has stopped as asked; its spare has not.
+/// The process has stopped on request; its spare has not ended yet.
 struct AwaitingSpare {};
 
 }  // namespace worker
 
+/// The state of the worker.
 using Worker = std::variant<worker::Stopped, worker::Failed, worker::Held, worker::Waiting,
                             worker::Starting, worker::AwaitingMessage, worker::Ready,
                             worker::Killed, worker::Stopping, worker::AwaitingSpare>;
 
-/// The states of the spare, a second process that has prepared everything and waits for its turn.
-/// Its deaths are its own: they never count against the service.
+/// The states of the spare, a second process that has prepared itself and waits for its turn. Its
+/// deaths do not count as deaths of the service.
 namespace spare {
 
 /// No process, and none is wanted.
 struct None {};
-
-/// No process: one is started in a while.
+/// No process: one will be started.
 struct Due {
-  std::int64_t start_ns = 0;
+  std::int64_t start_ns = 0;  ///< the time of the start
 };
-
-/// The process prepares itself.
+/// The process was started and is not prepared yet.
 struct Preparing {
-  std::int64_t late_ns = 0;  ///< from then on it is too late to be prepared
+  std::int64_t late_ns = 0;  ///< it is killed if it is not prepared by then
 };
-
 /// The process can be promoted.
 struct Prepared {
-  std::int64_t prepared_ns = 0;
-  std::int64_t sign_ns = 0;  ///< its last sign of life
+  std::int64_t prepared_ns = 0;  ///< when it became prepared
+  std::int64_t sign_ns = 0;      ///< its last heartbeat
 };
-
-/// The process was killed because it was late or silent. Its end is not known yet.
+/// The process was killed because it was late or silent, and has not ended yet.
 struct Killed {
-  std::optional<std::int64_t> prepared_ns{};  ///< empty: it was never prepared
+  std::optional<std::int64_t> prepared_ns{};  ///< when it became prepared; empty: it never was
 };
-
-/// The process was asked to end.
+/// The process was asked to stop.
 struct Leaving {
-  std::optional<std::int64_t> kill_ns{};   ///< empty: it was killed
-  std::optional<std::int64_t> start_ns{};  ///< when the next one is due; empty: none is wanted
+  std::optional<std::int64_t> kill_ns{};   ///< when it is killed; empty: it has been
+  std::optional<std::int64_t> start_ns{};  ///< when to start the next one; empty: none is wanted
 };
 
 }  // namespace spare
 
+/// The state of the spare.
 using Spare = std::variant<spare::None, spare::Due, spare::Preparing, spare::Prepared,
                            spare::Killed, spare::Leaving>;
 
-/// What outlives a process.
+/// The history of a service, over all its processes.
 struct Past {
+  /// The deaths of its workers and of its spares.
+  /// @{
   DeathRecord deaths, spare_deaths;
-  std::optional<Exit> last_exit{};               ///< of the worker
-  std::optional<std::int64_t> first_start_ns{};  ///< empty: it was never begun
-  int restarts = 0;
-  bool was_ready = false;  ///< in this or an earlier life
+  /// @}
+  std::optional<Exit> last_exit{};               ///< how the last worker ended
+  std::optional<std::int64_t> first_start_ns{};  ///< when it was first started; empty: never
+  int restarts = 0;                              ///< number of restarts
+  bool was_ready = false;                        ///< a worker has been ready
 };
 
-/// One service. next() says what becomes of it (next.hpp).
+/// The state of one service. next() computes the next one (next.hpp).
 struct ServiceState {
-  Worker worker;
-  Spare spare;
-  Past past;
+  Worker worker;  ///< the process that does the work
+  Spare spare;    ///< the process that can replace it
+  Past past;      ///< their history
 };
 
-/// The worker's life; null if it has no process.
+/// The worker's process; null if it has none.
 const Life* life_of(const Worker& worker);
-/// Whether the spare has a process.
+/// True if the spare has a process.
 bool is_running(const Spare& spare);
-/// The state as it is shown to a person.
+/// The state as `handcast status` shows it.
 State shown(const Worker& worker);
 
 }  // namespace handcast::supervisor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For next.cpp and next_spare.cpp alone.
+// Only for next.cpp and next_spare.cpp.
 #pragma once
 #include <utility>
 
@@ -7,17 +7,22 @@
 
 namespace handcast::supervisor {
 
-/// One step of a service: what it was becomes what it is.
+/// The implementation of next(): changes a copy of a service's state by one event and collects the
+/// actions.
 class Transition {
  public:
+  /// Stores the arguments of next(). `rules` must outlive the object.
   Transition(ServiceState state, std::int64_t now_ns, const Rules& rules)
       : worker_(state.worker),
         spare_(state.spare),
         past_(std::move(state.past)),
         now_(now_ns),
         rules_(rules) {}
+  /// The result.
   Step take() && { return {{worker_, spare_, std::move(past_)}, std::move(actions_)}; }
 
+  /// Handles an event.
+  /// @{
   void operator()(const event::Hold&);
   void operator()(const event::Start&);
   void operator()(const event::Stop&);
@@ -34,6 +39,7 @@ class Transition {
   void operator()(const event::SpareEnded&);
   void operator()(const event::SpareNotStarted&);
   void operator()(const event::Tick&);
+  /// @}
 
  private:
   void act(Action action) { actions_.push_back(std::move(action)); }
@@ -52,7 +58,7 @@ class Transition {
   void tick(const worker::AwaitingMessage& awaiting, const event::Tick& event);
   void tick(const worker::Ready& ready, const event::Tick& event);
   void tick(const worker::Stopping& stopping, const event::Tick& event);
-  void tick(const auto& /*other*/, const event::Tick&) {}  // time changes nothing
+  void tick(const auto& /*other*/, const event::Tick&) {}  // these states have no time limit
 
   // The spare (next_spare.cpp).
   bool spare_is_prepared() const { return std::holds_alternative<spare::Prepared>(spare_); }

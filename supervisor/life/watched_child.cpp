@@ -12,7 +12,7 @@ WatchedChild::WatchedChild(Child child, LogTail& log, EventLoop& loop, Listener 
   };
   watch(child_.pidfd(), [this] { child_ended(); });
   watch(child_.log_fd(), [this] { read_log(); });
-  watch(child_.ready_fd(), [this] { hear(); });
+  watch(child_.ready_fd(), [this] { read_words(); });
 }
 
 WatchedChild::~WatchedChild() { forget(); }
@@ -31,7 +31,7 @@ void WatchedChild::read_log(int most_reads) {
   if (!log_.read_from(child_.log_fd(), print_line, most_reads)) loop_.forget(child_.log_fd());
 }
 
-void WatchedChild::hear() {
+void WatchedChild::read_words() {
   const auto words = daemon::read_words(child_.ready_fd());
   if (words.closed || words.ready) loop_.forget(child_.ready_fd());
   const auto on_words = listener_.on_words;  // a copy: it may destroy this object
@@ -42,7 +42,7 @@ void WatchedChild::child_ended() {
   const auto exit = child_.try_reap();
   if (!exit) {
     if (child_.is_adopted() && child_.has_ended())
-      loop_.forget(child_.pidfd());  // check_end() asks again: how it ended will be reported
+      loop_.forget(child_.pidfd());  // its exit status has not been reported yet: see check_end()
     return;
   }
   const auto on_end = listener_.on_end;

@@ -9,33 +9,36 @@
 
 namespace handcast::supervisor {
 
-/// A child on the event loop. What it writes goes to the log and to the terminal; what it says and
-/// how it ends is told. Destroying the object kills the child, as Child does.
+/// A child on the event loop. Its output goes to the log and to the terminal; its words and its end
+/// are reported to a listener. Destroying the object kills the child.
 class WatchedChild {
  public:
+  /// The callbacks, called by the event loop.
   struct Listener {
-    std::function<void(daemon::Words)> on_words;
-    std::function<void(Exit)> on_end;  ///< may destroy the object
+    std::function<void(daemon::Words)> on_words;  ///< the child wrote to its ready descriptor
+    std::function<void(Exit)> on_end;             ///< the child ended; may destroy the object
   };
   /// `log` and `loop` must outlive the object.
   WatchedChild(Child child, LogTail& log, EventLoop& loop, Listener listener);
   ~WatchedChild();
   WatchedChild(const WatchedChild&) = delete;
 
+  /// Child::pid().
   pid_t pid() const { return child_.pid(); }
+  /// Child::signal().
   void signal(int number) { child_.signal(number); }
-  /// Gives a spare its turn and hands it over; the object watches nothing any more.
+  /// Gives a spare its turn and returns it. Afterwards the object watches no child.
   Child promote();
-  /// Tells the end of an adopted process whose exit status was reported late.
+  /// Reports the end of an adopted process whose exit status arrived late.
   void check_end() {
     if (child_.is_adopted()) child_ended();
   }
-  /// Reads the rest of what a child that has ended wrote.
+  /// Reads the rest of the output of a child that has ended.
   void read_last_words() { read_log(LogTail::kAllReads); }
 
  private:
   void read_log(int most_reads = LogTail::kReadsAtOnce);
-  void hear();
+  void read_words();
   void child_ended();
   void forget();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// handcast-exporter: serves a rig's figures to Prometheus. It is a service of the rig and gets its
-// figures as `handcast top` does.
+// handcast-exporter: serves the metrics of a rig to Prometheus. It is a service of the rig and
+// observes it in the same way as `handcast top`.
 #include <fmt/format.h>
 
 #include <optional>
@@ -26,18 +26,18 @@ using Heart = std::optional<ipc::Writer<msg::StageMarks>>;
 
 constexpr std::string_view kName = "exporter";
 constexpr std::string_view kHelp =
-    "handcast-exporter — Serves a rig's figures to Prometheus on this machine.\n\n"
+    "handcast-exporter — Serves the metrics of a rig to Prometheus on this machine.\n\n"
     "usage: handcast-exporter --config RIG.toml [--set path=value]...\n\n"
     "`handcast up RIG.toml` starts it if supervisor.metrics_port is not 0.\n";
 
 daemon::ServiceDescription describe() {
   return {.name = std::string(kName),
           .summary = "Serves a rig's figures to Prometheus on this machine.",
-          .paced_by = "whoever asks",
+          .paced_by = "requests",
           .settings = {"supervisor.metrics_port"}};
 }
 
-/// The ring that shows the supervisor that this process lives. Empty if there is no supervisor.
+/// The ring for heartbeats. Empty if there is no supervisor.
 Heart open_heart(const daemon::Supervision& supervision) {
   auto fd = supervision.ring(daemon::marks_stream_of(kName));
   if (!fd) return std::nullopt;
@@ -45,7 +45,7 @@ Heart open_heart(const daemon::Supervision& supervision) {
   if (!segment) return std::nullopt;
   auto heart = ipc::Writer<msg::StageMarks>::attach(std::move(*segment));
   if (!heart) {
-    log::warning("the supervisor will not see that this process lives: {}", heart.error().what);
+    log::warning("heartbeats cannot be published: {}", heart.error().what);
     return std::nullopt;
   }
   return std::move(*heart);
@@ -71,11 +71,12 @@ int serve(const Options& options) {
   const auto rig = config::load_rig(options.value("--config"), options.all("--set"));
   if (!rig) return give_up(rig.error());
   if (rig->supervisor.metrics_port == 0)
-    return give_up({Errc::bad_config, "supervisor.metrics_port is 0: there is nowhere to serve"});
+    return give_up(
+        {Errc::bad_config, "supervisor.metrics_port is 0; set it to the port for the metrics"});
   RigWatcher watcher(rig->name);
   supervision.await_turn();
   const auto server =
-      MetricsServer::listen(rig->supervisor.metrics_port, [&] { return watcher.look(); });
+      MetricsServer::listen(rig->supervisor.metrics_port, [&] { return watcher.observe(); });
   if (!server) return give_up(server.error());
   auto heart = open_heart(supervision);
   supervision.tell_ready();
@@ -93,7 +94,7 @@ int main(int argc, char** argv) {
       {argv + 1, argv + argc}, {.with_value = {"--config", "--set"},
                                 .flags = {"--help", "--version", "--backends", "--describe"}});
   if (!options) return supervisor::give_up(options.error());
-  if (options->has("--backends")) return kExitDone;  // it has none to choose from
+  if (options->has("--backends")) return kExitDone;  // it has no back ends
   if (options->has("--describe")) {
     fmt::print("{}", daemon::print_description(supervisor::describe()));
     return kExitDone;
@@ -102,6 +103,6 @@ int main(int argc, char** argv) {
   if (options->has("--version")) fmt::print("handcast-exporter {}\n", version());
   if (options->has("--help") || options->has("--version")) return kExitDone;
   if (!options->has("--config"))
-    return supervisor::give_up({Errc::bad_config, "--config FILE is needed: the rig"});
+    return supervisor::give_up({Errc::bad_config, "--config FILE, the rig file, is needed"});
   return supervisor::serve(*options);
 }

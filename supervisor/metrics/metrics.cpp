@@ -24,7 +24,7 @@ using prometheus::MetricFamily;
 using prometheus::MetricType;
 using Labels = std::vector<ClientMetric::Label>;
 
-/// One figure of many things.
+/// One metric with a value for each set of labels.
 struct Family {
   MetricFamily family;
 
@@ -45,7 +45,7 @@ struct Family {
   }
 };
 
-/// `value` gives the figure of one row, or nothing.
+/// Adds the value of each row to a family; `value` returns an empty optional for rows without one.
 template <class Row, class Label, class Value>
 MetricFamily over(const std::vector<Row>& rows, Family family, Label labels_of, Value value) {
   for (const auto& row : rows)
@@ -58,10 +58,10 @@ void append(std::vector<MetricFamily>& families, std::vector<MetricFamily> more)
 }
 
 std::vector<MetricFamily> families_of_rig(const TopModel& model) {
-  auto info = Family::gauge("handcast_rig_info", "The rig these figures are of; always 1.");
+  auto info = Family::gauge("handcast_rig_info", "Name of the rig; always 1.");
   auto up = Family::gauge("handcast_supervisor_up", "1 while the rig's supervisor answers.");
   auto uptime = Family::gauge("handcast_supervisor_uptime_seconds",
-                              "Since the rig's start, whichever supervisor it has by now.");
+                              "Time since the rig's start, also under earlier supervisors.");
   info.add({{"rig", model.rig}}, 1);
   up.add({}, model.missing.empty() ? 1 : 0);
   uptime.add({}, model.uptime_s);
@@ -70,7 +70,7 @@ std::vector<MetricFamily> families_of_rig(const TopModel& model) {
 
 MetricFamily states_of(const std::vector<ServiceRow>& services) {
   auto states =
-      Family::gauge("handcast_service_state", "1 for the state a service is in, 0 for all others.");
+      Family::gauge("handcast_service_state", "1 for the state of a service, 0 for all others.");
   for (const auto& service : services)
     for (const auto state : kStateNames)
       states.add({{"service", service.name}, {"state", std::string(state)}},
@@ -91,12 +91,11 @@ std::vector<MetricFamily> families_of(const std::vector<ServiceRow>& services) {
            [](const auto& service) { return service.state == "ready" ? 1.0 : 0.0; }),
       states_of(services),
       over(services,
-           Family::counter("handcast_service_restarts_total",
-                           "How often a service was started again."),
+           Family::counter("handcast_service_restarts_total", "Number of restarts of a service."),
            labels, [](const auto& service) { return service.restarts; }),
       over(services,
            Family::gauge("handcast_service_uptime_seconds",
-                         "Since the start of a service's process."),
+                         "Time since the start of a service's process."),
            labels, [](const auto& service) { return service.uptime_s; }),
       over(services,
            Family::counter("handcast_service_cpu_seconds_total",
@@ -128,23 +127,23 @@ std::vector<MetricFamily> families_of(const std::vector<RingRow>& rings) {
            labels, [](const auto& ring) { return ring.now.published; }),
       over(rings,
            Family::counter("handcast_ring_dropped_total",
-                           "Messages a writer had to drop: every slot was leased."),
+                           "Messages that a writer dropped because every slot was leased."),
            labels, [](const auto& ring) { return ring.now.dropped; }),
       over(rings,
            Family::gauge("handcast_ring_newest_age_seconds",
-                         "Since the newest message of a ring was published."),
+                         "Time since the newest message of a ring was published."),
            labels, [&](const auto& ring) { return seconds(ring.newest_age_ns); }),
       over(rings,
            Family::gauge("handcast_ring_latency_seconds",
-                         "From the origin of a ring's newest message to its publication."),
+                         "Time from the origin of a ring's newest message to its publication."),
            labels, [&](const auto& ring) { return seconds(ring.latency_ns); }),
       over(rings,
-           Family::gauge("handcast_ring_epoch", "Number of a ring's last writer: 1 was the first."),
+           Family::gauge("handcast_ring_epoch", "Number of a ring's last writer, from 1 on."),
            labels, [](const auto& ring) { return ring.now.epoch; }),
   };
 }
 
-/// A reader of one ring; a service may read a ring more than once, hence the row.
+/// A reader of one ring. Its labels include the row, because a service may have several readers.
 struct RingReader {
   Labels labels;
   const ReaderRow& row;
@@ -164,34 +163,33 @@ std::vector<MetricFamily> families_of_readers(const std::vector<RingRow>& rings)
   };
   return {
       over(readers,
-           Family::counter("handcast_reader_received_total", "Messages a reader has taken."),
+           Family::counter("handcast_reader_received_total", "Messages that a reader has read."),
            labels, [](const auto& reader) { return reader.row.now.received; }),
-      over(
-          readers,
-          Family::counter("handcast_reader_skipped_total", "Messages that passed a reader unread."),
-          labels, [](const auto& reader) { return reader.row.now.skipped; }),
+      over(readers,
+           Family::counter("handcast_reader_skipped_total", "Messages that a reader has skipped."),
+           labels, [](const auto& reader) { return reader.row.now.skipped; }),
       over(readers,
            Family::counter("handcast_reader_unusable_total",
-                           "Messages that made no sense to a reader."),
+                           "Messages that were invalid for a reader."),
            labels, [](const auto& reader) { return reader.row.now.unusable; }),
       over(readers,
            Family::gauge("handcast_reader_lag_messages",
-                         "Messages between a ring's newest and a reader's last."),
+                         "Messages between the newest of a ring and the last one of a reader."),
            labels, [](const auto& reader) { return reader.row.now.lag; }),
       over(readers,
            Family::gauge("handcast_reader_age_seconds",
-                         "Age of a reader's last message when it was taken."),
+                         "Age of a reader's last message when it was read."),
            labels, [](const auto& reader) { return ns_to_seconds(reader.row.now.age_ns); }),
       over(readers,
            Family::gauge("handcast_reader_lease_seconds",
-                         "Age of the oldest message a reader holds in place; 0: none."),
+                         "Age of a reader's oldest lease; 0: none."),
            labels, oldest_lease),
   };
 }
 
 MetricFamily stages_of(const nlohmann::json& status) {
   auto stages = Family::gauge("handcast_stage_seconds",
-                              "What a stage took in the last ten seconds, by quantile.");
+                              "Time of a stage in the last ten seconds, by quantile.");
   if (!status.contains("stage_us")) return stages.family;
   for (const auto& [stage, times] : status["stage_us"].items())
     for (const auto& [key, quantile] : {std::pair{"p50", "0.5"}, std::pair{"p99", "0.99"}})
@@ -202,8 +200,8 @@ MetricFamily stages_of(const nlohmann::json& status) {
 }
 
 MetricFamily rungs_of(const nlohmann::json& status) {
-  auto rungs = Family::counter("handcast_rung_hands_total",
-                               "Hands of drawn frames that were given each rung of the ladder.");
+  auto rungs =
+      Family::counter("handcast_rung_hands_total", "Hands in drawn frames, by rung of the ladder.");
   if (!status.contains("rungs")) return rungs.family;
   for (const auto& [rung, hands] : status["rungs"].items())
     if (hands.is_number()) rungs.add({{"rung", rung}}, hands.template get<double>());
@@ -222,7 +220,7 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   return families;
 }
 
-/// What the library asks at each scrape.
+/// The library calls it at each scrape.
 class Collector : public prometheus::Collectable {
  public:
   explicit Collector(std::function<RigLook()> look) : look_(std::move(look)) {}
@@ -255,8 +253,8 @@ Result<MetricsServer> MetricsServer::listen(int port, std::function<RigLook()> l
   return MetricsServer(std::move(parts));
 } catch (const std::exception&) {
   return fail(Errc::bad_config,
-              fmt::format("port {} of 127.0.0.1 cannot be listened at (is it taken?); set "
-                          "supervisor.metrics_port to another, or to 0",
+              fmt::format("port {} of 127.0.0.1 cannot be used (is it in use already?); set "
+                          "supervisor.metrics_port to another port, or to 0",
                           port));
 }
 

@@ -9,18 +9,19 @@
 
 namespace handcast::supervisor {
 
-/// A rig's figures as Prometheus reads them (text format 0.0.4). All are counts since a start or
-/// states of now: rates are Prometheus's.
+/// The metrics of a rig in Prometheus's text format 0.0.4. All are counters or present states;
+/// rates are computed by Prometheus.
 std::string metrics_text(const RigLook& look);
 
-/// Serves them at http://127.0.0.1:PORT/metrics, to this machine alone, as long as the object
-/// lives.
+/// Serves the metrics at http://127.0.0.1:PORT/metrics, to this machine only, during the lifetime
+/// of the object.
 class MetricsServer {
  public:
-  /// `look` is called for each scrape, from another thread, never twice at the same time.
-  /// Errors: bad_config (the port is taken, or not ours to take).
+  /// `look` is called for each scrape, from another thread, but never concurrently. Errors:
+  /// bad_config (the port is in use or not permitted).
   static Result<MetricsServer> listen(int port, std::function<RigLook()> look);
-  MetricsServer(MetricsServer&&) noexcept;
+  /// `other` serves nothing afterwards.
+  MetricsServer(MetricsServer&& other) noexcept;
   ~MetricsServer();
 
  private:

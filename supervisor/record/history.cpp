@@ -84,7 +84,7 @@ History::Block& History::block_with_room(std::size_t bytes, std::int64_t time_ns
   return block;
 }
 
-void History::note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed) {
+void History::add(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed) {
   FrameHead head{
       .service = index_of(service), .header = marks.header, .made_from = marks.made_from};
   auto& unreported = services_[head.service].missed;

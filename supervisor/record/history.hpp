@@ -39,13 +39,13 @@ class History {
   /// A history of the last `seconds`.
   explicit History(double seconds) : span_ns_(static_cast<std::int64_t>(seconds * 1e9)) {}
   /// Changes the length of the history.
-  void reach(double seconds) { span_ns_ = static_cast<std::int64_t>(seconds * 1e9); }
+  void set_span(double seconds) { span_ns_ = static_cast<std::int64_t>(seconds * 1e9); }
 
   /// Adds a service to the list of services before its first frame, so that it has a fixed place.
-  void expect(std::string_view service) { index_of(service); }
+  void add_service(std::string_view service) { index_of(service); }
   /// Adds a frame. Heartbeats (no marks) and invalid marks are left out. `missed`: see FrameRecord.
   /// Allocates memory only until the history has its full length.
-  void note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed);
+  void add(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed);
   /// The frames published since `since_ns` (CLOCK_MONOTONIC) as a sealed memory file for
   /// read_history(), which is sent over the control socket. Errors: unavailable (no memory or
   /// descriptor).

@@ -63,7 +63,7 @@ Histogram StageTimes::recent(std::int64_t now_ns) const {
   return sum;
 }
 
-void Ledger::note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed) {
+void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed) {
   if (marks.count == 0) return;
   frames_[std::string(service)].add(marks.header, missed);
   const auto count = std::min<std::size_t>(marks.count, marks.marks.size());

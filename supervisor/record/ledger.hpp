@@ -69,7 +69,7 @@ class Ledger {
  public:
   /// Adds a frame. A message without marks is a heartbeat and does not count as a frame. `missed`:
   /// see FrameCount::add().
-  void note(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed = 0);
+  void add(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed = 0);
 
   /// The frames of a service; zeros if it is unknown.
   const FrameCount& frames(std::string_view service) const;

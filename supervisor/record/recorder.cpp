@@ -20,7 +20,7 @@ Result<void> Recorder::follow(std::string service, int ring_fd) {
   if (!segment) return tl::make_unexpected(segment.error());
   auto marks = ipc::Reader<msg::StageMarks>::attach(std::move(*segment));
   if (!marks) return tl::make_unexpected(marks.error());
-  history_.expect(service);
+  history_.add_service(service);
   sources_.push_back({std::move(service), std::move(*marks)});
   return {};
 }
@@ -32,8 +32,8 @@ void Recorder::poll() {
       if (!marks) break;
       const auto skipped = source.marks.skipped();
       const auto missed = skipped - std::exchange(source.skipped, skipped);
-      ledger_.note(source.service, **marks, missed);
-      history_.note(source.service, **marks, missed);
+      ledger_.add(source.service, **marks, missed);
+      history_.add(source.service, **marks, missed);
       source.last_sign_ns = (*marks)->header.published_ns;
     }
   }

@@ -28,7 +28,7 @@ class Recorder {
   /// The frames of the last seconds.
   const History& history() const { return history_; }
   /// Changes the length of the history.
-  void remember(double history_s) { history_.reach(history_s); }
+  void set_history(double history_s) { history_.set_span(history_s); }
   /// Time since the last frame or heartbeat of a service; empty if there was none.
   std::optional<double> silence_ms(std::string_view service, std::int64_t now_ns) const;
 

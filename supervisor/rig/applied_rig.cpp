@@ -36,7 +36,7 @@ std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
     const auto rig =
         applied_file(name).and_then([](const auto& file) { return config::load_rig(file); });
     if (!rig || rig->name != name) continue;
-    log::info("rig '{}' goes on as it was applied; `handcast reload` reads {}", name,
+    log::info("rig '{}' continues with its applied settings; `handcast reload` reads {}", name,
               rig_file.string());
     return *rig;
   }

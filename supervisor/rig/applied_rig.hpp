@@ -9,16 +9,16 @@
 
 namespace handcast::supervisor {
 
-/// Writes the rig as it is applied, with all settings, to RIG.toml in the runtime folder. Services
-/// read that file whenever they are started; the person's own file may be half edited at that
-/// moment and counts only when it is reloaded. Returns the path. Errors: unavailable, bad_config
-/// (the folder).
+/// Writes the applied rig, with all settings, to RIG.toml in the runtime folder. Services read this
+/// file at each start: the user's own file, which may be half edited, is read only by `handcast up`
+/// and `handcast reload`. Returns the path. Errors: unavailable, bad_config (the folder).
 Result<std::filesystem::path> write_applied(const config::Rig& rig);
-/// The applied rig that the same command (file and --set) has started, if its services live without
-/// a supervisor: a successor goes on with it, whatever the file says by now.
+/// The applied rig of an earlier `handcast up` with the same file and the same --set, if its
+/// services live without a supervisor. A successor starts with it, even if the file has changed.
+/// Empty if there is none.
 std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
                                           const std::vector<std::string>& settings);
-/// Removes the file.
+/// Removes the file written by write_applied().
 void forget_applied(const std::string& rig);
 
 }  // namespace handcast::supervisor

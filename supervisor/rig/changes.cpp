@@ -25,7 +25,7 @@ void Changes::swap(Service& service, const std::string& word, ControlServer::Rep
   give_backend(service, *backend, true);
 }
 
-/// Restarts a service with another back end, and remembers with which settings that is.
+/// Restarts a service with another back end and updates its fingerprint.
 void Changes::give_backend(Service& service, const std::string& backend, bool on_trial) {
   auto spec = service.spec();
   spec.fingerprint =

@@ -8,31 +8,39 @@
 
 namespace handcast::supervisor {
 
-/// The restarts and swaps of single services that were asked for. Each is answered when the service
-/// is ready again, or will not be. A swap whose back end does not start is taken back.
+/// The pending restarts and swaps of single services. Each is answered when the service is ready
+/// again, stops or fails. If the new back end of a swap does not start, the old one is restored.
 class Changes {
  public:
+  /// `rig` must outlive the object.
   explicit Changes(LiveRig& rig) : rig_(rig) {}
 
+  /// Restarts a service.
   void restart(Service& service, ControlServer::Reply reply);
-  /// `word`: a back end, maybe by its old name. Refuses one that the service does not have.
+  /// Restarts a service with the back end `word`, which may be an old name. Refuses a back end that
+  /// the service does not have.
   void swap(Service& service, const std::string& word, ControlServer::Reply reply);
 
+  /// True if the service is being changed.
   bool contains(std::string_view service) const { return pending_.contains(service); }
   /// A service that is being changed; "" if there is none.
   std::string any() const { return pending_.empty() ? "" : pending_.begin()->first; }
 
+  /// Must be called at each Notice of a service. They do nothing if it is not being changed.
+  /// on_failed() returns true if it restores the old back end of a swap.
+  /// @{
   void on_ready(const Service& service);
   void on_stopped(const Service& service);
-  /// True: a swap is taken back, the service goes on with its old back end.
   bool on_failed(Service& service);
+  /// @}
+  /// Answers all pending changes with a failure.
   void refuse_all(const std::string& sentence);
 
  private:
   struct Pending {
     ControlServer::Reply reply;
-    std::string wanted{}, before{};  ///< back ends; "" for a plain restart
-    std::string reason{};            ///< why `wanted` did not start; "" while it is tried
+    std::string wanted{}, before{};  ///< back ends; "" for a restart
+    std::string reason{};            ///< why `wanted` did not start; "" if it has not failed
   };
   void give_backend(Service& service, const std::string& backend, bool on_trial);
 

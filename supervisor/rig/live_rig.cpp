@@ -31,16 +31,15 @@ void LiveRig::take_settings(const config::Rig& rig) {
   launch.ready_s = rig.supervisor.ready_s;
   launch.stop_s = rig.supervisor.stop_s;
   launch.silent_s = rig.supervisor.silent_s;
-  recorder.remember(rig.supervisor.history_s);
+  recorder.set_history(rig.supervisor.history_s);
 }
 
-/// While the rig stops, nobody is replaced for being silent.
 Service::Look LiveRig::look_at(const Service& service, std::int64_t now) const {
   Service::Look look{.needs_are_ready = services.needs_are_ready(service)};
   if (stops())
-    look.heard_ns = now;
+    look.last_sign_ns = now;
   else if (const auto silence_ms = recorder.silence_ms(service.spec().name, now))
-    look.heard_ns = now - ms_to_ns(*silence_ms);
+    look.last_sign_ns = now - ms_to_ns(*silence_ms);
   return look;
 }
 

@@ -13,33 +13,38 @@
 
 namespace handcast::supervisor {
 
+/// The phases of a rig, in their order.
 enum class Phase { starting, up, stopping, done };
 
-/// A rig while its supervisor runs: what the parts of the supervisor work on.
+/// The state of a running rig, shared by the parts of the supervisor. One thread.
 struct LiveRig {
+  /// A rig without rings and services. `loop` must outlive the object.
   LiveRig(const config::Rig& rig, EventLoop& loop, Service::OnNotice on_notice);
   LiveRig(const LiveRig&) = delete;
 
-  /// Makes the rings that these services need and that are not there, and follows their stage
-  /// marks. Returns the new rings. Errors: unavailable, bad_config; rings may have been made then,
-  /// which is harmless: nobody uses them until the next try.
+  /// Creates the missing rings of these services and records their stage marks. Returns the new
+  /// rings. Errors: unavailable, bad_config. After an error some rings may exist, unused; the next
+  /// call uses them.
   Result<daemon::Rings> make_rings(const std::vector<ServiceSpec>& specs);
-  /// Takes the settings that the supervisor itself reads.
+  /// Applies the section [supervisor] of a rig file.
   void take_settings(const config::Rig& rig);
 
+  /// True if the rig is stopping or has stopped.
   bool stops() const { return phase == Phase::stopping || phase == Phase::done; }
+  /// The argument of Service::tick(). While the rig stops, no service counts as silent.
   Service::Look look_at(const Service& service, std::int64_t now_ns) const;
+  /// The present state, for reports.
   RigView view() const;
 
-  const std::string name;
-  config::Rig config;  ///< as the file was when it was last applied
-  Phase phase = Phase::starting;
-  std::int64_t started_ns;
-  Launch launch;
-  Catalogue catalogue;  ///< of the services that are installed
-  RingSet rings;
-  Recorder recorder;
-  ServiceTable services;
+  const std::string name;         ///< name of the rig
+  config::Rig config;             ///< the applied rig, without swaps of back ends
+  Phase phase = Phase::starting;  ///< the present phase
+  std::int64_t started_ns;        ///< start of the rig, under whichever supervisor
+  Launch launch;                  ///< the parameters of its services
+  Catalogue catalogue;            ///< the services that are installed
+  RingSet rings;                  ///< its rings
+  Recorder recorder;              ///< the record of its stage marks
+  ServiceTable services;          ///< its services
 };
 
 }  // namespace handcast::supervisor

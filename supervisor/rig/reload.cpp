@@ -15,7 +15,7 @@
 namespace handcast::supervisor {
 namespace {
 
-/// On top of the time that a service may take to stop and to be ready.
+/// Added to the time limits of a service for stopping and becoming ready.
 constexpr double kGrace_s = 1;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -28,8 +28,8 @@ bool has_settled(const Service& service) {
 
 }  // namespace
 
-// The applied file is written last: what comes before it nobody sees, what comes after it cannot
-// fail.
+// The applied file is written last: the steps before it have no visible effect, those after it
+// cannot fail.
 Result<Reload> Reload::begin(LiveRig& rig, config::Rig wanted, bool revives) {
   auto plan = plan_reload(rig, std::move(wanted), revives);
   if (auto possible = check_reload(rig, plan); !possible)
@@ -65,13 +65,13 @@ void Reload::apply() {
 bool Reload::advance(std::int64_t now) {
   note_what_has_settled(now);
   begin_what_may(now);
-  const bool gone = std::ranges::all_of(plan_.stopped, [this](const auto& name) {
+  const bool have_stopped = std::ranges::all_of(plan_.stopped, [this](const auto& name) {
     return rig_->services.find(name)->state() == State::stopped;
   });
-  return gone && waiting_.empty() && begun_.empty();
+  return have_stopped && waiting_.empty() && begun_.empty();
 }
 
-/// A service begins when nothing that it needs is still to begin or to settle.
+/// Starts the services whose needs have all settled.
 void Reload::begin_what_may(std::int64_t now) {
   const auto& launch = rig_->launch;
   const auto until_ns = now + seconds_to_ns(launch.stop_s + launch.ready_s + kGrace_s);

@@ -10,20 +10,20 @@
 
 namespace handcast::supervisor {
 
-/// `handcast reload` as a transaction: plan, check and apply (begin), then settle (advance). What
-/// cannot be applied is not applied at all; from there on nothing can fail but a service.
+/// `handcast reload` as a transaction: begin() plans, checks and applies the new rig as a whole or
+/// not at all; advance() restarts the services.
 class Reload {
  public:
-  /// Makes `wanted` the rig that is applied. Errors: bad_config, unavailable; then the rig, its
-  /// services and the applied file are as they were.
+  /// Applies `wanted`. `revives`: see plan_reload(). `rig` must outlive the result. Errors:
+  /// bad_config, unavailable; the rig, its services and the applied file are unchanged then.
   static Result<Reload> begin(LiveRig& rig, config::Rig wanted, bool revives);
 
-  /// Restarts and starts what may begin by now. True when everything that the reload touched has
-  /// settled. Call it on every tick.
+  /// Starts and restarts the services whose needs have settled. Returns true if all services that
+  /// the reload affects have settled. Call it on every tick.
   bool advance(std::int64_t now_ns);
-  /// Whether the reload has begun this service and waits for it.
+  /// True if the reload has started this service and waits for it.
   bool waits_for(const std::string& service) const { return begun_.contains(service); }
-  /// Takes the services that have stopped from the rig. Returns the answer for the person.
+  /// Removes the stopped services from the rig. Returns the answer to the request.
   nlohmann::json finish();
 
  private:
@@ -34,9 +34,9 @@ class Reload {
 
   LiveRig* rig_;
   ReloadPlan plan_;
-  std::vector<std::string> waiting_;  ///< not begun: what they need has not settled
-  std::map<std::string, std::int64_t, std::less<>> begun_;  ///< until when they must have settled
-  std::vector<std::string> failures_;                       ///< a sentence each
+  std::vector<std::string> waiting_;  ///< not started: their needs have not settled
+  std::map<std::string, std::int64_t, std::less<>> begun_;  ///< by when they must have settled
+  std::vector<std::string> failures_;                       ///< one sentence for each
 };
 
 }  // namespace handcast::supervisor

@@ -11,14 +11,14 @@
 namespace handcast::supervisor {
 namespace {
 
-/// Whether the service needs a restart that its settings do not explain: what made it fail may be
-/// mended.
+/// True if a restart may help although the settings have not changed: the cause of the failure may
+/// have been removed.
 bool has_given_up(const Service& service) {
   return service.state() == State::failed || service.state() == State::degraded;
 }
 
-/// The wanted rig with the back ends that `handcast swap` put in their place, unless the file names
-/// another one by now.
+/// The wanted rig with the back ends set by `handcast swap`, except for services whose back end
+/// `wanted` changes.
 config::Rig with_swaps(const LiveRig& rig, config::Rig wanted) {
   for (const auto& service : rig.services.all()) {
     const auto& name = service->spec().name;
@@ -57,8 +57,8 @@ ReloadPlan plan_reload(const LiveRig& rig, config::Rig wanted, bool revives) {
 Result<void> check_reload(const LiveRig& rig, const ReloadPlan& plan) {
   if (plan.config.name != rig.name)
     return fail(Errc::bad_config, fmt::format("the rig's name cannot change while it is up ('{}' "
-                                              "to '{}'); `handcast down --rig {}` and "
-                                              "`handcast up` do that",
+                                              "to '{}'); use `handcast down --rig {}` and "
+                                              "`handcast up`",
                                               rig.name, plan.config.name, rig.name));
   if (auto fits = rig.rings.check_sizes(rings_of(plan.specs), rig.name); !fits) return fits;
   for (const auto& spec : plan.specs) {

@@ -7,20 +7,23 @@
 
 namespace handcast::supervisor {
 
-/// What a reload is going to do. The names are those of services, as the person is told.
+/// The steps of a reload.
 struct ReloadPlan {
-  config::Rig config;              ///< the rig as the file has it now
+  config::Rig config;              ///< the new rig, as the file has it
   std::vector<ServiceSpec> specs;  ///< its services, with the back ends that were swapped
-  bool changed = false;            ///< the file says something else than before
+  bool changed = false;            ///< the new rig differs from the applied one
+  /// Names of services.
+  /// @{
   std::vector<std::string> restarted, started, stopped;
+  /// @}
 };
 
-/// Plans to make `wanted` the rig that is applied: services whose fingerprints changed are
-/// restarted, and if `revives` is set also those that have given up. Changes nothing.
+/// Plans a reload to the rig `wanted`. Services whose fingerprints changed are restarted; if
+/// `revives` is set, failed and degraded ones are restarted, too. Changes nothing.
 ReloadPlan plan_reload(const LiveRig& rig, config::Rig wanted, bool revives);
 
-/// Whether a rig that is up can become what is planned. Changes nothing. Errors: bad_config, with a
-/// sentence that says what to do instead; unavailable.
+/// Checks that the plan can be applied while the rig is up. Changes nothing. Errors: bad_config,
+/// with a sentence that names the remedy; unavailable.
 Result<void> check_reload(const LiveRig& rig, const ReloadPlan& plan);
 
 }  // namespace handcast::supervisor

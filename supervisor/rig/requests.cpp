@@ -28,7 +28,7 @@ void give_status(LiveRig& rig, const Reply& reply) {
   reply(answer);
 }
 
-/// Gives read-only descriptors: a tool cannot disturb the rig by accident.
+/// Sends read-only descriptors, so that a tool cannot change the rings by accident.
 void give_rings(const LiveRig& rig, const Reply& reply) {
   auto answer = success();
   answer["rings"] = nlohmann::json::array();
@@ -92,7 +92,7 @@ void Requests::change(const control::Request& request, Reply reply) {
 
 std::string Requests::why_not_change(const control::Request& request) const {
   if (!rig_.services.find(request.service)) return no_service(rig_, request.service);
-  if (rig_.stops()) return "the rig stops";
+  if (rig_.stops()) return "the rig is stopping";
   if (reloading_) return "the rig is being reloaded; try again when that is done";
   if (changes_.contains(request.service)) return request.service + " is being restarted already";
   return {};
@@ -112,7 +112,7 @@ void Requests::reload(Result<config::Rig> wanted, bool revives, Reply reply) {
 }
 
 std::string Requests::why_not_reload() const {
-  if (rig_.stops()) return "the rig stops";
+  if (rig_.stops()) return "the rig is stopping";
   if (reloading_) return "the rig is being reloaded already";
   if (const auto service = changes_.any(); !service.empty())
     return service + " is being restarted; try again when that is done";
@@ -131,9 +131,9 @@ bool Requests::on_failed(Service& service) {
 }
 
 void Requests::on_stopping() {
-  changes_.refuse_all("the rig stops");
+  changes_.refuse_all("the rig is stopping");
   if (const auto reloading = std::exchange(reloading_, {}))
-    reloading->reply(failure("the rig stops"));
+    reloading->reply(failure("the rig is stopping"));
 }
 
 void Requests::on_done() {

@@ -12,30 +12,37 @@
 
 namespace handcast::supervisor {
 
-/// Answers what is asked over the control socket (ipc/control/control_message.hpp): at once, or
-/// when what was asked for is done.
+/// Carries out the requests of the control socket (ipc/control/control_message.hpp). Each is
+/// answered when it is done, or when it has failed.
 class Requests {
  public:
+  /// Functions of the rig that requests call.
   struct Host {
-    std::function<Result<config::Rig>()> read_file;  ///< the rig file as it is now
-    std::function<void()> stop;                      ///< the rig is to stop
+    std::function<Result<config::Rig>()> read_file;  ///< reads the rig file
+    std::function<void()> stop;                      ///< begins to stop the rig
   };
+  /// `rig` must outlive the object.
   Requests(LiveRig& rig, Host host);
 
+  /// Carries out a request.
   void answer(const control::Request& request, ControlServer::Reply reply);
-  /// Makes this rig the one that is applied; `revives`: services that have given up are tried
-  /// again.
+  /// Reloads the rig. `wanted`: the new rig, or why it cannot be read. `revives`: see
+  /// plan_reload().
   void reload(Result<config::Rig> wanted, bool revives, ControlServer::Reply reply);
-  /// Goes on with a reload. Call it on every tick.
+  /// Continues a reload. Call it on every tick.
   void tick(std::int64_t now_ns);
 
+  /// Must be called at each Notice of a service. on_failed() returns true if the failure belongs to
+  /// a pending request; it must not stop the rig then.
+  /// @{
   void on_ready(const Service& service) { changes_.on_ready(service); }
   void on_stopped(const Service& service) { changes_.on_stopped(service); }
-  /// True: the service was being changed or reloaded, and the rig goes on without it.
   bool on_failed(Service& service);
-  /// The rig stops: what was not done by now will not be.
+  /// @}
+  /// Must be called when the rig begins to stop: answers pending changes and reloads with a
+  /// failure.
   void on_stopping();
-  /// The rig has stopped.
+  /// Must be called when the rig has stopped: answers the requests to stop it.
   void on_done();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rig in the order of its life: it is opened, it runs, it stops.
+// The functions are in the order in which a rig is opened, runs and stops.
 #include "supervisor/rig/rig_runner.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace handcast::supervisor {
 namespace {
 
 constexpr std::int64_t kTick_ns = 50'000'000;
-/// A tick this late: the supervisor, or the machine, was stopped.
+/// If a tick is this late, the supervisor, or the machine, was stopped.
 constexpr std::int64_t kStoodStill_ns = 1'000'000'000;
 
 std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
@@ -94,14 +94,14 @@ Result<void> RigRunner::watch_signals_and_time() {
   });
   loop_.watch(signals_.get(), [this] {
     drain(signals_.get());
-    if (rig_.stops()) return hurry();  // asked twice
+    if (rig_.stops()) return hurry();  // the second signal
     begin_stop(kExitDone);
   });
   return {};
 }
 
-/// Rings, applied file and services: new ones, or those of a supervisor that died. Nothing is
-/// started here.
+/// Creates rings, applied file and services, or takes over those of a supervisor that died. Starts
+/// no service.
 Result<void> RigRunner::make_parts() {
   auto adopted = adopt(rig_.name);
   if (!adopted) return tl::make_unexpected(adopted.error());
@@ -111,9 +111,10 @@ Result<void> RigRunner::make_parts() {
   const auto specs = services_of(rig_.config, rig_.catalogue);
   if (const auto made = make_rings_and_file(*adopted, specs); !made) {
     if (!*adopted) return made;
-    return fail(made.error().code, fmt::format("what lives of rig '{0}' cannot be taken over: {1}; "
-                                               "`handcast down --rig {0}` ends it",
-                                               rig_.name, made.error().what));
+    return fail(made.error().code,
+                fmt::format("the running services of rig '{0}' cannot be taken over: {1}; "
+                            "`handcast down --rig {0}` stops them",
+                            rig_.name, made.error().what));
   }
   for (const auto& spec : specs) rig_.services.add(spec);
   if (*adopted) {
@@ -135,8 +136,8 @@ Result<void> RigRunner::make_rings_and_file(std::optional<AdoptedRig>& adopted,
   return {};
 }
 
-/// The rig is as old as its services' clock; --seconds counts from its start, or from now if a
-/// person has just said it.
+/// Restores the start of the rig, which is the epoch of its services. --seconds counts from there
+/// for a successor, and from now if a person has started this supervisor.
 void RigRunner::continue_run(const SavedRig& saved) {
   inherited_ = true;
   rig_.launch.epoch_ns = rig_.started_ns = saved.epoch_ns;
@@ -151,7 +152,8 @@ int RigRunner::run() {
   for (const auto& service : rig_.services.all())
     if (!service->first_start_ns()) service->hold();
   last_tick_ns_ = now_ns();
-  // A reload was cut short, or `handcast up` came with other settings.
+  // Applies the settings to the adopted services: a reload may have been interrupted, or `handcast
+  // up` has other settings.
   if (inherited_)
     requests_.reload(rig_.config, false, ControlServer::Reply([](const auto&, const auto&) {}));
   for (follow_up(); rig_.phase != Phase::done; follow_up()) loop_.turn();
@@ -171,7 +173,8 @@ void RigRunner::tick() {
   show_progress_now_and_then(now);
 }
 
-/// After each turn of the event loop: what can wait until services that died have been replaced.
+/// Does the work after each turn of the event loop that is less urgent than replacing a service
+/// that died.
 void RigRunner::follow_up() {
   come_up();
   begin_what_may();
@@ -181,8 +184,8 @@ void RigRunner::follow_up() {
   save();
 }
 
-/// A service that does not get ready in time does not keep the rig from being up. A rig that was
-/// taken over is up already.
+/// Enters Phase::up when all services have been ready or have exceeded their time. A rig that was
+/// taken over is up at once.
 void RigRunner::come_up() {
   if (rig_.phase != Phase::starting) return;
   if (!inherited_ && !rig_.services.has_come_up(now_ns())) return;
@@ -191,7 +194,7 @@ void RigRunner::come_up() {
   notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", rig_.name));
 }
 
-/// Starts the services that wait for nothing any more. One that cannot start may stop the rig.
+/// Starts the services whose needs are met. If one cannot start, this may stop the rig.
 void RigRunner::begin_what_may() {
   while (!rig_.stops()) {
     auto* service = rig_.services.next_to_begin(now_ns());
@@ -203,7 +206,7 @@ void RigRunner::begin_what_may() {
 void RigRunner::forgive_a_standstill(std::int64_t now) {
   const auto late_ns = now - std::exchange(last_tick_ns_, now) - kTick_ns;
   if (late_ns < kStoodStill_ns) return;
-  log::warning("everything stood still for {:.1f} s; nobody is late for it",
+  log::warning("the supervisor stood still for {:.1f} s; all time limits are extended by this time",
                ns_to_seconds(late_ns));
   for (const auto& service : rig_.services.all()) service->forgive(late_ns);
 }
@@ -229,7 +232,7 @@ void RigRunner::on_notice(Service& service, Notice notice) {
   }
 }
 
-/// A rig that is not up yet stops if a service cannot start.
+/// Stops the rig if it is not up yet and the service has never been ready.
 void RigRunner::on_failed(Service& service) {
   if (requests_.on_failed(service)) return;
   if (rig_.phase != Phase::starting || service.was_ready()) return;
@@ -238,8 +241,8 @@ void RigRunner::on_failed(Service& service) {
   begin_stop(kExitConfig);
 }
 
-/// Saves the rig for a successor. Not while the rig stops: a successor would leave the services
-/// stopped that were stopped by then.
+/// Saves the rig for a successor, but not while the rig stops: a successor would not start the
+/// services again that have already stopped.
 void RigRunner::save() {
   if (rig_.stops()) return;
   SavedRig saved{.name = rig_.name,
@@ -252,7 +255,8 @@ void RigRunner::save() {
   for (const auto& service : rig_.services.all()) saved.services.push_back(service->saved());
   const auto written = supervisor::save(saved);
   if (!written && !std::exchange(save_failed_, true))
-    log::warning("no successor could take over: {}", written.error().what);
+    log::warning("a successor of the supervisor could not take over the rig: {}",
+                 written.error().what);
 }
 
 void RigRunner::begin_stop(int exit_code) {
@@ -262,11 +266,11 @@ void RigRunner::begin_stop(int exit_code) {
   notify_systemd("STOPPING=1");
   requests_.on_stopping();
   for (const auto& service : rig_.services.all())
-    if (!service->is_running()) service->stop();  // takes back a start that was due
+    if (!service->is_running()) service->stop();  // cancels a restart that is due
   stop_next();
 }
 
-/// Services stop one after the other, in the reverse of their order.
+/// Stops the next service, in the reverse order of the table.
 void RigRunner::stop_next() {
   if (auto* last = rig_.services.last_running()) return last->stop();
   finish();
@@ -287,7 +291,7 @@ void RigRunner::finish() {
   if (options_.out && exit_code_ == kExitDone) {
     if (const auto written = write_report(*options_.out, live_report(rig_.view())); !written) {
       log::error("{}", written.error().what);
-      exit_code_ = kExitConfig;  // not kExitRetry: the rig is not to be started again
+      exit_code_ = kExitConfig;  // kExitRetry would start the rig again
     }
   }
   forget_saved(rig_.name);

@@ -13,23 +13,27 @@
 
 namespace handcast::supervisor {
 
+/// The options of `handcast up`.
 struct RunOptions {
-  std::filesystem::path rig_file;
-  std::vector<std::string> settings;         ///< --set path=value, for every service
-  std::filesystem::path program_folder;      ///< where the daemons are
-  std::optional<double> seconds;             ///< how long; empty: until told to stop
-  std::optional<std::filesystem::path> out;  ///< where live.json goes
-  bool is_successor =
-      false;  ///< of a supervisor that died under the same keeper: --seconds goes on
+  std::filesystem::path rig_file;            ///< the user's rig file
+  std::vector<std::string> settings;         ///< --set path=value
+  std::filesystem::path program_folder;      ///< folder of the daemons
+  std::optional<double> seconds;             ///< --seconds; empty: until a request or a signal
+  std::optional<std::filesystem::path> out;  ///< --out: folder of live.json
+  /// It follows a supervisor that died under the same keeper: `seconds` counts from that one's
+  /// start.
+  bool is_successor = false;
 };
 
-/// One rig from start to stop. One thread, one event loop.
+/// Runs one rig from start to stop. One thread, one event loop.
 class RigRunner {
  public:
-  /// Makes everything that can fail before the first service starts, or takes it over from a
-  /// supervisor that died. Errors: bad_config, unavailable; what lives of the rig is left as it is.
+  /// Creates the control socket, the rings and the applied file, or takes over a rig whose
+  /// supervisor died. Does not start services. Errors: bad_config, unavailable; living services of
+  /// the rig are left as they are then.
   static Result<std::unique_ptr<RigRunner>> open(const config::Rig& rig, RunOptions options);
-  /// Runs until it is told to stop. The exit code of `handcast up`.
+  /// Runs until a request, a signal or the end of `seconds` stops the rig. Returns the exit code of
+  /// `handcast up`.
   int run();
 
  private:
@@ -66,11 +70,11 @@ class RigRunner {
   Requests requests_;
   Watchdog watchdog_;
 
-  bool inherited_ = false;  ///< from a supervisor that died
+  bool inherited_ = false;  ///< the rig was taken over from a supervisor that died
   int exit_code_ = kExitDone;
   std::int64_t next_progress_ns_ = 0;
   std::int64_t last_tick_ns_ = 0;
-  std::uint64_t revision_ = 0;  ///< of the services, as last saved
+  std::uint64_t revision_ = 0;  ///< revision of the services that was saved last
   bool save_failed_ = false;
 };
 

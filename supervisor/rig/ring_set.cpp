@@ -12,7 +12,7 @@
 namespace handcast::supervisor {
 namespace {
 
-/// What differs between a ring and what is wanted; "" if nothing does.
+/// The first difference between a ring and its specification, for a message; "" if there is none.
 std::string difference(const ipc::Segment& ring, const ipc::RingSpec& wanted) {
   if (ring.slots() != wanted.slots)
     return fmt::format("{} slots, not {}", wanted.slots, ring.slots());
@@ -45,7 +45,8 @@ Result<daemon::Rings> RingSet::add(const std::vector<ipc::RingSpec>& wanted) {
 Result<void> RingSet::check_types(const std::vector<ipc::RingSpec>& wanted) const {
   for (const auto& spec : wanted)
     if (const auto* ring = find(spec.stream); ring && ring->type_hash() != spec.type_hash)
-      return fail(Errc::bad_config, fmt::format("ring '{}' is another version's", spec.stream));
+      return fail(Errc::bad_config,
+                  fmt::format("ring '{}' belongs to another version of handcast", spec.stream));
   return {};
 }
 
@@ -56,8 +57,8 @@ Result<void> RingSet::check_sizes(const std::vector<ipc::RingSpec>& wanted,
     const auto differs = ring ? difference(*ring, spec) : "";
     if (differs.empty()) continue;
     return fail(Errc::bad_config,
-                fmt::format("ring '{}' would need {}: it cannot change while the rig is up; "
-                            "`handcast down --rig {}` and `handcast up` do that",
+                fmt::format("ring '{}' would need {}, which cannot change while the rig is up; use "
+                            "`handcast down --rig {}` and `handcast up`",
                             spec.stream, differs, name));
   }
   return {};

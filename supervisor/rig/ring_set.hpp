@@ -8,24 +8,26 @@
 
 namespace handcast::supervisor {
 
-/// The rings of a rig: their memory, under the descriptors that the services inherit.
+/// The rings of a rig: their memory and the descriptors that the services inherit.
 class RingSet {
  public:
-  /// Makes those of `wanted` that are not there, all or none of them, and returns them. Errors:
-  /// unavailable, bad_config.
+  /// Creates the missing rings of `wanted`, all or none, and returns them. Errors: unavailable,
+  /// bad_config.
   Result<daemon::Rings> add(const std::vector<ipc::RingSpec>& wanted);
   /// Takes over the rings of an earlier supervisor.
   void adopt(std::vector<ipc::Segment> rings) { rings_ = std::move(rings); }
 
-  /// Whether the rings that are there are of the types that are wanted. Errors: bad_config.
+  /// Checks that existing rings have the message types of `wanted`. Errors: bad_config.
   Result<void> check_types(const std::vector<ipc::RingSpec>& wanted) const;
-  /// Whether the rings that are there have the sizes that are wanted: a ring cannot change while
-  /// the rig is up. Errors: bad_config, with a sentence about the rig `name`.
+  /// Checks that existing rings have the sizes of `wanted`, which cannot change while the rig is
+  /// up. Errors: bad_config, with a sentence about the rig `name`.
   Result<void> check_sizes(const std::vector<ipc::RingSpec>& wanted, std::string_view name) const;
 
+  /// The descriptors by stream; owned by the object.
   daemon::Rings descriptors() const;
+  /// The rings for a successor of the supervisor.
   std::vector<SavedRing> saved() const;
-  /// Frees what readers that died hold.
+  /// Frees the rows and leases of readers that died.
   void sweep_dead_rows() const;
 
  private:

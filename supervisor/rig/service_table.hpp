@@ -10,6 +10,7 @@
 
 namespace handcast::supervisor {
 
+/// Services, each with a fixed address.
 using Services = std::vector<std::unique_ptr<Service>>;
 
 /// The services of a rig, in an order in which each needs only those before it.
@@ -18,26 +19,28 @@ class ServiceTable {
   /// `launch` and `loop` must outlive the object.
   ServiceTable(const Launch& launch, EventLoop& loop, Service::OnNotice on_notice);
 
-  /// Adds a service at a place of the order, or behind all others if the order is shorter.
+  /// Adds a service at position `place`, or at the end if the table is shorter.
   Service& add(ServiceSpec spec, std::size_t place);
+  /// Adds a service at the end.
   Service& add(ServiceSpec spec) { return add(std::move(spec), services_.size()); }
-  /// A service that runs is killed.
+  /// Removes a service. Kills its processes.
   void remove(std::string_view name);
-  /// Null if there is no such service.
+  /// The service of this name; null if there is none.
   Service* find(std::string_view name) const;
+  /// All services in their order.
   const Services& all() const { return services_; }
 
-  /// Whether all that a service needs is ready.
+  /// True if all services that this one needs are ready.
   bool needs_are_ready(const Service& service) const;
-  /// The first service that is held and waits for nothing any more; null if there is none. A need
-  /// is not waited for once it is ready, has given up, or has had its time (ready_s).
+  /// The first held service whose needs are met; null if there is none. A need is met if its
+  /// service is ready, has given up, or was started more than ready_s ago.
   Service* next_to_begin(std::int64_t now_ns) const;
-  /// Whether each service has been ready, or need not be waited for.
+  /// True if each service has been ready, has given up, or was started more than ready_s ago.
   bool has_come_up(std::int64_t now_ns) const;
-  /// The last service in the order that has a process; null if none has.
+  /// The last service that has a process; null if none has.
   Service* last_running() const;
 
-  /// Counts up whenever Service::saved() of one of them may have changed.
+  /// Incremented whenever Service::saved() of a service may have changed.
   std::uint64_t revision() const;
 
  private:
@@ -47,7 +50,7 @@ class ServiceTable {
   EventLoop& loop_;
   Service::OnNotice on_notice_;
   Services services_;
-  std::uint64_t revision_ = 0;  ///< of the table itself, and of the services that were removed
+  std::uint64_t revision_ = 0;  ///< of the table itself and of removed services
 };
 
 }  // namespace handcast::supervisor

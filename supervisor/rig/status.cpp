@@ -17,9 +17,10 @@ constexpr std::size_t kLastWords = 5;
 double rounded(double value) { return std::round(value * 100) / 100; }
 json or_null(std::optional<double> value) { return value ? json(rounded(*value)) : json(); }
 
-json asked(const ServiceSpec& spec) {
-  const bool known = spec.asked_hz > 0 && (spec.asked_of.empty() || spec.asked_of == spec.backend);
-  return known ? json(spec.asked_hz) : json();
+json wanted_hz(const ServiceSpec& spec) {
+  const bool known =
+      spec.wanted_hz > 0 && (spec.wanted_of.empty() || spec.wanted_of == spec.backend);
+  return known ? json(spec.wanted_hz) : json();
 }
 
 bool is_well(const Service& service) {
@@ -55,11 +56,11 @@ json service_status(const Service& service, const RigView& rig) {
   return status;
 }
 
-// Every service marks each message that it publishes, so the marks give the rates of the rings
-// without a look at the messages.
+// Services publish stage marks for each message, so the rates of the rings are counted from the
+// marks.
 json ring_status(const Service& service, const RigView& rig) {
   const auto& frames = rig.recorder.ledger().frames(service.spec().name);
-  return {{"asked_hz", asked(service.spec())},
+  return {{"wanted_hz", wanted_hz(service.spec())},
           {"held_hz", rounded(frames.recent_hz(rig.now_ns))},
           {"count", frames.total()},
           {"newest_age_ms", or_null(frames.newest_age_ms(rig.now_ns))}};
@@ -83,8 +84,7 @@ std::string text_of(const json& value, std::string_view unit = "") {
   return fmt::format("{:.6g}{}", value.get<double>(), unit);
 }
 
-/// What is wrong with a service: "died 10 times within 60 s; tried again in 4.2 s". "" if nothing
-/// is.
+/// The trouble of a service: "died 10 times within 60 s; tried again in 4.2 s". "" if it has none.
 std::string print_trouble(const json& service) {
   std::string text =
       service.contains("reason") && !service["reason"].is_null() ? text_of(service["reason"]) : "";
@@ -125,11 +125,11 @@ std::string print_status(const json& status) {
     if (!service.contains("log")) continue;
     for (const auto& line : service["log"]) text += fmt::format("    {}\n", text_of(line));
   }
-  text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>10}\n", "ring", "asked", "held",
+  text += fmt::format("\n{:<20} {:>12} {:>12} {:>12} {:>10}\n", "ring", "wanted", "held",
                       "newest age", "messages");
   for (const auto& [name, ring] : status["rings"].items())
     text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>10}\n", name,
-                        text_of(ring["asked_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
+                        text_of(ring["wanted_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
                         text_of(ring["newest_age_ms"], " ms"), text_of(ring["count"]));
   text +=
       fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
@@ -156,7 +156,7 @@ json live_report(const RigView& rig) {
     report["services"][spec.name] = {{"restarts", service->restarts()}, {"backend", spec.backend}};
     if (spec.stream.empty()) continue;
     const auto held_hz = rig.recorder.ledger().frames(spec.name).held_hz(rig.now_ns);
-    report["rates"][spec.name] = {{"asked_hz", asked(spec)}, {"held_hz", rounded(held_hz)}};
+    report["rates"][spec.name] = {{"wanted_hz", wanted_hz(spec)}, {"held_hz", rounded(held_hz)}};
   }
   report["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages())

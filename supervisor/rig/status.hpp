@@ -10,18 +10,18 @@
 
 namespace handcast::supervisor {
 
-/// A rig at one moment.
+/// A rig at one moment. The references are to members of a LiveRig.
 struct RigView {
-  const std::string& name;
-  const Services& services;
-  const Recorder& recorder;
-  std::int64_t started_ns = 0;
-  std::int64_t now_ns = 0;
+  const std::string& name;      ///< LiveRig::name
+  const Services& services;     ///< LiveRig::services
+  const Recorder& recorder;     ///< LiveRig::recorder
+  std::int64_t started_ns = 0;  ///< LiveRig::started_ns
+  std::int64_t now_ns = 0;      ///< the moment, CLOCK_MONOTONIC
 };
 
 /// The status of a rig, as `handcast status --json` prints it.
 nlohmann::json status_of(const RigView& rig);
-/// A status as text.
+/// A status as `handcast status` prints it.
 std::string print_status(const nlohmann::json& status);
 /// One line of figures: "up 12 s  camera 240 Hz  pose 110 Hz  ...  restarts 0".
 std::string progress_line(const RigView& rig);

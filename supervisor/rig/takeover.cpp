@@ -20,8 +20,8 @@ std::vector<pid_t> children_of(pid_t parent) {
   return children;
 }
 
-/// Whether it is a process that a supervisor started: a leader of its own session that runs one of
-/// our daemons, replaced by now or not.
+/// True if the process was started by a supervisor: it leads its own session and runs a program of
+/// this name, even if the file has been replaced since.
 bool is_a_daemon(pid_t pid, const std::filesystem::path& program_folder) {
   std::error_code error;
   const auto program = std::filesystem::read_symlink(fmt::format("/proc/{}/exe", pid), error);
@@ -45,14 +45,14 @@ void report_deaths(const AdoptedRig& adopted, ExitReports& reports) {
 
 }  // namespace
 
-// Daemons among the keeper's children are what earlier supervisors have left. Who became a keeper
-// by exec has other children, too.
+// Daemons among the keeper's children were left by earlier supervisors. A keeper that was started
+// by exec may have other children, too.
 void end_strays(const ExitReports& reports, const std::optional<AdoptedRig>& adopted,
                 const std::filesystem::path& program_folder) {
   const auto keeper = reports.keeper();
   if (keeper < 0) return;
   const auto children = children_of(keeper);
-  if (reports.keeper() != keeper) return;  // it died, and these may be anybody's
+  if (reports.keeper() != keeper) return;  // it died; its pid may have been reused
   for (const auto pid : children) {
     if (!is_a_daemon(pid, program_folder) || (adopted && lives(*adopted, pid))) continue;
     ::kill(-pid, SIGKILL);
@@ -71,13 +71,13 @@ void take_services(AdoptedRig adopted, LiveRig& rig) {
   report_deaths(adopted, *rig.launch.reports);
   for (const auto& saved : adopted.saved.services) {
     const bool was_between =
-        saved.state == State::starting || saved.state == State::stopping;  // it is begun anew
+        saved.state == State::starting || saved.state == State::stopping;  // it is started anew
     if (auto* service = rig.services.find(saved.name); service && !was_between)
       service->inherit(saved);
   }
   for (auto& process : adopted.services) {
     const auto name = process.saved.name;
-    log::info("{} (pid {}) lives and is taken over", name, process.saved.pid);
+    log::info("{} (pid {}) is running and is taken over", name, process.saved.pid);
     auto* service = rig.services.find(name);
     if (!service) service = &rig.services.add({.name = name});
     service->adopt(std::move(process));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a supervisor does with the services and rings that one that died has left.
+// Takeover of the services and rings of a supervisor that died.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -10,17 +10,17 @@
 
 namespace handcast::supervisor {
 
-/// Kills the daemons of earlier supervisors that are not taken over: a spare, or a service that was
-/// started an instant before the end and is not in the saved state.
+/// Kills the daemons of earlier supervisors that are not taken over: spares, and services that were
+/// started after the state was last saved.
 void end_strays(const ExitReports& reports, const std::optional<AdoptedRig>& adopted,
                 const std::filesystem::path& program_folder);
 
-/// Takes over the rings, if they suit the services. Errors: bad_config; the services are left as
-/// they are.
+/// Takes over the rings. Errors: bad_config (their types or sizes do not fit `specs`); the services
+/// are left as they are then.
 Result<void> take_rings(AdoptedRig& adopted, LiveRig& rig, const std::vector<ServiceSpec>& specs);
 
-/// Takes over the services. Those that are not in the rig any more are added to it: a reload stops
-/// them. Those that died meanwhile are reported.
+/// Takes over the living services and logs which have died. Services that are not in the rig are
+/// added to it; the next reload stops them.
 void take_services(AdoptedRig adopted, LiveRig& rig);
 
 }  // namespace handcast::supervisor

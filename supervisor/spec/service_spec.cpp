@@ -12,12 +12,12 @@
 namespace handcast::supervisor {
 namespace {
 
-// The largest images that a ring has room for. They are not the rig's own sizes: the supervisor
-// does not read calibrations.
+// The largest images that fit into a ring. The sizes of the rig's own images are not known here,
+// because the supervisor does not read calibrations.
 constexpr int kCameraWidth_px = 1280, kCameraHeight_px = 1024;
 constexpr int kProjectorWidth_px = 1024, kProjectorHeight_px = 768;
 
-/// The most that a ring can have: the recorder may be late by a quarter of a second at 946 Hz.
+/// The most slots that a ring can have: the recorder may be 0.25 s late at 946 Hz.
 constexpr int kMarkSlots = 254;
 /// Three readers with two leases each, and two for the writer: a loan never fails.
 constexpr int kImageSlots = 8;

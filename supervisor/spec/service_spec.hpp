@@ -10,17 +10,17 @@
 
 namespace handcast::supervisor {
 
-/// What the supervisor knows about a service of a rig before it is started.
+/// The specification of a service of a rig.
 struct ServiceSpec {
-  std::string name;        ///< "camera": the program is handcast-camera
-  std::string stream;      ///< the ring it publishes; "" for none
-  std::string backend;     ///< as the rig file has it; "" where the service has no back ends
-  double asked_hz = 0;     ///< the rate asked of it; 0 if it runs as fast as it can
-  std::string asked_of{};  ///< the back end that the rate is asked of; "" for any
+  std::string name;         ///< "camera": the program is handcast-camera
+  std::string stream;       ///< the ring that it publishes; "" for none
+  std::string backend;      ///< its back end; "" if the service has no back ends
+  double wanted_hz = 0;     ///< the configured rate; 0 if it has none
+  std::string wanted_of{};  ///< the back end that wanted_hz applies to; "" for all
   /// Services that must be ready, or have given up, before this one is started the first time.
   std::vector<std::string> needs{};
-  config::Process process{};
-  std::string fingerprint{};  ///< of the settings it is started with
+  config::Process process{};  ///< scheduling, memory and spare: [NAME.process]
+  std::string fingerprint{};  ///< fingerprint of its settings: see fingerprint_of()
 };
 
 /// The services of a rig, in an order in which each needs only those before it.

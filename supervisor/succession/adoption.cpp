@@ -26,7 +26,8 @@ namespace {
 /// Rings from systemd's store, by stream.
 using Stored = std::vector<std::pair<std::string, UniqueFd>>;
 
-// In this order: once the pidfd is open, it does not matter if the number goes to another process.
+// Opens the pidfd before it compares the start time: from then on it does not matter if the pid is
+// reused.
 UniqueFd pidfd_of(const SavedService& saved) {
   if (saved.pid == 0) return {};
   UniqueFd pidfd(static_cast<int>(syscall(SYS_pidfd_open, saved.pid, 0)));
@@ -51,8 +52,8 @@ bool ends_before(const AdoptedProcess& process, Deadline deadline) {
   return poll(&ended, 1, static_cast<int>(ns_to_ms(left_ns)) + 1) == 1;
 }
 
-/// Kills a process that was just seen alive, so that its number is still its own, and its process
-/// group.
+/// Kills a process and its process group. The process was alive a moment ago, so its pid has not
+/// been reused.
 void kill_now(const AdoptedProcess& process) {
   kill(-process.saved.pid, SIGKILL);
   send_signal(process, SIGKILL);
@@ -64,11 +65,10 @@ bool is_inode(int fd, std::uint64_t inode) {
   return fd >= 0 && fstat(fd, &status) == 0 && status.st_ino == inode;
 }
 
-/// Opens the memory of a ring again. The open file is a new one: it shares no lock with the
-/// service's.
+/// Opens the memory of a ring as a new open file, which shares no locks with that of the service.
 Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>& living,
                         const Stored& stored) {
-  std::string reason = "no process that lives has it";
+  std::string reason = "no living process has it";
   for (const auto& process : living) {
     const auto file = fmt::format("/proc/{}/fd/{}", process.saved.pid, ring.fd);
     UniqueFd fd(::open(file.c_str(), O_RDWR | O_CLOEXEC));
@@ -82,12 +82,13 @@ Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>
               fmt::format("ring '{}' cannot be opened ({})", ring.stream, reason));
 }
 
-/// Gives a descriptor the number that the services know it by: children inherit rings by number.
+/// Moves a descriptor to the number that the services know, because children inherit rings by
+/// number.
 Result<UniqueFd> place(UniqueFd fd, int number) {
   if (fd.get() == number) return fd;
   if (fcntl(number, F_GETFD) != -1)
     return fail(Errc::unavailable,
-                fmt::format("descriptor {} is needed for a ring and is taken", number));
+                fmt::format("descriptor {} is needed for a ring, but is in use", number));
   if (dup3(fd.get(), number, O_CLOEXEC) != number)
     return fail(Errc::unavailable, fmt::format("descriptor {}: {}", number, std::strerror(errno)));
   return UniqueFd(number);
@@ -120,19 +121,19 @@ Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved,
   return rings;
 }
 
-/// Opens the reading end of a service's output again. What it wrote while nobody read is lost.
+/// Opens the reading end of a service's output again. The output in between is lost.
 UniqueFd reopen_log(pid_t pid) {
   return UniqueFd(
       ::open(fmt::format("/proc/{}/fd/1", pid).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
 }
 
-/// A service that was starting cannot say any more that it is ready: its pipe is gone. It is
-/// killed, to be started again.
+/// Kills the services that were not ready, because they can no longer report it: their pipe is
+/// closed. Returns the others.
 std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
   std::vector<AdoptedProcess> ready;
   for (auto& process : living) {
     if (process.saved.state != State::ready) {
-      log::info("{} was just starting when its supervisor died; it is started again",
+      log::info("{} was not ready when its supervisor died; it is started again",
                 process.saved.name);
       kill_now(process);
       continue;
@@ -174,13 +175,13 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   if (living.empty() && stored.empty()) return std::nullopt;
   auto rings = take_rings(**saved, living, stored);
   if (!rings && living.empty())
-    return std::nullopt;  // systemd did not keep all of them, and nobody uses them
+    return std::nullopt;  // systemd did not keep all of them, but they are not in use
   if (!rings)
     return fail(
         rings.error().code,
         fmt::format(
-            "services of rig '{}' live without a supervisor and cannot be taken over: {}: {}; "
-            "`handcast down --rig {}` ends them",
+            "services of rig '{}' run without a supervisor and cannot be taken over: {}: {}; "
+            "`handcast down --rig {}` stops them",
             name, names_of(living), rings.error().what, name));
   return AdoptedRig{std::move(**saved), std::move(*rings), keep_the_ready(std::move(living))};
 }

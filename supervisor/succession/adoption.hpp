@@ -10,34 +10,32 @@
 
 namespace handcast::supervisor {
 
-/// A new ring. Its descriptor has a number that no supervisor uses for its own descriptors: a
-/// successor must be able to give the ring the same number. Errors: as Segment::create; unavailable
-/// (no descriptor left).
+/// Creates a ring. Its descriptor gets a number that supervisors do not use for other descriptors,
+/// because a successor must give the ring the same number. Errors: those of Segment::create();
+/// unavailable (no more descriptors).
 Result<ipc::Segment> make_ring(const ipc::RingSpec& spec);
 
-/// What a supervisor that died has left.
+/// A rig whose supervisor died.
 struct AdoptedRig {
-  SavedRig saved;
-  /// Under the descriptors that they have in the services (saved.rings[i].fd): children inherit
-  /// them.
+  SavedRig saved;  ///< the saved state
+  /// The rings. Their descriptors have the numbers that the services know (saved.rings[i].fd), so
+  /// that children can inherit them.
   std::vector<ipc::Segment> rings;
-  std::vector<AdoptedProcess> services;  ///< those that live
+  std::vector<AdoptedProcess> services;  ///< the living services
 };
 
-/// What still lives of the rig `name`; empty if nothing does. The rings are opened through the
-/// living services (/proc/PID/fd/N, inode compared) or come from systemd's store. What dead readers
-/// hold is freed. Errors: bad_data, unavailable; what lives can only be stopped then
-/// (stop_orphans).
+/// Adopts the living services and the rings of the rig `name`; empty if there are none. Rings are
+/// opened through the living services (/proc/PID/fd/N, whose inode is compared) or taken from
+/// systemd's store; rows of dead readers are freed. Services that were not ready are killed.
+/// Errors: bad_data, unavailable; the living services can only be stopped then (stop_orphans()).
 Result<std::optional<AdoptedRig>> adopt(const std::string& name);
-
-/// Ends every service of a rig that has no supervisor: asks each to stop, and kills it after
-/// `stop_s`. Returns how many there were.
+/// Stops all services of a rig without a supervisor; kills those that do not stop within `stop_s`.
+/// Returns their number.
 int stop_orphans(const std::string& name, double stop_s);
-
 /// The names of this user's rigs whose services live without a supervisor, sorted.
 std::vector<std::string> orphaned_rigs();
-/// The orphaned rig that `name` means ("": the only one), if no supervisor takes it over within a
-/// second. A supervisor with a keeper does.
+/// The orphaned rig called `name` ("": the only one). Empty if there is none, or if a supervisor,
+/// started by its keeper, takes it over within a second.
 std::optional<std::string> abandoned_rig(const std::string& name);
 
 }  // namespace handcast::supervisor

@@ -30,13 +30,13 @@ constexpr std::int64_t kShortLife_ns = 1'000'000'000;
 constexpr std::int64_t kFirstPause_ns = 50'000'000;
 constexpr std::int64_t kMinute_ns = 60'000'000'000;
 constexpr int kDeathsInAMinute = 10;
-/// For the children that are left when the supervisor has ended by itself.
+/// How long the keeper waits for the remaining children after the supervisor has exited.
 constexpr std::int64_t kFarewell_ns = 1'000'000'000;
 
 /// The deaths of the supervisor.
 class Deaths {
  public:
-  void note(std::int64_t started_ns, std::int64_t died_ns) {
+  void add(std::int64_t started_ns, std::int64_t died_ns) {
     recent_ns_[count_++ % recent_ns_.size()] = died_ns;
     short_lives_ = died_ns - started_ns < kShortLife_ns ? short_lives_ + 1 : 0;
   }
@@ -45,7 +45,7 @@ class Deaths {
              return died_ns > 0 && now - died_ns < kMinute_ns;
            }) == kDeathsInAMinute;
   }
-  /// How long the next start waits: not at all after a life of some length, nor the first time.
+  /// The wait before the next start; 0 unless at least two lives in a row were short.
   std::int64_t pause_ns() const {
     return short_lives_ < 2 ? 0 : kFirstPause_ns << (std::min(short_lives_, 6) - 2);
   }
@@ -56,7 +56,8 @@ class Deaths {
   int short_lives_ = 0;
 };
 
-/// What the supervisor is started with. Made once, so that no later start needs memory.
+/// The arguments and the environment of the supervisor. They are built once, so that later starts
+/// do not allocate memory.
 struct Plan {
   std::vector<std::string> arguments, environment;
   std::vector<char*> argument_pointers, environment_pointers;
@@ -74,7 +75,7 @@ struct Plan {
     for (auto& text : environment) environment_pointers.push_back(text.data());
     argument_pointers.push_back(nullptr);
     environment_pointers.insert(environment_pointers.end(),
-                                {nullptr, nullptr});  // room for kSuccessorVariable
+                                {nullptr, nullptr});  // a place for kSuccessorVariable
   }
   void for_a_successor() {
     environment_pointers[environment_pointers.size() - 2] = successor.data();
@@ -94,11 +95,11 @@ class Keeper {
       while (supervisor_ > 0) handle(wait_for_signal(kMinute_ns));
       const bool cannot_now = is_successor_ && exit_ && exit_->code == kExitRetry;
       if (exit_ && !exit_->signalled && !cannot_now) return see_off(exit_->code);
-      deaths_.note(started_ns, now_ns());
+      deaths_.add(started_ns, now_ns());
       if (deaths_.too_many(now_ns())) return give_up();
       const auto pause_ns = deaths_.pause_ns();
       log::warning("the supervisor died ({}); started again{}",
-                   exit_ ? exit_->describe() : "no process to be had",
+                   exit_ ? exit_->describe() : "no process could be created",
                    pause_ns > 0 ? fmt::format(" after {:.0f} ms", ns_to_ms(pause_ns)) : "");
       for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns;)
         handle(wait_for_signal(until_ns - now_ns()));
@@ -125,16 +126,16 @@ class Keeper {
     supervisor_ = fork();
     if (supervisor_ == 0) become_supervisor();
     if (supervisor_ < 0) return;
-    setpgid(supervisor_, supervisor_);  // in both processes, whichever runs first
+    setpgid(supervisor_, supervisor_);  // both processes do this, because either may run first
     for (const int number : kStopSignals)
-      if (sigismember(&asked_, number) == 1) kill(supervisor_, number);
+      if (sigismember(&received_, number) == 1) kill(supervisor_, number);
   }
 
-  // The stop signals stay blocked across exec: one that comes early is delivered when the
-  // supervisor is ready for it.
+  // The stop signals stay blocked across exec, so that an early one stays pending until the
+  // supervisor reads it.
   [[noreturn]] void become_supervisor() {
     setpgid(0, 0);
-    signal(SIGTTOU, SIG_IGN);  // it writes to the terminal from the background
+    signal(SIGTTOU, SIG_IGN);  // it writes to the terminal as a background process
     sigset_t children;
     sigemptyset(&children);
     sigaddset(&children, SIGCHLD);
@@ -155,11 +156,11 @@ class Keeper {
   void handle(int signal_number) {
     if (signal_number == SIGCHLD) return reap();
     if (signal_number == 0) return;
-    sigaddset(&asked_, signal_number);
+    sigaddset(&received_, signal_number);
     if (supervisor_ > 0) kill(supervisor_, signal_number);
   }
 
-  /// Notes the end of the supervisor, and reports that of every other child.
+  /// Reaps all children that have ended. Stores the end of the supervisor, reports the others.
   void reap() {
     for (siginfo_t info{}; waitid(P_ALL, 0, &info, WEXITED | WNOHANG) == 0 && info.si_pid != 0;
          info = {}) {
@@ -170,7 +171,7 @@ class Keeper {
       }
       const ExitReport report{info.si_pid, info.si_code, info.si_status};
       send(here_.get(), &report, sizeof report,
-           MSG_DONTWAIT | MSG_NOSIGNAL);  // lost if nobody has read for long
+           MSG_DONTWAIT | MSG_NOSIGNAL);  // lost if the queue is full
     }
   }
 
@@ -191,23 +192,24 @@ class Keeper {
   int give_up() const {
     print_line(
         fmt::format("handcast: the supervisor died {} times within a minute and is not started "
-                    "again; what lives of its services goes on: "
-                    "`handcast up` takes them over, `handcast down` ends them",
+                    "again; its services continue to run: "
+                    "`handcast up` takes them over, `handcast down` stops them",
                     kDeathsInAMinute));
     return kExitRetry;
   }
 
-  UniqueFd here_;  ///< reports are sent here
-  /// Reports are received here, by the supervisor that lives. Held open so that none is lost
-  /// between two supervisors.
+  UniqueFd here_;  ///< the keeper's end of the socket pair for reports
+  /// The supervisor's end. The keeper holds it open, so that no report is lost between two
+  /// supervisors.
   UniqueFd there_;
   Plan plan_;
   Deaths deaths_;
   sigset_t stop_signals_{}, awaited_{};
-  /// Stop signals that came. A successor gets them, too: its predecessor did not stop the rig.
-  sigset_t asked_{};
+  /// The stop signals received so far. A successor gets them, too, because the rig still has to be
+  /// stopped.
+  sigset_t received_{};
   pid_t supervisor_ = -1;
-  bool is_successor_ = false;  ///< of a supervisor that died, whose services may live
+  bool is_successor_ = false;  ///< the present supervisor follows one that died
   std::optional<Exit> exit_;
 };
 
@@ -216,7 +218,8 @@ class Keeper {
 int keep(const std::vector<std::string>& arguments) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    print_line(fmt::format("handcast: no socket for the keeper: {}", std::strerror(errno)));
+    print_line(
+        fmt::format("handcast: the keeper's socket cannot be created: {}", std::strerror(errno)));
     return kExitRetry;
   }
   return Keeper(arguments, UniqueFd(ends[0]), UniqueFd(ends[1])).run();

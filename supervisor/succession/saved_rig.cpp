@@ -21,9 +21,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 2;                     ///< raise it when a member changes its meaning
-constexpr std::size_t kMostBytes = 1 << 20;     ///< a rig needs some 3 KB
-constexpr int kLeastFd = 3, kMostFd = 1 << 20;  ///< below: stdin, stdout, stderr
+constexpr int kVersion = 2;                  ///< incremented when the meaning of a member changes
+constexpr std::size_t kMostBytes = 1 << 20;  ///< a rig needs about 3 KB
+constexpr int kLeastFd = 3, kMostFd = 1 << 20;  ///< lower numbers: stdin, stdout, stderr
 constexpr pid_t kLeastPid = 2, kMostPid = 1 << 22;
 
 Result<std::filesystem::path> state_of(const std::string& rig) {
@@ -108,25 +108,25 @@ SavedRig rig_from(const json& object) {
   return rig;
 }
 
-/// Why signals must not be sent to these processes, or these descriptors replaced; "" if they may.
+/// Why the saved numbers of processes and descriptors must not be used; "" if they are valid.
 std::string problem_of(const SavedRig& rig, const std::string& name) {
-  if (rig.name != name) return fmt::format("it is of a rig named '{}'", rig.name);
+  if (rig.name != name) return fmt::format("it belongs to a rig named '{}'", rig.name);
   for (const auto& ring : rig.rings)
     if (ring.fd < kLeastFd || ring.fd > kMostFd)
       return fmt::format("ring '{}' has the descriptor {}", ring.stream, ring.fd);
   for (const auto& service : rig.services)
     if (service.pid != 0 && (service.pid < kLeastPid || service.pid > kMostPid))
-      return fmt::format("{} has the process number {}", service.name, service.pid);
+      return fmt::format("{} has the pid {}", service.name, service.pid);
   return "";
 }
 
-/// Why the file is not as save() leaves it; "" if it is, so that nobody else could have written it.
+/// Why another user could have written the file; "" if it has the owner and the mode of save().
 std::string problem_of(int fd) {
   struct stat status {};
   if (fstat(fd, &status) != 0) return std::strerror(errno);
   if (!S_ISREG(status.st_mode)) return "it is not a file";
   if (status.st_uid != getuid()) return "it belongs to another user";
-  if ((status.st_mode & 077) != 0) return "others may use it";
+  if ((status.st_mode & 077) != 0) return "other users have access to it";
   if (static_cast<std::size_t>(status.st_size) > kMostBytes) return "it is too long";
   return "";
 }
@@ -143,25 +143,25 @@ Result<void> save(const SavedRig& rig) {
 Result<std::optional<SavedRig>> load_saved(const std::string& name) {
   const auto path = state_of(name);
   if (!path) return tl::make_unexpected(path.error());
-  const auto no_sense = [&](std::string_view why) {
-    return fail(Errc::bad_data, fmt::format("{} makes no sense: {}", path->string(), why));
+  const auto invalid = [&](std::string_view why) {
+    return fail(Errc::bad_data, fmt::format("{} is invalid: {}", path->string(), why));
   };
 
   const UniqueFd file(::open(path->c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   if (!file)
     return errno == ENOENT ? Result<std::optional<SavedRig>>(std::nullopt)
-                           : no_sense(std::strerror(errno));
-  if (const auto problem = problem_of(file.get()); !problem.empty()) return no_sense(problem);
+                           : invalid(std::strerror(errno));
+  if (const auto problem = problem_of(file.get()); !problem.empty()) return invalid(problem);
   const auto object = json::parse(text_of(file.get(), kMostBytes), nullptr, false);
-  if (!object.is_object()) return no_sense("it is not whole");
+  if (!object.is_object()) return invalid("it is incomplete");
   try {
     if (object.at("boot") != boot_id()) return std::nullopt;
-    if (object.at("version") != kVersion) return no_sense("another version of handcast wrote it");
+    if (object.at("version") != kVersion) return invalid("another version of handcast wrote it");
     auto rig = rig_from(object);
-    if (const auto problem = problem_of(rig, name); !problem.empty()) return no_sense(problem);
+    if (const auto problem = problem_of(rig, name); !problem.empty()) return invalid(problem);
     return rig;
   } catch (const json::exception& error) {
-    return no_sense(error.what());
+    return invalid(error.what());
   }
 }
 

@@ -13,30 +13,30 @@ namespace handcast::supervisor {
 
 /// A ring as a supervisor saves it for a successor.
 struct SavedRing {
-  std::string stream;
-  std::uint64_t inode = 0;  ///< of the memory file: tells it from another file with the same number
-  int fd = -1;              ///< its number in every service
+  std::string stream;       ///< its stream
+  std::uint64_t inode = 0;  ///< inode of its memory file, by which the file is recognised
+  int fd = -1;              ///< number of its descriptor in all services
 };
 
-/// A rig as its supervisor saves it for a successor, so that services and picture go on when it
-/// dies. It is written to RIG.state in the runtime folder at every change (mode 0600, replaced as a
-/// whole), and removed when the rig stops.
+/// A rig as its supervisor saves it for a successor, which can take over the running services. The
+/// file RIG.state in the runtime folder is replaced at every change (mode 0600) and removed when
+/// the rig stops.
 struct SavedRig {
-  std::string name;
-  std::filesystem::path rig_file;
-  std::vector<std::string> settings;  ///< --set path=value
-  std::string out;                    ///< --out; "" for none
-  std::int64_t epoch_ns = 0;          ///< of the services (HANDCAST_EPOCH_NS)
-  std::vector<SavedRing> rings;
-  std::vector<SavedService> services;
+  std::string name;                    ///< name of the rig
+  std::filesystem::path rig_file;      ///< the user's rig file
+  std::vector<std::string> settings;   ///< --set path=value
+  std::string out;                     ///< --out; "" if it was not given
+  std::int64_t epoch_ns = 0;           ///< HANDCAST_EPOCH_NS of the services
+  std::vector<SavedRing> rings;        ///< its rings
+  std::vector<SavedService> services;  ///< its services
 };
 
-/// Writes the file. Errors: unavailable; the rig goes on, but no successor can take it over.
+/// Writes the file. Errors: unavailable; no successor can take over the rig then.
 Result<void> save(const SavedRig& rig);
-/// Reads the file. Empty if there is none, or if it was written before the machine last started.
-/// Errors: bad_data (it makes no sense, or others could have written it).
+/// Reads the file. Empty if there is none, or if it was written before the last boot. Errors:
+/// bad_data (the file is invalid, or another user could have written it).
 Result<std::optional<SavedRig>> load_saved(const std::string& rig);
-/// Removes the file.
+/// Removes the file. Does nothing if there is none.
 void forget_saved(const std::string& rig);
 
 }  // namespace handcast::supervisor

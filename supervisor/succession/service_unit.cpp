@@ -42,7 +42,7 @@ std::string replaced(std::string line, const std::map<std::string, std::string>&
   return line;
 }
 
-/// Removes the mark in front of a line. False: the line does not have it.
+/// Removes a mark at the beginning of a line. Returns false if the line does not have it.
 bool take_mark(std::string& line, std::string_view mark) {
   if (!line.starts_with(mark)) return false;
   line.erase(0, line.size() > mark.size() ? mark.size() + 1 : mark.size());

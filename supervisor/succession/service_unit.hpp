@@ -6,21 +6,21 @@
 
 namespace handcast::supervisor {
 
-/// A rig that systemd is to run.
+/// The parameters of a systemd unit that runs a rig.
 struct UnitSpec {
-  std::string rig;                    ///< its name
-  std::filesystem::path program;      ///< handcast itself
-  std::filesystem::path rig_file;     ///< absolute
+  std::string rig;                    ///< name of the rig
+  std::filesystem::path program;      ///< absolute path of `handcast`
+  std::filesystem::path rig_file;     ///< absolute path of the rig file
   std::vector<std::string> settings;  ///< --set path=value
-  bool system = false;                ///< for the machine, not for one user's session
-  std::string user;                   ///< that a system unit runs as
+  bool system = false;                ///< a unit of the system; false: of the user's session
+  std::string user;                   ///< the user of a system unit
 };
 
 /// The name of the unit: "handcast-desk.service".
 std::string unit_name(const UnitSpec& spec);
 /// The text of the unit file, made from units/handcast.service.in.
 std::string unit_text(const UnitSpec& spec);
-/// The folder in which systemd looks for the unit: /etc/systemd/system, or the user's own.
+/// The folder of the unit: /etc/systemd/system, or systemd/user in the user's configuration folder.
 std::filesystem::path unit_folder(const UnitSpec& spec);
 
 }  // namespace handcast::supervisor

@@ -52,8 +52,8 @@ std::optional<Address> address_of_systemd() {
   return address;
 }
 
-/// Sends one datagram, with a descriptor or without (-1). Waits only for a moment if systemd's
-/// queue is full: the rig must not stand still for it.
+/// Sends one datagram, with a descriptor or without (-1). If systemd's queue is full, waits for
+/// kPatience at most, because the rig waits, too.
 void send_to_systemd(std::string_view state, int fd) {
   auto address = address_of_systemd();
   const UniqueFd socket(address ? ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0) : -1);
@@ -97,8 +97,8 @@ std::vector<std::string> passed_names(int count) {
 
 void notify_systemd(std::string_view state) { send_to_systemd(state, -1); }
 
-// systemd keeps each open file that it is given, even a second one of the same memory. What it has
-// under the name is removed first.
+// systemd stores every open file, even a second one of the same memory. So the stored file of this
+// name is removed first.
 void store_with_systemd(const std::vector<std::pair<std::string, int>>& rings) {
   for (const auto& [stream, fd] : rings) {
     notify_systemd(fmt::format("FDSTOREREMOVE=1\nFDNAME={}", stream));

@@ -11,24 +11,25 @@
 
 namespace handcast::supervisor {
 
-/// Tells systemd a state, "READY=1\nSTATUS=...", "WATCHDOG=1" or "STOPPING=1": sd_notify's
-/// protocol, a datagram to $NOTIFY_SOCKET. Does nothing without systemd.
+/// Sends a state to systemd: "READY=1\nSTATUS=...", "WATCHDOG=1" or "STOPPING=1", as a datagram to
+/// $NOTIFY_SOCKET (sd_notify(3)). Does nothing without systemd.
 void notify_systemd(std::string_view state);
-/// Gives the rings' memory to systemd to keep (FDSTORE=1, FDNAME=stream): the rings outlive even
-/// the last process. Does nothing without systemd.
+/// Stores the memory of the rings with systemd (FDSTORE=1, FDNAME=stream), so that the rings
+/// outlive all processes of the rig. Does nothing without systemd.
 void store_with_systemd(const std::vector<std::pair<std::string, int>>& rings);
-/// Takes what systemd gives back ($LISTEN_FDS, $LISTEN_FDNAMES), by stream. Empty the second time.
+/// Takes the descriptors that systemd has stored ($LISTEN_FDS, $LISTEN_FDNAMES), by stream, and
+/// unsets the variables: a second call returns none.
 std::vector<std::pair<std::string, UniqueFd>> taken_from_systemd();
-
-/// Half of the time after which systemd takes this process to hang ($WATCHDOG_USEC); empty if
-/// systemd does not watch it.
+/// The period of the watchdog messages to systemd: half of $WATCHDOG_USEC. Empty if systemd's
+/// watchdog is off.
 std::optional<std::int64_t> watchdog_period_ns();
 
-/// Tells systemd as often as needed that this process lives. Does nothing without systemd.
+/// Sends the watchdog messages to systemd. Does nothing without systemd.
 class Watchdog {
  public:
+  /// Reads the period from the environment.
   Watchdog();
-  /// Call it at every turn of the event loop.
+  /// Sends a message if one is due. Call it at each tick of the event loop.
   void tick(std::int64_t now_ns);
 
  private:

@@ -54,7 +54,7 @@ json json_of(const RingRow& ring) {
   for (const auto& reader : ring.readers) readers.push_back(json_of(reader));
   return {{"stream", ring.now.stream},
           {"slots", ring.now.slots},
-          {"asked_hz", or_null(ring.asked_hz)},
+          {"wanted_hz", or_null(ring.wanted_hz)},
           {"rate_hz", or_null(ring.rate_hz)},
           {"epoch", ring.now.epoch},
           {"published", ring.now.published},

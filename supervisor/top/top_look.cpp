@@ -11,19 +11,19 @@ namespace {
 
 using nlohmann::json;
 
-constexpr auto kPatience = std::chrono::seconds(1);  ///< so that `handcast top` can still be quit
+constexpr auto kPatience = std::chrono::seconds(1);  ///< `handcast top` cannot be quit meanwhile
 
 /// True if a status is from another supervisor: its uptime is shorter, or its services differ.
 bool is_another(const json& before, const json& now) {
-  const auto names_in = [](const json& status, const char* key) {
+  const auto services_in = [](const json& status) {
     std::set<std::string> names;
-    if (const auto found = status.find(key); found != status.end() && found->is_object())
+    if (const auto found = status.find("services"); found != status.end() && found->is_object())
       for (const auto& [name, entry] : found->items()) names.insert(name);
     return names;
   };
   if (!before.is_object() || before.value("uptime_s", 0.0) > now.value("uptime_s", 0.0))
     return true;
-  return names_in(before, "services") != names_in(now, "services");
+  return services_in(before) != services_in(now);
 }
 
 std::set<pid_t> pids_of(const RigLook& look) {
@@ -45,7 +45,7 @@ pid_t pid_in(const json& service, const char* key) {
   return found != service.end() && found->is_number_integer() ? found->get<pid_t>() : 0;
 }
 
-RigLook RigWatcher::look() {
+RigLook RigWatcher::observe() {
   ask_supervisor();
   RigLook look{.rig = rig_, .taken_ns = now_ns(), .missing = missing_, .status = status_};
   for (const auto& ring : rings_) look.rings.push_back(ring.look());

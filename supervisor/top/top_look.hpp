@@ -28,11 +28,11 @@ struct RigLook {
 /// One thread.
 class RigWatcher {
  public:
-  /// A watcher of the rig with this name; connects at each look().
+  /// A watcher of the rig with this name; connects at each observe().
   explicit RigWatcher(std::string rig) : rig_(std::move(rig)) {}
 
   /// Observes the rig. Waits at most 1 s for each answer of the supervisor.
-  RigLook look();
+  RigLook observe();
 
  private:
   void ask_supervisor();

@@ -115,15 +115,15 @@ ReaderRow reader_row(const ipc::ReaderView& reader, const ipc::RingSnapshot* ear
   return row;
 }
 
-std::optional<double> asked_hz_of(const std::string& stream, const json& status) {
+std::optional<double> wanted_hz_of(const std::string& stream, const json& status) {
   if (!status.contains("rings") || !status["rings"].contains(stream)) return std::nullopt;
-  const auto asked_hz = number_in(status["rings"][stream], "asked_hz");
-  return asked_hz > 0 ? std::optional(asked_hz) : std::nullopt;
+  const auto wanted_hz = number_in(status["rings"][stream], "wanted_hz");
+  return wanted_hz > 0 ? std::optional(wanted_hz) : std::nullopt;
 }
 
 RingRow ring_row(const ipc::RingSnapshot& ring, const RigLook& before, const RigLook& now,
                  const Names& names) {
-  RingRow row{.now = ring, .asked_hz = asked_hz_of(ring.stream, now.status)};
+  RingRow row{.now = ring, .wanted_hz = wanted_hz_of(ring.stream, now.status)};
   if (ring.newest_published_ns != 0) {
     row.newest_age_ns = std::max<std::int64_t>(0, now.taken_ns - ring.newest_published_ns);
     row.latency_ns = ring.newest_published_ns - ring.newest_origin_ns;
@@ -166,7 +166,7 @@ bool ReaderRow::holds_an_old_lease() const {
 
 bool RingRow::late() const {
   if (!newest_age_ns) return false;
-  const auto hz = marks() ? 0 : std::max(asked_hz.value_or(0), rate_hz.value_or(0));
+  const auto hz = marks() ? 0 : std::max(wanted_hz.value_or(0), rate_hz.value_or(0));
   return *newest_age_ns > (hz > 0 ? seconds_to_ns(kLatePeriods / hz) : kSilentTooLong_ns);
 }
 

@@ -55,8 +55,8 @@ struct ReaderRow {
 
 /// One ring with its readers.
 struct RingRow {
-  ipc::RingSnapshot now;           ///< its state
-  std::optional<double> asked_hz;  ///< the configured rate; empty if there is none
+  ipc::RingSnapshot now;            ///< its state
+  std::optional<double> wanted_hz;  ///< the configured rate; empty if there is none
   /// Messages published and dropped per second; empty if unknown.
   /// @{
   std::optional<double> rate_hz, dropped_hz;

@@ -23,7 +23,7 @@ Result<std::map<std::string, double>> ask_for_rates(const std::string& rig) {
   if (!answer) return tl::make_unexpected(answer.error());
   std::map<std::string, double> rates;
   for (const auto& service : services_of({}, {})) {
-    const nlohmann::json::json_pointer place("/status/rings/" + service.stream + "/asked_hz");
+    const nlohmann::json::json_pointer place("/status/rings/" + service.stream + "/wanted_hz");
     if (!service.stream.empty() && answer->contains(place) && answer->at(place).is_number())
       rates[service.name] = answer->at(place).get<double>();
   }

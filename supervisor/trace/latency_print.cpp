@@ -81,7 +81,7 @@ json to_json(const LatencyTable& table) {
   for (const auto& misses : table.misses)
     missed.push_back({{"service", misses.service},
                       {"frames", misses.frames},
-                      {"asked_hz", misses.asked_hz > 0 ? json(misses.asked_hz) : json()},
+                      {"wanted_hz", misses.wanted_hz > 0 ? json(misses.wanted_hz) : json()},
                       {"held_hz", misses.held_hz},
                       {"missed", misses.missed},
                       {"late", misses.late},
@@ -94,8 +94,8 @@ json to_json(const LatencyTable& table) {
 
 std::string print_latency(const LatencyTable& table) {
   auto text = fmt::format(
-      "Latency over the last {:.1f} s. light: the middle of the time a frame is lit, as reported "
-      "by the projector.\n\n",
+      "Latency over the last {:.1f} s. light: the middle of a frame's time on the surface, as "
+      "reported by the projector.\n\n",
       table.seconds);
   text += heading("from", "to");
   for (const auto& [from, to, spans] : table.ways)
@@ -105,14 +105,14 @@ std::string print_latency(const LatencyTable& table) {
     text += fmt::format("{:<20} {:<16} ", service, stage) + figures_of(spans);
 
   text += fmt::format("\n{:<12} {:>8} {:>10} {:>10} {:>8} {:>8} {:>8} {:>12} {:>12}\n", "service",
-                      "frames", "asked", "held", "missed", "late", "skipped", "longest gap",
+                      "frames", "wanted", "held", "missed", "late", "skipped", "longest gap",
                       "marks lost");
   for (const auto& misses : table.misses)
     text +=
         fmt::format("{:<12} {:>8} {:>10} {:>10} {:>8} {:>8} {:>8} {:>12} {:>12}\n", misses.service,
-                    misses.frames, rate_of(misses.asked_hz), rate_of(misses.held_hz),
-                    misses.asked_hz > 0 ? std::to_string(misses.missed) : "-",
-                    misses.asked_hz > 0 ? std::to_string(misses.late) : "-", misses.skipped_ids,
+                    misses.frames, rate_of(misses.wanted_hz), rate_of(misses.held_hz),
+                    misses.wanted_hz > 0 ? std::to_string(misses.missed) : "-",
+                    misses.wanted_hz > 0 ? std::to_string(misses.late) : "-", misses.skipped_ids,
                     time_of(misses.longest_gap_ns), misses.lost_marks);
   return text;
 }

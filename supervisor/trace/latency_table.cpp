@@ -130,15 +130,16 @@ void count_gap(const std::vector<Done>& done, std::size_t i, Misses& misses) {
   misses.lost_marks += after.lost;
   if (after.from_sensor && after.frame_id > before.frame_id)
     misses.skipped_ids += above(after.frame_id - before.frame_id - 1, after.lost);
-  if (misses.asked_hz > 0) misses.missed += missed_before(done, i, misses.asked_hz);
+  if (misses.wanted_hz > 0) misses.missed += missed_before(done, i, misses.wanted_hz);
   if (after.lost > 0) return;
   misses.longest_gap_ns = std::max(misses.longest_gap_ns, after.time_ns - before.time_ns);
-  if (periods_between(before, after, misses.asked_hz) > 1.5) ++misses.late;
+  if (periods_between(before, after, misses.wanted_hz) > 1.5) ++misses.late;
 }
 
-Misses misses_of(const HistorySnapshot& history, std::size_t service, double asked_hz) {
+Misses misses_of(const HistorySnapshot& history, std::size_t service, double wanted_hz) {
   const auto done = done_by(history, service);
-  Misses misses{.service = history.services[service], .frames = done.size(), .asked_hz = asked_hz};
+  Misses misses{
+      .service = history.services[service], .frames = done.size(), .wanted_hz = wanted_hz};
   for (std::size_t i = 1; i < done.size(); ++i) count_gap(done, i, misses);
   const auto span_ns = done.empty() ? 0 : done.back().time_ns - done.front().time_ns;
   if (span_ns > 0)
@@ -172,11 +173,11 @@ std::int64_t Spans::percentile_ns(double share) const {
 }
 
 LatencyTable measure_latency(const HistorySnapshot& history,
-                             const std::map<std::string, double>& asked_hz) {
+                             const std::map<std::string, double>& wanted_hz) {
   LatencyTable table{seconds_in(history), stage_latencies(history), way_latencies(history), {}};
   for (std::size_t service = 0; service < history.services.size(); ++service) {
-    const auto asked = asked_hz.find(history.services[service]);
-    auto misses = misses_of(history, service, asked == asked_hz.end() ? 0 : asked->second);
+    const auto asked = wanted_hz.find(history.services[service]);
+    auto misses = misses_of(history, service, asked == wanted_hz.end() ? 0 : asked->second);
     if (misses.frames > 0) table.misses.push_back(std::move(misses));
   }
   return table;

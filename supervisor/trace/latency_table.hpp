@@ -49,9 +49,9 @@ struct WayLatency {
 struct Misses {
   std::string service;       ///< name of the service
   std::uint64_t frames = 0;  ///< number of recorded frames
-  double asked_hz = 0;       ///< the configured rate; 0: the service has no fixed rate
+  double wanted_hz = 0;      ///< the configured rate; 0: the service has no fixed rate
   double held_hz = 0;        ///< frames per second from the first to the last frame
-  /// Periods of asked_hz without a frame, unless the next frames caught up.
+  /// Periods of wanted_hz without a frame, unless the next frames caught up.
   std::uint64_t missed = 0;
   std::uint64_t late = 0;           ///< frames more than 1.5 periods after the one before
   std::uint64_t skipped_ids = 0;    ///< for a sensor: frame numbers that were left out
@@ -69,10 +69,10 @@ struct LatencyTable {
   std::vector<Misses> misses;        ///< the rates of all services with frames
 };
 
-/// Computes the table. `asked_hz`: the configured rates by service; services without a fixed rate
+/// Computes the table. `wanted_hz`: the configured rates by service; services without a fixed rate
 /// are left out.
 LatencyTable measure_latency(const HistorySnapshot& history,
-                             const std::map<std::string, double>& asked_hz);
+                             const std::map<std::string, double>& wanted_hz);
 
 /// The output of `handcast latency --json`.
 nlohmann::json to_json(const LatencyTable& table);

@@ -155,7 +155,7 @@ void print_looking_back() {
                     1'001'000'000 + i * 1'057'000};
     for (std::uint32_t k = 0; k < marks.count; ++k)
       marks.marks[k] = {Stage::draw, 0, marks.header.published_ns, marks.header.published_ns};
-    history.note("projector", marks, 0);
+    history.add("projector", marks, 0);
   }
   const auto newest_ns = marks.header.published_ns;
   for (const std::int64_t seconds : {10, 60}) {

@@ -34,11 +34,11 @@ must_catch() {
 }
 
 # An include without a declaration, and a declaration without an include.
-must_catch 'ipc/base does not declare that it USES ipc/msg (ipc/msg/header.hpp)' \
+must_catch 'ipc/msg/header.hpp needs USES ipc/msg in ipc/base/CMakeLists.txt' \
   ipc/base/planted.hpp '#include "ipc/msg/header.hpp"'
-must_catch 'renderer/mask does not declare that it USES renderer/skin' \
+must_catch 'renderer/skin/skinning.hpp needs USES renderer/skin in renderer/mask/CMakeLists.txt' \
   renderer/mask/planted.cpp '#include "renderer/skin/skinning.hpp"'
-must_catch 'calib/CMakeLists.txt: USES renderer/base, and no file includes anything of it' \
+must_catch 'calib/CMakeLists.txt: USES renderer/base, but no file includes a header of it' \
   calib/CMakeLists.txt 'handcast_program(planted USES renderer/base)'
 
 # A declaration of a module in a higher layer.
@@ -53,13 +53,13 @@ must_catch 'supervisor must not use renderer/base' \
   supervisor/planted.cpp '#include "renderer/base/image.hpp"'
 
 # Cycles of two modules, and of two folders inside one module.
-must_catch 'a circle: renderer/filter -> renderer/predict -> renderer/filter' \
+must_catch 'a cycle: renderer/filter -> renderer/predict -> renderer/filter' \
   renderer/predict/CMakeLists.txt 'handcast_program(planted USES renderer/filter)' \
   renderer/predict/planted.cpp '#include "renderer/filter/filters.hpp"'
-must_catch 'a circle: services/landmarks/inference/onnx -> services/landmarks/inference/onednn -> ' \
+must_catch 'a cycle: services/landmarks/inference/onnx -> services/landmarks/inference/onednn -> ' \
   services/landmarks/inference/onnx/planted.cpp '#include "services/landmarks/inference/onednn/builder.hpp"'
 
 # The headers of other projects.
-must_catch 'is kept in config/settings/document.cpp' calib/planted.cpp '#include <toml++/toml.h>'
-must_catch 'is kept in renderer/content/' services/camera/pictures.cpp '#include <opencv2/core.hpp>'
+must_catch 'may only be included by config/settings/document.cpp' calib/planted.cpp '#include <toml++/toml.h>'
+must_catch 'may only be included by renderer/content/' services/camera/pictures.cpp '#include <opencv2/core.hpp>'
 echo "all planted breaches were caught"

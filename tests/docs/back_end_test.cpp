@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The back end that docs/writing-a-back-end.md writes, held against the contract of all cameras.
+// Runs the contract suite of all cameras on the back end of docs/writing-a-back-end.md.
 #include "tests/services/camera/camera_contract.hpp"
 
 namespace handcast::camera {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_docs finds links and citations that lead nowhere.
+# Tests that check_docs finds broken links and citations.
 set -euo pipefail
 
 copy=$(mktemp -d)
@@ -11,7 +11,7 @@ printf '# Other\n\n## Two words\n' >"$copy/docs/other.md"
 printf '/// docs/page.md#fill, docs/other.md\n' >"$copy/renderer/good.hpp"
 scripts/check_docs "$copy" >/dev/null
 
-# must_find WORDS FILE LINE: planting the line in the file is reported with these words.
+# must_find WORDS FILE LINE: adds the line to a copy of the file; check_docs must report it with these words.
 must_find() {
   local said
   cp -r "$copy" "$copy.planted"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The supervisor itself may die: services and picture go on, and the next supervisor takes them
-// over.
+// The supervisor is killed: services and light continue, and the next supervisor takes them over.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -25,7 +24,7 @@ class Adoption : public SystemTest {
   }
   nlohmann::json state() const { return nlohmann::json::parse(std::ifstream(state_file())); }
 
-  /// The ring as an outsider sees it, through the descriptor of a service: it needs no supervisor.
+  /// A view of the ring through the descriptor of a service, which needs no supervisor.
   ipc::RingView view(const std::string& stream) const {
     const auto saved = state();
     const auto ring = std::ranges::find_if(
@@ -37,7 +36,7 @@ class Adoption : public SystemTest {
         .value();
   }
 
-  /// Kills the supervisor and waits for another one to answer, which a keeper sees to.
+  /// Kills the supervisor and waits until another one, started by the keeper, answers.
   void replace_supervisor(const Command& rig) const {
     const auto before = rig.supervisor();
     ASSERT_GT(before, 0);
@@ -86,7 +85,7 @@ TEST_F(Adoption, AKilledSupervisorIsReplacedWhileServicesAndLightGoOn) {
   EXPECT_EQ(frames.epoch(), camera_epoch);
   for (const auto& name : kServices) EXPECT_EQ(service(name)["state"], "ready") << name;
   expect_more_light();
-  EXPECT_GE(status()["uptime_s"], 9);  // the rig's, not the supervisor's
+  EXPECT_GE(status()["uptime_s"], 9);  // of the rig, not of the supervisor
 
   rig->signal(SIGTERM);
   EXPECT_EQ(rig->wait(), 0) << rig->log();
@@ -109,7 +108,7 @@ TEST_F(Adoption, AnAdoptedServiceThatDiesIsReplacedAndItsEndIsKnown) {
   EXPECT_EQ(service("projector")["last_exit"], "signal 9 (Killed)");
   EXPECT_EQ(service("projector")["restarts"], 1);
   EXPECT_TRUE(eventually([&] { return light.epoch() == epoch + 1; }));
-  EXPECT_GT(light.sequence(), sequence);  // the ring goes on where it was
+  EXPECT_GT(light.sequence(), sequence);  // the ring continues its sequence
 }
 
 TEST_F(Adoption, AServiceThatDiesWhileThereIsNoSupervisorIsStartedByTheNext) {
@@ -118,7 +117,7 @@ TEST_F(Adoption, AServiceThatDiesWhileThereIsNoSupervisorIsStartedByTheNext) {
   const auto supervisor = rig->supervisor();
   const auto before = pids();
   const auto victim = service("landmarks")["pid"].get<pid_t>();
-  rig->signal(SIGSTOP);  // so that it starts nobody yet
+  rig->signal(SIGSTOP);  // it must not start a successor yet
   ASSERT_EQ(kill(supervisor, SIGKILL), 0);
   ASSERT_TRUE(eventually([&] { return !is_alive(supervisor); }));
   ASSERT_EQ(kill(victim, SIGKILL), 0);
@@ -147,7 +146,7 @@ TEST_F(Adoption, WithoutKeeperAndSupervisorTheLightGoesOnAndTheNextUpTakesOver) 
     return service("observer")["pid"] != services.back() && service("observer")["state"] == "ready";
   }));
   auto now = pids();
-  EXPECT_NE(now.back(), services.back());  // its settings are others by now
+  EXPECT_NE(now.back(), services.back());  // its settings have changed
   now.back() = services.back();
   EXPECT_EQ(now, services);
 
@@ -183,7 +182,7 @@ TEST_F(Adoption, ServicesThatCannotBeTakenOverAreNamedAndLeftAlone) {
   EXPECT_EQ(refused->wait(), 111);
   EXPECT_THAT(refused->log(), AllOf(HasSubstr("camera (pid " + std::to_string(services[0]) + ")"),
                                     HasSubstr("cannot be taken over"),
-                                    HasSubstr("`handcast down --rig twin` ends them")));
+                                    HasSubstr("`handcast down --rig twin` stops them")));
   expect_all_alive(services);
   EXPECT_EQ(handcast({"down", "--rig", "twin"}).exit_code, 0);
 }

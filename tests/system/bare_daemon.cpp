@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A daemon that only publishes: what a restart costs without the work of a real one. Linked as
-// handcast-camera, -pose, … it publishes the stream of that service, at once and then at 500 Hz. A
-// message says who sent it (frame_id: the process) and when that process began (origin_ns: its
-// main).
+// A daemon that only publishes, to measure restarts without the work of a real service. Linked as
+// handcast-camera, -pose, …, it publishes the stream of that service immediately and then at 500
+// Hz. In its messages, frame_id is the pid and origin_ns the start of main().
 #include <unistd.h>
 
 #include <string>

@@ -92,7 +92,7 @@ bool is_alive(pid_t pid) {
 
 void kill_all_of(const std::filesystem::path& folder) {
   const auto mark = "XDG_RUNTIME_DIR=" + folder.string() + '\0';
-  for (bool found = true; found;) {  // again, since a keeper may have started another one
+  for (bool found = true; found;) {  // repeated, because a keeper may have started another one
     found = false;
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
       const pid_t pid = std::atoi(entry.path().filename().c_str());

@@ -11,22 +11,23 @@ namespace handcast::system_test {
 
 using Arguments = std::vector<std::string>;
 
-/// A `handcast` command as a process of its own. What it writes goes to files. Killed with the
-/// object; a rig's supervisor and services outlive that: kill_all_of().
+/// A process of a `handcast` command. Its output goes to files. The destructor kills it, but not
+/// the supervisor and the services of a rig: see kill_all_of().
 class Command {
  public:
-  /// `folder` gets the output files and is the command's XDG_RUNTIME_DIR: rigs of other folders are
-  /// not seen.
+  /// `folder`: for the output files; also the command's XDG_RUNTIME_DIR, so that it does not see
+  /// rigs of other folders.
   Command(const std::filesystem::path& folder, const Arguments& arguments);
   ~Command();
   Command(const Command&) = delete;
 
-  pid_t pid() const { return pid_; }  ///< of `handcast up`: its keeper
-  pid_t supervisor()
-      const;  ///< of `handcast up`: the process that the keeper keeps; -1 while there is none
+  /// The pid; for `handcast up`, that of the keeper.
+  pid_t pid() const { return pid_; }
+  /// The pid of the supervisor of `handcast up`; -1 if there is none.
+  pid_t supervisor() const;
   void signal(int number) const;
   bool running();
-  int wait();                  ///< the exit code, or 128 + the signal
+  int wait();                  ///< the exit code, or 128 + the number of the signal
   std::string output() const;  ///< stdout
   std::string log() const;     ///< stderr
 
@@ -37,18 +38,18 @@ class Command {
   bool reaped_ = false;
 };
 
-/// Tries often until `done` holds; false after a minute.
+/// Waits until `done` returns true. Returns false after a minute.
 bool eventually(const std::function<bool()>& done);
 
-/// Whether the process exists and is not only waiting for its exit status to be taken.
+/// True if the process exists and is not a zombie.
 bool is_alive(pid_t pid);
 
-/// Kills every process that was started with this runtime folder, however it got away.
+/// Kills all processes that were started with this runtime folder.
 void kill_all_of(const std::filesystem::path& folder);
 
-/// Where handcast and its daemons were built.
+/// The folder of handcast and its daemons.
 std::filesystem::path program_folder();
-/// Why nothing can be tested here; "" where everything has been built.
+/// Why the tests cannot run; "" if all programs have been built.
 std::string missing_program();
 
 }  // namespace handcast::system_test

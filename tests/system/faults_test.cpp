@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong, and what is changed, while the light must go on.
+// Faults and changes during which the light must continue.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <unistd.h>
@@ -28,7 +28,7 @@ class Faults : public SystemTest {
   }
 };
 
-/// Half a second of the twin's left hand.
+/// A recording of half a second of the twin's left hand.
 void record_a_hand(const std::filesystem::path& folder) {
   const auto twin = twin::Twin::create({}, calib::reference_rig());
   ASSERT_TRUE(twin) << twin.error().what;
@@ -57,7 +57,7 @@ TEST_F(Faults, EachServiceMayBeKilledAndTheLightGoesOn) {
                 ns_to_ms(now_ns() - killed_ns));
     expect_more_light();
     restarts[name] = 1;
-    expect_restarts(restarts);  // it came back, and nobody else had to
+    expect_restarts(restarts);  // only this service was restarted
     EXPECT_EQ(service(name)["last_exit"], "signal 9 (Killed)");
   }
   rig->signal(SIGINT);
@@ -105,7 +105,7 @@ TEST_F(Faults, AMachineThatStoodStillKillsNobody) {
   auto everybody = pids();
   everybody.insert(everybody.begin(), rig->supervisor());
   for (const auto pid : everybody) kill(pid, SIGSTOP);
-  sleep(4);  // twice what a service may be silent
+  sleep(4);  // twice as long as a service may be silent
   for (const auto pid : everybody) kill(pid, SIGCONT);
   expect_more_light();
   EXPECT_TRUE(eventually([&] { return rig->log().find("stood still") != std::string::npos; }));

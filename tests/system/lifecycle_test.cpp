@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rig from start to stop, as real processes.
+// The start and the stop of a rig of real processes.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -50,7 +50,7 @@ TEST_F(Lifecycle, ARunOfSomeSecondsEndsByItselfAndKeepsItsFigures) {
   EXPECT_EQ(rig->wait(), 0) << rig->log();
   const auto report = nlohmann::json::parse(std::ifstream(out / "live.json"), nullptr, false);
   EXPECT_GE(report["seconds"], 4);
-  EXPECT_EQ(report["rates"]["camera"]["asked_hz"], 60);
+  EXPECT_EQ(report["rates"]["camera"]["wanted_hz"], 60);
   EXPECT_GT(report["rates"]["camera"]["held_hz"], 0);
   EXPECT_EQ(report["services"]["pose"]["backend"], "twin");
   EXPECT_EQ(report["services"]["pose"]["restarts"], 0);
@@ -61,8 +61,8 @@ TEST_F(Lifecycle, ARunOfSomeSecondsEndsByItselfAndKeepsItsFigures) {
 TEST_F(Lifecycle, RestartingAServiceAgainAndAgainTakesNoDescriptors) {
   const auto rig = up();
   wait_until_light();
-  const auto before = descriptors_of(
-      rig->supervisor());  // maybe one more than needed: that of the last status request
+  const auto before =
+      descriptors_of(rig->supervisor());  // may include the connection of the last status request
   for (int i = 0; i < 3; ++i) EXPECT_EQ(handcast({"restart", "observer"}).exit_code, 0);
   EXPECT_EQ(service("observer")["restarts"], 3);
   EXPECT_TRUE(eventually([&] { return descriptors_of(rig->supervisor()) <= before; }))

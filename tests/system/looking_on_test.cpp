@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looking on at a rig: `handcast top` and the figures for Prometheus.
+// Observation of a rig: `handcast top` and the metrics for Prometheus.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <netinet/in.h>
@@ -31,7 +31,7 @@ sockaddr_in loopback(int port) {
           .sin_zero = {}};
 }
 
-/// A socket that listens at a port that was free. Close it to let somebody else have the port.
+/// A socket that listens on a free port. Close it to free the port.
 std::pair<UniqueFd, int> take_port() {
   UniqueFd listener(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   auto address = loopback(0);
@@ -43,7 +43,7 @@ std::pair<UniqueFd, int> take_port() {
   return {std::move(listener), ntohs(address.sin_port)};
 }
 
-/// What a server of this machine answers; "" where none does.
+/// The answer of a server on this machine; "" if there is none.
 std::string fetch(int port, const std::string& path) {
   const UniqueFd client(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto address = loopback(port);
@@ -58,8 +58,7 @@ std::string fetch(int port, const std::string& path) {
   return answer;
 }
 
-/// The local addresses at which somebody listens at the port, as the kernel prints them
-/// (hexadecimal).
+/// The local addresses of sockets that listen on the port, as the kernel prints them (hexadecimal).
 std::vector<std::string> listeners_at(int port) {
   std::vector<std::string> addresses;
   for (const auto* file : {"/proc/net/tcp", "/proc/net/tcp6"}) {
@@ -139,7 +138,7 @@ TEST_F(LookingOn, AMetricsPortThatIsTakenIsSaidAndNotTriedAgain) {
   const auto taken = take_port();
   const auto rig = up({"--set", "supervisor.metrics_port=" + std::to_string(taken.second)});
   EXPECT_EQ(rig->wait(), 100);
-  EXPECT_THAT(rig->log(), HasSubstr("set supervisor.metrics_port to another, or to 0"));
+  EXPECT_THAT(rig->log(), HasSubstr("set supervisor.metrics_port to another port, or to 0"));
 }
 
 TEST_F(LookingOn, NothingListensUnlessAskedFor) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An observer that falls into an endless loop when it finds the file that HANDCAST_LOOP names,
-// once.
+// An observer that enters an endless loop, once, when the file named by HANDCAST_LOOP exists.
 #include <cstdlib>
 #include <filesystem>
 

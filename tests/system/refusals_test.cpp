@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What cannot work ends at once, in a sentence.
+// Commands that cannot work end at once with a sentence.
 #include <gmock/gmock.h>
 #include <signal.h>
 

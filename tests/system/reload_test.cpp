@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `handcast reload`: a changed rig file restarts what it changes and nothing else.
+// `handcast reload` restarts only the services whose settings changed.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -21,7 +21,7 @@ class Reload : public SystemTest {
   void write_rig(const std::string& more) const {
     std::ofstream(file_) << "name = \"desk\"\n" << more;
   }
-  /// A rig file of the test's own, at rates that leave the machine some air.
+  /// A rig file with rates that do not overload the machine.
   void write_rig_with(const std::string& camera, const std::string& more = "") const {
     write_rig("[camera]\n" + camera + "\n[projector]\nrate_hz = 60\n[supervisor]\nready_s = 60\n" +
               more);
@@ -45,7 +45,7 @@ class Reload : public SystemTest {
       processes[name] = service["pid"].get<pid_t>();
     return processes;
   }
-  /// The services that have another process than `before`, or appeared or went.
+  /// The services that have another process than in `before`, or are only in one of the two.
   std::vector<std::string> changed_since(const std::map<std::string, pid_t>& before) const {
     std::vector<std::string> names;
     auto now = processes();
@@ -73,7 +73,7 @@ TEST_F(Reload, RestartsTheServicesThatReadWhatChangedAndTheLightGoesOn) {
   EXPECT_EQ(outcome.output,
             "reloaded: camera, landmarks restarted; pose, projector, observer untouched\n");
   EXPECT_THAT(changed_since(before), UnorderedElementsAre("camera", "landmarks"));
-  EXPECT_EQ(status()["rings"]["camera.frames"]["asked_hz"], 50);
+  EXPECT_EQ(status()["rings"]["camera.frames"]["wanted_hz"], 50);
   EXPECT_EQ(service("camera")["state"], "ready");
   expect_more_light();
 }
@@ -131,7 +131,7 @@ TEST_F(Reload, AServiceThatAppearsIsStartedAndOneThatGoesIsStopped) {
   EXPECT_FALSE(is_alive(observer));
   EXPECT_FALSE(status()["services"].contains("observer"));
 
-  write_rig_with(kCalm, kObserver);  // and once more: its rings are there already
+  write_rig_with(kCalm, kObserver);  // again, because now its rings exist already
   EXPECT_THAT(handcast({"reload"}).output, HasSubstr("observer started"));
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
   EXPECT_EQ(rig->wait(), 0);

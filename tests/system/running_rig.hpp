@@ -11,30 +11,32 @@
 
 namespace handcast::system_test {
 
-/// A folder in which rigs can run that no other test sees.
+/// A runtime folder for the rigs of one test.
 class SystemTest : public testing::Test {
  protected:
   void SetUp() override;
   void TearDown() override { kill_all_of(scratch_.path()); }
 
-  /// `handcast ARGUMENTS...`, to its end.
+  /// The result of a command.
   struct Outcome {
     int exit_code = 0;
     std::string output, log;
   };
+  /// Runs `handcast ARGUMENTS...` to its end.
   Outcome handcast(const Arguments& arguments) const;
 
-  /// `handcast up` of the twin at rates that leave the machine some air, with `more` behind it.
+  /// `handcast up` of the twin at rates that do not overload the machine, with the arguments
+  /// `more`.
   std::unique_ptr<Command> up(const Arguments& more = {}) const;
   /// Waits until every service is ready and light flows.
   void wait_until_light() const;
 
-  nlohmann::json status() const;  ///< of the only rig; null if none answers
+  nlohmann::json status() const;  ///< status of the only rig; null if none answers
   nlohmann::json service(const std::string& name) const { return status()["services"][name]; }
   std::uint64_t light() const;  ///< frames projected so far
   void expect_more_light() const;
   std::vector<pid_t> pids() const;
-  /// Names of everything that could be left behind outside the processes.
+  /// Names of files and shared memory that a rig could leave behind.
   std::vector<std::string> traces() const;
 
   test::Scratch scratch_;
@@ -43,7 +45,7 @@ class SystemTest : public testing::Test {
 inline const std::vector<std::string> kServices{"camera", "pose", "landmarks", "projector",
                                                 "observer"};
 
-/// The text of the file's last line.
+/// The last line of a text.
 std::string last_line(const std::string& text);
 
 }  // namespace handcast::system_test

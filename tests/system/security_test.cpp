@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rig that is up shows to others: nothing.
+// A running rig is not accessible to other users.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <netinet/in.h>
@@ -27,7 +27,7 @@ class Security : public SystemTest {
     processes.insert(processes.end(), {rig.pid(), rig.supervisor()});
     return processes;
   }
-  /// What every ring's descriptor is for a tool.
+  /// The descriptors of all rings that a tool gets.
   std::vector<UniqueFd> rings() const {
     setenv("XDG_RUNTIME_DIR", scratch_.path().c_str(), 1);
     auto answer = control::ask_with_descriptors("twin", {.verb = control::Verb::rings});
@@ -48,7 +48,7 @@ std::set<std::string> socket_inodes_of(pid_t pid) {
   return inodes;
 }
 
-/// The lines of /proc/net/NAME whose socket is one of the process's.
+/// The lines of /proc/net/NAME with sockets of the process.
 std::vector<std::string> network_sockets_of(pid_t pid, const std::string& name) {
   const auto inodes = socket_inodes_of(pid);
   std::ifstream table("/proc/net/" + name);
@@ -70,10 +70,10 @@ TEST_F(Security, ARigOpensNoNetworkSocket) {
     for (const auto* name : {"tcp", "tcp6", "udp", "udp6", "raw", "raw6"})
       EXPECT_THAT(network_sockets_of(pid, name), IsEmpty()) << name << " of process " << pid;
   }
-  EXPECT_TRUE(has_sockets);  // the control socket at least was looked at
+  EXPECT_TRUE(has_sockets);  // at least the control socket
 }
 
-/// A port of the loopback that was free a moment ago.
+/// A free port of the loopback interface.
 int free_port() {
   const UniqueFd socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};

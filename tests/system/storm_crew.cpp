@@ -27,7 +27,7 @@ ipc::Segment again(const ipc::Segment& ring) {
   return std::move(*segment);
 }
 
-/// Publishes a scroll, or changes its mind. False: no slot was free.
+/// Publishes a scroll, or abandons the loan. Returns false if no slot was free.
 bool write_one(ipc::Writer<Scroll>& writer, Notes& notes, Random& random) {
   auto scroll = writer.loan();
   if (!scroll) {
@@ -41,7 +41,8 @@ bool write_one(ipc::Writer<Scroll>& writer, Notes& notes, Random& random) {
   return true;
 }
 
-/// Every fourth writer never rests; the others rest up to half a millisecond after each message.
+/// One writer in four publishes without pauses, the others pause for up to 0.5 ms after each
+/// message.
 [[noreturn]] void write_without_end(const ipc::Segment& ring, Notes& notes, Random random) {
   auto writer = ipc::Writer<Scroll>::attach(again(ring));
   if (!writer) {
@@ -96,7 +97,7 @@ class ReaderProcess {
     epoch_ = scroll.epoch();
     held_.push_back(std::move(scroll));
     while (held_.size() > random_() % 3)
-      let_go();  // holds none, one or two of them while it waits for the next
+      let_go();  // keeps zero, one or two of them during the next wait
   }
 
   void let_go() {

@@ -10,15 +10,15 @@
 #include "ipc/ring/reader.hpp"
 #include "ipc/shm/segment.hpp"
 
-/// The processes of the ring storm: one writer and several readers a ring, all of which may be
-/// killed at any moment.
+/// The processes of the ring storm: one writer and several readers per ring. Each may be killed at
+/// any time.
 namespace handcast::storm {
 
 struct ReaderKind {
   const char* name;
   ipc::Wait wait;
   ipc::Hold hold;
-  bool in_order;  ///< next(); else latest()
+  bool in_order;  ///< reads by next(), otherwise by latest()
 };
 inline constexpr std::array<ReaderKind, 5> kReaderKinds{{
     {"copies, futex, next", ipc::Wait::futex, ipc::Hold::copy, true},
@@ -28,14 +28,14 @@ inline constexpr std::array<ReaderKind, 5> kReaderKinds{{
     {"leases, eventfd, next", ipc::Wait::eventfd, ipc::Hold::lease, true},
 }};
 
-/// What a process writes down in memory that outlives it. `seen` and `turn` are of its last life.
+/// The notes of a process in memory that outlives it. `seen` and `turn` are of the last process.
 struct Notes {
-  std::atomic<std::uint64_t> turn{0};  ///< odd: it waits for a message
+  std::atomic<std::uint64_t> turn{0};  ///< odd while it waits for a message
   std::atomic<std::uint64_t> seen{0};  ///< sequence of the last message
   std::atomic<std::uint64_t> messages{0}, torn{0}, backwards{0}, refused{0}, no_slot{0};
 };
 
-/// One seat of the crew: the same job over many lives.
+/// A writer or a reader, over many processes.
 class Seat {
  public:
   Seat(const ipc::Segment& ring, const ReaderKind* reader, Notes& notes)
@@ -44,7 +44,7 @@ class Seat {
   Seat(const Seat&) = delete;
 
   void start(std::uint64_t seed);
-  void kill();  ///< and waits until it is dead
+  void kill();  ///< kills the process and waits for its end
   void stop_for_a_while(bool stop);
 
   bool is_reader() const { return reader_ != nullptr; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Services of a living rig, killed at random.
+// Random services of a running rig are killed.
 #include <signal.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kProjector_hz = 60;
 
 class RigStorm : public SystemTest {
  protected:
-  /// Frames the projector made in this time, as a share of those it was asked for.
+  /// The number of frames of the projector in this time, as a fraction of the wanted number.
   double share_of_light_during(const std::function<void()>& what) const {
     const auto frames = light();
     const auto start_ns = now_ns();
@@ -28,7 +28,7 @@ class RigStorm : public SystemTest {
            (ns_to_seconds(now_ns() - start_ns) * kProjector_hz);
   }
 
-  /// Its process now; 0 while it is being started again.
+  /// The pid of a service; 0 while it is being restarted.
   pid_t pid_of(const std::string& name) const { return service(name)["pid"].get<pid_t>(); }
 
   void kill_one_of(const std::vector<std::string>& names, std::mt19937& random) const {
@@ -65,11 +65,10 @@ TEST_F(RigStorm, TheProjectorGoesOnWhileTheOthersAreKilled) {
   const double stormy = share_of_light_during([&] {
     for (int i = 0; i < 10; ++i) kill_one_of({"camera", "pose", "landmarks", "observer"}, random);
   });
-  std::printf("frames of the light, of those asked for: %.1f %% in quiet, %.1f %% under kills\n",
+  std::printf("frames of the light, of those wanted: %.1f %% without kills, %.1f %% with kills\n",
               100 * quiet, 100 * stormy);
   EXPECT_EQ(pid_of("projector"), projector);
-  EXPECT_GT(stormy, 0.9 * quiet);  // the machine has other things to do too: `scripts/soak`
-                                   // measures it to the last frame
+  EXPECT_GT(stormy, 0.9 * quiet);  // a busy machine loses frames, too; `scripts/soak` is exact
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writers and readers of three rings, killed at random and replaced at once, hundreds of times.
+// Random writers and readers of three rings are killed and replaced, hundreds of times.
 //   HANDCAST_STORM_KILLS=10000   kills instead of 500
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -28,7 +28,7 @@ using ipc::testing::must;
 
 constexpr int kUsualKills = 500;
 constexpr std::int64_t kHang_ns =
-    250'000'000;  ///< a starved process of a busy machine sleeps 120 ms without anybody's fault
+    250'000'000;  ///< on a busy machine a process may get no processor for 120 ms
 constexpr std::int64_t kLook_every_ns = 2'000'000;
 
 int kills_asked() {
@@ -51,7 +51,7 @@ std::size_t entries_of(const std::filesystem::path& folder) {
       std::distance(std::filesystem::directory_iterator(folder, absent), {}));
 }
 
-/// Processes of ours that still have a ring of the storm in their memory.
+/// Processes of this user that still have a ring of the storm mapped.
 int processes_with_a_ring() {
   int count = 0;
   for (const auto& process : std::filesystem::directory_iterator("/proc")) {
@@ -107,11 +107,11 @@ class Storm {
       victim.kill();
       victim.start(random_());
     }
-    look_on_until(now_ns() + 2 * kHang_ns);  // whoever sleeps through something now is found
+    look_on_until(now_ns() + 2 * kHang_ns);  // finds readers that miss a wake-up
     for (const auto& seat : seats_) seat->kill();
   }
 
-  /// After the death of everyone: what of a ring cannot be used again.
+  /// The number of slots that cannot be used again after the death of all processes.
   int leaked_slots() const {
     int leaked = 0;
     for (const auto& ring : rings_) {
@@ -157,7 +157,7 @@ class Storm {
     }
   }
 
-  /// Stopped in the middle of anything, and continued later: a lease must have held meanwhile.
+  /// Stops a process at a random place and continues it later; its leases must hold meanwhile.
   void pause(Seat& seat) {
     if (paused_) go_on();
     paused_ = &seat;

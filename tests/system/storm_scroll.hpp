@@ -8,8 +8,8 @@
 
 namespace handcast::storm {
 
-/// A message of changing length whose every word follows from its number: whoever holds one can see
-/// whether it is whole.
+/// A message of varying length. All its words follow from its number, so a reader can check that it
+/// is not torn.
 struct Scroll {
   static constexpr std::string_view layout = "Scroll/1";
   static constexpr std::size_t kMostWords = 2048;

@@ -35,8 +35,8 @@ bool Watch::sleeps_beside_something_new() const {
          state_of(reader_.pid()) == 'S';
 }
 
-/// It was never awake between two looks that find it asleep in the same turn: awake, it would have
-/// seen what is new.
+/// If two looks find the reader asleep in the same turn, it did not wake up in between: it would
+/// have read the new message.
 void Watch::look(std::int64_t now_ns) {
   const auto turn = reader_.notes().turn.load();
   const bool same = turn == turn_ && reader_.pid() == pid_;

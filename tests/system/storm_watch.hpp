@@ -8,9 +8,9 @@
 
 namespace handcast::storm {
 
-/// Sees from outside how long a reader sleeps although its ring holds something newer than what it
-/// has seen. A reader that is runnable and gets no processor, or is stopped, does not count: that
-/// is the machine's doing, not the ring's.
+/// Measures from outside how long a reader sleeps although its ring has a newer message than its
+/// last one. Time in which the reader is stopped, or runnable without a processor, does not count,
+/// because the ring does not cause it.
 class Watch {
  public:
   explicit Watch(const Seat& reader) : reader_(reader) {}
@@ -19,8 +19,7 @@ class Watch {
   void look(std::int64_t now_ns);
   /// The longest such sleep so far.
   std::int64_t longest_ns() const { return longest_ns_; }
-  /// How many were long enough to be ended by the reader's own second look after 100 ms instead of
-  /// a wake-up.
+  /// The number of such sleeps that ended by the time limit of 100 ms and not by a wake-up.
   int late() const { return late_; }
 
  private:
@@ -29,7 +28,7 @@ class Watch {
   const Seat& reader_;
   std::uint64_t turn_ = 0;
   pid_t pid_ = 0;
-  std::int64_t since_ns_ = 0;  ///< 0: it does not sleep through anything
+  std::int64_t since_ns_ = 0;  ///< begin of such a sleep; 0: none
   std::int64_t longest_ns_ = 0;
   bool counted_ = false;
   int late_ = 0;

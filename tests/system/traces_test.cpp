@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a running rig can tell about where its time went.
+// Traces and latencies of a running rig.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -63,7 +63,7 @@ TEST_F(Traces, ATraceFollowsAFrameFromItsExposureToTheLight) {
     EXPECT_EQ(way[0].name, "capture");
     EXPECT_EQ(way[0].annotations.at("frame_id"), way[1].annotations.at("frame_id"));
     EXPECT_LT(way[0].begin_ns, way[1].begin_ns);
-    EXPECT_LE(way[1].end_ns, way[2].begin_ns) << "a frame knows what was found before it was begun";
+    EXPECT_LE(way[1].end_ns, way[2].begin_ns) << "a frame uses only earlier detections";
   }
   EXPECT_GT(whole, 0);
   for (const auto& draw : seen.named("draw"))
@@ -78,8 +78,8 @@ TEST_F(Traces, LatencyTellsEveryStageAndTheWayFromExposureToLight) {
   std::vector<std::string> services;
   for (const auto& service : figures["services"]) services.push_back(service["service"]);
   EXPECT_THAT(services, testing::ElementsAre("camera", "pose", "landmarks", "projector"));
-  EXPECT_EQ(figures["services"][0]["asked_hz"], 60);
-  EXPECT_TRUE(figures["services"][2]["asked_hz"].is_null());
+  EXPECT_EQ(figures["services"][0]["wanted_hz"], 60);
+  EXPECT_TRUE(figures["services"][2]["wanted_hz"].is_null());
   for (const auto* rows : {"stages", "end_to_end"}) {
     for (const auto& row : figures[rows]) {
       EXPECT_GT(row["count"], 0) << row;

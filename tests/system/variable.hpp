@@ -6,7 +6,7 @@
 
 namespace handcast::system_test {
 
-/// A variable of the environment, as long as the object lives.
+/// Sets an environment variable during the lifetime of the object.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {

@@ -12,7 +12,11 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: handcast-make-hands FOLDER\n"), 2;
   const std::filesystem::path folder = argv[1];
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::create_directories(folder, error); error) {
+    std::fprintf(stderr, "handcast-make-hands: %s cannot be created: %s\n", folder.c_str(),
+                 error.message().c_str());
+    return 1;
+  }
   for (const Side side : {Side::left, Side::right}) {
     const auto file = folder / (side == Side::left ? "hand_left.glb" : "hand_right.glb");
     if (const auto saved = save_hand(make_hand(HandShape::mean(), side), file); !saved) {

@@ -24,10 +24,10 @@ std::optional<double> rate_of(const Source& live, const std::string& service, co
 }
 
 std::string held_share(const Source& live, const std::string& service) {
-  const auto asked_hz = rate_of(live, service, "asked_hz"),
+  const auto wanted_hz = rate_of(live, service, "wanted_hz"),
              held_hz = rate_of(live, service, "held_hz");
-  if (!asked_hz || !held_hz || *asked_hz <= 0) return "–";
-  return fmt::format("{:.0f} %", 100 * *held_hz / *asked_hz);
+  if (!wanted_hz || !held_hz || *wanted_hz <= 0) return "–";
+  return fmt::format("{:.0f} %", 100 * *held_hz / *wanted_hz);
 }
 
 /// The names of the services in the order of the data flow, then all others.
@@ -54,7 +54,7 @@ std::string services_table(const Source& live) {
         "<tr><th "
         "scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         page::escape(name), text_at(service, "backend"),
-        page::figure(rate_of(live, name, "asked_hz"), 1),
+        page::figure(rate_of(live, name, "wanted_hz"), 1),
         page::figure(rate_of(live, name, "held_hz"), 1), held_share(live, name),
         text_at(service, "restarts"));
   }

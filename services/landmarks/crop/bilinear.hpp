@@ -9,8 +9,8 @@
 
 namespace handcast::landmarks {
 
-/// Samples a grey image between its pixels. Outside the image everything is black; the last pixel
-/// fades to black over one pixel. Keeps its buffer between images. One thread.
+/// Samples a grey image between its pixels. The outside of the image is black; at its edge, the
+/// last pixel fades to black over one pixel. Keeps its buffer between images. One thread.
 ///
 /// The four pixels around a sample are stored as one 32-bit word, which a vector unit loads with
 /// one gather.

@@ -33,7 +33,8 @@ class Crop {
   /// Writes three equal channels 0..1, pixel by pixel. The gain brings level() to kHandLevel, but
   /// is kMostGain at most.
   void write_rgb(std::span<float> rgb) const;
-  static constexpr float kHandLevel = 150, kMostGain = 12;
+  static constexpr float kHandLevel = 150;  ///< brightness after the gain, 0..255
+  static constexpr float kMostGain = 12;    ///< largest gain
 
  private:
   int side_px_;

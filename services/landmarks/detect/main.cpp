@@ -19,7 +19,7 @@ namespace handcast::detect {
 namespace {
 
 const char* const kFooter =
-    R"(Each picture is treated as the first image of a stream: a hand is looked for where --joints has it, otherwise where the palm network finds one.
+    R"(Each picture is treated as the first image of a stream: a hand is searched at the place of --joints, otherwise at the places that the palm network finds.
 Points are pixels of the picture, (0, 0) is the centre of the upper left one; they are as the network defines them, with the lens's distortion.
 --out draws bones and landmarks, the square that the network was given (with a thick upper edge) and the tracker's joints as crosses.)";
 
@@ -84,7 +84,7 @@ int main(int argc, char** argv) try {
                  "Repeats each detection and prints the median of the times")
       ->check(CLI::Range(1, 100000));
   app.add_flag("--json", options.json, "Prints JSON");
-  app.add_flag("--quiet", options.quiet, "No progress line");
+  app.add_flag("--quiet", options.quiet, "Prints no progress");
   app.set_version_flag("--version", fmt::format("handcast detect {}", version()));
   try {
     app.parse(argc, argv);

@@ -11,17 +11,17 @@ namespace handcast::detect {
 
 /// The command line of `handcast detect`.
 struct Options {
-  std::vector<std::filesystem::path> images;
-  std::vector<std::filesystem::path> joints;  ///< one per image, or none
-  msg::Side joints_side = msg::Side::left;
-  std::string backend = "mediapipe";  ///< the landmark model: this one needs no tracker
-  config::Executor executor = config::Executor::onednn;
-  std::string models;                 ///< folder of the networks' files; empty: the usual one
-  std::filesystem::path output = "";  ///< folder for drawings; empty: nothing is drawn
-  int hands = 2;
-  int repeat = 1;
-  bool json = false;
-  bool quiet = false;
+  std::vector<std::filesystem::path> images;  ///< the pictures
+  std::vector<std::filesystem::path> joints;  ///< --joints: one per image, or none
+  msg::Side joints_side = msg::Side::left;    ///< --side: of the hand in `joints`
+  std::string backend = "mediapipe";          ///< the landmark model; the default needs no tracker
+  config::Executor executor = config::Executor::onednn;  ///< the library that runs the networks
+  std::string models;                 ///< folder of the networks' files; empty: see models_folder()
+  std::filesystem::path output = "";  ///< --out: folder for drawings; empty: no drawings
+  int hands = 2;                      ///< the largest number of hands
+  int repeat = 1;                     ///< number of detections per picture
+  bool json = false;                  ///< print JSON
+  bool quiet = false;                 ///< print no progress
 };
 
 /// Sets the landmark model. An old name is read as the current one, may set the executor as well,

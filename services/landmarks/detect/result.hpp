@@ -8,11 +8,11 @@
 
 namespace handcast::detect {
 
-/// What was found in one picture.
+/// The hands in one picture.
 struct Result {
-  std::filesystem::path image;
-  std::vector<landmarks::FoundHand> hands;
-  landmarks::HandFinder::Times times;  ///< medians over the repetitions
+  std::filesystem::path image;              ///< file of the picture
+  std::vector<landmarks::FoundHand> hands;  ///< the hands
+  landmarks::HandFinder::Times times;       ///< medians over the repetitions
 };
 
 /// "left" or "right".

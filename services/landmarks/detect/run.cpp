@@ -30,7 +30,7 @@ Times median_of(std::vector<Times>& runs) {
   return median;
 }
 
-/// The file of each picture's drawing, no two the same.
+/// The files of the pictures' drawings, all different.
 std::vector<fs::path> drawings_of(const Options& options) {
   std::vector<fs::path> drawings;
   std::set<std::string> taken;
@@ -48,7 +48,7 @@ handcast::Result<void> save(const fs::path& file, const renderer::Texture& drawi
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error)
-    return fail(Errc::unavailable, fmt::format("the folder '{}' cannot be made: {}",
+    return fail(Errc::unavailable, fmt::format("the folder '{}' cannot be created: {}",
                                                file.parent_path().string(), error.message()));
   return renderer::write_png(file, drawing.view());
 }
@@ -92,7 +92,7 @@ handcast::Result<std::string> run(const Options& options) {
     return fail(
         Errc::bad_config,
         fmt::format(
-            "{} pictures, but {} files of joints; give one --joints a picture, in the same order",
+            "{} pictures, but {} files of joints; give one --joints per picture, in the same order",
             options.images.size(), options.joints.size()));
   auto model = landmarks::open_landmark_model(
       options.backend,

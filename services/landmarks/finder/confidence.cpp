@@ -14,7 +14,7 @@ constexpr float kAgrees = 0.08f;     ///< the usual error of a tracker's finger
 constexpr float kDiffers = 0.2f;     ///< from the tip of one finger to that of its neighbour
 constexpr float kMostShift = 0.16f;  ///< the largest error of a tracker in a hand's position
 
-constexpr float kLeastTrust = 0.3f;  ///< factor of a landmark on which the tracker disagrees
+constexpr float kLeastTrust = 0.3f;  ///< factor of a landmark that contradicts the tracker
 
 float median(Confidences values) {
   const auto middle = values.begin() + values.size() / 2;

@@ -23,7 +23,7 @@ std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
 
 bool any(const Hints& hints_px) { return std::ranges::any_of(hints_px, is_usable); }
 
-/// Whether a part of the region can lie in the image.
+/// True if a part of the region may lie in the image.
 bool touches(const Region& region, renderer::GreyView image) {
   const glm::vec2 nearest =
       glm::clamp(region.centre_px, glm::vec2(0), glm::vec2(image.width - 1, image.height - 1));
@@ -75,7 +75,7 @@ bool HandFinder::is_found(msg::Side side) const {
   return std::ranges::any_of(found_, [&](const FoundHand& hand) { return hand.side == side; });
 }
 
-/// Adds the candidate to the hands that are found, if it is a hand.
+/// Estimates a candidate and adds it to the found hands if it is a hand.
 Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& candidate) {
   Region region;
   const auto hand = estimate(image, candidate, region);
@@ -92,7 +92,8 @@ Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& 
   return {};
 }
 
-/// The last estimate of the candidate; `region` is set to the part of the image it was made in.
+/// Estimates the candidate in one or more passes and returns the last estimate. Sets `region` to
+/// its part of the image.
 Result<LandmarkEstimate> HandFinder::estimate(renderer::GreyView image,
                                               const HandCandidate& candidate, Region& region) {
   LandmarkEstimate last;
@@ -132,8 +133,8 @@ Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCand
   return is_right_side == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
 }
 
-/// Two candidates may end on one hand. The one that stays is nearer to its hint or, without hints,
-/// has the larger presence.
+/// Two candidates may have the same hand as their result. Keeps the one that is nearer to its hint
+/// or, without hints, has the larger presence.
 void HandFinder::drop_duplicate(const Hints& hints_px) {
   if (found_.size() < 2) return;
   if (!are_one_hand(found_[0].points_px, found_[1].points_px)) return;
@@ -147,8 +148,8 @@ void HandFinder::drop_duplicate(const Hints& hints_px) {
   found_.erase(found_.begin() + (keep_first ? 1 : 0));
 }
 
-/// Without a hand, the image is searched every few images. With one, a second is searched for
-/// rarely, and only without a tracker, which would have it.
+/// Without a hand, one in a few images is searched. With one hand, images are searched for a second
+/// one rarely, and only without a tracker, because the tracker would report it.
 bool HandFinder::search_is_due(const Hints& hints_px) {
   ++since_search_;
   if (!model_.palms) return false;
@@ -194,8 +195,8 @@ Result<void> HandFinder::examine_either_side(renderer::GreyView image, const Reg
   return {};
 }
 
-/// The side of a hand that the tracker does not have changes if its left score has long said so and
-/// there is no hand of that side.
+/// Changes the side of a hand that the tracker does not have, if its mean left score clearly
+/// contradicts it and there is no other hand of the new side.
 void HandFinder::settle_sides(const Hints& hints_px) {
   for (auto& hand : found_) {
     if (is_usable(hints_px[index_of(hand.side)])) continue;

@@ -9,14 +9,16 @@
 
 namespace handcast::landmarks {
 
-/// Finds the hands of one image after another. It looks for a hand where it was in the last image,
-/// moved on with the tracker; otherwise where the tracker has it; otherwise, every few images,
-/// where the palm network finds one. Without a palm network, it looks where a hand was last. One
-/// thread, no allocation while hands are followed.
+/// Finds the hands in a sequence of images. It examines the place of a hand in the last image,
+/// moved on with the tracker; otherwise the place that the tracker reports; otherwise, every few
+/// images, the places that the palm network finds. Without a palm network, it examines the last
+/// place of a hand. One thread, no allocation while hands are followed.
 class HandFinder {
  public:
   /// A hand with a smaller presence, or a smaller mean confidence, is not reported.
+  /// @{
   static constexpr float kLeastPresence = 0.5f, kLeastConfidence = 0.3f;
+  /// @}
 
   /// `most_hands`: 1 or 2.
   HandFinder(OpenedModel model, int most_hands)
@@ -31,12 +33,16 @@ class HandFinder {
   /// Forgets all images.
   void forget();
 
-  /// How long the parts of find() took, and how often it ran each network.
+  /// The times of the parts of find(), and how often it ran each network.
   struct Times {
-    std::int64_t crop_ns = 0, network_ns = 0, palm_ns = 0, all_ns = 0;
-    int model_runs = 0, palm_runs = 0;
+    std::int64_t crop_ns = 0;     ///< EstimateTimes::crop_ns of all estimates
+    std::int64_t network_ns = 0;  ///< EstimateTimes::network_ns of all estimates
+    std::int64_t palm_ns = 0;     ///< the palm network with its crop
+    std::int64_t all_ns = 0;      ///< the whole call
+    int model_runs = 0;           ///< runs of the landmark network
+    int palm_runs = 0;            ///< runs of the palm network
   };
-  /// Those of the last find().
+  /// The times of the last find().
   const Times& times() const { return times_; }
 
  private:

@@ -13,7 +13,7 @@ constexpr std::int64_t kForget_ns = 300'000'000;
 
 std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
 
-/// The hint, if it can be of the hand at these points.
+/// The hint if it is near enough to belong to the hand at these points; otherwise empty.
 std::optional<Points> if_near(const std::optional<Points>& hint_px, const Points& points_px,
                               const LandmarkModel& model) {
   if (!is_usable(hint_px)) return std::nullopt;

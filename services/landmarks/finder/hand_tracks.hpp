@@ -10,22 +10,22 @@
 
 namespace handcast::landmarks {
 
-/// The mean confidence from which on a hand is looked for around its own points in the next image.
-/// Below it, they may lie beside the hand.
+/// The least mean confidence of a hand whose own points are followed in the next image. With less,
+/// the points may lie beside the hand.
 inline constexpr float kSteadyConfidence = 0.6f;
 
 /// A place in the next image where a hand may be.
 struct HandCandidate {
-  msg::Side side;
-  Region region;
+  msg::Side side;                 ///< which hand it may be
+  Region region;                  ///< the part of the image to examine
   std::optional<Points> hint_px;  ///< the tracker's joints of this hand
-  bool is_followed = false;       ///< the hand was found there, and steadily, in the last image
-  float left_score = -1;          ///< as it was in the last image; negative: not known
+  bool is_followed = false;       ///< the last image had the hand with kSteadyConfidence
+  float left_score = -1;          ///< FoundHand::left_score in the last image; negative: not known
 };
 
-/// Whether the tracker has the hand, at finite coordinates.
+/// True if the tracker has the hand, at finite coordinates.
 bool is_usable(const std::optional<Points>& hint_px);
-/// Whether both sets of points lie on the same hand.
+/// True if both sets of points lie on the same hand.
 bool are_one_hand(const Points& a, const Points& b);
 
 /// The hands of the last images, and where they may be in the next one. One thread, no allocation
@@ -36,14 +36,14 @@ class HandTracks {
   /// of the tracker; hands that only the last image has. Valid until the next call.
   std::span<HandCandidate> candidates(const Hints& hints_px, const LandmarkModel& model);
 
-  /// Takes over the hands found in the image of `time_ns`. A hand that was not found stays, for the
-  /// next image may show it.
+  /// Stores the hands found in the image of `time_ns`. A hand that was not found is kept, because
+  /// the next image may show it.
   void remember(std::span<const FoundHand> found, const Hints& hints_px, const LandmarkModel& model,
                 std::int64_t time_ns);
 
-  /// Drops the hands that were last found so long before `time_ns` that they may be anywhere.
+  /// Drops the hands that were found too long before `time_ns` to be followed.
   void drop_old(std::int64_t time_ns);
-  /// Drops all.
+  /// Drops all hands.
   void clear() { tracks_.clear(); }
 
  private:

@@ -13,13 +13,13 @@ using Points = std::array<glm::vec2, msg::kLandmarks>;
 
 /// The mean of the points.
 glm::vec2 centre_of(const Points& points_px);
-/// From the wrist to the middle finger's knuckle.
+/// The distance from the wrist to the middle finger's knuckle.
 float palm_length_px(const Points& points_px);
 /// The mean distance between points of the same number.
 float distance_px(const Points& a, const Points& b);
 /// The points, each shifted by `by_px`.
 Points shifted(Points points_px, glm::vec2 by_px);
-/// Whether every coordinate is a finite number.
+/// True if all coordinates are finite.
 bool is_finite(const Points& points_px);
 
 }  // namespace handcast::landmarks

@@ -17,7 +17,7 @@ class Network {
  public:
   /// An input or an output.
   struct Port {
-    std::string name;
+    std::string name;        ///< its name in the file
     std::vector<int> shape;  ///< as the file declares it, with the batch size
 
     /// The number of elements.
@@ -34,7 +34,7 @@ class Network {
   /// The outputs in the order of the file.
   virtual std::span<const Port> outputs() const = 0;
 
-  /// The elements of input `i`, row-major in its shape: to be written before run().
+  /// The elements of input `i`, row-major in its shape. Write them before run().
   virtual std::span<float> input(std::size_t i) = 0;
   /// Computes the outputs. Errors: bad_data (an output is not finite).
   virtual Result<void> run() = 0;

@@ -45,7 +45,7 @@ Result<std::unique_ptr<Network>> open_network(Executor executor,
   const Row& row = *std::ranges::find(kTable, executor, &Row::executor);
   if (row.open) return row.open(file);
   return fail(Errc::bad_config,
-              fmt::format("the executor '{}' needs {}, and this build of handcast is without it",
+              fmt::format("the executor '{}' needs {}, which this build of handcast does not have",
                           config::word_of(executor), row.library));
 }
 

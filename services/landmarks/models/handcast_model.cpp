@@ -69,7 +69,8 @@ Result<OpenedModel> open_handcast_model(const ModelOptions& options) {
     return fail(
         Errc::bad_config,
         fmt::format(
-            "'{}', which comes with handcast, is missing; HANDCAST_ASSETS may name another folder",
+            "'{}', which comes with handcast, is missing; set HANDCAST_ASSETS to the folder of the "
+            "assets",
             file.string()));
   auto landmarks = HandcastModel::open(options.executor, file);
   if (!landmarks) return tl::make_unexpected(landmarks.error());

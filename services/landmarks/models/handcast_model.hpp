@@ -14,7 +14,7 @@ namespace handcast::landmarks {
 /// points are the tracker's joints.
 class HandcastModel final : public LandmarkModel {
  public:
-  /// Errors (bad_config): `file` holds another network, or as of open_network().
+  /// Errors (bad_config): `file` contains another network, or those of open_network().
   static Result<HandcastModel> open(config::Executor executor, const std::filesystem::path& file);
 
   Traits traits() const override {

@@ -32,7 +32,8 @@ Points to_image(const Region& region, msg::Side side, const Places& places);
 /// The input value of each grey value: its ratio to the 98th percentile of the crop's `pixels`, at
 /// most kMostShown, less kShownShift.
 std::array<float, 256> shown_values(std::span<const std::uint8_t> pixels);
-inline constexpr float kMostShown = 1.5f, kShownShift = 0.4f;
+inline constexpr float kMostShown = 1.5f;   ///< upper limit of the ratio
+inline constexpr float kShownShift = 0.4f;  ///< subtracted from the ratio
 
 /// Fills the first input, kSide_px x kSide_px, from the pixels of a crop.
 void write_image(std::span<const std::uint8_t> pixels, msg::Side side, std::span<float> input);
@@ -42,7 +43,7 @@ void write_tracker(const std::optional<Places>& tracker, std::span<float> input)
 
 /// The decoded output.
 struct Answer {
-  Places places{};
+  Places places{};                             ///< the landmarks
   std::array<float, msg::kLandmarks> sigma{};  ///< scale of a Laplace distribution per axis, as a
                                                ///< fraction of the crop's side
   float presence = 0;                          ///< 0..1: how likely there is a hand

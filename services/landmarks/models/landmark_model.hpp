@@ -34,28 +34,28 @@ class LandmarkModel {
  public:
   virtual ~LandmarkModel() = default;
 
-  /// How a model differs from others for those who use it.
+  /// The properties in which models differ for their users.
   struct Traits {
-    /// How often a hand is estimated that was not in the last image. Each time but the first, the
-    /// region is the one around the last estimate.
+    /// Number of estimates of a hand that was not in the last image. From the second on, the region
+    /// is that around the previous estimate.
     int passes_at_first = 1;
-    /// Whether left_score is set. A model that does not set it is told the side, and has the
-    /// smaller sigma if that is right.
+    /// left_score is set. A model that does not set it needs the side as an input; its sigmas are
+    /// smaller if the side is right.
     bool scores_sides = false;
-    /// Whether the tracker's joints are an input of the network.
+    /// The tracker's joints are an input of the network.
     bool reads_tracker = false;
-    /// Whether its points are the tracker's joints. Those of other models may be defined a few
-    /// pixels beside them.
+    /// Its points are the tracker's joints. The points of other models may be defined a few pixels
+    /// beside them.
     bool finds_tracker_joints = false;
   };
-  /// Those of this model; they never change.
+  /// The traits of this model; they never change.
   virtual Traits traits() const = 0;
 
-  /// The region for a hand that was at these points a moment ago, or that the tracker has there.
+  /// The region for a hand with these points: those of the last image, or the tracker's joints.
   virtual Region region_around(const Points& points_px) const = 0;
 
-  /// Estimates the landmarks of the hand in `region`. `side`: which hand it is taken for.
-  /// `tracker_px`: the tracker's joints in the image; nothing if the tracker does not see the hand.
+  /// Estimates the landmarks of the hand in `region`. `side`: the assumed side. `tracker_px`: the
+  /// tracker's joints in the image; empty if the tracker does not see the hand.
   /// Adds to `times`. Errors: bad_data.
   virtual Result<LandmarkEstimate> estimate(renderer::GreyView image, const Region& region,
                                             msg::Side side, const std::optional<Points>& tracker_px,

@@ -13,18 +13,19 @@
 
 namespace handcast::landmarks {
 
-/// What a model is opened with.
+/// The options of a model.
 struct ModelOptions {
-  config::Executor executor = config::Executor::onednn;
-  std::filesystem::path folder;  ///< of MediaPipe's files; see models_folder()
-  std::filesystem::path
-      handcast_network;  ///< file of handcast's network; empty: the one that comes with handcast
+  config::Executor executor = config::Executor::onednn;  ///< the library that runs the networks
+  std::filesystem::path folder;  ///< folder of MediaPipe's files; see models_folder()
+  /// File of handcast's network; empty: the one that comes with handcast.
+  std::filesystem::path handcast_network;
 };
 
-/// A model, and the network that searches a whole image for hands that neither the tracker nor the
-/// last image shows.
+/// A landmark model and a palm network.
 struct OpenedModel {
-  std::unique_ptr<LandmarkModel> landmarks;
+  std::unique_ptr<LandmarkModel> landmarks;  ///< the model
+  /// Searches a whole image for hands that neither the tracker nor the last image shows. Empty if
+  /// its file is missing and the model works without it.
   std::optional<MediapipePalmNetwork> palms;
 };
 

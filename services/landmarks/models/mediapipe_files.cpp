@@ -33,15 +33,15 @@ Result<std::unique_ptr<Network>> open_mediapipe_network(config::Executor executo
     return fail(
         Errc::bad_config,
         fmt::format(
-            "'{}' is missing; scripts/get-models fetches it, landmarks.models names another folder",
+            "'{}' is missing; scripts/get-models fetches it, or set landmarks.models to its folder",
             file.string()));
   auto network = open_network(executor, file);
   if (!network) return network;
   if (!has_shapes(**network, expected))
-    return fail(
-        Errc::bad_config,
-        fmt::format("'{}' is not {}: it takes {} and gives {}", file.string(), expected.name,
-                    shapes_of((*network)->inputs()), shapes_of((*network)->outputs())));
+    return fail(Errc::bad_config,
+                fmt::format("'{}' is not {}: its inputs are {} and its outputs {}", file.string(),
+                            expected.name, shapes_of((*network)->inputs()),
+                            shapes_of((*network)->outputs())));
   return network;
 }
 

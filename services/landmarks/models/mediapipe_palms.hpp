@@ -17,12 +17,16 @@ struct Palm {
   /// thumb.
   static constexpr int kPoints = 7;
   float score = 0;  ///< 0..1
+  /// Its box.
+  /// @{
   glm::vec2 centre{0}, extent{0};
-  std::array<glm::vec2, kPoints> points{};
+  /// @}
+  std::array<glm::vec2, kPoints> points{};  ///< its points
 };
 
-/// The side of the network's input, the number of its anchors, and the values per anchor.
-inline constexpr int kPalmSide_px = 192, kPalmAnchors = 2016, kPalmValues = 4 + 2 * Palm::kPoints;
+inline constexpr int kPalmSide_px = 192;                   ///< side of the network's input
+inline constexpr int kPalmAnchors = 2016;                  ///< number of anchors
+inline constexpr int kPalmValues = 4 + 2 * Palm::kPoints;  ///< values per anchor
 
 /// The anchors: the centres of 24 x 24 cells, each twice, then of 12 x 12 cells, each six times.
 std::span<const glm::vec2> palm_anchors();

@@ -24,7 +24,8 @@ namespace handcast::landmarks {
 /// One object per hand. One thread.
 class JointConventionOffsets {
  public:
-  static constexpr float kLearning_s = 60, kReach = 0.06f;
+  static constexpr float kLearning_s = 60;  ///< time constant of the learning
+  static constexpr float kReach = 0.06f;    ///< largest learnt change of an offset, in palm lengths
 
   /// The network's points, moved to the tracker's joints.
   Points to_tracker(const Points& network_px) const;
@@ -46,7 +47,7 @@ class JointConventionOffsets {
 };
 
 /// What remains of Q - P after the similarity that best aligns the points without an offset, in the
-/// hand's frame of Q. Nothing if the hand is too small to tell.
+/// hand's frame of Q. Empty if the hand is too small in the image to measure it.
 std::optional<Points> convention_residual(const Points& network_px, const Points& tracker_px);
 
 }  // namespace handcast::landmarks

@@ -12,12 +12,13 @@
 
 namespace handcast::landmarks {
 
-/// The tracker's joints in a camera image, by msg::Side; nothing for a hand that it does not see.
+/// The tracker's joints in a camera image, by msg::Side; empty for a hand that it does not see.
 using Hints = std::array<std::optional<Points>, msg::kMaxHands>;
 
 /// The tracker's hands at the time of any image. One thread.
 class TrackerHints {
  public:
+  /// Stores the calibration, with which it projects.
   explicit TrackerHints(const calib::Calibration& calibration) : calibration_(calibration) {}
 
   /// Adds a sample of the tracker.
@@ -36,8 +37,8 @@ class TrackerHints {
   }
 };
 
-/// The joints of a pose that belong to the 21 landmarks, in undistorted camera pixels; nothing if
-/// one of them is behind the camera.
+/// The joints of a pose that belong to the 21 landmarks, in undistorted camera pixels; empty if one
+/// of them is behind the camera.
 std::optional<Points> project(const calib::Calibration& calibration, const msg::HandPose& pose);
 
 /// From undistorted pixels to pixels of the image.

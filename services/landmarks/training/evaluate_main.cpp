@@ -27,16 +27,16 @@ struct NamedModel {
   std::unique_ptr<LandmarkModel> model;
 };
 
-/// What a model is given of a picture's hand.
+/// The inputs of a model in addition to the picture.
 struct Condition {
-  Points start_px{};                 ///< around them is the region of the first pass
+  Points start_px{};                 ///< the region of the first pass is around these points
   std::optional<Points> tracker_px;  ///< the model's input
   int passes = 2;
 };
 
 /// The last estimate of a model under one condition.
 struct Answer {
-  std::string name;  ///< of model and condition, as evaluate.py knows them
+  std::string name;  ///< of model and condition, as in evaluate.py
   LandmarkEstimate estimate;
   Region region;
 };

@@ -20,7 +20,7 @@ int main(int argc, char** argv) try {
   app.add_option("--first", first, "The number of the first image, to continue an earlier run");
   app.add_option("--count", count, "The number of images");
   app.add_option("--people", people, "The number of different hands")->check(CLI::Range(1, 1000));
-  app.add_option("--preview", preview, "Instead, draws so many images with their labels")
+  app.add_option("--preview", preview, "Instead draws this number of images with their labels")
       ->check(CLI::Range(0, 1000));
   app.add_option("--picture", picture, "The file of --preview");
   CLI11_PARSE(app, argc, argv);

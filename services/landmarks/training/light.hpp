@@ -8,11 +8,13 @@
 
 namespace handcast::landmarks::training {
 
-/// The vertices of a surface: positions and normals in camera axes (metres), and the fraction of
-/// the light that each reflects.
+/// The vertices of a surface.
 struct Surface {
+  /// Positions (metres) and normals in camera axes.
+  /// @{
   std::vector<glm::vec3> positions, normals;
-  std::vector<float> albedo;
+  /// @}
+  std::vector<float> albedo;  ///< the fraction of the light that each vertex reflects
 };
 
 /// An infrared lamp beside the lens, and how skin reflects it.

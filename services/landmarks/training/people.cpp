@@ -13,8 +13,8 @@ glm::vec3 draw_shift(Dice& dice, float deviation_mm) {
   return {dice.normal(deviation_mm), dice.normal(deviation_mm), dice.normal(deviation_mm)};
 }
 
-/// Hands differ, and so do trackers in where they define the joints: wrist, root of the thumb and
-/// knuckles by up to a centimetre.
+/// Varies the lengths of a hand and the places of its joints: trackers define wrist, root of the
+/// thumb and knuckles at places that differ by up to a centimetre.
 HandShape draw_shape(Dice& dice) {
   HandShape shape = HandShape::mean();
   std::array<float, 5> length;

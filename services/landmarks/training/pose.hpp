@@ -4,17 +4,17 @@
 
 namespace handcast::landmarks::training {
 
-/// The angles of a hand: those of the twin, and how far each finger is turned about its length
-/// (radians), because few fingers bend straight towards the palm.
+/// The angles of a hand. In addition to those of the twin, each finger is rotated about its length,
+/// because few fingers bend straight towards the palm.
 struct Posture {
-  twin::Bend bend;
-  std::array<float, 5> roll{};
+  twin::Bend bend;              ///< the angles of the twin
+  std::array<float, 5> roll{};  ///< rotation of each finger about its length, radians
 };
 
-/// A posture and its joints in the axes of the wrist (metres).
+/// A posture and its joints.
 struct Pose {
-  Posture posture;
-  renderer::JointFrames joints;
+  Posture posture;               ///< the angles
+  renderer::JointFrames joints;  ///< the joints in the axes of the wrist (metres)
 };
 
 /// The pose of a person in this posture.
@@ -24,7 +24,7 @@ Pose pose_of(const Person& person, const Posture& posture);
 /// another one or the palm.
 Pose draw_pose(Dice& dice, const Person& person);
 
-/// Whether a finger is deeper in another one or in the palm than flesh can be pressed.
+/// True if a finger is deeper in another one or in the palm than flesh can be compressed.
 bool penetrates(const Person& person, const renderer::JointFrames& joints);
 
 }  // namespace handcast::landmarks::training

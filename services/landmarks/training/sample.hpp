@@ -15,11 +15,12 @@ struct Sample {
 
   handcast_network::Places tracker{};  ///< the tracker's joints; they count if has_tracker is 1
   handcast_network::Places truth{};    ///< the labels; may be outside 0..1
+  /// The crop in units of 1 / kUnit, row by row.
   std::array<std::uint8_t, handcast_network::kSide_px * handcast_network::kSide_px> image{};
-  std::array<std::uint8_t, msg::kLandmarks> visible{};  ///< 1: nothing but flesh hides the joint
-  std::uint8_t has_tracker = 0;
-  std::uint8_t has_hand = 0;
-  std::uint8_t reserved = 0;
+  std::array<std::uint8_t, msg::kLandmarks> visible{};  ///< 1: only its own flesh hides the joint
+  std::uint8_t has_tracker = 0;                         ///< 1: the tracker reports a hand
+  std::uint8_t has_hand = 0;                            ///< 1: the image shows a hand
+  std::uint8_t reserved = 0;                            ///< padding
 };
 static_assert(sizeof(Sample) ==
               4 * 42 * 2 + handcast_network::kSide_px * handcast_network::kSide_px + 24);

@@ -32,7 +32,7 @@ class Scene {
   const std::vector<float>& grey() const { return grey_; }
   /// The fraction of each pixel that hands and arms cover, 0..1.
   const std::vector<float>& cover() const { return cover_; }
-  /// Whether a point of the first hand (camera axes, metres) is visible in the crop. Flesh of
+  /// True if a point of the first hand (camera axes, metres) is visible in the crop. Flesh within
   /// `radius_m` in front of it does not hide it.
   bool sees(const glm::vec3& place_m, float radius_m) const;
 

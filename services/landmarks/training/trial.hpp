@@ -13,13 +13,13 @@ namespace handcast::landmarks::training {
 /// One test picture for landmark models: a frame of a motion in the twin's camera, with true
 /// landmarks and a simulated tracker's joints, in image pixels.
 struct Trial {
-  renderer::Image<std::uint8_t> image;
-  msg::Side side = msg::Side::left;
-  Points truth_px{};
-  /// Misplaced by about a fifth of the palm, fingers bent by about 10 degrees too much or too
-  /// little.
+  renderer::Image<std::uint8_t> image;  ///< the frame
+  msg::Side side = msg::Side::left;     ///< which hand it shows
+  Points truth_px{};                    ///< the true landmarks
+  /// The simulated tracker's joints: displaced by about a fifth of the palm, fingers bent by about
+  /// 10 degrees too much or too little.
   Points tracker_px{};
-  Points other_pose_px{};        ///< the same errors, and the hand of another frame
+  Points other_pose_px{};        ///< the same errors on the hand of another frame
   std::array<bool, 5> folded{};  ///< the finger's tip is nearer to its root than 0.8 of its length
 };
 
@@ -29,7 +29,7 @@ class Trials {
  public:
   /// Errors: those of Twin::create.
   static Result<Trials> open(const std::string& motion, std::uint64_t seed);
-  /// Picture `i` of `count`; nothing if there is no hand at that time.
+  /// Picture `i` of `count`; empty if there is no hand at that time.
   std::optional<Trial> make(int i, int count);
 
  private:

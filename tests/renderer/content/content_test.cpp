@@ -103,6 +103,13 @@ TEST(Content, AMissingFileAndAFileThatIsNoPictureAreToldApart) {
   EXPECT_THAT(wrong.error().what, HasSubstr("not a PNG or JPEG"));
 }
 
+TEST(Content, AMissingGreyPngIsNotReportedAsADamagedOne) {
+  const auto missing = read_grey_png("/nowhere/picture.png");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Errc::bad_config);
+  EXPECT_THAT(missing.error().what, HasSubstr("no picture file '/nowhere/picture.png'"));
+}
+
 TEST(Content, APictureIsReadWithRedInTheLowestByteAndTheTopRowFirst) {
   using namespace std::string_view_literals;
   // A PNG of 2 x 2 px: red, green / blue, white.

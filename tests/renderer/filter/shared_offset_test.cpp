@@ -27,7 +27,7 @@ class SharedOffset : public testing::TestWithParam<const char*> {
   }
 
   /// The offsets of a filter after these detections.
-  Offsets carried(LandmarkFilter::Tracker tracker = LandmarkFilter::Tracker::heard) const {
+  Offsets carried(LandmarkFilter::Tracker tracker = LandmarkFilter::Tracker::reporting) const {
     config::Filter settings;
     settings.method = *config::choice_named<config::FilterMethod>(GetParam());
     settings.blend_ms = 0;

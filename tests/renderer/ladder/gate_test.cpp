@@ -173,6 +173,25 @@ TEST(Hindsight, AFewMomentsThatNothingFollowsDoNotHideWhatRegistrationGainsInThe
   EXPECT_GT(hindsight.motion().predict_px, 1.15f * hindsight.motion().register_px);
 }
 
+TEST(Hindsight, TheErrorOfRegistrationFallsAlsoIfAllPredictionsWereExact) {
+  const auto calibration = rig_above_hand();
+  HandTrack track({}, calibration);
+  constexpr int kFrames = 100, kRegistered = 5;
+  constexpr std::int64_t kStart_ns = 3'600'000 * kMs;
+  const LandmarkPoints there = *project_landmarks(calibration, pose_of(Side::left));
+  Hindsight hindsight;
+  for (int i = 0; i < kFrames; ++i) {
+    const std::int64_t now_ns = kStart_ns + i * 9 * kMs, target_ns = now_ns + 5 * kMs;
+    track.push(now_ns, now_ns, pose_of(Side::left));
+    hindsight.look_back(track);
+    hindsight.remember({target_ns, now_ns, now_ns, there, there, there});
+    LandmarkPoints moved_px{};
+    moved_px.fill({2, 0});
+    if (i < kRegistered) hindsight.registered(target_ns, moved_px);
+  }
+  EXPECT_LT(hindsight.motion().register_px, 0.5f) << "no estimate divided by 0";
+}
+
 /// The landmarks of each frame while Q̂ - P changes from 0 to 6 px at once.
 std::vector<LandmarkPoints> lit_over_a_climb(std::vector<Rung>& rungs) {
   const auto calibration = rig_above_hand();

@@ -52,7 +52,7 @@ TEST(Presence, WhenTheLandmarksGoTooTheLightFades) {
 
 TEST(Presence, AHandComesBackWithoutAFlash) {
   Presence presence;
-  presence.gone(1000 * kMs);
+  presence.no_hand(1000 * kMs);
   float before = 0;
   for (int ms = 1001; ms < 1040; ++ms) {
     const float now = presence.at(ms * kMs, (ms - 10) * kMs, std::nullopt);

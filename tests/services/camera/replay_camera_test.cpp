@@ -102,7 +102,7 @@ TEST_F(ReplayCamera, SaysWhichPictureHasAnotherSize) {
 
 TEST_F(ReplayCamera, SaysWhichFileIsNoPicture) {
   std::ofstream(scratch_.path() / "0001.png") << "not a picture";
-  expect_refused("0001.png' is not a readable PNG image");
+  expect_refused("0001.png' is not a PNG picture");
 }
 
 TEST_F(ReplayCamera, SaysWhenTimesAndPicturesDoNotPair) {

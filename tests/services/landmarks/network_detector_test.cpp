@@ -113,7 +113,7 @@ TEST(MediapipeDetectorFiles, OneNetworkIsNotTakenForTheOther) {
   SKIP_WITHOUT_MODELS();
   const test::Scratch scratch;
   std::filesystem::copy(test::models() / kMediapipePalmFile, scratch.path() / kMediapipeHandFile);
-  expect_refused(scratch.path(), "is not the hand landmark network: it takes 1x192x192x3");
+  expect_refused(scratch.path(), "is not the hand landmark network: its inputs are 1x192x192x3");
 }
 
 /// The detector on one image whose tracker is right.

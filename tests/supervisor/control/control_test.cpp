@@ -61,7 +61,7 @@ TEST_F(Control, AClientThatDoesNotReadIsDroppedAndTheOthersAreServed) {
   for (int i = 0; i < 8; ++i)
     ASSERT_EQ(send(lazy.get(), requests.data(), requests.size(), MSG_NOSIGNAL), requests.size());
   EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
-  EXPECT_LT(answers, 9);  // after what it was sent and what was kept for it
+  EXPECT_LT(answers, 9);  // those in the socket's buffer and in the server's
   pollfd hung_up{.fd = lazy.get(), .events = 0, .revents = 0};
   EXPECT_EQ(poll(&hung_up, 1, 0), 1);
   EXPECT_TRUE(hung_up.revents & POLLHUP);
@@ -131,7 +131,7 @@ TEST_F(Control, DescriptorsThatNobodyAskedForAreClosed) {
   EXPECT_EQ(answer->descriptors.size(), 1);
   EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
   for (int turns = 0; count_descriptors() > before + 1 && turns < 1000; ++turns)
-    loop_.turn();  // the server hears of the hang-up when it turns
+    loop_.turn();  // the server handles the hang-up
   EXPECT_LE(count_descriptors(), before + 1);
 }
 
@@ -146,7 +146,7 @@ TEST_F(Control, ASupervisorThatHangsIsTold) {
 
 TEST_F(Control, WhoLooksOnDoesNotWaitLongForASupervisorThatHangs) {
   serve(refuse);  // and the loop does not turn
-  EXPECT_THAT(RigWatcher("desk").look().missing, HasSubstr("has not answered for 1 s"));
+  EXPECT_THAT(RigWatcher("desk").observe().missing, HasSubstr("has not answered for 1 s"));
 }
 
 TEST_F(Control, WhatTakesLongIsWaitedForWhileTheSupervisorIsAwake) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may come in: the runtime folder, its sockets, and the users at both ends of them.
+// Access of other users to the runtime folder and its sockets.
 #include "ipc/control/runtime_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -117,7 +117,7 @@ TEST_F(RuntimeFolder, AnotherUsersRequestIsNotEvenRead) {
   EXPECT_EQ(while_it_turns([&] { return as_somebody_else(ask_and_read); }), 0);
   EXPECT_EQ(requests, 0);
   EXPECT_EQ(as_somebody_else([&path] { return access(path.c_str(), W_OK) == 0 ? 0 : 1; }),
-            0);  // it could get there
+            0);  // the path is accessible
 }
 
 TEST_F(RuntimeFolder, WhatListensInARigsNameForAnotherUserIsNotTrusted) {
@@ -126,7 +126,7 @@ TEST_F(RuntimeFolder, WhatListensInARigsNameForAnotherUserIsNotTrusted) {
   const UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto address = address_of(path);
   ASSERT_EQ(bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  ASSERT_EQ(seteuid(kSomebodyElse), 0);  // a listener's user is who listens, not who made the file
+  ASSERT_EQ(seteuid(kSomebodyElse), 0);  // the user who listens counts, not the owner of the file
   const auto listening = listen(listener.get(), 4);
   ASSERT_EQ(seteuid(0), 0);
   ASSERT_EQ(listening, 0);

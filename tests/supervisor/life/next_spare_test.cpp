@@ -15,7 +15,7 @@ constexpr Exit kCrash{.signalled = true, .code = 9};
 
 std::int64_t s(double seconds) { return seconds_to_ns(seconds); }
 
-event::Tick beating_at(double time_s) { return {.heard_ns = s(time_s)}; }
+event::Tick beating_at(double time_s) { return {.last_sign_ns = s(time_s)}; }
 
 /// A service that keeps a spare, ready since 10 s.
 Machine ready_machine(Spare spare = spare::None{}) {

@@ -34,7 +34,7 @@ const worker::Stopping kStopping{.life = kLife, .kill_ns = s(102)};
 const worker::Stopping kRestarting{.life = kLife, .kill_ns = s(102), .then = Then::start};
 const worker::Waiting kWaiting{.due_ns = s(101)};
 
-const event::Tick kHeard{.heard_ns = s(99.9)};
+const event::Tick kHeard{.last_sign_ns = s(99.9)};
 const Texts kStopped{"read last words", "tell stopped"};
 const Texts kNothing{};
 
@@ -192,18 +192,19 @@ TEST(Next, AFirstMessageMustComeWithinTheTimeThatItsNeedsAreReady) {
   EXPECT_EQ(machine.worker(), "awaiting its message, dry for 7");
   EXPECT_THAT(machine.at(502, event::Tick{.needs_are_ready = false}), IsEmpty());
   EXPECT_THAT(machine.at(504.9, event::Tick{.needs_are_ready = true}), IsEmpty());
-  EXPECT_THAT(machine.at(505, event::Tick{.needs_are_ready = true}),
-              ElementsAre("warn: pose said it was ready and has published nothing for 10 s; killed",
-                          "kill"));
+  EXPECT_THAT(
+      machine.at(505, event::Tick{.needs_are_ready = true}),
+      ElementsAre("warn: pose reported ready, but published nothing for 10 s; killed", "kill"));
 }
 
 TEST(Next, TheWatchdogBitesAfterTwoSilentSecondsAndNotEarlier) {
   Machine machine{.state = {.worker = kReady}};
-  EXPECT_THAT(machine.at(100, event::Tick{.heard_ns = s(98.001)}), IsEmpty());
-  EXPECT_THAT(machine.at(100, event::Tick{.heard_ns = s(98)}),
+  EXPECT_THAT(machine.at(100, event::Tick{.last_sign_ns = s(98.001)}), IsEmpty());
+  EXPECT_THAT(machine.at(100, event::Tick{.last_sign_ns = s(98)}),
               ElementsAre("warn: pose has given no sign of life for 2.0 s; killed", "kill"));
   EXPECT_EQ(machine.worker(), "killed");
-  EXPECT_THAT(machine.at(200, event::Tick{.heard_ns = s(98)}), IsEmpty()) << "that is said once";
+  EXPECT_THAT(machine.at(200, event::Tick{.last_sign_ns = s(98)}), IsEmpty())
+      << "that is said once";
 }
 
 TEST(Next, OneThatWasNeverHeardIsSilentSinceItWasReady) {

@@ -51,7 +51,9 @@ class ServiceTest : public testing::Test {
         launch_, loop_, [this](Service&, Notice notice) { notices_.push_back(notice); }));
     return *services_.back();
   }
-  Service::Look look() const { return {.needs_are_ready = needs_are_ready_, .heard_ns = now_ns()}; }
+  Service::Look look() const {
+    return {.needs_are_ready = needs_are_ready_, .last_sign_ns = now_ns()};
+  }
   void run_until(const std::function<bool()>& done) {
     const auto limit = Deadline::in(std::chrono::seconds(30));
     while (!done() && !limit.passed()) loop_.turn();
@@ -153,10 +155,10 @@ TEST_F(ServiceTest, OneWhoseHeartStopsIsKilledAfterTwoSecondsNotEarlierAndReplac
   auto& pose = service(kWorks);
   pose.start();
   run_until([&] { return pose.state() == State::ready; });
-  const auto heard_ns = now_ns() + seconds_to_ns(100);
-  pose.tick(heard_ns + seconds_to_ns(1.99), {.heard_ns = heard_ns});
+  const auto last_sign_ns = now_ns() + seconds_to_ns(100);
+  pose.tick(last_sign_ns + seconds_to_ns(1.99), {.last_sign_ns = last_sign_ns});
   EXPECT_EQ(pose.state(), State::ready);
-  pose.tick(heard_ns + seconds_to_ns(2.01), {.heard_ns = heard_ns});
+  pose.tick(last_sign_ns + seconds_to_ns(2.01), {.last_sign_ns = last_sign_ns});
   EXPECT_EQ(pose.state(), State::starting) << "killed";
   run_until([&] { return pose.restarts() == 1 && pose.state() == State::ready; });
   EXPECT_EQ(pose.last_exit()->code, SIGKILL);

@@ -23,11 +23,11 @@ using testing::HasSubstr;
 void fill(History& history, double seconds, double hz = 1000, double from_s = 0) {
   for (int i = 0; i < seconds * hz; ++i) {
     const double ms = from_s * 1e3 + i * 1e3 / hz;
-    history.note("projector",
-                 frame(static_cast<std::uint64_t>(i), ms - 3,
-                       {mark(Stage::predict, ms, ms + 0.1), mark(Stage::draw, ms + 0.1, ms + 0.5),
-                        mark(Stage::frame, ms, ms + 0.6)}),
-                 0);
+    history.add("projector",
+                frame(static_cast<std::uint64_t>(i), ms - 3,
+                      {mark(Stage::predict, ms, ms + 0.1), mark(Stage::draw, ms + 0.1, ms + 0.5),
+                       mark(Stage::frame, ms, ms + 0.6)}),
+                0);
   }
 }
 
@@ -45,8 +45,8 @@ std::vector<std::byte> bytes_of(const UniqueFd& file) {
 
 TEST(History, GivesBackWhatItWasTold) {
   History history(60);
-  history.note("camera", frame(7, 1, {mark(Stage::capture, 1, 4)}), 0);
-  history.note("projector", frame(7, 1, {mark(Stage::draw, 5, 6), mark(Stage::frame, 5, 7)}), 3);
+  history.add("camera", frame(7, 1, {mark(Stage::capture, 1, 4)}), 0);
+  history.add("projector", frame(7, 1, {mark(Stage::draw, 5, 6), mark(Stage::frame, 5, 7)}), 3);
   const auto seen = everything_in(history);
   EXPECT_THAT(seen.services, ElementsAre("camera", "projector"));
   EXPECT_EQ(seen.supervisor, getpid());
@@ -64,9 +64,9 @@ TEST(History, GivesBackWhatItWasTold) {
 
 TEST(History, AHeartBeatIsNotKeptButWhatWasMissedBeforeItIs) {
   History history(60);
-  history.note("camera", frame(0, 1, {}), 4);
+  history.add("camera", frame(0, 1, {}), 4);
   EXPECT_TRUE(everything_in(history).frames.empty());
-  history.note("camera", frame(0, 1, {mark(Stage::capture, 1, 2)}), 1);
+  history.add("camera", frame(0, 1, {mark(Stage::capture, 1, 2)}), 1);
   EXPECT_EQ(everything_in(history).frames[0].missed, 5u);
 }
 
@@ -81,7 +81,7 @@ TEST(History, ForgetsWhatIsOlderThanItsSpan) {
 TEST(History, ReachesAsFarBackAsItWasLastTold) {
   History history(60);
   fill(history, 10);
-  history.reach(2);
+  history.set_span(2);
   EXPECT_NEAR(static_cast<double>(everything_in(history).frames.size()), 2000, 2);
 }
 
@@ -108,7 +108,7 @@ TEST(History, IsBoundedInBytesWhateverASpanAsksFor) {
   const auto busy = frame(1, 0,
                           {mark(Stage::draw, 1, 2), mark(Stage::warp, 2, 3),
                            mark(Stage::fill, 3, 4), mark(Stage::frame, 1, 4)});
-  for (int i = 0; i < 700'000; ++i) history.note("projector", busy, 0);
+  for (int i = 0; i < 700'000; ++i) history.add("projector", busy, 0);
   EXPECT_EQ(history.bytes(), History::kMostBlocks * History::kBlockBytes);
   const auto kept = everything_in(history).frames.size();
   EXPECT_GT(kept * (sizeof(FrameHead) + 4 * sizeof(msg::StageMark)), 60u << 20);
@@ -134,7 +134,7 @@ TEST(History, MarksThatMakeNoSenseAreLeftOut) {
   wild.marks[1] = {Stage::fill, 0, 9, 5};
   wild.marks[2] = {Stage::fill, 0, std::numeric_limits<std::int64_t>::min(),
                    std::numeric_limits<std::int64_t>::max()};
-  history.note("projector", wild, 0);
+  history.add("projector", wild, 0);
   const auto seen = everything_in(history);
   ASSERT_EQ(seen.frames.size(), 1u);
   EXPECT_EQ(seen.frames[0].marks.size(), 1u);

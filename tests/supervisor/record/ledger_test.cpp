@@ -39,7 +39,7 @@ TEST(Ledger, AHeartBeatIsNotAFrame) {
   Ledger ledger;
   auto beat = frame_at(kSecond_ns);
   beat.count = 0;
-  ledger.note("camera", beat);
+  ledger.add("camera", beat);
   EXPECT_EQ(ledger.frames("camera").total(), 0u);
   EXPECT_TRUE(ledger.stages().empty());
 }
@@ -50,9 +50,9 @@ TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
   marks.marks[0].stage = msg::Stage::correct;
   marks.marks[0].detail = msg::with_rung(msg::with_rung(0, msg::Side::left, msg::Rung::hold),
                                          msg::Side::right, msg::Rung::registered);
-  ledger.note("projector", marks);
+  ledger.add("projector", marks);
   marks.marks[0].detail = 0xffff;  // no rungs
-  ledger.note("projector", marks);
+  ledger.add("projector", marks);
   EXPECT_EQ(ledger.rungs(), (std::array<std::uint64_t, msg::kRungs>{1, 0, 0, 0, 0, 0, 1}));
 }
 
@@ -60,7 +60,7 @@ TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
   Ledger ledger;
   const auto start = 100 * kSecond_ns;
   for (int i = 0; i < 400; ++i)
-    ledger.note("camera", frame_at(start + i * 10 * kMs_ns));  // 100 Hz for 4 s
+    ledger.add("camera", frame_at(start + i * 10 * kMs_ns));  // 100 Hz for 4 s
   EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 4 * kSecond_ns), 100, 1);
   EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 5 * kSecond_ns), 50, 1)
       << "nothing came for a second";
@@ -71,9 +71,9 @@ TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
 TEST(Ledger, TheHeldRateLeavesOutTheFirstSecondAndCountsInterruptions) {
   Ledger ledger;
   const auto start = 100 * kSecond_ns;
-  ledger.note("camera", frame_at(start));  // a slow first second: one frame
+  ledger.add("camera", frame_at(start));  // a slow first second: one frame
   for (int i = 0; i < 200; ++i)
-    ledger.note("camera", frame_at(start + kSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
+    ledger.add("camera", frame_at(start + kSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
   EXPECT_NEAR(ledger.frames("camera").held_hz(start + 3 * kSecond_ns), 100, 0.5);
   EXPECT_NEAR(ledger.frames("camera").held_hz(start + 5 * kSecond_ns), 50, 0.5)
       << "silent for the last two of four seconds";
@@ -83,8 +83,8 @@ TEST(Ledger, FramesWhoseMarksWereOverwrittenAreCounted) {
   Ledger ledger;
   const auto start = 100 * kSecond_ns;
   for (int i = 0; i <= 40; ++i)
-    ledger.note("projector", frame_at(start + i * 100 * kMs_ns),
-                i > 0 ? 89 : 0);  // 900 Hz, one in 90 seen
+    ledger.add("projector", frame_at(start + i * 100 * kMs_ns),
+               i > 0 ? 89 : 0);  // 900 Hz, one in 90 seen
   EXPECT_EQ(ledger.frames("projector").total(), 40u * 90 + 1);
   EXPECT_NEAR(ledger.frames("projector").recent_hz(start + 4 * kSecond_ns), 900, 10);
   EXPECT_NEAR(ledger.frames("projector").held_hz(start + 4 * kSecond_ns), 900, 35)
@@ -93,7 +93,7 @@ TEST(Ledger, FramesWhoseMarksWereOverwrittenAreCounted) {
 
 TEST(Ledger, TheNewestAgeIsThatOfTheLastFramesOrigin) {
   Ledger ledger;
-  ledger.note("pose", frame_at(kSecond_ns));
+  ledger.add("pose", frame_at(kSecond_ns));
   EXPECT_DOUBLE_EQ(ledger.frames("pose").newest_age_ms(kSecond_ns + 3 * kMs_ns).value(), 8.0);
   EXPECT_FALSE(ledger.frames("camera").newest_age_ms(kSecond_ns).has_value());
 }
@@ -101,8 +101,8 @@ TEST(Ledger, TheNewestAgeIsThatOfTheLastFramesOrigin) {
 TEST(Ledger, StageTimesForgetWhatIsOlderThanTenSecondsButTheWholeRunDoesNot) {
   Ledger ledger;
   for (int second = 0; second < 30; ++second)
-    ledger.note("projector",
-                frame_at((100 + second) * kSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
+    ledger.add("projector",
+               frame_at((100 + second) * kSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
   const auto& draw = ledger.stages().at("draw");
   EXPECT_EQ(draw.whole_run().count(), 30u);
   EXPECT_EQ(draw.recent(129 * kSecond_ns).count(), 10u);
@@ -116,7 +116,7 @@ TEST(Ledger, ImpossibleMarksFromSharedMemoryAreLeftOut) {
   auto marks = frame_at(kSecond_ns);
   marks.count = 4'000'000'000u;
   marks.marks.fill({.stage = static_cast<msg::Stage>(77), .detail = 0, .begin_ns = 0, .end_ns = 0});
-  ledger.note("camera", marks);
+  ledger.add("camera", marks);
   EXPECT_TRUE(ledger.stages().empty());
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole rigs of daemons that do next to nothing: what a supervisor, and the one after it, makes of
-// their lives.
+// Rigs of daemons without real work: how the supervisor and its successor handle them.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -50,7 +49,7 @@ class BareRig : public testing::Test {
 
   void write_file(const std::string& text) const { std::ofstream(file_) << text; }
   void write_rig(const std::string& more) const { write_file("name = \"desk\"\n" + more); }
-  /// In the place of what was there, running or not.
+  /// Replaces an existing file, even if it is being executed.
   static void write_program(const std::filesystem::path& program, const std::string& script) {
     std::filesystem::remove(program);
     std::ofstream(program) << "#!/bin/bash\n" << script << "\n";
@@ -120,9 +119,9 @@ TEST_F(BareRig, ASuccessorGoesOnWithTheRigAsItWasAppliedAndTheFileCountsWhenItIs
     replace_supervisor(*rig);
     EXPECT_EQ(pid_of("camera"), camera);
   }
-  EXPECT_THAT(
-      rig->log(),
-      HasSubstr("rig 'desk' goes on as it was applied; `handcast reload` reads " + file_.string()));
+  EXPECT_THAT(rig->log(),
+              HasSubstr("rig 'desk' continues with its applied settings; `handcast reload` reads " +
+                        file_.string()));
   write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
   replace_supervisor(*rig);
   EXPECT_EQ(pid_of("camera"), camera);
@@ -195,8 +194,8 @@ TEST_F(BareRig, AReloadWhoseServiceCannotStartDoesNotStopARigThatIsNotUpYet) {
   EXPECT_EQ(services()["camera"]["state"], "ready");
 }
 
-/// The supervisor cannot make a ring as long as the object lives: a ring's descriptor is 100 or
-/// more.
+/// Prevents the supervisor from creating rings, whose descriptors are 100 or more, during the
+/// lifetime of the object.
 class NoNewRings {
  public:
   explicit NoNewRings(pid_t pid) : pid_(pid) {
@@ -268,8 +267,8 @@ TEST_F(BareRig, WhoAsksTwiceToStopNeedNotWaitAndNobodyIsStartedAgain) {
   EXPECT_THAT(rig->log(), Not(HasSubstr("started again")));
 }
 
-// What SIGKILL does not end at once: here an orphan whose end nobody reaps, since the keeper stands
-// still.
+// A process that SIGKILL does not end at once: an orphan that is not reaped, because the keeper is
+// stopped.
 TEST_F(BareRig, ASilentServiceIsSaidToBeKilledOnce) {
   write_rig(std::string("[supervisor]\nsilent_s = 1\n") + kNoObserver);
   const auto rig = ready_rig();

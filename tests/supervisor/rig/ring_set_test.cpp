@@ -21,7 +21,8 @@ ipc::RingSpec marks(const std::string& service, int slots = 8) {
   return ipc::RingSpec::of<msg::StageMarks>("marks." + service, slots, true);
 }
 
-/// This process may have no descriptor from this number on, as long as the object lives.
+/// Limits the descriptors of this process to those below a number during the lifetime of the
+/// object.
 class NoDescriptorsFrom {
  public:
   explicit NoDescriptorsFrom(int number) {
@@ -70,7 +71,7 @@ TEST(RingSet, ARingCannotChangeItsSizeOrType) {
   EXPECT_TRUE(rings.check_types({marks("camera", 16)}));
   const auto other =
       rings.check_types({ipc::RingSpec::of<msg::HandPoses>("marks.camera", 8, true)});
-  EXPECT_THAT(other.error().what, HasSubstr("another version's"));
+  EXPECT_THAT(other.error().what, HasSubstr("belongs to another version"));
 }
 
 TEST(RingSet, EachRingIsSavedWithItsFileAndNumber) {

@@ -133,7 +133,7 @@ TEST_F(Table, EveryChangeCountsUp) {
   run_until([&] { return camera.state() == State::ready; });
   EXPECT_TRUE(counts_up());
   table_.remove("camera");
-  EXPECT_TRUE(counts_up()) << "the state of a service that is gone must not be saved any more";
+  EXPECT_TRUE(counts_up()) << "the state of a removed service must not be saved again";
 }
 
 }  // namespace

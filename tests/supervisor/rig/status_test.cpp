@@ -48,7 +48,7 @@ TEST(Status, AServiceWhoseProgramIsMissingIsToldWithItsReason) {
   launch.program_folder = "/nowhere";
   Services services;
   services.push_back(std::make_unique<Service>(
-      ServiceSpec{.name = "pose", .stream = "", .backend = "twin", .asked_hz = 0}, launch, loop,
+      ServiceSpec{.name = "pose", .stream = "", .backend = "twin", .wanted_hz = 0}, launch, loop,
       [](Service&, Notice) {}));
   services.front()->start();
   const std::string name = "desk";

@@ -35,7 +35,7 @@ std::uint64_t inode_of(int fd) {
   return fstat(fd, &status) == 0 ? status.st_ino : 0;
 }
 
-/// A ring and a service that was given it, as a supervisor leaves them when it dies.
+/// A ring and a service that inherited it, as they are after the death of their supervisor.
 class AdoptionTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -191,7 +191,7 @@ TEST_F(AdoptionTest, ReadersThatDiedGiveTheirRowsBack) {
   if (reader == 0) {
     const auto attached =
         ipc::Reader<msg::StageMarks>::attach(ipc::Segment::open(UniqueFd(dup(kRingFd))).value());
-    _exit(attached ? 0 : 1);  // without a word of farewell
+    _exit(attached ? 0 : 1);  // without releasing its row
   }
   int status = -1;
   waitpid(reader, &status, 0);
@@ -212,7 +212,7 @@ TEST_F(AdoptionTest, OrphansAreListedAskedAndThenKilled) {
   auto& polite = service("pose", "exec sleep 1000");
   auto& deaf = service("camera", "trap '' TERM; while :; do sleep 0.02; done");
   ASSERT_TRUE(save(saved_));
-  usleep(100'000);  // until it is deaf
+  usleep(100'000);  // until it ignores the signal
   EXPECT_THAT(orphaned_rigs(), ElementsAre("desk"));
   EXPECT_EQ(stop_orphans("desk", 0.3), 2);
   EXPECT_EQ(polite.try_reap()->code, SIGTERM);
@@ -221,7 +221,7 @@ TEST_F(AdoptionTest, OrphansAreListedAskedAndThenKilled) {
   EXPECT_EQ(load_saved("desk"), std::nullopt);
 }
 
-// In a process of its own: what systemd passes begins at descriptor 3.
+// Runs in another process, because systemd passes descriptors from number 3 on.
 TEST_F(AdoptionTest, RingsThatSystemdKeptComeBackWhenNoServiceLives) {
   ASSERT_TRUE(save(saved_));
   const pid_t child = fork();

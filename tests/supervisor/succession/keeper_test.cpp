@@ -30,8 +30,7 @@ bool eventually(const std::function<bool()>& done) {
   return done();
 }
 
-/// A keeper as a process of its own, whose supervisor is a script of the test. What the script
-/// appends to $NOTES is read here.
+/// A keeper process whose supervisor is a script. The script appends its notes to $NOTES.
 class KeeperTest : public testing::Test {
  protected:
   void TearDown() override {
@@ -116,7 +115,7 @@ TEST_F(KeeperTest, OneThatDiesAgainAndAgainIsGivenUpWithASentence) {
   keep_script("echo life >> $NOTES; kill -ABRT $$");
   EXPECT_EQ(wait(), kExitRetry);
   EXPECT_THAT(notes(), SizeIs(10));
-  EXPECT_THAT(log(), HasSubstr("`handcast down` ends them"));
+  EXPECT_THAT(log(), HasSubstr("`handcast down` stops them"));
 }
 
 TEST_F(KeeperTest, TheSupervisorRunsInAProcessGroupOfItsOwn) {
@@ -158,8 +157,8 @@ TEST_F(KeeperTest, AStopSignalReachesTheSuccessorOfASupervisorThatDiedOverIt) {
   EXPECT_EQ(notes().back(), "T");
 }
 
-// Its services' children, too, come to the keeper when the supervisor dies; their ends are told to
-// the next supervisor.
+// The keeper also inherits the children of services when the supervisor dies, and reports their
+// ends to the next supervisor.
 TEST_F(KeeperTest, OrphansAreReapedAndTheirEndsToldToTheNextSupervisorEvenThoseThatDiedBetweenTwo) {
   keep_script(
       "if (!$ENV{HANDCAST_SUCCESSOR}) {"

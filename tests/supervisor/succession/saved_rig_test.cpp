@@ -42,7 +42,7 @@ class SavedRigTest : public testing::Test {
     std::ofstream(file(), std::ios::trunc) << text;
     chmod(file().c_str(), 0600);
   }
-  void expect_no_sense(std::string_view why) const {
+  void expect_invalid(std::string_view why) const {
     const auto loaded = load_saved("desk");
     ASSERT_FALSE(loaded) << "accepted";
     EXPECT_EQ(loaded.error().code, Errc::bad_data);
@@ -93,7 +93,7 @@ TEST_F(SavedRigTest, TheFileIsForItsUserAlone) {
   ASSERT_EQ(stat(file().c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0600u);
   chmod(file().c_str(), 0644);
-  expect_no_sense("others may use it");
+  expect_invalid("other users have access to it");
 }
 
 TEST_F(SavedRigTest, ATornFileIsAnErrorAtEveryLength) {
@@ -119,7 +119,7 @@ TEST_F(SavedRigTest, AnotherUsersFileIsAnError) {
   if (getuid() != 0) GTEST_SKIP() << "only root can give a file away";
   ASSERT_TRUE(save(desk()));
   ASSERT_EQ(chown(file().c_str(), 65534, 65534), 0);
-  expect_no_sense("another user");
+  expect_invalid("another user");
 }
 
 TEST_F(SavedRigTest, NumbersThatCouldHitOthersAreAnError) {
@@ -136,7 +136,7 @@ TEST_F(SavedRigTest, NumbersThatCouldHitOthersAreAnError) {
     overwrite(whole);
   }
   overwrite(with("\"name\": \"desk\"", "\"name\": \"sofa\""));
-  expect_no_sense("named 'sofa'");
+  expect_invalid("named 'sofa'");
 }
 
 TEST_F(SavedRigTest, AFullFolderIsAnErrorAndTheOldStateStays) {

@@ -33,8 +33,8 @@ TEST_P(EachUnit, LetsTheServicesOutliveTheirSupervisor) {
   EXPECT_THAT(text, AllOf(HasSubstr("\nKillMode=process\n"), HasSubstr("\nOOMPolicy=continue\n"),
                           HasSubstr("\nFileDescriptorStoreMax="),
                           HasSubstr("\nExecStop=-\"/bin/true\" down --rig desk\n")));
-  // Each would put the next supervisor where it may not take the living services over, or not find
-  // them.
+  // With each of these, the next supervisor could not find the living services or not take them
+  // over.
   EXPECT_THAT(text, AllOf(Not(HasSubstr("\nPrivateUsers=")), Not(HasSubstr("\nPrivateTmp=")),
                           Not(HasSubstr("\nProcSubset="))));
 }

@@ -21,7 +21,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A datagram socket that stands for systemd's end.
+/// A datagram socket in place of systemd's.
 class Systemd : public testing::Test {
  protected:
   void SetUp() override { listen_at((scratch_.path() / "notify").string()); }
@@ -147,7 +147,7 @@ TEST_F(Systemd, WatchesOnlyWhomItMeans) {
   EXPECT_EQ(watchdog_period_ns(), std::nullopt);
 }
 
-// In a process of its own: what is passed begins at descriptor 3.
+// Runs in another process, because descriptors are passed from number 3 on.
 TEST_F(Systemd, GivesTheRingsBackOnce) {
   const pid_t child = fork();
   if (child == 0) {

@@ -40,7 +40,7 @@ inline RigLook look_at(double second) {
       "projector": {"state": "degraded", "pid": 101, "backend": "file", "uptime_s": 0.5, "restarts": 12,
                     "last_exit": "signal 11 (Segmentation fault)", "reason": "died 10 times", "retry_s": 2.5,
                     "log": ["older", "projector: no \u001b[31mlamp"]}},
-    "rings": {"camera.frames": {"asked_hz": 240}},
+    "rings": {"camera.frames": {"wanted_hz": 240}},
     "stage_us": {"draw": {"p50": 1500, "p99": 2500, "count": 100}}})json");
 
   look.status["rungs"] = {{"hold", 7}, {"landmarks", 90 * second}, {"register", 30 * second}};

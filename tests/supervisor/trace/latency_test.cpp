@@ -19,8 +19,8 @@ const Spans& way(const LatencyTable& table, const std::string& from, const std::
   return kNone;
 }
 
-LatencyTable table_of(const History& history, const std::map<std::string, double>& asked_hz = {}) {
-  return measure_latency(everything_in(history), asked_hz);
+LatencyTable table_of(const History& history, const std::map<std::string, double>& wanted_hz = {}) {
+  return measure_latency(everything_in(history), wanted_hz);
 }
 
 /// Frames of a camera at 100 Hz, delivered 3 ms after their exposure, those in `left_out` never.
@@ -29,9 +29,9 @@ History camera(int frames, std::vector<int> left_out, int late = -1) {
   for (int i = 0; i < frames; ++i) {
     if (std::ranges::find(left_out, i) != left_out.end()) continue;
     const double ms = i * 10.0, delivered_ms = ms + (i == late ? 9 : 3);
-    history.note("camera",
-                 frame(static_cast<std::uint64_t>(i), ms, {mark(Stage::capture, ms, delivered_ms)}),
-                 0);
+    history.add("camera",
+                frame(static_cast<std::uint64_t>(i), ms, {mark(Stage::capture, ms, delivered_ms)}),
+                0);
   }
   return history;
 }
@@ -52,9 +52,9 @@ TEST(Spans, PercentilesAreThoseOfTheNearestRank) {
 TEST(Latency, EveryStageOfEveryServiceHasItsExactTimes) {
   History history(60);
   for (int i = 1; i <= 200; ++i)
-    history.note("projector",
-                 frame(1, 0, {mark(Stage::draw, i, i + 0.001 * i), mark(Stage::frame, i, i + 0.5)}),
-                 0);
+    history.add("projector",
+                frame(1, 0, {mark(Stage::draw, i, i + 0.001 * i), mark(Stage::frame, i, i + 0.5)}),
+                0);
   const auto table = table_of(history);
   ASSERT_EQ(table.stages.size(), 2u);
   EXPECT_EQ(table.stages[0].service, "projector");
@@ -66,17 +66,17 @@ TEST(Latency, EveryStageOfEveryServiceHasItsExactTimes) {
 
 TEST(Latency, TheWayFromExposureToLightIsToldLegByLeg) {
   History history(60);
-  history.note("camera", frame(1, 10, {mark(Stage::capture, 10, 12)}), 0);
-  history.note("pose", frame(9, 8, {mark(Stage::sample, 8, 12.5)}), 0);
-  history.note("landmarks", frame(1, 10, {mark(Stage::detect, 12.1, 13.5)}), 0);
-  history.note(
+  history.add("camera", frame(1, 10, {mark(Stage::capture, 10, 12)}), 0);
+  history.add("pose", frame(9, 8, {mark(Stage::sample, 8, 12.5)}), 0);
+  history.add("landmarks", frame(1, 10, {mark(Stage::detect, 12.1, 13.5)}), 0);
+  history.add(
       "projector",
       projector_frame(1, {1, 10, 8}, {mark(Stage::frame, 13, 14), mark(Stage::present, 14, 14.5)}),
       0);
-  history.note("projector",
-               projector_frame(2, {1, 10, 8, 10},
-                               {mark(Stage::frame, 15, 16), mark(Stage::present, 16, 16.5)}),
-               0);
+  history.add("projector",
+              projector_frame(2, {1, 10, 8, 10},
+                              {mark(Stage::frame, 15, 16), mark(Stage::present, 16, 16.5)}),
+              0);
   const auto table = table_of(history);
   EXPECT_EQ(way(table, "exposure", "image delivered").percentile_ns(1), 2 * kMs_ns);
   EXPECT_EQ(way(table, "exposure", "landmarks found").percentile_ns(1), 3'500'000);
@@ -111,9 +111,9 @@ TEST(Misses, FramesWhoseMarksWereLostAreNotHeldAgainstTheService) {
   History history(600);
   for (int i = 0; i < 100; i += 5) {
     const double ms = i * 10.0;
-    history.note("camera",
-                 frame(static_cast<std::uint64_t>(i), ms, {mark(Stage::capture, ms, ms + 3)}),
-                 i > 0 ? 4 : 0);
+    history.add("camera",
+                frame(static_cast<std::uint64_t>(i), ms, {mark(Stage::capture, ms, ms + 3)}),
+                i > 0 ? 4 : 0);
   }
   const auto misses = table_of(history, {{"camera", 100}}).misses.at(0);
   EXPECT_EQ(misses.missed, 0u);
@@ -126,10 +126,10 @@ TEST(Misses, FramesWhoseMarksWereLostAreNotHeldAgainstTheService) {
 TEST(Misses, AServiceWithoutARateMissesNoneAndRepeatedImagesAreNoGaps) {
   History history(60);
   for (int i = 0; i < 10; ++i)
-    history.note("projector",
-                 frame(7 + static_cast<std::uint64_t>(i % 3) * 50, 0,
-                       {mark(Stage::frame, i * 30, i * 30 + 1)}),
-                 0);
+    history.add("projector",
+                frame(7 + static_cast<std::uint64_t>(i % 3) * 50, 0,
+                      {mark(Stage::frame, i * 30, i * 30 + 1)}),
+                0);
   const auto misses = table_of(history).misses.at(0);
   EXPECT_EQ(misses.missed, 0u);
   EXPECT_EQ(misses.skipped_ids, 0u);

@@ -34,14 +34,14 @@ msg::StageMarks projector_frame(std::uint64_t id, const test::Inputs& inputs, do
 /// Two images, one detected, one tracker sample, four frames.
 History small_rig() {
   History history(60);
-  history.note("camera", frame(1, 0, {mark(Stage::capture, 0, 1)}), 0);
-  history.note("camera", frame(2, 2, {mark(Stage::capture, 2, 3)}), 0);
-  history.note("pose", frame(40, 0.5, {mark(Stage::sample, 0.5, 3.2)}), 0);
-  history.note("landmarks", frame(1, 0, {mark(Stage::detect, 1.1, 4.5)}), 0);
-  history.note("projector", projector_frame(11, {1, 0}, 1.2), 0);
-  history.note("projector", projector_frame(12, {1, 0}, 2.2), 0);
-  history.note("projector", projector_frame(13, {2, 2, 0.5}, 3.3), 0);
-  history.note("projector", projector_frame(14, {2, 2, 0.5, 0}, 4.6), 0);
+  history.add("camera", frame(1, 0, {mark(Stage::capture, 0, 1)}), 0);
+  history.add("camera", frame(2, 2, {mark(Stage::capture, 2, 3)}), 0);
+  history.add("pose", frame(40, 0.5, {mark(Stage::sample, 0.5, 3.2)}), 0);
+  history.add("landmarks", frame(1, 0, {mark(Stage::detect, 1.1, 4.5)}), 0);
+  history.add("projector", projector_frame(11, {1, 0}, 1.2), 0);
+  history.add("projector", projector_frame(12, {1, 0}, 2.2), 0);
+  history.add("projector", projector_frame(13, {2, 2, 0.5}, 3.3), 0);
+  history.add("projector", projector_frame(14, {2, 2, 0.5, 0}, 4.6), 0);
   return history;
 }
 
@@ -82,7 +82,7 @@ TEST(Perfetto, TheCorrectionTellsTheRungOfEachHand) {
   History history(60);
   auto corrected = mark(msg::Stage::correct, 1, 2);
   corrected.detail = msg::with_rung(0, msg::Side::right, msg::Rung::similarity);
-  history.note("projector", frame(1, 0, {corrected, mark(msg::Stage::frame, 0, 3)}), 0);
+  history.add("projector", frame(1, 0, {corrected, mark(msg::Stage::frame, 0, 3)}), 0);
   const auto corrections = trace_of(history).named("correct");
   ASSERT_THAT(corrections, SizeIs(1));
   EXPECT_THAT(corrections[0].texts, ElementsAre(std::pair("right_hand", "similarity")));
@@ -123,7 +123,7 @@ TEST(Perfetto, ADetectionFlowsFromItsImageIntoTheFirstFrameThatKnewIt) {
 
 TEST(Perfetto, OnlyTheFirstOfTheFramesThatKnewADetectionIsOnItsWay) {
   auto history = small_rig();
-  history.note("projector", projector_frame(15, {2, 2, 0.5, 0}, 5.6), 0);
+  history.add("projector", projector_frame(15, {2, 2, 0.5, 0}, 5.6), 0);
   const auto trace = trace_of(history);
   const auto way = trace.along(trace.named("detect")[0].flows[0]);
   EXPECT_THAT(names_of(way), ElementsAre("capture", "detect", "frame", "present"));
@@ -132,15 +132,15 @@ TEST(Perfetto, OnlyTheFirstOfTheFramesThatKnewADetectionIsOnItsWay) {
 
 TEST(Perfetto, AnImageOfTheSameTimeButAnotherNumberIsAnother) {
   History history(60);
-  history.note("camera", frame(2, 0, {mark(Stage::capture, 0, 1)}), 0);
-  history.note("projector", projector_frame(11, {1, 0}, 1.2), 0);
+  history.add("camera", frame(2, 0, {mark(Stage::capture, 0, 1)}), 0);
+  history.add("projector", projector_frame(11, {1, 0}, 1.2), 0);
   EXPECT_THAT(trace_of(history).named("capture")[0].flows, IsEmpty());
 }
 
 TEST(Perfetto, AFrameInsideTheTimeOfAnotherIsNotDrawnAsItsPart) {
   History history(60);
-  history.note("pose", frame(1, 0, {mark(Stage::sample, 0, 9)}), 0);
-  history.note("pose", frame(2, 3, {mark(Stage::sample, 3, 8)}), 0);
+  history.add("pose", frame(1, 0, {mark(Stage::sample, 0, 9)}), 0);
+  history.add("pose", frame(2, 3, {mark(Stage::sample, 3, 8)}), 0);
   for (const auto& sample : trace_of(history).named("sample")) EXPECT_EQ(sample.parent, -1);
 }
 
@@ -156,7 +156,7 @@ TEST(Perfetto, ASampleOfTheTrackerFlowsIntoTheFirstFrameThatKnewIt) {
 TEST(Perfetto, AServiceWhoseFramesOverlapGetsAsManyLanesAsItNeeds) {
   History history(60);
   for (int i = 0; i < 20; ++i)
-    history.note("pose", frame(i, i * 2.0, {mark(Stage::sample, i * 2.0, i * 2.0 + 5)}), 0);
+    history.add("pose", frame(i, i * 2.0, {mark(Stage::sample, i * 2.0, i * 2.0 + 5)}), 0);
   const auto trace = trace_of(history);
   ASSERT_EQ(trace.fault, "");
   std::map<std::uint64_t, int> slices_of_lane;
@@ -178,8 +178,8 @@ TEST(Perfetto, TheAgeOfTheImageInTheLightIsACounter) {
 
 TEST(Perfetto, FramesWithoutAnOriginAndOfNoImageAreShownWithoutFlowOrAge) {
   History history(60);
-  history.note("projector", projector_frame(1, {}, 1), 0);
-  history.note("projector", projector_frame(2, {99, -5}, 3), 2);
+  history.add("projector", projector_frame(1, {}, 1), 0);
+  history.add("projector", projector_frame(2, {99, -5}, 3), 2);
   const auto trace = trace_of(history);
   ASSERT_EQ(trace.fault, "");
   EXPECT_THAT(trace.ages_ms, SizeIs(1));
@@ -189,14 +189,14 @@ TEST(Perfetto, FramesWithoutAnOriginAndOfNoImageAreShownWithoutFlowOrAge) {
 
 TEST(Perfetto, ZeroLengthsAndWildMarksStillMakeATrace) {
   History history(60);
-  history.note(
+  history.add(
       "projector",
       frame(1, 0, {mark(Stage::draw, 1, 1), mark(Stage::warp, 1, 1), mark(Stage::frame, 1, 1)}), 0);
   auto wild =
       frame(2, 0, {mark(Stage::draw, 1, 2), mark(Stage::warp, 1.5, 9), mark(Stage::frame, 0.5, 3)});
   wild.marks[0].begin_ns = 0;
   wild.header.origin_ns = std::numeric_limits<std::int64_t>::min();
-  history.note("projector", wild, 0);
+  history.add("projector", wild, 0);
   const auto trace = trace_of(history);
   EXPECT_EQ(trace.fault, "");
   EXPECT_THAT(trace.slices, SizeIs(6));

@@ -27,7 +27,7 @@ struct SeenTrace {
   std::map<std::uint64_t, std::string> tracks;  ///< by id, without the process's own
   std::vector<SeenSlice> slices;                ///< by begin
   std::vector<double> ages_ms;                  ///< the counter's values
-  std::string fault;                            ///< what is wrong with it; "" for nothing
+  std::string fault;  ///< the first error in the trace; "" if there is none
 
   std::vector<SeenSlice> named(std::string_view name) const;
   /// The slices that flow `id` passes through, by begin.

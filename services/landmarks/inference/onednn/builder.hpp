@@ -14,10 +14,10 @@ namespace handcast::landmarks::onednn {
 using onnx::Node;
 using onnx::Shape;
 
-/// An exception: the network cannot be run. It is thrown while a program is built and caught where
-/// the network is opened.
+/// An exception: the network cannot be run. It is thrown while a program is built and caught by the
+/// function that opens the network.
 struct Refused {
-  std::string what;
+  std::string what;  ///< the reason, for the error
 };
 
 /// Throws Refused about a node: "Conv 'x' <why>".
@@ -41,7 +41,7 @@ class Builder {
   /// `model` must outlive the builder; `groups`: those of fuse().
   Builder(const onnx::Model& model, const std::vector<Group>& groups);
 
-  /// Says that the next steps belong to this group.
+  /// Assigns the next steps to this group.
   void begin(int group) { now_ = group; }
 
   /// The program so far.
@@ -54,7 +54,7 @@ class Builder {
   Value operand(const Node& node, std::size_t input);
   /// An input that must be a constant; null if the node does not have it.
   const onnx::Tensor* constant(const Node& node, std::size_t input) const;
-  /// The same as a list of integers; nothing if the node does not have it.
+  /// The same as a list of integers; empty if the node does not have it.
   std::optional<std::vector<std::int64_t>> integers(const Node& node, std::size_t input) const;
 
   /// Names a value that the steps so far compute.

@@ -9,7 +9,7 @@ namespace handcast::landmarks::onednn {
 /// A node and the additions and activations after it whose inputs no other node uses. They may run
 /// while the node's result is in registers.
 struct Group {
-  onnx::Node head;
+  onnx::Node head;               ///< the node
   std::vector<onnx::Node> tail;  ///< each uses the result of the one before it
 
   /// The name of the group's result.

@@ -14,7 +14,7 @@ using Emit = std::size_t (*)(Builder& builder, const Node& node, std::span<const
 /// A row of the tables of operators.
 struct Operator {
   const char* name;  ///< in ONNX
-  Emit emit;
+  Emit emit;         ///< adds its steps
 };
 
 /// Layers with weights: convolution.cpp.
@@ -29,8 +29,8 @@ std::span<const Operator> layout_operators();
 /// The name of the result of a node fused with the first `taken` nodes of its tail.
 const std::string& output_of(const Node& node, std::span<const Node> tail, std::size_t taken);
 
-/// Adds the steps of a node by its row in the tables. Throws Refused if they do not have its
-/// operator.
+/// Adds the steps of a node by its row in the tables. Returns the number of fused nodes, as Emit.
+/// Throws Refused if the tables do not have its operator.
 std::size_t emit(Builder& builder, const Node& node, std::span<const Node> tail);
 
 }  // namespace handcast::landmarks::onednn

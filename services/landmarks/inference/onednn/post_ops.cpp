@@ -55,7 +55,7 @@ const std::map<std::string, MakeActivation>& activations() {
   return table;
 }
 
-/// The other operand of an addition to `result`; nothing if it cannot be broadcast to it.
+/// The other operand of an addition to `result`; empty if it cannot be broadcast to it.
 std::optional<PostOp> addition(Builder& builder, const Node& node, const std::string& result,
                                const Shape& shape) {
   const Value other = builder.operand(node, node.inputs[0] == result ? 1 : 0);
@@ -69,7 +69,7 @@ std::optional<PostOp> addition(Builder& builder, const Node& node, const std::st
       PostOp::kBroadcastAdd, {plain_desc(widened(added, shape.size())), other.buffer}, {}};
 }
 
-/// A PRelu with one slope per channel; nothing if it has others.
+/// A PRelu with one slope per channel; empty if it has others.
 std::optional<PostOp> prelu(Builder& builder, const Node& node, const Shape& shape) {
   const onnx::Tensor* tensor = builder.constant(node, 1);
   if (!tensor || shape.size() < 2 || static_cast<std::int64_t>(tensor->floats.size()) != shape[1])

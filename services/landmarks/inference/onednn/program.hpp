@@ -20,14 +20,14 @@ AlignedBytes zeroed_bytes(std::size_t size);
 
 /// A tensor: its layout in a buffer. Several may share a buffer, as views.
 struct Value {
-  dnnl::memory::desc desc;
-  int buffer = -1;
+  dnnl::memory::desc desc;  ///< shape and layout
+  int buffer = -1;          ///< number of the buffer
 };
 
 /// An argument of a primitive.
 struct Argument {
-  int role;  ///< DNNL_ARG_...
-  Value value;
+  int role;     ///< DNNL_ARG_...
+  Value value;  ///< the tensor
 };
 
 /// Primitives in the order in which they run, and the memory between them. It is built once; run()

@@ -6,10 +6,15 @@ namespace handcast::landmarks::onednn {
 
 /// The window of a convolution or a pool. One number per spatial axis.
 struct Window {
+  /// As in ONNX. A dilation is the step between samples: 1 means no gap.
+  /// @{
   Shape kernel, strides, dilations;
-  Shape before, after;  ///< padding
-
-  /// oneDNN's dilations: the gaps between samples, where ONNX counts the steps.
+  /// @}
+  /// Padding at the beginning and at the end.
+  /// @{
+  Shape before, after;
+  /// @}
+  /// oneDNN's dilations: the gaps between samples, the steps less 1.
   Shape gaps() const;
 };
 

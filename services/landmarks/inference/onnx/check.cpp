@@ -67,7 +67,7 @@ Result<void> check_nodes(const Model& model) {
     for (const std::string& input : node.inputs)
       if (!input.empty() && !known.contains(input))
         return wrong(fmt::format(
-            "{} needs '{}', which is not a weight, not an input and computed by no node before it",
+            "{} needs '{}', which is neither a weight nor an input nor computed by an earlier node",
             node.title(), input));
     for (const std::string& output : node.outputs)
       if (!output.empty() && !known.insert(output).second)

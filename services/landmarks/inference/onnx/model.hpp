@@ -26,9 +26,9 @@ std::string to_string(const Shape& shape);
 
 /// A constant: floats or integers (shapes, axes); the other list is empty.
 struct Tensor {
-  Shape shape;
-  std::vector<float> floats;
-  std::vector<std::int64_t> integers;
+  Shape shape;                         ///< its extents
+  std::vector<float> floats;           ///< its elements, row-major
+  std::vector<std::int64_t> integers;  ///< its elements, row-major
 };
 
 /// An attribute of a node. Its kind says which member holds the value.
@@ -42,34 +42,33 @@ struct Attribute {
     kNumbers = 6,
     kIntegers = 7
   };
-  Kind kind = kInteger;
-  std::int64_t integer = 0;
-  float number = 0;
-  std::string text;
-  std::vector<std::int64_t> integers;
-  std::vector<float> numbers;
-  Tensor tensor;
+  Kind kind = kInteger;                ///< which of the members below is set
+  std::int64_t integer = 0;            ///< of kInteger
+  float number = 0;                    ///< of kNumber
+  std::string text;                    ///< of kText
+  std::vector<std::int64_t> integers;  ///< of kIntegers
+  std::vector<float> numbers;          ///< of kNumbers
+  Tensor tensor;                       ///< of kTensor
 };
 
 /// A node of the graph.
 struct Node {
-  std::string op;                   ///< the name of its operator
-  std::vector<std::string> inputs;  ///< values by name; empty: an optional input that is not there
-  std::vector<std::string> outputs;
-  std::map<std::string, Attribute> attributes;
+  std::string op;                    ///< the name of its operator
+  std::vector<std::string> inputs;   ///< names of values; "": an optional input that is absent
+  std::vector<std::string> outputs;  ///< names of its results
+  std::map<std::string, Attribute> attributes;  ///< its attributes by name
 
-  /// Whether it has this attribute.
+  /// True if it has this attribute.
   bool has(const std::string& attribute) const { return attributes.contains(attribute); }
-  /// The integer of an attribute; `otherwise` if it does not have it. The next three are alike.
+  /// The value of an attribute; `otherwise` if the node does not have it.
+  /// @{
   std::int64_t integer(const std::string& attribute, std::int64_t otherwise) const;
-  /// The float of an attribute.
   float number(const std::string& attribute, float otherwise) const;
-  /// The text of an attribute.
   std::string text(const std::string& attribute, const std::string& otherwise) const;
-  /// The integers of an attribute.
   std::vector<std::int64_t> integers(const std::string& attribute,
                                      const std::vector<std::int64_t>& otherwise) const;
-  /// Whether it has input `i`.
+  /// @}
+  /// True if it has input `i`.
   bool has_input(std::size_t i) const { return i < inputs.size() && !inputs[i].empty(); }
   /// "Conv 'name of its first output'", for messages.
   std::string title() const;
@@ -77,17 +76,20 @@ struct Node {
 
 /// An input or an output of the network.
 struct Port {
-  std::string name;
-  Shape shape;
+  std::string name;  ///< name of its value
+  Shape shape;       ///< its extents; 1 for a free batch size
 };
 
 /// The parts of an ONNX file that handcast uses. Each value is computed by one node, and nodes come
 /// after those that compute their inputs.
 struct Model {
-  std::int64_t opset = 0;
-  std::vector<Node> nodes;
-  std::map<std::string, Tensor> constants;
-  std::vector<Port> inputs, outputs;  ///< a free batch size is read as 1
+  std::int64_t opset = 0;                   ///< version of the operator set
+  std::vector<Node> nodes;                  ///< the graph
+  std::map<std::string, Tensor> constants;  ///< weights and other constants by name
+  /// The inputs and outputs of the network.
+  /// @{
+  std::vector<Port> inputs, outputs;
+  /// @}
 };
 
 /// Reads and checks a file. Errors: bad_config, a sentence that begins with the file's name.

@@ -14,10 +14,10 @@ using Bytes = std::span<const std::uint8_t>;
 
 /// One field of a message in protobuf's wire format.
 struct Field {
-  std::uint32_t number = 0;
-  std::uint64_t value = 0;  ///< of a varint or a fixed-size number
-  Bytes bytes;              ///< of a string, a message or a packed list
-  bool is_bytes = false;
+  std::uint32_t number = 0;  ///< number of the field
+  std::uint64_t value = 0;   ///< of a varint or a fixed-size number
+  Bytes bytes;               ///< of a string, a message or a packed list
+  bool is_bytes = false;     ///< `bytes` is set, not `value`
 
   /// The bytes as text.
   std::string text() const { return {bytes.begin(), bytes.end()}; }
@@ -35,16 +35,17 @@ struct Field {
 /// Iterates over the fields of a message. Never reads beyond its bytes, whatever they contain.
 class WireReader {
  public:
+  /// `bytes` must outlive the object and the fields.
   explicit WireReader(Bytes bytes) : rest_(bytes) {}
 
-  /// The next field; nothing at the end, and if the bytes are not a message: see broken().
+  /// The next field; empty at the end, and if the bytes are not a message: see broken().
   std::optional<Field> next();
-  /// Whether the bytes are not a message.
+  /// True if the bytes are not a message.
   bool broken() const { return broken_; }
 
   /// Reads one varint without a key: an element of a packed list.
   std::optional<std::uint64_t> varint();
-  /// Whether all bytes have been read.
+  /// True if all bytes have been read.
   bool at_end() const { return rest_.empty(); }
 
  private:

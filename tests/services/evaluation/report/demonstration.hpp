@@ -56,9 +56,9 @@ inline nlohmann::json live_of() {
                       {"pose", {{"restarts", 0}, {"backend", "twin"}}},
                       {"landmarks", {{"restarts", 1}, {"backend", "twin"}}},
                       {"projector", {{"restarts", 0}, {"backend", "twin"}}}};
-  live["rates"] = {{"camera", {{"asked_hz", 525.0}, {"held_hz", 498.21}}},
-                   {"landmarks", {{"asked_hz", nullptr}, {"held_hz", 61.4}}},
-                   {"projector", {{"asked_hz", 946.0}, {"held_hz", 903.5}}}};
+  live["rates"] = {{"camera", {{"wanted_hz", 525.0}, {"held_hz", 498.21}}},
+                   {"landmarks", {{"wanted_hz", nullptr}, {"held_hz", 61.4}}},
+                   {"projector", {{"wanted_hz", 946.0}, {"held_hz", 903.5}}}};
   live["stage_us"] = metrics_of("twin", 1)["stage_us"];
   live["stage_us"]["capture"] = {{"p50", 1240.0}, {"p99", 2600.0}, {"count", 9960}};
   live["stage_us"]["sample"] = {{"p50", 9110.0}, {"p99", 10020.0}, {"count", 2210}};

@@ -92,8 +92,8 @@ TEST(Executors, OneThatThisBuildLacksIsRefusedWithWhatIsMissing) {
   ASSERT_FALSE(network);
   EXPECT_EQ(network.error().code, Errc::bad_config);
   EXPECT_EQ(network.error().what,
-            "the executor 'opencv' needs OpenCV's dnn module (HANDCAST_WITH_OPENCV_DNN), and this "
-            "build of handcast is without it");
+            "the executor 'opencv' needs OpenCV's dnn module (HANDCAST_WITH_OPENCV_DNN), which "
+            "this build of handcast does not have");
 }
 
 /// The time of all threads is the time of the calling one.

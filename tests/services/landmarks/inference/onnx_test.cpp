@@ -110,7 +110,7 @@ TEST(Networks, AWeightThatIsNotFiniteIsRefused) {
 TEST(Networks, ACycleIsRefused) {
   onnx::Model model = little_model();
   model.nodes[0].inputs[0] = "y";
-  expect_refused(model, "computed by no node before it");
+  expect_refused(model, "nor computed by an earlier node");
 }
 
 TEST(Networks, AMissingWeightIsRefused) {
