@@ -7,12 +7,14 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstdio>
-#include <memory>
+#include <string_view>
 #include <vector>
 // needs cstdio
 #include <jpeglib.h>
 // needs jpeglib.h
 #include <jerror.h>
+
+#include "ipc/base/input_file.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -30,24 +32,20 @@ tl::unexpected<Error> too_large(const std::filesystem::path& file, std::uint32_t
 /// libpng's simplified interface; the destructor releases its memory.
 struct PngFile {
   png_image png{};
-  explicit PngFile(const std::filesystem::path& file) {
+  /// `bytes` must outlive the object.
+  explicit PngFile(std::string_view bytes) {
     png.version = PNG_IMAGE_VERSION;
-    png_image_begin_read_from_file(&png, file.c_str());
+    png_image_begin_read_from_memory(&png, bytes.data(), bytes.size());
   }
   ~PngFile() { png_image_free(&png); }
   bool is_well() const { return !PNG_IMAGE_FAILED(png) && png.width > 0; }
 };
 
-Result<void> check_file(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored)) return {};
-  return fail(Errc::bad_config, fmt::format("There is no picture file '{}'.", file.string()));
-}
-
-/// The pixels as `format`. An error if the file is not a PNG or is broken.
+/// Decodes `bytes`, the contents of `file`, as `format`. An error if they are no PNG or broken.
 template <class Pixel>
-Result<Image<Pixel>> read_png(const std::filesystem::path& file, std::uint32_t format) {
-  PngFile opened(file);
+Result<Image<Pixel>> decode_png(std::string_view bytes, const std::filesystem::path& file,
+                                std::uint32_t format) {
+  PngFile opened(bytes);
   const auto broken = [&] {
     return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture.", file.string()));
   };
@@ -82,16 +80,21 @@ void heed_warning(j_common_ptr jpeg, int level) {
   leave(jpeg);
 }
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
+/// Ends decoding at a scan beyond the last one that a picture needs: a progressive file of a few
+/// kilobytes can hold thousands, each of which costs a pass over the whole picture.
+void limit_scans(j_common_ptr jpeg) {
+  constexpr int kMostScans = 100;
+  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMostScans) return;
+  reinterpret_cast<JpegErrors*>(jpeg->err)->trouble = "has more than 100 scans";
+  leave(jpeg);
+}
 
 /// libjpeg leaves a broken file by a longjmp to here, so no object with a destructor may be created
 /// after setjmp.
-bool decode_jpeg(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::FILE* file,
-                 Texture& texture) {
+bool decode(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::string_view bytes,
+            Texture& texture) {
   if (setjmp(errors.way_out) != 0) return false;
-  jpeg_stdio_src(&jpeg, file);
+  jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
   jpeg_read_header(&jpeg, TRUE);
   if (std::max(jpeg.image_width, jpeg.image_height) > kLargestSide) return true;
   if (jpeg.jpeg_color_space != JCS_GRAYSCALE && jpeg.jpeg_color_space != JCS_YCbCr &&
@@ -111,8 +114,7 @@ bool decode_jpeg(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::FILE* fi
   return true;
 }
 
-Result<Texture> read_jpeg(const std::filesystem::path& path) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+Result<Texture> decode_jpeg(std::string_view bytes, const std::filesystem::path& file) {
   jpeg_decompress_struct jpeg{};
   JpegErrors errors{};
   jpeg.err = jpeg_std_error(&errors.base);
@@ -121,28 +123,31 @@ Result<Texture> read_jpeg(const std::filesystem::path& path) {
   errors.base.emit_message = heed_warning;
   Texture texture;
   jpeg_create_decompress(&jpeg);
-  const bool decoded = file && decode_jpeg(jpeg, errors, file.get(), texture);
+  jpeg_progress_mgr progress{};
+  progress.progress_monitor = limit_scans;
+  jpeg.progress = &progress;
+  const bool decoded = decode(jpeg, errors, bytes, texture);
   const auto width = jpeg.image_width, height = jpeg.image_height;
   jpeg_destroy_decompress(&jpeg);
-  if (decoded && std::max(width, height) > kLargestSide) return too_large(path, width, height);
+  if (decoded && std::max(width, height) > kLargestSide) return too_large(file, width, height);
   if (!decoded)
-    return fail(Errc::bad_config, fmt::format("'{}' {}.", path.string(), errors.trouble));
+    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), errors.trouble));
   return texture;
 }
 
-bool begins_like_png(const std::filesystem::path& path) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
-  png_byte signature[8] = {};
-  return file && std::fread(signature, 1, sizeof signature, file.get()) == sizeof signature &&
-         png_sig_cmp(signature, 0, sizeof signature) == 0;
+bool begins_like_png(std::string_view bytes) {
+  constexpr std::size_t kSignature = 8;
+  return bytes.size() >= kSignature &&
+         png_sig_cmp(reinterpret_cast<const png_byte*>(bytes.data()), 0, kSignature) == 0;
 }
 
 }  // namespace
 
 Result<Texture> read_picture(const std::filesystem::path& file) {
-  if (auto exists = check_file(file); !exists) return tl::make_unexpected(exists.error());
-  auto picture =
-      begins_like_png(file) ? read_png<std::uint32_t>(file, PNG_FORMAT_RGBA) : read_jpeg(file);
+  const auto bytes = read_input(file, kMostPicture);
+  if (!bytes) return fail_in("picture", bytes.error());
+  auto picture = begins_like_png(*bytes) ? decode_png<std::uint32_t>(*bytes, file, PNG_FORMAT_RGBA)
+                                         : decode_jpeg(*bytes, file);
   if (!picture) return picture;
   for (int y = 0; y < picture->height(); ++y)
     for (int x = 0; x < picture->width(); ++x) picture->at(x, y) |= kOpaque;
@@ -150,8 +155,9 @@ Result<Texture> read_picture(const std::filesystem::path& file) {
 }
 
 Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
-  if (auto exists = check_file(file); !exists) return tl::make_unexpected(exists.error());
-  return read_png<std::uint8_t>(file, PNG_FORMAT_GRAY);
+  const auto bytes = read_input(file, kMostPicture);
+  if (!bytes) return fail_in("picture", bytes.error());
+  return decode_png<std::uint8_t>(*bytes, file, PNG_FORMAT_GRAY);
 }
 
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {

@@ -27,16 +27,20 @@ class ControlServer {
     void operator()(const nlohmann::json& answer, const std::vector<int>& descriptors = {}) const {
       send_(answer, descriptors);
     }
+    /// Sends an answer with descriptors to the client, if it is still there.
     using Send = std::function<void(const nlohmann::json&, const std::vector<int>&)>;
     Reply() = default;
+    /// Stores the function that sends.
     explicit Reply(Send send) : send_(std::move(send)) {}
 
    private:
     Send send_;
   };
+  /// Carries out a request; called on the event loop.
   using OnRequest = std::function<void(const control::Request&, Reply)>;
 
-  /// Errors: unavailable (a rig of this name is up), bad_config (the name, or the runtime folder).
+  /// Creates the socket of `rig` and accepts connections. Errors: unavailable (a rig of this name
+  /// is up), bad_config (the name, or the runtime folder).
   static Result<std::unique_ptr<ControlServer>> listen(const std::string& rig, EventLoop& loop,
                                                        OnRequest on_request);
   ~ControlServer();

@@ -95,7 +95,8 @@ TEST(Content, AMissingFileAndAFileThatIsNoPictureAreToldApart) {
   const auto missing = load_content("/nowhere/picture.png", two_sheets());
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, Errc::bad_config);
-  EXPECT_THAT(missing.error().what, HasSubstr("no picture file '/nowhere/picture.png'"));
+  EXPECT_THAT(missing.error().what,
+              HasSubstr("/nowhere/picture.png: cannot be read: No such file"));
   const TemporaryFile text("handcast_content_test.png", "this is not a picture");
   const auto wrong = load_content(text.path(), two_sheets());
   ASSERT_FALSE(wrong);
@@ -107,7 +108,8 @@ TEST(Content, AMissingGreyPngIsNotReportedAsADamagedOne) {
   const auto missing = read_grey_png("/nowhere/picture.png");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, Errc::bad_config);
-  EXPECT_THAT(missing.error().what, HasSubstr("no picture file '/nowhere/picture.png'"));
+  EXPECT_THAT(missing.error().what,
+              HasSubstr("/nowhere/picture.png: cannot be read: No such file"));
 }
 
 TEST(Content, APictureIsReadWithRedInTheLowestByteAndTheTopRowFirst) {
@@ -146,8 +148,17 @@ TEST(Content, WhatIsWrittenIsReadBackAndBrokenFilesAreNotPictures) {
   EXPECT_FALSE(write_png("/nowhere/picture.png", picture.view()));
 }
 
-/// A JPEG file with a square of noise.
-std::string jpeg_of(J_COLOR_SPACE colours, int components) {
+/// Each coefficient of each of three components in a scan of its own, after the mean: 190 scans.
+std::vector<jpeg_scan_info> one_scan_per_coefficient() {
+  std::vector<jpeg_scan_info> scans{{3, {0, 1, 2}, 0, 0, 0, 0}};
+  for (int component = 0; component < 3; ++component)
+    for (int k = 1; k < 64; ++k) scans.push_back({1, {component}, k, k, 0, 0});
+  return scans;
+}
+
+/// A JPEG file with a square of noise. With `scans` it is progressive.
+std::string jpeg_of(J_COLOR_SPACE colours, int components,
+                    const std::vector<jpeg_scan_info>& scans = {}) {
   constexpr int kSide = 64;
   jpeg_compress_struct jpeg{};
   jpeg_error_mgr errors{};
@@ -160,6 +171,10 @@ std::string jpeg_of(J_COLOR_SPACE colours, int components) {
   jpeg.input_components = components;
   jpeg.in_color_space = colours;
   jpeg_set_defaults(&jpeg);
+  if (!scans.empty()) {
+    jpeg.scan_info = scans.data();
+    jpeg.num_scans = static_cast<int>(scans.size());
+  }
   jpeg_start_compress(&jpeg, TRUE);
   std::mt19937 random(1);
   std::vector<JSAMPLE> row(static_cast<std::size_t>(kSide) * components);
@@ -173,6 +188,17 @@ std::string jpeg_of(J_COLOR_SPACE colours, int components) {
   jpeg_destroy_compress(&jpeg);
   std::free(bytes);
   return file;
+}
+
+TEST(Content, AProgressiveJpegIsReadAndOneOfHundredsOfScansIsRefused) {
+  auto scans = one_scan_per_coefficient();
+  const TemporaryFile bomb("handcast_content_scans.jpg", jpeg_of(JCS_RGB, 3, scans));
+  const auto refused = read_picture(bomb.path());
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("has more than 100 scans"));
+  scans.resize(64);
+  const TemporaryFile good("handcast_content_scans.jpg", jpeg_of(JCS_RGB, 3, scans));
+  EXPECT_TRUE(read_picture(good.path()));
 }
 
 TEST(Content, AJpegThatEndsTooEarlyIsRefused) {
