@@ -58,6 +58,7 @@ int help(const Arguments& arguments) {
   const auto verb = find_verb(arguments.front());
   if (!verb || !verb->run) return become_program(arguments.front(), {"--help"});
   fmt::print("usage: handcast {}\n\n{}\n", verb->usage, verb->sentence);
+  if (!verb->options.empty()) fmt::print("\n{}", verb->options);
   return kExitDone;
 }
 

@@ -27,7 +27,7 @@ template <class Visitor>
 void describe_fault(Visitor& visitor, Fault& fault, std::string_view at_name,
                     std::string_view lasting_name, std::string_view sentence) {
   visitor.field(at_name, fault.at_s, between(0, 1e6, "s"),
-                "Fault: when the fault of the next setting begins, since the start of the rig.");
+                "Fault: its begin, since the start of the rig; the next setting says what it is.");
   visitor.field(lasting_name, fault.lasting_s, between(0, 1e6, "s"), sentence);
 }
 

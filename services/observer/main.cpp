@@ -58,8 +58,9 @@ static void run_observer(service::Context& context) {
   while (context.running()) {
     sleep_until_ns(std::min(score_ns, now_ns() + to_ns(50ms)));
     const std::int64_t time_ns = now_ns();
-    if (time_ns >= score_ns && has_truth(context.rig())) {
+    if (time_ns >= score_ns) {
       score_ns = std::max(score_ns + period_ns, time_ns);
+      if (!has_truth(context.rig())) continue;
       if (const auto seen = projections.latest(Deadline::in(20ms)))
         scores.add(judge.score(**seen), static_cast<int>((*seen)->foldovers));
     }

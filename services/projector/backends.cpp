@@ -13,7 +13,9 @@ static constexpr std::array kBackends{
                      .sentence = "Models a projector: takes frames at its rate, shows none.",
                      .open = open_twin},
     ProjectorBackend{.name = "file",
-                     .sentence = "Writes the light as PNG pictures into the folder of `up --out`.",
+                     .sentence = "Writes every 100th frame as a PNG picture to light/ in the "
+                                 "folder of `up --out`, or in the "
+                                 "current folder; keeps 100 of them.",
                      .open = open_file},
 };
 

@@ -54,8 +54,12 @@ int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body) try {
   using Task = CommandLine::Task;
   log::set_program(description.name);
-  const auto line = must(parse_command_line(argc, argv));
-  switch (line.task) {
+  const auto line = parse_command_line(argc, argv);
+  if (!line) {
+    log::error("{}", line.error().what);
+    return kExitUsage;
+  }
+  switch (line->task) {
     case Task::help:
       print_help(description);
       return kExitDone;
@@ -71,7 +75,7 @@ int run(const daemon::ServiceDescription& description, int argc, char** argv,
     case Task::serve:
       break;
   }
-  return serve(description, line, body);
+  return serve(description, *line, body);
 } catch (const std::exception& problem) {
   give_up({Errc::unavailable, problem.what()});
 }

@@ -27,7 +27,8 @@ Result<Options> sort_options(const std::vector<std::string>& arguments, const Op
       options.values[argument].push_back(arguments[++i]);
   }
   if (options.words.size() < table.least_words)
-    return fail(Errc::bad_data, "an argument is missing");
+    return fail(Errc::bad_data,
+                fmt::format("{} of {} arguments given", options.words.size(), table.least_words));
   if (options.words.size() > table.most_words)
     return fail(Errc::bad_data, fmt::format("'{}' is one argument too many", options.words.back()));
   return options;
@@ -40,7 +41,7 @@ Result<double> parse_seconds(const std::string& text) {
   const bool whole = error == std::errc{} && end == text.data() + text.size();
   if (whole && seconds > 0 && seconds <= kMost_s) return seconds;
   return fail(Errc::bad_data,
-              fmt::format("--seconds {}: expected a time above 0 and up to {:g}", text, kMost_s));
+              fmt::format("--seconds {}: must be a number above 0, up to {:g}", text, kMost_s));
 }
 
 }  // namespace handcast::supervisor

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include "config/rig.hpp"
+#include "config/settings/settings.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 #include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
@@ -12,14 +14,54 @@ namespace {
 
 Catalogue installed_services() { return read_catalogue(catalogue_folder(program_folder())); }
 
-/// Whether this installation has the back ends that a rig asks for.
-Result<void> check_backends(const config::Rig& rig) {
+/// A line for each back end that this installation does not have.
+std::string unknown_backends(const config::Rig& rig) {
+  std::string lines;
   const auto catalogue = installed_services();
   for (const auto& service : services_of(rig, catalogue)) {
     if (service.backend.empty()) continue;
-    if (auto known = check_backend(catalogue, service.name, service.backend); !known) return known;
+    if (const auto known = check_backend(catalogue, service.name, service.backend); !known)
+      lines += fmt::format("{}.backend: {}\n", service.name, known.error().what);
   }
-  return {};
+  return lines;
+}
+
+/// A line for each file and folder that a setting names, that this rig reads and that is missing.
+std::string missing_files(config::Rig rig) {
+  struct Place {
+    std::string_view path, needed_by;  ///< `needed_by`: the back end that reads it; "" for all
+  };
+  constexpr Place kPlaces[] = {{"calibration", ""},
+                               {"hand.left", ""},
+                               {"hand.right", ""},
+                               {"content.left", ""},
+                               {"content.right", ""},
+                               {"twin.motion", "twin"},
+                               {"camera.replay.directory", "replay"},
+                               {"pose.replay.directory", "replay"},
+                               {"landmarks.replay.directory", "replay"}};
+  std::string lines;
+  const auto listing = config::list_settings(rig);
+  for (const auto& [path, needed_by] : kPlaces) {
+    const auto* setting = config::find_setting(listing, path);
+    const auto service = path.substr(0, path.find('.'));
+    if (!setting || (needed_by == "replay" && backend_of(service, rig) != needed_by)) continue;
+    const auto& file = *std::get<std::string*>(setting->target);
+    std::error_code unknown;
+    if (file.empty() || file.starts_with("builtin:") || std::filesystem::exists(file, unknown))
+      continue;
+    lines += fmt::format("{}: {} does not exist\n", path, file);
+  }
+  return lines;
+}
+
+/// Checks what the settings of a rig refer to. Prints what is wrong.
+int check(const config::Rig& rig, const std::string& file) {
+  const auto faults = unknown_backends(rig) + missing_files(rig);
+  if (!faults.empty())
+    return complain(kExitConfig, fmt::format("{}:\n{}", file, faults.substr(0, faults.size() - 1)));
+  fmt::print("{} is in order\n", file);
+  return kExitDone;
 }
 
 }  // namespace
@@ -35,12 +77,12 @@ int run_config(const Arguments& arguments) {
     fmt::print("{}{}", config::print_reference(), print_backends(installed_services()));
     return kExitDone;
   }
-  const bool print = options->has("--print"), check = options->has("--check");
-  if (print == check)
+  const bool checks = options->has("--check");
+  if (options->has("--print") == checks)
     return complain(
         kExitUsage,
         "config: one of --print, --check, --reference is needed; `handcast help config`");
-  if (check && options->words.empty()) return complain(kExitUsage, "config: --check needs a file");
+  if (checks && options->words.empty()) return complain(kExitUsage, "config: --check needs a file");
 
   const auto settings = options->all("--set");
   const auto rig =
@@ -48,9 +90,8 @@ int run_config(const Arguments& arguments) {
           ? config::parse_rig("", std::filesystem::current_path() / "defaults", settings)
           : config::load_rig(options->words.front(), settings);
   if (!rig) return complain(rig.error());
-  if (check)
-    if (const auto known = check_backends(*rig); !known) return complain(known.error());
-  fmt::print("{}", print ? config::print_rig(*rig) : options->words.front() + " is in order\n");
+  if (checks) return check(*rig, options->words.front());
+  fmt::print("{}", config::print_rig(*rig));
   return kExitDone;
 }
 

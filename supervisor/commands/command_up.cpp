@@ -45,7 +45,18 @@ RunOptions run_options(const Options& options, std::optional<double> seconds) {
   return run;
 }
 
+/// Creates the folder of --out before a service wants to write into it.
+Result<void> create_out(const std::optional<std::filesystem::path>& out) {
+  std::error_code error;
+  if (!out || std::filesystem::is_directory(*out, error)) return {};
+  std::filesystem::create_directories(*out, error);
+  if (!error) return {};
+  return fail(Errc::bad_config,
+              fmt::format("--out: {} cannot be created: {}", out->string(), error.message()));
+}
+
 int run(RunOptions options) {
+  if (const auto created = create_out(options.out); !created) return complain(created.error());
   const auto applied = applied_before(options.rig_file, options.settings);
   const auto rig = applied ? *applied : config::load_rig(options.rig_file, options.settings);
   if (!rig) return complain(rig.error());

@@ -10,40 +10,63 @@ namespace {
 
 using Group = VerbGroup;
 
+constexpr std::string_view kRig = "  --rig NAME   which rig, if several are up\n";
+
 constexpr std::array kVerbs{
-    VerbEntry{"up", "up RIG.toml [--set path=value]... [--seconds N] [--out DIR] [--no-keeper]",
-              "Runs a rig until Ctrl-C, `handcast down` or N seconds; writes DIR/live.json. "
-              "--no-keeper: for systemd.",
-              run_up, Group::run},
+    VerbEntry{
+        "up", "up RIG.toml [--set path=value]... [--seconds N] [--out DIR] [--no-keeper]",
+        "Runs a rig until Ctrl-C or `handcast down`.", run_up, Group::run,
+        "  --set path=value   a setting that overrides that of the file; may be repeated\n"
+        "  --seconds N        stops after N seconds\n"
+        "  --out DIR          where files to be kept go: live.json with the times of all steps,\n"
+        "                     observer.json with the scores, pictures\n"
+        "  --no-keeper        without the process that replaces a dead supervisor; systemd does\n"
+        "                     that for a unit of install-units\n"},
     VerbEntry{"down", "down [--rig NAME]", "Stops a rig and waits until it has stopped.", run_down,
-              Group::run},
+              Group::run, kRig},
     VerbEntry{"status", "status [--json] [--rig NAME]", "Shows a rig's services, rates and times.",
-              run_status, Group::look},
+              run_status, Group::look,
+              "  --json       the same as JSON\n  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"restart", "restart SERVICE [--rig NAME]", "Starts one service of a rig again.",
-              run_restart, Group::change},
+              run_restart, Group::change, kRig},
     VerbEntry{"swap", "swap SERVICE BACKEND [--rig NAME]",
-              "Restarts one service with another back end.", run_swap, Group::change},
+              "Restarts one service with another back end.", run_swap, Group::change, kRig},
     VerbEntry{"reload", "reload [--rig NAME]",
               "Applies a changed rig file: restarts only the services whose settings changed.",
-              run_reload, Group::change},
+              run_reload, Group::change, kRig},
     VerbEntry{"top", "top [--rig NAME] [--once] [--json]",
-              "Watches rings and services in the terminal.", run_top, Group::look},
-    VerbEntry{"latency", "latency [--seconds N] [--json] [--rig NAME]",
-              "Shows the time that each step took, from exposure to light.", run_latency,
-              Group::look},
+              "Watches rings and services in the terminal.", run_top, Group::look,
+              "  --once       prints one look and ends\n  --json       prints one look as JSON\n  "
+              "--rig NAME   which rig, if several are up\n"},
+    VerbEntry{
+        "latency", "latency [--seconds N] [--json] [--rig NAME]",
+        "Shows the time that each step took, from exposure to light.", run_latency, Group::look,
+        "  --seconds N  of the last N seconds; default: all that is kept (supervisor.history_s)\n  "
+        "--json       the same as JSON\n  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"trace", "trace [--seconds N] -o FILE [--rig NAME]",
-              "Writes the last N seconds as a Perfetto trace.", run_trace, Group::look},
+              "Writes the last N seconds as a Perfetto trace.", run_trace, Group::look,
+              "  --seconds N  the last N seconds; default: all that is kept "
+              "(supervisor.history_s)\n  -o FILE      the file to write; ui.perfetto.dev opens "
+              "it\n  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"install-units", "install-units RIG.toml [--set path=value]... [--system] [--print]",
-              "Writes a systemd unit that runs the rig.", run_install_units},
-    VerbEntry{"config", "config --print [FILE] | --check FILE | --reference [--set path=value]...",
-              "Prints a complete rig file, checks one, or explains all settings.", run_config},
+              "Writes a systemd unit that runs the rig.", run_install_units, Group::set_up,
+              "  --set path=value   as for `handcast up`\n"
+              "  --system           a unit of the machine instead of one of this user\n"
+              "  --print            prints the unit and writes nothing\n"},
+    VerbEntry{
+        "config", "config --print [FILE] [--set path=value]... | --check FILE | --reference",
+        "Prints a complete rig file, checks one, or explains all settings.", run_config,
+        Group::set_up,
+        "  --print      all settings, with defaults where FILE has none\n"
+        "  --check      every setting that is wrong, and every file and back end that is missing\n"
+        "  --reference  the page config/REFERENCE.md\n"},
     VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.",
               nullptr, Group::score},
     VerbEntry{"sweep", "sweep ...",
               "Scores a rig with all combinations of some settings, on all cores.", nullptr,
               Group::score},
     VerbEntry{"detect", "detect ...", "Finds the landmarks of the hands in pictures.", nullptr,
-              Group::look},
+              Group::score},
     VerbEntry{"chart", "chart RESULTS.csv... [--out DIR]",
               "Draws charts of sweeps: speed against accuracy, and limits of the methods.", nullptr,
               Group::score},

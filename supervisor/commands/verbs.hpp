@@ -24,6 +24,7 @@ struct VerbEntry {
   std::string_view sentence;            ///< its purpose, for `handcast help`
   int (*run)(const Arguments&);         ///< its function; null: the program handcast-NAME
   VerbGroup group = VerbGroup::set_up;  ///< its group
+  std::string_view options{};           ///< one line per option, for `handcast help VERB`
 };
 
 /// All verbs.

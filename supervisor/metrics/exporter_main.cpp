@@ -93,7 +93,10 @@ int main(int argc, char** argv) {
   const auto options = supervisor::sort_options(
       {argv + 1, argv + argc}, {.with_value = {"--config", "--set"},
                                 .flags = {"--help", "--version", "--backends", "--describe"}});
-  if (!options) return supervisor::give_up(options.error());
+  if (!options) {
+    log::error("{}", options.error().what);
+    return kExitUsage;
+  }
   if (options->has("--backends")) return kExitDone;  // it has no back ends
   if (options->has("--describe")) {
     fmt::print("{}", daemon::print_description(supervisor::describe()));

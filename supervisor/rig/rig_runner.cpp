@@ -26,8 +26,6 @@ constexpr std::int64_t kStoodStill_ns = 1'000'000'000;
 std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
 
 Result<void> write_report(const std::filesystem::path& folder, const nlohmann::json& report) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
   const auto file = folder / "live.json";
   std::ofstream out(file);
   out << report.dump(2) << "\n";

@@ -23,11 +23,14 @@ int main(int argc, char** argv) try {
     fmt::print("handcast simulate {}\n", version());
     return kExitDone;
   }
-  if (const auto done = simulate::run(*options); !done) {
-    fmt::print(stderr, "handcast simulate: {}\n", done.error().what);
-    return exit_code_of(done.error());
+  const auto fault = simulate::run(*options);
+  if (!fault) {
+    fmt::print(stderr, "handcast simulate: {}\n", fault.error().what);
+    return exit_code_of(fault.error());
   }
-  return kExitDone;
+  if (fault->empty()) return kExitDone;
+  fmt::print(stderr, "handcast simulate: {}\n", *fault);
+  return kExitBadResult;
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast simulate: %s\n", problem.what());
   return handcast::kExitRetry;

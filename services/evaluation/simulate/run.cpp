@@ -67,35 +67,52 @@ void print_detector(const nlohmann::json& detector) {
       error_px.is_number() ? fmt::format("{:.1f} px", error_px.get<double>()) : "unknown");
 }
 
+/// The number at a JSON pointer, or "unknown". `form`: with one {}, which takes the number.
+std::string text_of(const nlohmann::json& json, const char* pointer, const char* form) {
+  const nlohmann::json::json_pointer place(pointer);
+  if (!json.contains(place) || !json[place].is_number()) return "unknown";
+  return fmt::format(fmt::runtime(form), json[place].get<double>());
+}
+
 void print_summary(const nlohmann::json& json, const config::Rig& rig, const Options& options) {
-  const auto number = [&](const char* group, const char* key) {
-    return json.contains(group) && json[group].contains(key) && json[group][key].is_number()
-               ? json[group][key].get<double>()
-               : 0.0;
-  };
-  const auto plain = [&](const char* key) {
-    return json.contains(key) && json[key].is_number() ? json[key].get<double>() : 0.0;
+  const auto text = [&](const char* pointer, const char* form) {
+    return text_of(json, pointer, form);
   };
   if (options.draw_every == 0) {
-    fmt::print("{} on {}: landmark error mean {:.2f} mm, p95 {:.2f} mm; jitter {:.3f} px\n",
-               rig.name, rig.twin.motion, number("landmark_mm", "mean"),
-               number("landmark_mm", "p95"), plain("jitter_px"));
+    fmt::print("{} on {}: landmark error mean {}, p95 {}; jitter {}\n", rig.name, rig.twin.motion,
+               text("/landmark_mm/mean", "{:.2f} mm"), text("/landmark_mm/p95", "{:.2f} mm"),
+               text("/jitter_px", "{:.3f} px"));
     return;
   }
   fmt::print(
-      "{} on {}: interior error mean {:.2f} mm, p95 {:.2f} mm; coverage {:.4f}, spill {:.4f}; "
-      "jitter {:.3f} px; {} frames, {:.0f} us "
+      "{} on {}: interior error mean {}, p95 {}; coverage {}, spill {}; jitter {}; {} frames, {} "
       "each (p50)\n",
-      rig.name, rig.twin.motion, number("interior_mm", "mean"), number("interior_mm", "p95"),
-      plain("coverage"), plain("spill"), plain("jitter_px"), static_cast<long>(plain("frames")),
-      number("frame_us", "p50"));
+      rig.name, rig.twin.motion, text("/interior_mm/mean", "{:.2f} mm"),
+      text("/interior_mm/p95", "{:.2f} mm"), text("/coverage", "{:.4f}"), text("/spill", "{:.4f}"),
+      text("/jitter_px", "{:.3f} px"), text("/frames", "{:.0f}"),
+      text("/frame_us/p50", "{:.0f} us"));
+}
+
+/// Why the metrics say nothing about the rig. Empty if they do.
+std::string fault_of(const nlohmann::json& json, const Options& options) {
+  const auto has = [&](const char* pointer) {
+    const nlohmann::json::json_pointer place(pointer);
+    return json.contains(place) && json[place].is_number();
+  };
+  if (options.draw_every == 0)
+    return has("/landmark_mm/mean") ? "" : "no hand was tracked: there is nothing to score";
+  if (!has("/coverage"))
+    return "no true hand was in the image of the projector: there is nothing to score";
+  if (json["coverage"] == 0) return "no light fell on a hand: coverage is 0";
+  return has("/interior_mm/mean") ? "" : "no landing of the light could be compared with a hand";
 }
 
 }  // namespace
 
-Result<void> run(const Options& options) {
+Result<std::string> run(const Options& options) {
   if (!options.json_file.empty())
-    if (auto writable = config::check_writable(options.json_file); !writable) return writable;
+    if (auto writable = config::check_writable(options.json_file); !writable)
+      return tl::make_unexpected(writable.error());
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
   const auto calibration = calib::load_calibration(rig->calibration);
@@ -105,11 +122,13 @@ Result<void> run(const Options& options) {
   if (!json) return tl::make_unexpected(json.error());
   print_summary(*json, *rig, options);
   print_detector((*json)["detector"]);
-  if (options.json_file.empty()) return {};
-  // Paths and names in the metrics need not be UTF-8.
-  return config::write_whole(
-      options.json_file,
-      json->dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (!options.json_file.empty()) {
+    // Paths and names in the metrics need not be UTF-8.
+    const auto text = json->dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (auto written = config::write_whole(options.json_file, text); !written)
+      return tl::make_unexpected(written.error());
+  }
+  return fault_of(*json, options);
 }
 
 }  // namespace handcast::simulate

@@ -20,9 +20,11 @@ Result<std::unique_ptr<Motion>> open_motion(const config::Twin& settings,
     return motion;
   }
   if (!std::filesystem::is_directory(settings.motion))
-    return fail(Errc::bad_config,
-                fmt::format("twin.motion: '{}' is neither a folder nor builtin: and one of {}",
-                            settings.motion, builtin_motion_names()));
+    return fail(
+        Errc::bad_config,
+        fmt::format("twin.motion: '{}' is not a folder; a built-in motion is builtin:NAME, with "
+                    "NAME one of {}",
+                    settings.motion, builtin_motion_names()));
   const auto recording = read_recording(settings.motion);
   if (!recording) return fail_in("twin.motion", Error{Errc::bad_config, recording.error().what});
   return make_recorded_motion(*recording, settings);

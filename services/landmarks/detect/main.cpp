@@ -26,7 +26,7 @@ Points are pixels of the picture, (0, 0) is the centre of the upper left one; th
 std::string backend_help() {
   std::string text = "The landmark model.";
   for (const auto& model : landmarks::landmark_models())
-    text += fmt::format(" {}: {}.", model.name, model.sentence);
+    text += fmt::format(" {}: {}", model.name, model.sentence);
   return text;
 }
 
@@ -59,8 +59,10 @@ int main(int argc, char** argv) try {
                  "or (42,2) in -1..1")
       ->allow_extra_args(false);
   app.add_option("--side", options.joints_side, "The side of the hand in --joints")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, msg::Side>{{"left", msg::Side::left}, {"right", msg::Side::right}}))
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, msg::Side>{{"left", msg::Side::left},
+                                                                   {"right", msg::Side::right}})
+              .description("{left, right}"))
       ->default_str("left");
   app.add_option("--model", options.models,
                  "The folder of MediaPipe's files; scripts/get-models fetches them");
