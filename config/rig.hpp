@@ -40,8 +40,10 @@ template <class Visitor>
 void describe(Visitor& visitor, Rig& rig) {
   visitor.field("name", rig.name,
                 "Name of the rig in messages, reports and the path of its control socket.");
-  visitor.field("calibration", rig.calibration,
-                "Calibration file, relative to the rig file. Empty: the rig of the paper.");
+  visitor.field(
+      "calibration", rig.calibration,
+      "Calibration file, relative to the rig file. Empty: the rig of the paper, whose file is "
+      "config/calibrations/paper.toml.");
   visitor.section("camera", rig.camera, "The infrared camera.");
   visitor.section("pose", rig.pose, "The hand tracker.");
   visitor.section("landmarks", rig.landmarks, "The landmark detector.");

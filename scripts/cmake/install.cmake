@@ -5,7 +5,7 @@
 include(CMakePackageConfigHelpers)
 
 set(share ${HANDCAST_INSTALL_SHAREDIR})
-install(DIRECTORY config/rigs config/sweeps DESTINATION ${share})
+install(DIRECTORY config/rigs config/calibrations config/sweeps DESTINATION ${share})
 install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts)
 install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
 

@@ -9,6 +9,8 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <iterator>
 
+#include "config/settings/files.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -147,6 +149,13 @@ TEST(CalibrationFile, NoFileIsTheReferenceRig) {
   const auto rig = load_calibration("");
   ASSERT_TRUE(rig);
   EXPECT_EQ(print_calibration(*rig), print_calibration(reference_rig()));
+}
+
+TEST(CalibrationFile, InTheTreeIsTheReferenceRigs) {
+  const char* source = std::getenv("HANDCAST_SOURCE");
+  const auto file =
+      std::filesystem::path(source ? source : ".") / "config" / "calibrations" / "paper.toml";
+  EXPECT_EQ(config::read_text(file).value(), print_calibration(reference_rig()));
 }
 
 TEST(CalibrationFile, SaysWhatIsWrongAndWhere) {
