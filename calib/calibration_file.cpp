@@ -16,8 +16,10 @@ namespace handcast::calib {
 using config::between;
 using config::Range;
 
-/// The largest width and height of an image: its buffers stay far below a gigabyte.
+/// The largest width and height of an image, and its largest area: the buffers for it, some thirty
+/// bytes per pixel, stay below a gigabyte.
 constexpr int kMostPixels = 8192;
+constexpr double kMostArea_px2 = 16e6;
 
 struct CameraSection {
   int width_px, height_px;
@@ -181,6 +183,30 @@ std::string fault_of_homography(const Calibration& calibration) {
   return {};
 }
 
+void check_size(std::string_view what, double width_px, double height_px, std::string_view file,
+                config::Faults& faults) {
+  if (width_px * height_px > kMostArea_px2)
+    faults.add(fmt::format("{}: {}: {} x {} px are too many; at most {} megapixels are possible",
+                           file, what, width_px, height_px, kMostArea_px2 / 1e6));
+}
+
+/// Lenses between a fisheye and a telescope, whose axis meets the image or passes close by.
+void check_lens(const CameraModel& camera, std::string_view file, config::Faults& faults) {
+  constexpr double kShortest = 0.2, kLongest = 20;  // focal length, in widths of the image
+  for (const double focal_px : {camera.fx_px, camera.fy_px})
+    if (focal_px < kShortest * camera.width_px || focal_px > kLongest * camera.width_px)
+      faults.add(
+          fmt::format("{}: camera.focal_px: {} px is not plausible for an image of {} px; it "
+                      "must be {} to {} widths of the image",
+                      file, focal_px, camera.width_px, kShortest, kLongest));
+  const glm::dvec2 centre(camera.cx_px / camera.width_px, camera.cy_px / camera.height_px);
+  if (glm::any(glm::greaterThan(glm::abs(centre - 0.5), glm::dvec2(1.5))))
+    faults.add(
+        fmt::format("{}: camera.centre_px: the principal point lies more than an image "
+                    "beside the image",
+                    file));
+}
+
 void check(const Calibration& calibration, std::string_view file, config::Faults& faults) {
   if (const double off = distance_from_rigid(calibration.camera_from_tracker);
       !(off < kRigidTolerance))
@@ -194,7 +220,11 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
         fmt::format("{}: camera_from_tracker: the tracker is {:.3g} m away from the camera; "
                     "at most {} m are possible. Is it in millimetres?",
                     file, away_m, kFarthestTracker_m));
-  if (calibration.camera.folds())
+  check_size("camera", calibration.camera.width_px, calibration.camera.height_px, file, faults);
+  check_size("projector", calibration.projector_width_px, calibration.projector_height_px, file,
+             faults);
+  check_lens(calibration.camera, file, faults);
+  if (faults.empty() && calibration.camera.folds())
     faults.add(
         fmt::format("{}: camera.distortion: the lens folds the image: near its edge, two "
                     "directions map to one pixel",

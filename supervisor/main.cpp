@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "supervisor/commands/verbs.hpp"
 
@@ -79,9 +80,10 @@ int dispatch(const std::string& name, const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   using namespace handcast::supervisor;
-  if (argc < 2) {
+  const auto run_verb = [](int count, char** words) {
+    if (count >= 2) return dispatch(words[1], Arguments(words + 2, words + count));
     print_overview();
     return handcast::kExitUsage;
-  }
-  return dispatch(argv[1], Arguments(argv + 2, argv + argc));
+  };
+  return handcast::run_program("handcast", argc, argv, run_verb);
 }

@@ -43,14 +43,16 @@ Value convert(const toml::node& node, int line) {
 /// toml++ itself.
 int line_of_deep_key(std::string_view toml, int most) {
   int line = 1, dots = 0;
-  char quote = 0;
-  for (const char c : toml) {
+  char quote = 0;  // or '#', in a comment
+  for (std::size_t i = 0; i < toml.size(); ++i) {
+    const char c = toml[i];
     if (c == '\n') ++line, dots = 0, quote = 0;
     if (quote) {
-      if (c == quote) quote = 0;
-    } else if (c == '"' || c == '\'') {
+      if (c == quote && quote != '#') quote = 0;
+      if (c == '\\' && quote == '"') ++i;
+    } else if (c == '"' || c == '\'' || c == '#') {
       quote = c;
-    } else if (c == '=' || c == ',' || c == '[' || c == '{' || c == '#') {
+    } else if (c == '=' || c == ',' || c == '[' || c == '{') {
       dots = 0;
     } else if (c == '.' && ++dots > most) {
       return line;

@@ -10,11 +10,11 @@
 namespace handcast {
 
 /// The largest files of each kind that are read, in bytes.
-inline constexpr std::uint64_t kMostText = 16 << 20;      ///< TOML, JSON, CSV
-inline constexpr std::uint64_t kMostPicture = 256 << 20;  ///< PNG, JPEG
-inline constexpr std::uint64_t kMostMesh = 256 << 20;     ///< glTF and its buffers
-inline constexpr std::uint64_t kMostModel = 512 << 20;    ///< ONNX
-inline constexpr std::uint64_t kMostArray = 4ull << 30;   ///< .npy
+inline constexpr std::uint64_t kMostText = 16 << 20;     ///< TOML, JSON, CSV
+inline constexpr std::uint64_t kMostPicture = 64 << 20;  ///< PNG, JPEG
+inline constexpr std::uint64_t kMostMesh = 256 << 20;    ///< glTF and its buffers
+inline constexpr std::uint64_t kMostModel = 512 << 20;   ///< ONNX
+inline constexpr std::uint64_t kMostArray = 256 << 20;   ///< .npy
 
 /// Opens a file that comes from outside (rig, recording, picture, model) for reading; every such
 /// file is opened here. Never blocks: a pipe, device, socket or folder is refused. Errors:

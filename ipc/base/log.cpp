@@ -10,6 +10,22 @@
 
 #include "ipc/base/clock.hpp"
 
+namespace handcast {
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f)
+      shown += fmt::format("\\x{:02x}", byte);
+    else
+      shown += c;
+  }
+  return shown;
+}
+
+}  // namespace handcast
+
 namespace handcast::log {
 namespace {
 
@@ -40,7 +56,7 @@ void set_level(Level level) { threshold() = level; }
 void write(Level level, std::string_view line) {
   if (level < threshold().load(std::memory_order_relaxed)) return;
   const auto text = fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
-                                kNames[static_cast<std::size_t>(level)], line);
+                                kNames[static_cast<std::size_t>(level)], printable(line));
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 

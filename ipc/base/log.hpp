@@ -2,8 +2,17 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
+
+namespace handcast {
+
+/// The text with control characters other than line ends and tabs as \xNN. Names from files and
+/// command lines may hold sequences that move the cursor of a terminal.
+std::string printable(std::string_view text);
+
+}  // namespace handcast
 
 namespace handcast::log {
 

@@ -15,6 +15,7 @@ namespace handcast::renderer {
 namespace {
 
 constexpr std::size_t kMaxVertices = 65535;
+constexpr std::size_t kMaxTriangles = 65534;  ///< numbers of 16 bits name them
 
 /// Reads accessors, which tinygltf does not check, as rows of `width` numbers. An accessor that
 /// cannot be read gives an empty vector; the reason of the first failure is kept.
@@ -73,6 +74,8 @@ class ArrayReader {
     const std::size_t row = static_cast<std::size_t>(component) * width,
                       stride = view.byteStride ? view.byteStride : row;
     if (accessor.count == 0) return refuse("are empty");
+    if (accessor.count > 3 * kMaxTriangles) return refuse("are too many");
+    if (stride < row) return refuse("overlap");
     if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
       return refuse("lie outside their buffer");
     if (accessor.byteOffset > view.byteLength || row > view.byteLength - accessor.byteOffset ||
@@ -227,6 +230,8 @@ void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, s
     }
     hand.triangles.push_back(triangle);
   }
+  if (hand.triangles.size() > kMaxTriangles)
+    reader.complain(fmt::format("it has more than {} triangles", kMaxTriangles));
 }
 
 void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive,

@@ -45,31 +45,41 @@ int depth_of(std::string_view json) {
   return most;
 }
 
-/// Reads a buffer that lies in a file of its own.
+/// Reads a buffer that lies in a file of its own. `left`: std::uint64_t, the bytes that all of them
+/// may still have.
 bool read_buffer(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
-                 void*) {
-  const auto read = read_input(path, kMostMesh);
+                 void* left) {
+  auto& left_bytes = *static_cast<std::uint64_t*>(left);
+  const auto read = read_input(path, left_bytes);
   if (!read) {
     *error = read.error().what;
     return false;
   }
+  left_bytes -= read->size();
   bytes->assign(read->begin(), read->end());
   return true;
 }
 
-tinygltf::FsCallbacks files() {
-  return {.FileExists = &tinygltf::FileExists,
+/// tinygltf's own check opens the file, which blocks on a pipe.
+bool is_file(const std::string& path, void*) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(path, unknown);
+}
+
+tinygltf::FsCallbacks files(std::uint64_t& left_bytes) {
+  return {.FileExists = is_file,
           .ExpandFilePath = &tinygltf::ExpandFilePath,
           .ReadWholeFile = read_buffer,
           .WriteWholeFile = &tinygltf::WriteWholeFile,
-          .user_data = nullptr};
+          .user_data = &left_bytes};
 }
 
 bool parse(const std::filesystem::path& file, const std::string& bytes, tinygltf::Model& model,
            std::string& error) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(ignore_picture, nullptr);
-  loader.SetFsCallbacks(files());
+  std::uint64_t left_bytes = kMostMesh;
+  loader.SetFsCallbacks(files(left_bytes));
   std::string warning;
   const auto size = static_cast<unsigned>(bytes.size());
   const auto folder = file.parent_path().string();

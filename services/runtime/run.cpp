@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <exception>
 
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/runtime/command_line.hpp"
@@ -26,8 +26,16 @@ void print_help(const daemon::ServiceDescription& description) {
       description.name, description.summary, description.name);
 }
 
+void print_answer(const daemon::ServiceDescription& description, CommandLine::Task task) {
+  using Task = CommandLine::Task;
+  if (task == Task::help) print_help(description);
+  if (task == Task::version) fmt::print("handcast-{} {}\n", description.name, version());
+  if (task == Task::backends) fmt::print("{}", daemon::print_backends(description));
+  if (task == Task::describe) fmt::print("{}", daemon::print_description(complete(description)));
+}
+
 int serve(const daemon::ServiceDescription& description, const CommandLine& line,
-          const std::function<void(Context&)>& body) {
+          const std::function<void(Context&)>& body) try {
   daemon::install_stop_signals();
   auto rig = must(config::load_rig(line.config_file, line.settings));
   for (const auto& note :
@@ -38,6 +46,8 @@ int serve(const daemon::ServiceDescription& description, const CommandLine& line
   body(context);
   log::info("stopped");
   return kExitDone;
+} catch (const std::exception& problem) {
+  give_up({Errc::unavailable, problem.what()});
 }
 
 }  // namespace
@@ -51,33 +61,18 @@ daemon::ServiceDescription complete(daemon::ServiceDescription description) {
 }
 
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
-        const std::function<void(Context&)>& body) try {
-  using Task = CommandLine::Task;
+        const std::function<void(Context&)>& body) {
   log::set_program(description.name);
-  const auto line = parse_command_line(argc, argv);
-  if (!line) {
-    log::error("{}", line.error().what);
-    return kExitUsage;
-  }
-  switch (line->task) {
-    case Task::help:
-      print_help(description);
-      return kExitDone;
-    case Task::version:
-      fmt::print("handcast-{} {}\n", description.name, version());
-      return kExitDone;
-    case Task::backends:
-      fmt::print("{}", daemon::print_backends(description));
-      return kExitDone;
-    case Task::describe:
-      fmt::print("{}", daemon::print_description(complete(description)));
-      return kExitDone;
-    case Task::serve:
-      break;
-  }
-  return serve(description, *line, body);
-} catch (const std::exception& problem) {
-  give_up({Errc::unavailable, problem.what()});
+  return run_program("handcast-" + description.name, argc, argv, [&](int count, char** words) {
+    const auto line = parse_command_line(count, words);
+    if (!line) {
+      log::error("{}", line.error().what);
+      return kExitUsage;
+    }
+    if (line->task == CommandLine::Task::serve) return serve(description, *line, body);
+    print_answer(description, line->task);
+    return kExitDone;
+  });
 }
 
 }  // namespace handcast::service

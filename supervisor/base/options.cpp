@@ -15,13 +15,14 @@ Result<Options> sort_options(const std::vector<std::string>& arguments, const Op
   Options options;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const auto& argument = arguments[i];
+    if (argument.empty()) return fail(Errc::bad_data, "an argument is empty");
     if (!argument.starts_with("--"))
       options.words.push_back(argument);
     else if (is_in(table.flags, argument))
       options.values[argument].emplace_back();
     else if (!is_in(table.with_value, argument))
       return fail(Errc::bad_data, fmt::format("unknown option '{}'", argument));
-    else if (i + 1 == arguments.size())
+    else if (i + 1 == arguments.size() || arguments[i + 1].empty())
       return fail(Errc::bad_data, fmt::format("{} needs a value", argument));
     else
       options.values[argument].push_back(arguments[++i]);

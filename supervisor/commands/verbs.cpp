@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "ipc/base/log.hpp"
+
 namespace handcast::supervisor {
 namespace {
 
@@ -89,7 +91,7 @@ std::filesystem::path program_folder() {
 }
 
 int complain(int exit_code, std::string_view sentence) {
-  fmt::print(stderr, "handcast: {}\n", sentence);
+  fmt::print(stderr, "handcast: {}\n", printable(sentence));
   return exit_code;
 }
 

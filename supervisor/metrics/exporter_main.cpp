@@ -9,6 +9,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/description.hpp"
@@ -84,28 +85,29 @@ int serve(const Options& options) {
   return kExitDone;
 }
 
-}  // namespace
-}  // namespace handcast::supervisor
-
-int main(int argc, char** argv) {
-  using namespace handcast;
-  log::set_program(supervisor::kName);
-  const auto options = supervisor::sort_options(
-      {argv + 1, argv + argc}, {.with_value = {"--config", "--set"},
-                                .flags = {"--help", "--version", "--backends", "--describe"}});
+int run_exporter(int argc, char** argv) {
+  const auto options =
+      sort_options({argv + 1, argv + argc}, {.with_value = {"--config", "--set"},
+                                             .flags = {"--help", "--version", "--backends", "--describe"}});
   if (!options) {
     log::error("{}", options.error().what);
     return kExitUsage;
   }
   if (options->has("--backends")) return kExitDone;  // it has no back ends
-  if (options->has("--describe")) {
-    fmt::print("{}", daemon::print_description(supervisor::describe()));
-    return kExitDone;
-  }
-  if (options->has("--help")) fmt::print("{}", supervisor::kHelp);
+  if (options->has("--describe")) fmt::print("{}", daemon::print_description(describe()));
+  if (options->has("--help")) fmt::print("{}", kHelp);
   if (options->has("--version")) fmt::print("handcast-exporter {}\n", version());
-  if (options->has("--help") || options->has("--version")) return kExitDone;
-  if (!options->has("--config"))
-    return supervisor::give_up({Errc::bad_config, "--config FILE, the rig file, is needed"});
-  return supervisor::serve(*options);
+  if (options->has("--help") || options->has("--version") || options->has("--describe"))
+    return kExitDone;
+  if (options->has("--config")) return serve(*options);
+  log::error("--config FILE, the rig file, is needed");
+  return kExitUsage;
+}
+
+}  // namespace
+}  // namespace handcast::supervisor
+
+int main(int argc, char** argv) {
+  handcast::log::set_program(handcast::supervisor::kName);
+  return handcast::run_program("handcast-exporter", argc, argv, handcast::supervisor::run_exporter);
 }

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <ctime>
-#include <exception>
 
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "services/evaluation/chart/write.hpp"
 #include "services/evaluation/page/machine.hpp"
@@ -20,7 +19,7 @@ static const char* const kFooter =
 The charts need the results of these plans in config/sweeps: A and C ladder.toml, and times.toml for frame times; B stress.toml and
 failures.toml. scripts/charts runs all of them.)";
 
-int main(int argc, char** argv) try {
+static int run_verb(int argc, char** argv) {
   CLI::App app(
       "Draws the results of sweeps: a self-contained page, the charts as SVG, and the numbers "
       "behind them as CSV.",
@@ -51,7 +50,8 @@ int main(int argc, char** argv) try {
     fmt::print(stderr, "handcast chart: {}\n", sentence);
   fmt::print("{}\n", written->page.string());
   return kExitDone;
-} catch (const std::exception& problem) {
-  std::fprintf(stderr, "handcast chart: %s\n", problem.what());
-  return kExitRetry;
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast chart", argc, argv, run_verb);
 }

@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <ctime>
-#include <exception>
 
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
 #include "services/evaluation/page/machine.hpp"
 #include "services/evaluation/report/report.hpp"
 
 using namespace handcast;
 
-int main(int argc, char** argv) try {
+static int run_verb(int argc, char** argv) {
   CLI::App app(
       "Makes report.html, metrics.json and preview.mp4 from the results of a demonstration.",
       "handcast report");
@@ -38,7 +37,8 @@ int main(int argc, char** argv) try {
   }
   fmt::print("{}\n", page->string());
   return kExitDone;
-} catch (const std::exception& problem) {
-  std::fprintf(stderr, "handcast report: %s\n", problem.what());
-  return kExitRetry;
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast report", argc, argv, run_verb);
 }

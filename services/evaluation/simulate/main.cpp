@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <exception>
-
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "services/evaluation/simulate/run.hpp"
 
-int main(int argc, char** argv) try {
+static int run_verb(int argc, char** argv) {
   using namespace handcast;
   const auto options = simulate::parse_options(argc, argv);
   if (!options) {
@@ -31,7 +29,8 @@ int main(int argc, char** argv) try {
   if (fault->empty()) return kExitDone;
   fmt::print(stderr, "handcast simulate: {}\n", *fault);
   return kExitBadResult;
-} catch (const std::exception& problem) {
-  std::fprintf(stderr, "handcast simulate: %s\n", problem.what());
-  return handcast::kExitRetry;
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast simulate", argc, argv, run_verb);
 }

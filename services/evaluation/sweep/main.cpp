@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdio>
-#include <exception>
 
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "services/evaluation/sweep/merge.hpp"
 #include "services/evaluation/sweep/runner.hpp"
@@ -110,7 +110,7 @@ int merge_files(const CommandLine& line) {
 }  // namespace
 }  // namespace handcast::sweep
 
-int main(int argc, char** argv) try {
+static int run_verb(int argc, char** argv) {
   using namespace handcast::sweep;
   CommandLine line;
   CLI::App app(
@@ -139,7 +139,8 @@ int main(int argc, char** argv) try {
     return complain(
         {handcast::Errc::bad_config, "there must be one plan; use --merge for files of results"});
   return sweep(line);
-} catch (const std::exception& problem) {
-  std::fprintf(stderr, "handcast sweep: %s\n", problem.what());
-  return handcast::kExitRetry;
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast sweep", argc, argv, run_verb);
 }

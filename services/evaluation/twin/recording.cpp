@@ -110,7 +110,7 @@ std::optional<double> palm_length_m(const std::vector<msg::HandPose>& poses) {
 
 /// Refuses a recording in another unit. A palm is 60 to 120 mm long.
 Result<void> check_scale(const std::vector<msg::HandPose>& poses, const path& file) {
-  constexpr double kShortest_mm = 25, kLongest_mm = 300;
+  constexpr double kShortest_mm = 45, kLongest_mm = 140;
   const auto length_m = palm_length_m(poses);
   if (!length_m) return {};
   const double length_mm = 1000 * *length_m;

@@ -88,8 +88,9 @@ renderer::Rect ScreenVertices::bounds() const {
   if (x.empty()) return {};
   const auto [x0, x1] = std::minmax_element(x.begin(), x.end());
   const auto [y0, y1] = std::minmax_element(y.begin(), y.end());
-  const auto low = [](float v) { return static_cast<int>(std::floor(std::max(v, -1e5f))); };
-  const auto high = [](float v) { return static_cast<int>(std::ceil(std::min(v, 1e5f))) + 1; };
+  const auto bounded = [](float v) { return v > -1e5f ? std::min(v, 1e5f) : -1e5f; };  // NaN, too
+  const auto low = [&](float v) { return static_cast<int>(std::floor(bounded(v))); };
+  const auto high = [&](float v) { return static_cast<int>(std::ceil(bounded(v))) + 1; };
   return {low(*x0), low(*y0), high(*x1), high(*y1)};
 }
 

@@ -76,14 +76,24 @@ struct EdgeRow {
   }
 };
 
+/// True for a point whose coordinates a float resolves to a fraction of a pixel. A vertex near the
+/// plane of the camera projects far beyond that.
+inline bool is_near_screen(float x_px, float y_px) {
+  constexpr float kFarthest_px = 1e5f;
+  return std::abs(x_px) < kFarthest_px && std::abs(y_px) < kFarthest_px;
+}
+
 /// Draws one triangle with a depth test (`inverse_depth`: larger is nearer, 0 is empty) and calls
 /// `paint(x, y, a, b, c)` with the pixel's barycentrics for each pixel whose centre is inside.
-/// `front` is the sign of the area of triangles that face the viewer.
+/// `front` is the sign of the area of triangles that face the viewer. A triangle with a corner that
+/// is not near the screen is left out.
 template <class Paint>
 void draw_triangle(const ScreenVertices& v, const std::array<std::uint16_t, 3>& triangle,
                    float front, const renderer::Rect& clip, renderer::View<float> inverse_depth,
                    Paint&& paint) {
   const auto [i, j, k] = triangle;
+  for (const auto corner : triangle)
+    if (!is_near_screen(v.x[corner], v.y[corner])) return;
   const float ax = v.x[i], ay = v.y[i];
   const float bx = v.x[j] - ax, by = v.y[j] - ay, cx = v.x[k] - ax, cy = v.y[k] - ay;
   const float area = bx * cy - by * cx;
@@ -104,8 +114,10 @@ void draw_triangle(const ScreenVertices& v, const std::array<std::uint16_t, 3>& 
     float first = left - ax, last = right - ax;
     for (const EdgeRow& edge : {a, b, c}) edge.cut(first, last);
     float* depth_row = inverse_depth.row(y);
-    const int x1 = static_cast<int>(std::floor(last + ax));
-    for (int x = static_cast<int>(std::ceil(first + ax)); x <= x1; ++x) {
+    // Clipped again: adding ax may have rounded outwards.
+    const int x0 = std::max(clip.x0, static_cast<int>(std::ceil(first + ax)));
+    const int x1 = std::min(clip.x1 - 1, static_cast<int>(std::floor(last + ax)));
+    for (int x = x0; x <= x1; ++x) {
       const float px = static_cast<float>(x) - ax;
       const float share_b = b.at0 + px * b_step, share_c = c.at0 + px * c_step;
       const float nearness = depth_a + share_b * depth_b + share_c * depth_c;

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "config/settings/choice.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "services/landmarks/detect/run.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
@@ -48,7 +47,7 @@ int detect(const Options& options) {
 }  // namespace
 }  // namespace handcast::detect
 
-int main(int argc, char** argv) try {
+static int run_verb(int argc, char** argv) {
   using namespace handcast;
   detect::Options options;
   CLI::App app("Finds the 21 landmarks of the hands in pictures.", "handcast detect");
@@ -94,7 +93,8 @@ int main(int argc, char** argv) try {
     return app.exit(problem) == 0 ? kExitDone : kExitUsage;
   }
   return detect::detect(options);
-} catch (const std::exception& problem) {
-  std::fprintf(stderr, "handcast detect: %s\n", problem.what());
-  return handcast::kExitRetry;
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast detect", argc, argv, run_verb);
 }
