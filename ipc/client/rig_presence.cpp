@@ -23,6 +23,10 @@ bool has_supervisor(const std::string& rig) {
   return connection || connection.error().code == Errc::timeout;
 }
 
+/// Whether this error of rig_ring() means that another rig has taken the name: one without the
+/// stream, or one of another version, whose answers and rings cannot be read.
+bool is_of_another_rig(Errc code) { return code == Errc::bad_config || code == Errc::bad_data; }
+
 }  // namespace
 
 RigPresence::RigPresence(std::string rig, std::string stream, std::int64_t ring_created_ns,
@@ -57,7 +61,7 @@ Result<void> RigPresence::absent(std::int64_t now) {
 Result<void> RigPresence::same_ring() const {
   const auto ring = rig_ring(rig_, stream_, kPatience);
   const bool other =
-      ring ? ring->segment.created_ns() != ring_created_ns_ : ring.error().code == Errc::bad_config;
+      ring ? ring->segment.created_ns() != ring_created_ns_ : is_of_another_rig(ring.error().code);
   if (!other) return {};
   return fail(
       Errc::disconnected,

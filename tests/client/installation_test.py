@@ -7,6 +7,7 @@ usage: installation_test.py BUILD_FOLDER
 Installs, moves the tree, builds read_projections.cpp with CMake and with pkg-config, and runs it
 against a rig that was started from the moved tree.
 """
+import json
 import os
 import pathlib
 import re
@@ -208,8 +209,10 @@ class AProgramOfSomebodyElse(unittest.TestCase):
         rig = self.start_rig()
         reader = self.start(self.by_cmake)
         self.frames(reader, 5)
-        top = handcast("top", "--once", "--json")
-        self.assertNotIn("read_projections", top)
+        pids = {row["pid"] for ring in json.loads(handcast("top", "--once", "--json"))["rings"]
+                for row in ring["readers"]}
+        self.assertTrue(pids, "the services read each other's rings")
+        self.assertNotIn(reader.pid, pids)
         children = pathlib.Path(f"/proc/{rig.pid}/task/{rig.pid}/children")
         os.kill(int(children.read_text().split()[0]), signal.SIGKILL)  # the supervisor
         killed_ms = moment_ms()

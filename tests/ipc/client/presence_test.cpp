@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A reader tells a rig that is silent from one that is down.
 #include <gmock/gmock.h>
+#include <sys/mman.h>
 
 #include "ipc/client/rig_presence.hpp"
 #include "tests/ipc/client/rig_with_rings.hpp"
@@ -81,6 +82,17 @@ TEST_F(Presence, ARigStartedAnewWithoutTheStreamIsNotTheSame) {
   auto desk = presence(kAskAtOnce);
   give({});
   EXPECT_FALSE(silent(desk));
+}
+
+TEST_F(Presence, ARigStartedAnewWithAnotherVersionIsNotTheSame) {
+  go_up();
+  auto desk = presence(kAskAtOnce);
+  const UniqueFd unreadable(memfd_create("pose.hands", MFD_CLOEXEC));
+  give({{"pose.hands", unreadable.get()}});
+  const auto other = silent(desk);
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().code, Errc::disconnected);
+  EXPECT_THAT(other.error().what, HasSubstr("started anew"));
 }
 
 TEST_F(Presence, ASupervisorThatHangsIsThere) {

@@ -106,11 +106,18 @@ TEST_F(OpenStream, ALongWaitEndsWhenTheRigDoes) {
 TEST_F(OpenStream, WhileMessagesComeNobodyAsksForTheSupervisor) {
   const auto ring = notes("pose.hands");
   auto writer = must(Writer<Note>::attach(again(ring)));
+  constexpr PresenceTimes kTimes{.silence_ns = 50'000'000, .absence_ns = 0};
   Stream<Note> stream(must(ipc::Reader<Note>::watch(again(ring))),
-                      RigPresence("desk", "pose.hands", ring.created_ns(), {0, 0}), "desk");
-  for (std::uint64_t i = 1; i <= 5; ++i) {
+                      RigPresence("desk", "pose.hands", ring.created_ns(), kTimes), "desk");
+  const auto end_ns = now_ns() + 2 * kTimes.silence_ns;  // no rig is up: who asks is told so
+  for (std::uint64_t i = 1; now_ns() < end_ns; ++i) {
+    const auto begin_ns = now_ns();
     writer.publish(note(i));
     EXPECT_EQ(must(stream.next(Deadline::in(1s)))->value, i);
+    const auto nothing = stream.next(Deadline::now());
+    ASSERT_FALSE(nothing);
+    const bool halted = now_ns() - begin_ns >= kTimes.silence_ns;  // a silence by the machine
+    ASSERT_TRUE(halted || nothing.error().code == Errc::timeout) << nothing.error().what;
   }
 }
 

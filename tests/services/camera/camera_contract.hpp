@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
 #include "services/camera/camera.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
+#include "tests/services/unread_settings.hpp"
 
 /// What every camera back end must do. A test instantiates it with the rows of a table:
 ///   INSTANTIATE_TEST_SUITE_P(Rows, CameraContract, testing::ValuesIn(table), name_of_row);
@@ -33,6 +38,30 @@ class CameraContract : public testing::TestWithParam<CameraBackend> {
   msg::CameraFrame& frame() { return *reinterpret_cast<msg::CameraFrame*>(memory_.data()); }
   Result<void> capture(Deadline deadline) {
     return camera_->capture(frame(), width() * height(), deadline);
+  }
+
+  /// The second frame of a camera.
+  struct SecondFrame {
+    std::int64_t since_first_ns = 0, exposure_ns = 0;
+    std::vector<std::uint8_t> pixels;
+    bool operator==(const SecondFrame&) const = default;
+  };
+  /// The second frame of a camera that is opened with `rig`. A camera from which a slow machine
+  /// could not fetch the first two frames is opened again.
+  std::optional<SecondFrame> second_frame(const config::Rig& rig) {
+    for (int attempt = 1; attempt <= 10; ++attempt) {
+      auto opened = GetParam().open(rig, calibration_, now_ns() + attempt * to_ns(400ms));
+      if (!opened) throw std::runtime_error(opened.error().what);
+      camera_ = std::move(*opened);
+      if (!capture(Deadline::in(10s))) continue;
+      const std::int64_t first_ns = frame().header.origin_ns;
+      if (!capture(Deadline::in(10s)) || frame().header.frame_id != 1) continue;
+      const auto* pixels = frame().pixels();
+      return SecondFrame{frame().header.origin_ns - first_ns,
+                         frame().exposure_ns,
+                         {pixels, pixels + width() * height()}};
+    }
+    return std::nullopt;
   }
 
   test::Scratch scratch_;
@@ -85,6 +114,15 @@ TEST_P(CameraContract, AnImageThatDoesNotFitIsRefusedNotWritten) {
   const auto captured = camera_->capture(frame(), width() * height() - 1, Deadline::in(5s));
   ASSERT_FALSE(captured);
   EXPECT_EQ(captured.error().code, Errc::bad_config);
+}
+
+TEST_P(CameraContract, AFrameDependsOnlyOnTheSettingsThatItsRowNames) {
+  rig_.camera.rate_hz = 20;
+  rig_.twin.motion = "builtin:two_hands";
+  const auto frame = second_frame(rig_);
+  const auto other = second_frame(test::with_unread_settings_changed(rig_, "camera", GetParam()));
+  ASSERT_TRUE(frame && other) << "the machine is too slow";
+  EXPECT_TRUE(*frame == *other) << "a setting is missing in the row's `reads`";
 }
 
 inline std::string name_of_row(const testing::TestParamInfo<CameraBackend>& row) {

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "config/settings/choice.hpp"
 #include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/training/trial.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/detector_scenes.hpp"
+#include "tests/services/unread_settings.hpp"
 
 namespace handcast::landmarks {
 namespace {
@@ -39,8 +42,12 @@ class DetectorContract : public testing::TestWithParam<Subject> {
     rig_.landmarks.models = test::models();
     rig_.landmarks.replay.directory = scratch_.path();
     write_detections(scratch_.path(), 4);
+    open(rig_);
+  }
+
+  void open(const config::Rig& rig) {
     auto opened =
-        open_detector(rig_, scene_ ? scene_->calibration : calib::reference_rig(), epoch_ns_);
+        open_detector(rig, scene_ ? scene_->calibration : calib::reference_rig(), epoch_ns_);
     ASSERT_TRUE(opened) << opened.error().what;
     detector_ = std::move(*opened);
   }
@@ -80,6 +87,24 @@ TEST_P(DetectorContract, ADetectionNotDoneInTimeIsATimeoutAndGoesOn) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->header.frame_id, 1u) << "the detection under way is that of the first frame";
   EXPECT_EQ(found->header.origin_ns, origin_ns);
+}
+
+// Not compared: the duration of a detection, what happens to a second hand or one that the tracker
+// does not see.
+TEST_P(DetectorContract, LandmarksDependOnlyOnTheSettingsThatTheirRowNames) {
+  const auto backends = detector_backends();
+  const auto row = std::ranges::find(backends, GetParam().backend, &DetectorBackend::name);
+  rig_.twin.motion = "builtin:two_hands";
+  const std::int64_t origin_ns = epoch_ns_ + to_ns(300ms);
+  const auto first_landmarks = [&](const config::Rig& rig) {
+    open(rig);
+    return detect(1, origin_ns, Deadline::in(10s));
+  };
+  const auto landmarks = first_landmarks(rig_);
+  const auto other = first_landmarks(test::with_unread_settings_changed(rig_, "landmarks", *row));
+  ASSERT_TRUE(landmarks && other);
+  EXPECT_EQ(std::memcmp(&*landmarks, &*other, sizeof *landmarks), 0)
+      << "a setting is missing in the row's `reads`";
 }
 
 std::vector<Subject> all() {

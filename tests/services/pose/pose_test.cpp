@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <optional>
+
 #include "services/evaluation/twin/recording.hpp"
 #include "services/evaluation/twin/twin.hpp"
 #include "services/pose/pose_source.hpp"
 #include "tests/scratch.hpp"
+#include "tests/services/unread_settings.hpp"
 
 namespace handcast::pose {
 namespace {
@@ -35,6 +39,25 @@ class PoseContract : public testing::TestWithParam<std::string_view> {
     auto opened = open_pose_source(rig_, calib::reference_rig(), epoch_ns_);
     if (!opened) throw std::runtime_error(opened.error().what);
     source_ = std::move(*opened);
+  }
+
+  static const PoseBackend& row() {
+    return *std::ranges::find(pose_backends(), GetParam(), &PoseBackend::name);
+  }
+  /// The second sample of a source that is opened with `rig`; origin_ns counts from the first one.
+  /// A source from which a slow machine could not fetch the first two samples is opened again.
+  static std::optional<msg::HandPoses> second_sample(const config::Rig& rig) {
+    for (int attempt = 1; attempt <= 10; ++attempt) {
+      const auto source =
+          row().open(rig, calib::reference_rig(), now_ns() + attempt * to_ns(200ms));
+      if (!source) throw std::runtime_error(source.error().what);
+      msg::HandPoses first, second;
+      if (!(*source)->sample(first, Deadline::in(10s))) continue;
+      if (!(*source)->sample(second, Deadline::in(10s)) || second.header.frame_id != 1) continue;
+      second.header.origin_ns -= first.header.origin_ns;
+      return second;
+    }
+    return std::nullopt;
   }
 
   test::Scratch scratch_;
@@ -81,6 +104,15 @@ TEST_P(PoseContract, AfterAPauseItGoesOnWithThePresent) {
   sleep_until_ns(away_until_ns);
   ASSERT_TRUE(source_->sample(poses, Deadline::in(5s)));
   EXPECT_GE(poses.header.origin_ns, away_until_ns - to_ns(100ms));
+}
+
+TEST_P(PoseContract, ASampleDependsOnlyOnTheSettingsThatItsRowNames) {
+  rig_.twin.motion = "builtin:two_hands";
+  const auto sample = second_sample(rig_);
+  const auto other = second_sample(test::with_unread_settings_changed(rig_, "pose", row()));
+  ASSERT_TRUE(sample && other) << "the machine is too slow";
+  EXPECT_EQ(std::memcmp(&*sample, &*other, sizeof *sample), 0)
+      << "a setting is missing in the row's `reads`";
 }
 
 std::vector<std::string_view> all() { return service::names_of(pose_backends()); }

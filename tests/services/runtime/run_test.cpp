@@ -5,10 +5,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "ipc/base/exit_code.hpp"
 #include "ipc/daemon/contract.hpp"
@@ -62,6 +64,19 @@ class Run : public testing::Test {
 };
 
 void do_nothing(Context&) {}
+
+/// A daemon whose marks are kept, those of frames and beats alike.
+class Heart : public Run {
+ protected:
+  std::vector<msg::StageMarks> marks_of(const std::function<void(Context&)>& body) {
+    give_rings(poses_, marks_);
+    auto reader = ipc::Reader<msg::StageMarks>::attach(std::move(marks_)).value();
+    daemon(body);
+    std::vector<msg::StageMarks> messages;
+    while (const auto message = reader.next(Deadline::now())) messages.push_back(**message);
+    return messages;
+  }
+};
 
 TEST_F(Run, ADaemonThatIsAskedToStopEndsWithZero) {
   const auto until_told = [](Context& context) {
@@ -191,16 +206,37 @@ TEST_F(Run, MessagesAndMarksArriveInTheRingsHandedOver) {
   EXPECT_EQ((*mark)->marks[0].stage, msg::Stage::sample);
 }
 
-TEST_F(Run, AnIdleDaemonBeatsItsHeartAndABusyOneNeedNot) {
-  give_rings(poses_, marks_);
-  auto marks = ipc::Reader<msg::StageMarks>::attach(std::move(marks_)).value();
-  daemon([](Context& context) {
-    for (int i = 0; i < 1000; ++i) context.running();  // within 100 ms: one beat
+TEST_F(Heart, OfAnIdleDaemonBeatsOncePerPeriod) {
+  std::int64_t began_ns = 0, ended_ns = 0;
+  const auto messages = marks_of([&](Context& context) {
+    began_ns = now_ns();
+    context.running();
+    const auto end_ns = now_ns() + daemon::kBeatEvery_ns;
+    while (now_ns() < end_ns) context.running();
+    context.running();
+    ended_ns = now_ns();
   });
-  const auto beat = marks.next(Deadline::now());
-  ASSERT_TRUE(beat);
-  EXPECT_EQ((*beat)->count, 0u);
-  EXPECT_LT(marks.received(), 100u);
+  for (const auto& message : messages) EXPECT_EQ(message.count, 0u);
+  EXPECT_GE(std::ssize(messages), 2);
+  EXPECT_LE(std::ssize(messages), 1 + (ended_ns - began_ns) / daemon::kBeatEvery_ns);
+}
+
+TEST_F(Heart, OfADaemonThatMarksItsFramesDoesNotBeat) {
+  std::ptrdiff_t slow_turns = 0;  // in which the machine halted the process for a period
+  const auto messages = marks_of([&](Context& context) {
+    const auto end_ns = now_ns() + 2 * daemon::kBeatEvery_ns;
+    while (now_ns() < end_ns) {
+      const auto turn_ns = now_ns();
+      const msg::StageMark sample{.stage = msg::Stage::sample, .begin_ns = 1, .end_ns = 2};
+      context.mark({.origin_ns = turn_ns}, {&sample, 1});
+      sleep_until_ns(turn_ns + daemon::kBeatEvery_ns / 10);
+      context.running();
+      if (now_ns() - turn_ns >= daemon::kBeatEvery_ns) ++slow_turns;
+    }
+  });
+  const auto beats = std::ranges::count(messages, 0u, &msg::StageMarks::count);
+  EXPECT_LE(beats, slow_turns);
+  EXPECT_GT(std::ssize(messages), beats) << "the marks of the frames are missing";
 }
 
 TEST_F(Run, ARingOfAnotherTypeIsRefusedWithItsName) {

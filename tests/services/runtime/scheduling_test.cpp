@@ -7,6 +7,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstring>
+#include <fstream>
+#include <string>
+
 namespace handcast::service {
 namespace {
 
@@ -25,10 +29,59 @@ void lose_all_rights() {
   if (geteuid() == 0) expect(seteuid(65534) == 0, "cannot become nobody");
 }
 
-TEST(Scheduling, ByDefaultNothingChanges) {
+/// How the kernel runs this process.
+struct Treatment {
+  cpu_set_t cores{};
+  int policy = sched_getscheduler(0);
+  sched_param parameters{};
+  std::string locked_memory;  ///< the line "VmLck: ... kB"
+
+  Treatment() {
+    sched_getaffinity(0, sizeof cores, &cores);
+    sched_getparam(0, &parameters);
+    std::ifstream status("/proc/self/status");
+    while (std::getline(status, locked_memory))
+      if (locked_memory.starts_with("VmLck:")) break;
+  }
+};
+
+cpu_set_t all_cores() {
+  cpu_set_t set;
+  memset(&set, 0xff, sizeof set);
+  return set;
+}
+
+cpu_set_t last_core() {
+  const Treatment now;
+  int core = CPU_SETSIZE - 1;
+  while (!CPU_ISSET(core, &now.cores)) --core;
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(core, &set);
+  return set;
+}
+
+void expect_no_change_from(const cpu_set_t& cores, int policy) {
+  const sched_param none{};
+  expect(sched_setaffinity(0, sizeof cores, &cores) == 0, "the cores are denied");
+  expect(sched_setscheduler(0, policy, &none) == 0, "the policy is denied");
+  const Treatment before;
   const auto notes = apply_scheduling({}, "pose");
-  ASSERT_TRUE(notes);
-  EXPECT_TRUE(notes->empty());
+  const Treatment after;
+  expect(notes && notes->empty(), "refused");
+  expect(CPU_EQUAL(&after.cores, &before.cores), "other cores");
+  expect(after.policy == before.policy, "another policy");
+  expect(after.parameters.sched_priority == before.parameters.sched_priority, "another priority");
+  expect(after.locked_memory == before.locked_memory, "memory is locked");
+}
+
+TEST(Scheduling, ByDefaultNothingChanges) {
+  const auto from_two_states = [] {
+    expect_no_change_from(all_cores(), SCHED_OTHER);
+    expect_no_change_from(last_core(), SCHED_BATCH);
+    _exit(0);
+  };
+  EXPECT_EXIT(from_two_states(), ExitedWithCode(0), "");
 }
 
 TEST(Scheduling, AProcessRunsOnlyOnItsCores) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <map>
 
 #include "config/settings/files.hpp"
 #include "config/settings/settings.hpp"
@@ -16,6 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::UnorderedElementsAreArray;
 
 /// Whether a rig file has this setting or section.
 bool is_in_a_rig(const std::string& path) {
@@ -100,14 +103,28 @@ TEST(BuiltCatalogue, PublishesTheRingsThatTheSupervisorMakes) {
 }
 
 TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
+  const std::map<std::string, std::vector<std::string>> expected{
+      {"camera", {}},
+      {"pose", {}},
+      {"landmarks", {"camera"}},
+      {"projector", {"camera", "pose", "landmarks"}},
+      {"observer", {"projector"}},
+      {"exporter", {}}};
+  config::Rig rig;
+  rig.observer.enabled = true;
+  rig.supervisor.metrics_port = 9100;
   const auto catalogue = test::built_catalogue();
-  for (const auto& spec : services_of({}, catalogue))
-    for (const auto& need : spec.needs) {
-      const auto& published = catalogue.at(need).publishes;
-      const auto& subscribed = catalogue.at(spec.name).subscribes;
-      EXPECT_NE(std::ranges::find(subscribed, published.front()), subscribed.end())
+  std::vector<std::string> earlier;
+  for (const auto& spec : services_of(rig, catalogue)) {
+    ASSERT_TRUE(expected.contains(spec.name)) << spec.name;
+    EXPECT_THAT(spec.needs, UnorderedElementsAreArray(expected.at(spec.name))) << spec.name;
+    EXPECT_THAT(earlier, IsSupersetOf(spec.needs)) << spec.name;
+    for (const auto& need : spec.needs)
+      EXPECT_THAT(catalogue.at(spec.name).subscribes, IsSupersetOf(catalogue.at(need).publishes))
           << spec.name << " waits for " << need << ", whose ring it does not read";
-    }
+    earlier.push_back(spec.name);
+  }
+  EXPECT_EQ(earlier.size(), expected.size());
 }
 
 TEST(BuiltCatalogue, BecomesATablePerService) {

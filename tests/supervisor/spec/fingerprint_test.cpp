@@ -7,6 +7,7 @@
 #include <set>
 
 #include "config/settings/settings.hpp"
+#include "tests/config/every_setting.hpp"
 #include "tests/scratch.hpp"
 #include "tests/supervisor/spec/built_catalogue.hpp"
 
@@ -42,16 +43,6 @@ Paths without(Paths paths, const Paths& others) {
   return paths;
 }
 
-void alter(const config::Target& target) {
-  if (auto* const* flag = std::get_if<bool*>(&target)) **flag = !**flag;
-  if (auto* const* whole = std::get_if<int*>(&target)) **whole += 1;
-  if (auto* const* number = std::get_if<double*>(&target)) **number += 0.125;
-  if (auto* const* text = std::get_if<std::string*>(&target)) **text += "x";
-  if (auto* const* list = std::get_if<std::vector<double>*>(&target)) (*list)->push_back(3);
-  if (const auto* choice = std::get_if<config::ChoiceTarget>(&target))
-    choice->assign(choice->value, (choice->index(choice->value) + 1) % choice->words.size());
-}
-
 /// The settings that change the service's fingerprint when they change, one at a time.
 Paths read_by(const std::string& service, const config::Rig& rig) {
   Paths paths;
@@ -61,7 +52,7 @@ Paths read_by(const std::string& service, const config::Rig& rig) {
     for (const auto& setting : section.settings) {
       auto changed = rig;
       const auto listing = config::list_settings(changed);
-      alter(config::find_setting(listing, setting.path)->target);
+      config::change(*config::find_setting(listing, setting.path));
       if (fingerprint_of(service, changed, built()) != before) paths.insert(setting.path);
     }
   }
