@@ -74,13 +74,13 @@ class ArrayReader {
     const std::size_t row = static_cast<std::size_t>(component) * width,
                       stride = view.byteStride ? view.byteStride : row;
     if (accessor.count == 0) return refuse("are empty");
-    if (accessor.count > 3 * kMaxTriangles) return refuse("are too many");
-    if (stride < row) return refuse("overlap");
     if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
       return refuse("lie outside their buffer");
     if (accessor.byteOffset > view.byteLength || row > view.byteLength - accessor.byteOffset ||
         (accessor.count - 1) > (view.byteLength - accessor.byteOffset - row) / stride)
       return refuse("lie outside their buffer view");
+    if (accessor.count > 3 * kMaxTriangles) return refuse("are too many");
+    if (stride < row) return refuse("overlap");
     return Rows{buffer.data() + view.byteOffset + accessor.byteOffset, stride};
   }
 

@@ -86,9 +86,9 @@ int serve(const Options& options) {
 }
 
 int run_exporter(int argc, char** argv) {
-  const auto options =
-      sort_options({argv + 1, argv + argc}, {.with_value = {"--config", "--set"},
-                                             .flags = {"--help", "--version", "--backends", "--describe"}});
+  const auto options = sort_options({argv + 1, argv + argc},
+                                    {.with_value = {"--config", "--set"},
+                                     .flags = {"--help", "--version", "--backends", "--describe"}});
   if (!options) {
     log::error("{}", options.error().what);
     return kExitUsage;

@@ -226,6 +226,21 @@ TEST(CalibrationFile, AcceptsAMirrorAndAScreenThatCoversAPart) {
   }
 }
 
+TEST(CalibrationFile, RefusesScreensAndLensesThatNoCameraHas) {
+  const std::pair<const char*, const char*> kFaults[] = {
+      {"[camera]\nwidth_px = 8000\nheight_px = 8000", "camera: 8000 x 8000 px are too many"},
+      {"[projector]\nwidth_px = 8000\nheight_px = 8000", "projector: 8000 x 8000 px are too many"},
+      {"[camera]\nfocal_px = [1, 1]", "camera.focal_px: 1 px is not plausible"},
+      {"[camera]\nfocal_px = [1e6, 1e6]", "camera.focal_px"},
+      {"[camera]\ncentre_px = [1e5, -1e5]", "camera.centre_px"},
+  };
+  for (const auto& [text, sentence] : kFaults) {
+    const auto rig = load_calibration(file_with(text));
+    ASSERT_FALSE(rig) << text;
+    EXPECT_THAT(rig.error().what, HasSubstr(sentence)) << text;
+  }
+}
+
 TEST(CalibrationFile, RefusesATrackerFarAway) {
   const auto rig = load_calibration(
       file_with("[camera_from_tracker]\nx = [1, 0, 0, 350]\ny = [0, 1, 0, 0]\nz = [0, 0, 1, 0]\n"));

@@ -92,8 +92,11 @@ TEST(Document, AKeyWithThousandsOfPartsIsRefusedAndDotsElsewhereAreNot) {
   EXPECT_FALSE(parse_document("[" + key + "]\n", "rig.toml"));
   EXPECT_FALSE(parse_document("x = { " + key + " = 1 }\n", "rig.toml"));
 
+  EXPECT_FALSE(parse_document("\"\\\"\"." + key + " = 1\n", "rig.toml")) << "an escaped quote";
+
   const std::string dots(100, '.');
-  EXPECT_TRUE(parse_document("a = \"" + dots + "\" # " + dots.substr(0, 20) + "\n", "rig.toml"));
+  EXPECT_TRUE(parse_document("# " + dots + " don't " + dots + "\na = 1\n", "rig.toml"));
+  EXPECT_TRUE(parse_document("a = \"" + dots + "\" # " + dots + "\n", "rig.toml"));
   std::string numbers = "0.5";
   for (int i = 0; i < 100; ++i) numbers += ", 0.5";
   EXPECT_TRUE(parse_document("a = [" + numbers + "]\n", "rig.toml"));

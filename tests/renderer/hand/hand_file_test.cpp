@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -168,6 +169,20 @@ TEST_F(HandFile, AMeshThatIsNotInMetresIsRefused) {
     ASSERT_TRUE(save_hand(hand, path("odd.glb")));
     EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("from the wrist; a hand in metres")) << scale;
   }
+}
+
+TEST_F(HandFile, MoreTrianglesThanSixteenBitsNumberAreRefused) {
+  HandMesh hand = mean_hand(Side::left);
+  hand.triangles.resize(65'535, hand.triangles.front());
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("too many"));
+}
+
+TEST_F(HandFile, ABufferThatIsAPipeIsNotWaitedFor) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  std::ofstream(path("odd.gltf"))
+      << R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "pipe", "byteLength": 4}]})";
+  EXPECT_THAT(refusal(path("odd.gltf")), HasSubstr("not a valid glTF file"));
 }
 
 TEST_F(HandFile, OneVertexFarAwayIsRefused) {

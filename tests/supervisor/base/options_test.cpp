@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/base/options.hpp"
+
+#include <gmock/gmock.h>
+
+namespace handcast::supervisor {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const OptionTable kTable{
+    .with_value = {"--set"}, .flags = {"--json"}, .least_words = 1, .most_words = 1};
+
+std::string refusal(const std::vector<std::string>& arguments) {
+  const auto options = sort_options(arguments, kTable);
+  return options ? "sorted" : options.error().what;
+}
+
+TEST(Options, AreSortedIntoWordsValuesAndFlags) {
+  const auto options = sort_options({"--set", "a=1", "rig.toml", "--set", "b=2", "--json"}, kTable);
+  ASSERT_TRUE(options);
+  EXPECT_THAT(options->words, ElementsAre("rig.toml"));
+  EXPECT_THAT(options->all("--set"), ElementsAre("a=1", "b=2"));
+  EXPECT_TRUE(options->has("--json"));
+}
+
+TEST(Options, ThatAreUnknownEmptyOrTooFewOrManyAreSaid) {
+  EXPECT_THAT(refusal({"--sett", "a"}), HasSubstr("unknown option '--sett'"));
+  EXPECT_THAT(refusal({"rig.toml", "--set"}), HasSubstr("--set needs a value"));
+  EXPECT_THAT(refusal({"rig.toml", "--set", ""}), HasSubstr("--set needs a value"));
+  EXPECT_THAT(refusal({""}), HasSubstr("an argument is empty"));
+  EXPECT_THAT(refusal({}), HasSubstr("0 of 1 arguments given"));
+  EXPECT_THAT(refusal({"a", "b"}), HasSubstr("'b' is one argument too many"));
+}
+
+}  // namespace
+}  // namespace handcast::supervisor
