@@ -17,6 +17,7 @@ std::string print(double number) { return fmt::format("{}", number); }
 
 std::string print(const std::vector<double>& numbers) {
   std::vector<std::string> texts;
+  texts.reserve(numbers.size());
   for (const double number : numbers) texts.push_back(print(number));
   return fmt::format("[{}]", join(texts, ", "));
 }

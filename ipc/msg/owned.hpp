@@ -15,7 +15,7 @@ class Owned {
   explicit Owned(std::size_t bytes = sizeof(T))
       : bytes_(bytes < sizeof(T) ? sizeof(T) : bytes),
         memory_(new std::byte[bytes_]()),
-        message_(new (memory_.get()) T) {}
+        message_(new (memory_.get()) T) {}  // NOLINT(clang-analyzer-cplusplus.PlacementNew)
 
   /// The message; valid as long as this object.
   /// @{

@@ -148,8 +148,7 @@ void Pipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
   now_ns_ = now_ns;
   hands_.clear();
   for (HandPipeline& hand : both_)
-    if (auto frame = hand.predict(now_ns, target_ns, image_ns))
-      hands_.push_back({&hand, std::move(*frame)});
+    if (auto frame = hand.predict(now_ns, target_ns, image_ns)) hands_.push_back({&hand, *frame});
 }
 
 void Pipeline::expect(std::int64_t image_ns) {

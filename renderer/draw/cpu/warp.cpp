@@ -18,8 +18,10 @@ HANDCAST_CLONES bool find_sources(const PixelBlock& block, std::int32_t stride, 
   std::int32_t last = kNowhere;
 #pragma GCC unroll 1
   for (int i = 0; i < kLanes; ++i) {
+    // NOLINTBEGIN(bugprone-incorrect-roundings): lround is no vector instruction
     const auto x = static_cast<std::int32_t>(block.u[i] + 0.5f),
                y = static_cast<std::int32_t>(block.v[i] + 0.5f);
+    // NOLINTEND(bugprone-incorrect-roundings)
     const bool inside = (block.depth[i] < std::numeric_limits<float>::infinity()) & (x >= from.x0) &
                         (x < from.x1) & (y >= from.y0) & (y < from.y1);
     places[i] = inside ? y * stride + x : kNowhere;

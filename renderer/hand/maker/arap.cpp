@@ -63,6 +63,7 @@ void flatten_as_rigid_as_possible(const std::vector<glm::dvec3>& points,
   system.coeffRef(0, 0) += 1;  // fixes the first vertex
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system);
   std::vector<FlatTriangle> laid;
+  laid.reserve(triangles.size());
   for (const auto& t : triangles) laid.push_back(laid_flat(points, t));
   for (int round = 0; round < rounds; ++round) {
     Eigen::MatrixX2d sums = right_hand_side(laid, flat);

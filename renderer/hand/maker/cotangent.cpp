@@ -35,6 +35,6 @@ MeshOperators mesh_operators(const std::vector<glm::dvec3>& points,
   }
   operators.laplacian.setFromTriplets(entries.begin(), entries.end());
   return operators;
-}
+}  // NOLINT(clang-analyzer-unix.Malloc): Eigen's own memory
 
 }  // namespace handcast::renderer

@@ -110,6 +110,7 @@ class LayoutBuilder {
         row_through(heads, 10), finger_row()};
     for (int i = 0; i <= kPalmColumns; ++i) {
       std::vector<glm::dvec3> column;
+      column.reserve(guides.size());
       for (const PalmRow& guide : guides) column.push_back(guide[i]);
       for (int j = 0; j <= kPalmRows; ++j) palm(i, j) = interpolate(knots, column, j);
     }

@@ -45,8 +45,10 @@ std::vector<Message> recordable(std::vector<Message> messages) {
   const auto most = std::max_element(of_sides.begin() + 1, of_sides.end()) - of_sides.begin();
   std::erase_if(messages, [&](const Message& message) { return sides_of(message) != most; });
   std::ranges::stable_sort(messages, {}, origin_us<Message>);
-  const auto again = std::ranges::unique(messages, {}, origin_us<Message>);
-  messages.erase(again.begin(), again.end());
+  const auto same_time = [](const Message& a, const Message& b) {
+    return origin_us(a) == origin_us(b);
+  };
+  messages.erase(std::unique(messages.begin(), messages.end(), same_time), messages.end());
   return messages;
 }
 
