@@ -30,7 +30,7 @@ else()
 endif()
 
 # g++ 12 at -O3 reports overflows of std::string that do not exist.
-add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow -Wno-restrict
+add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict
   -Wno-array-bounds)
 if(HANDCAST_SANITIZE)
   add_compile_options(-fsanitize=${HANDCAST_SANITIZE} -fno-omit-frame-pointer -g1)
