@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "config/rig.hpp"
 #include "config/settings/settings.hpp"
 #include "supervisor/base/options.hpp"
@@ -9,15 +11,13 @@
 #include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
-
 namespace {
 
 Catalogue installed_services() { return read_catalogue(catalogue_folder(program_folder())); }
 
 /// A line for each back end that this installation does not have.
-std::string unknown_backends(const config::Rig& rig) {
+std::string unknown_backends(const config::Rig& rig, const Catalogue& catalogue) {
   std::string lines;
-  const auto catalogue = installed_services();
   for (const auto& service : services_of(rig, catalogue)) {
     if (service.backend.empty()) continue;
     if (const auto known = check_backend(catalogue, service.name, service.backend); !known)
@@ -26,38 +26,37 @@ std::string unknown_backends(const config::Rig& rig) {
   return lines;
 }
 
-/// A line for each file and folder that a setting names, that this rig reads and that is missing.
-std::string missing_files(config::Rig rig) {
-  struct Place {
-    std::string_view path, needed_by;  ///< `needed_by`: the back end that reads it; "" for all
-  };
-  constexpr Place kPlaces[] = {{"calibration", ""},
-                               {"hand.left", ""},
-                               {"hand.right", ""},
-                               {"content.left", ""},
-                               {"content.right", ""},
-                               {"twin.motion", "twin"},
-                               {"camera.replay.directory", "replay"},
-                               {"pose.replay.directory", "replay"},
-                               {"landmarks.replay.directory", "replay"}};
+/// A line for each file and folder that is missing although a service of this rig reads it.
+std::string missing_files(config::Rig rig, const Catalogue& catalogue) {
+  constexpr std::string_view kPlaces[] = {"calibration",
+                                          "hand.left",
+                                          "hand.right",
+                                          "content.left",
+                                          "content.right",
+                                          "twin.motion",
+                                          "camera.replay.directory",
+                                          "pose.replay.directory",
+                                          "landmarks.replay.directory"};
   std::string lines;
+  const auto services = services_of(rig, catalogue);
   const auto listing = config::list_settings(rig);
-  for (const auto& [path, needed_by] : kPlaces) {
-    const auto* setting = config::find_setting(listing, path);
-    const auto service = path.substr(0, path.find('.'));
-    if (!setting || (needed_by == "replay" && backend_of(service, rig) != needed_by)) continue;
-    const auto& file = *std::get<std::string*>(setting->target);
+  for (const auto path : kPlaces) {
+    const auto& file = *std::get<std::string*>(config::find_setting(listing, path)->target);
     std::error_code unknown;
-    if (file.empty() || file.starts_with("builtin:") || std::filesystem::exists(file, unknown))
-      continue;
-    lines += fmt::format("{}: {} does not exist\n", path, file);
+    const bool is_read = std::ranges::any_of(services, [&](const ServiceSpec& service) {
+      return reads_setting(service.name, rig, catalogue, path);
+    });
+    if (is_read && !file.empty() && !file.starts_with("builtin:") &&
+        !std::filesystem::exists(file, unknown))
+      lines += fmt::format("{}: {} does not exist\n", path, file);
   }
   return lines;
 }
 
 /// Checks what the settings of a rig refer to. Prints what is wrong.
 int check(const config::Rig& rig, const std::string& file) {
-  const auto faults = unknown_backends(rig) + missing_files(rig);
+  const auto catalogue = installed_services();
+  const auto faults = unknown_backends(rig, catalogue) + missing_files(rig, catalogue);
   if (!faults.empty())
     return complain(kExitConfig, fmt::format("{}:\n{}", file, faults.substr(0, faults.size() - 1)));
   fmt::print("{} is in order\n", file);

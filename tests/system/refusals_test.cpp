@@ -15,6 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 class Refusals : public SystemTest {
@@ -87,6 +88,25 @@ TEST_F(Refusals, AnUnknownVerbIsAnsweredWithTheKnownOnes) {
   EXPECT_THAT(outcome.log, AllOf(HasSubstr("'levitate'"), HasSubstr("up, down, status")));
   EXPECT_EQ(handcast({"up"}).exit_code, 2);
   EXPECT_EQ(handcast({"up", "rig.toml", "--seconds", "soon"}).exit_code, 2);
+}
+
+TEST_F(Refusals, ConfigNamesEveryMissingFileAndUnknownBackEndThatTheRigUses) {
+  const auto file = rig_file(
+      "calibration = \"none.toml\"\n[camera]\nbackend = \"webcam\"\n"
+      "[pose]\nbackend = \"replay\"\n[pose.replay]\ndirectory = \"tape\"\n"
+      "[landmarks.replay]\ndirectory = \"unused\"\n");
+  const auto outcome = handcast({"config", "--check", file});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, AllOf(HasSubstr("camera.backend: camera has no back end 'webcam'"),
+                                 HasSubstr("none.toml does not exist"),
+                                 HasSubstr("pose.replay.directory"), Not(HasSubstr("unused"))));
+}
+
+TEST_F(Refusals, AnEmptyArgumentIsOneThatAScriptForgot) {
+  const auto outcome = handcast({"up", ""});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.log, HasSubstr("argument 2 is empty"));
+  EXPECT_THAT(traces(), IsEmpty());
 }
 
 TEST_F(Refusals, WhatConfigPrintsConfigAccepts) {
