@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cassert>
 #include <cmath>
 
 #include "renderer/base/clones.hpp"
@@ -57,8 +56,6 @@ void skin_both(const HandMesh& hand, const Bones& bones, glm::vec3* positions, g
 
 void skin(const HandMesh& hand, const JointFrames& frames, std::span<glm::vec3> positions,
           std::span<glm::vec3> normals) {
-  assert(positions.size() >= hand.vertex_count());
-  assert(normals.empty() || normals.size() >= hand.vertex_count());
   Bones bones;
   for (int j = 0; j < kJoints; ++j) {
     const glm::mat4 posed_from_rest = frames[j] * glm::inverse(hand.rest[j]);
