@@ -40,7 +40,7 @@ class Rig:
 
     def __init__(self, options):
         self.runtime = tempfile.TemporaryDirectory(prefix="handcast-soak-")
-        self.environment = {**os.environ, "XDG_RUNTIME_DIR": self.runtime.name}
+        self.environment = {**os.environ, "HANDCAST_SCOPE": self.runtime.name}
         self.log = open(options.out / "rig.log", "w")
         settings = [word for setting in options.set for word in ("--set", setting)]
         self.process = subprocess.Popen([HANDCAST, "up", options.rig, *settings], env=self.environment, stdout=self.log, stderr=self.log)
