@@ -64,9 +64,9 @@ Result<RigAddress> address_of(std::string_view rig) {
         fmt::format("'{}' is not a valid name of a rig; use letters, digits, '_' and '-'", rig));
   RigAddress address{.text = prefix().append(rig)};
   if (address.text.size() >= sizeof address.socket.sun_path)
-    return fail(Errc::bad_config,
-                fmt::format("{} is too long for a socket; give the rig a shorter name",
-                            address.text));
+    return fail(
+        Errc::bad_config,
+        fmt::format("{} is too long for a socket; give the rig a shorter name", address.text));
   address.socket.sun_family = AF_UNIX;  // the first byte of sun_path stays 0: abstract
   std::memcpy(address.socket.sun_path + 1, address.text.data(), address.text.size());
   address.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + address.text.size());

@@ -57,8 +57,8 @@ inline constexpr const char* kOutVariable = "HANDCAST_OUT";
 
 /// The variables that differ from daemon to daemon: none is inherited from the supervisor's own
 /// environment.
-inline constexpr std::array kHandoverVariables{kRingsVariable, kReadyVariable, kEpochVariable,
-                                               kStandbyVariable, kRigVariable, kStateVariable};
+inline constexpr std::array kHandoverVariables{kRingsVariable,   kReadyVariable, kEpochVariable,
+                                               kStandbyVariable, kRigVariable,   kStateVariable};
 
 inline constexpr char kReadyWord = '\n';    ///< on the ready descriptor
 inline constexpr char kPreparedWord = 's';  ///< on the ready descriptor, from a spare

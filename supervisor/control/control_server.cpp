@@ -23,7 +23,8 @@ constexpr std::size_t kMostClients = 64;
 Result<UniqueFd> claim(const control::RigAddress& address, const std::string& rig) {
   UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* where = reinterpret_cast<const sockaddr*>(&address.socket);
-  if (listener && bind(listener.get(), where, address.size) == 0 && ::listen(listener.get(), 16) == 0)
+  if (listener && bind(listener.get(), where, address.size) == 0 &&
+      ::listen(listener.get(), 16) == 0)
     return listener;
   if (!listener || errno != EADDRINUSE)
     return fail(Errc::unavailable,
@@ -82,7 +83,8 @@ void ControlServer::accept() {
   clients_.emplace(id, Client{std::move(socket), {}, {}});
 }
 
-/// Drops a client if there are kMostClients: the oldest that waits for no answer, or else the oldest.
+/// Drops a client if there are kMostClients: the oldest that waits for no answer, or else the
+/// oldest.
 void ControlServer::make_room() {
   if (clients_.size() < kMostClients) return;
   const auto idle =

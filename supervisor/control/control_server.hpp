@@ -14,8 +14,8 @@
 namespace handcast::supervisor {
 
 /// The rig's end of the control socket, on the event loop. Whoever has the socket has the name of
-/// the rig; the kernel frees it with the process. The server never blocks: answers that a client has
-/// not read yet are kept up to a limit, and a client beyond the limit is dropped.
+/// the rig; the kernel frees it with the process. The server never blocks: answers that a client
+/// has not read yet are kept up to a limit, and a client beyond the limit is dropped.
 class ControlServer {
  public:
   /// Answers a request, now or later. Does nothing if the client has left. Must not be called after

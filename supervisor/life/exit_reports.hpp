@@ -25,7 +25,7 @@ struct ExitReport {
 
 /// A sign of life that the supervisor sends to its keeper, a datagram on the same socket pair.
 struct Beat {
-  bool stopping = false;       ///< the rig is being stopped: no successor is wanted
+  bool stopping = false;        ///< the rig is being stopped: no successor is wanted
   std::array<char, 108> rig{};  ///< name of the rig, ended by '\0'
 };
 /// The time between two beats.

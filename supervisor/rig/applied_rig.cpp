@@ -16,8 +16,8 @@ namespace handcast::supervisor {
 
 Result<UniqueFd> make_applied(const std::string& toml) {
   UniqueFd file(memfd_create("handcast-rig", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  const bool written = file && ::write(file.get(), toml.data(), toml.size()) ==
-                                   static_cast<ssize_t>(toml.size());
+  const bool written =
+      file && ::write(file.get(), toml.data(), toml.size()) == static_cast<ssize_t>(toml.size());
   constexpr int kReadOnly = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
   if (written && fcntl(file.get(), F_ADD_SEALS, kReadOnly) == 0) return file;
   return fail(Errc::unavailable,

@@ -107,7 +107,7 @@ Result<void> RigRunner::watch_signals_and_time() {
   return {};
 }
 
-/// Creates rings, applied file and services, or takes over those of a supervisor that died. Starts
+/// Creates rings, applied rig and services, or takes over those of a supervisor that died. Starts
 /// no service.
 Result<void> RigRunner::make_parts() {
   auto adopted = adopt(rig_.name);
@@ -294,8 +294,8 @@ void RigRunner::stop_next() {
   finish();
 }
 
-/// supervisor.stop_s is the time for the whole rig: the services stop one after the other, and those
-/// that are left then are killed.
+/// supervisor.stop_s is the time for the whole rig: the services stop one after the other, and
+/// those that are left then are killed.
 void RigRunner::hurry_when_late(std::int64_t now) {
   if (rig_.phase != Phase::stopping || now < stop_by_ns_) return;
   stop_by_ns_ = std::numeric_limits<std::int64_t>::max();

@@ -141,8 +141,9 @@ void kill_all(const std::vector<FoundProcess>& processes) {
 }
 
 /// The state that services hold open, or that systemd has stored. Empty if none can be read.
-std::optional<std::pair<StateMemory, SavedRig>> newest_state(
-    const std::string& name, const std::vector<FoundProcess>& found, const Stored& stored) {
+std::optional<std::pair<StateMemory, SavedRig>> newest_state(const std::string& name,
+                                                             const std::vector<FoundProcess>& found,
+                                                             const Stored& stored) {
   const auto read = [&](UniqueFd file) -> std::optional<std::pair<StateMemory, SavedRig>> {
     auto memory = StateMemory::open(std::move(file));
     if (!memory) return std::nullopt;
@@ -179,9 +180,10 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   auto state = newest_state(name, found, stored);
   if (!state) {
     if (!found.empty())
-      log::warning("{} of rig '{}' cannot be taken over, because no saved state can be read; "
-                   "killed and started anew",
-                   names_of(found), name);
+      log::warning(
+          "{} of rig '{}' cannot be taken over, because no saved state can be read; "
+          "killed and started anew",
+          names_of(found), name);
     kill_all(found);
     return std::nullopt;
   }
@@ -205,8 +207,8 @@ std::vector<std::string> orphaned_rigs() {
   std::set<std::string> rigs;
   for (const auto& process : find_services()) rigs.insert(process.rig);
   const auto has_supervisor = [](const std::string& rig) {
-    const auto connection =
-        control::address_of(rig).and_then([](const auto& address) { return control::connect_to(address); });
+    const auto connection = control::address_of(rig).and_then(
+        [](const auto& address) { return control::connect_to(address); });
     return connection || connection.error().code == Errc::timeout;
   };
   std::erase_if(rigs, has_supervisor);

@@ -68,8 +68,8 @@ bool is_of_this_user(const std::filesystem::path& process) {
   return stat(process.c_str(), &status) == 0 && status.st_uid == getuid();
 }
 
-/// The environment of a process as /proc shows it. It is empty for a moment while the process starts
-/// its program (execve), so it is read again then.
+/// The environment of a process as /proc shows it. It is empty for a moment while the process
+/// starts its program (execve), so it is read again then.
 std::string environment_of(const std::filesystem::path& process) {
   constexpr int kMostReads = 5;
   std::string environment;

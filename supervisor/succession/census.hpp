@@ -12,10 +12,10 @@ namespace handcast::supervisor {
 
 /// A living process of a service, as /proc shows it.
 struct FoundProcess {
-  std::string rig;      ///< name of its rig
-  std::string service;  ///< name of its program without "handcast-"
-  pid_t pid = 0;        ///< its pid
-  UniqueFd pidfd;       ///< readable when it has ended
+  std::string rig;            ///< name of its rig
+  std::string service;        ///< name of its program without "handcast-"
+  pid_t pid = 0;              ///< its pid
+  UniqueFd pidfd;             ///< readable when it has ended
   std::int64_t epoch_ns = 0;  ///< start of its rig
   int state_fd = -1;          ///< number of its descriptor of the StateMemory; -1: unknown
 };

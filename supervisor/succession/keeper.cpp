@@ -66,8 +66,7 @@ class Keeper {
       log::warning("the supervisor died ({}); started again{}",
                    exit_ ? exit_->describe() : "no process could be created",
                    pause_ns > 0 ? fmt::format(" after {:.0f} ms", ns_to_ms(pause_ns)) : "");
-      for (const auto until_ns = now_ns() + pause_ns;
-           now_ns() < until_ns && !must_stop_the_rig();)
+      for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns && !must_stop_the_rig();)
         look(until_ns - now_ns());
       if (must_stop_the_rig()) return stop_the_rig();
       command_.for_a_successor();
@@ -188,9 +187,10 @@ class Keeper {
     const auto patience_s = stop_requests_ >= kImpatient ? 0 : kServices_s;
     const int ended = end_services(rig_, patience_s, now_ns());
     see_off(kExitDone);
-    print_line(fmt::format("handcast: the supervisor ended before rig '{}' had stopped; its keeper "
-                           "has ended the services that were left: {}",
-                           rig_, ended));
+    print_line(
+        fmt::format("handcast: the supervisor ended before rig '{}' had stopped; its keeper "
+                    "has ended the services that were left: {}",
+                    rig_, ended));
     return kExitBadResult;
   }
 

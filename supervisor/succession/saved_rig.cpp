@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-
 namespace handcast::supervisor {
 namespace {
 
@@ -31,15 +30,10 @@ json to_json(const SavedService& service) {
 }
 
 json to_json(const SavedRig& rig) {
-  json object{{"version", kVersion},
-              {"name", rig.name},
-              {"rig_file", rig.rig_file.string()},
-              {"settings", rig.settings},
-              {"out", rig.out},
-              {"applied", rig.applied},
-              {"epoch_ns", rig.epoch_ns},
-              {"rings", json::array()},
-              {"services", json::array()}};
+  json object{
+      {"version", kVersion},      {"name", rig.name},       {"rig_file", rig.rig_file.string()},
+      {"settings", rig.settings}, {"out", rig.out},         {"applied", rig.applied},
+      {"epoch_ns", rig.epoch_ns}, {"rings", json::array()}, {"services", json::array()}};
   for (const auto& ring : rig.rings) object["rings"].push_back(to_json(ring));
   for (const auto& service : rig.services) object["services"].push_back(to_json(service));
   return object;
@@ -101,7 +95,8 @@ std::string print_saved(const SavedRig& rig) {
 
 Result<SavedRig> parse_saved(const std::string& text, const std::string& name) {
   const auto invalid = [&](std::string_view why) {
-    return fail(Errc::bad_data, fmt::format("the saved state of rig '{}' is invalid: {}", name, why));
+    return fail(Errc::bad_data,
+                fmt::format("the saved state of rig '{}' is invalid: {}", name, why));
   };
   const auto object = json::parse(text, nullptr, false);
   if (!object.is_object()) return invalid("it is incomplete");

@@ -27,9 +27,8 @@ struct Slot {
 };
 
 tl::unexpected<Error> cannot(std::string_view what) {
-  return fail(Errc::unavailable,
-              fmt::format("the memory for the supervisor's state {}: {}", what,
-                          std::strerror(errno)));
+  return fail(Errc::unavailable, fmt::format("the memory for the supervisor's state {}: {}", what,
+                                             std::strerror(errno)));
 }
 
 }  // namespace
@@ -93,8 +92,9 @@ Result<void> StateMemory::save(const SavedRig& rig) {
   const auto saves = layout_->saves.load(std::memory_order_relaxed) + 1;
   auto& slot = layout_->slots[saves % 2];
   if (text.size() > slot.text.size())
-    return fail(Errc::unavailable, fmt::format("the state of rig '{}' has {} bytes; {} can be saved",
-                                               rig.name, text.size(), slot.text.size()));
+    return fail(Errc::unavailable,
+                fmt::format("the state of rig '{}' has {} bytes; {} can be saved", rig.name,
+                            text.size(), slot.text.size()));
   std::ranges::copy(text, slot.text.begin());
   slot.bytes = text.size();
   layout_->saves.store(saves, std::memory_order_release);

@@ -12,8 +12,8 @@
 
 namespace handcast::supervisor {
 
-/// The arguments and the environment with which a keeper starts supervisors. They are built once, so that later starts
-/// do not allocate memory.
+/// The arguments and the environment with which a keeper starts supervisors. They are built once,
+/// so that later starts do not allocate memory.
 struct SupervisorCommand {
   std::vector<std::string> arguments, environment;
   std::vector<char*> argument_pointers, environment_pointers;

@@ -39,8 +39,8 @@ class Adoption : public SystemTest {
   ipc::RingView view(const std::string& stream) const {
     const auto saved = state();
     const auto ring = std::ranges::find(saved.rings, stream, &supervisor::SavedRing::stream);
-    const auto file = "/proc/" + std::to_string(saved.services[0].pid) + "/fd/" +
-                      std::to_string(ring->fd);
+    const auto file =
+        "/proc/" + std::to_string(saved.services[0].pid) + "/fd/" + std::to_string(ring->fd);
     return ipc::RingView::open(UniqueFd(open(file.c_str(), O_RDWR | O_CLOEXEC))).value();
   }
 
@@ -172,7 +172,8 @@ TEST_F(Adoption, DownEndsServicesThatHaveNoSupervisor) {
   expect_all_alive(services);
   const auto down = handcast({"down"});
   EXPECT_EQ(down.exit_code, 0) << down.log;
-  EXPECT_THAT(down.output, HasSubstr("rig 'twin' had no supervisor that answered; processes ended: 5"));
+  EXPECT_THAT(down.output,
+              HasSubstr("rig 'twin' had no supervisor that answered; processes ended: 5"));
   for (const auto pid : services) EXPECT_FALSE(is_alive(pid));
   EXPECT_EQ(handcast({"down"}).exit_code, 111);
 }

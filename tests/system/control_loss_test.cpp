@@ -9,7 +9,6 @@
 namespace handcast::system_test {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -42,8 +41,8 @@ TEST_F(ControlLoss, DownEndsARigWhoseSupervisorHangs) {
   kill(rig->supervisor(), SIGSTOP);
   const auto down = handcast({"down"});
   EXPECT_EQ(down.exit_code, 0) << down.log;
-  expect_darkness(services);
   EXPECT_EQ(rig->wait(), 1);
+  expect_darkness(services);
 }
 
 TEST_F(ControlLoss, DownEndsARigWhoseSupervisorAndKeeperHang) {
@@ -75,12 +74,13 @@ TEST_F(ControlLoss, ServicesThatAllHangAreKilledTogether) {
   const auto services = pids();
   for (const auto pid : services) kill(pid, SIGSTOP);
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_EQ(rig->wait(), 0);
   expect_darkness(services);
   EXPECT_THAT(rig->log(), HasSubstr("has not stopped within 1 s"));
 }
 
 TEST_F(ControlLoss, ASupervisorThatIsKilledWhileTheRigStopsIsNotReplaced) {
-  const auto rig = up({"--set", "supervisor.stop_s=300", "--set", "supervisor.silent_s=300"});
+  const auto rig = up({"--set", "supervisor.stop_s=60", "--set", "supervisor.silent_s=300"});
   wait_until_light();
   const auto services = pids();
   const auto supervisor = rig->supervisor();

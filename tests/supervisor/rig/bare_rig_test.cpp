@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "supervisor/succession/adoption.hpp"
 #include "supervisor/succession/census.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
@@ -165,14 +166,15 @@ TEST_F(BareRig, AServiceThatIsSwitchedOnAgainUnderTheNextSupervisorIsHeard) {
   EXPECT_TRUE(eventually([] { return services()["observer"]["silent_ms"].is_number(); }));
 }
 
-TEST_F(BareRig, OnlyDaemonsAreEndedAsStraysNotWhateverElseIsAChildOfTheKeeper) {
+TEST_F(BareRig, OnlyDaemonsOfTheRigAreEndedAsStraysNotWhateverElseIsAChildOfTheKeeper) {
   const auto notes = scratch_.path() / "notes";
   std::filesystem::create_directory(scratch_.path() / "entry");
   std::filesystem::copy_file("/bin/sleep", programs_ / "handcast-stray");
   write_program(scratch_.path() / "entry" / "handcast",
-                "sleep 1000 & echo $! > " + notes.string() + "; setsid " + programs_.string() +
-                    "/handcast-stray 1000 & echo $! >> " + notes.string() + "; exec " +
-                    programs_.string() + "/handcast \"$@\"");
+                "setsid sleep 1000 & echo $! > " + notes.string() +
+                    "; HANDCAST_RIG=" + control::address_of("desk").value().text + " setsid " +
+                    programs_.string() + "/handcast-stray 1000 & echo $! >> " + notes.string() +
+                    "; exec " + programs_.string() + "/handcast \"$@\"");
   bin_.emplace("HANDCAST_BIN", (scratch_.path() / "entry").string());
   const auto rig = ready_rig();
   pid_t other = 0, stray = 0;

@@ -200,8 +200,9 @@ TEST_F(KeeperTest, ASupervisorThatSendsNoMoreBeatsIsReplaced) {
 }
 
 TEST_F(KeeperTest, ASupervisorThatSendsBeatsIsLeftAlone) {
-  keep_script(std::string(kBeats) + "for (1..30) { beat(0); select(undef, undef, undef, 0.1); } exit 7;",
-              "/usr/bin/perl");
+  keep_script(
+      std::string(kBeats) + "for (1..30) { beat(0); select(undef, undef, undef, 0.1); } exit 7;",
+      "/usr/bin/perl");
   EXPECT_EQ(wait(), 7);
   EXPECT_EQ(log(), "");
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-
 namespace handcast::supervisor {
 namespace {
 
