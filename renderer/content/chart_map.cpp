@@ -12,15 +12,50 @@ namespace {
 
 using Parts = std::array<double, 3>;  ///< barycentric coordinates
 
-std::uint8_t strongest_joint(const HandMesh& hand, const std::array<std::uint16_t, 3>& corners,
-                             const Parts& part) {
-  std::array<double, kJoints> weight{};
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 4; ++i)
-      weight[hand.joints[corners[k]][i]] += part[k] * hand.weights[corners[k]][i];
+/// The skin weights of a triangle, by joint.
+class JointShares {
+ public:
+  JointShares(const HandMesh& hand, const std::array<std::uint16_t, 3>& corners) {
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 4; ++i)
+        if (hand.weights[corners[k]][i] > 0) note(hand.joints[corners[k]][i]);
+    std::sort(joints_.begin(), joints_.begin() + joint_count_);
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 4; ++i)
+        if (const double weight = hand.weights[corners[k]][i]; weight > 0)
+          shares_[share_count_++] = {place_of(hand.joints[corners[k]][i]), k, weight};
   }
-  return static_cast<std::uint8_t>(std::max_element(weight.begin(), weight.end()) - weight.begin());
-}
+
+  /// The joint with the largest weight at a point of the triangle; the first one if several have
+  /// it.
+  std::uint8_t strongest(const Parts& part) const {
+    if (joint_count_ == 1) return joints_[0];
+    std::array<double, 12> weight{};
+    for (int s = 0; s < share_count_; ++s)
+      weight[shares_[s].place] += part[shares_[s].corner] * shares_[s].weight;
+    return joints_[std::max_element(weight.begin(), weight.begin() + joint_count_) -
+                   weight.begin()];
+  }
+
+ private:
+  struct Share {
+    int place;  ///< index into joints_
+    int corner;
+    double weight;
+  };
+
+  void note(std::uint8_t joint) {
+    const auto end = joints_.begin() + joint_count_;
+    if (std::find(joints_.begin(), end, joint) == end) joints_[joint_count_++] = joint;
+  }
+  int place_of(std::uint8_t joint) const {
+    return static_cast<int>(std::find(joints_.begin(), joints_.end(), joint) - joints_.begin());
+  }
+
+  std::array<std::uint8_t, 12> joints_{};  ///< those with a weight, ascending
+  std::array<Share, 12> shares_{};
+  int joint_count_ = 0, share_count_ = 0;
+};
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
@@ -48,6 +83,7 @@ void ChartMap::draw_triangle(const HandMesh& hand, const std::array<std::uint16_
       Rect{static_cast<int>(std::ceil(low.x)), static_cast<int>(std::ceil(low.y)),
            static_cast<int>(std::floor(high.x)) + 1, static_cast<int>(std::floor(high.y)) + 1}
           .within(texels_.width(), texels_.height());
+  const JointShares shares(hand, corners);
   constexpr double kSlack = 1e-9;  // texels on a shared edge may be drawn twice, but not missed
   for (int y = box.y0; y < box.y1; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
@@ -58,7 +94,7 @@ void ChartMap::draw_triangle(const HandMesh& hand, const std::array<std::uint16_
       if (std::min({part[0], part[1], part[2]}) < -kSlack) continue;
       ChartTexel& texel = texels_.at(x, y);
       texel.chart = hand.chart[corners[0]];
-      texel.joint = strongest_joint(hand, corners, part);
+      texel.joint = shares.strongest(part);
       texel.rest_mm = glm::vec3{0};
       for (int k = 0; k < 3; ++k)
         texel.rest_mm += 1000.f * static_cast<float>(part[k]) * hand.positions[corners[k]];
@@ -73,12 +109,12 @@ void ChartMap::measure_edges() {
       const bool covered = texels_.at(x, y).chart != 0;
       on.at(x, y) = covered;
       off.at(x, y) = !covered;
-      texels_.at(x, y).edge_px = cpu::NearestPixel::kLargestReach;
+      texels_.at(x, y).edge_px = kEdgeReach;
     }
   }
   cpu::NearestPixel nearest;
   for (const auto& way : nearest.find(std::as_const(off).view(), std::as_const(on).view(),
-                                      cpu::NearestPixel::kLargestReach)) {
+                                      kEdgeReach)) {
     texels_.at(way.x, way.y).edge_px = static_cast<std::uint8_t>(std::sqrt(way.squared_px));
   }
 }

@@ -12,13 +12,16 @@ namespace handcast::renderer {
 struct ChartTexel {
   std::uint8_t chart = 0;    ///< 0: none
   std::uint8_t joint = 0;    ///< the joint with the largest skin weight
-  std::uint8_t edge_px = 0;  ///< distance to the outline of the chart, at most 32 texels
+  std::uint8_t edge_px = 0;  ///< distance to the outline of the chart, at most ChartMap::kEdgeReach
   glm::vec3 rest_mm{};       ///< position on the hand at rest, axes of HandMesh
 };
 
 /// The charts of a hand, drawn into a texture.
 class ChartMap {
  public:
+  /// The distance to an outline is measured up to here, texels.
+  static constexpr int kEdgeReach = 4;
+
   /// Draws the charts of `hand` into a texture of the given size in texels.
   ChartMap(const HandMesh& hand, int width, int height);
 

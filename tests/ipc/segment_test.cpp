@@ -205,11 +205,21 @@ TEST(Segment, ARingOfAnotherTypeIsRefusedByReadersAndWriters) {
   EXPECT_EQ(writer.error().code, Errc::bad_data);
 }
 
-TEST(Segment, SlotsTooSmallForTheMessageAreRefused) {
-  const auto segment = must(Segment::create(RingSpec::of<Page>("test.ring", 3, false, 100)));
-  const auto reader = Reader<Page>::attach(again(segment));
-  ASSERT_FALSE(reader);
-  EXPECT_THAT(reader.error().what, HasSubstr("too small for Page/1"));
+TEST(Segment, SlotsOneByteTooSmallForTheMessageAreRefusedByEveryone) {
+  const auto segment = make_ring<Page>(3, false, sizeof(Page) - 1);
+  for (const auto& error : {Reader<Page>::attach(again(segment)).error(),
+                            Reader<Page>::watch(again(segment)).error(),
+                            Writer<Page>::attach(again(segment)).error()}) {
+    EXPECT_EQ(error.code, Errc::bad_data);
+    EXPECT_THAT(error.what, HasSubstr("too small for Page/1"));
+  }
+}
+
+TEST(Segment, SlotsOfExactlyTheSizeOfTheMessageAreUsedByEveryone) {
+  const auto segment = make_ring<Page>(3, false, sizeof(Page));
+  EXPECT_TRUE(Reader<Page>::attach(again(segment)));
+  EXPECT_TRUE(Reader<Page>::watch(again(segment)));
+  EXPECT_TRUE(Writer<Page>::attach(again(segment)));
 }
 
 }  // namespace

@@ -55,6 +55,37 @@ TEST(Wakeups, NoneIsLostBetweenAFlagAndAHead) {
   EXPECT_EQ(reader.seen(), kMessages) << "the reader has missed a message while it slept";
 }
 
+/// True when a reader has asked the writer to wake it; the reader then sleeps at once.
+bool is_asleep(const Segment& segment, int row) {
+  const auto words = control_words_of(segment);
+  return (RealAtomics::load(words.wait(row), std::memory_order_relaxed) & kWaiting) != 0;
+}
+
+TEST(Wakeups, OneMessageWakesAllReadersThatSleep) {
+  constexpr int kReaders = 3;
+  const auto segment = make_ring<Note>(4);
+  auto writer = must(Writer<Note>::attach(again(segment)));
+  std::vector<Reader<Note>> readers;
+  for (int row = 0; row < kReaders; ++row)
+    readers.push_back(must(Reader<Note>::attach(again(segment), Wait::futex)));
+  for (std::uint64_t round = 1; round <= 10; ++round) {
+    std::array<std::uint64_t, kReaders> woken{};
+    {
+      std::vector<std::jthread> sleepers;
+      for (int row = 0; row < kReaders; ++row)
+        sleepers.emplace_back([&, row] {
+          const auto message = readers[row].latest(Deadline::in(20s));
+          if (message) woken[row] = (*message)->value;
+        });
+      for (int row = 0; row < kReaders; ++row)
+        while (!is_asleep(segment, row)) std::this_thread::yield();
+      std::this_thread::sleep_for(5ms);  // from the request to the sleep
+      writer.publish(note(round));
+    }
+    ASSERT_THAT(woken, ::testing::Each(round)) << "a reader has slept until its deadline";
+  }
+}
+
 TEST(EventFd, ThereIsNoneForTheOtherWays) {
   const auto segment = make_ring<Note>(4);
   for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex})
