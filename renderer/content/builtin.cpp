@@ -68,7 +68,7 @@ class Atlas {
   explicit Atlas(const ChartMap& charts) : charts_(charts) {}
 
   Colour operator()(const ChartTexel& texel) {
-    const glm::vec2 place{texel.rest_mm.x, texel.rest_mm.z};
+    const glm::vec2 place = texel.rest_mm;
     const glm::ivec2 field{whole_below(place.x / kFieldMm), whole_below(place.y / kFieldMm)};
     const glm::vec2 from_centre = place - (glm::vec2(field) + 0.5f) * kFieldMm;
     const float facing = charts_.facing(texel.chart);
@@ -147,7 +147,7 @@ class Skeleton {
   }
 
   Colour operator()(const ChartTexel& texel) const {
-    const glm::vec2 place{texel.rest_mm.x, texel.rest_mm.z};
+    const glm::vec2 place = texel.rest_mm;
     float to_bone = 1e9f, to_joint = 1e9f;
     for (int joint = 1; joint < kJoints; ++joint) {
       to_joint = std::min(to_joint, glm::distance(place, joints_mm_[joint]));
@@ -170,27 +170,31 @@ class Skeleton {
   std::array<glm::vec2, kJoints> joints_mm_;
 };
 
+/// A texel on the outline of a chart.
+struct Outlined {
+  int x, y;
+  Colour colour;
+};
+
 /// Paints all texels, pads the charts outwards, and draws their outlines last, so that the fill
 /// finds the content outside a chart and not its outline. `colour_of`: a function of the texel and
 /// its column and row that returns a Colour.
 template <class ColourOf>
 Texture paint(const ChartMap& charts, ColourOf colour_of) {
-  Image<Colour> colours(kWidth, kHeight, kInk);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      if (const ChartTexel& texel = charts.at(x, y); texel.chart != 0)
-        colours.at(x, y) = colour_of(texel, x, y);
-    }
-  }
-  charts.pad(colours);
-  Texture texture(kWidth, kHeight);
+  Texture texture(kWidth, kHeight, packed(kInk));
+  std::vector<Outlined> outlines;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const ChartTexel& texel = charts.at(x, y);
-      const float outline = texel.chart != 0 ? line(texel.edge_px, 2, 1) : 0;
-      texture.at(x, y) = packed(covered(colours.at(x, y), kPaper, outline));
+      if (texel.chart == 0) continue;
+      const Colour colour = colour_of(texel, x, y);
+      texture.at(x, y) = packed(colour);
+      if (const float outline = line(texel.edge_px, 2, 1); outline > 0)
+        outlines.push_back({x, y, glm::mix(colour, kPaper, outline)});
     }
   }
+  charts.pad(texture);
+  for (const auto& [x, y, colour] : outlines) texture.at(x, y) = packed(colour);
   return texture;
 }
 
