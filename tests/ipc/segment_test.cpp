@@ -207,12 +207,14 @@ TEST(Segment, ARingOfAnotherTypeIsRefusedByReadersAndWriters) {
 
 TEST(Segment, SlotsOneByteTooSmallForTheMessageAreRefusedByEveryone) {
   const auto segment = make_ring<Page>(3, false, sizeof(Page) - 1);
-  for (const auto& error : {Reader<Page>::attach(again(segment)).error(),
-                            Reader<Page>::watch(again(segment)).error(),
-                            Writer<Page>::attach(again(segment)).error()}) {
-    EXPECT_EQ(error.code, Errc::bad_data);
-    EXPECT_THAT(error.what, HasSubstr("too small for Page/1"));
-  }
+  const auto expect_refused = [](const auto& attached) {
+    ASSERT_FALSE(attached);
+    EXPECT_EQ(attached.error().code, Errc::bad_data);
+    EXPECT_THAT(attached.error().what, HasSubstr("too small for Page/1"));
+  };
+  expect_refused(Reader<Page>::attach(again(segment)));
+  expect_refused(Reader<Page>::watch(again(segment)));
+  expect_refused(Writer<Page>::attach(again(segment)));
 }
 
 TEST(Segment, SlotsOfExactlyTheSizeOfTheMessageAreUsedByEveryone) {
