@@ -12,6 +12,8 @@ namespace handcast::service {
 namespace {
 
 constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
+/// Added to the time that the process before this one has to stop.
+constexpr double kStopGrace_s = 1;
 
 bool worth_going_on(Errc code) { return code == Errc::timeout || code == Errc::bad_data; }
 
@@ -50,6 +52,9 @@ void Context::stand_by() {
     for (const auto& stream : *streams)
       if (auto segment = open_segment(stream)) mapped_.emplace(stream, std::move(*segment));
   supervision_.await_turn();
+  // The supervisor kills the worker that does not stop within stop_s.
+  writers_until_ = Deadline::in(
+      std::chrono::nanoseconds(seconds_to_ns(rig_.supervisor.stop_s + kStopGrace_s)));
   open_marks();
 }
 
@@ -76,8 +81,12 @@ void Context::ready() {
 }
 
 bool Context::running() {
+  if (daemon::stop_requested()) {
+    marks_.reset();  // the process that replaces this one waits for it
+    return false;
+  }
   if (const auto now = now_ns(); supervision_.beat_is_due(now)) mark({.origin_ns = now}, {});
-  return !daemon::stop_requested();
+  return true;
 }
 
 void Context::tolerate(const Error& error) {

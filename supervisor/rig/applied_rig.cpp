@@ -11,20 +11,37 @@
 namespace handcast::supervisor {
 namespace {
 
-Result<std::filesystem::path> applied_file(const std::string& rig) {
+Result<std::filesystem::path> file_of(const std::string& rig, const char* extension) {
   auto path = control::socket_of(rig);
-  if (path) path->replace_extension(".toml");
+  if (path) path->replace_extension(extension);
+  return path;
+}
+
+Result<std::filesystem::path> applied_file(const std::string& rig) { return file_of(rig, ".toml"); }
+
+Result<std::filesystem::path> candidate_file(const std::string& rig) {
+  return file_of(rig, ".next.toml");
+}
+
+Result<std::filesystem::path> write_to(Result<std::filesystem::path> path, const config::Rig& rig) {
+  if (!path) return path;
+  if (auto written = replace_file(*path, config::print_rig(rig)); !written)
+    return tl::make_unexpected(written.error());
   return path;
 }
 
 }  // namespace
 
 Result<std::filesystem::path> write_applied(const config::Rig& rig) {
-  auto path = applied_file(rig.name);
-  if (!path) return path;
-  if (auto written = replace_file(*path, config::print_rig(rig)); !written)
-    return tl::make_unexpected(written.error());
-  return path;
+  return write_to(applied_file(rig.name), rig);
+}
+
+Result<std::filesystem::path> write_candidate(const config::Rig& rig) {
+  return write_to(candidate_file(rig.name), rig);
+}
+
+void forget_candidate(const std::string& rig) {
+  if (const auto path = candidate_file(rig)) unlink(path->c_str());
 }
 
 std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
@@ -45,6 +62,7 @@ std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
 
 void forget_applied(const std::string& rig) {
   if (const auto path = applied_file(rig)) unlink(path->c_str());
+  forget_candidate(rig);
 }
 
 }  // namespace handcast::supervisor
