@@ -36,12 +36,19 @@ const std::vector<std::string> kStandby{"projector.process.standby=true"};
 /// One row of the table.
 struct Gaps {
   std::string name;
-  double limit_ms = 0;  ///< 0: no goal
-  std::vector<double> ms{};
+  double limit_ms = 0;            ///< of the pause; 0: no goal
+  std::vector<double> pause_ms{}; ///< from the last message of the old process to the next one's
+  std::vector<double> longest_ms{};  ///< from before the change until after it
+
+  void add(const GapWatch& watch) {
+    pause_ms.push_back(watch.pause_ms());
+    longest_ms.push_back(watch.longest_ms());
+  }
 };
 
-/// The longest gap of a stream while `change` is made and until another writer publishes.
-double gap_of(const TwinRig& rig, const std::string& stream, const std::function<void()>& change) {
+/// The gaps of a stream while `change` is made and until another writer publishes.
+void measure(const TwinRig& rig, const std::string& stream, const std::function<void()>& change,
+             Gaps& gaps) {
   const GapWatch watch(rig.view_of(stream));
   ::usleep(50'000);
   const auto epoch = watch.epoch();
@@ -52,21 +59,21 @@ double gap_of(const TwinRig& rig, const std::string& stream, const std::function
     ::usleep(1'000);
   }
   ::usleep(kAfter_us);
-  return watch.longest_ms();
+  gaps.add(watch);
 }
 
-/// The longest gap while nothing happens: what the machine itself adds.
-double calm_gap(const TwinRig& rig, const std::string& stream) {
+/// The gaps while nothing happens: what the load of the machine adds.
+void measure_calm(const TwinRig& rig, const std::string& stream, Gaps& gaps) {
   const GapWatch watch(rig.view_of(stream));
   ::usleep(300'000);
-  return watch.longest_ms();
+  gaps.add(watch);
 }
 
 void measure_signal(const RigFolder& folder, bool standby, int signal, Gaps& gaps) {
   const TwinRig rig(folder, standby ? kStandby : std::vector<std::string>{});
   if (standby) rig.settle("projector");
   const auto pid = rig.pid_of("projector");
-  gaps.ms.push_back(gap_of(rig, "projection.frames", [&] { ::kill(pid, signal); }));
+  measure(rig, "projection.frames", [&] { ::kill(pid, signal); }, gaps);
 }
 
 class Table {
@@ -80,7 +87,7 @@ class Table {
     measure_signal(folder_, false, SIGSTOP, stopped_);
   }
   void measure_changes(const TwinRig& rig) {
-    calm_.ms.push_back(calm_gap(rig, "projection.frames"));
+    measure_calm(rig, "projection.frames", calm_);
     change(rig, restart_, {.verb = Verb::restart, .service = "projector", .backend = {}});
     change(rig, swap_, {.verb = Verb::swap, .service = "projector", .backend = "file"});
     change(rig, swap_back_, {.verb = Verb::swap, .service = "projector", .backend = "twin"});
@@ -94,16 +101,18 @@ class Table {
     change(rig, restart_standby_, {.verb = Verb::restart, .service = "projector", .backend = {}});
   }
   void print() const {
-    fmt::print("{:<38} {:>5} {:>9} {:>9}\n", "gap in the stream", "runs", "p50", "max");
+    fmt::print("{:<32} {:>4} {:>17} {:>26}\n", "gaps in the stream, ms", "runs",
+               "change: p50   max", "whole time: p50   max");
     for (const auto* row : rows())
-      fmt::print("{:<38} {:>5} {:>6.1f} ms {:>6.1f} ms\n", row->name, row->ms.size(),
-                 median(row->ms), percentile(row->ms, 1));
+      fmt::print("{:<32} {:>4} {:>11.1f} {:>5.1f} {:>20.1f} {:>5.1f}\n", row->name,
+                 row->longest_ms.size(), median(row->pause_ms), percentile(row->pause_ms, 1),
+                 median(row->longest_ms), percentile(row->longest_ms, 1));
   }
   std::vector<Goal> goals() const {
     std::vector<Goal> goals;
     for (const auto* row : rows())
       if (row->limit_ms > 0)
-        goals.push_back({"gap p50, " + row->name, median(row->ms), row->limit_ms, "ms"});
+        goals.push_back({"gap p50, " + row->name, median(row->pause_ms), row->limit_ms, "ms"});
     return goals;
   }
 
@@ -111,7 +120,7 @@ class Table {
   void change(const TwinRig& rig, Gaps& gaps, const control::Request& request) {
     const bool of_camera = request.service == "camera";
     const auto* stream = of_camera ? "camera.frames" : "projection.frames";
-    gaps.ms.push_back(gap_of(rig, stream, [&] { rig.ask(request); }));
+    measure(rig, stream, [&] { rig.ask(request); }, gaps);
     rig.settle("");
   }
   std::vector<const Gaps*> rows() const {

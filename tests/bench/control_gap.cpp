@@ -25,6 +25,8 @@ double GapWatch::longest_ms() const {
   return ns_to_ms(std::max(longest_ns_.load(), newest_ns == 0 ? 0 : now_ns() - newest_ns));
 }
 
+double GapWatch::pause_ms() const { return ns_to_ms(pause_ns_.load()); }
+
 void GapWatch::look() {
   become_real_time();  // only this thread
   std::uint64_t sequence = 0;
@@ -32,8 +34,9 @@ void GapWatch::look() {
     if (view_.sequence() == sequence) continue;
     const auto seen = view_.look();
     if (seen.newest_published_ns == 0) continue;  // it was overwritten meanwhile
-    if (newest_ns_ != 0)
-      longest_ns_ = std::max(longest_ns_.load(), seen.newest_published_ns - newest_ns_);
+    const auto gap_ns = seen.newest_published_ns - newest_ns_;
+    if (newest_ns_ != 0) longest_ns_ = std::max(longest_ns_.load(), gap_ns);
+    if (newest_ns_ != 0 && seen.epoch != epoch_) pause_ns_ = std::max(pause_ns_.load(), gap_ns);
     sequence = seen.sequence;
     newest_ns_ = seen.newest_published_ns;
     epoch_ = seen.epoch;

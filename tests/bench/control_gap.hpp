@@ -19,6 +19,8 @@ class GapWatch {
 
   /// The longest gap so far. The time since the last message counts, too.
   double longest_ms() const;
+  /// The longest gap so far between the last message of a writer and the first one of the next.
+  double pause_ms() const;
   /// The epoch of the newest message.
   std::uint64_t epoch() const { return epoch_; }
 
@@ -27,7 +29,7 @@ class GapWatch {
 
   ipc::RingView view_;
   std::atomic<bool> ends_{false};
-  std::atomic<std::int64_t> longest_ns_{0}, newest_ns_{0};
+  std::atomic<std::int64_t> longest_ns_{0}, pause_ns_{0}, newest_ns_{0};
   std::atomic<std::uint64_t> epoch_{0};
   std::thread thread_;  ///< the last member: it uses the others
 };

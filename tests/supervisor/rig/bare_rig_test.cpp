@@ -132,8 +132,12 @@ TEST_F(BareRig, ASuccessorGoesOnWithTheRigAsItWasAppliedAndTheFileCountsWhenItIs
 
 TEST_F(BareRig, AServiceThatHadFailedStaysFailedUnderTheNextSupervisorAndTheRestGoesOn) {
   const auto rig = ready_rig();
+  const auto landmarks = pid_of("landmarks");
   make_daemon("landmarks", "exit 100");
   EXPECT_FALSE(restart("landmarks"));
+  EXPECT_EQ(pid_of("landmarks"), landmarks) << "the old process goes on";
+  kill(landmarks, SIGKILL);
+  ASSERT_TRUE(eventually([] { return services()["landmarks"]["state"] == "failed"; }));
   const auto camera = pid_of("camera");
   replace_supervisor(*rig);
   EXPECT_EQ(services()["landmarks"]["state"], "failed");
