@@ -12,8 +12,6 @@ namespace handcast::service {
 namespace {
 
 constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
-/// Added to the time that the process before this one has to stop.
-constexpr double kStopGrace_s = 1;
 
 bool worth_going_on(Errc code) { return code == Errc::timeout || code == Errc::bad_data; }
 
@@ -52,9 +50,7 @@ void Context::stand_by() {
     for (const auto& stream : *streams)
       if (auto segment = open_segment(stream)) mapped_.emplace(stream, std::move(*segment));
   supervision_.await_turn();
-  // The supervisor kills the worker that does not stop within stop_s.
-  writers_until_ = Deadline::in(
-      std::chrono::nanoseconds(seconds_to_ns(rig_.supervisor.stop_s + kStopGrace_s)));
+  writers_until_ = supervision_.predecessor_leaves_by(rig_.supervisor.stop_s);
   open_marks();
 }
 
