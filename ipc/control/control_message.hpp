@@ -12,10 +12,14 @@
 ///
 ///   {"verb":"status"}                                    {"ok":true,"status":{...}}
 ///   {"verb":"down"}                                      {"ok":true} when everything has stopped
-///   {"verb":"restart","service":"pose"}                  {"ok":true} when it is ready again
-///   {"verb":"swap","service":"pose","backend":"replay"}  {"ok":true} when the back end is ready
-///   {"verb":"reload"}                                    {"ok":true,"restarted":["pose"],...}
-///                                                        when all are ready again
+///   {"verb":"restart","service":"pose"}                  {"ok":true,"pause_ms":3.1} when it is
+///                                                        ready again; "pause_ms": how long its
+///                                                        stream paused, if it has one
+///   {"verb":"swap","service":"pose","backend":"replay"}  {"ok":true,"pause_ms":3.1} when the back
+///                                                        end is ready
+///   {"verb":"reload"}                                    {"ok":true,"restarted":["pose"],
+///                                                        "pauses_ms":{"pose":3.1},...} when all
+///                                                        are ready again
 ///   {"verb":"rings"}                                     {"ok":true,"rings":["camera.frames",...]}
 ///                                                        and their descriptors
 ///   {"verb":"history","seconds":10}                      {"ok":true} and the descriptor of a

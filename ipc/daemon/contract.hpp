@@ -24,6 +24,8 @@
 ///          HANDCAST_STANDBY_FD=8
 ///              Set for a spare. It prepares everything that a second process may have, then waits
 ///              here for the byte '1', its turn. If the other end is closed, it ends with exit 0.
+///              In its turn, the process that it replaces may be alive and still stopping: it waits
+///              for what that one holds, e.g. the writer lock of a ring.
 ///          HANDCAST_RIG=handcast-1000//twin
 ///              The address of its rig (ipc/control/rig_address.hpp). A daemon does not use it: by
 ///              it the daemons of a rig are found among all processes.
@@ -35,13 +37,15 @@
 ///
 ///   life   A daemon publishes a message in the ring marks.NAME at least every kBeatEvery_ns: stage
 ///          marks, or an empty one. The supervisor replaces a daemon that has been silent for
-///          supervisor.silent_s.
+///          supervisor.silent_s; earlier if all its threads are stopped or asleep meanwhile
+///          (supervisor/life/next.hpp).
 ///
 ///   exit   See ipc/base/exit_code.hpp. 0 (stopped on request, or its work is done) and 100 (a
 ///          person must change something) are final. After all other codes, and after a signal, the
 ///          daemon is restarted.
 ///
-///   SIGTERM, SIGINT   Stop.
+///   SIGTERM, SIGINT   Stop: first leave the rings that it writes, because another process may be
+///                     waiting for them, then end.
 namespace handcast::daemon {
 
 /// The names of the environment variables.

@@ -20,6 +20,8 @@
 namespace handcast::daemon {
 namespace {
 
+/// Added to the time that a process has to stop.
+constexpr double kStopGrace_s = 1;
 constexpr timespec kPreparedEvery{.tv_sec = 0, .tv_nsec = kPreparedEvery_ns};
 
 /// SIGTERM and SIGINT wait while the object lives.
@@ -91,6 +93,12 @@ void Supervision::await_turn() {
   char word = 0;
   if (::read(turn_.get(), &word, 1) != 1) std::_Exit(kExitDone);
   turn_.reset();
+  turn_ns_ = now_ns();
+}
+
+Deadline Supervision::predecessor_leaves_by(double stop_s) const {
+  return turn_ns_ ? Deadline::at_ns(*turn_ns_ + seconds_to_ns(stop_s + kStopGrace_s))
+                  : Deadline::now();
 }
 
 void Supervision::tell_ready() {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/daemon/handover.hpp"
@@ -32,6 +34,10 @@ class Supervision {
   /// Waits for the turn of a spare, and says meanwhile that it is prepared. Returns at once if this
   /// is no spare. Ends the process with exit 0 on SIGTERM or SIGINT, and if the supervisor is gone.
   void await_turn();
+  /// Until when to wait for what the process that this one replaces still holds: a writer lock, a
+  /// port. The supervisor kills a process that does not stop within `stop_s`. In the past if this
+  /// process was no spare.
+  Deadline predecessor_leaves_by(double stop_s) const;
   /// Tells the supervisor that the daemon works, once.
   void tell_ready();
 
@@ -46,8 +52,9 @@ class Supervision {
   std::string name_;
   Rings rings_;
   std::int64_t epoch_ns_ = 0;
-  UniqueFd ready_;  ///< closed when the supervisor has been told
-  UniqueFd turn_;   ///< of a spare whose turn has not come
+  UniqueFd ready_;                       ///< closed when the supervisor has been told
+  UniqueFd turn_;                        ///< of a spare whose turn has not come
+  std::optional<std::int64_t> turn_ns_;  ///< when the turn of a spare came
   std::int64_t last_beat_ns_ = 0;
 };
 

@@ -57,6 +57,7 @@ RingSnapshot RingView::look() const {
   ring.sequence = sequence();
   ring.published = relaxed(writer_tally(segment_).published);
   ring.dropped = relaxed(writer_tally(segment_).dropped);
+  ring.pause_ns = relaxed(writer_tally(segment_).pause_ns);
   ring.newest_origin_ns = newest.header.origin_ns;
   ring.newest_published_ns = newest.header.published_ns;
   for (int row = 0; row < words.rows(); ++row)

@@ -39,6 +39,7 @@ struct RingSnapshot {
   /// The counters of the writer: see WriterTally.
   /// @{
   std::uint64_t published = 0, dropped = 0;
+  std::int64_t pause_ns = 0;
   /// @}
   /// The time stamps in the header of the newest message; 0: none.
   /// @{

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -20,10 +21,30 @@ namespace {
 /// long to repeat for every message while readers hold all slots.
 constexpr std::int64_t kBetweenSweeps_ns = 100'000'000;
 
+/// The time between two attempts to take the writer lock.
+constexpr timespec kBetweenAttempts{.tv_sec = 0, .tv_nsec = 100'000};
+
+/// Sleeps between two attempts. Returns false, and sets errno to EINTR, if a signal arrives.
+bool doze() {
+  const int error = ::clock_nanosleep(CLOCK_MONOTONIC, 0, &kBetweenAttempts, nullptr);
+  if (error != 0) errno = error;
+  return error == 0;
+}
+
+/// When the newest message was published; 0 if there is none.
+std::int64_t newest_published_ns(const Segment& segment) {
+  const auto words = control_words_of(segment);
+  const auto head = RealAtomics::load(words.head(), std::memory_order_acquire);
+  if (sequence_of(head) == 0 || slot_of_head(head) >= words.slots()) return 0;
+  const auto* header = reinterpret_cast<const msg::Header*>(segment.slot_at(slot_of_head(head)));
+  return __atomic_load_n(&header->published_ns, __ATOMIC_RELAXED);
+}
+
 /// Takes the writer lock. An OFD lock belongs to an open file description, and an inherited
 /// descriptor shares its description with other processes, so the file is opened again. The kernel
-/// releases the lock when the process is gone, however it ended.
-Result<UniqueFd> lock_for_writing(const Segment& segment) {
+/// releases the lock when the process is gone, however it ended. Waits for the lock until the
+/// deadline, or until a signal arrives.
+Result<UniqueFd> lock_for_writing(const Segment& segment, Deadline until) {
   UniqueFd file(::open(fmt::format("/proc/self/fd/{}", segment.fd()).c_str(), O_RDWR | O_CLOEXEC));
   if (!file)
     return fail(Errc::unavailable, fmt::format("ring '{}': it cannot be opened for writing: {}",
@@ -32,8 +53,12 @@ Result<UniqueFd> lock_for_writing(const Segment& segment) {
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
   lock.l_len = 1;
-  if (::fcntl(file.get(), F_OFD_SETLK, &lock) == 0) return file;
-  if (errno == EAGAIN || errno == EACCES)
+  const auto is_locked = [&] { return ::fcntl(file.get(), F_OFD_SETLK, &lock) == 0; };
+  const auto is_busy = [] { return errno == EAGAIN || errno == EACCES; };
+  bool locked = is_locked();
+  while (!locked && is_busy() && !until.passed() && doze()) locked = is_locked();
+  if (locked) return file;
+  if (is_busy() || errno == EINTR)
     return fail(Errc::unavailable,
                 fmt::format("ring '{}': another writer is attached", segment.stream()));
   return fail(Errc::unavailable, fmt::format("ring '{}': the writer lock cannot be taken: {}",
@@ -57,14 +82,16 @@ RingWriter::RingWriter(Segment segment, UniqueFd lock)
       published_before_(tally_.published.load(std::memory_order_relaxed)),
       dropped_before_(tally_.dropped.load(std::memory_order_relaxed)) {
   core_.attach();
+  last_before_ns_ = newest_published_ns(segment_);
 }
 
-Result<std::unique_ptr<RingWriter>> RingWriter::attach(Segment segment, const MessageShape& shape) {
+Result<std::unique_ptr<RingWriter>> RingWriter::attach(Segment segment, const MessageShape& shape,
+                                                       Deadline until) {
   if (auto fits = segment.require(shape.layout, shape.type_hash, shape.bytes); !fits)
     return tl::make_unexpected(fits.error());
   if (auto restricted = segment.restrict_to(Access::write); !restricted)
     return tl::make_unexpected(restricted.error());
-  auto lock = lock_for_writing(segment);
+  auto lock = lock_for_writing(segment, until);
   if (!lock) return tl::make_unexpected(lock.error());
   return std::unique_ptr<RingWriter>(new RingWriter(std::move(segment), std::move(*lock)));
 }
@@ -86,7 +113,11 @@ int RingWriter::loan_after_sweep() {
 }
 
 void RingWriter::publish(int slot) {
-  stamp(bytes_of(slot), now_ns());
+  const auto time_ns = now_ns();
+  stamp(bytes_of(slot), time_ns);
+  if (published_ == 0)
+    tally_.pause_ns.store(last_before_ns_ == 0 ? 0 : time_ns - last_before_ns_,
+                          std::memory_order_relaxed);
   core_.publish(slot);
   tally_.published.store(published_before_ + ++published_, std::memory_order_relaxed);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
 #include "ipc/ring/message.hpp"
 #include "ipc/ring/protocol.hpp"
@@ -18,7 +19,8 @@ namespace handcast::ipc {
 class RingWriter {
  public:
   /// See Writer<T>::attach().
-  static Result<std::unique_ptr<RingWriter>> attach(Segment segment, const MessageShape& shape);
+  static Result<std::unique_ptr<RingWriter>> attach(Segment segment, const MessageShape& shape,
+                                                    Deadline until);
 
   /// A slot to write to; kNoSlot, and counted as dropped, if none is free even after the rows of
   /// dead readers were freed.
@@ -56,6 +58,7 @@ class RingWriter {
   WriterTally& tally_;
   std::uint64_t published_ = 0, dropped_ = 0;                ///< by this writer
   std::uint64_t published_before_ = 0, dropped_before_ = 0;  ///< by its predecessors
+  std::int64_t last_before_ns_ = 0;  ///< when the last of them published last; 0: never
   std::int64_t next_sweep_ns_ = 0;
 };
 

@@ -15,6 +15,9 @@ namespace handcast::ipc {
 struct alignas(kLineBytes) WriterTally {
   std::atomic<std::uint64_t> published{0};  ///< messages published
   std::atomic<std::uint64_t> dropped{0};    ///< messages dropped for lack of a free slot
+  /// Time between the last message of the previous writer and the first one of this writer; 0 if
+  /// there was none before.
+  std::atomic<std::int64_t> pause_ns{0};
 };
 
 /// The counters of the owner of a row; they start at zero with each owner.

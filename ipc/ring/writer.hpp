@@ -71,10 +71,10 @@ class Writer {
  public:
   /// Takes the segment and the writer lock of the ring, which the kernel releases when the process
   /// ends, and continues after the last message of the previous writer. Errors: bad_data (the ring
-  /// carries another type, or its slots are too small), unavailable (another writer is attached, or
-  /// the memory is read-only).
-  static Result<Writer> attach(Segment segment) {
-    auto ring = RingWriter::attach(std::move(segment), shape_of<T>());
+  /// carries another type, or its slots are too small), unavailable (another writer is attached and
+  /// does not leave until the deadline or the next signal, or the memory is read-only).
+  static Result<Writer> attach(Segment segment, Deadline until = Deadline::now()) {
+    auto ring = RingWriter::attach(std::move(segment), shape_of<T>(), until);
     if (!ring) return tl::make_unexpected(std::move(ring.error()));
     return Writer(std::move(*ring));
   }

@@ -33,12 +33,12 @@ static void run_projector(service::Context& context) {
     context.stand_by();
   const auto projector = must(projector::open_projector(rig));
   context.stand_by();
-  auto projections = must(context.writer<msg::Projection>("projection.frames"));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")));
   projector::Pacer pacer(rig.projector.rate_hz);
   projector::Horizon horizon(rig.projector);
+  auto projections = must(context.writer<msg::Projection>("projection.frames"));
 
   context.ready();
   const auto running = [&] { return context.running(); };

@@ -50,6 +50,7 @@ void Context::stand_by() {
     for (const auto& stream : *streams)
       if (auto segment = open_segment(stream)) mapped_.emplace(stream, std::move(*segment));
   supervision_.await_turn();
+  writers_until_ = supervision_.predecessor_leaves_by(rig_.supervisor.stop_s);
   open_marks();
 }
 
@@ -76,8 +77,12 @@ void Context::ready() {
 }
 
 bool Context::running() {
+  if (daemon::stop_requested()) {
+    marks_.reset();  // the process that replaces this one waits for it
+    return false;
+  }
   if (const auto now = now_ns(); supervision_.beat_is_due(now)) mark({.origin_ns = now}, {});
-  return !daemon::stop_requested();
+  return true;
 }
 
 void Context::tolerate(const Error& error) {

@@ -45,14 +45,15 @@ class Context {
   /// The time of the rig's start, the same for every daemon of the rig: time zero of the twin.
   std::int64_t epoch_ns() const { return supervision_.epoch_ns(); }
 
-  /// The writer of a ring. A spare waits for its turn first: see stand_by(). Errors: bad_config
+  /// The writer of a ring. A spare waits for its turn first (see stand_by()), and then until the
+  /// worker that it replaces has left the ring. Errors: bad_config
   /// (the description does not name the ring, or there is none), those of ipc::Writer::attach().
   template <class T>
   Result<ipc::Writer<T>> writer(std::string_view stream) {
     stand_by();
     auto segment = take_segment(stream, description_.publishes);
     if (!segment) return tl::make_unexpected(segment.error());
-    return ipc::Writer<T>::attach(std::move(*segment));
+    return ipc::Writer<T>::attach(std::move(*segment), writers_until_);
   }
   /// A reader of a ring. `wait`: how it waits for messages; empty: as set in [NAME.process].
   /// Errors: see writer().
@@ -74,7 +75,8 @@ class Context {
   /// that can fail.
   void ready();
   /// True until SIGTERM or SIGINT arrives. Publishes a heartbeat if one is due: call it at least
-  /// every daemon::kBeatEvery_ns.
+  /// every daemon::kBeatEvery_ns. Afterwards the daemon should first destroy its writers: the
+  /// process that replaces it may be waiting for them.
   bool running();
   /// Handles an error of one turn of the main loop. Timeouts and bad data are counted and logged at
   /// most once per second; all other errors end the process, and the supervisor reacts.
@@ -99,6 +101,7 @@ class Context {
   calib::Calibration calibration_;
   daemon::Supervision supervision_;
   ipc::Wait wait_ = ipc::Wait::futex;
+  Deadline writers_until_ = Deadline::now();  ///< how long a writer waits for the one before it
   std::map<std::string, ipc::Segment, std::less<>> mapped_;  ///< prepared by stand_by()
   std::unique_ptr<ipc::Writer<msg::StageMarks>> marks_;
   std::int64_t last_complaint_ns_ = 0;

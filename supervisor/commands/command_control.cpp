@@ -2,6 +2,8 @@
 // The verbs that send a request to a running rig.
 #include <fmt/format.h>
 
+#include <map>
+
 #include "config/renamed_settings.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/control/control_client.hpp"
@@ -28,8 +30,18 @@ Outcome send(const std::string& rig_name, const control::Request& request) {
   return {kExitDone, std::move(*answer)};
 }
 
+/// The pauses of streams in an answer: "; paused for: camera 2 ms, landmarks 8 ms". "" if there are
+/// none.
+std::string print_pauses(const nlohmann::json& answer) {
+  std::vector<std::string> parts;
+  const auto pauses_ms = answer.value("pauses_ms", std::map<std::string, double>());
+  for (const auto& [name, pause_ms] : pauses_ms)
+    parts.push_back(fmt::format("{} {:.0f} ms", name, pause_ms));
+  return parts.empty() ? "" : "; paused for: " + join(parts, ", ");
+}
+
 /// The answer to a reload as text: "reloaded: camera, landmarks restarted; pose, projector
-/// untouched".
+/// untouched; paused for: camera 2 ms, landmarks 8 ms".
 std::string print_reload(const nlohmann::json& answer) {
   std::vector<std::string> parts;
   for (const auto* what : {"restarted", "started", "stopped", "untouched"})
@@ -37,8 +49,9 @@ std::string print_reload(const nlohmann::json& answer) {
       parts.push_back(join(names, ", ") + " " + what);
   const bool acted = !parts.empty() && (parts.size() > 1 ||
                                         answer.value("untouched", nlohmann::json::array()).empty());
-  return acted || answer.value("changed", false) ? "reloaded: " + join(parts, "; ")
-                                                 : "nothing changed";
+  return acted || answer.value("changed", false)
+             ? "reloaded: " + join(parts, "; ") + print_pauses(answer)
+             : "nothing changed";
 }
 
 /// The present name of the back end. Reports the use of an old name.
@@ -61,9 +74,12 @@ int ask_with_words(const char* verb, const Arguments& arguments, std::size_t wor
                     fmt::format("{0}: {1}; `handcast help {0}`", verb, options.error().what));
   if (words > 0) request.service = options->words[0];
   if (words > 1) request.backend = options->words[1];
-  const int exit_code = send(options->value("--rig"), request).exit_code;
-  if (exit_code == kExitDone)
-    fmt::print("{}\n", fmt::format(fmt::runtime(done), request.service, current_backend(request)));
+  const auto [exit_code, answer] = send(options->value("--rig"), request);
+  if (exit_code != kExitDone) return exit_code;
+  fmt::print("{}", fmt::format(fmt::runtime(done), request.service, current_backend(request)));
+  if (answer.contains("pause_ms"))
+    fmt::print(" (the stream paused for {:.0f} ms)", answer["pause_ms"].get<double>());
+  fmt::print("\n");
   return exit_code;
 }
 

@@ -29,12 +29,12 @@ constexpr std::array kVerbs{
     VerbEntry{"status", "status [--json] [--rig NAME]", "Shows a rig's services, rates and times.",
               run_status, Group::look,
               "  --json       the same as JSON\n  --rig NAME   which rig, if several are up\n"},
-    VerbEntry{"restart", "restart SERVICE [--rig NAME]", "Starts one service of a rig again.",
-              run_restart, Group::change, kRig},
-    VerbEntry{"swap", "swap SERVICE BACKEND [--rig NAME]",
-              "Restarts one service with another back end.", run_swap, Group::change, kRig},
+    VerbEntry{"restart", "restart SERVICE [--rig NAME]",
+              "Replaces one service of a rig by a new process.", run_restart, Group::change, kRig},
+    VerbEntry{"swap", "swap SERVICE BACKEND [--rig NAME]", "Gives one service another back end.",
+              run_swap, Group::change, kRig},
     VerbEntry{"reload", "reload [--rig NAME]",
-              "Applies a changed rig file: restarts only the services whose settings changed.",
+              "Applies a changed rig file: replaces only the services whose settings changed.",
               run_reload, Group::change, kRig},
     VerbEntry{"top", "top [--rig NAME] [--once] [--json]",
               "Watches rings and services in the terminal.", run_top, Group::look,
@@ -97,9 +97,9 @@ std::filesystem::path program_folder() {
 }
 
 int complain(int exit_code, std::string_view sentence) {
-  fmt::print(stderr, "{}",
-             log::for_journal(log::Level::error,
-                              fmt::format("handcast: {}\n", printable(sentence))));
+  fmt::print(
+      stderr, "{}",
+      log::for_journal(log::Level::error, fmt::format("handcast: {}\n", printable(sentence))));
   return exit_code;
 }
 

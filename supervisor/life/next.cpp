@@ -18,7 +18,35 @@ std::optional<std::int64_t> ready_since(const Worker& worker) {
   return std::nullopt;
 }
 
+std::int64_t silence_of(const worker::Ready& ready, std::optional<std::int64_t> last_sign_ns,
+                        std::int64_t now_ns) {
+  return now_ns - std::max(last_sign_ns.value_or(0), ready.quiet_from_ns);
+}
+
+/// How long a worker that does this may be silent.
+std::int64_t longest_silence_ns(Activity activity, const Rules& rules) {
+  const auto part_ns = [&](double part) {
+    const auto ns = static_cast<std::int64_t>(part * static_cast<double>(rules.silent_ns));
+    return std::min(rules.silent_ns, std::max(ns, kLeastSilence_ns));
+  };
+  if (activity == Activity::stopped) return part_ns(kStoppedPart);
+  if (activity == Activity::asleep) return part_ns(kAsleepPart);
+  return rules.silent_ns;
+}
+
+const char* doing(Activity activity) {
+  if (activity == Activity::stopped) return " and is stopped";
+  return activity == Activity::asleep ? " and sleeps" : "";
+}
+
 }  // namespace
+
+bool is_suspicious(const ServiceState& state, std::optional<std::int64_t> last_sign_ns,
+                   std::int64_t now_ns, const Rules& rules) {
+  const auto* ready = std::get_if<worker::Ready>(&state.worker);
+  return ready && silence_of(*ready, last_sign_ns, now_ns) >=
+                      std::min(rules.silent_ns / 8, kLeastSilence_ns);
+}
 
 Step next(ServiceState state, const Event& event, std::int64_t now_ns, const Rules& rules) {
   Transition transition(std::move(state), now_ns, rules);
@@ -53,15 +81,19 @@ void Transition::operator()(const event::Adopted& event) {
 }
 
 void Transition::start(bool on_trial) {
-  if (past_.first_start_ns)
-    ++past_.restarts;
-  else
-    past_.first_start_ns = now_;
-  const auto origin = spare_is_prepared() ? Origin::promoted : Origin::spawned;
+  if (standby_is_prepared()) return promote(on_trial);
+  begin(Origin::spawned, on_trial);
+  act(action::Spawn{});
+}
+
+void Transition::begin(Origin origin, bool on_trial) {
+  if (!past_.first_start_ns) past_.first_start_ns = now_;
   worker_ = worker::Starting{.life = {now_, origin, on_trial}, .late_ns = now_ + rules_.ready_ns};
-  if (origin == Origin::spawned) return act(action::Spawn{});
-  spare_ = spare::None{};
-  act(action::Promote{});
+}
+
+void Transition::restart_after_death() {
+  ++past_.restarts;
+  start();
 }
 
 // Readiness.
@@ -136,6 +168,8 @@ void Transition::operator()(const event::Ended& event) {
   if (!stopping) return died(event.exit, true);
   act(action::ReadLastWords{});
   if (stopping->then == Then::stay) return became_stopped();
+  if (stopping->then == Then::hand_over && replacement_ && spare_is_prepared())
+    return promote(replacement_->on_trial);
   start(stopping->then == Then::start_on_trial);
 }
 
@@ -158,9 +192,9 @@ void Transition::died(Exit exit, bool may_start_at_once) {
   if (decision.action == What::retire) return give_up(exit, worker::Stopped{}, Notice::stopped);
 
   const bool is_quick =
-      decision.action == What::restart && (decision.wait_ns == 0 || spare_is_prepared());
+      decision.action == What::restart && (decision.wait_ns == 0 || standby_is_prepared());
   if (is_quick && may_start_at_once)
-    start();
+    restart_after_death();
   else
     worker_ = worker::Waiting{.due_ns = now_ + decision.wait_ns,
                               .degraded = decision.action == What::degrade};
@@ -168,9 +202,10 @@ void Transition::died(Exit exit, bool may_start_at_once) {
   warn_of_death(exit, decision);
 }
 
+/// A replacement, which may have other settings, still takes over.
 void Transition::give_up(Exit exit, const Worker& end, Notice notice) {
   worker_ = end;
-  dismiss_spare();
+  if (!replacement_) dismiss_spare();
   act(action::ReadLastWords{});
   act(action::Warn{
       fmt::format("{} ended ({}) and is not started again", rules_.name, exit.describe())});
@@ -196,7 +231,7 @@ void Transition::operator()(const event::Tick& event) {
 }
 
 void Transition::tick(const worker::Waiting& waiting, const event::Tick&) {
-  if (now_ >= waiting.due_ns) start();
+  if (now_ >= waiting.due_ns) restart_after_death();
 }
 
 void Transition::tick(const worker::Starting& starting, const event::Tick&) {
@@ -216,12 +251,20 @@ void Transition::tick(const worker::AwaitingMessage& awaiting, const event::Tick
                           rules_.name, ns_to_seconds(rules_.ready_ns)));
 }
 
-/// The watchdog: kills a worker that has been silent for too long.
-void Transition::tick(const worker::Ready& ready, const event::Tick& event) {
-  const auto silence_ns = now_ - std::max(event.last_sign_ns.value_or(0), ready.quiet_from_ns);
-  if (silence_ns < rules_.silent_ns) return;
-  kill_worker(fmt::format("{} has given no sign of life for {:.1f} s; killed", rules_.name,
-                          ns_to_seconds(silence_ns)));
+/// The watchdog: see next.hpp.
+void Transition::tick(worker::Ready ready, const event::Tick& event) {
+  const bool inert = event.activity == Activity::stopped || event.activity == Activity::asleep;
+  ready.inert_from_ns = inert ? std::optional(ready.inert_from_ns.value_or(now_)) : std::nullopt;
+  worker_ = ready;
+  const auto silence_ns = silence_of(ready, event.last_sign_ns, now_);
+  const auto limit_ns = longest_silence_ns(event.activity, rules_);
+  if (silence_ns < limit_ns) return;
+  const auto inert_ns = static_cast<double>(limit_ns) * kInertPart;
+  const bool is_hung =
+      ready.inert_from_ns && static_cast<double>(now_ - *ready.inert_from_ns) >= inert_ns;
+  if (silence_ns < rules_.silent_ns && !is_hung) return;
+  kill_worker(fmt::format("{} has given no sign of life for {:.1f} s{}; killed", rules_.name,
+                          ns_to_seconds(silence_ns), doing(event.activity)));
 }
 
 void Transition::tick(const worker::Stopping& stopping, const event::Tick&) {
@@ -244,13 +287,14 @@ void Transition::operator()(const event::StoodStill& event) {
   else if (auto* awaiting = std::get_if<worker::AwaitingMessage>(&worker_))
     awaiting->looked_ns += event.span_ns;
   else if (auto* ready = std::get_if<worker::Ready>(&worker_))
-    ready->quiet_from_ns = now_;
+    ready->quiet_from_ns = now_, ready->inert_from_ns.reset();
   else if (auto* stopping = std::get_if<worker::Stopping>(&worker_); stopping && stopping->kill_ns)
     *stopping->kill_ns += event.span_ns;
   shift_spare(event.span_ns);
 }
 
 void Transition::operator()(const event::SettingsChanged&) {
+  if (replacement_) return;
   if (!rules_.wants_standby) return dismiss_spare();
   if (const auto* ready = std::get_if<worker::Ready>(&worker_)) want_spare(ready->life);
 }

@@ -21,9 +21,9 @@ std::optional<std::int64_t> prepared_since(const Spare& spare) {
 
 }  // namespace
 
-/// Schedules a spare for a worker with this life. Does not change an existing spare.
+/// Schedules a standby for a worker with this life. Does not change an existing spare.
 void Transition::want_spare(const Life& life) {
-  if (!rules_.wants_standby) return;
+  if (!rules_.wants_standby || replacement_) return;
   const auto from_ns = now_ + (life.origin == Origin::promoted ? kSpareAfterPromotion_ns : 0);
   if (auto* leaving = std::get_if<spare::Leaving>(&spare_))
     leaving->start_ns = from_ns;
@@ -33,6 +33,7 @@ void Transition::want_spare(const Life& life) {
 
 void Transition::dismiss_spare() {
   past_.spare_deaths = {};
+  replacement_.reset();
   if (!is_running(spare_)) {
     spare_ = spare::None{};
     return;
@@ -52,16 +53,70 @@ void Transition::operator()(const event::SpareSpoke&) {
     prepared->sign_ns = now_;
 }
 
+// Replacement.
+
+void Transition::operator()(const event::Prepare& event) {
+  const bool has_standby = !replacement_ && (std::holds_alternative<spare::Preparing>(spare_) ||
+                                             std::holds_alternative<spare::Prepared>(spare_));
+  if (!has_standby || !event.may_use_spare) dismiss_spare();
+  replacement_ = event.how;
+  if (auto* leaving = std::get_if<spare::Leaving>(&spare_))
+    leaving->start_ns = now_;
+  else if (!is_running(spare_))
+    spare_ = spare::Due{now_};
+}
+
+/// The worker and its replacement change places, so that the stream goes on as soon as the worker
+/// has left it.
+void Transition::operator()(const event::HandOver&) {
+  if (!replacement_ || !spare_is_prepared()) return;
+  const auto [on_trial, alone] = *replacement_;
+  if (!life_of(worker_)) return promote(on_trial);
+  if (alone) return ask_to_stop(worker::Stopping::Then::hand_over);
+  begin(Origin::promoted, on_trial);
+  spare_ = spare::Leaving{.kill_ns = now_ + rules_.stop_ns};
+  replacement_.reset();
+  act(action::HandOver{});
+}
+
+void Transition::operator()(const event::Abandon&) {
+  if (!replacement_) return;
+  dismiss_spare();
+  if (const auto* ready = std::get_if<worker::Ready>(&worker_)) want_spare(ready->life);
+}
+
+void Transition::promote(bool on_trial) {
+  begin(Origin::promoted, on_trial);
+  spare_ = spare::None{};
+  replacement_.reset();
+  act(action::Promote{});
+}
+
+void Transition::lose_replacement(std::string why, bool by_itself) {
+  replacement_.reset();
+  spare_ = spare::None{};
+  act(action::Warn{fmt::format("the replacement of {} failed ({})", rules_.name, why)});
+  act(action::ReplacementFailed{std::move(why), by_itself});
+  if (const auto* ready = std::get_if<worker::Ready>(&worker_)) want_spare(ready->life);
+}
+
+// End.
+
 void Transition::operator()(const event::SpareEnded& event) {
   if (const auto* leaving = std::get_if<spare::Leaving>(&spare_)) {
     spare_ = leaving->start_ns ? Spare(spare::Due{*leaving->start_ns}) : Spare(spare::None{});
     if (std::holds_alternative<worker::AwaitingSpare>(worker_)) became_stopped();
     return;
   }
-  if (is_running(spare_)) replace_spare({now_, prepared_since(spare_), event.exit});
+  if (!is_running(spare_)) return;
+  if (const auto* killed = std::get_if<spare::Killed>(&spare_); killed && replacement_)
+    return lose_replacement(killed->why, false);
+  if (replacement_) return lose_replacement(event.exit.describe(), true);
+  replace_spare({now_, prepared_since(spare_), event.exit});
 }
 
 void Transition::operator()(const event::SpareNotStarted& event) {
+  if (replacement_) return lose_replacement(event.why, false);
   act(action::Warn{
       fmt::format("the spare of {} could not be started: {}", rules_.name, event.why)});
   replace_spare({now_, std::nullopt, {.code = kExitRetry}});
@@ -105,7 +160,7 @@ void Transition::tick_spare() {
 }
 
 void Transition::kill_spare(const std::string& why) {
-  spare_ = spare::Killed{prepared_since(spare_)};
+  spare_ = spare::Killed{prepared_since(spare_), why};
   act(action::Warn{fmt::format("the spare of {} {}; killed", rules_.name, why)});
   act(action::KillSpare{});
 }

@@ -6,6 +6,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -43,7 +44,7 @@ Rules Service::rules() const {
           .wants_standby = spec_.process.standby};
 }
 
-void Service::handle(const Event& event) { handle(event, now_ns()); }
+void Service::handle(const Event& event) { handle(event, launch_.now()); }
 
 void Service::handle(const Event& event, std::int64_t now) {
   auto [state, actions] = next(std::move(state_), event, now, rules());
@@ -53,6 +54,7 @@ void Service::handle(const Event& event, std::int64_t now) {
   for (const auto& action : actions)
     if (auto caused = std::visit([this](const auto& each) { return carry_out(each); }, action))
       next_event = std::move(caused);
+  if (!state_.replacement) wanted_.reset();
   if (next_event) handle(*next_event);
 }
 
@@ -71,7 +73,26 @@ Service::MaybeEvent Service::carry_out(const action::Promote&) {
   epoch_before_ = stream_ ? stream_->epoch() : 0;
   watch_worker(spare_->promote());
   spare_.reset();
+  take_wanted();
   return {};
+}
+
+Service::MaybeEvent Service::carry_out(const action::HandOver&) {
+  worker_->signal(SIGTERM);
+  auto next = spare_->promote();
+  epoch_before_ = stream_ ? stream_->epoch() : 0;
+  auto before = worker_->release();
+  watch_worker(std::move(next));
+  watch_spare(std::move(before), log_);
+  take_wanted();
+  return {};
+}
+
+void Service::take_wanted() {
+  if (!wanted_) return;
+  spec_ = std::move(wanted_->spec);
+  backend_override_ = std::move(wanted_->swapped);
+  wanted_.reset();
 }
 
 Service::MaybeEvent Service::carry_out(const action::AskToStop&) {
@@ -85,12 +106,10 @@ Service::MaybeEvent Service::carry_out(const action::Kill&) {
 }
 
 Service::MaybeEvent Service::carry_out(const action::SpawnSpare&) {
+  spare_log_ = {};
   auto child = spawn(true);
   if (!child) return event::SpareNotStarted{child.error().what};
-  spare_ = std::make_unique<WatchedChild>(
-      std::move(*child), spare_log_, loop_,
-      WatchedChild::Listener{.on_words = [this](daemon::Words) { handle(event::SpareSpoke{}); },
-                             .on_end = [this](Exit exit) { spare_ended(exit); }});
+  watch_spare(std::move(*child), spare_log_);
   return {};
 }
 
@@ -101,6 +120,12 @@ Service::MaybeEvent Service::carry_out(const action::AskSpareToStop&) {
 
 Service::MaybeEvent Service::carry_out(const action::KillSpare&) {
   spare_->signal(SIGKILL);
+  return {};
+}
+
+Service::MaybeEvent Service::carry_out(const action::ReplacementFailed& failed) {
+  const auto last = failed.by_itself ? spare_log_.last_sentence() : "";
+  replacement_problem_ = last.empty() ? failed.why : last;
   return {};
 }
 
@@ -120,16 +145,17 @@ Service::MaybeEvent Service::carry_out(const action::Tell& tell) {
 }
 
 Result<Child> Service::spawn(bool spare) const {
-  std::vector<std::string> arguments{"--config", fmt::format("/proc/self/fd/{}", launch_.rig_fd)};
-  if (!backend_override_.empty())
-    arguments.insert(arguments.end(), {"--set", spec_.name + ".backend=" + backend_override_});
+  const auto with = spare && wanted_ ? *wanted_ : settings();
+  std::vector<std::string> arguments{"--config", fmt::format("/proc/self/fd/{}", with.rig_fd)};
+  if (!with.swapped.empty())
+    arguments.insert(arguments.end(), {"--set", spec_.name + ".backend=" + with.swapped});
   return Child::spawn({.program = launch_.program_folder / ("handcast-" + spec_.name),
                        .arguments = std::move(arguments),
                        .rings = launch_.rings,
                        .epoch_ns = launch_.epoch_ns,
                        .rig = launch_.rig,
                        .state_fd = launch_.state_fd,
-                       .rig_fd = launch_.rig_fd,
+                       .rig_fd = with.rig_fd,
                        .spare = spare});
 }
 
@@ -141,6 +167,13 @@ void Service::watch_worker(Child child) {
       std::move(child), log_, loop_,
       WatchedChild::Listener{.on_words = on_words,
                              .on_end = [this](Exit exit) { worker_ended(exit); }});
+}
+
+void Service::watch_spare(Child child, LogTail& log) {
+  spare_ = std::make_unique<WatchedChild>(
+      std::move(child), log, loop_,
+      WatchedChild::Listener{.on_words = [this](daemon::Words) { handle(event::SpareSpoke{}); },
+                             .on_end = [this](Exit exit) { spare_ended(exit); }});
 }
 
 void Service::worker_ended(Exit exit) {
@@ -169,7 +202,28 @@ void Service::adopt(AdoptedProcess process) {
   handle(event::Adopted{started_ns});
 }
 
+void Service::prepare(Settings wanted, Replacement how, bool may_use_standby) {
+  replacement_problem_.clear();
+  wanted_ = std::move(wanted);
+  handle(event::Prepare{how, may_use_standby});
+}
+
+bool Service::replacement_is_prepared() const {
+  return state_.replacement && std::holds_alternative<spare::Prepared>(state_.spare);
+}
+
+std::optional<double> Service::pause_ms() const {
+  if (!has_published()) return std::nullopt;
+  return ns_to_ms(stream_->look().pause_ns);
+}
+
+void Service::restart() {
+  replacement_problem_.clear();
+  handle(event::Restart{});
+}
+
 void Service::use_backend(std::string backend, bool on_trial) {
+  replacement_problem_.clear();
   spec_.backend = backend_override_ = std::move(backend);
   handle(event::Restart{on_trial});
 }
@@ -183,10 +237,20 @@ void Service::update(ServiceSpec spec) {
 
 void Service::tick(std::int64_t now, const Look& look) {
   if (worker_) worker_->check_end();
+  if (spare_) spare_->check_end();
   handle(event::Tick{.published = has_published(),
                      .needs_are_ready = look.needs_are_ready,
-                     .last_sign_ns = look.last_sign_ns},
+                     .last_sign_ns = look.last_sign_ns,
+                     .activity = observe(now, look)},
          now);
+}
+
+/// What a silent worker did since the last tick.
+Activity Service::observe(std::int64_t now, const Look& look) {
+  const auto before = std::exchange(look_, {});
+  if (!worker_ || !is_suspicious(state_, look.last_sign_ns, now, rules())) return Activity::unknown;
+  look_ = launch_.look_at(worker_->pid());
+  return activity_between(before, look_);
 }
 
 SavedService Service::saved() const {

@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/ring/ring_view.hpp"
 #include "supervisor/base/event_loop.hpp"
 #include "supervisor/life/log_tail.hpp"
 #include "supervisor/life/next.hpp"
+#include "supervisor/life/process_activity.hpp"
 #include "supervisor/life/saved_service.hpp"
 #include "supervisor/life/watched_child.hpp"
 #include "supervisor/spec/service_spec.hpp"
@@ -31,6 +33,18 @@ struct Launch {
   double ready_s = 10, stop_s = 3, silent_s = 2;
   /// @}
   ExitReports* reports = nullptr;  ///< the ends of processes of an earlier supervisor
+  /// The clock and the view of processes; a test has its own.
+  /// @{
+  std::function<std::int64_t()> now = now_ns;
+  std::function<std::optional<ProcessLook>(pid_t)> look_at = look_at_process;
+  /// @}
+};
+
+/// The settings of a service's process.
+struct Settings {
+  ServiceSpec spec;       ///< the specification
+  std::string swapped{};  ///< the back end set by `handcast swap`; "": that of the rig file
+  int rig_fd = -1;        ///< the rig file, --config of the daemon
 };
 
 /// One service: its worker and its spare on the event loop, over all restarts. A service is ready
@@ -62,8 +76,32 @@ class Service {
   void stop() { handle(event::Stop{}); }
   /// Kills the processes that were asked to stop.
   void hurry() { handle(event::Hurry{}); }
+
+  /// Starts a replacement with these settings while the worker goes on. If `may_use_standby` is
+  /// set, a standby that exists becomes the replacement. See replacement_is_prepared() and
+  /// has_replacement().
+  void prepare(Settings wanted, Replacement how, bool may_use_standby);
+  /// Replaces the worker by its replacement, if that is prepared. Its settings become those of the
+  /// service. Notice::ready follows, or, if it fails on trial, Notice::failed.
+  void hand_over() { handle(event::HandOver{}); }
+  /// Ends the replacement; the worker goes on.
+  void abandon() { handle(event::Abandon{}); }
+  /// True from prepare() until the replacement takes over or fails.
+  bool has_replacement() const { return state_.replacement.has_value(); }
+  /// True if hand_over() would replace the worker.
+  bool replacement_is_prepared() const;
+  /// Why the last replacement failed; "" if it did not.
+  const std::string& replacement_problem() const { return replacement_problem_; }
+  /// True if the worker works: it can be replaced without a pause.
+  bool works() const { return std::holds_alternative<worker::Ready>(state_.worker); }
+  /// The settings that the service is started with.
+  Settings settings() const { return {spec_, backend_override_, launch_.rig_fd}; }
+  /// The time between the last message of the previous worker and the first one of this worker;
+  /// empty if the service publishes no stream, or this worker has not published yet.
+  std::optional<double> pause_ms() const;
+
   /// Stops the service and starts it again.
-  void restart() { handle(event::Restart{}); }
+  void restart();
   /// Restarts the service with another back end. If `on_trial` is set, it is not restarted when it
   /// dies before it is ready: Notice::failed follows.
   void use_backend(std::string backend, bool on_trial);
@@ -103,7 +141,7 @@ class Service {
   double uptime_s(std::int64_t now_ns) const;
   /// When the service was first started; empty if it never was.
   std::optional<std::int64_t> first_start_ns() const { return state_.past.first_start_ns; }
-  /// Number of restarts, those under earlier supervisors included.
+  /// Number of restarts after a death, those under earlier supervisors included.
   int restarts() const { return state_.past.restarts; }
   /// True if this or an earlier worker has been ready.
   bool was_ready() const { return state_.past.was_ready; }
@@ -126,17 +164,22 @@ class Service {
   // Each carries out an action and returns the event that it causes at once, if any.
   MaybeEvent carry_out(const action::Spawn&);
   MaybeEvent carry_out(const action::Promote&);
+  MaybeEvent carry_out(const action::HandOver&);
   MaybeEvent carry_out(const action::AskToStop&);
   MaybeEvent carry_out(const action::Kill&);
   MaybeEvent carry_out(const action::SpawnSpare&);
   MaybeEvent carry_out(const action::AskSpareToStop&);
   MaybeEvent carry_out(const action::KillSpare&);
+  MaybeEvent carry_out(const action::ReplacementFailed& failed);
   MaybeEvent carry_out(const action::ReadLastWords&);
   MaybeEvent carry_out(const action::Warn& warn);
   MaybeEvent carry_out(const action::Tell& tell);
 
   Result<Child> spawn(bool spare) const;
   void watch_worker(Child child);
+  void watch_spare(Child child, LogTail& log);
+  void take_wanted();
+  Activity observe(std::int64_t now_ns, const Look& look);
   void worker_ended(Exit exit);
   void spare_ended(Exit exit);
   bool has_published() const;
@@ -149,6 +192,9 @@ class Service {
 
   ServiceState state_;
   std::uint64_t revision_ = 0;
+  std::optional<Settings> wanted_;  ///< the settings of the replacement, if there is one
+  std::string replacement_problem_;
+  std::optional<ProcessLook> look_;  ///< the last look at a silent worker
 
   LogTail log_, spare_log_;
   std::unique_ptr<WatchedChild> worker_, spare_;

@@ -7,7 +7,8 @@
 #include <variant>
 
 #include "supervisor/base/exit.hpp"
-#include "supervisor/life/state.hpp"
+#include "supervisor/life/process_activity.hpp"
+#include "supervisor/life/service_state.hpp"
 
 namespace handcast::supervisor {
 
@@ -24,6 +25,15 @@ struct Start {};
 struct Stop {};
 /// Service::hurry().
 struct Hurry {};
+/// Service::prepare().
+struct Prepare {
+  Replacement how{};           ///< the properties of the replacement
+  bool may_use_spare = false;  ///< a standby has the wanted settings
+};
+/// Service::hand_over().
+struct HandOver {};
+/// Service::abandon().
+struct Abandon {};
 /// Service::restart() and Service::use_backend().
 struct Restart {
   bool on_trial = false;  ///< do not restart it if it dies before it is ready
@@ -74,16 +84,17 @@ struct Tick {
   bool needs_are_ready = true;  ///< the services that it needs are ready
   /// The time of the worker's last frame or heartbeat; empty if there was none.
   std::optional<std::int64_t> last_sign_ns{};
+  Activity activity = Activity::unknown;  ///< what the worker did since the last tick
 };
 
 }  // namespace event
 
 /// Any event.
-using Event =
-    std::variant<event::Hold, event::Start, event::Stop, event::Hurry, event::Restart,
-                 event::SettingsChanged, event::Inherited, event::Adopted, event::StoodStill,
-                 event::SaidReady, event::Ended, event::NotStarted, event::SpareSpoke,
-                 event::SpareEnded, event::SpareNotStarted, event::Tick>;
+using Event = std::variant<event::Hold, event::Start, event::Stop, event::Hurry, event::Prepare,
+                           event::HandOver, event::Abandon, event::Restart, event::SettingsChanged,
+                           event::Inherited, event::Adopted, event::StoodStill, event::SaidReady,
+                           event::Ended, event::NotStarted, event::SpareSpoke, event::SpareEnded,
+                           event::SpareNotStarted, event::Tick>;
 
 /// A change of a service that the rig must know. After `failed`, it is not restarted.
 enum class Notice { ready, stopped, failed };
@@ -95,6 +106,8 @@ namespace action {
 struct Spawn {};
 /// Make the spare the worker.
 struct Promote {};
+/// Send SIGTERM to the worker and make the spare the worker. The old worker becomes the spare.
+struct HandOver {};
 /// Send SIGTERM to the worker.
 struct AskToStop {};
 /// Send SIGKILL to the worker.
@@ -105,6 +118,11 @@ struct SpawnSpare {};
 struct AskSpareToStop {};
 /// Send SIGKILL to the spare.
 struct KillSpare {};
+/// Report that the replacement cannot take over.
+struct ReplacementFailed {
+  std::string why;         ///< "exit 100", or "was not prepared within 10 s"
+  bool by_itself = false;  ///< it ended by itself: its last words say more
+};
 /// Read the rest of the output of the worker that ended, so that it is printed before the message
 /// about its end.
 struct ReadLastWords {};
@@ -120,8 +138,9 @@ struct Tell {
 }  // namespace action
 
 /// Any action.
-using Action = std::variant<action::Spawn, action::Promote, action::AskToStop, action::Kill,
-                            action::SpawnSpare, action::AskSpareToStop, action::KillSpare,
-                            action::ReadLastWords, action::Warn, action::Tell>;
+using Action =
+    std::variant<action::Spawn, action::Promote, action::HandOver, action::AskToStop, action::Kill,
+                 action::SpawnSpare, action::AskSpareToStop, action::KillSpare,
+                 action::ReplacementFailed, action::ReadLastWords, action::Warn, action::Tell>;
 
 }  // namespace handcast::supervisor

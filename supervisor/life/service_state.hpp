@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "supervisor/base/exit.hpp"
@@ -52,6 +53,8 @@ struct Ready {
   Life life;                       ///< its process
   std::int64_t ready_ns = 0;       ///< when it became ready
   std::int64_t quiet_from_ns = 0;  ///< silence before this time does not count
+  /// Since when each tick found it stopped or asleep; empty: the last one did not, or did not look.
+  std::optional<std::int64_t> inert_from_ns{};
 };
 /// The process was killed because it was late or silent, and has not ended yet.
 struct Killed {
@@ -60,8 +63,8 @@ struct Killed {
 };
 /// The process was asked to stop.
 struct Stopping {
-  /// What follows: nothing, or another start.
-  enum class Then { stay, start, start_on_trial };
+  /// What follows: nothing, another start, or the promotion of the replacement.
+  enum class Then { stay, start, start_on_trial, hand_over };
   Life life;                              ///< its process
   std::optional<std::int64_t> kill_ns{};  ///< when it is killed; empty: it has been
   Then then = Then::stay;                 ///< what follows
@@ -76,8 +79,9 @@ using Worker = std::variant<worker::Stopped, worker::Failed, worker::Held, worke
                             worker::Starting, worker::AwaitingMessage, worker::Ready,
                             worker::Killed, worker::Stopping, worker::AwaitingSpare>;
 
-/// The states of the spare, a second process that has prepared itself and waits for its turn. Its
-/// deaths do not count as deaths of the service.
+/// The states of the spare, a second process that has prepared itself and waits for its turn: a
+/// standby, or a replacement. A worker that was replaced while it worked becomes the spare until it
+/// has ended. Deaths of spares do not count as deaths of the service.
 namespace spare {
 
 /// No process, and none is wanted.
@@ -98,6 +102,7 @@ struct Prepared {
 /// The process was killed because it was late or silent, and has not ended yet.
 struct Killed {
   std::optional<std::int64_t> prepared_ns{};  ///< when it became prepared; empty: it never was
+  std::string why{};                          ///< "was not prepared within 10 s"
 };
 /// The process was asked to stop.
 struct Leaving {
@@ -119,15 +124,24 @@ struct Past {
   /// @}
   std::optional<Exit> last_exit{};               ///< how the last worker ended
   std::optional<std::int64_t> first_start_ns{};  ///< when it was first started; empty: never
-  int restarts = 0;                              ///< number of restarts
+  int restarts = 0;                              ///< number of restarts after a death
   bool was_ready = false;                        ///< a worker has been ready
+};
+
+/// A spare that takes over from a worker that works: for new settings, or because a person asked
+/// for a restart.
+struct Replacement {
+  bool on_trial = false;  ///< see Life
+  /// It gets its turn only when the worker has ended, because both open the same device.
+  bool alone = false;
 };
 
 /// The state of one service. next() computes the next one (next.hpp).
 struct ServiceState {
-  Worker worker;  ///< the process that does the work
-  Spare spare;    ///< the process that can replace it
-  Past past;      ///< their history
+  Worker worker;                             ///< the process that does the work
+  Spare spare;                               ///< the process that can replace it
+  std::optional<Replacement> replacement{};  ///< set while the spare is a replacement, or is to be
+  Past past;                                 ///< their history
 };
 
 /// The worker's process; null if it has none.

@@ -14,12 +14,15 @@ class Transition {
   /// Stores the arguments of next(). `rules` must outlive the object.
   Transition(ServiceState state, std::int64_t now_ns, const Rules& rules)
       : worker_(state.worker),
-        spare_(state.spare),
+        spare_(std::move(state.spare)),
+        replacement_(state.replacement),
         past_(std::move(state.past)),
         now_(now_ns),
         rules_(rules) {}
   /// The result.
-  Step take() && { return {{worker_, spare_, std::move(past_)}, std::move(actions_)}; }
+  Step take() && {
+    return {{worker_, std::move(spare_), replacement_, std::move(past_)}, std::move(actions_)};
+  }
 
   /// Handles an event.
   /// @{
@@ -27,6 +30,9 @@ class Transition {
   void operator()(const event::Start&);
   void operator()(const event::Stop&);
   void operator()(const event::Hurry&);
+  void operator()(const event::Prepare&);
+  void operator()(const event::HandOver&);
+  void operator()(const event::Abandon&);
   void operator()(const event::Restart&);
   void operator()(const event::SettingsChanged&);
   void operator()(const event::Inherited&);
@@ -46,6 +52,8 @@ class Transition {
 
   // The worker (next.cpp).
   void start(bool on_trial = false);
+  void restart_after_death();
+  void begin(Origin origin, bool on_trial);
   void ask_to_stop(worker::Stopping::Then then);
   void became_stopped();
   void became_ready(Life life);
@@ -56,12 +64,15 @@ class Transition {
   void tick(const worker::Waiting& waiting, const event::Tick& event);
   void tick(const worker::Starting& starting, const event::Tick& event);
   void tick(const worker::AwaitingMessage& awaiting, const event::Tick& event);
-  void tick(const worker::Ready& ready, const event::Tick& event);
+  void tick(worker::Ready ready, const event::Tick& event);
   void tick(const worker::Stopping& stopping, const event::Tick& event);
   void tick(const auto& /*other*/, const event::Tick&) {}  // these states have no time limit
 
   // The spare (next_spare.cpp).
   bool spare_is_prepared() const { return std::holds_alternative<spare::Prepared>(spare_); }
+  bool standby_is_prepared() const { return spare_is_prepared() && !replacement_; }
+  void promote(bool on_trial);
+  void lose_replacement(std::string why, bool by_itself);
   void want_spare(const Life& life);
   void dismiss_spare();
   void tick_spare();
@@ -71,6 +82,7 @@ class Transition {
 
   Worker worker_;
   Spare spare_;
+  std::optional<Replacement> replacement_;
   Past past_;
   std::int64_t now_;
   const Rules& rules_;

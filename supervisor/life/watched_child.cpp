@@ -21,10 +21,14 @@ void WatchedChild::forget() {
   for (const int fd : {child_.pidfd(), child_.log_fd(), child_.ready_fd()}) loop_.forget(fd);
 }
 
-Child WatchedChild::promote() {
-  child_.give_turn();
+Child WatchedChild::release() {
   forget();
   return std::move(child_);
+}
+
+Child WatchedChild::promote() {
+  child_.give_turn();
+  return release();
 }
 
 void WatchedChild::read_log(int most_reads) {

@@ -27,7 +27,9 @@ class WatchedChild {
   pid_t pid() const { return child_.pid(); }
   /// Child::signal().
   void signal(int number) { child_.signal(number); }
-  /// Gives a spare its turn and returns it. Afterwards the object watches no child.
+  /// Returns the child. Afterwards the object watches none.
+  Child release();
+  /// Gives a spare its turn and returns it: see release().
   Child promote();
   /// Reports the end of an adopted process whose exit status arrived late.
   void check_end() {

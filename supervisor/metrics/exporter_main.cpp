@@ -39,12 +39,12 @@ daemon::ServiceDescription describe() {
 }
 
 /// The ring for heartbeats. Empty if there is no supervisor.
-Heart open_heart(const daemon::Supervision& supervision) {
+Heart open_heart(const daemon::Supervision& supervision, Deadline until) {
   auto fd = supervision.ring(daemon::marks_stream_of(kName));
   if (!fd) return std::nullopt;
   auto segment = ipc::Segment::open(std::move(*fd));
   if (!segment) return std::nullopt;
-  auto heart = ipc::Writer<msg::StageMarks>::attach(std::move(*segment));
+  auto heart = ipc::Writer<msg::StageMarks>::attach(std::move(*segment), until);
   if (!heart) {
     log::warning("heartbeats cannot be published: {}", heart.error().what);
     return std::nullopt;
@@ -59,6 +59,15 @@ void beat_until_stopped(Heart heart) {
     sleep_until_ns(now + daemon::kBeatEvery_ns);
   }
   log::info("stopped");
+}
+
+/// Opens the port. The exporter that this one replaces may still have it: tries until the deadline.
+Result<HttpServer> open_server(int port, RigWatcher& watcher, Deadline until) {
+  for (;;) {
+    auto server = serve_metrics(port, [&] { return watcher.observe(); });
+    if (server || until.passed() || daemon::stop_requested()) return server;
+    sleep_until_ns(now_ns() + ms_to_ns(20));
+  }
 }
 
 int give_up(const Error& error) {
@@ -76,10 +85,10 @@ int serve(const Options& options) {
         {Errc::bad_config, "supervisor.metrics_port is 0; set it to the port for the metrics"});
   RigWatcher watcher(rig->name);
   supervision.await_turn();
-  const auto server =
-      serve_metrics(rig->supervisor.metrics_port, [&] { return watcher.observe(); });
+  const auto until = supervision.predecessor_leaves_by(rig->supervisor.stop_s);
+  auto heart = open_heart(supervision, until);
+  const auto server = open_server(rig->supervisor.metrics_port, watcher, until);
   if (!server) return give_up(server.error());
-  auto heart = open_heart(supervision);
   supervision.tell_ready();
   beat_until_stopped(std::move(heart));
   return kExitDone;

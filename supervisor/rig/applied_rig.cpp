@@ -14,12 +14,14 @@
 
 namespace handcast::supervisor {
 
-Result<UniqueFd> make_applied(const std::string& toml) {
+Result<AppliedRig> make_applied(const config::Rig& rig) {
+  auto toml = config::print_rig(rig);
   UniqueFd file(memfd_create("handcast-rig", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   const bool written =
       file && ::write(file.get(), toml.data(), toml.size()) == static_cast<ssize_t>(toml.size());
   constexpr int kReadOnly = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
-  if (written && fcntl(file.get(), F_ADD_SEALS, kReadOnly) == 0) return file;
+  if (written && fcntl(file.get(), F_ADD_SEALS, kReadOnly) == 0)
+    return AppliedRig{std::move(toml), std::move(file)};
   return fail(Errc::unavailable,
               fmt::format("the applied rig cannot be stored in memory: {}", std::strerror(errno)));
 }

@@ -10,10 +10,14 @@
 
 namespace handcast::supervisor {
 
-/// The applied rig as a file without a name (memfd), sealed: what the services read with --config.
-/// Later changes of the user's rig file do not affect services that are restarted. Errors:
-/// unavailable.
-Result<UniqueFd> make_applied(const std::string& toml);
+/// A rig as its services read it with --config. Later changes of the user's rig file do not affect
+/// services that are restarted.
+struct AppliedRig {
+  std::string toml;  ///< the text
+  UniqueFd file;     ///< the same in a file without a name (memfd), sealed
+};
+/// Stores a rig for its services. Errors: unavailable.
+Result<AppliedRig> make_applied(const config::Rig& rig);
 
 /// The applied rig of a supervisor that died and was started with these arguments. Empty if there
 /// is none, or if none of its services lives.

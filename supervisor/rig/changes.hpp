@@ -8,8 +8,11 @@
 
 namespace handcast::supervisor {
 
-/// The pending restarts and swaps of single services. Each is answered when the service is ready
-/// again, stops or fails. If the new back end of a swap does not start, the old one is restored.
+/// The pending restarts and swaps of single services. A service that works is replaced: its
+/// replacement is prepared while it goes on, and takes over when it is prepared; if it cannot be
+/// prepared, nothing has changed. A service that does not work is stopped and started. Each change
+/// is answered when the service is ready again, stops or fails. If the new back end of a swap does
+/// not start, the old one is restored.
 class Changes {
  public:
   /// `rig` must outlive the object.
@@ -20,6 +23,8 @@ class Changes {
   /// Restarts a service with the back end `word`, which may be an old name. Refuses a back end that
   /// the service does not have.
   void swap(Service& service, const std::string& word, ControlServer::Reply reply);
+  /// Replaces the services whose replacements are prepared. Call it on every tick.
+  void tick();
 
   /// True if the service is being changed.
   bool contains(std::string_view service) const { return pending_.contains(service); }
@@ -27,7 +32,8 @@ class Changes {
   std::string any() const { return pending_.empty() ? "" : pending_.begin()->first; }
 
   /// Must be called at each Notice of a service. They do nothing if it is not being changed.
-  /// on_failed() returns true if it restores the old back end of a swap.
+  /// on_failed() returns true if the service goes on all the same: with the old back end of a swap,
+  /// or with its replacement.
   /// @{
   void on_ready(const Service& service);
   void on_stopped(const Service& service);
@@ -40,12 +46,18 @@ class Changes {
   struct Pending {
     ControlServer::Reply reply;
     std::string wanted{}, before{};  ///< back ends; "" for a restart
+    bool is_replacing = false;       ///< the worker goes on; its replacement is being prepared
     std::string reason{};            ///< why `wanted` did not start; "" if it has not failed
   };
+  using All = std::map<std::string, Pending, std::less<>>;
+
+  bool is_replacing(const Service& service) const;
+  void replace(Service& service, const std::string& backend, Pending& pending);
+  void hand_over(Service& service, Pending& pending);
   void give_backend(Service& service, const std::string& backend, bool on_trial);
 
   LiveRig& rig_;
-  std::map<std::string, Pending, std::less<>> pending_;  ///< by service
+  All pending_;  ///< by service
 };
 
 }  // namespace handcast::supervisor

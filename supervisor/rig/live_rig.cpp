@@ -3,7 +3,6 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/daemon/contract.hpp"
-#include "supervisor/rig/applied_rig.hpp"
 
 namespace handcast::supervisor {
 
@@ -28,14 +27,9 @@ Result<daemon::Rings> LiveRig::make_rings(const std::vector<ServiceSpec>& specs)
   return made;
 }
 
-Result<void> LiveRig::store_applied(const config::Rig& rig) {
-  auto toml = config::print_rig(rig);
-  auto file = make_applied(toml);
-  if (!file) return tl::make_unexpected(file.error());
-  applied_toml = std::move(toml);
-  applied = std::move(*file);
-  launch.rig_fd = applied.get();
-  return {};
+void LiveRig::use(AppliedRig rig) {
+  applied = std::move(rig);
+  launch.rig_fd = applied.file.get();
 }
 
 void LiveRig::take_settings(const config::Rig& rig) {

@@ -9,6 +9,8 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/control/control_message.hpp"
+#include "supervisor/rig/applied_rig.hpp"
+#include "supervisor/spec/catalogue.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
@@ -27,8 +29,7 @@ bool has_settled(const Service& service) {
 
 }  // namespace
 
-// The applied rig is stored last: the steps before it have no visible effect, those after it cannot
-// fail.
+// Rings and candidate have no visible effect.
 Result<Reload> Reload::begin(LiveRig& rig, config::Rig wanted, bool revives) {
   auto plan = plan_reload(rig, std::move(wanted), revives);
   if (auto possible = check_reload(rig, plan); !possible)
@@ -36,32 +37,24 @@ Result<Reload> Reload::begin(LiveRig& rig, config::Rig wanted, bool revives) {
   const auto rings = rig.make_rings(plan.specs);
   if (!rings) return tl::make_unexpected(rings.error());
   store_with_systemd(*rings);
-  if (auto stored = rig.store_applied(plan.config); !stored)
-    return tl::make_unexpected(stored.error());
-
-  Reload reload(rig, std::move(plan));
-  reload.apply();
-  return reload;
+  auto candidate = make_applied(plan.config);
+  if (!candidate) return tl::make_unexpected(candidate.error());
+  return Reload(rig, std::move(plan), std::move(*candidate));
 }
 
-Reload::Reload(LiveRig& rig, ReloadPlan plan) : rig_(&rig), plan_(std::move(plan)) {}
-
-void Reload::apply() {
-  rig_->config = plan_.config;
-  rig_->take_settings(plan_.config);
-  for (std::size_t place = 0; place < plan_.specs.size(); ++place) {
-    const auto& spec = plan_.specs[place];
-    if (auto* service = rig_->services.find(spec.name))
-      service->update(spec);
-    else
-      rig_->services.add(spec, place);
-  }
-  waiting_ = plan_.restarted;
-  waiting_.insert(waiting_.end(), plan_.started.begin(), plan_.started.end());
-  for (const auto& name : plan_.stopped) rig_->services.find(name)->stop();
+Reload::Reload(LiveRig& rig, ReloadPlan plan, AppliedRig candidate)
+    : rig_(&rig), plan_(std::move(plan)), candidate_(std::move(candidate)) {
+  for (const auto& name : plan_.restarted)
+    if (rig_->services.find(name)->works()) replaced_.push_back(name);
 }
 
 bool Reload::advance(std::int64_t now) {
+  if (!applied_) {
+    const auto progress = prepare();
+    if (progress == Progress::preparing) return false;
+    if (progress == Progress::prepared) apply(now);
+    if (!applied_) return true;
+  }
   note_what_has_settled(now);
   begin_what_may(now);
   const bool have_stopped = std::ranges::all_of(plan_.stopped, [this](const auto& name) {
@@ -70,10 +63,74 @@ bool Reload::advance(std::int64_t now) {
   return have_stopped && waiting_.empty() && begun_.empty();
 }
 
+/// Prepares one replacement after the other, so that the start of many processes at once does not
+/// disturb those that work.
+Reload::Progress Reload::prepare() {
+  for (std::size_t i = 0; i < replaced_.size(); ++i) {
+    const auto& name = replaced_[i];
+    if (i == begun_replacements_) {
+      ++begun_replacements_;
+      prepare(name);
+    }
+    const auto& service = *rig_->services.find(name);
+    if (service.replacement_is_prepared()) continue;
+    if (service.has_replacement()) return Progress::preparing;
+    abandon(fmt::format("{} cannot work with the new settings: {}", name,
+                        service.replacement_problem()));
+    return Progress::failed;
+  }
+  return Progress::prepared;
+}
+
+void Reload::prepare(const std::string& name) {
+  auto& service = *rig_->services.find(name);
+  auto wanted = service.settings();
+  wanted.spec = *std::ranges::find(plan_.specs, name, &ServiceSpec::name);
+  if (wanted.spec.backend != wanted.swapped) wanted.swapped.clear();
+  wanted.rig_fd = candidate_.file.get();
+  const bool alone = is_exclusive(rig_->catalogue, name, service.spec().backend) &&
+                     is_exclusive(rig_->catalogue, name, wanted.spec.backend);
+  service.prepare(std::move(wanted), {.alone = alone}, false);
+}
+
+void Reload::abandon(const std::string& why) {
+  for (const auto& name : replaced_) rig_->services.find(name)->abandon();
+  failures_.push_back(why + "; nothing was changed");
+}
+
+void Reload::apply(std::int64_t now) {
+  applied_ = true;
+  rig_->config = plan_.config;
+  rig_->use(std::move(candidate_));
+  rig_->take_settings(plan_.config);
+  for (std::size_t place = 0; place < plan_.specs.size(); ++place) {
+    const auto& spec = plan_.specs[place];
+    auto* service = rig_->services.find(spec.name);
+    if (!service) {
+      rig_->services.add(spec, place);
+    } else if (contains(replaced_, spec.name)) {
+      begun_[spec.name] = patience_until(now);
+      service->hand_over();
+    } else {
+      service->update(spec);
+    }
+  }
+  for (const auto* names : {&plan_.restarted, &plan_.started})
+    for (const auto& name : *names)
+      if (!contains(replaced_, name)) waiting_.push_back(name);
+  for (const auto& name : plan_.stopped) rig_->services.find(name)->stop();
+}
+
+bool Reload::waits_for(const std::string& service) const {
+  return begun_.contains(service) || (!applied_ && contains(replaced_, service));
+}
+
+std::int64_t Reload::patience_until(std::int64_t now) const {
+  return now + seconds_to_ns(rig_->launch.stop_s + rig_->launch.ready_s + kGrace_s);
+}
+
 /// Starts the services whose needs have all settled.
 void Reload::begin_what_may(std::int64_t now) {
-  const auto& launch = rig_->launch;
-  const auto until_ns = now + seconds_to_ns(launch.stop_s + launch.ready_s + kGrace_s);
   const auto in_the_way = [this](const auto& need) {
     return contains(waiting_, need) || begun_.contains(need);
   };
@@ -81,7 +138,7 @@ void Reload::begin_what_may(std::int64_t now) {
     auto& service = *rig_->services.find(name);
     if (std::ranges::any_of(service.spec().needs, in_the_way)) continue;
     std::erase(waiting_, name);
-    begun_[name] = until_ns;
+    begun_[name] = patience_until(now);
     service.restart();
   }
 }
@@ -99,20 +156,31 @@ void Reload::note_what_has_settled(std::int64_t now) {
 }
 
 nlohmann::json Reload::finish() {
+  if (!applied_) {
+    log::warning("not reloaded: {}", join(failures_, "; "));
+    return control::failure(join(failures_, "\n"));
+  }
   for (const auto& name : plan_.stopped) rig_->services.remove(name);
+  log::info("rig '{}' reloaded; restarted: {}", rig_->name,
+            plan_.restarted.empty() ? "nothing" : join(plan_.restarted, ", "));
+  return answer();
+}
+
+nlohmann::json Reload::answer() const {
   auto answer = failures_.empty() ? control::success() : control::failure(join(failures_, "\n"));
   answer["changed"] = plan_.changed;
   answer["restarted"] = plan_.restarted;
   answer["started"] = plan_.started;
   answer["stopped"] = plan_.stopped;
   answer["untouched"] = nlohmann::json::array();
+  answer["pauses_ms"] = nlohmann::json::object();
   for (const auto& service : rig_->services.all()) {
     const auto& name = service->spec().name;
-    if (!contains(plan_.restarted, name) && !contains(plan_.started, name))
-      answer["untouched"].push_back(name);
+    const bool is_restarted = contains(plan_.restarted, name);
+    if (!is_restarted && !contains(plan_.started, name)) answer["untouched"].push_back(name);
+    const auto pause_ms = is_restarted ? service->pause_ms() : std::nullopt;
+    if (pause_ms) answer["pauses_ms"][name] = *pause_ms;
   }
-  log::info("rig '{}' reloaded; restarted: {}", rig_->name,
-            plan_.restarted.empty() ? "nothing" : join(plan_.restarted, ", "));
   return answer;
 }
 

@@ -120,6 +120,7 @@ std::string Requests::why_not_reload() const {
 }
 
 void Requests::tick(std::int64_t now) {
+  changes_.tick();
   if (!reloading_ || !reloading_->reload.advance(now)) return;
   auto done = *std::exchange(reloading_, {});
   done.reply(done.reload.finish());

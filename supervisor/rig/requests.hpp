@@ -29,7 +29,7 @@ class Requests {
   /// Reloads the rig. `wanted`: the new rig, or why it cannot be read. `revives`: see
   /// plan_reload().
   void reload(Result<config::Rig> wanted, bool revives, ControlServer::Reply reply);
-  /// Continues a reload. Call it on every tick.
+  /// Continues changes and reloads. Call it on every tick.
   void tick(std::int64_t now_ns);
 
   /// Must be called at each Notice of a service. on_failed() returns true if the failure belongs to

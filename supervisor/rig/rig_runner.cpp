@@ -141,7 +141,10 @@ Result<void> RigRunner::make_rings_and_files(std::optional<AdoptedRig>& adopted,
   if (!state) return tl::make_unexpected(state.error());
   state_ = std::move(*state);
   rig_.launch.state_fd = state_->fd();
-  return rig_.store_applied(rig_.config);
+  auto applied = make_applied(rig_.config);
+  if (!applied) return tl::make_unexpected(applied.error());
+  rig_.use(std::move(*applied));
+  return {};
 }
 
 /// Restores the start of the rig, which is the epoch of its services. --seconds counts from there
@@ -264,7 +267,7 @@ void RigRunner::save() {
                  .rig_file = options_.rig_file,
                  .settings = options_.settings,
                  .out = options_.out ? options_.out->string() : "",
-                 .applied = rig_.applied_toml,
+                 .applied = rig_.applied.toml,
                  .epoch_ns = rig_.launch.epoch_ns,
                  .rings = rig_.rings.saved(),
                  .services = {}};

@@ -71,6 +71,16 @@ Result<void> check_backend(const Catalogue& catalogue, const std::string& servic
                                             join(names_of(backends), ", ")));
 }
 
+bool is_exclusive(const Catalogue& catalogue, const std::string& service,
+                  const std::string& backend) {
+  const auto found = catalogue.find(service);
+  if (found == catalogue.end()) return true;
+  const auto& backends = found->second.backends;
+  if (backends.empty()) return false;
+  const auto row = std::ranges::find(backends, backend, &daemon::BackendDescription::name);
+  return row == backends.end() || row->exclusive;
+}
+
 std::string print_backends(const Catalogue& catalogue) {
   std::string page =
       "\n# Back ends\n\n"

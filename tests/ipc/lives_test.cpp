@@ -2,6 +2,7 @@
 // Readers and writers that attach, detach, wait and attach again.
 #include <gmock/gmock.h>
 
+#include <optional>
 #include <thread>
 
 #include "tests/ipc/ring_testing.hpp"
@@ -22,6 +23,20 @@ TEST(Ring, ASecondWriterIsRefusedWhileTheFirstLives) {
   EXPECT_THAT(second.error().what, HasSubstr("another writer is attached"));
   writer.reset();
   EXPECT_TRUE(Writer<Note>::attach(again(segment)));
+}
+
+TEST(Ring, AWriterThatMayWaitFollowsTheFirstWhenThatLeaves) {
+  const auto segment = make_ring<Note>(4);
+  std::optional<Writer<Note>> first(must(Writer<Note>::attach(again(segment))));
+  EXPECT_FALSE(Writer<Note>::attach(again(segment), Deadline::in(20ms)))
+      << "the first did not leave";
+  std::jthread leaves([&] {
+    sleep_until_ns(now_ns() + to_ns(50ms));
+    first.reset();
+  });
+  auto second = Writer<Note>::attach(again(segment), Deadline::in(60s));
+  ASSERT_TRUE(second) << second.error().what;
+  second->publish(note(1));
 }
 
 TEST(Ring, AWriterStartedAgainContinuesTheSequenceAndRaisesTheEpoch) {

@@ -114,6 +114,23 @@ TEST(View, AWritersCountsGoOnWithTheNextWriterAndARowsBeginAnew) {
   }
 }
 
+TEST(View, ShowsHowLongTheStreamPausedBetweenTwoWriters) {
+  const auto segment = make_ring<Note>(4);
+  const auto view = view_of(segment);
+  std::int64_t last_ns = 0;
+  for (int life = 0; life < 3; ++life) {
+    auto writer = must(Writer<Note>::attach(again(segment)));
+    EXPECT_EQ(view.look().newest_published_ns, last_ns);
+    writer.publish(note(1));
+    const auto first = view.look();
+    EXPECT_EQ(first.pause_ns, life == 0 ? 0 : first.newest_published_ns - last_ns);
+    sleep_until_ns(now_ns() + 2'000'000);
+    writer.publish(note(2));
+    EXPECT_EQ(view.look().pause_ns, first.pause_ns) << "later messages do not change it";
+    last_ns = view.look().newest_published_ns;
+  }
+}
+
 TEST(View, NeedsOnlyADescriptorForReadingAndTakesNoRow) {
   const auto segment = make_ring<Note>(4);
   must(Writer<Note>::attach(again(segment))).publish(note(1));

@@ -2,6 +2,8 @@
 // Faults and changes during which the light must continue.
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -72,6 +74,59 @@ TEST_F(Faults, AServiceThatHangsIsReplaced) {
   EXPECT_TRUE(eventually([&] { return !is_alive(victim); }));
   EXPECT_TRUE(eventually([&] { return service("landmarks")["state"] == "ready"; }));
   expect_restarts({{"landmarks", 1}});
+}
+
+// The time in the message is that of the supervisor.
+TEST_F(Faults, AProjectorThatIsStoppedIsReplacedBeforeSilentSIsOver) {
+  const auto rig = up({"--set", "supervisor.silent_s=10"});
+  wait_until_light();
+  const auto victim = service("projector")["pid"].get<pid_t>();
+  kill(victim, SIGSTOP);
+  EXPECT_TRUE(eventually([&] { return !is_alive(victim); }));
+  EXPECT_TRUE(eventually([&] { return service("projector")["state"] == "ready"; }));
+  expect_restarts({{"projector", 1}});
+  const auto log = rig->log();
+  const std::string begin = "projector has given no sign of life for ";
+  const auto found = log.find(begin);
+  ASSERT_NE(found, std::string::npos) << log;
+  EXPECT_LT(std::stod(log.substr(found + begin.size())), 10);
+  EXPECT_THAT(log.substr(found), HasSubstr("s and is stopped; killed"));
+  expect_more_light();
+}
+
+/// Processes that use all the time that the machine gives them.
+class Busy {
+ public:
+  explicit Busy(int count) {
+    for (int i = 0; i < count; ++i) {
+      pids_.push_back(fork());
+      if (pids_.back() != 0) continue;
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      for (;;) getppid();
+    }
+  }
+  ~Busy() {
+    for (const auto pid : pids_) kill(pid, SIGKILL);
+    for (const auto pid : pids_) waitpid(pid, nullptr, 0);
+  }
+  Busy(const Busy&) = delete;
+
+ private:
+  std::vector<pid_t> pids_;
+};
+
+TEST_F(Faults, ALoadedMachineKillsNobody) {
+  const auto rig = up();
+  wait_until_light();
+  const auto before = pids();
+  {
+    const Busy busy(64);
+    sleep(8);  // four times as long as a service may be silent
+  }
+  expect_more_light();
+  EXPECT_EQ(pids(), before);
+  expect_restarts({});
+  EXPECT_EQ(rig->log().find("no sign of life"), std::string::npos) << rig->log();
 }
 
 TEST_F(Faults, AServiceInAnEndlessLoopIsReplaced) {
@@ -153,8 +208,9 @@ TEST_F(Faults, APoseSourceIsSwappedForARecordingWhileTheOthersRunOn) {
   wait_until_light();
   const auto swapped = handcast({"swap", "pose", "replay"});
   EXPECT_EQ(swapped.exit_code, 0) << swapped.log;
+  EXPECT_THAT(swapped.output, HasSubstr("pose is ready with 'replay' (the stream paused for "));
   EXPECT_EQ(service("pose")["backend"], "replay");
-  expect_restarts({{"pose", 1}});
+  expect_restarts({});
   const auto poses = [this] { return status()["rings"]["pose.hands"]["count"].get<int>(); };
   const auto before = poses();
   EXPECT_TRUE(eventually([&] { return poses() > before; }));
@@ -193,9 +249,12 @@ TEST_F(Faults, ASwapThatCannotWorkChangesNothing) {
   EXPECT_THAT(unknown.log, HasSubstr("no back end 'crystal_ball'; it has: twin, replay"));
   expect_restarts({});
 
+  const auto before = service("pose")["pid"];
   const auto without_folder = handcast({"swap", "pose", "replay"});
   EXPECT_EQ(without_folder.exit_code, 100);
   EXPECT_THAT(without_folder.log, HasSubstr("pose.replay.directory"));
+  EXPECT_THAT(without_folder.log, HasSubstr("'twin' goes on"));
+  EXPECT_EQ(service("pose")["pid"], before) << "it was never stopped";
   EXPECT_EQ(service("pose")["backend"], "twin");
   EXPECT_EQ(service("pose")["state"], "ready");
   EXPECT_THAT(handcast({"swap", "moon", "twin"}).log, HasSubstr("no service 'moon'"));

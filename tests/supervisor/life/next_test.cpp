@@ -213,6 +213,57 @@ TEST(Next, OneThatWasNeverHeardIsSilentSinceItWasReady) {
   EXPECT_THAT(machine.at(97, event::Tick{}), ElementsAre(HasSubstr("no sign of life"), "kill"));
 }
 
+/// The first time, in s, at which a worker that is silent since 95 s and does this is killed. It is
+/// looked at every 50 ms, as the rig does it.
+double killed_at(Activity activity, double silent_s) {
+  Machine machine{.state = {.worker = kReady}};
+  machine.rules.silent_ns = s(silent_s);
+  for (double time_s = 95; time_s < 500; time_s += 0.05) {
+    const auto now_ns = s(time_s);
+    const bool looks = is_suspicious(machine.state, std::nullopt, now_ns, machine.rules);
+    machine.at(time_s, event::Tick{.activity = looks ? activity : Activity::unknown});
+    if (machine.worker() == "killed") return time_s;
+  }
+  return 0;
+}
+
+TEST(Next, AWorkerThatIsStoppedOrAsleepIsKilledEarlierThanOneThatWorks) {
+  EXPECT_NEAR(killed_at(Activity::busy, 2), 97, 0.051);
+  EXPECT_NEAR(killed_at(Activity::unknown, 2), 97, 0.051);
+  EXPECT_NEAR(killed_at(Activity::asleep, 2), 96, 0.051);
+  EXPECT_NEAR(killed_at(Activity::stopped, 2), 95.5, 0.051);
+  EXPECT_NEAR(killed_at(Activity::stopped, 300), 95 + 75, 0.051) << "for a debugger";
+  EXPECT_NEAR(killed_at(Activity::stopped, 0.4), 95.3, 0.051) << "three heartbeats are missing";
+  EXPECT_NEAR(killed_at(Activity::asleep, 0.2), 95.2, 0.051) << "silent_s is the limit for all";
+}
+
+TEST(Next, AWorkerThatIsSeenAtWorkOnceInItsSilenceGetsTheWholeTime) {
+  Machine machine{.state = {.worker = kReady}};
+  for (double time_s = 95.3; time_s < 96.95; time_s += 0.05) {
+    const bool works = static_cast<int>(time_s * 20) % 6 == 0;  // every 0.3 s
+    ASSERT_THAT(
+        machine.at(time_s, event::Tick{.activity = works ? Activity::busy : Activity::asleep}),
+        IsEmpty())
+        << time_s;
+  }
+  EXPECT_THAT(machine.at(97, event::Tick{.activity = Activity::busy}),
+              ElementsAre("warn: pose has given no sign of life for 2.0 s; killed", "kill"));
+}
+
+TEST(Next, OneLookIsNotEnoughToCallAWorkerHung) {
+  Machine machine{.state = {.worker = kReady}};
+  EXPECT_THAT(machine.at(96.5, event::Tick{.activity = Activity::stopped}), IsEmpty())
+      << "the supervisor may have been away itself";
+  EXPECT_THAT(machine.at(96.55, event::Tick{.last_sign_ns = s(96.52)}), IsEmpty());
+  EXPECT_THAT(
+      machine.at(97.2, event::Tick{.last_sign_ns = s(96.52), .activity = Activity::stopped}),
+      IsEmpty())
+      << "the earlier look does not count";
+  EXPECT_THAT(
+      machine.at(97.35, event::Tick{.last_sign_ns = s(96.52), .activity = Activity::stopped}),
+      ElementsAre("warn: pose has given no sign of life for 0.8 s and is stopped; killed", "kill"));
+}
+
 TEST(Next, AStandstillIsHeldAgainstNobody) {
   const event::StoodStill forgiven{s(30)};
   expect({
@@ -281,7 +332,17 @@ TEST(Next, ThirtySecondsOfHealthMakeTheNextRestartImmediate) {
   EXPECT_THAT(machine.at(125, event::Ended{kCrash}), testing::Contains("spawn"));
 }
 
-TEST(Next, EachStartButTheFirstIsARestart) {
+TEST(Next, APlannedRestartDoesNotCountAsARestart) {
+  Machine machine;
+  machine.at(1, event::Start{});
+  machine.at(2, event::SaidReady{});
+  machine.at(3, event::Restart{});
+  machine.at(4, event::Ended{kSuccess});
+  EXPECT_EQ(machine.worker(), "starting until 14");
+  EXPECT_EQ(machine.state.past.restarts, 0);
+}
+
+TEST(Next, EachStartAfterADeathIsARestart) {
   Machine machine;
   machine.at(1, event::Start{});
   EXPECT_EQ(machine.state.past.restarts, 0);

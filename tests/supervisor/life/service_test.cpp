@@ -357,6 +357,114 @@ TEST_F(ServiceWithSpare, ASpareThatHangsIsReplaced) {
   EXPECT_EQ(pose.restarts(), 0);
 }
 
+/// A service without standby whose processes can be prepared, except with the back end "broken".
+class ReplacedService : public ServiceWithSpare {
+ protected:
+  void SetUp() override {
+    ServiceWithSpare::SetUp();
+    process_.standby = false;
+  }
+  Service& ready_service() {
+    auto& pose = service(
+        "case \"$*\" in *pose.backend=broken*) echo '1.0 pose error it is broken' >&2; exit 100;;"
+        " esac\n" +
+        std::string(kSpares));
+    pose.start();
+    run_until([&] { return pose.state() == State::ready; });
+    return pose;
+  }
+  static Settings with_backend(const Service& service, const std::string& backend) {
+    auto wanted = service.settings();
+    wanted.spec.backend = wanted.swapped = backend;
+    wanted.spec.fingerprint = "of " + backend;
+    return wanted;
+  }
+};
+
+TEST_F(ReplacedService, TheOldProcessWorksUntilTheNewOneCanAndTheSettingsChangeWithIt) {
+  auto& pose = ready_service();
+  const auto before = pose.pid();
+  pose.prepare(with_backend(pose, "replay"), {}, false);
+  run_until([&] { return pose.replacement_is_prepared(); });
+  EXPECT_EQ(pose.pid(), before);
+  EXPECT_EQ(pose.state(), State::ready);
+  EXPECT_EQ(pose.spec().backend, "twin") << "that is what works";
+  EXPECT_EQ(pose.saved().swapped, "") << "and what a successor would continue";
+  pose.hand_over();
+  EXPECT_EQ(pose.spec().backend, "replay");
+  EXPECT_EQ(pose.saved().swapped, "replay");
+  EXPECT_EQ(pose.saved().fingerprint, "of replay");
+  EXPECT_NE(pose.pid(), before);
+  run_until([&] { return pose.state() == State::ready && ::kill(before, 0) != 0; });
+  EXPECT_FALSE(pose.has_replacement());
+  EXPECT_EQ(pose.restarts(), 0);
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+}
+
+TEST_F(ReplacedService, OneThatCannotBePreparedSaysWhyAndTheOldProcessGoesOn) {
+  auto& pose = ready_service();
+  const auto before = pose.pid();
+  pose.prepare(with_backend(pose, "broken"), {}, false);
+  run_until([&] { return !pose.has_replacement(); });
+  EXPECT_EQ(pose.replacement_problem(), "it is broken");
+  EXPECT_EQ(pose.pid(), before);
+  EXPECT_EQ(pose.state(), State::ready);
+  pose.hand_over();
+  EXPECT_EQ(pose.pid(), before) << "there is nothing to hand over to";
+  ::kill(before, SIGKILL);
+  run_until([&] { return pose.pid() != before && pose.state() == State::ready; });
+  EXPECT_EQ(pose.spec().backend, "twin") << "the old settings";
+}
+
+TEST_F(ReplacedService, OneThatNeedsTheDeviceGetsItsTurnAfterTheOldProcessHasEnded) {
+  auto& pose = ready_service();
+  const auto before = pose.pid();
+  pose.prepare(with_backend(pose, "replay"), {.alone = true}, false);
+  run_until([&] { return pose.replacement_is_prepared(); });
+  pose.hand_over();
+  EXPECT_EQ(pose.pid(), before);
+  EXPECT_EQ(pose.state(), State::stopping);
+  run_until([&] { return pose.pid() != before && pose.state() == State::ready; });
+  EXPECT_NE(::kill(before, 0), 0);
+  EXPECT_EQ(pose.spec().backend, "replay");
+}
+
+TEST_F(ReplacedService, AStopInTheMiddleEndsBothAndLeavesTheOldSettings) {
+  auto& pose = ready_service();
+  pose.prepare(with_backend(pose, "replay"), {}, false);
+  run_until([&] { return pose.replacement_is_prepared(); });
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_FALSE(pose.is_running());
+  EXPECT_EQ(pose.spec().backend, "twin");
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  EXPECT_EQ(pose.spec().backend, "twin");
+}
+
+TEST_F(ReplacedService, AnAdoptedProcessIsReplacedToo) {
+  auto& first = ready_service();
+  auto reports = ExitReports::from_environment();
+  launch_.reports = &reports;
+  AdoptedProcess process{
+      .saved = first.saved(),
+      .pidfd = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, first.pid(), 0))),
+      .log = {}};
+  auto& second = service(kSpares);
+  second.inherit(process.saved);
+  second.adopt(std::move(process));
+  const auto adopted = second.pid();
+  second.prepare(second.settings(), {}, true);
+  run_until([&] { return second.replacement_is_prepared(); });
+  second.hand_over();
+  run_until([&] { return second.state() == State::ready && second.spare_pid() == 0; });
+  EXPECT_NE(second.pid(), adopted);
+  second.stop();
+  run_until([&] { return second.state() == State::stopped; });
+  services_.pop_back();  // before `reports`
+}
+
 TEST_F(ServiceWithSpare, StopEndsBoth) {
   auto& pose = ready_service();
   const auto worker = pose.pid(), spare = pose.spare_pid();

@@ -41,7 +41,7 @@ struct StateText {
   }
   std::string operator()(const worker::Killed& s) const { return "killed" + marks(s.life); }
   std::string operator()(const worker::Stopping& s) const {
-    constexpr std::array kThen{"", ", then start", ", then start on trial"};
+    constexpr std::array kThen{"", ", then start", ", then start on trial", ", then hand over"};
     return fmt::format("stopping{}{}", s.kill_ns ? " until " + at(*s.kill_ns) : ", killed",
                        kThen[static_cast<std::size_t>(s.then)]);
   }
@@ -63,6 +63,11 @@ struct StateText {
 
   std::string operator()(const action::Spawn&) const { return "spawn"; }
   std::string operator()(const action::Promote&) const { return "promote"; }
+  std::string operator()(const action::HandOver&) const { return "hand over"; }
+  std::string operator()(const action::ReplacementFailed& action) const {
+    return fmt::format("replacement failed{}: {}", action.by_itself ? " by itself" : "",
+                       action.why);
+  }
   std::string operator()(const action::AskToStop&) const { return "ask to stop"; }
   std::string operator()(const action::Kill&) const { return "kill"; }
   std::string operator()(const action::SpawnSpare&) const { return "spawn spare"; }

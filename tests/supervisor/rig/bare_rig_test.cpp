@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 
 #include <fstream>
+#include <future>
+#include <map>
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
@@ -136,8 +138,12 @@ TEST_F(BareRig, ASuccessorGoesOnWithTheRigAsItWasAppliedAndTheFileCountsWhenItIs
 
 TEST_F(BareRig, AServiceThatHadFailedStaysFailedUnderTheNextSupervisorAndTheRestGoesOn) {
   const auto rig = ready_rig();
+  const auto landmarks = pid_of("landmarks");
   make_daemon("landmarks", "exit 100");
   EXPECT_FALSE(restart("landmarks"));
+  EXPECT_EQ(pid_of("landmarks"), landmarks) << "the old process goes on";
+  kill(landmarks, SIGKILL);
+  ASSERT_TRUE(eventually([] { return services()["landmarks"]["state"] == "failed"; }));
   const auto camera = pid_of("camera");
   replace_supervisor(*rig);
   EXPECT_EQ(services()["landmarks"]["state"], "failed");
@@ -235,6 +241,136 @@ TEST_F(BareRig, AReloadThatCannotBeAppliedChangesNothing) {
   ASSERT_TRUE(again) << again.error().what;
   EXPECT_FALSE(applied() == before);
   EXPECT_EQ(services()["observer"]["state"], "ready");
+}
+
+/// A rig whose daemons are described, so that the supervisor knows that none needs a device.
+class DescribedRig : public BareRig {
+ protected:
+  void SetUp() override {
+    const auto built = system_test::program_folder();
+    BareRig::SetUp();
+    if (IsSkipped()) return;
+    const auto services = std::filesystem::path("share") / "handcast" / "services";
+    std::filesystem::create_directories(scratch_.path() / services.parent_path());
+    std::filesystem::copy(built / ".." / services, scratch_.path() / services);
+  }
+  /// A request that is answered later, or never.
+  static std::future<Result<json>> restart_later(const std::string& service) {
+    return std::async(std::launch::async, [service] { return restart(service); });
+  }
+  /// The pids of the daemons with this name.
+  std::vector<pid_t> daemons(const std::string& name) const {
+    std::vector<pid_t> pids;
+    const auto program = "handcast-" + name;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      const pid_t pid = std::atoi(entry.path().filename().c_str());
+      if (pid > 0 && is_alive(pid) &&
+          text_of(entry.path() / "cmdline").find((programs_ / program).string()) !=
+              std::string::npos)
+        pids.push_back(pid);
+    }
+    return pids;
+  }
+  /// The next process of this daemon starts and does nothing.
+  void make_idle(const std::string& name) const {
+    std::filesystem::copy_file("/bin/sleep", programs_ / "handcast-idle");
+    make_daemon(name, "exec -a \"$0\" " + (programs_ / "handcast-idle").string() + " 1000");
+  }
+  bool has_two(const std::string& name) const {
+    return eventually([&] { return daemons(name).size() == 2; });
+  }
+};
+TEST_F(DescribedRig, ARestartReplacesAServiceWithoutAPauseThatAReaderWouldNotice) {
+  const auto rig = ready_rig();
+  for (const auto& name : kDaemons) {
+    const auto before = pid_of(name);
+    const auto answer = restart(name);
+    ASSERT_TRUE(answer) << answer.error().what;
+    EXPECT_TRUE((*answer)["pause_ms"].is_number());
+    EXPECT_NE(pid_of(name), before);
+    EXPECT_TRUE(eventually([&] { return daemons(name).size() == 1; }));
+    EXPECT_EQ(services()[name]["restarts"], 0);
+  }
+  EXPECT_TRUE(eventually([] {
+    const auto now = services();
+    return std::ranges::all_of(now, [](const auto& each) { return each["silent_ms"] < 1000; });
+  })) << "the new processes have taken the rings of the heartbeats, too";
+}
+
+TEST_F(DescribedRig, ASupervisorThatDiesWhileAReplacementPreparesLeavesTheOldService) {
+  const auto rig = ready_rig();
+  const auto before = pid_of("pose");
+  make_idle("pose");
+  const auto answer = restart_later("pose");
+  ASSERT_TRUE(has_two("pose"));
+  replace_supervisor(*rig);
+  EXPECT_TRUE(eventually([&] { return daemons("pose") == std::vector{before}; }));
+  EXPECT_EQ(pid_of("pose"), before);
+  EXPECT_EQ(services()["pose"]["restarts"], 0);
+}
+
+TEST_F(DescribedRig, DownWhileAReplacementPreparesStopsEverything) {
+  const auto rig = ready_rig();
+  make_idle("pose");
+  auto answer = restart_later("pose");
+  ASSERT_TRUE(has_two("pose"));
+  EXPECT_THAT(restart("pose").error().what, HasSubstr("is being restarted already"));
+  EXPECT_THAT(reload().error().what, HasSubstr("pose is being restarted"));
+  rig->signal(SIGTERM);
+  EXPECT_EQ(rig->wait(), 0) << rig->log();
+  EXPECT_FALSE(answer.get());
+  for (const auto& name : kDaemons) EXPECT_TRUE(daemons(name).empty()) << name;
+  EXPECT_FALSE(std::filesystem::exists(applied_file()));
+}
+
+TEST_F(DescribedRig, AReloadIsAppliedAsAWholeOrNotAtAll) {
+  const auto rig = ready_rig();
+  const auto applied = text_of(applied_file());
+  std::map<std::string, pid_t> before;
+  for (const auto& name : kDaemons) before[name] = pid_of(name);
+  make_daemon("landmarks", "echo '1.0 landmarks error no model' >&2; exit 100");
+  write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
+  const auto failed = reload();
+  ASSERT_FALSE(failed);
+  EXPECT_THAT(failed.error().what, HasSubstr("landmarks cannot work with the new settings: no "
+                                             "model; nothing was changed"));
+  EXPECT_TRUE(text_of(applied_file()) == applied);
+  for (const auto& [name, pid] : before) EXPECT_EQ(pid_of(name), pid);
+  EXPECT_TRUE(eventually([&] { return daemons("camera").size() == 1; }))
+      << "the camera's replacement has ended";
+  auto candidate = applied_file();
+  EXPECT_FALSE(std::filesystem::exists(candidate.replace_extension(".next.toml")));
+
+  std::filesystem::remove(programs_ / "handcast-landmarks");
+  std::filesystem::copy_file(programs_ / "handcast-pose", programs_ / "handcast-landmarks");
+  const auto done = reload();
+  ASSERT_TRUE(done) << done.error().what;
+  EXPECT_THAT((*done)["restarted"], ElementsAre("camera", "landmarks"));
+  EXPECT_TRUE((*done)["pauses_ms"]["camera"].is_number());
+  EXPECT_NE(pid_of("camera"), before["camera"]);
+  EXPECT_EQ(pid_of("pose"), before["pose"]);
+  EXPECT_FALSE(text_of(applied_file()) == applied);
+}
+
+TEST_F(DescribedRig, AServiceThatDiesWhileItsReplacementPreparesIsStartedAgainMeanwhile) {
+  const auto rig = ready_rig();
+  const auto before = pid_of("pose");
+  const auto ready = scratch_.path() / "ready";
+  make_daemon("pose", "if [ -n \"$HANDCAST_STANDBY_FD\" ]; then while [ ! -e " + ready.string() +
+                          " ]; do sleep 0.02; done; fi; exec -a \"$0\" " +
+                          (programs_ / "handcast-camera").string() + " \"$@\"");
+  // The camera's program under another name, which is its role (tests/system/bare_daemon.cpp).
+  auto answer = restart_later("pose");
+  ASSERT_TRUE(has_two("pose"));
+  kill(before, SIGKILL);
+  ASSERT_TRUE(eventually(
+      [&] { return pid_of("pose") != before && services()["pose"]["state"] == "ready"; }));
+  const auto between = pid_of("pose");
+  std::ofstream(ready) << "now";
+  const auto done = answer.get();
+  EXPECT_TRUE(done) << done.error().what;
+  EXPECT_NE(pid_of("pose"), between);
+  EXPECT_EQ(services()["pose"]["restarts"], 1);
 }
 
 TEST_F(BareRig, AnUpThatCannotTakeOverLeavesTheAppliedFileAsItWas) {
