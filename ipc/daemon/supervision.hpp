@@ -52,8 +52,8 @@ class Supervision {
   std::string name_;
   Rings rings_;
   std::int64_t epoch_ns_ = 0;
-  UniqueFd ready_;  ///< closed when the supervisor has been told
-  UniqueFd turn_;   ///< of a spare whose turn has not come
+  UniqueFd ready_;                       ///< closed when the supervisor has been told
+  UniqueFd turn_;                        ///< of a spare whose turn has not come
   std::optional<std::int64_t> turn_ns_;  ///< when the turn of a spare came
   std::int64_t last_beat_ns_ = 0;
 };

@@ -44,8 +44,8 @@ const char* doing(Activity activity) {
 bool is_suspicious(const ServiceState& state, std::optional<std::int64_t> last_sign_ns,
                    std::int64_t now_ns, const Rules& rules) {
   const auto* ready = std::get_if<worker::Ready>(&state.worker);
-  return ready && silence_of(*ready, last_sign_ns, now_ns) >= std::min(rules.silent_ns / 8,
-                                                                       kLeastSilence_ns);
+  return ready && silence_of(*ready, last_sign_ns, now_ns) >=
+                      std::min(rules.silent_ns / 8, kLeastSilence_ns);
 }
 
 Step next(ServiceState state, const Event& event, std::int64_t now_ns, const Rules& rules) {

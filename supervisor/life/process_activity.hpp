@@ -21,8 +21,8 @@ struct ProcessLook {
   std::size_t threads = 0;   ///< number of threads
   bool all_stopped = false;  ///< each is stopped
   bool all_asleep = false;   ///< each sleeps, and may be interrupted by a signal
-  /// Sum over all threads of the time on a processor (ns), the time of waiting for one (ns), and the
-  /// number of times it got one. 0 if the system does not count them.
+  /// Sum over all threads of the time on a processor (ns), the time of waiting for one (ns), and
+  /// the number of times it got one. 0 if the system does not count them.
   std::uint64_t progress = 0;
 };
 

@@ -40,8 +40,8 @@ struct Launch {
 
 /// The settings of a service's process.
 struct Settings {
-  ServiceSpec spec;                ///< the specification
-  std::string swapped{};           ///< the back end set by `handcast swap`; "": that of the rig file
+  ServiceSpec spec;       ///< the specification
+  std::string swapped{};  ///< the back end set by `handcast swap`; "": that of the rig file
   std::filesystem::path rig_file;  ///< --config of the daemon
 };
 
@@ -75,8 +75,8 @@ class Service {
   /// Kills the processes that were asked to stop.
   void hurry() { handle(event::Hurry{}); }
 
-  /// Starts a replacement with these settings while the worker goes on. If `may_use_standby` is set,
-  /// a standby that exists becomes the replacement. See replacement_is_prepared() and
+  /// Starts a replacement with these settings while the worker goes on. If `may_use_standby` is
+  /// set, a standby that exists becomes the replacement. See replacement_is_prepared() and
   /// has_replacement().
   void prepare(Settings wanted, Replacement how, bool may_use_standby);
   /// Replaces the worker by its replacement, if that is prepared. Its settings become those of the

@@ -90,11 +90,11 @@ struct Tick {
 }  // namespace event
 
 /// Any event.
-using Event =
-    std::variant<event::Hold, event::Start, event::Stop, event::Hurry, event::Prepare,
-                 event::HandOver, event::Abandon, event::Restart, event::SettingsChanged, event::Inherited, event::Adopted, event::StoodStill,
-                 event::SaidReady, event::Ended, event::NotStarted, event::SpareSpoke,
-                 event::SpareEnded, event::SpareNotStarted, event::Tick>;
+using Event = std::variant<event::Hold, event::Start, event::Stop, event::Hurry, event::Prepare,
+                           event::HandOver, event::Abandon, event::Restart, event::SettingsChanged,
+                           event::Inherited, event::Adopted, event::StoodStill, event::SaidReady,
+                           event::Ended, event::NotStarted, event::SpareSpoke, event::SpareEnded,
+                           event::SpareNotStarted, event::Tick>;
 
 /// A change of a service that the rig must know. After `failed`, it is not restarted.
 enum class Notice { ready, stopped, failed };

@@ -102,7 +102,7 @@ struct Prepared {
 /// The process was killed because it was late or silent, and has not ended yet.
 struct Killed {
   std::optional<std::int64_t> prepared_ns{};  ///< when it became prepared; empty: it never was
-  std::string why{};  ///< "was not prepared within 10 s"
+  std::string why{};                          ///< "was not prepared within 10 s"
 };
 /// The process was asked to stop.
 struct Leaving {
@@ -128,8 +128,8 @@ struct Past {
   bool was_ready = false;                        ///< a worker has been ready
 };
 
-/// A spare that takes over from a worker that works: for new settings, or because a person asked for
-/// a restart.
+/// A spare that takes over from a worker that works: for new settings, or because a person asked
+/// for a restart.
 struct Replacement {
   bool on_trial = false;  ///< see Life
   /// It gets its turn only when the worker has ended, because both open the same device.
@@ -138,8 +138,8 @@ struct Replacement {
 
 /// The state of one service. next() computes the next one (next.hpp).
 struct ServiceState {
-  Worker worker;  ///< the process that does the work
-  Spare spare;    ///< the process that can replace it
+  Worker worker;                             ///< the process that does the work
+  Spare spare;                               ///< the process that can replace it
   std::optional<Replacement> replacement{};  ///< set while the spare is a replacement, or is to be
   Past past;                                 ///< their history
 };

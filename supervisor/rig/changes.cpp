@@ -103,9 +103,10 @@ void Changes::on_ready(const Service& service) {
         control::failure(fmt::format("{} did not start with '{}', '{}' was started again: {}", name,
                                      change.wanted, change.before, change.reason)));
   else if (!service.replacement_problem().empty())
-    change.reply(control::failure(fmt::format("the new process of {} failed, and the old one had "
-                                              "stopped and was started again: {}",
-                                              name, service.replacement_problem())));
+    change.reply(
+        control::failure(fmt::format("the new process of {} failed, and the old one had "
+                                     "stopped and was started again: {}",
+                                     name, service.replacement_problem())));
   else
     change.reply(success_of(service));
 }

@@ -12,10 +12,11 @@
 
 namespace handcast::supervisor {
 
-/// `handcast reload` as a transaction. begin() plans and checks the new rig. advance() first prepares
-/// replacements of the services that work and have to change, one after the other, while the old
-/// ones go on. If one cannot be prepared, nothing is changed. Otherwise the new rig is applied as a
-/// whole: all replacements take over, and the other services are started, restarted and stopped.
+/// `handcast reload` as a transaction. begin() plans and checks the new rig. advance() first
+/// prepares replacements of the services that work and have to change, one after the other, while
+/// the old ones go on. If one cannot be prepared, nothing is changed. Otherwise the new rig is
+/// applied as a whole: all replacements take over, and the other services are started, restarted
+/// and stopped.
 class Reload {
  public:
   /// Begins to apply `wanted`. `revives`: see plan_reload(). `rig` must outlive the result. Errors:

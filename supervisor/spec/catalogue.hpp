@@ -27,8 +27,8 @@ Catalogue read_catalogue(const std::filesystem::path& folder);
 Result<void> check_backend(const Catalogue& catalogue, const std::string& service,
                            const std::string& backend);
 
-/// True if only one process at a time can have the back end of a service open. A service or back end
-/// that is not in the catalogue counts as exclusive.
+/// True if only one process at a time can have the back end of a service open. A service or back
+/// end that is not in the catalogue counts as exclusive.
 bool is_exclusive(const Catalogue& catalogue, const std::string& service,
                   const std::string& backend);
 

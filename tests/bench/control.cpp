@@ -36,8 +36,8 @@ const std::vector<std::string> kStandby{"projector.process.standby=true"};
 /// One row of the table.
 struct Gaps {
   std::string name;
-  double limit_ms = 0;            ///< of the pause; 0: no goal
-  std::vector<double> pause_ms{}; ///< from the last message of the old process to the next one's
+  double limit_ms = 0;               ///< of the pause; 0: no goal
+  std::vector<double> pause_ms{};    ///< from the last message of the old process to the next one's
   std::vector<double> longest_ms{};  ///< from before the change until after it
 
   void add(const GapWatch& watch) {
@@ -73,7 +73,8 @@ void measure_signal(const RigFolder& folder, bool standby, int signal, Gaps& gap
   const TwinRig rig(folder, standby ? kStandby : std::vector<std::string>{});
   if (standby) rig.settle("projector");
   const auto pid = rig.pid_of("projector");
-  measure(rig, "projection.frames", [&] { ::kill(pid, signal); }, gaps);
+  measure(
+      rig, "projection.frames", [&] { ::kill(pid, signal); }, gaps);
 }
 
 class Table {
@@ -120,12 +121,13 @@ class Table {
   void change(const TwinRig& rig, Gaps& gaps, const control::Request& request) {
     const bool of_camera = request.service == "camera";
     const auto* stream = of_camera ? "camera.frames" : "projection.frames";
-    measure(rig, stream, [&] { rig.ask(request); }, gaps);
+    measure(
+        rig, stream, [&] { rig.ask(request); }, gaps);
     rig.settle("");
   }
   std::vector<const Gaps*> rows() const {
-    return {&calm_,  &crash_,  &crash_standby_, &restart_, &restart_standby_, &swap_,
-            &swap_back_, &camera_, &camera_back_, &reload_, &stopped_};
+    return {&calm_,      &crash_,  &crash_standby_, &restart_, &restart_standby_, &swap_,
+            &swap_back_, &camera_, &camera_back_,   &reload_,  &stopped_};
   }
 
   static constexpr double kProjector_ms = kProjectorPeriod_ms + kChange_ms,

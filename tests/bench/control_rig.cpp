@@ -78,11 +78,11 @@ RigFolder::~RigFolder() {
 }
 
 void RigFolder::record() const {
-  const auto recorded = wait_for(start(
-      {(programs_ / "handcast").string(), "simulate", "config/rigs/twin.toml", "--quiet",
-       "--joints-only", "--seconds", "0.5", "--warm-up", "0.1", "--set", "camera.rate_hz=100",
-       "--record", (folder_ / "recording").string()},
-      folder_ / "log"));
+  const auto recorded =
+      wait_for(start({(programs_ / "handcast").string(), "simulate", "config/rigs/twin.toml",
+                      "--quiet", "--joints-only", "--seconds", "0.5", "--warm-up", "0.1", "--set",
+                      "camera.rate_hz=100", "--record", (folder_ / "recording").string()},
+                     folder_ / "log"));
   if (recorded != 0) give_up("handcast simulate made no recording: " + text_of(folder_ / "log"));
 }
 
@@ -95,8 +95,13 @@ void RigFolder::change_a_projector_setting() {
 
 TwinRig::TwinRig(const RigFolder& folder, const std::vector<std::string>& settings) {
   std::vector<std::string> words{
-      (folder.programs() / "handcast").string(), "up", folder.rig_file().string(), "--out",
-      folder.path().string(), "--set", "camera.replay.directory=" + (folder.path() / "recording").string()};
+      (folder.programs() / "handcast").string(),
+      "up",
+      folder.rig_file().string(),
+      "--out",
+      folder.path().string(),
+      "--set",
+      "camera.replay.directory=" + (folder.path() / "recording").string()};
   for (const auto& setting : settings) words.insert(words.end(), {"--set", setting});
   pid_ = start(words, folder.path() / "log");
   settle("");
@@ -139,8 +144,8 @@ pid_t TwinRig::pid_of(const std::string& service) const {
 }
 
 ipc::RingView TwinRig::view_of(const std::string& stream) const {
-  auto answer = control::ask_with_descriptors(
-      kRigName, {.verb = Verb::rings, .service = {}, .backend = {}});
+  auto answer =
+      control::ask_with_descriptors(kRigName, {.verb = Verb::rings, .service = {}, .backend = {}});
   if (!answer) give_up(answer.error().what);
   const auto& names = answer->object["rings"];
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -173,9 +173,8 @@ TEST_F(Reload, SettingsWithWhichOneServiceCannotWorkChangeNothing) {
   write_rig_with("rate_hz = 50", missing);
   const auto failed = handcast({"reload"});
   EXPECT_EQ(failed.exit_code, 100);
-  EXPECT_THAT(failed.log,
-              AllOf(HasSubstr("projector cannot work with the new settings: "),
-                    HasSubstr("nowhere.png"), HasSubstr("nothing was changed")));
+  EXPECT_THAT(failed.log, AllOf(HasSubstr("projector cannot work with the new settings: "),
+                                HasSubstr("nowhere.png"), HasSubstr("nothing was changed")));
   EXPECT_TRUE(changed_since(before).empty()) << "the camera could have changed, but did not";
   EXPECT_EQ(status()["rings"]["camera.frames"]["wanted_hz"], 60);
 

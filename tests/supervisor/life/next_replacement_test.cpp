@@ -77,8 +77,7 @@ TEST(NextReplacement, OneThatDiesWhileItWaitsForTheDeviceLeavesTheServiceToItsOl
   machine.at(22, event::SpareSpoke{});
   machine.at(22, event::HandOver{});
   machine.at(22.1, event::SpareEnded{kCrash});
-  EXPECT_THAT(machine.at(22.2, event::Ended{{.code = 0}}),
-              ElementsAre("read last words", "spawn"));
+  EXPECT_THAT(machine.at(22.2, event::Ended{{.code = 0}}), ElementsAre("read last words", "spawn"));
 }
 
 TEST(NextReplacement, AStandbyOfTheSameSettingsIsOneAtOnceAndAnotherIsReplaced) {

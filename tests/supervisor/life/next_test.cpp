@@ -220,8 +220,7 @@ double killed_at(Activity activity, double silent_s) {
   machine.rules.silent_ns = s(silent_s);
   for (double time_s = 95; time_s < 500; time_s += 0.05) {
     const auto now_ns = s(time_s);
-    const bool looks =
-        is_suspicious(machine.state, std::nullopt, now_ns, machine.rules);
+    const bool looks = is_suspicious(machine.state, std::nullopt, now_ns, machine.rules);
     machine.at(time_s, event::Tick{.activity = looks ? activity : Activity::unknown});
     if (machine.worker() == "killed") return time_s;
   }
@@ -242,9 +241,9 @@ TEST(Next, AWorkerThatIsSeenAtWorkOnceInItsSilenceGetsTheWholeTime) {
   Machine machine{.state = {.worker = kReady}};
   for (double time_s = 95.3; time_s < 96.95; time_s += 0.05) {
     const bool works = static_cast<int>(time_s * 20) % 6 == 0;  // every 0.3 s
-    ASSERT_THAT(machine.at(time_s, event::Tick{.activity = works ? Activity::busy
-                                                                 : Activity::asleep}),
-                IsEmpty())
+    ASSERT_THAT(
+        machine.at(time_s, event::Tick{.activity = works ? Activity::busy : Activity::asleep}),
+        IsEmpty())
         << time_s;
   }
   EXPECT_THAT(machine.at(97, event::Tick{.activity = Activity::busy}),
@@ -256,14 +255,13 @@ TEST(Next, OneLookIsNotEnoughToCallAWorkerHung) {
   EXPECT_THAT(machine.at(96.5, event::Tick{.activity = Activity::stopped}), IsEmpty())
       << "the supervisor may have been away itself";
   EXPECT_THAT(machine.at(96.55, event::Tick{.last_sign_ns = s(96.52)}), IsEmpty());
-  EXPECT_THAT(machine.at(97.2, event::Tick{.last_sign_ns = s(96.52),
-                                           .activity = Activity::stopped}),
-              IsEmpty())
+  EXPECT_THAT(
+      machine.at(97.2, event::Tick{.last_sign_ns = s(96.52), .activity = Activity::stopped}),
+      IsEmpty())
       << "the earlier look does not count";
-  EXPECT_THAT(machine.at(97.35, event::Tick{.last_sign_ns = s(96.52),
-                                            .activity = Activity::stopped}),
-              ElementsAre("warn: pose has given no sign of life for 0.8 s and is stopped; killed",
-                          "kill"));
+  EXPECT_THAT(
+      machine.at(97.35, event::Tick{.last_sign_ns = s(96.52), .activity = Activity::stopped}),
+      ElementsAre("warn: pose has given no sign of life for 0.8 s and is stopped; killed", "kill"));
 }
 
 TEST(Next, AStandstillIsHeldAgainstNobody) {

@@ -358,9 +358,8 @@ TEST_F(DescribedRig, AServiceThatDiesWhileItsReplacementPreparesIsStartedAgainMe
   auto answer = restart_later("pose");
   ASSERT_TRUE(has_two("pose"));
   kill(before, SIGKILL);
-  ASSERT_TRUE(eventually([&] {
-    return pid_of("pose") != before && services()["pose"]["state"] == "ready";
-  }));
+  ASSERT_TRUE(eventually(
+      [&] { return pid_of("pose") != before && services()["pose"]["state"] == "ready"; }));
   const auto between = pid_of("pose");
   std::ofstream(ready) << "now";
   const auto done = answer.get();
