@@ -89,8 +89,8 @@ std::string analyzed(const std::string& arguments, const UnitSpec& spec) {
   const test::Scratch scratch;
   const auto file = scratch.path() / unit_name(spec);
   std::ofstream(file) << unit_text(spec);
-  return test::output_of("/bin/bash", {"-c", "systemd-analyze " + arguments + " " + file.string() +
-                                                 "; echo exit $?"});
+  return test::output_of(
+      "/bin/bash", {"-c", "systemd-analyze " + arguments + " " + file.string() + "; echo exit $?"});
 }
 
 bool can_analyze() { return std::filesystem::exists("/usr/bin/systemd-analyze"); }
@@ -127,10 +127,10 @@ TEST(ServiceUnit, OfTheMachineIsShutInAndHasARuntimeFolder) {
 
 TEST(ServiceUnit, OfAUserAsksForNothingAUserCannotHave) {
   const auto text = unit_text(desk(false));
-  EXPECT_THAT(
-      text, AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")),
-                  Not(HasSubstr("\nRuntimeDirectory")), Not(HasSubstr("\nSupplementaryGroups=")),
-                  Not(HasSubstr("\nOOMScoreAdjust=")), HasSubstr("\nWantedBy=default.target\n")));
+  EXPECT_THAT(text,
+              AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")),
+                    Not(HasSubstr("\nRuntimeDirectory")), Not(HasSubstr("\nSupplementaryGroups=")),
+                    Not(HasSubstr("\nOOMScoreAdjust=")), HasSubstr("\nWantedBy=default.target\n")));
 }
 
 TEST(ServiceUnit, PathsAndSettingsReachTheCommandAsTheyAre) {
@@ -139,9 +139,8 @@ TEST(ServiceUnit, PathsAndSettingsReachTheCommandAsTheyAre) {
   spec.settings = {"name=\"sofa\""};
   EXPECT_THAT(
       unit_text(spec),
-      HasSubstr(
-          R"(up --no-keeper "/my rigs/100%% $$HOME/a\"b\\c.toml" --out "%S/handcast/desk" )"
-          R"(--set "name=\"sofa\"")"));
+      HasSubstr(R"(up --no-keeper "/my rigs/100%% $$HOME/a\"b\\c.toml" --out "%S/handcast/desk" )"
+                R"(--set "name=\"sofa\"")"));
 }
 
 }  // namespace
