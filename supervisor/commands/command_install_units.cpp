@@ -9,7 +9,7 @@
 
 #include "config/rig.hpp"
 #include "ipc/base/log.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/succession/service_unit.hpp"
@@ -74,7 +74,7 @@ int run_install_units(const Arguments& arguments) {
   const auto rig_file = std::filesystem::absolute(options->words.front());
   const auto rig = config::load_rig(rig_file, options->all("--set"));
   if (!rig) return complain(rig.error());
-  if (const auto named = control::socket_of(rig->name); !named) return complain(named.error());
+  if (const auto named = control::address_of(rig->name); !named) return complain(named.error());
 
   auto user = user_of(*options);
   if (!user) return complain(user.error());
