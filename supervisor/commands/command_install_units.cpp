@@ -53,10 +53,7 @@ void print_next_steps(const UnitSpec& spec) {
   fmt::print("  {} daemon-reload\n", systemctl);
   fmt::print("  {} enable --now {}\n", systemctl, unit_name(spec));
   if (spec.system)
-    fmt::print(
-        "To use `handcast status` and the like, set XDG_RUNTIME_DIR=/run/handcast and be user "
-        "{}.\n",
-        spec.user);
+    fmt::print("To use `handcast status` and the like, be user {}.\n", spec.user);
   else
     fmt::print("  loginctl enable-linger    # to run also while you are not logged in\n");
 }

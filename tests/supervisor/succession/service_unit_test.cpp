@@ -112,16 +112,12 @@ TEST(ServiceUnit, OfTheMachineIsAtMostThreeOfTenExposed) {
               HasSubstr("exit 0"));
 }
 
-TEST(ServiceUnit, OfTheMachineIsShutInAndHasARuntimeFolder) {
+TEST(ServiceUnit, OfTheMachineIsShutInAndHasAUser) {
   const auto text = unit_text(desk(true));
-  EXPECT_THAT(
-      text,
-      AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nReadWritePaths=%t/handcast\n"),
-            HasSubstr("\nRuntimeDirectory=handcast\n"),
-            HasSubstr("\nRuntimeDirectoryPreserve=yes\n"),
-            HasSubstr("\nEnvironment=XDG_RUNTIME_DIR=%t/handcast\n"), HasSubstr("\nUser=daemon\n"),
-            HasSubstr("\nSupplementaryGroups=video\n"), HasSubstr("\nOOMScoreAdjust=-"),
-            HasSubstr("\nWantedBy=multi-user.target\n"), Not(HasSubstr("default.target"))));
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nUser=daemon\n"),
+                    HasSubstr("\nSupplementaryGroups=video\n"), HasSubstr("\nOOMScoreAdjust=-"),
+                    HasSubstr("\nWantedBy=multi-user.target\n"), Not(HasSubstr("default.target"))));
   EXPECT_EQ(unit_folder(desk(true)), "/etc/systemd/system");
 }
 
@@ -129,8 +125,8 @@ TEST(ServiceUnit, OfAUserAsksForNothingAUserCannotHave) {
   const auto text = unit_text(desk(false));
   EXPECT_THAT(text,
               AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")),
-                    Not(HasSubstr("\nRuntimeDirectory")), Not(HasSubstr("\nSupplementaryGroups=")),
-                    Not(HasSubstr("\nOOMScoreAdjust=")), HasSubstr("\nWantedBy=default.target\n")));
+                    Not(HasSubstr("\nSupplementaryGroups=")), Not(HasSubstr("\nOOMScoreAdjust=")),
+                    HasSubstr("\nWantedBy=default.target\n")));
 }
 
 TEST(ServiceUnit, PathsAndSettingsReachTheCommandAsTheyAre) {
