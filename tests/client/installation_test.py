@@ -10,6 +10,7 @@ against a rig that was started from the moved tree.
 import json
 import os
 import pathlib
+import pwd
 import re
 import shlex
 import shutil
@@ -78,9 +79,13 @@ class TheInstalledTree(unittest.TestCase):
         programs = {file.name for file in (tree / "bin").iterdir()}
         self.assertEqual(programs - OPTIONAL, PROGRAMS)
         for file in ("share/handcast/hand_left.glb", "share/handcast/landmarks/handcast.onnx",
-                     "share/handcast/rigs/twin.toml", "share/doc/handcast/README.md",
-                     "share/doc/handcast/LICENSE"):
+                     "share/handcast/rigs/twin.toml", "share/handcast/calibrations/paper.toml",
+                     "share/handcast/sweeps/stress.toml", "share/doc/handcast/README.md",
+                     "share/doc/handcast/docs/operating.md",
+                     "share/doc/handcast/config/REFERENCE.md", "share/doc/handcast/LICENSE"):
             self.assertTrue((tree / file).is_file(), file)
+        for word in ("test", "train", "bench", "fuzz", "make-hands"):
+            self.assertEqual([file for file in programs if word in file], [], word)
 
     def test_does_not_name_the_place_it_was_built_or_installed_in(self):
         places = [str(place).encode() for place in (build, REPOSITORY, scratch / "installed")]
@@ -111,8 +116,25 @@ class TheInstalledTree(unittest.TestCase):
 
     def test_lets_systemd_run_the_programs_where_they_are_now(self):
         unit = handcast("install-units", rig_file(), "--print")
-        command = f'"{tree}/bin/handcast" up --no-keeper "{rig_file()}"'
+        command = f'"{tree}/bin/handcast" up --no-keeper "{rig_file()}" --out "%S/handcast/twin"'
         self.assertIn("ExecStart=" + command, unit)
+
+    @unittest.skipUnless(shutil.which("systemd-analyze"), "systemd-analyze is not installed")
+    def test_makes_units_that_systemd_accepts(self):
+        for options in ([], ["--system", "--user", "daemon"]):
+            unit = scratch / "handcast-twin.service"
+            unit.write_text(handcast("install-units", *options, rig_file(), "--print"))
+            run("systemd-analyze", "verify", "--man=no", "--recursive-errors=no", unit)
+
+    def test_runs_no_system_unit_as_root_by_accident(self):
+        command = [tree / "bin/handcast", "install-units", "--system", "--print", rig_file()]
+        done = subprocess.run(command, env=environment(), capture_output=True, text=True,
+                              timeout=PATIENCE_S)
+        if os.getuid() == 0:
+            self.assertEqual(done.returncode, 100)
+            self.assertIn("would run as root; --user NAME", done.stderr)
+        else:
+            self.assertIn(f"\nUser={pwd.getpwuid(os.getuid()).pw_name}\n", done.stdout)
 
     def test_has_every_header_that_its_headers_include(self):
         folder = tree / "include/handcast"

@@ -112,13 +112,12 @@ TEST(ServiceUnit, OfTheMachineIsAtMostThreeOfTenExposed) {
               HasSubstr("exit 0"));
 }
 
-TEST(ServiceUnit, OfTheMachineIsShutIn) {
+TEST(ServiceUnit, OfTheMachineIsShutInAndHasAUser) {
   const auto text = unit_text(desk(true));
   EXPECT_THAT(text,
-              AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nPrivateTmp=yes\n"),
-                    HasSubstr("\nUser=daemon\n"), HasSubstr("\nSupplementaryGroups=video\n"),
-                    HasSubstr("\nOOMScoreAdjust=-"), HasSubstr("\nWantedBy=multi-user.target\n"),
-                    Not(HasSubstr("default.target"))));
+              AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nUser=daemon\n"),
+                    HasSubstr("\nSupplementaryGroups=video\n"), HasSubstr("\nOOMScoreAdjust=-"),
+                    HasSubstr("\nWantedBy=multi-user.target\n"), Not(HasSubstr("default.target"))));
   EXPECT_EQ(unit_folder(desk(true)), "/etc/systemd/system");
 }
 
