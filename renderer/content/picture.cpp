@@ -15,6 +15,7 @@
 #include <jerror.h>
 
 #include "ipc/base/input_file.hpp"
+#include "renderer/content/png_chunks.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -45,13 +46,16 @@ struct PngFile {
 template <class Pixel>
 Result<Image<Pixel>> decode_png(std::string_view bytes, const std::filesystem::path& file,
                                 std::uint32_t format) {
-  PngFile opened(bytes);
+  const auto plain = plain_png(bytes);
+  PngFile opened(plain.bytes);
   const auto broken = [&] {
     return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture.", file.string()));
   };
   if (!opened.is_well()) return broken();
   const auto width = opened.png.width, height = opened.png.height;
   if (std::max(width, height) > kLargestSide) return too_large(file, width, height);
+  if (!plain.fault.empty())
+    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), plain.fault));
   opened.png.format = format;
   Image<Pixel> image(static_cast<int>(width), static_cast<int>(height));
   const png_color black{};
