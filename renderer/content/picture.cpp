@@ -15,6 +15,7 @@
 #include <jerror.h>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/output_file.hpp"
 #include "renderer/content/png_chunks.hpp"
 
 namespace handcast::renderer {
@@ -165,6 +166,7 @@ Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
 }
 
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {
+  if (auto possible = check_output(file); !possible) return possible;
   std::vector<std::uint8_t> rgb;
   rgb.reserve(static_cast<std::size_t>(picture.width) * picture.height * 3);
   for (int y = 0; y < picture.height; ++y)

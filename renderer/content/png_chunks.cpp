@@ -58,13 +58,18 @@ std::optional<std::uint64_t> bytes_of_image(std::string_view header) {
   struct Pass {
     std::uint64_t x, y, step_x, step_y;
   };
-  constexpr std::array<Pass, 7> kPasses{
-      {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4}, {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}}};
+  constexpr std::array<Pass, 7> kPasses{{{0, 0, 8, 8},
+                                         {4, 0, 8, 8},
+                                         {0, 4, 4, 8},
+                                         {2, 0, 4, 4},
+                                         {0, 2, 2, 4},
+                                         {1, 0, 2, 2},
+                                         {0, 1, 1, 2}}};
   std::uint64_t bytes = 0;
   for (const auto& pass : kPasses)
-    bytes += bytes_of_rows((width - std::min(pass.x, width) + pass.step_x - 1) / pass.step_x,
-                           (height - std::min(pass.y, height) + pass.step_y - 1) / pass.step_y,
-                           bits);
+    bytes +=
+        bytes_of_rows((width - std::min(pass.x, width) + pass.step_x - 1) / pass.step_x,
+                      (height - std::min(pass.y, height) + pass.step_y - 1) / pass.step_y, bits);
   return bytes;
 }
 

@@ -91,8 +91,8 @@ Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side
     return fail(Errc::bad_config, fmt::format("'{}' has the shape ({}); expected ({}, {}, 2) or, "
                                               "with sigmas, ({}, {}, 3), as many as "
                                               "landmarks_timestamps.npy",
-                                              file.string(), fmt::join(opened->shape(), ", "), count,
-                                              msg::kLandmarks, count, msg::kLandmarks));
+                                              file.string(), fmt::join(opened->shape(), ", "),
+                                              count, msg::kLandmarks, count, msg::kLandmarks));
   const auto array = opened->read();
   if (!array) return tl::make_unexpected(array.error());
   if (const auto fault = fault_of_points(*array); !fault.empty())

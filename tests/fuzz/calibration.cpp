@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A calibration file; then what the renderer computes with it.
+#include "calib/calibration.hpp"
+
 #include <cmath>
 
-#include "calib/calibration.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace {

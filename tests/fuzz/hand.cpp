@@ -40,16 +40,15 @@ msg::Owned<msg::Projection> draw(const HandMesh& mesh, const twin::Twin& twin,
   }
   renderer::correct_vertices(cascade.correct, surface.mesh(), p, q, skinned.landings_px);
   renderer::Untangler untangler(surface.mesh());
-  fuzz::require(
-      untangler.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign) >= 0);
+  fuzz::require(untangler.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign) >= 0);
 
   msg::Owned<msg::Projection> projection;
   projection->lit_ns = kTime_ns;
   projection->hand_count = 1;
   auto& hand = projection->hands[0];
   hand.side = msg::Side::left;
-  hand.vertex_count = static_cast<std::uint32_t>(
-      std::min<std::size_t>(mesh.vertex_count(), msg::kMaxVertices));
+  hand.vertex_count =
+      static_cast<std::uint32_t>(std::min<std::size_t>(mesh.vertex_count(), msg::kMaxVertices));
   for (std::uint32_t v = 0; v < hand.vertex_count; ++v)
     hand.landings[v] = {skinned.landings_px[v].x, skinned.landings_px[v].y};
   return projection;

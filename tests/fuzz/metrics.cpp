@@ -2,6 +2,7 @@
 // The exporter's part of HTTP: the answer to a scrape, from the status of a supervisor. The request
 // is read by civetweb, a library, and its contents are not used.
 #include "supervisor/metrics/metrics.hpp"
+
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A PNG or JPEG file.
 #include "renderer/content/picture.hpp"
+
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -30,12 +30,11 @@ namespace {
 using namespace handcast;
 namespace fs = std::filesystem;
 
-constexpr std::array kNames{"timestamps.npy",      "camera_timestamps.npy",
-                            "landmarks_timestamps.npy",
-                            "joints_left.npy",     "joints_right.npy",
-                            "bones_left.npy",      "bones_right.npy",
-                            "landmarks_left.npy",  "landmarks_right.npy",
-                            "camera/000000.png",   "camera/000001.png"};
+constexpr std::array kNames{
+    "timestamps.npy",    "camera_timestamps.npy", "landmarks_timestamps.npy",
+    "joints_left.npy",   "joints_right.npy",      "bones_left.npy",
+    "bones_right.npy",   "landmarks_left.npy",    "landmarks_right.npy",
+    "camera/000000.png", "camera/000001.png"};
 
 /// A folder that is filled anew for each input.
 class Folder {

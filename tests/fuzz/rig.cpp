@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rig file: TOML up to the first zero byte, then one argument of --set per line.
 #include "config/rig.hpp"
+
 #include "tests/fuzz/input.hpp"
 
 namespace {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/settings/files.hpp"
+#include "ipc/base/output_file.hpp"
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 
@@ -205,6 +206,7 @@ Result<void> write_table(const std::filesystem::path& file, const Table& table) 
   for (const auto& row : table.rows) newest[Table::index_of(row)] = &row;
   auto beside = file;
   beside += ".new";
+  if (auto possible = check_output(beside); !possible) return possible;
   std::ofstream stream(beside, std::ios::binary);
   stream << table.heading.print();
   for (const auto& [index, row] : newest) stream << print_row(*row);

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/output_file.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -88,9 +89,9 @@ Result<Layout> parse_layout(const path& file, std::string_view bytes) {
     return damaged(file, "the header has no plain number type");
   layout.type = type.substr(1, 3);
   if (layout.type != "<f4" && layout.type != "<f8" && layout.type != "<i4" && layout.type != "<i8")
-    return damaged(
-        file, fmt::format("the array holds '{}'; '<f4', '<f8', '<i4' and '<i8' are supported",
-                          layout.type));
+    return damaged(file,
+                   fmt::format("the array holds '{}'; '<f4', '<f8', '<i4' and '<i8' are supported",
+                               layout.type));
   if (!value_of(header, "fortran_order").starts_with("False"))
     return damaged(file, "the array is not in C order");
   if (!parse_shape(value_of(header, "shape"), layout.shape))
@@ -110,6 +111,7 @@ void append(std::string_view data, std::vector<double>& values) {
 Result<void> write_array(const path& file, std::string_view type,
                          const std::vector<std::size_t>& shape, const void* data,
                          std::size_t bytes) {
+  if (auto possible = check_output(file); !possible) return possible;
   std::string tuple;
   for (const std::size_t extent : shape) tuple += fmt::format("{}, ", extent);
   std::string header =

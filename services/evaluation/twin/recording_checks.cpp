@@ -30,8 +30,8 @@ bool is_step_of_a_sensor(double step_us) {
 
 /// ", are they in nanoseconds?": the unit in which the step would be one of a sensor.
 std::string guessed_unit(double step) {
-  for (const auto& [us, unit] : {std::pair{1e-3, "nanoseconds"}, {1e3, "milliseconds"},
-                                 {1e6, "seconds"}})
+  for (const auto& [us, unit] :
+       {std::pair{1e-3, "nanoseconds"}, {1e3, "milliseconds"}, {1e6, "seconds"}})
     if (is_step_of_a_sensor(step * us)) return fmt::format("; are they in {}?", unit);
   return {};
 }
@@ -76,8 +76,7 @@ std::string fault_of_sample(const msg::HandPose& pose, double usual_length_m) {
 std::string fault_of_jump(const msg::HandPose& before, const msg::HandPose& after,
                           std::int64_t span_ns) {
   constexpr double kJump_m = 0.5, kFastest_m_s = 25;
-  const double way_m =
-      glm::distance(place_of(before, kWrist), place_of(after, kWrist));
+  const double way_m = glm::distance(place_of(before, kWrist), place_of(after, kWrist));
   if (way_m < kJump_m || way_m < kFastest_m_s * ns_to_seconds(span_ns)) return {};
   return fmt::format("the wrist jumps by {:.3g} m within {:.3g} ms", way_m, ns_to_ms(span_ns));
 }
@@ -94,9 +93,10 @@ std::string fault_of_times(std::span<const double> times_us) {
     steps_us.push_back(times_us[i] - times_us[i - 1]);
   const double step_us = median(std::move(steps_us));
   if (step_us <= 0 || is_step_of_a_sensor(step_us)) return {};  // 0: the order is checked elsewhere
-  return fmt::format("the times are {:.6g} us apart (median), which no sensor is; they must be in "
-                     "microseconds{}",
-                     step_us, guessed_unit(step_us));
+  return fmt::format(
+      "the times are {:.6g} us apart (median), which no sensor is; they must be in "
+      "microseconds{}",
+      step_us, guessed_unit(step_us));
 }
 
 std::string fault_of_poses(std::span<const msg::HandPose> poses,

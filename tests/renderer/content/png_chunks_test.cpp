@@ -24,8 +24,8 @@ std::string big_endian(std::uint32_t number) {
 
 std::string chunk(const std::string& type, const std::string& data) {
   const auto content = type + data;
-  const auto sum = crc32(0, reinterpret_cast<const Bytef*>(content.data()),
-                         static_cast<uInt>(content.size()));
+  const auto sum =
+      crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
   return big_endian(static_cast<std::uint32_t>(data.size())) + content +
          big_endian(static_cast<std::uint32_t>(sum));
 }
@@ -80,8 +80,7 @@ TEST_F(Png, ImageDataBeyondTheLastPixelIsRefused) {
   EXPECT_TRUE(read(picture("", "a few bytes do no harm")));
   const auto refused = read(picture("", std::string(10'000'000, '\0')));
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().what,
-              HasSubstr("picture.png' has more image data than pixels"));
+  EXPECT_THAT(refused.error().what, HasSubstr("picture.png' has more image data than pixels"));
 }
 
 TEST_F(Png, DamageIsLeftToTheDecoder) {
