@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A calibration file; then what the renderer computes with it.
+// Limits: 10 s and 1 GB per input.
 #include "calib/calibration.hpp"
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A line that a program sends to the control socket, and a description of a service.
+// Limits: 10 s and 1 GB per input.
 #include "ipc/control/control_message.hpp"
 #include "ipc/daemon/description.hpp"
 #include "tests/fuzz/input.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The decoders of the networks' outputs, with any finite numbers. The input's numbers are repeated
 // until an output is full.
+// Limits: 10 s and 1 GB per input.
 #include <cmath>
 #include <vector>
 

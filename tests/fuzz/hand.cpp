@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A .glb file as the model of a hand: read, painted, skinned, corrected, untangled, and scored as
 // the true hand of the twin.
+// Limits: 10 s and 1 GB per input.
 #include <algorithm>
 #include <cmath>
 

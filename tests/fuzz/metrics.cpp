@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The exporter's part of HTTP: the answer to a scrape, from the status of a supervisor. The request
 // is read by civetweb, a library, and its contents are not used.
+// Limits: 10 s and 1 GB per input.
 #include "supervisor/metrics/metrics.hpp"
 
 #include "tests/fuzz/input.hpp"

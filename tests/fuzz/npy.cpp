@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A NumPy array, also read as the time stamps of a sensor.
+// Limits: 10 s and 1 GB per input.
 #include "services/evaluation/twin/recording.hpp"
 #include "tests/fuzz/input.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An ONNX file: its structure, then the network that oneDNN makes of it.
+// Limits: 10 s and 1 GB per input.
 #include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/inference/onnx/model.hpp"
 #include "tests/fuzz/input.hpp"

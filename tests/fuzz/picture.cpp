@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A PNG or JPEG file.
+// Limits: 10 s and 1 GB per input.
 #include "renderer/content/picture.hpp"
 
 #include "tests/fuzz/input.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The folder of a recording, opened by the three replay back ends and as a motion of the twin. The
 // input is a sequence of files: number of the name, length (16 bits), contents.
+// Limits: 10 s and 1 GB per input.
 #include <fcntl.h>
 
 #include <array>

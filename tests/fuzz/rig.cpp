@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rig file: TOML up to the first zero byte, then one argument of --set per line.
+// Limits: 10 s and 1 GB per input.
 #include "config/rig.hpp"
 
 #include "tests/fuzz/input.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // handcast's network with changed weights, from its file to the hands in an image. The input is a
 // sequence of changes: number of the constant, number of the element, new value.
+// Limits: 10 s and 1 GB per input.
 #include <cmath>
 #include <iterator>
 
