@@ -158,7 +158,7 @@ TEST(Paths, OfAFileStartAtItsFolder) {
 }
 
 TEST(Rig, ANameThatNoFileCanHaveIsRefused) {
-  for (const auto& name : std::vector<std::string>{"", "a b", "a/b", "a\\nb", std::string(49, 'x')})
+  for (const auto& name : std::vector<std::string>{"", "a b", "a/b", "a\\tb", std::string(49, 'x')})
     EXPECT_THAT(faults_of("name = \"" + name + "\""),
                 ElementsAre(HasSubstr("is not a valid name of a rig")))
         << name;

@@ -70,6 +70,15 @@ TEST_P(EveryModel, HasTheTraitsItSays) {
   EXPECT_GE(traits.passes_at_first, 1);
 }
 
+TEST(ModelsFolder, OneThatIsNamedMustBeThere) {
+  const test::Scratch scratch;
+  EXPECT_EQ(models_folder(scratch.path().string()).value(), scratch.path());
+  const auto missing = models_folder((scratch.path() / "nowhere").string());
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Errc::bad_config);
+  EXPECT_THAT(missing.error().what, ::testing::HasSubstr("nowhere: there is no such folder"));
+}
+
 TEST(LandmarkModels, AnUnknownOneIsRefusedAndTheKnownOnesAreNamed) {
   const auto opened = open_landmark_model("abacus", {});
   ASSERT_FALSE(opened);
