@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include <csignal>
+#include <fstream>
 #include <utility>
 
 #include "config/settings/files.hpp"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "config/settings/choice.hpp"
 #include "services/landmarks/inference/onnx/wire.hpp"

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 
 #include "services/landmarks/inference/network.hpp"
+#include "services/landmarks/models/models_folder.hpp"
 #include "services/landmarks/training/trial.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {
