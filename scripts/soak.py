@@ -3,18 +3,15 @@
 """The implementation of scripts/soak. Uses only the standard library."""
 import argparse
 import csv
-import json
 import os
 import pathlib
 import random
 import signal
-import subprocess
 import sys
-import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-HANDCAST = pathlib.Path(os.environ.get("HANDCAST_BIN", ROOT / "build/bin")).resolve() / "handcast"
+from running_rig import ROOT, Rig
+
 SAMPLE_EVERY_S = 5
 MOST_MISSED_PERCENT = 1  # more than in quiet: what a busy machine misses anyway is not the kills' doing
 MOST_RISE = 0.1
@@ -33,74 +30,6 @@ def parse_options():
     parser.add_argument("--kill-supervisor", type=float, default=60)
     parser.add_argument("--seed", type=int, default=1)
     return parser.parse_args()
-
-
-class Rig:
-    """A process of `handcast up` with its own runtime folder."""
-
-    def __init__(self, options):
-        self.runtime = tempfile.TemporaryDirectory(prefix="handcast-soak-")
-        self.environment = {**os.environ, "XDG_RUNTIME_DIR": self.runtime.name}
-        self.log = open(options.out / "rig.log", "w")
-        settings = [word for setting in options.set for word in ("--set", setting)]
-        self.process = subprocess.Popen([HANDCAST, "up", options.rig, *settings], env=self.environment, stdout=self.log, stderr=self.log)
-
-    def status(self):
-        answer = subprocess.run([HANDCAST, "status", "--json"], env=self.environment, capture_output=True, text=True)
-        return json.loads(answer.stdout) if answer.returncode == 0 else None
-
-    def wait_until_ready(self):
-        limit = time.monotonic() + 60
-        while time.monotonic() < limit and self.process.poll() is None:
-            now = self.status()
-            if now and all(service["state"] == "ready" for service in now["services"].values()):
-                return now
-            time.sleep(0.1)
-        raise SystemExit(f"soak: the rig did not become ready; see {self.log.name}")
-
-    def supervisor(self):
-        """The keeper's child that runs `handcast up`: services lead their own sessions. None if there is no keeper."""
-        for pid in children_of(self.process.pid):
-            if name_of(pid).startswith("handcast") and session_of(pid) == session_of(self.process.pid):
-                return pid
-        return None
-
-    def members(self, status):
-        """The pids by name."""
-        members = {name: service["pid"] for name, service in status["services"].items() if service["pid"]}
-        supervisor = self.supervisor()
-        return {**members, "keeper" if supervisor else "supervisor": self.process.pid, **({"supervisor": supervisor} if supervisor else {})}
-
-    def stop(self):
-        self.process.send_signal(signal.SIGINT)
-        try:
-            code = self.process.wait(30)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            code = None
-        return code
-
-
-def children_of(pid):
-    try:
-        return [int(child) for child in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-    except OSError:
-        return []
-
-
-def name_of(pid):
-    try:
-        return pathlib.Path(f"/proc/{pid}/comm").read_text().strip()
-    except OSError:
-        return ""
-
-
-def session_of(pid):
-    """The session of a process; None if it has died."""
-    try:
-        return os.getsid(pid)
-    except OSError:
-        return None
 
 
 def memory_kib(pid):
@@ -271,7 +200,7 @@ def write_csv(rows, path):
 def main():
     options = parse_options()
     options.out.mkdir(parents=True, exist_ok=True)
-    rig = Rig(options)
+    rig = Rig(options.rig, options.set, open(options.out / "rig.log", "w"))
     try:
         rig.wait_until_ready()
         rows, light, kills = soak(rig, options)

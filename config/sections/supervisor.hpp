@@ -40,7 +40,7 @@ void describe(Visitor& visitor, Supervisor& supervisor) {
   visitor.field("ready_s", supervisor.ready_s, between(0.1, 300, "s"),
                 "A service that is not ready after this time is replaced.");
   visitor.field("stop_s", supervisor.stop_s, between(0.1, 60, "s"),
-                "How long a service may take to stop before it is killed.");
+                "How long a service, or the whole rig, may take to stop before it is killed.");
   visitor.field("silent_s", supervisor.silent_s, between(0.2, 300, "s"),
                 "A service without a heartbeat for this time (stopped, or in an endless loop) is "
                 "killed and replaced.");

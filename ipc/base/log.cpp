@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/log.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdlib>
@@ -38,6 +40,28 @@ Level level_from_environment() {
   return Level::info;
 }
 
+/// systemd names its socket "DEVICE:INODE". Services of a rig inherit the variable, but their
+/// stderr is a pipe to the supervisor, which adds the priority when it prints the line.
+bool stderr_is_journal() {
+  const char* journal = std::getenv("JOURNAL_STREAM");
+  struct stat status {};
+  return journal && ::fstat(STDERR_FILENO, &status) == 0 &&
+         fmt::format("{}:{}", status.st_dev, status.st_ino) == journal;
+}
+
+/// The priorities of syslog(3) for the levels.
+std::string_view priority_of(Level level) {
+  constexpr std::array<std::string_view, 4> kPriorities{"<7>", "<6>", "<4>", "<3>"};
+  return kPriorities[static_cast<std::size_t>(level)];
+}
+
+std::string_view take_word(std::string_view& text) {
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  const auto word = text.substr(0, text.find(' '));
+  text.remove_prefix(word.size());
+  return word;
+}
+
 std::string& program() {
   static std::string name = "handcast";
   return name;
@@ -53,10 +77,31 @@ std::atomic<Level>& threshold() {
 void set_program(std::string_view name) { program() = name; }
 void set_level(Level level) { threshold() = level; }
 
+std::optional<ParsedLine> parse(std::string_view line) {
+  take_word(line);  // time
+  take_word(line);  // program
+  const auto found = std::ranges::find(kNames, take_word(line));
+  if (found == kNames.end()) return std::nullopt;
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  return ParsedLine{static_cast<Level>(found - kNames.begin()), line};
+}
+
+std::string for_journal(Level level, std::string text) {
+  if (!stderr_is_journal()) return text;
+  std::string marked;
+  for (std::string_view rest = text; !rest.empty();) {
+    const auto line = rest.substr(0, rest.find('\n'));
+    marked += fmt::format("{}{}\n", priority_of(level), line);
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  }
+  return marked;
+}
+
 void write(Level level, std::string_view line) {
   if (level < threshold().load(std::memory_order_relaxed)) return;
-  const auto text = fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
-                                kNames[static_cast<std::size_t>(level)], printable(line));
+  const auto text = for_journal(
+      level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
+                         kNames[static_cast<std::size_t>(level)], printable(line)));
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,8 +27,21 @@ void set_program(std::string_view name);
 /// variable HANDCAST_LOG (debug, info, warning or error). Any thread.
 void set_level(Level level);
 
+/// The parts of a line that write() has made.
+struct ParsedLine {
+  Level level;                ///< its third word
+  std::string_view sentence;  ///< what follows the level; a part of the line
+};
+/// The parts of a line. Empty if write() cannot have made it.
+std::optional<ParsedLine> parse(std::string_view line);
+
+/// `text` with the syslog priority of `level` before each of its
+/// lines ("<4>" for a warning) if stderr is the journal of systemd ($JOURNAL_STREAM). Otherwise
+/// unchanged.
+std::string for_journal(Level level, std::string text);
+
 /// Writes one line to stderr with a single write(2): "12.345 camera  info  …", the time in seconds
-/// of CLOCK_MONOTONIC. Any thread.
+/// of CLOCK_MONOTONIC. In the journal, with for_journal(). Any thread.
 void write(Level level, std::string_view line);
 
 /// Formats a line with fmt and writes it at the level of the function's name. Any thread.

@@ -8,7 +8,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/client/rig_ring.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 
 namespace handcast::client {
 namespace {
@@ -17,9 +17,9 @@ constexpr auto kPatience = std::chrono::milliseconds(100);
 
 /// False if nobody listens at the control socket. A supervisor that hangs is there.
 bool has_supervisor(const std::string& rig) {
-  const auto socket = control::socket_of(rig);
-  if (!socket) return false;
-  const auto connection = control::connect_to(*socket);
+  const auto address = control::address_of(rig);
+  if (!address) return false;
+  const auto connection = control::connect_to(*address);
   return connection || connection.error().code == Errc::timeout;
 }
 

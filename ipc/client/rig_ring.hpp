@@ -17,7 +17,7 @@ struct RigRing {
 
 /// Requests the ring of a stream from a rig. An empty name means the only rig that is up. Waits for
 /// the answer at most `patience`. Errors: unavailable (no such rig is up, it does not answer, or
-/// there is no memory to map the ring), bad_config (the runtime folder, or no stream of this name;
+/// there is no memory to map the ring), bad_config (no stream of this name;
 /// the sentence names those that there are), bad_data (the answer or the ring is unusable, e.g. of
 /// another version).
 Result<RigRing> rig_ring(const std::string& rig, std::string_view stream,

@@ -6,21 +6,20 @@
 #include <algorithm>
 
 #include "ipc/base/join.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 
 namespace handcast::control {
 
 Result<std::string> choose_rig(const std::string& name) {
   const auto rigs = living_rigs();
-  if (!rigs) return tl::make_unexpected(rigs.error());
-  if (rigs->empty())
+  if (rigs.empty())
     return fail(Errc::unavailable, "no rig is up; `handcast up RIG.toml` starts one");
-  if (name.empty() && rigs->size() == 1) return rigs->front();
+  if (name.empty() && rigs.size() == 1) return rigs.front();
   if (name.empty())
-    return fail(Errc::unavailable, fmt::format("several rigs are up: {}", join(*rigs, ", ")));
-  if (std::ranges::find(*rigs, name) == rigs->end())
+    return fail(Errc::unavailable, fmt::format("several rigs are up: {}", join(rigs, ", ")));
+  if (std::ranges::find(rigs, name) == rigs.end())
     return fail(Errc::unavailable,
-                fmt::format("no rig named '{}' is up; there is: {}", name, join(*rigs, ", ")));
+                fmt::format("no rig named '{}' is up; there is: {}", name, join(rigs, ", ")));
   return name;
 }
 

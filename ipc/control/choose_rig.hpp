@@ -7,8 +7,7 @@
 namespace handcast::control {
 
 /// The rig that is meant by `name`: the one of that name, or, if `name` is empty, the only rig that
-/// is up. Errors: unavailable (no such rig, or several; the sentence names those that are up),
-/// bad_config (the runtime folder).
+/// is up. Errors: unavailable (no such rig, or several; the sentence names those that are up).
 Result<std::string> choose_rig(const std::string& name);
 
 }  // namespace handcast::control

@@ -11,7 +11,7 @@
 #include <cstring>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 
 namespace handcast::control {
 namespace {
@@ -86,9 +86,9 @@ Result<void> receive_line(int socket, Received& received, Deadline deadline) {
 }
 
 Result<UniqueFd> send_to(const std::string& rig, const Request& request) {
-  const auto path = socket_of(rig);
-  if (!path) return tl::make_unexpected(path.error());
-  auto socket = connect_to(*path);
+  const auto address = address_of(rig);
+  if (!address) return tl::make_unexpected(address.error());
+  auto socket = connect_to(*address);
   if (!socket) return tl::make_unexpected(socket.error());
   const auto line = print_request(request) + "\n";
   if (::send(socket->get(), line.data(), line.size(), MSG_NOSIGNAL) !=

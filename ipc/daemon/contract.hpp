@@ -24,6 +24,12 @@
 ///          HANDCAST_STANDBY_FD=8
 ///              Set for a spare. It prepares everything that a second process may have, then waits
 ///              here for the byte '1', its turn. If the other end is closed, it ends with exit 0.
+///          HANDCAST_RIG=handcast-1000//twin
+///              The address of its rig (ipc/control/rig_address.hpp). A daemon does not use it: by
+///              it the daemons of a rig are found among all processes.
+///          HANDCAST_STATE_FD=9
+///              The memory with the saved state of the supervisor. A daemon only holds it open, for
+///              a successor of the supervisor.
 ///          HANDCAST_OUT=DIR
 ///              Where files to be kept are written (scores, pictures). Unset: nowhere.
 ///
@@ -44,13 +50,15 @@ inline constexpr const char* kRingsVariable = "HANDCAST_RINGS";
 inline constexpr const char* kReadyVariable = "HANDCAST_READY_FD";
 inline constexpr const char* kEpochVariable = "HANDCAST_EPOCH_NS";
 inline constexpr const char* kStandbyVariable = "HANDCAST_STANDBY_FD";
+inline constexpr const char* kRigVariable = "HANDCAST_RIG";
+inline constexpr const char* kStateVariable = "HANDCAST_STATE_FD";
 inline constexpr const char* kOutVariable = "HANDCAST_OUT";
 /// @}
 
 /// The variables that differ from daemon to daemon: none is inherited from the supervisor's own
 /// environment.
-inline constexpr std::array kHandoverVariables{kRingsVariable, kReadyVariable, kEpochVariable,
-                                               kStandbyVariable};
+inline constexpr std::array kHandoverVariables{kRingsVariable,   kReadyVariable, kEpochVariable,
+                                               kStandbyVariable, kRigVariable,   kStateVariable};
 
 inline constexpr char kReadyWord = '\n';    ///< on the ready descriptor
 inline constexpr char kPreparedWord = 's';  ///< on the ready descriptor, from a spare

@@ -67,6 +67,8 @@ std::vector<std::string> to_environment(const Handover& handover) {
   if (handover.ready_fd >= 0) add(kReadyVariable, handover.ready_fd);
   if (handover.epoch_ns) add(kEpochVariable, *handover.epoch_ns);
   if (handover.standby_fd >= 0) add(kStandbyVariable, handover.standby_fd);
+  if (!handover.rig.empty()) add(kRigVariable, handover.rig);
+  if (handover.state_fd >= 0) add(kStateVariable, handover.state_fd);
   return variables;
 }
 
@@ -74,7 +76,9 @@ Handover from_environment() {
   return {.rings = parse_rings(value_of(kRingsVariable)),
           .ready_fd = descriptor_in(kReadyVariable),
           .standby_fd = descriptor_in(kStandbyVariable),
-          .epoch_ns = parse_number<std::int64_t>(value_of(kEpochVariable))};
+          .epoch_ns = parse_number<std::int64_t>(value_of(kEpochVariable)),
+          .rig = std::string(value_of(kRigVariable)),
+          .state_fd = descriptor_in(kStateVariable)};
 }
 
 }  // namespace handcast::daemon

@@ -12,21 +12,77 @@ namespace {
 
 using Parts = std::array<double, 3>;  ///< barycentric coordinates
 
-std::uint8_t strongest_joint(const HandMesh& hand, const std::array<std::uint16_t, 3>& corners,
-                             const Parts& part) {
-  std::array<double, kJoints> weight{};
-  for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 4; ++i)
-      weight[hand.joints[corners[k]][i]] += part[k] * hand.weights[corners[k]][i];
+/// The skin weights of a triangle, by joint.
+class JointShares {
+ public:
+  JointShares(const HandMesh& hand, const std::array<std::uint16_t, 3>& corners) {
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 4; ++i)
+        if (hand.weights[corners[k]][i] > 0) note(hand.joints[corners[k]][i]);
+    std::sort(joints_.begin(), joints_.begin() + joint_count_);
+    for (int k = 0; k < 3; ++k)
+      for (int i = 0; i < 4; ++i)
+        if (const double weight = hand.weights[corners[k]][i]; weight > 0)
+          shares_[share_count_++] = {place_of(hand.joints[corners[k]][i]), k, weight};
+    leader_ = find_leader();
   }
-  return static_cast<std::uint8_t>(std::max_element(weight.begin(), weight.end()) - weight.begin());
-}
+
+  /// The joint with the largest weight at a point of the triangle; the first one if several have
+  /// it.
+  std::uint8_t strongest(const Parts& part) const {
+    return joints_[leader_ >= 0 ? leader_ : strongest_place(part)];
+  }
+
+ private:
+  struct Share {
+    int place;  ///< index into joints_
+    int corner;
+    double weight;
+  };
+
+  void note(std::uint8_t joint) {
+    const auto end = joints_.begin() + joint_count_;
+    if (std::find(joints_.begin(), end, joint) == end) joints_[joint_count_++] = joint;
+  }
+  int place_of(std::uint8_t joint) const {
+    return static_cast<int>(std::find(joints_.begin(), joints_.end(), joint) - joints_.begin());
+  }
+
+  int strongest_place(const Parts& part) const {
+    std::array<double, 12> weight{};
+    for (int s = 0; s < share_count_; ++s)
+      weight[shares_[s].place] += part[shares_[s].corner] * shares_[s].weight;
+    return static_cast<int>(std::max_element(weight.begin(), weight.begin() + joint_count_) -
+                            weight.begin());
+  }
+
+  /// The joint that is the strongest one at all three corners, and so everywhere between them; -1
+  /// if there is none, or if its lead is so small that rounding could decide.
+  int find_leader() const {
+    constexpr double kLead = 1e-6;
+    const int leader = strongest_place({1, 0, 0});
+    for (int k = 0; k < 3; ++k) {
+      std::array<double, 12> weight{};
+      for (int s = 0; s < share_count_; ++s)
+        if (shares_[s].corner == k) weight[shares_[s].place] += shares_[s].weight;
+      for (int place = 0; place < joint_count_; ++place)
+        if (place != leader && weight[leader] < weight[place] + kLead) return -1;
+    }
+    return leader;
+  }
+
+  std::array<std::uint8_t, 12> joints_{};  ///< those with a weight, ascending
+  std::array<Share, 12> shares_{};
+  int joint_count_ = 0, share_count_ = 0;
+  int leader_ = -1;  ///< find_leader(): index into joints_
+};
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
 }  // namespace
 
-ChartMap::ChartMap(const HandMesh& hand, int width, int height) : texels_(width, height) {
+ChartMap::ChartMap(const HandMesh& hand, int width, int height)
+    : texels_(width, height), on_(width, height), off_(width, height, 1) {
   for (const auto& triangle : hand.triangles) draw_triangle(hand, triangle);
   std::array<double, 256> outwards{};
   for (std::size_t v = 0; v < hand.vertex_count(); ++v)
@@ -48,51 +104,42 @@ void ChartMap::draw_triangle(const HandMesh& hand, const std::array<std::uint16_
       Rect{static_cast<int>(std::ceil(low.x)), static_cast<int>(std::ceil(low.y)),
            static_cast<int>(std::floor(high.x)) + 1, static_cast<int>(std::floor(high.y)) + 1}
           .within(texels_.width(), texels_.height());
+  const JointShares shares(hand, corners);
+  const std::uint8_t chart = hand.chart[corners[0]];
   constexpr double kSlack = 1e-9;  // texels on a shared edge may be drawn twice, but not missed
+  const double clearly_outside = -1e-6 * std::abs(area), sign = area < 0 ? -1 : 1;
   for (int y = box.y0; y < box.y1; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
       const glm::dvec2 p(x, y);
-      const Parts part{cross(at[2] - at[1], p - at[1]) / area,
-                       cross(at[0] - at[2], p - at[2]) / area,
-                       cross(at[1] - at[0], p - at[0]) / area};
+      const Parts areas{cross(at[2] - at[1], p - at[1]), cross(at[0] - at[2], p - at[2]),
+                        cross(at[1] - at[0], p - at[0])};
+      // Saves the divisions, which take most of the time.
+      if (sign * areas[0] < clearly_outside || sign * areas[1] < clearly_outside ||
+          sign * areas[2] < clearly_outside)
+        continue;
+      const Parts part{areas[0] / area, areas[1] / area, areas[2] / area};
       if (std::min({part[0], part[1], part[2]}) < -kSlack) continue;
-      ChartTexel& texel = texels_.at(x, y);
-      texel.chart = hand.chart[corners[0]];
-      texel.joint = strongest_joint(hand, corners, part);
-      texel.rest_mm = glm::vec3{0};
+      glm::vec3 rest_mm{0};
       for (int k = 0; k < 3; ++k)
-        texel.rest_mm += 1000.f * static_cast<float>(part[k]) * hand.positions[corners[k]];
+        rest_mm += 1000.f * static_cast<float>(part[k]) * hand.positions[corners[k]];
+      texels_.at(x, y) = {chart, shares.strongest(part), kEdgeReach, {rest_mm.x, rest_mm.z}};
+      on_.at(x, y) = 1;
+      off_.at(x, y) = 0;
     }
   }
 }
 
 void ChartMap::measure_edges() {
-  Image<std::uint8_t> on(texels_.width(), texels_.height()), off = on;
-  for (int y = 0; y < on.height(); ++y) {
-    for (int x = 0; x < on.width(); ++x) {
-      const bool covered = texels_.at(x, y).chart != 0;
-      on.at(x, y) = covered;
-      off.at(x, y) = !covered;
-      texels_.at(x, y).edge_px = cpu::NearestPixel::kLargestReach;
-    }
-  }
   cpu::NearestPixel nearest;
-  for (const auto& way : nearest.find(std::as_const(off).view(), std::as_const(on).view(),
-                                      cpu::NearestPixel::kLargestReach)) {
+  for (const auto& way :
+       nearest.find(std::as_const(off_).view(), std::as_const(on_).view(), kEdgeReach))
     texels_.at(way.x, way.y).edge_px = static_cast<std::uint8_t>(std::sqrt(way.squared_px));
-  }
 }
 
-void ChartMap::pad(Image<glm::vec3>& colours) const {
-  Image<std::uint8_t> on(texels_.width(), texels_.height()), off = on;
-  for (int y = 0; y < on.height(); ++y) {
-    for (int x = 0; x < on.width(); ++x) (texels_.at(x, y).chart != 0 ? on : off).at(x, y) = 1;
-  }
+void ChartMap::pad(Texture& texture) const {
   cpu::NearestPixel nearest;
-  for (const auto& way : nearest.find(std::as_const(on).view(), std::as_const(off).view(),
-                                      cpu::NearestPixel::kLargestReach)) {
-    colours.at(way.x, way.y) = colours.at(way.x + way.dx, way.y + way.dy);
-  }
+  for (const auto& way : nearest.find(on_.view(), off_.view(), cpu::NearestPixel::kLargestReach))
+    texture.at(way.x, way.y) = texture.at(way.x + way.dx, way.y + way.dy);
 }
 
 }  // namespace handcast::renderer

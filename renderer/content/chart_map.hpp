@@ -12,13 +12,16 @@ namespace handcast::renderer {
 struct ChartTexel {
   std::uint8_t chart = 0;    ///< 0: none
   std::uint8_t joint = 0;    ///< the joint with the largest skin weight
-  std::uint8_t edge_px = 0;  ///< distance to the outline of the chart, at most 32 texels
-  glm::vec3 rest_mm{};       ///< position on the hand at rest, axes of HandMesh
+  std::uint8_t edge_px = 0;  ///< distance to the outline of the chart, at most ChartMap::kEdgeReach
+  glm::vec2 rest_mm{};       ///< position on the hand at rest, x and z of HandMesh
 };
 
 /// The charts of a hand, drawn into a texture.
 class ChartMap {
  public:
+  /// The distance to an outline is measured up to here, texels.
+  static constexpr int kEdgeReach = 4;
+
   /// Draws the charts of `hand` into a texture of the given size in texels.
   ChartMap(const HandMesh& hand, int width, int height);
 
@@ -27,14 +30,15 @@ class ChartMap {
   /// +1 if the chart shows the back of the hand, -1 if it shows the palm.
   float facing(std::uint8_t chart) const { return facing_[chart]; }
   /// Gives each texel within 32 texels of a chart the colour of the nearest texel on a chart.
-  /// `colours` has the size of the texture.
-  void pad(Image<glm::vec3>& colours) const;
+  /// `texture` has the size of the map.
+  void pad(Texture& texture) const;
 
  private:
   void draw_triangle(const HandMesh& hand, const std::array<std::uint16_t, 3>& corners);
   void measure_edges();
 
   Image<ChartTexel> texels_;
+  Image<std::uint8_t> on_, off_;  ///< 1 where there is a chart, and where there is none
   std::array<float, 256> facing_{};
 };
 

@@ -2,6 +2,7 @@
 #include "renderer/pipeline/pipeline.hpp"
 
 #include <algorithm>
+#include <future>
 #include <utility>
 
 #include "renderer/correct/deform.hpp"
@@ -36,11 +37,16 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascad
     return fail(Errc::bad_config,
                 "cascade.filter.method = \"ideal\" needs the true landmarks, which only `handcast "
                 "simulate` has");
-  auto left = HandPipeline::load(Side::left, cascade, content.left, hand.left, calibration,
-                                 of_side(oracle, Side::left));
-  if (!left) return fail_in("left hand", left.error());
+  // On two threads, because a hand takes most of the time of a start. Deferred: on this thread, if
+  // there is no other one.
+  auto left_loaded = std::async(std::launch::async | std::launch::deferred, [&] {
+    return HandPipeline::load(Side::left, cascade, content.left, hand.left, calibration,
+                              of_side(oracle, Side::left));
+  });
   auto right = HandPipeline::load(Side::right, cascade, content.right, hand.right, calibration,
                                   of_side(oracle, Side::right));
+  auto left = left_loaded.get();
+  if (!left) return fail_in("left hand", left.error());
   if (!right) return fail_in("right hand", right.error());
   return std::unique_ptr<Pipeline>(
       new Pipeline(cascade, content, calibration, std::move(*left), std::move(*right)));

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/unique_fd.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "renderer/content/picture.hpp"
 #include "services/projector/light_clock.hpp"
@@ -12,8 +18,9 @@ namespace handcast::projector {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kEvery = 100;  ///< every kEvery-th frame is written
-constexpr std::int64_t kKept = 100;   ///< number of files, then the oldest is overwritten
+constexpr std::int64_t kEvery = 100;              ///< every kEvery-th frame is written
+constexpr auto kClaim = std::chrono::seconds(1);  ///< longest wait for the folder
+constexpr std::int64_t kKept = 100;  ///< number of files, then the oldest is overwritten
 
 /// Writes the light as images, to see it without hardware: PNG files in light/ of the folder for
 /// kept files, or of the current folder if there is none.
@@ -24,6 +31,7 @@ class FileProjector final : public Projector {
 
   Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id,
                                Deadline deadline) override {
+    if (auto claimed = claim(); !claimed) return tl::make_unexpected(claimed.error());
     auto times = clock_.take(deadline);
     if (!times || frame_id % kEvery != 0) return times;
     const fs::path file = folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept);
@@ -33,6 +41,27 @@ class FileProjector final : public Projector {
   }
 
  private:
+  /// Locks the folder, so that two rigs cannot write into it. The projector that this one follows
+  /// may still hold it for a moment.
+  Result<void> claim() {
+    if (lock_) return {};
+    UniqueFd folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!folder)
+      return fail(Errc::unavailable, fmt::format("projector 'file': '{}' cannot be opened: {}",
+                                                 folder_.string(), std::strerror(errno)));
+    for (const auto limit = Deadline::in(kClaim); flock(folder.get(), LOCK_EX | LOCK_NB) != 0;) {
+      if (limit.passed())
+        return fail(
+            Errc::unavailable,
+            fmt::format("projector 'file': another rig writes to '{}'; use --out or another "
+                        "folder",
+                        folder_.string()));
+      sleep_until_ns(now_ns() + 1'000'000);
+    }
+    lock_ = std::move(folder);
+    return {};
+  }
+
   /// Writes the whole projector image, dark outside the region of the frame and where alpha is 0.
   static Result<void> write(const renderer::Frame& frame, const fs::path& file) {
     renderer::Texture image(frame.colour.width, frame.colour.height);
@@ -46,6 +75,7 @@ class FileProjector final : public Projector {
 
   LightClock clock_;
   fs::path folder_;
+  UniqueFd lock_;  ///< the locked folder; set by the first present()
 };
 
 }  // namespace

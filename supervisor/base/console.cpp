@@ -4,10 +4,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "ipc/base/log.hpp"
+
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::string_view kClearLine = "\r\x1b[K";
+
+/// Lines of services have a level. Other lines that begin with the name of a program are errors.
+log::Level level_of(std::string_view line) {
+  if (const auto logged = log::parse(line)) return logged->level;
+  return line.starts_with("handcast: ") ? log::Level::error : log::Level::info;
+}
 
 void put(std::string_view text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
@@ -21,7 +29,8 @@ bool has_terminal() {
 }
 
 void print_line(std::string_view line) {
-  put(fmt::format("{}{}\n", has_terminal() ? kClearLine : "", line));
+  put(log::for_journal(level_of(line),
+                       fmt::format("{}{}\n", has_terminal() ? kClearLine : "", line)));
 }
 
 void show_progress(std::string_view line) {

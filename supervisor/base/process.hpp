@@ -12,6 +12,9 @@ namespace handcast::supervisor {
 /// or only a zombie.
 std::optional<std::uint64_t> start_ticks_of(pid_t pid);
 
+/// The pid of the parent of a process. Empty if there is no such process, or only a zombie.
+std::optional<pid_t> parent_of(pid_t pid);
+
 /// Converts a start time to CLOCK_MONOTONIC (ns). Ticks include the time during which the machine
 /// was suspended, CLOCK_MONOTONIC does not.
 std::int64_t start_ns_of(std::uint64_t ticks);

@@ -9,7 +9,7 @@
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/rig/status.hpp"
-#include "supervisor/succession/adoption.hpp"
+#include "supervisor/succession/stop_rig.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -70,16 +70,19 @@ int ask_with_words(const char* verb, const Arguments& arguments, std::size_t wor
 }  // namespace
 
 int run_down(const Arguments& arguments) {
-  constexpr double kStop_s = 3;  // the default of supervisor.stop_s
   const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}});
-  if (const auto rig = options ? abandoned_rig(options->value("--rig")) : std::nullopt) {
-    fmt::print("rig '{}' had no supervisor; services stopped: {}\n", *rig,
-               stop_orphans(*rig, kStop_s));
-    return kExitDone;
-  }
-  return ask_with_words("down", arguments, 0,
-                        {.verb = control::Verb::down, .service = {}, .backend = {}},
-                        "the rig has stopped");
+  if (!options)
+    return complain(kExitUsage, "down: " + options.error().what + "; `handcast help down`");
+  const auto rig = choose_rig_to_stop(options->value("--rig"));
+  if (!rig) return complain(rig.error());
+  const auto stopped = stop_rig(*rig);
+  if (!stopped) return complain(stopped.error());
+  if (stopped->by_supervisor)
+    fmt::print("the rig has stopped\n");
+  else
+    fmt::print("rig '{}' had no supervisor that answered; processes ended: {}\n", *rig,
+               stopped->ended);
+  return kExitDone;
 }
 int run_restart(const Arguments& arguments) {
   return ask_with_words("restart", arguments, 1,

@@ -50,10 +50,16 @@ constexpr std::array kVerbs{
               "  --seconds N  the last N seconds; default: all that is kept "
               "(supervisor.history_s)\n  -o FILE      the file to write; ui.perfetto.dev opens "
               "it\n  --rig NAME   which rig, if several are up\n"},
-    VerbEntry{"install-units", "install-units RIG.toml [--set path=value]... [--system] [--print]",
+    VerbEntry{"install-units",
+              "install-units RIG.toml [--set path=value]... [--out DIR] [--system [--user NAME]] "
+              "[--print]",
               "Writes a systemd unit that runs the rig.", run_install_units, Group::set_up,
               "  --set path=value   as for `handcast up`\n"
+              "  --out DIR          as for `handcast up`; default: a folder of the unit, "
+              "/var/lib/handcast/NAME\n"
+              "                     with --system\n"
               "  --system           a unit of the machine instead of one of this user\n"
+              "  --user NAME        the user as which it runs; default: the one who calls sudo\n"
               "  --print            prints the unit and writes nothing\n"},
     VerbEntry{
         "config",
@@ -94,7 +100,9 @@ std::filesystem::path program_folder() {
 }
 
 int complain(int exit_code, std::string_view sentence) {
-  fmt::print(stderr, "handcast: {}\n", printable(sentence));
+  fmt::print(stderr, "{}",
+             log::for_journal(log::Level::error,
+                              fmt::format("handcast: {}\n", printable(sentence))));
   return exit_code;
 }
 

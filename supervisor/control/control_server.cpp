@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/control/control_server.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <vector>
 
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -22,27 +20,20 @@ constexpr std::size_t kLongestRequest = 1 << 16;
 constexpr std::size_t kMostUnsent = 1 << 22;
 constexpr std::size_t kMostClients = 64;
 
-/// Locks the folder: if two rigs start at once, only one of them finds the name free.
-Result<UniqueFd> bind_to(const std::filesystem::path& path, const std::string& rig) {
-  const UniqueFd lock(open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  flock(lock.get(), LOCK_EX);
-  const auto other = control::connect_to(path);
-  if (!other && other.error().code == Errc::bad_config) return tl::make_unexpected(other.error());
-  if (other || other.error().code == Errc::timeout)
-    return fail(
-        Errc::unavailable,
-        fmt::format("a rig named '{}' is up already; `handcast down --rig {}` stops it", rig, rig));
-  unlink(path.c_str());  // left by a supervisor that was killed
-
+Result<UniqueFd> claim(const control::RigAddress& address, const std::string& rig) {
   UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  const auto address = control::address_of(path);
-  // The socket's mode becomes that of the file. Others cannot enter its folder anyway.
-  if (!listener || fchmod(listener.get(), 0600) != 0 ||
-      bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(listener.get(), 16) != 0)
+  const auto* where = reinterpret_cast<const sockaddr*>(&address.socket);
+  if (listener && bind(listener.get(), where, address.size) == 0 &&
+      ::listen(listener.get(), 16) == 0)
+    return listener;
+  if (!listener || errno != EADDRINUSE)
     return fail(Errc::unavailable,
-                fmt::format("control socket {}: {}", path.string(), std::strerror(errno)));
-  return listener;
+                fmt::format("control socket {}: {}", address.text, std::strerror(errno)));
+  const auto other = control::connect_to(address);
+  if (!other && other.error().code == Errc::bad_config) return tl::make_unexpected(other.error());
+  return fail(
+      Errc::unavailable,
+      fmt::format("a rig named '{}' is up already; `handcast down --rig {}` stops it", rig, rig));
 }
 
 std::vector<std::string> take_lines(std::string& text) {
@@ -59,26 +50,21 @@ std::vector<std::string> take_lines(std::string& text) {
 Result<std::unique_ptr<ControlServer>> ControlServer::listen(const std::string& rig,
                                                              EventLoop& loop,
                                                              OnRequest on_request) {
-  const auto path = control::socket_of(rig);
-  if (!path) return tl::make_unexpected(path.error());
-  auto listener = bind_to(*path, rig);
+  const auto address = control::address_of(rig);
+  if (!address) return tl::make_unexpected(address.error());
+  auto listener = claim(*address, rig);
   if (!listener) return tl::make_unexpected(listener.error());
   return std::unique_ptr<ControlServer>(
-      new ControlServer(std::move(*listener), *path, loop, std::move(on_request)));
+      new ControlServer(std::move(*listener), loop, std::move(on_request)));
 }
 
-ControlServer::ControlServer(UniqueFd listener, std::filesystem::path path, EventLoop& loop,
-                             OnRequest on_request)
-    : listener_(std::move(listener)),
-      path_(std::move(path)),
-      loop_(loop),
-      on_request_(std::move(on_request)) {
+ControlServer::ControlServer(UniqueFd listener, EventLoop& loop, OnRequest on_request)
+    : listener_(std::move(listener)), loop_(loop), on_request_(std::move(on_request)) {
   loop_.watch(listener_.get(), [this] { accept(); });
 }
 
 void ControlServer::stop_accepting() {
   if (!listener_) return;
-  unlink(path_.c_str());
   loop_.forget(listener_.get());
   listener_.reset();
 }
@@ -90,10 +76,20 @@ ControlServer::~ControlServer() {
 
 void ControlServer::accept() {
   UniqueFd socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-  if (!socket || !control::is_of_this_user(socket.get()) || clients_.size() >= kMostClients) return;
+  if (!socket || !control::is_of_this_user(socket.get())) return;
+  make_room();
   const auto id = next_id_++;
   loop_.watch(socket.get(), [this, id] { read(id); });
   clients_.emplace(id, Client{std::move(socket), {}, {}});
+}
+
+/// Drops a client if there are kMostClients: the oldest that waits for no answer, or else the
+/// oldest.
+void ControlServer::make_room() {
+  if (clients_.size() < kMostClients) return;
+  const auto idle =
+      std::ranges::find_if(clients_, [](const auto& client) { return client.second.is_idle(); });
+  drop(idle == clients_.end() ? clients_.begin()->first : idle->first);
 }
 
 void ControlServer::read(std::uint64_t id) {
@@ -111,6 +107,7 @@ void ControlServer::read(std::uint64_t id) {
 }
 
 void ControlServer::answer_line(std::uint64_t id, const std::string& line) {
+  ++clients_.at(id).unanswered;
   const auto request = control::parse_request(line);
   if (!request) return send(id, control::failure(request.error().what));
   on_request_(*request,
@@ -127,6 +124,7 @@ void ControlServer::send(std::uint64_t id, const nlohmann::json& answer,
   const auto found = clients_.find(id);
   if (found == clients_.end()) return;
   auto& client = found->second;
+  --client.unanswered;
   const bool is_slow = !client.unsent.empty();
   if (is_slow && !descriptors.empty()) return drop(id);
   client.unsent += control::to_line(answer) + "\n";

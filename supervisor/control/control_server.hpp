@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,9 +13,9 @@
 
 namespace handcast::supervisor {
 
-/// The rig's end of the control socket, on the event loop. The socket file is removed with the
-/// object. The server never blocks: answers that a client has not read yet are kept up to a limit,
-/// and a client beyond the limit is dropped.
+/// The rig's end of the control socket, on the event loop. Whoever has the socket has the name of
+/// the rig; the kernel frees it with the process. The server never blocks: answers that a client
+/// has not read yet are kept up to a limit, and a client beyond the limit is dropped.
 class ControlServer {
  public:
   /// Answers a request, now or later. Does nothing if the client has left. Must not be called after
@@ -39,8 +38,8 @@ class ControlServer {
   /// Carries out a request; called on the event loop.
   using OnRequest = std::function<void(const control::Request&, Reply)>;
 
-  /// Creates the socket of `rig` and accepts connections. Errors: unavailable (a rig of this name
-  /// is up), bad_config (the name, or the runtime folder).
+  /// Claims the name of `rig` and accepts connections. Errors: unavailable (a rig of this name is
+  /// up), bad_config (the name; another user has it).
   static Result<std::unique_ptr<ControlServer>> listen(const std::string& rig, EventLoop& loop,
                                                        OnRequest on_request);
   ~ControlServer();
@@ -52,11 +51,13 @@ class ControlServer {
     UniqueFd socket;
     std::string unread;  ///< of its next request
     std::string unsent;  ///< of its answers: what did not fit into the socket's buffer
+    int unanswered = 0;  ///< requests without an answer
+    bool is_idle() const { return unanswered == 0 && unsent.empty(); }
   };
-  ControlServer(UniqueFd listener, std::filesystem::path path, EventLoop& loop,
-                OnRequest on_request);
+  ControlServer(UniqueFd listener, EventLoop& loop, OnRequest on_request);
 
   void accept();
+  void make_room();
   void read(std::uint64_t id);
   void answer_line(std::uint64_t id, const std::string& line);
   void send(std::uint64_t id, const nlohmann::json& answer,
@@ -66,11 +67,10 @@ class ControlServer {
   void drop(std::uint64_t id);
 
   UniqueFd listener_;
-  std::filesystem::path path_;
   EventLoop& loop_;
   OnRequest on_request_;
   std::uint64_t next_id_ = 0;
-  std::map<std::uint64_t, Client> clients_;
+  std::map<std::uint64_t, Client> clients_;  ///< oldest first
 };
 
 }  // namespace handcast::supervisor

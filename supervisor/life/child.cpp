@@ -66,13 +66,13 @@ std::vector<std::string> inherited_environment() {
 }
 
 /// Puts the handover into the environment and lets its descriptors be inherited.
-void hand_over(const daemon::Handover& handover, Plan& plan) {
+void hand_over(const daemon::Handover& handover, int rig_fd, Plan& plan) {
   plan.environment = inherited_environment();
   for (auto& variable : daemon::to_environment(handover))
     plan.environment.push_back(std::move(variable));
   for (const auto& [stream, fd] : handover.rings) plan.inherited.push_back(fd);
-  plan.inherited.push_back(handover.ready_fd);
-  if (handover.standby_fd >= 0) plan.inherited.push_back(handover.standby_fd);
+  for (const int fd : {handover.ready_fd, handover.standby_fd, handover.state_fd, rig_fd})
+    if (fd >= 0) plan.inherited.push_back(fd);
 }
 
 Result<Plan> make_plan(const ChildSpec& spec) {
@@ -95,8 +95,10 @@ Result<Plan> make_plan(const ChildSpec& spec) {
   hand_over({.rings = spec.rings,
              .ready_fd = plan.ready.write.get(),
              .standby_fd = plan.turn.read.get(),
-             .epoch_ns = spec.epoch_ns},
-            plan);
+             .epoch_ns = spec.epoch_ns,
+             .rig = spec.rig,
+             .state_fd = spec.state_fd},
+            spec.rig_fd, plan);
   return plan;
 }
 

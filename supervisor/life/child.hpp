@@ -24,6 +24,9 @@ struct ChildSpec {
   std::vector<std::string> arguments;  ///< without argv[0]
   daemon::Rings rings;                 ///< the supervisor's descriptors; the daemon inherits them
   std::int64_t epoch_ns = 0;           ///< HANDCAST_EPOCH_NS
+  std::string rig;                     ///< HANDCAST_RIG
+  int state_fd = -1;                   ///< HANDCAST_STATE_FD; -1: none
+  int rig_fd = -1;                     ///< the applied rig file, which `arguments` name; -1: none
   bool spare = false;                  ///< the daemon prepares itself and waits for its turn
 };
 

@@ -58,6 +58,7 @@ ExitReports ExitReports::from_environment() {
   if (!is_report_socket(fd)) return reports;
   fcntl(fd, F_SETFD, FD_CLOEXEC);
   reports.socket_ = UniqueFd(fd);
+  reports.had_keeper_ = true;
   return reports;
 }
 
@@ -72,11 +73,10 @@ void ExitReports::read() {
   if (size == 0) socket_.reset();  // the keeper has ended
 }
 
-pid_t ExitReports::keeper() const {
-  ucred maker{};
-  socklen_t size = sizeof maker;
-  if (!socket_ || getsockopt(socket_.get(), SOL_SOCKET, SO_PEERCRED, &maker, &size) != 0) return -1;
-  return maker.pid == getppid() ? maker.pid : -1;
+void ExitReports::beat(std::string_view rig, bool stopping) {
+  Beat beat{.stopping = stopping};
+  rig.copy(beat.rig.data(), beat.rig.size() - 1);
+  send(socket_.get(), &beat, sizeof beat, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 std::optional<Exit> ExitReports::take(pid_t pid) {

@@ -2,8 +2,11 @@
 #pragma once
 #include <sys/types.h>
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
+#include <string_view>
 
 #include "ipc/base/unique_fd.hpp"
 #include "supervisor/base/exit.hpp"
@@ -20,9 +23,17 @@ struct ExitReport {
   int status = 0;  ///< si_status: the exit code, or the number of the signal
 };
 
-/// The ends of processes that are not children of this supervisor. The services of a supervisor
-/// that died become children of its keeper, which reaps them and sends an ExitReport for each over
-/// a socket pair.
+/// A sign of life that the supervisor sends to its keeper, a datagram on the same socket pair.
+struct Beat {
+  bool stopping = false;        ///< the rig is being stopped: no successor is wanted
+  std::array<char, 108> rig{};  ///< name of the rig, ended by '\0'
+};
+/// The time between two beats.
+inline constexpr std::int64_t kBeatToKeeper_ns = 200'000'000;
+
+/// The supervisor's end of the socket pair to its keeper. It gets the ends of processes that are
+/// not children of this supervisor: the services of a supervisor that died become children of its
+/// keeper, which reaps them and sends an ExitReport for each. It sends beats.
 class ExitReports {
  public:
   /// Takes the socket that kKeeperVariable names, and unsets the variable. Without a keeper there
@@ -34,13 +45,16 @@ class ExitReports {
   int fd() const { return socket_.get(); }
   /// Reads the reports that have arrived.
   void read();
-  /// The pid of the keeper; -1 if it is not the parent of this process.
-  pid_t keeper() const;
+  /// Sends a beat.
+  void beat(std::string_view rig, bool stopping);
+  /// True if there was a keeper and it has died.
+  bool keeper_died() const { return had_keeper_ && !socket_; }
   /// How a process ended; empty if that was not reported. Removes the report.
   std::optional<Exit> take(pid_t pid);
 
  private:
   UniqueFd socket_;
+  bool had_keeper_ = false;
   std::map<pid_t, Exit> exits_;
 };
 

@@ -6,20 +6,9 @@
 #include <algorithm>
 #include <array>
 
+#include "ipc/base/log.hpp"
+
 namespace handcast::supervisor {
-namespace {
-
-constexpr std::array<std::string_view, 4> kLevels{"debug", "info", "warning", "error"};
-
-std::string_view take_word(std::string_view& text) {
-  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-  const auto word = text.substr(0, text.find(' '));
-  text.remove_prefix(word.size());
-  return word;
-}
-
-}  // namespace
-
 void LogTail::append(std::string_view bytes, const std::function<void(std::string_view)>& on_line) {
   for (const char byte : bytes) {
     if (byte != '\n') unfinished_ += byte;
@@ -52,12 +41,8 @@ std::vector<std::string> LogTail::last(std::size_t count) const {
 
 std::string LogTail::last_sentence() const {
   if (lines_.empty()) return {};
-  std::string_view rest = lines_.back();
-  take_word(rest);  // time
-  take_word(rest);  // program
-  if (std::ranges::find(kLevels, take_word(rest)) == kLevels.end()) return lines_.back();
-  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
-  return std::string(rest);
+  const auto logged = log::parse(lines_.back());
+  return logged ? std::string(logged->sentence) : lines_.back();
 }
 
 }  // namespace handcast::supervisor

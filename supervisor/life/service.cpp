@@ -2,6 +2,7 @@
 #include "supervisor/life/service.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -119,11 +120,17 @@ Service::MaybeEvent Service::carry_out(const action::Tell& tell) {
 }
 
 Result<Child> Service::spawn(bool spare) const {
-  std::vector<std::string> arguments{"--config", launch_.rig_file.string()};
+  std::vector<std::string> arguments{"--config", fmt::format("/proc/self/fd/{}", launch_.rig_fd)};
   if (!backend_override_.empty())
     arguments.insert(arguments.end(), {"--set", spec_.name + ".backend=" + backend_override_});
-  return Child::spawn({launch_.program_folder / ("handcast-" + spec_.name), std::move(arguments),
-                       launch_.rings, launch_.epoch_ns, spare});
+  return Child::spawn({.program = launch_.program_folder / ("handcast-" + spec_.name),
+                       .arguments = std::move(arguments),
+                       .rings = launch_.rings,
+                       .epoch_ns = launch_.epoch_ns,
+                       .rig = launch_.rig,
+                       .state_fd = launch_.state_fd,
+                       .rig_fd = launch_.rig_fd,
+                       .spare = spare});
 }
 
 void Service::watch_worker(Child child) {

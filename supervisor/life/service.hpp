@@ -21,9 +21,11 @@ namespace handcast::supervisor {
 /// The parameters with which all services of a rig are started.
 struct Launch {
   std::filesystem::path program_folder;  ///< folder of the daemons' executables
-  std::filesystem::path rig_file;        ///< --config of the daemons: the applied rig file
+  int rig_fd = -1;                       ///< the applied rig file, --config of the daemons
   daemon::Rings rings;                   ///< the rings that they inherit
   std::int64_t epoch_ns = 0;             ///< HANDCAST_EPOCH_NS
+  std::string rig;                       ///< HANDCAST_RIG
+  int state_fd = -1;                     ///< HANDCAST_STATE_FD
   /// Time limits: see Rules.
   /// @{
   double ready_s = 10, stop_s = 3, silent_s = 2;

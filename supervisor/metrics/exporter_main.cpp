@@ -77,7 +77,7 @@ int serve(const Options& options) {
   RigWatcher watcher(rig->name);
   supervision.await_turn();
   const auto server =
-      MetricsServer::listen(rig->supervisor.metrics_port, [&] { return watcher.observe(); });
+      serve_metrics(rig->supervisor.metrics_port, [&] { return watcher.observe(); });
   if (!server) return give_up(server.error());
   auto heart = open_heart(supervision);
   supervision.tell_ready();

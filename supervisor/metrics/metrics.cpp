@@ -2,15 +2,11 @@
 #include "supervisor/metrics/metrics.hpp"
 
 #include <fmt/format.h>
-#include <prometheus/collectable.h>
-#include <prometheus/exposer.h>
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 
 #include <algorithm>
 #include <array>
-#include <exception>
-#include <mutex>
 
 #include "ipc/base/clock.hpp"
 #include "supervisor/life/state.hpp"
@@ -220,46 +216,19 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   return families;
 }
 
-/// The library calls it at each scrape.
-class Collector : public prometheus::Collectable {
- public:
-  explicit Collector(std::function<RigLook()> look) : look_(std::move(look)) {}
-  std::vector<MetricFamily> Collect() const override {
-    const std::scoped_lock lock(one_at_a_time_);
-    return metrics_of(look_());
-  }
-
- private:
-  mutable std::mutex one_at_a_time_;
-  std::function<RigLook()> look_;
-};
-
 }  // namespace
 
 std::string metrics_text(const RigLook& look) {
   return prometheus::TextSerializer().Serialize(metrics_of(look));
 }
 
-struct MetricsServer::Parts {
-  std::shared_ptr<Collector> collector;
-  prometheus::Exposer exposer;
-};
-
-Result<MetricsServer> MetricsServer::listen(int port, std::function<RigLook()> look) try {
-  auto parts =
-      std::unique_ptr<Parts>(new Parts{std::make_shared<Collector>(std::move(look)),
-                                       prometheus::Exposer(fmt::format("127.0.0.1:{}", port), 1)});
-  parts->exposer.RegisterCollectable(parts->collector);
-  return MetricsServer(std::move(parts));
-} catch (const std::exception&) {
-  return fail(Errc::bad_config,
-              fmt::format("port {} of 127.0.0.1 cannot be used (is it in use already?); set "
-                          "supervisor.metrics_port to another port, or to 0",
-                          port));
+Result<HttpServer> serve_metrics(int port, std::function<RigLook()> look) {
+  auto server = HttpServer::listen(
+      port, [look = std::move(look)] { return metrics_text(look()); });
+  if (server) return server;
+  return fail(Errc::bad_config, fmt::format("{}; set supervisor.metrics_port to another port, or "
+                                            "to 0",
+                                            server.error().what));
 }
-
-MetricsServer::MetricsServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-MetricsServer::MetricsServer(MetricsServer&&) noexcept = default;
-MetricsServer::~MetricsServer() = default;
 
 }  // namespace handcast::supervisor

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "ipc/base/result.hpp"
+#include "supervisor/metrics/http_server.hpp"
 #include "supervisor/top/top_look.hpp"
 
 namespace handcast::supervisor {
@@ -13,21 +13,8 @@ namespace handcast::supervisor {
 /// rates are computed by Prometheus.
 std::string metrics_text(const RigLook& look);
 
-/// Serves the metrics at http://127.0.0.1:PORT/metrics, to this machine only, during the lifetime
-/// of the object.
-class MetricsServer {
- public:
-  /// `look` is called for each scrape, from another thread, but never concurrently. Errors:
-  /// bad_config (the port is in use or not permitted).
-  static Result<MetricsServer> listen(int port, std::function<RigLook()> look);
-  /// `other` serves nothing afterwards.
-  MetricsServer(MetricsServer&& other) noexcept;
-  ~MetricsServer();
-
- private:
-  struct Parts;
-  explicit MetricsServer(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
-};
+/// Serves the metrics at http://127.0.0.1:PORT/metrics. `look` is called for each scrape, on the
+/// thread of the server. Errors: bad_config (the port is in use or not permitted).
+Result<HttpServer> serve_metrics(int port, std::function<RigLook()> look);
 
 }  // namespace handcast::supervisor

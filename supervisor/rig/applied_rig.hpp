@@ -6,19 +6,18 @@
 #include <vector>
 
 #include "config/rig.hpp"
+#include "ipc/base/unique_fd.hpp"
 
 namespace handcast::supervisor {
 
-/// Writes the applied rig, with all settings, to RIG.toml in the runtime folder. Services read this
-/// file at each start: the user's own file, which may be half edited, is read only by `handcast up`
-/// and `handcast reload`. Returns the path. Errors: unavailable, bad_config (the folder).
-Result<std::filesystem::path> write_applied(const config::Rig& rig);
-/// The applied rig of an earlier `handcast up` with the same file and the same --set, if its
-/// services live without a supervisor. A successor starts with it, even if the file has changed.
-/// Empty if there is none.
+/// The applied rig as a file without a name (memfd), sealed: what the services read with --config.
+/// Later changes of the user's rig file do not affect services that are restarted. Errors:
+/// unavailable.
+Result<UniqueFd> make_applied(const std::string& toml);
+
+/// The applied rig of a supervisor that died and was started with these arguments. Empty if there
+/// is none, or if none of its services lives.
 std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
                                           const std::vector<std::string>& settings);
-/// Removes the file written by write_applied().
-void forget_applied(const std::string& rig);
 
 }  // namespace handcast::supervisor

@@ -3,6 +3,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/daemon/contract.hpp"
+#include "supervisor/rig/applied_rig.hpp"
 
 namespace handcast::supervisor {
 
@@ -27,6 +28,16 @@ Result<daemon::Rings> LiveRig::make_rings(const std::vector<ServiceSpec>& specs)
   return made;
 }
 
+Result<void> LiveRig::store_applied(const config::Rig& rig) {
+  auto toml = config::print_rig(rig);
+  auto file = make_applied(toml);
+  if (!file) return tl::make_unexpected(file.error());
+  applied_toml = std::move(toml);
+  applied = std::move(*file);
+  launch.rig_fd = applied.get();
+  return {};
+}
+
 void LiveRig::take_settings(const config::Rig& rig) {
   launch.ready_s = rig.supervisor.ready_s;
   launch.stop_s = rig.supervisor.stop_s;
@@ -43,6 +54,8 @@ Service::Look LiveRig::look_at(const Service& service, std::int64_t now) const {
   return look;
 }
 
-RigView LiveRig::view() const { return {name, services.all(), recorder, started_ns, now_ns()}; }
+RigView LiveRig::view() const {
+  return {name, services.all(), recorder, started_ns, now_ns(), keeper_died};
+}
 
 }  // namespace handcast::supervisor

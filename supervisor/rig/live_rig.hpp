@@ -26,6 +26,9 @@ struct LiveRig {
   /// rings. Errors: unavailable, bad_config. After an error some rings may exist, unused; the next
   /// call uses them.
   Result<daemon::Rings> make_rings(const std::vector<ServiceSpec>& specs);
+  /// Gives the services that are started from now on these settings. Errors: unavailable; nothing
+  /// has changed then.
+  Result<void> store_applied(const config::Rig& rig);
   /// Applies the section [supervisor] of a rig file.
   void take_settings(const config::Rig& rig);
 
@@ -40,6 +43,9 @@ struct LiveRig {
   config::Rig config;             ///< the applied rig, without swaps of back ends
   Phase phase = Phase::starting;  ///< the present phase
   std::int64_t started_ns;        ///< start of the rig, under whichever supervisor
+  UniqueFd applied;               ///< the applied rig file, Launch::rig_fd
+  std::string applied_toml;       ///< its text
+  bool keeper_died = false;       ///< the keeper has died: no successor follows this supervisor
   Launch launch;                  ///< the parameters of its services
   Catalogue catalogue;            ///< the services that are installed
   RingSet rings;                  ///< its rings

@@ -9,7 +9,6 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/control/control_message.hpp"
-#include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
@@ -28,8 +27,8 @@ bool has_settled(const Service& service) {
 
 }  // namespace
 
-// The applied file is written last: the steps before it have no visible effect, those after it
-// cannot fail.
+// The applied rig is stored last: the steps before it have no visible effect, those after it cannot
+// fail.
 Result<Reload> Reload::begin(LiveRig& rig, config::Rig wanted, bool revives) {
   auto plan = plan_reload(rig, std::move(wanted), revives);
   if (auto possible = check_reload(rig, plan); !possible)
@@ -37,8 +36,8 @@ Result<Reload> Reload::begin(LiveRig& rig, config::Rig wanted, bool revives) {
   const auto rings = rig.make_rings(plan.specs);
   if (!rings) return tl::make_unexpected(rings.error());
   store_with_systemd(*rings);
-  if (auto written = write_applied(plan.config); !written)
-    return tl::make_unexpected(written.error());
+  if (auto stored = rig.store_applied(plan.config); !stored)
+    return tl::make_unexpected(stored.error());
 
   Reload reload(rig, std::move(plan));
   reload.apply();

@@ -15,7 +15,7 @@ namespace handcast::supervisor {
 class Reload {
  public:
   /// Applies `wanted`. `revives`: see plan_reload(). `rig` must outlive the result. Errors:
-  /// bad_config, unavailable; the rig, its services and the applied file are unchanged then.
+  /// bad_config, unavailable; the rig, its services and the applied rig are unchanged then.
   static Result<Reload> begin(LiveRig& rig, config::Rig wanted, bool revives);
 
   /// Starts and restarts the services whose needs have settled. Returns true if all services that

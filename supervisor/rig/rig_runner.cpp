@@ -7,15 +7,17 @@
 
 #include <csignal>
 #include <fstream>
+#include <limits>
 #include <utility>
 
 #include "config/settings/files.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "supervisor/base/console.hpp"
-#include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/takeover.hpp"
+#include "supervisor/succession/census.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -41,6 +43,7 @@ RigRunner::RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop)
           {.read_file = [this] { return config::load_rig(options_.rig_file, options_.settings); },
            .stop = [this] { begin_stop(kExitDone); }}) {
   rig_.launch.program_folder = options_.program_folder;
+  if (const auto address = control::address_of(rig.name)) rig_.launch.rig = address->text;
   rig_.launch.reports = &reports_;
   rig_.catalogue = read_catalogue(catalogue_folder(options_.program_folder));
 }
@@ -58,10 +61,14 @@ Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOp
 
 /// The process that listens at the control socket is the rig's supervisor.
 Result<void> RigRunner::claim_name() {
-  auto control = ControlServer::listen(
-      rig_.name, loop_, [this](const control::Request& request, ControlServer::Reply reply) {
-        requests_.answer(request, std::move(reply));
-      });
+  const auto listen = [this] {
+    return ControlServer::listen(
+        rig_.name, loop_, [this](const control::Request& request, ControlServer::Reply reply) {
+          requests_.answer(request, std::move(reply));
+        });
+  };
+  auto control = listen();
+  if (!control && end_supervisor_without_keeper(rig_.name)) control = listen();
   if (!control) return tl::make_unexpected(control.error());
   control_ = std::move(*control);
   return {};
@@ -79,7 +86,9 @@ Result<void> RigRunner::watch_signals_and_time() {
   if (reports_.fd() >= 0) {
     loop_.watch(reports_.fd(), [this] {
       reports_.read();
-      if (reports_.fd() >= 0) tick();
+      if (reports_.fd() >= 0) return tick();
+      rig_.keeper_died = true;
+      log::warning("the keeper has died; `handcast up` with the same arguments starts another one");
     });
   }
   loop_.watch(timer_.get(), [this] {
@@ -94,16 +103,15 @@ Result<void> RigRunner::watch_signals_and_time() {
   return {};
 }
 
-/// Creates rings, applied file and services, or takes over those of a supervisor that died. Starts
+/// Creates rings, applied rig and services, or takes over those of a supervisor that died. Starts
 /// no service.
 Result<void> RigRunner::make_parts() {
   auto adopted = adopt(rig_.name);
   if (!adopted) return tl::make_unexpected(adopted.error());
   reports_.read();
-  end_strays(reports_, *adopted, options_.program_folder);
 
   const auto specs = services_of(rig_.config, rig_.catalogue);
-  if (const auto made = make_rings_and_file(*adopted, specs); !made) {
+  if (const auto made = make_rings_and_files(*adopted, specs); !made) {
     if (!*adopted) return made;
     return fail(made.error().code,
                 fmt::format("the running services of rig '{0}' cannot be taken over: {1}; "
@@ -116,18 +124,20 @@ Result<void> RigRunner::make_parts() {
     take_services(std::move(**adopted), rig_);
   }
   store_with_systemd(rig_.launch.rings);
+  store_with_systemd({{kStateName, rig_.launch.state_fd}});
   return {};
 }
 
-Result<void> RigRunner::make_rings_and_file(std::optional<AdoptedRig>& adopted,
-                                            const std::vector<ServiceSpec>& specs) {
+Result<void> RigRunner::make_rings_and_files(std::optional<AdoptedRig>& adopted,
+                                             const std::vector<ServiceSpec>& specs) {
   if (adopted)
     if (auto taken = take_rings(*adopted, rig_, specs); !taken) return taken;
   if (const auto made = rig_.make_rings(specs); !made) return tl::make_unexpected(made.error());
-  auto applied = write_applied(rig_.config);
-  if (!applied) return tl::make_unexpected(applied.error());
-  rig_.launch.rig_file = std::move(*applied);
-  return {};
+  auto state = adopted ? Result<StateMemory>(std::move(adopted->state)) : StateMemory::create();
+  if (!state) return tl::make_unexpected(state.error());
+  state_ = std::move(*state);
+  rig_.launch.state_fd = state_->fd();
+  return rig_.store_applied(rig_.config);
 }
 
 /// Restores the start of the rig, which is the epoch of its services. --seconds counts from there
@@ -157,14 +167,21 @@ int RigRunner::run() {
 void RigRunner::tick() {
   const auto now = now_ns();
   watchdog_.tick(now);
+  beat(now);
   forgive_a_standstill(now);
   rig_.recorder.poll();
   for (const auto& service : rig_.services.all()) service->tick(now, rig_.look_at(*service, now));
-  if (rig_.stops()) return;
+  if (rig_.stops()) return hurry_when_late(now);
   if (options_.seconds && now - rig_.started_ns >= seconds_to_ns(*options_.seconds))
     return begin_stop(kExitDone);
   requests_.tick(now);
   show_progress_now_and_then(now);
+}
+
+void RigRunner::beat(std::int64_t now) {
+  if (now < next_beat_ns_) return;
+  next_beat_ns_ = now + kBeatToKeeper_ns;
+  reports_.beat(rig_.name, rig_.stops());
 }
 
 /// Does the work after each turn of the event loop that is less urgent than replacing a service
@@ -243,11 +260,12 @@ void RigRunner::save() {
                  .rig_file = options_.rig_file,
                  .settings = options_.settings,
                  .out = options_.out ? options_.out->string() : "",
+                 .applied = rig_.applied_toml,
                  .epoch_ns = rig_.launch.epoch_ns,
                  .rings = rig_.rings.saved(),
                  .services = {}};
   for (const auto& service : rig_.services.all()) saved.services.push_back(service->saved());
-  const auto written = supervisor::save(saved);
+  const auto written = state_->save(saved);
   if (!written && !std::exchange(save_failed_, true))
     log::warning("a successor of the supervisor could not take over the rig: {}",
                  written.error().what);
@@ -257,6 +275,8 @@ void RigRunner::begin_stop(int exit_code) {
   if (rig_.stops()) return;
   exit_code_ = exit_code;
   rig_.phase = Phase::stopping;
+  stop_by_ns_ = now_ns() + seconds_to_ns(rig_.launch.stop_s);
+  reports_.beat(rig_.name, true);
   notify_systemd("STOPPING=1");
   requests_.on_stopping();
   for (const auto& service : rig_.services.all())
@@ -268,6 +288,16 @@ void RigRunner::begin_stop(int exit_code) {
 void RigRunner::stop_next() {
   if (auto* last = rig_.services.last_running()) return last->stop();
   finish();
+}
+
+/// supervisor.stop_s is the time for the whole rig: the services stop one after the other, and
+/// those that are left then are killed.
+void RigRunner::hurry_when_late(std::int64_t now) {
+  if (rig_.phase != Phase::stopping || now < stop_by_ns_) return;
+  stop_by_ns_ = std::numeric_limits<std::int64_t>::max();
+  log::warning("rig '{}' has not stopped within {:g} s; its services are killed", rig_.name,
+               rig_.launch.stop_s);
+  hurry();
 }
 
 /// Stops all services at once, without waiting for them.
@@ -288,8 +318,9 @@ void RigRunner::finish() {
       exit_code_ = kExitConfig;  // kExitRetry would start the rig again
     }
   }
-  forget_saved(rig_.name);
-  forget_applied(rig_.name);
+  if (const int left = end_services(rig_.name, 0, now_ns()); left > 0)
+    log::warning("services of rig '{}' that this supervisor did not start were killed: {}",
+                 rig_.name, left);
   log::info("rig '{}' has stopped", rig_.name);
   control_->stop_accepting();
   requests_.on_done();

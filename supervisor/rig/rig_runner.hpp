@@ -28,9 +28,9 @@ struct RunOptions {
 /// Runs one rig from start to stop. One thread, one event loop.
 class RigRunner {
  public:
-  /// Creates the control socket, the rings and the applied file, or takes over a rig whose
-  /// supervisor died. Does not start services. Errors: bad_config, unavailable; living services of
-  /// the rig are left as they are then.
+  /// Claims the rig's name and creates its rings, or takes over a rig whose
+  /// supervisor died, or has lost its keeper. Does not start services. Errors: bad_config,
+  /// unavailable; living services of the rig are left as they are then.
   static Result<std::unique_ptr<RigRunner>> open(const config::Rig& rig, RunOptions options);
   /// Runs until a request, a signal or the end of `seconds` stops the rig. Returns the exit code of
   /// `handcast up`.
@@ -42,11 +42,12 @@ class RigRunner {
   Result<void> claim_name();
   Result<void> watch_signals_and_time();
   Result<void> make_parts();
-  Result<void> make_rings_and_file(std::optional<AdoptedRig>& adopted,
-                                   const std::vector<ServiceSpec>& specs);
+  Result<void> make_rings_and_files(std::optional<AdoptedRig>& adopted,
+                                    const std::vector<ServiceSpec>& specs);
   void continue_run(const SavedRig& saved);
 
   void tick();
+  void beat(std::int64_t now_ns);
   void follow_up();
   void forgive_a_standstill(std::int64_t now_ns);
   void show_progress_now_and_then(std::int64_t now_ns);
@@ -58,6 +59,7 @@ class RigRunner {
 
   void begin_stop(int exit_code);
   void stop_next();
+  void hurry_when_late(std::int64_t now_ns);
   void hurry();
   void finish();
 
@@ -69,9 +71,12 @@ class RigRunner {
   std::unique_ptr<ControlServer> control_;
   Requests requests_;
   Watchdog watchdog_;
+  std::optional<StateMemory> state_;  ///< set by open()
 
   bool inherited_ = false;  ///< the rig was taken over from a supervisor that died
   int exit_code_ = kExitDone;
+  std::int64_t stop_by_ns_ = 0;  ///< when the services of a rig that stops are killed
+  std::int64_t next_beat_ns_ = 0;
   std::int64_t next_progress_ns_ = 0;
   std::int64_t last_tick_ns_ = 0;
   std::uint64_t revision_ = 0;  ///< revision of the services that was saved last

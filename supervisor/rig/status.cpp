@@ -96,7 +96,9 @@ std::string print_trouble(const json& service) {
 }  // namespace
 
 json status_of(const RigView& rig) {
-  json status{{"rig", rig.name}, {"uptime_s", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))}};
+  json status{{"rig", rig.name},
+              {"uptime_s", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))},
+              {"keeper_died", rig.keeper_died}};
   for (const auto& service : rig.services) {
     status["services"][service->spec().name] = service_status(*service, rig);
     if (!service->spec().stream.empty())
@@ -113,6 +115,10 @@ json status_of(const RigView& rig) {
 std::string print_status(const json& status) {
   auto text =
       fmt::format("rig {}, up {}\n\n", text_of(status["rig"]), text_of(status["uptime_s"], " s"));
+  if (status.value("keeper_died", false))
+    text +=
+        "the keeper has died, so a dead supervisor would not be replaced; `handcast up` with the "
+        "same arguments starts another keeper\n\n";
   text += fmt::format("{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n", "service", "state", "pid",
                       "back end", "up", "restarts", "last exit");
   for (const auto& [name, service] : status["services"].items()) {

@@ -2,32 +2,19 @@
 #include "supervisor/rig/takeover.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
+#include <chrono>
 
 #include "ipc/base/log.hpp"
+#include "ipc/control/control_client.hpp"
+#include "ipc/control/rig_address.hpp"
+#include "supervisor/succession/census.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-std::vector<pid_t> children_of(pid_t parent) {
-  std::ifstream file(fmt::format("/proc/{}/task/{}/children", parent, parent));
-  std::vector<pid_t> children;
-  for (pid_t child = 0; file >> child;) children.push_back(child);
-  return children;
-}
-
-/// True if the process was started by a supervisor: it leads its own session and runs a program of
-/// this name, even if the file has been replaced since.
-bool is_a_daemon(pid_t pid, const std::filesystem::path& program_folder) {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink(fmt::format("/proc/{}/exe", pid), error);
-  return !error && getsid(pid) == pid &&
-         program.string().starts_with((program_folder / "handcast-").string());
-}
+constexpr auto kPatience = std::chrono::milliseconds(500);
 
 bool lives(const AdoptedRig& adopted, pid_t pid) {
   return std::ranges::any_of(
@@ -45,19 +32,18 @@ void report_deaths(const AdoptedRig& adopted, ExitReports& reports) {
 
 }  // namespace
 
-// Daemons among the keeper's children were left by earlier supervisors. A keeper that was started
-// by exec may have other children, too.
-void end_strays(const ExitReports& reports, const std::optional<AdoptedRig>& adopted,
-                const std::filesystem::path& program_folder) {
-  const auto keeper = reports.keeper();
-  if (keeper < 0) return;
-  const auto children = children_of(keeper);
-  if (reports.keeper() != keeper) return;  // it died; its pid may have been reused
-  for (const auto pid : children) {
-    if (!is_a_daemon(pid, program_folder) || (adopted && lives(*adopted, pid))) continue;
-    ::kill(-pid, SIGKILL);
-    ::kill(pid, SIGKILL);
-  }
+bool end_supervisor_without_keeper(const std::string& name) {
+  const auto status = control::ask_with_descriptors(name, {}, kPatience);
+  if (!status || !status->object["status"].value("keeper_died", false)) return false;
+  const auto address = control::address_of(name);
+  const auto socket = control::connect_to(*address);
+  if (!socket) return false;
+  const auto pid = control::process_at_other_end(socket->get());
+  log::info("the keeper of rig '{}' has died; its supervisor (pid {}) is replaced", name, pid);
+  const auto pidfd = pidfd_of(pid);
+  if (!pidfd) return false;
+  kill_now(pid, pidfd);
+  return true;
 }
 
 Result<void> take_rings(AdoptedRig& adopted, LiveRig& rig, const std::vector<ServiceSpec>& specs) {
@@ -69,11 +55,9 @@ Result<void> take_rings(AdoptedRig& adopted, LiveRig& rig, const std::vector<Ser
 
 void take_services(AdoptedRig adopted, LiveRig& rig) {
   report_deaths(adopted, *rig.launch.reports);
-  for (const auto& saved : adopted.saved.services) {
-    const bool was_between =
-        saved.state == State::starting || saved.state == State::stopping;  // it is started anew
-    if (auto* service = rig.services.find(saved.name); service && !was_between)
-      service->inherit(saved);
+  for (auto& saved : adopted.saved.services) {
+    if (saved.pid != 0 && !lives(adopted, saved.pid)) ++saved.restarts;  // it will be started again
+    if (auto* service = rig.services.find(saved.name)) service->inherit(saved);
   }
   for (auto& process : adopted.services) {
     const auto name = process.saved.name;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Takeover of the services and rings of a supervisor that died.
 #pragma once
-#include <filesystem>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "supervisor/rig/live_rig.hpp"
@@ -10,10 +9,9 @@
 
 namespace handcast::supervisor {
 
-/// Kills the daemons of earlier supervisors that are not taken over: spares, and services that were
-/// started after the state was last saved.
-void end_strays(const ExitReports& reports, const std::optional<AdoptedRig>& adopted,
-                const std::filesystem::path& program_folder);
+/// Kills the supervisor of the rig `name` if its keeper has died, so that another one can take over
+/// the rig under a new keeper. Returns false if there is no such supervisor.
+bool end_supervisor_without_keeper(const std::string& name);
 
 /// Takes over the rings. Errors: bad_config (their types or sizes do not fit `specs`); the services
 /// are left as they are then.

@@ -3,61 +3,38 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <signal.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "ipc/ring/row_owner.hpp"
 #include "supervisor/base/process.hpp"
+#include "supervisor/succession/census.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-/// Rings from systemd's store, by stream.
+/// Descriptors from systemd's store, by name.
 using Stored = std::vector<std::pair<std::string, UniqueFd>>;
 
-// Opens the pidfd before it compares the start time: from then on it does not matter if the pid is
-// reused.
-UniqueFd pidfd_of(const SavedService& saved) {
-  if (saved.pid == 0) return {};
-  UniqueFd pidfd(static_cast<int>(syscall(SYS_pidfd_open, saved.pid, 0)));
-  if (pidfd && start_ticks_of(saved.pid) == saved.started_ticks) return pidfd;
-  return {};
-}
-
-std::vector<AdoptedProcess> living_of(const SavedRig& saved) {
+/// The saved services that live. Takes their processes out of `found`.
+std::vector<AdoptedProcess> living_of(const SavedRig& saved, std::vector<FoundProcess>& found) {
   std::vector<AdoptedProcess> living;
-  for (const auto& service : saved.services)
-    if (auto pidfd = pidfd_of(service)) living.push_back({service, std::move(pidfd), {}});
+  for (const auto& service : saved.services) {
+    const auto process = std::ranges::find(found, service.pid, &FoundProcess::pid);
+    if (process == found.end() || start_ticks_of(service.pid) != service.started_ticks) continue;
+    living.push_back({service, std::move(process->pidfd), {}});
+    found.erase(process);
+  }
   return living;
-}
-
-void send_signal(const AdoptedProcess& process, int number) {
-  syscall(SYS_pidfd_send_signal, process.pidfd.get(), number, nullptr, 0);
-}
-
-bool ends_before(const AdoptedProcess& process, Deadline deadline) {
-  pollfd ended{.fd = process.pidfd.get(), .events = POLLIN, .revents = 0};
-  const auto left_ns = std::max<std::int64_t>(deadline.time_ns() - now_ns(), 0);
-  return poll(&ended, 1, static_cast<int>(ns_to_ms(left_ns)) + 1) == 1;
-}
-
-/// Kills a process and its process group. The process was alive a moment ago, so its pid has not
-/// been reused.
-void kill_now(const AdoptedProcess& process) {
-  kill(-process.saved.pid, SIGKILL);
-  send_signal(process, SIGKILL);
-  ends_before(process, Deadline::in(std::chrono::seconds(1)));
 }
 
 bool is_inode(int fd, std::uint64_t inode) {
@@ -135,7 +112,7 @@ std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
     if (process.saved.state != State::ready) {
       log::info("{} was not ready when its supervisor died; it is started again",
                 process.saved.name);
-      kill_now(process);
+      kill_now(process.saved.pid, process.pidfd);
       continue;
     }
     process.log = reopen_log(process.saved.pid);
@@ -150,6 +127,38 @@ std::string names_of(const std::vector<AdoptedProcess>& processes) {
     names += fmt::format("{}{} (pid {})", names.empty() ? "" : ", ", process.saved.name,
                          process.saved.pid);
   return names;
+}
+
+std::string names_of(const std::vector<FoundProcess>& processes) {
+  std::string names;
+  for (const auto& process : processes)
+    names += fmt::format("{}{} (pid {})", names.empty() ? "" : ", ", process.service, process.pid);
+  return names;
+}
+
+void kill_all(const std::vector<FoundProcess>& processes) {
+  for (const auto& process : processes) kill_now(process.pid, process.pidfd);
+}
+
+/// The state that services hold open, or that systemd has stored. Empty if none can be read.
+std::optional<std::pair<StateMemory, SavedRig>> newest_state(const std::string& name,
+                                                             const std::vector<FoundProcess>& found,
+                                                             const Stored& stored) {
+  const auto read = [&](UniqueFd file) -> std::optional<std::pair<StateMemory, SavedRig>> {
+    auto memory = StateMemory::open(std::move(file));
+    if (!memory) return std::nullopt;
+    auto saved = memory->load(name);
+    if (!saved) return std::nullopt;
+    return std::pair(std::move(*memory), std::move(*saved));
+  };
+  for (const auto& process : found) {
+    const auto file = fmt::format("/proc/{}/fd/{}", process.pid, process.state_fd);
+    if (auto state = read(UniqueFd(::open(file.c_str(), O_RDWR | O_CLOEXEC)))) return state;
+  }
+  for (const auto& [stored_name, fd] : stored)
+    if (stored_name == kStateName)
+      if (auto state = read(UniqueFd(fcntl(fd.get(), F_DUPFD_CLOEXEC, 3)))) return state;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -167,68 +176,48 @@ Result<ipc::Segment> make_ring(const ipc::RingSpec& spec) {
 
 Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   const auto stored = taken_from_systemd();
-  auto saved = load_saved(name);
-  if (!saved) return tl::make_unexpected(saved.error());
-  if (!*saved) return std::nullopt;
-
-  auto living = living_of(**saved);
-  if (living.empty() && stored.empty()) return std::nullopt;
-  auto rings = take_rings(**saved, living, stored);
-  if (!rings && living.empty())
-    return std::nullopt;  // systemd did not keep all of them, but they are not in use
-  if (!rings)
+  auto found = find_services(name);
+  auto state = newest_state(name, found, stored);
+  if (!state) {
+    if (!found.empty())
+      log::warning(
+          "{} of rig '{}' cannot be taken over, because no saved state can be read; "
+          "killed and started anew",
+          names_of(found), name);
+    kill_all(found);
+    return std::nullopt;
+  }
+  auto& [memory, saved] = *state;
+  auto living = living_of(saved, found);
+  auto rings = take_rings(saved, living, stored);
+  if (!rings && !living.empty())
     return fail(
         rings.error().code,
         fmt::format(
             "services of rig '{}' run without a supervisor and cannot be taken over: {}: {}; "
             "`handcast down --rig {}` stops them",
             name, names_of(living), rings.error().what, name));
-  return AdoptedRig{std::move(**saved), std::move(*rings), keep_the_ready(std::move(living))};
-}
-
-int stop_orphans(const std::string& name, double stop_s) {
-  const auto saved = load_saved(name);
-  if (!saved || !*saved) return 0;
-  const auto living = living_of(**saved);
-  std::for_each(living.rbegin(), living.rend(),
-                [](const auto& process) { send_signal(process, SIGTERM); });
-  const auto deadline = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(stop_s)));
-  for (const auto& process : living) {
-    if (ends_before(process, deadline)) continue;
-    log::warning("{} does not stop; killed", process.saved.name);
-    kill_now(process);
-  }
-  forget_saved(name);
-  return static_cast<int>(living.size());
+  kill_all(found);
+  if (!rings) return std::nullopt;  // systemd did not keep all of them, but they are not in use
+  return AdoptedRig{std::move(saved), std::move(memory), std::move(*rings),
+                    keep_the_ready(std::move(living))};
 }
 
 std::vector<std::string> orphaned_rigs() {
-  std::vector<std::string> rigs;
-  const auto folder = control::runtime_folder();
-  std::error_code error;
-  if (!folder) return rigs;
-  for (const auto& entry : std::filesystem::directory_iterator(*folder, error)) {
-    if (entry.path().extension() != ".state") continue;
-    const auto name = entry.path().stem().string();
-    const auto socket = control::socket_of(name);
-    const bool has_supervisor =
-        socket && (control::connect_to(*socket) ||
-                   control::connect_to(*socket).error().code == Errc::timeout);
-    const auto saved = load_saved(name);
-    if (!has_supervisor && saved && *saved && !living_of(**saved).empty()) rigs.push_back(name);
-  }
-  std::ranges::sort(rigs);
-  return rigs;
+  std::set<std::string> rigs;
+  for (const auto& process : find_services()) rigs.insert(process.rig);
+  const auto has_supervisor = [](const std::string& rig) {
+    const auto connection = control::address_of(rig).and_then(
+        [](const auto& address) { return control::connect_to(address); });
+    return connection || connection.error().code == Errc::timeout;
+  };
+  std::erase_if(rigs, has_supervisor);
+  return {rigs.begin(), rigs.end()};
 }
 
-std::optional<std::string> abandoned_rig(const std::string& name) {
-  for (const auto limit = Deadline::in(std::chrono::seconds(1));; usleep(50'000)) {
-    auto rigs = orphaned_rigs();
-    if (!name.empty()) std::erase_if(rigs, [&](const auto& rig) { return rig != name; });
-    const auto living = control::living_rigs();
-    if (rigs.size() != 1 || (name.empty() && living && !living->empty())) return std::nullopt;
-    if (limit.passed()) return rigs.front();
-  }
+std::optional<SavedRig> state_of(const std::string& name) {
+  auto state = newest_state(name, find_services(name), {});
+  return state ? std::optional(std::move(state->second)) : std::nullopt;
 }
 
 }  // namespace handcast::supervisor

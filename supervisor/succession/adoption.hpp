@@ -7,6 +7,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/shm/segment.hpp"
 #include "supervisor/succession/saved_rig.hpp"
+#include "supervisor/succession/state_memory.hpp"
 
 namespace handcast::supervisor {
 
@@ -17,25 +18,25 @@ Result<ipc::Segment> make_ring(const ipc::RingSpec& spec);
 
 /// A rig whose supervisor died.
 struct AdoptedRig {
-  SavedRig saved;  ///< the saved state
+  SavedRig saved;     ///< the saved state
+  StateMemory state;  ///< where it was saved
   /// The rings. Their descriptors have the numbers that the services know (saved.rings[i].fd), so
   /// that children can inherit them.
   std::vector<ipc::Segment> rings;
   std::vector<AdoptedProcess> services;  ///< the living services
 };
 
-/// Adopts the living services and the rings of the rig `name`; empty if there are none. Rings are
-/// opened through the living services (/proc/PID/fd/N, whose inode is compared) or taken from
-/// systemd's store; rows of dead readers are freed. Services that were not ready are killed.
-/// Errors: bad_data, unavailable; the living services can only be stopped then (stop_orphans()).
+/// Adopts the living services and the rings of the rig `name`; empty if there are none. The state
+/// is that of a living service (/proc/PID/fd/N), or it comes from systemd's store, as do the rings,
+/// whose inodes are compared; rows of dead readers are freed. All other processes of the rig's
+/// services are killed: those that were not ready, spares, and all of them if no state can be read.
+/// Errors: unavailable (the rings cannot be opened); the living services can only be stopped then
+/// (stop_rig()).
 Result<std::optional<AdoptedRig>> adopt(const std::string& name);
-/// Stops all services of a rig without a supervisor; kills those that do not stop within `stop_s`.
-/// Returns their number.
-int stop_orphans(const std::string& name, double stop_s);
+
 /// The names of this user's rigs whose services live without a supervisor, sorted.
 std::vector<std::string> orphaned_rigs();
-/// The orphaned rig called `name` ("": the only one). Empty if there is none, or if a supervisor,
-/// started by its keeper, takes it over within a second.
-std::optional<std::string> abandoned_rig(const std::string& name);
+/// The saved state of a rig, from its living services. Empty if there is none.
+std::optional<SavedRig> state_of(const std::string& name);
 
 }  // namespace handcast::supervisor

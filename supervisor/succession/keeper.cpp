@@ -13,7 +13,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -21,96 +23,60 @@
 #include "supervisor/base/console.hpp"
 #include "supervisor/base/exit.hpp"
 #include "supervisor/life/exit_reports.hpp"
+#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/supervisor_command.hpp"
+#include "supervisor/succession/supervisor_deaths.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::array kStopSignals{SIGINT, SIGTERM, SIGHUP};
-constexpr std::int64_t kShortLife_ns = 1'000'000'000;
-constexpr std::int64_t kFirstPause_ns = 50'000'000;
-constexpr std::int64_t kMinute_ns = 60'000'000'000;
-constexpr int kDeathsInAMinute = 10;
+/// The longest time between two looks at signals and beats.
+constexpr std::int64_t kLook_ns = 100'000'000;
+/// If two looks are further apart, the keeper itself stood still.
+constexpr std::int64_t kStoodStill_ns = 500'000'000;
+/// The longest time without a beat, and before the first one.
+/// @{
+constexpr std::int64_t kLongestSilence_ns = 2'000'000'000;
+constexpr std::int64_t kFirstBeat_ns = 30'000'000'000;
+/// @}
+/// The supervisor is killed when the same stop signal has come this often.
+constexpr int kImpatient = 3;
+/// The time that services get to stop without a supervisor.
+constexpr double kServices_s = 1;
 /// How long the keeper waits for the remaining children after the supervisor has exited.
 constexpr std::int64_t kFarewell_ns = 1'000'000'000;
-
-/// The deaths of the supervisor.
-class Deaths {
- public:
-  void add(std::int64_t started_ns, std::int64_t died_ns) {
-    recent_ns_[count_++ % recent_ns_.size()] = died_ns;
-    short_lives_ = died_ns - started_ns < kShortLife_ns ? short_lives_ + 1 : 0;
-  }
-  bool too_many(std::int64_t now) const {
-    return std::ranges::count_if(recent_ns_, [&](std::int64_t died_ns) {
-             return died_ns > 0 && now - died_ns < kMinute_ns;
-           }) == kDeathsInAMinute;
-  }
-  /// The wait before the next start; 0 unless at least two lives in a row were short.
-  std::int64_t pause_ns() const {
-    return short_lives_ < 2 ? 0 : kFirstPause_ns << (std::min(short_lives_, 6) - 2);
-  }
-
- private:
-  std::array<std::int64_t, kDeathsInAMinute> recent_ns_{};
-  std::size_t count_ = 0;
-  int short_lives_ = 0;
-};
-
-/// The arguments and the environment of the supervisor. They are built once, so that later starts
-/// do not allocate memory.
-struct Plan {
-  std::vector<std::string> arguments, environment;
-  std::vector<char*> argument_pointers, environment_pointers;
-  std::string successor = fmt::format("{}=1", kSuccessorVariable);
-
-  Plan(const std::vector<std::string>& command, int report_fd) : arguments(command) {
-    for (char** entry = environ; *entry; ++entry) {
-      const std::string_view text = *entry;
-      if (!text.starts_with(fmt::format("{}=", kKeeperVariable)) &&
-          !text.starts_with(fmt::format("{}=", kSuccessorVariable)))
-        environment.emplace_back(text);
-    }
-    environment.push_back(fmt::format("{}={}", kKeeperVariable, report_fd));
-    for (auto& text : arguments) argument_pointers.push_back(text.data());
-    for (auto& text : environment) environment_pointers.push_back(text.data());
-    argument_pointers.push_back(nullptr);
-    environment_pointers.insert(environment_pointers.end(),
-                                {nullptr, nullptr});  // a place for kSuccessorVariable
-  }
-  void for_a_successor() {
-    environment_pointers[environment_pointers.size() - 2] = successor.data();
-  }
-};
 
 class Keeper {
  public:
   Keeper(const std::vector<std::string>& arguments, UniqueFd here, UniqueFd there)
-      : here_(std::move(here)), there_(std::move(there)), plan_(arguments, there_.get()) {}
+      : here_(std::move(here)), there_(std::move(there)), command_(arguments, there_.get()) {}
 
   int run() {
     prepare();
     for (;;) {
       const auto started_ns = now_ns();
       start();
-      while (supervisor_ > 0) handle(wait_for_signal(kMinute_ns));
-      const bool cannot_now = is_successor_ && exit_ && exit_->code == kExitRetry;
-      if (exit_ && !exit_->signalled && !cannot_now) return see_off(exit_->code);
+      while (supervisor_ > 0) look(kLook_ns);
+      if (exit_ && !exit_->signalled && !cannot_take_over()) return see_off(exit_->code);
       deaths_.add(started_ns, now_ns());
+      if (must_stop_the_rig()) return stop_the_rig();
       if (deaths_.too_many(now_ns())) return give_up();
       const auto pause_ns = deaths_.pause_ns();
       log::warning("the supervisor died ({}); started again{}",
                    exit_ ? exit_->describe() : "no process could be created",
                    pause_ns > 0 ? fmt::format(" after {:.0f} ms", ns_to_ms(pause_ns)) : "");
-      for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns;)
-        handle(wait_for_signal(until_ns - now_ns()));
-      plan_.for_a_successor();
+      for (const auto until_ns = now_ns() + pause_ns; now_ns() < until_ns && !must_stop_the_rig();)
+        look(until_ns - now_ns());
+      if (must_stop_the_rig()) return stop_the_rig();
+      command_.for_a_successor();
       is_successor_ = true;
     }
   }
 
  private:
   void prepare() {
-    prctl(PR_SET_NAME, "handcast-keeper");
+    prctl(PR_SET_NAME, kKeeperName);
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     signal(SIGCHLD, SIG_DFL);
     signal(SIGPIPE, SIG_IGN);
@@ -124,6 +90,8 @@ class Keeper {
   void start() {
     exit_.reset();
     supervisor_ = fork();
+    last_beat_ns_ = last_look_ns_ = now_ns();
+    has_beaten_ = false;
     if (supervisor_ == 0) become_supervisor();
     if (supervisor_ < 0) return;
     setpgid(supervisor_, supervisor_);  // both processes do this, because either may run first
@@ -141,9 +109,9 @@ class Keeper {
     sigaddset(&children, SIGCHLD);
     sigprocmask(SIG_UNBLOCK, &children, nullptr);
     fcntl(there_.get(), F_SETFD, 0);
-    execve(plan_.argument_pointers[0], plan_.argument_pointers.data(),
-           plan_.environment_pointers.data());
-    print_line(fmt::format("handcast: {}: {}", plan_.arguments[0], std::strerror(errno)));
+    execve(command_.argument_pointers[0], command_.argument_pointers.data(),
+           command_.environment_pointers.data());
+    print_line(fmt::format("handcast: {}: {}", command_.arguments[0], std::strerror(errno)));
     _exit(kExitRetry);
   }
 
@@ -153,11 +121,44 @@ class Keeper {
     return std::max(sigtimedwait(&awaited_, nullptr, &span), 0);
   }
 
+  /// Waits for a signal, at most this long, and handles it. Then looks for beats.
+  void look(std::int64_t span_ns) {
+    handle(wait_for_signal(std::min(span_ns, kLook_ns)));
+    const auto now = now_ns();
+    if (now - std::exchange(last_look_ns_, now) > kStoodStill_ns) last_beat_ns_ = now;
+    take_beats(now);
+    if (supervisor_ > 0 && now - last_beat_ns_ > longest_silence_ns()) kill_supervisor(now);
+  }
+
   void handle(int signal_number) {
     if (signal_number == SIGCHLD) return reap();
     if (signal_number == 0) return;
     sigaddset(&received_, signal_number);
+    stop_requests_ = std::max(stop_requests_, ++received_count_[signal_number]);
     if (supervisor_ > 0) kill(supervisor_, signal_number);
+  }
+
+  void take_beats(std::int64_t now) {
+    Beat beat;
+    while (recv(here_.get(), &beat, sizeof beat, MSG_DONTWAIT) == sizeof beat) {
+      beat.rig.back() = '\0';
+      rig_ = beat.rig.data();
+      is_stopping_ = beat.stopping;
+      last_beat_ns_ = now;
+      has_beaten_ = true;
+    }
+  }
+
+  std::int64_t longest_silence_ns() const {
+    if (stop_requests_ >= kImpatient) return 0;
+    return has_beaten_ || stop_requests_ > 0 ? kLongestSilence_ns : kFirstBeat_ns;
+  }
+
+  void kill_supervisor(std::int64_t now) {
+    log::warning("the supervisor (pid {}) has given no sign of life for {:.1f} s; killed",
+                 supervisor_, ns_to_seconds(now - last_beat_ns_));
+    kill(supervisor_, SIGKILL);
+    last_beat_ns_ = now;
   }
 
   /// Reaps all children that have ended. Stores the end of the supervisor, reports the others.
@@ -173,6 +174,24 @@ class Keeper {
       send(here_.get(), &report, sizeof report,
            MSG_DONTWAIT | MSG_NOSIGNAL);  // lost if the queue is full
     }
+  }
+
+  /// True if the present supervisor follows one that died and the rig cannot be taken over now.
+  bool cannot_take_over() const { return is_successor_ && exit_ && exit_->code == kExitRetry; }
+
+  /// True if the rig was to be stopped when its supervisor died. Before the first beat of any
+  /// supervisor there are no services.
+  bool must_stop_the_rig() const { return !rig_.empty() && (is_stopping_ || stop_requests_ > 0); }
+
+  int stop_the_rig() {
+    const auto patience_s = stop_requests_ >= kImpatient ? 0 : kServices_s;
+    const int ended = end_services(rig_, patience_s, now_ns());
+    see_off(kExitDone);
+    print_line(
+        fmt::format("handcast: the supervisor ended before rig '{}' had stopped; its keeper "
+                    "has ended the services that were left: {}",
+                    rig_, ended));
+    return kExitBadResult;
   }
 
   bool has_children() const {
@@ -202,14 +221,21 @@ class Keeper {
   /// The supervisor's end. The keeper holds it open, so that no report is lost between two
   /// supervisors.
   UniqueFd there_;
-  Plan plan_;
-  Deaths deaths_;
+  SupervisorCommand command_;
+  SupervisorDeaths deaths_;
   sigset_t stop_signals_{}, awaited_{};
   /// The stop signals received so far. A successor gets them, too, because the rig still has to be
   /// stopped.
   sigset_t received_{};
+  std::map<int, int> received_count_;  ///< how often each came
+  int stop_requests_ = 0;              ///< how often the most frequent one came
   pid_t supervisor_ = -1;
   bool is_successor_ = false;  ///< the present supervisor follows one that died
+  std::string rig_;            ///< name of the rig, from the beats; "" before the first one
+  bool is_stopping_ = false;   ///< Beat::stopping of the last beat
+  bool has_beaten_ = false;    ///< the present supervisor has
+  std::int64_t last_beat_ns_ = 0;
+  std::int64_t last_look_ns_ = 0;
   std::optional<Exit> exit_;
 };
 

@@ -1,52 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/saved_rig.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <nlohmann/json.hpp>
-
-#include "ipc/base/unique_fd.hpp"
-#include "ipc/control/runtime_folder.hpp"
-#include "supervisor/base/replace_file.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 2;                  ///< incremented when the meaning of a member changes
-constexpr std::size_t kMostBytes = 1 << 20;  ///< a rig needs about 3 KB
+constexpr int kVersion = 3;  ///< incremented when the meaning of a member changes
 constexpr int kLeastFd = 3, kMostFd = 1 << 20;  ///< lower numbers: stdin, stdout, stderr
 constexpr pid_t kLeastPid = 2, kMostPid = 1 << 22;
-
-Result<std::filesystem::path> state_of(const std::string& rig) {
-  auto path = control::socket_of(rig);
-  if (path) path->replace_extension(".state");
-  return path;
-}
-
-std::string text_of(int fd, std::size_t most_bytes) {
-  std::string text;
-  std::array<char, 4096> bytes;
-  for (ssize_t count = 0;
-       text.size() < most_bytes && (count = ::read(fd, bytes.data(), bytes.size())) > 0;)
-    text.append(bytes.data(), static_cast<std::size_t>(count));
-  return text;
-}
-
-std::string text_of_proc(const std::string& file) {
-  const UniqueFd fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  return fd ? text_of(fd.get(), kMostBytes) : "";
-}
-
-std::string boot_id() { return text_of_proc("/proc/sys/kernel/random/boot_id").substr(0, 36); }
 
 json to_json(const SavedRing& ring) {
   return {{"stream", ring.stream}, {"inode", ring.inode}, {"fd", ring.fd}};
@@ -63,11 +30,10 @@ json to_json(const SavedService& service) {
 }
 
 json to_json(const SavedRig& rig) {
-  json object{{"version", kVersion},      {"boot", boot_id()},
-              {"name", rig.name},         {"rig_file", rig.rig_file.string()},
-              {"settings", rig.settings}, {"out", rig.out},
-              {"epoch_ns", rig.epoch_ns}, {"rings", json::array()},
-              {"services", json::array()}};
+  json object{
+      {"version", kVersion},      {"name", rig.name},       {"rig_file", rig.rig_file.string()},
+      {"settings", rig.settings}, {"out", rig.out},         {"applied", rig.applied},
+      {"epoch_ns", rig.epoch_ns}, {"rings", json::array()}, {"services", json::array()}};
   for (const auto& ring : rig.rings) object["rings"].push_back(to_json(ring));
   for (const auto& service : rig.services) object["services"].push_back(to_json(service));
   return object;
@@ -100,6 +66,7 @@ SavedRig rig_from(const json& object) {
                .rig_file = object.at("rig_file").get<std::string>(),
                .settings = object.at("settings"),
                .out = object.at("out"),
+               .applied = object.at("applied"),
                .epoch_ns = object.at("epoch_ns"),
                .rings = {},
                .services = {}};
@@ -120,42 +87,20 @@ std::string problem_of(const SavedRig& rig, const std::string& name) {
   return "";
 }
 
-/// Why another user could have written the file; "" if it has the owner and the mode of save().
-std::string problem_of(int fd) {
-  struct stat status {};
-  if (fstat(fd, &status) != 0) return std::strerror(errno);
-  if (!S_ISREG(status.st_mode)) return "it is not a file";
-  if (status.st_uid != getuid()) return "it belongs to another user";
-  if ((status.st_mode & 077) != 0) return "other users have access to it";
-  if (static_cast<std::size_t>(status.st_size) > kMostBytes) return "it is too long";
-  return "";
-}
-
 }  // namespace
 
-Result<void> save(const SavedRig& rig) {
-  const auto path = state_of(rig.name);
-  if (!path) return tl::make_unexpected(path.error());
-  return replace_file(*path,
-                      to_json(rig).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+std::string print_saved(const SavedRig& rig) {
+  return to_json(rig).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-Result<std::optional<SavedRig>> load_saved(const std::string& name) {
-  const auto path = state_of(name);
-  if (!path) return tl::make_unexpected(path.error());
+Result<SavedRig> parse_saved(const std::string& text, const std::string& name) {
   const auto invalid = [&](std::string_view why) {
-    return fail(Errc::bad_data, fmt::format("{} is invalid: {}", path->string(), why));
+    return fail(Errc::bad_data,
+                fmt::format("the saved state of rig '{}' is invalid: {}", name, why));
   };
-
-  const UniqueFd file(::open(path->c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-  if (!file)
-    return errno == ENOENT ? Result<std::optional<SavedRig>>(std::nullopt)
-                           : invalid(std::strerror(errno));
-  if (const auto problem = problem_of(file.get()); !problem.empty()) return invalid(problem);
-  const auto object = json::parse(text_of(file.get(), kMostBytes), nullptr, false);
+  const auto object = json::parse(text, nullptr, false);
   if (!object.is_object()) return invalid("it is incomplete");
   try {
-    if (object.at("boot") != boot_id()) return std::nullopt;
     if (object.at("version") != kVersion) return invalid("another version of handcast wrote it");
     auto rig = rig_from(object);
     if (const auto problem = problem_of(rig, name); !problem.empty()) return invalid(problem);
@@ -163,10 +108,6 @@ Result<std::optional<SavedRig>> load_saved(const std::string& name) {
   } catch (const json::exception& error) {
     return invalid(error.what());
   }
-}
-
-void forget_saved(const std::string& rig) {
-  if (const auto path = state_of(rig)) unlink(path->c_str());
 }
 
 }  // namespace handcast::supervisor

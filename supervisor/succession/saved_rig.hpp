@@ -18,25 +18,22 @@ struct SavedRing {
   int fd = -1;              ///< number of its descriptor in all services
 };
 
-/// A rig as its supervisor saves it for a successor, which can take over the running services. The
-/// file RIG.state in the runtime folder is replaced at every change (mode 0600) and removed when
-/// the rig stops.
+/// A rig as its supervisor saves it for a successor, which can take over the running services.
 struct SavedRig {
   std::string name;                    ///< name of the rig
   std::filesystem::path rig_file;      ///< the user's rig file
   std::vector<std::string> settings;   ///< --set path=value
   std::string out;                     ///< --out; "" if it was not given
+  std::string applied;                 ///< the applied rig, as TOML
   std::int64_t epoch_ns = 0;           ///< HANDCAST_EPOCH_NS of the services
   std::vector<SavedRing> rings;        ///< its rings
   std::vector<SavedService> services;  ///< its services
 };
 
-/// Writes the file. Errors: unavailable; no successor can take over the rig then.
-Result<void> save(const SavedRig& rig);
-/// Reads the file. Empty if there is none, or if it was written before the last boot. Errors:
-/// bad_data (the file is invalid, or another user could have written it).
-Result<std::optional<SavedRig>> load_saved(const std::string& rig);
-/// Removes the file. Does nothing if there is none.
-void forget_saved(const std::string& rig);
+/// The text of a saved rig, one JSON object.
+std::string print_saved(const SavedRig& rig);
+/// The reverse. Errors: bad_data (the text is incomplete, of another version of handcast, or of
+/// another rig than `name`).
+Result<SavedRig> parse_saved(const std::string& text, const std::string& name);
 
 }  // namespace handcast::supervisor

@@ -2,6 +2,7 @@
 #include "supervisor/succession/service_unit.hpp"
 
 #include <fmt/format.h>
+#include <grp.h>
 #include <pwd.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "ipc/base/join.hpp"
 #include "supervisor/succession/units/template.hpp"
 
 namespace handcast::supervisor {
@@ -29,7 +31,10 @@ std::string word(const std::string& text) {
 }
 
 std::string command_of(const UnitSpec& spec) {
-  auto command = fmt::format("{} up --no-keeper {}", word(spec.program), word(spec.rig_file));
+  const auto out =
+      spec.out.empty() ? fmt::format("\"%S/handcast/{}\"", spec.rig) : word(spec.out);
+  auto command = fmt::format("{} up --no-keeper {} --out {}", word(spec.program),
+                             word(spec.rig_file), out);
   for (const auto& setting : spec.settings) command += " --set " + word(setting);
   return command;
 }
@@ -49,6 +54,19 @@ bool take_mark(std::string& line, std::string_view mark) {
   return true;
 }
 
+/// A system unit may write only to the folders that it names. '-': if the folder is missing,
+/// `handcast up` says so better than systemd. In paths, systemd expands %x but not $X.
+std::string writable_out(const UnitSpec& spec) {
+  if (spec.out.empty() || !spec.system) return {};
+  std::string path;
+  for (const char character : spec.out.string()) {
+    if (character == '"' || character == '\\') path += '\\';
+    if (character == '%') path += character;
+    path += character;
+  }
+  return fmt::format("ReadWritePaths=\"-{}\"", path);
+}
+
 std::string home() {
   if (const char* folder = std::getenv("HOME"); folder && *folder) return folder;
   const auto* entry = getpwuid(getuid());
@@ -57,12 +75,21 @@ std::string home() {
 
 }  // namespace
 
+std::vector<std::string> device_groups() {
+  std::vector<std::string> groups;
+  for (const char* name : {"video", "render", "input", "plugdev"})
+    if (getgrnam(name) != nullptr) groups.emplace_back(name);
+  return groups;
+}
+
 std::string unit_name(const UnitSpec& spec) { return fmt::format("handcast-{}.service", spec.rig); }
 
 std::string unit_text(const UnitSpec& spec) {
   const std::map<std::string, std::string> values{{"@NAME@", spec.rig},
                                                   {"@PROGRAM@", word(spec.program)},
                                                   {"@COMMAND@", command_of(spec)},
+                                                  {"@WRITABLE_OUT@", writable_out(spec)},
+                                                  {"@GROUPS@", join(spec.groups, " ")},
                                                   {"@USER@", spec.user}};
   std::istringstream lines{std::string(kServiceTemplate)};
   std::string text;

@@ -12,9 +12,16 @@ struct UnitSpec {
   std::filesystem::path program;      ///< absolute path of `handcast`
   std::filesystem::path rig_file;     ///< absolute path of the rig file
   std::vector<std::string> settings;  ///< --set path=value
-  bool system = false;                ///< a unit of the system; false: of the user's session
-  std::string user;                   ///< the user of a system unit
+  /// Absolute path of the folder for kept files; empty: the unit's own state folder.
+  std::filesystem::path out;
+  bool system = false;              ///< a unit of the system; false: of the user's session
+  std::string user;                 ///< the user of a system unit
+  std::vector<std::string> groups;  ///< further groups of a system unit
 };
+
+/// The groups to which devices of a rig belong (video, render, input, plugdev), as far as this
+/// machine has them.
+std::vector<std::string> device_groups();
 
 /// The name of the unit: "handcast-desk.service".
 std::string unit_name(const UnitSpec& spec);

@@ -56,7 +56,7 @@ BarePrograms::BarePrograms() {
   const UniqueFd rig(::open((folder_ / "rig.toml").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
   const auto text = fmt::format("name = \"{}\"\n", kRigName);
   if (::write(rig.get(), text.data(), text.size()) < 0) give_up("no rig file for a bare rig");
-  ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
+  ::setenv("HANDCAST_SCOPE", folder_.c_str(), 1);
 }
 
 BarePrograms::~BarePrograms() {

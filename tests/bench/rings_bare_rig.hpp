@@ -12,7 +12,7 @@
 namespace handcast::bench {
 
 /// A folder with the real `handcast` and bare daemons (tests/system/bare_daemon.cpp) under the
-/// names of its services. The folder is also where its rigs meet: XDG_RUNTIME_DIR of this process
+/// names of its services. The folder is also where its rigs meet: HANDCAST_SCOPE of this process
 /// is set to it.
 class BarePrograms {
  public:

@@ -48,7 +48,7 @@ def tearDownModule():
 
 def environment(**more):
     """Nothing of the checkout, nothing of the person who runs the test."""
-    return {"PATH": os.environ["PATH"], "HOME": str(scratch), "XDG_RUNTIME_DIR": str(scratch),
+    return {"PATH": os.environ["PATH"], "HOME": str(scratch), "HANDCAST_SCOPE": str(scratch),
             **more}
 
 

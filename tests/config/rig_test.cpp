@@ -75,6 +75,22 @@ TEST(Rig, AnUnknownSectionIsOneFaultWithASuggestion) {
       ElementsAre("/rigs/test.toml:1: camrea: there is no such setting (did you mean 'camera'?)"));
 }
 
+TEST(Rig, AnUnknownNameInASectionInsideASectionIsAFaultHoweverItIsWritten) {
+  const std::string fault =
+      "cascade.fill.reech_px: there is no such setting (did you mean 'reach_px'?)";
+  for (const std::string toml :
+       {"[cascade.fill]\nreech_px = 4\n", "[cascade]\nfill.reech_px = 4\n",
+        "cascade.fill.reech_px = 4\n", "[cascade]\nfill = { reech_px = 4 }\n",
+        "cascade = { fill = { reech_px = 4 } }\n"})
+    EXPECT_THAT(faults_of(toml), ElementsAre(HasSubstr(fault))) << toml;
+  EXPECT_THAT(faults_of("[cascade.fil]\nreach_px = 4\n"),
+              ElementsAre("/rigs/test.toml:1: cascade.fil: there is no such setting (did you mean "
+                          "'fill'?)"));
+  EXPECT_THAT(faults_of("", {"cascade.fill.reech_px=4"}),
+              ElementsAre("--set cascade.fill.reech_px=4: there is no such setting (did you mean "
+                          "'cascade.fill.reach_px'?)"));
+}
+
 TEST(Rig, ASettingInTheWrongSectionIsToldWhereItBelongs) {
   EXPECT_THAT(faults_of("[camera]\nreach_px = 4\n"),
               ElementsAre(HasSubstr("did you mean 'cascade.fill.reach_px'?")));

@@ -205,11 +205,23 @@ TEST(Segment, ARingOfAnotherTypeIsRefusedByReadersAndWriters) {
   EXPECT_EQ(writer.error().code, Errc::bad_data);
 }
 
-TEST(Segment, SlotsTooSmallForTheMessageAreRefused) {
-  const auto segment = must(Segment::create(RingSpec::of<Page>("test.ring", 3, false, 100)));
-  const auto reader = Reader<Page>::attach(again(segment));
-  ASSERT_FALSE(reader);
-  EXPECT_THAT(reader.error().what, HasSubstr("too small for Page/1"));
+TEST(Segment, SlotsOneByteTooSmallForTheMessageAreRefusedByEveryone) {
+  const auto segment = make_ring<Page>(3, false, sizeof(Page) - 1);
+  const auto expect_refused = [](const auto& attached) {
+    ASSERT_FALSE(attached);
+    EXPECT_EQ(attached.error().code, Errc::bad_data);
+    EXPECT_THAT(attached.error().what, HasSubstr("too small for Page/1"));
+  };
+  expect_refused(Reader<Page>::attach(again(segment)));
+  expect_refused(Reader<Page>::watch(again(segment)));
+  expect_refused(Writer<Page>::attach(again(segment)));
+}
+
+TEST(Segment, SlotsOfExactlyTheSizeOfTheMessageAreUsedByEveryone) {
+  const auto segment = make_ring<Page>(3, false, sizeof(Page));
+  EXPECT_TRUE(Reader<Page>::attach(again(segment)));
+  EXPECT_TRUE(Reader<Page>::watch(again(segment)));
+  EXPECT_TRUE(Writer<Page>::attach(again(segment)));
 }
 
 }  // namespace

@@ -55,6 +55,36 @@ TEST(Wakeups, NoneIsLostBetweenAFlagAndAHead) {
   EXPECT_EQ(reader.seen(), kMessages) << "the reader has missed a message while it slept";
 }
 
+// Below Reader, which looks again from time to time even if it is not woken.
+TEST(Wakeups, OneMessageWakesAllReadersThatSleep) {
+  SmallRing ring(3, false);
+  WriterCore<RealAtomics> writer(ring.words());
+  writer.attach();
+  for (std::uint64_t message = 1; message <= 10; ++message) {
+    std::array<bool, SmallRing::kRows> woken{};
+    {
+      std::vector<std::jthread> readers;
+      for (int row = 0; row < SmallRing::kRows; ++row)
+        readers.emplace_back([&, row] {
+          ReaderCore<RealAtomics> reader(ring.words(), row, 0);
+          reader.catch_up();
+          const auto give_up_ns = now_ns() + kLong_ms * std::int64_t{1'000'000};
+          while (!reader.something_new() && now_ns() < give_up_ns) reader.wait(give_up_ns);
+          woken[row] = now_ns() < give_up_ns;
+        });
+      const auto wants_to_be_woken = [&](int row) {
+        return (RealAtomics::load(ring.words().wait(row), std::memory_order_relaxed) & kWaiting) !=
+               0;
+      };
+      for (int row = 0; row < SmallRing::kRows; ++row)
+        while (!wants_to_be_woken(row)) std::this_thread::yield();
+      std::this_thread::sleep_for(5ms);  // until they sleep; otherwise nothing is tested
+      writer.publish(writer.loan());
+    }
+    ASSERT_THAT(woken, ::testing::Each(true));
+  }
+}
+
 TEST(EventFd, ThereIsNoneForTheOtherWays) {
   const auto segment = make_ring<Note>(4);
   for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex})

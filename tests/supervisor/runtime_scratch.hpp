@@ -6,11 +6,11 @@
 
 namespace handcast::supervisor {
 
-/// A runtime folder that only this test sees, as long as it lives.
+/// A scope of rigs of this test's own (HANDCAST_SCOPE) and a folder, as long as it lives.
 class RuntimeScratch {
  public:
-  RuntimeScratch() { setenv("XDG_RUNTIME_DIR", scratch_.path().c_str(), 1); }
-  ~RuntimeScratch() { unsetenv("XDG_RUNTIME_DIR"); }
+  RuntimeScratch() { setenv("HANDCAST_SCOPE", scratch_.path().c_str(), 1); }
+  ~RuntimeScratch() { unsetenv("HANDCAST_SCOPE"); }
   const std::filesystem::path& path() const { return scratch_.path(); }
 
  private:

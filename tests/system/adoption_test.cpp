@@ -6,8 +6,12 @@
 
 #include <fstream>
 
+#include "ipc/control/rig_address.hpp"
 #include "ipc/ring/ring_view.hpp"
+#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/state_memory.hpp"
 #include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::system_test {
 namespace {
@@ -19,21 +23,25 @@ using testing::IsEmpty;
 
 class Adoption : public SystemTest {
  protected:
-  std::filesystem::path state_file() const {
-    return scratch_.path() / ("handcast-" + std::to_string(getuid())) / "twin.state";
+  /// The memory in which the supervisor saves its state, and that state.
+  /// @{
+  supervisor::StateMemory memory() const {
+    const Variable scope(control::kScopeVariable, scratch_.path().string());
+    const auto service = std::move(supervisor::find_services("twin").at(0));
+    const auto file =
+        "/proc/" + std::to_string(service.pid) + "/fd/" + std::to_string(service.state_fd);
+    return supervisor::StateMemory::open(UniqueFd(open(file.c_str(), O_RDWR | O_CLOEXEC))).value();
   }
-  nlohmann::json state() const { return nlohmann::json::parse(std::ifstream(state_file())); }
+  supervisor::SavedRig state() const { return memory().load("twin").value(); }
+  /// @}
 
   /// A view of the ring through the descriptor of a service, which needs no supervisor.
   ipc::RingView view(const std::string& stream) const {
     const auto saved = state();
-    const auto ring = std::ranges::find_if(
-        saved["rings"], [&](const auto& each) { return each["stream"] == stream; });
-    const auto fd = std::to_string((*ring)["fd"].get<int>());
-    const auto pid = std::to_string(saved["services"][0]["pid"].get<pid_t>());
-    return ipc::RingView::open(
-               UniqueFd(open(("/proc/" + pid + "/fd/" + fd).c_str(), O_RDWR | O_CLOEXEC)))
-        .value();
+    const auto ring = std::ranges::find(saved.rings, stream, &supervisor::SavedRing::stream);
+    const auto file =
+        "/proc/" + std::to_string(saved.services[0].pid) + "/fd/" + std::to_string(ring->fd);
+    return ipc::RingView::open(UniqueFd(open(file.c_str(), O_RDWR | O_CLOEXEC))).value();
   }
 
   /// Kills the supervisor and waits until another one, started by the keeper, answers.
@@ -164,7 +172,8 @@ TEST_F(Adoption, DownEndsServicesThatHaveNoSupervisor) {
   expect_all_alive(services);
   const auto down = handcast({"down"});
   EXPECT_EQ(down.exit_code, 0) << down.log;
-  EXPECT_THAT(down.output, HasSubstr("rig 'twin' had no supervisor; services stopped: 5"));
+  EXPECT_THAT(down.output,
+              HasSubstr("rig 'twin' had no supervisor that answered; processes ended: 5"));
   for (const auto pid : services) EXPECT_FALSE(is_alive(pid));
   EXPECT_EQ(handcast({"down"}).exit_code, 111);
 }
@@ -175,8 +184,8 @@ TEST_F(Adoption, ServicesThatCannotBeTakenOverAreNamedAndLeftAlone) {
   const auto services = pids();
   kill_keeper_and_supervisor(*rig);
   auto other = state();
-  for (auto& ring : other["rings"]) ring["inode"] = 1;
-  std::ofstream(state_file(), std::ios::trunc) << other;
+  for (auto& ring : other.rings) ring.inode = 1;
+  ASSERT_TRUE(memory().save(other));
 
   const auto refused = up();
   EXPECT_EQ(refused->wait(), 111);

@@ -40,7 +40,7 @@ Command::Command(const std::filesystem::path& folder, const Arguments& arguments
   if (pid_ != 0) return;
   send_to_file(STDOUT_FILENO, output_);
   send_to_file(STDERR_FILENO, log_);
-  setenv("XDG_RUNTIME_DIR", folder.c_str(), 1);
+  setenv("HANDCAST_SCOPE", folder.c_str(), 1);
   execv(program.c_str(), pointers.data());
   _exit(127);
 }
@@ -90,18 +90,22 @@ bool is_alive(pid_t pid) {
   return !stat.empty() && stat.find(") Z ") == std::string::npos;
 }
 
-void kill_all_of(const std::filesystem::path& folder) {
-  const auto mark = "XDG_RUNTIME_DIR=" + folder.string() + '\0';
-  for (bool found = true; found;) {  // repeated, because a keeper may have started another one
-    found = false;
-    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-      const pid_t pid = std::atoi(entry.path().filename().c_str());
-      if (pid <= 0 || pid == getpid() || !is_alive(pid)) continue;
-      if (('\0' + text_of(entry.path() / "environ")).find('\0' + mark) == std::string::npos)
-        continue;
-      found = kill(pid, SIGKILL) == 0 || found;
-    }
-    usleep(10'000);
+std::vector<pid_t> processes_of(const std::filesystem::path& scope) {
+  const auto mark = '\0' + ("HANDCAST_SCOPE=" + scope.string()) + '\0';
+  std::vector<pid_t> pids;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const pid_t pid = std::atoi(entry.path().filename().c_str());
+    if (pid <= 0 || pid == getpid() || !is_alive(pid)) continue;
+    if (('\0' + text_of(entry.path() / "environ")).find(mark) != std::string::npos)
+      pids.push_back(pid);
+  }
+  return pids;
+}
+
+void kill_all_of(const std::filesystem::path& scope) {
+  for (auto found = processes_of(scope); !found.empty(); found = processes_of(scope)) {
+    for (const auto pid : found) kill(pid, SIGKILL);
+    usleep(10'000);  // a keeper may have started another one
   }
 }
 

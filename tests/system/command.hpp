@@ -15,8 +15,8 @@ using Arguments = std::vector<std::string>;
 /// the supervisor and the services of a rig: see kill_all_of().
 class Command {
  public:
-  /// `folder`: for the output files; also the command's XDG_RUNTIME_DIR, so that it does not see
-  /// rigs of other folders.
+  /// `folder`: for the output files; also the command's HANDCAST_SCOPE, so that it does not see
+  /// rigs of other tests.
   Command(const std::filesystem::path& folder, const Arguments& arguments);
   ~Command();
   Command(const Command&) = delete;
@@ -44,8 +44,10 @@ bool eventually(const std::function<bool()>& done);
 /// True if the process exists and is not a zombie.
 bool is_alive(pid_t pid);
 
-/// Kills all processes that were started with this runtime folder.
-void kill_all_of(const std::filesystem::path& folder);
+/// The processes that were started with this scope (HANDCAST_SCOPE).
+std::vector<pid_t> processes_of(const std::filesystem::path& scope);
+/// Kills all of them.
+void kill_all_of(const std::filesystem::path& scope);
 
 /// The folder of handcast and its daemons.
 std::filesystem::path program_folder();

@@ -103,7 +103,7 @@ TEST_F(Faults, AMachineThatStoodStillKillsNobody) {
   const auto rig = up();
   wait_until_light();
   auto everybody = pids();
-  everybody.insert(everybody.begin(), rig->supervisor());
+  everybody.insert(everybody.begin(), {rig->pid(), rig->supervisor()});
   for (const auto pid : everybody) kill(pid, SIGSTOP);
   sleep(4);  // twice as long as a service may be silent
   for (const auto pid : everybody) kill(pid, SIGCONT);
@@ -169,7 +169,7 @@ TEST_F(Faults, AnOldNameOfABackEndIsReportedOnceAndTheNewOneIsUsed) {
   const auto report = log.find("--set: landmarks.backend = \"own\" is now \"handcast\"");
   ASSERT_NE(report, std::string::npos) << log;
   EXPECT_EQ(log.find("is now", log.find("is now") + 1), std::string::npos)
-      << "the services read the applied file, which has the new form:\n"
+      << "the services read the applied rig, which has the new form:\n"
       << log;
 
   ASSERT_EQ(handcast({"swap", "landmarks", "twin"}).exit_code, 0);

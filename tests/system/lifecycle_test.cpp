@@ -37,8 +37,8 @@ TEST_F(Lifecycle, DownStopsTheRigAndReturnsWhenItHasStopped) {
   const auto services = pids();
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
   for (const auto pid : services) EXPECT_FALSE(is_alive(pid));
-  EXPECT_THAT(traces(), IsEmpty());
   EXPECT_EQ(rig->wait(), 0);
+  EXPECT_THAT(traces(), IsEmpty());
   const auto status = handcast({"status"});
   EXPECT_EQ(status.exit_code, 111);
   EXPECT_THAT(status.log, HasSubstr("no rig is up"));

@@ -57,12 +57,11 @@ std::vector<pid_t> SystemTest::pids() const {
 
 std::vector<std::string> SystemTest::traces() const {
   std::vector<std::string> names;
-  const auto runtime_folder = scratch_.path() / ("handcast-" + std::to_string(getuid()));
   std::error_code absent;
-  for (const auto& entry : std::filesystem::directory_iterator(runtime_folder, absent))
-    names.push_back(entry.path());
   for (const auto& entry : std::filesystem::directory_iterator("/dev/shm", absent))
     if (entry.path().string().find("handcast") != std::string::npos) names.push_back(entry.path());
+  for (const auto pid : processes_of(scratch_.path()))
+    names.push_back("process " + std::to_string(pid));
   return names;
 }
 

@@ -11,7 +11,7 @@
 
 namespace handcast::system_test {
 
-/// A runtime folder for the rigs of one test.
+/// A scope and a folder for the rigs of one test.
 class SystemTest : public testing::Test {
  protected:
   void SetUp() override;
@@ -36,7 +36,7 @@ class SystemTest : public testing::Test {
   std::uint64_t light() const;  ///< frames projected so far
   void expect_more_light() const;
   std::vector<pid_t> pids() const;
-  /// Names of files and shared memory that a rig could leave behind.
+  /// Shared memory and processes that a rig has left behind.
   std::vector<std::string> traces() const;
 
   test::Scratch scratch_;

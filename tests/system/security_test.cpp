@@ -29,9 +29,9 @@ class Security : public SystemTest {
   }
   /// The descriptors of all rings that a tool gets.
   std::vector<UniqueFd> rings() const {
-    setenv("XDG_RUNTIME_DIR", scratch_.path().c_str(), 1);
+    setenv("HANDCAST_SCOPE", scratch_.path().c_str(), 1);
     auto answer = control::ask_with_descriptors("twin", {.verb = control::Verb::rings});
-    unsetenv("XDG_RUNTIME_DIR");
+    unsetenv("HANDCAST_SCOPE");
     EXPECT_TRUE(answer);
     return answer ? std::move(answer->descriptors) : std::vector<UniqueFd>();
   }
@@ -97,25 +97,6 @@ TEST_F(Security, TheFiguresForPrometheusAreServedToThisMachineAlone) {
   for (const auto& line : sockets)
     EXPECT_NE(line.find(" 0100007F:"), std::string::npos) << line;  // 127.0.0.1
   EXPECT_THAT(network_sockets_of(exporter, "tcp6"), IsEmpty());
-}
-
-TEST_F(Security, TheFolderAndWhatIsInItAreForTheUserAlone) {
-  const auto rig = up();
-  wait_until_light();
-  const auto folder = scratch_.path() / ("handcast-" + std::to_string(getuid()));
-  const auto mode_of = [](const std::filesystem::path& path) {
-    struct stat status {};
-    EXPECT_EQ(lstat(path.c_str(), &status), 0) << path;
-    EXPECT_EQ(status.st_uid, getuid()) << path;
-    return status.st_mode & 0777;
-  };
-  EXPECT_EQ(mode_of(folder), 0700);
-  int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    EXPECT_EQ(mode_of(entry.path()), 0600) << entry.path();
-    ++files;
-  }
-  EXPECT_GT(files, 0);
 }
 
 TEST_F(Security, RingsHaveNoNameInTheFileSystem) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 
 namespace handcast::control {
 
@@ -21,9 +21,8 @@ class ListeningRig {
 
   explicit ListeningRig(std::string answer, Then then = Then::close)
       : answer_(std::move(answer)), then_(then) {
-    const auto address = address_of(socket_of("desk").value());
-    ::unlink(address.sun_path);
-    ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    const auto address = address_of("desk").value();
+    ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address.socket), address.size);
     ::listen(listener_.get(), 16);
     thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
   }

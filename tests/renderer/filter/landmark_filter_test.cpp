@@ -183,32 +183,29 @@ TEST(NoFilter, NeverCorrects) {
   EXPECT_FALSE(filter->at(100 * kMs, 104 * kMs, Line{}.at(0)));
 }
 
-TEST(PaperFilter, WithoutHindsightTakesTheTrackerAsItWasDrawnThen) {
-  config::Filter without = settings("paper");
-  without.hindsight = false;
-  const auto filter = make_landmark_filter(without);
-  // The tracker as it was predicted for each frame. By hindsight it was 30 px to the right.
+/// Draws 40 frames with a tracker that stands still, then adds a detection 5 px to its right. By
+/// hindsight the tracker was 30 px to the right all the time. Returns the offset in x.
+float offset_of_a_corrected_tracker(const char* method, bool hindsight) {
+  config::Filter chosen = settings(method);
+  chosen.hindsight = hindsight;
+  const auto filter = make_landmark_filter(chosen);
   const Line drawn;
   for (int ms = 0; ms < 40; ms += 1) filter->at(ms * kMs, (ms + 4) * kMs, drawn.at(0));
-  const TrackerAt hindsight = [&](std::int64_t) {
+  const TrackerAt known_now = [&](std::int64_t) {
     auto points = drawn.at(0);
     for (auto& point : points) point.x += 30;
     return std::optional(points);
   };
-  filter->detection(40 * kMs, 24 * kMs, seen(drawn.at(0), {5, 0}), hindsight);
-  EXPECT_NEAR(offset_at(*filter, drawn, 40 * kMs).x, 5, 1e-3);
+  filter->detection(40 * kMs, 24 * kMs, seen(drawn.at(0), {5, 0}), known_now);
+  return offset_at(*filter, drawn, 40 * kMs).x;
 }
 
-TEST(PaperFilter, WithHindsightTakesTheTrackerAsItIsKnownNow) {
-  const auto filter = make_landmark_filter(settings("paper"));
-  const Line drawn;
-  const TrackerAt hindsight = [&](std::int64_t) {
-    auto points = drawn.at(0);
-    for (auto& point : points) point.x += 30;
-    return std::optional(points);
-  };
-  filter->detection(40 * kMs, 24 * kMs, seen(drawn.at(0), {5, 0}), hindsight);
-  EXPECT_NEAR(offset_at(*filter, drawn, 40 * kMs).x, -25, 1e-3);
+TEST_P(OffsetFilter, WithoutHindsightTakesTheTrackerAsItWasDrawnThen) {
+  EXPECT_NEAR(offset_of_a_corrected_tracker(GetParam(), false), 5, 1e-3);
+}
+
+TEST_P(OffsetFilter, WithHindsightTakesTheTrackerAsItIsKnownNow) {
+  EXPECT_NEAR(offset_of_a_corrected_tracker(GetParam(), true), -25, 1e-3);
 }
 
 TEST(OffsetKalman, LeavesOutAWildPointButFollowsAJumpThatStays) {

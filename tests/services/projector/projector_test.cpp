@@ -95,6 +95,24 @@ TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
   EXPECT_EQ(picture.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 0));
 }
 
+TEST(FileProjector, TwoCannotWriteIntoOneFolder) {
+  test::Scratch scratch;
+  ::setenv("HANDCAST_OUT", scratch.path().c_str(), 1);
+  config::Rig rig;
+  rig.projector.backend = "file";
+  auto first = open_projector(rig);
+  const auto second = open_projector(rig);  // a spare is opened while the first one works
+  ::unsetenv("HANDCAST_OUT");
+  SmallFrame small;
+  ASSERT_TRUE((*first)->present(small.frame, 1, Deadline::in(5s)));
+  const auto refused = (*second)->present(small.frame, 1, Deadline::in(5s));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::unavailable);
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("another rig writes"));
+  first->reset();
+  EXPECT_TRUE((*second)->present(small.frame, 1, Deadline::in(5s)));
+}
+
 TEST(FileProjector, SaysWhenItsFolderCannotBeMade) {
   ::setenv("HANDCAST_OUT", "/dev/null", 1);
   config::Rig rig;

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "ipc/control/control_client.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "supervisor/control/control_server.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 
@@ -16,7 +16,7 @@ namespace handcast::supervisor {
 
 using namespace control;
 
-/// A runtime folder of the test's own, and a rig "desk" that answers in it.
+/// A scope of the test's own, and a rig "desk" that answers in it.
 class Control : public testing::Test {
  protected:
   void SetUp() override {

@@ -56,7 +56,7 @@ TEST_F(Control, AClientThatDoesNotReadIsDroppedAndTheOthersAreServed) {
     answer["text"] = std::string(1'000'000, 'x');
     reply(answer);
   });
-  const auto lazy = connect_to(socket_of("desk").value()).value();
+  const auto lazy = connect_to(address_of("desk").value()).value();
   const std::string requests = to_line({{"verb", "status"}}) + "\n";
   for (int i = 0; i < 8; ++i)
     ASSERT_EQ(send(lazy.get(), requests.data(), requests.size(), MSG_NOSIGNAL), requests.size());
@@ -162,29 +162,46 @@ TEST_F(Control, WhatTakesLongIsWaitedForWhileTheSupervisorIsAwake) {
   EXPECT_EQ(asked_meanwhile, 3);
 }
 
-TEST_F(Control, ALivingRigKeepsItsNameAndADeadOneDoesNot) {
-  auto first = ControlServer::listen("desk", loop_, refuse);
-  ASSERT_TRUE(first);
-  const auto second = ControlServer::listen("desk", loop_, refuse);
-  ASSERT_FALSE(second);
-  EXPECT_THAT(second.error().what, HasSubstr("'desk' is up already"));
-
-  const auto path = socket_of("desk").value();
-  const auto kept = scratch_.path() / "kept";
-  std::filesystem::rename(
-      path, kept);  // what a supervisor that was killed leaves: a socket file nobody listens at
-  first->reset();
-  std::filesystem::rename(kept, path);
-  EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse));
+TEST_F(Control, ClientsThatAskNothingDoNotShutOthersOut) {
+  serve([](const Request&, const ControlServer::Reply& reply) { reply(success()); });
+  const auto address = address_of("desk").value();
+  std::vector<UniqueFd> idle;
+  while_it_turns([&] {
+    for (int i = 0; i < 200; ++i) {
+      auto socket = connect_to(address);
+      for (; !socket; socket = connect_to(address)) usleep(1000);  // the queue is full
+      idle.push_back(std::move(*socket));
+    }
+    return 0;
+  });
+  EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
 }
 
-TEST_F(Control, TheSocketFileGoesWithTheServer) {
-  EXPECT_THAT(living_rigs().value(), IsEmpty());
-  {
-    const auto server = ControlServer::listen("desk", loop_, refuse);
-    EXPECT_THAT(living_rigs().value(), ElementsAre("desk"));
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(runtime_folder().value()));
+TEST_F(Control, AClientThatWaitsForItsAnswerIsKeptWhenOthersComeIn) {
+  std::optional<ControlServer::Reply> later;
+  serve([&](const Request& request, ControlServer::Reply reply) {
+    if (request.verb == Verb::down)
+      later = std::move(reply);
+    else
+      reply(success());
+  });
+  const auto answered = while_it_turns([&] {
+    auto down = std::async(std::launch::async, [] {
+      return ask_with_descriptors("desk", {.verb = Verb::down}, 20s).has_value();
+    });
+    while (!later) usleep(1000);
+    std::vector<UniqueFd> idle;
+    const auto address = address_of("desk").value();
+    while (idle.size() < 100) {
+      if (auto socket = connect_to(address))
+        idle.push_back(std::move(*socket));
+      else
+        usleep(1000);
+    }
+    (*later)(success());
+    return down.get();
+  });
+  EXPECT_TRUE(answered);
 }
 
 }  // namespace

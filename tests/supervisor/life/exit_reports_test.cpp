@@ -49,13 +49,22 @@ TEST_F(ExitReportsTest, ServicesDoNotInheritTheSocket) {
   EXPECT_EQ(fcntl(reports_.fd(), F_GETFD), FD_CLOEXEC);
 }
 
-TEST_F(ExitReportsTest, OnlyAParentIsAKeeper) {
-  EXPECT_EQ(reports_.keeper(), -1);  // here it is the process itself
-  const pid_t child = fork();
-  if (child == 0) _exit(reports_.keeper() == getppid() ? 0 : 1);
-  int status = -1;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(status, 0);
+TEST_F(ExitReportsTest, ABeatTellsTheKeeperTheRigAndWhetherItStops) {
+  for (const bool stopping : {false, true}) {
+    reports_.beat("desk", stopping);
+    Beat beat;
+    ASSERT_EQ(recv(keeper_.get(), &beat, sizeof beat, MSG_DONTWAIT), sizeof beat);
+    EXPECT_STREQ(beat.rig.data(), "desk");
+    EXPECT_EQ(beat.stopping, stopping);
+  }
+}
+
+TEST_F(ExitReportsTest, TheKeepersDeathIsNoticedAndNoKeeperIsNotADeadOne) {
+  EXPECT_FALSE(reports_.keeper_died());
+  keeper_.reset();
+  reports_.read();
+  EXPECT_TRUE(reports_.keeper_died());
+  EXPECT_FALSE(ExitReports::from_environment().keeper_died());
 }
 
 TEST_F(ExitReportsTest, WhatIsNoReportIsPassedOver) {

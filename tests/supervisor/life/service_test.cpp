@@ -27,7 +27,6 @@ class ServiceTest : public testing::Test {
     char name[] = "/tmp/handcast-service-XXXXXX";
     ASSERT_NE(mkdtemp(name), nullptr);
     launch_.program_folder = name;
-    launch_.rig_file = "rig.toml";
     launch_.stop_s = 0.2;
     launch_.ready_s = 20;
     timer_ = open_timer(5'000'000).value();

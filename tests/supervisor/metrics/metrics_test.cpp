@@ -80,7 +80,7 @@ TEST(Metrics, APortThatIsTakenIsForAPersonToChange) {
   ASSERT_EQ(bind(taken.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
   ASSERT_EQ(listen(taken.get(), 1), 0);
   ASSERT_EQ(getsockname(taken.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
-  const auto server = MetricsServer::listen(ntohs(address.sin_port), [] { return look_at(1); });
+  const auto server = serve_metrics(ntohs(address.sin_port), [] { return look_at(1); });
   ASSERT_FALSE(server);
   EXPECT_EQ(server.error().code, Errc::bad_config);
   EXPECT_THAT(server.error().what, HasSubstr("supervisor.metrics_port"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rigs of daemons without real work: how the supervisor and its successor handle them.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -9,7 +10,9 @@
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
+#include "supervisor/succession/adoption.hpp"
+#include "supervisor/succession/census.hpp"
 #include "tests/supervisor/runtime_scratch.hpp"
 #include "tests/system/command.hpp"
 #include "tests/system/variable.hpp"
@@ -81,13 +84,14 @@ class BareRig : public testing::Test {
     })) << rig.log();
   }
 
-  std::filesystem::path applied_file() const {
-    return control::runtime_folder().value() / "desk.toml";
-  }
-  static std::string text_of(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
+  /// The applied rig as TOML.
+  static std::string applied() { return state_of("desk").value().applied; }
+  /// The memory in which the supervisor saves its state.
+  static StateMemory memory() {
+    const auto service = std::move(find_services("desk").at(0));
+    const auto file =
+        "/proc/" + std::to_string(service.pid) + "/fd/" + std::to_string(service.state_fd);
+    return StateMemory::open(UniqueFd(::open(file.c_str(), O_RDWR | O_CLOEXEC))).value();
   }
   static json services() {
     const auto answer =
@@ -162,14 +166,15 @@ TEST_F(BareRig, AServiceThatIsSwitchedOnAgainUnderTheNextSupervisorIsHeard) {
   EXPECT_TRUE(eventually([] { return services()["observer"]["silent_ms"].is_number(); }));
 }
 
-TEST_F(BareRig, OnlyDaemonsAreEndedAsStraysNotWhateverElseIsAChildOfTheKeeper) {
+TEST_F(BareRig, OnlyDaemonsOfTheRigAreEndedAsStraysNotWhateverElseIsAChildOfTheKeeper) {
   const auto notes = scratch_.path() / "notes";
   std::filesystem::create_directory(scratch_.path() / "entry");
   std::filesystem::copy_file("/bin/sleep", programs_ / "handcast-stray");
   write_program(scratch_.path() / "entry" / "handcast",
-                "sleep 1000 & echo $! > " + notes.string() + "; setsid " + programs_.string() +
-                    "/handcast-stray 1000 & echo $! >> " + notes.string() + "; exec " +
-                    programs_.string() + "/handcast \"$@\"");
+                "setsid sleep 1000 & echo $! > " + notes.string() +
+                    "; HANDCAST_RIG=" + control::address_of("desk").value().text + " setsid " +
+                    programs_.string() + "/handcast-stray 1000 & echo $! >> " + notes.string() +
+                    "; exec " + programs_.string() + "/handcast \"$@\"");
   bin_.emplace("HANDCAST_BIN", (scratch_.path() / "entry").string());
   const auto rig = ready_rig();
   pid_t other = 0, stray = 0;
@@ -214,7 +219,7 @@ class NoNewRings {
 
 TEST_F(BareRig, AReloadThatCannotBeAppliedChangesNothing) {
   const auto rig = ready_rig();
-  const auto applied = text_of(applied_file());
+  const auto before = applied();
   const auto camera = pid_of("camera");
   write_rig(std::string("[camera]\nrate_hz = 50\n") + kObserver);
   {
@@ -223,35 +228,33 @@ TEST_F(BareRig, AReloadThatCannotBeAppliedChangesNothing) {
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().what, HasSubstr("ring marks.observer"));
   }
-  EXPECT_TRUE(text_of(applied_file()) == applied);
+  EXPECT_TRUE(applied() == before);
   EXPECT_FALSE(services().contains("observer"));
   EXPECT_EQ(pid_of("camera"), camera);
   const auto again = reload();
   ASSERT_TRUE(again) << again.error().what;
-  EXPECT_FALSE(text_of(applied_file()) == applied);
+  EXPECT_FALSE(applied() == before);
   EXPECT_EQ(services()["observer"]["state"], "ready");
 }
 
 TEST_F(BareRig, AnUpThatCannotTakeOverLeavesTheAppliedFileAsItWas) {
   auto rig = ready_rig();
-  const auto applied = text_of(applied_file());
+  const auto before = applied();
   const auto supervisor = rig->supervisor();
   rig->signal(SIGKILL);
   rig->wait();
   kill(supervisor, SIGKILL);
   ASSERT_TRUE(eventually([&] { return !is_alive(supervisor); }));
-  auto state_file = applied_file();
-  state_file.replace_extension(".state");
-  auto state = json::parse(text_of(state_file));
-  for (auto& ring : state["rings"]) ring["inode"] = 1;
-  std::ofstream(state_file, std::ios::trunc) << state;
+  auto state = memory().load("desk").value();
+  for (auto& ring : state.rings) ring.inode = 1;
+  ASSERT_TRUE(memory().save(state));
   write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
   rig = std::make_unique<Command>(
       scratch_.path(),
       system_test::Arguments{"up", file_.string(), "--set", "camera.exposure_ms=1"});
   EXPECT_EQ(rig->wait(), 111);
   EXPECT_THAT(rig->log(), HasSubstr("cannot be taken over"));
-  EXPECT_TRUE(text_of(applied_file()) == applied);
+  EXPECT_TRUE(applied() == before);
 }
 
 TEST_F(BareRig, WhoAsksTwiceToStopNeedNotWaitAndNobodyIsStartedAgain) {

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/control/runtime_folder.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/ring_view.hpp"
@@ -67,8 +67,11 @@ class AdoptionTest : public testing::Test {
   }
 
   Child& service(const std::string& name, const std::string& script, bool ready = true) {
-    auto child = Child::spawn(
-        {.program = "/bin/bash", .arguments = {"-c", script}, .rings = {{"marks.pose", kRingFd}}});
+    auto child = Child::spawn({.program = "/bin/bash",
+                               .arguments = {"-c", script},
+                               .rings = {{"marks.pose", kRingFd}},
+                               .rig = control::address_of("desk").value().text,
+                               .state_fd = state_.fd()});
     EXPECT_TRUE(child);
     children_.push_back(std::make_unique<Child>(std::move(*child)));
     const auto pid = children_.back()->pid();
@@ -78,7 +81,7 @@ class AdoptionTest : public testing::Test {
   }
 
   Result<std::optional<AdoptedRig>> adopt_after_death() {
-    EXPECT_TRUE(save(saved_));
+    EXPECT_TRUE(state_.save(saved_));
     close(kRingFd);
     return adopt("desk");
   }
@@ -87,6 +90,7 @@ class AdoptionTest : public testing::Test {
   std::uint64_t inode_ = 0;
   std::optional<ipc::Writer<msg::StageMarks>> writer_;
   SavedRig saved_;
+  StateMemory state_ = StateMemory::create().value();
   std::vector<std::unique_ptr<Child>> children_;
 };
 
@@ -143,14 +147,35 @@ TEST_F(AdoptionTest, WhoDiedMeanwhileIsLeftToBeStarted) {
 }
 
 TEST_F(AdoptionTest, AProcessThatHasTheNumberByNowIsNotTouched) {
-  auto& stranger = service("pose", "exec sleep 1000");
-  saved_.services[0].started_ticks -= 1;
+  service("pose", "exec sleep 1000");
+  auto stranger = Child::spawn({.program = "/bin/bash", .arguments = {"-c", "exec sleep 1000"}});
+  ASSERT_TRUE(stranger);
+  const auto ticks = start_ticks_of(stranger->pid()).value_or(0);
+  saved_.services.push_back({"camera", stranger->pid(), ticks, State::ready, "", "f", 0});
   const auto adopted = adopt_after_death();
-  ASSERT_TRUE(adopted);
-  EXPECT_EQ(*adopted, std::nullopt);
-  EXPECT_EQ(stop_orphans("desk", 1), 0);
+  ASSERT_TRUE(adopted && *adopted);
+  EXPECT_THAT((*adopted)->services, SizeIs(1));
   usleep(50'000);
-  EXPECT_EQ(stranger.try_reap(), std::nullopt);
+  EXPECT_EQ(stranger->try_reap(), std::nullopt);
+}
+
+TEST_F(AdoptionTest, OneThatWasStartedAfterTheStateWasSavedIsKilled) {
+  service("pose", "exec sleep 1000");
+  auto& late = service("camera", "exec sleep 1000");
+  saved_.services.pop_back();
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted && *adopted);
+  EXPECT_THAT((*adopted)->services, SizeIs(1));
+  EXPECT_EQ(late.try_reap()->code, SIGKILL);
+}
+
+TEST_F(AdoptionTest, WithoutAStateThatCanBeReadTheServicesAreKilledAndTheRigStartsAnew) {
+  auto& pose = service("pose", "exec sleep 1000");
+  saved_.name = "sofa";
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted) << adopted.error().what;
+  EXPECT_FALSE(*adopted);
+  EXPECT_EQ(pose.try_reap()->code, SIGKILL);
 }
 
 TEST_F(AdoptionTest, AnotherFileUnderTheRingsNumberIsNotTakenForTheRing) {
@@ -166,7 +191,7 @@ TEST_F(AdoptionTest, AnotherFileUnderTheRingsNumberIsNotTakenForTheRing) {
 
 TEST_F(AdoptionTest, ANumberThatIsTakenHereIsAnErrorAndTheTakerKeepsIt) {
   service("pose", "exec sleep 1000");
-  ASSERT_TRUE(save(saved_));
+  ASSERT_TRUE(state_.save(saved_));
   const UniqueFd other(memfd_create("other", MFD_CLOEXEC));
   dup2(other.get(), kRingFd);
   const auto adopted = adopt("desk");
@@ -203,34 +228,31 @@ TEST_F(AdoptionTest, ReadersThatDiedGiveTheirRowsBack) {
 }
 
 TEST_F(AdoptionTest, WhereNothingLivesNothingIsAdopted) {
-  EXPECT_EQ(adopt("desk").value(), std::nullopt);
-  EXPECT_EQ(adopt_after_death().value(), std::nullopt);
+  EXPECT_FALSE(adopt("desk").value());
+  EXPECT_FALSE(adopt_after_death().value());
   EXPECT_THAT(orphaned_rigs(), IsEmpty());
 }
 
-TEST_F(AdoptionTest, OrphansAreListedAskedAndThenKilled) {
-  auto& polite = service("pose", "exec sleep 1000");
-  auto& deaf = service("camera", "trap '' TERM; while :; do sleep 0.02; done");
-  ASSERT_TRUE(save(saved_));
-  usleep(100'000);  // until it ignores the signal
+TEST_F(AdoptionTest, OrphansAreListedWithTheirState) {
+  service("pose", "exec sleep 1000");
+  ASSERT_TRUE(state_.save(saved_));
   EXPECT_THAT(orphaned_rigs(), ElementsAre("desk"));
-  EXPECT_EQ(stop_orphans("desk", 0.3), 2);
-  EXPECT_EQ(polite.try_reap()->code, SIGTERM);
-  EXPECT_EQ(deaf.try_reap()->code, SIGKILL);
-  EXPECT_THAT(orphaned_rigs(), IsEmpty());
-  EXPECT_EQ(load_saved("desk"), std::nullopt);
+  EXPECT_EQ(state_of("desk").value().epoch_ns, 42);
+  EXPECT_FALSE(state_of("sofa"));
 }
 
 // Runs in another process, because systemd passes descriptors from number 3 on.
 TEST_F(AdoptionTest, RingsThatSystemdKeptComeBackWhenNoServiceLives) {
-  ASSERT_TRUE(save(saved_));
+  ASSERT_TRUE(state_.save(saved_));
   const pid_t child = fork();
   if (child == 0) {
+    const int state_fd = fcntl(state_.fd(), F_DUPFD, 300);
     dup2(kRingFd, 3);
+    dup2(state_fd, 4);
     close(kRingFd);
     setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
-    setenv("LISTEN_FDS", "1", 1);
-    setenv("LISTEN_FDNAMES", "marks.pose", 1);
+    setenv("LISTEN_FDS", "2", 1);
+    setenv("LISTEN_FDNAMES", "marks.pose:supervisor.state", 1);
     const auto adopted = adopt("desk");
     const bool right = adopted && *adopted && (*adopted)->services.empty() &&
                        (*adopted)->rings.size() == 1 && (*adopted)->rings[0].fd() == kRingFd &&

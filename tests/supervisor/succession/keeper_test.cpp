@@ -15,7 +15,7 @@
 #include "ipc/base/clock.hpp"
 #include "supervisor/base/exit.hpp"
 #include "supervisor/base/process.hpp"
-#include "tests/scratch.hpp"
+#include "tests/supervisor/runtime_scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -73,7 +73,13 @@ class KeeperTest : public testing::Test {
     return pid;
   }
 
-  test::Scratch scratch_;
+  static pid_t child_of(pid_t pid) {
+    pid_t child = -1;
+    std::ifstream(fmt::format("/proc/{0}/task/{0}/children", pid)) >> child;
+    return child;
+  }
+
+  RuntimeScratch scratch_;
   pid_t keeper_ = -1;
 };
 
@@ -176,6 +182,67 @@ TEST_F(KeeperTest, OrphansAreReapedAndTheirEndsToldToTheNextSupervisorEvenThoseT
   const auto exited = fmt::format("{} {} 42", lines[0], CLD_EXITED),
              killed = fmt::format("{} {} 9", lines[1], CLD_KILLED);
   EXPECT_THAT((std::vector{lines[2], lines[3]}), testing::UnorderedElementsAre(exited, killed));
+}
+
+/// Perl: beat(STOPPING) sends a beat of the rig "desk" to the keeper.
+constexpr auto kBeats =
+    "use Socket; open(my $s, '+<&=', $ENV{HANDCAST_KEEPER_FD}) or die;"
+    "sub beat { send($s, pack('Ca108', $_[0], 'desk'), 0) }"
+    "sub note { open(my $f, '>>', $ENV{NOTES}); print $f \"$_[0]\\n\"; }";
+
+TEST_F(KeeperTest, ASupervisorThatSendsNoMoreBeatsIsReplaced) {
+  keep_script(std::string(kBeats) +
+                  "note('life'); exit 7 if $ENV{HANDCAST_SUCCESSOR}; beat(0); sleep 1000;",
+              "/usr/bin/perl");
+  EXPECT_EQ(wait(), 7);
+  EXPECT_THAT(notes(), ElementsAre("life", "life"));
+  EXPECT_THAT(log(), HasSubstr("no sign of life"));
+}
+
+TEST_F(KeeperTest, ASupervisorThatSendsBeatsIsLeftAlone) {
+  keep_script(
+      std::string(kBeats) + "for (1..30) { beat(0); select(undef, undef, undef, 0.1); } exit 7;",
+      "/usr/bin/perl");
+  EXPECT_EQ(wait(), 7);
+  EXPECT_EQ(log(), "");
+}
+
+TEST_F(KeeperTest, AKeeperThatStoodStillDoesNotBlameItsSupervisor) {
+  keep_script(std::string(kBeats) +
+                  "for (1..60) { beat(0); note($_); select(undef, undef, undef, 0.1); } exit 7;",
+              "/usr/bin/perl");
+  ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
+  const pid_t supervisor = child_of(keeper_);
+  kill(keeper_, SIGSTOP);
+  kill(supervisor, SIGSTOP);
+  usleep(2'500'000);
+  kill(keeper_, SIGCONT);
+  usleep(200'000);
+  kill(supervisor, SIGCONT);
+  EXPECT_EQ(wait(), 7);
+  EXPECT_EQ(log(), "");
+}
+
+TEST_F(KeeperTest, ASupervisorThatDiesWhileTheRigStopsHasNoSuccessor) {
+  keep_script(std::string(kBeats) + "note('life'); beat(1); kill 9, $$;", "/usr/bin/perl");
+  EXPECT_EQ(wait(), kExitBadResult);
+  EXPECT_THAT(notes(), ElementsAre("life"));
+  EXPECT_THAT(log(), HasSubstr("before rig 'desk' had stopped"));
+}
+
+TEST_F(KeeperTest, TheThirdStopSignalKillsASupervisorThatDoesNotStop) {
+  keep_script(std::string(kBeats) +
+                  "$SIG{ALRM} = sub { beat(0); }; use Time::HiRes 'setitimer';"
+                  "setitimer(Time::HiRes::ITIMER_REAL(), 0.1, 0.1); beat(0); note('life');"
+                  "for (1..600) { select(undef, undef, undef, 0.1); }",
+              "/usr/bin/perl");
+  ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
+  for (int i = 0; i < 3; ++i) {
+    usleep(150'000);
+    ASSERT_EQ(waitpid(keeper_, nullptr, WNOHANG), 0);
+    kill(keeper_, SIGINT);
+  }
+  EXPECT_EQ(wait(), kExitBadResult);
 }
 
 TEST_F(KeeperTest, TheSupervisorGoesOnWhenTheKeeperDies) {

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ipc/control/rig_address.hpp"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace handcast::control {
+namespace {
+
+constexpr std::string_view kNameCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+
+/// The text before the name in the addresses of this user and scope.
+std::string prefix() {
+  const char* scope = std::getenv(kScopeVariable);
+  return fmt::format("handcast-{}/{}/", getuid(), scope ? scope : "");
+}
+
+/// The names of the listening sockets in the abstract namespace (proc(5), /proc/net/unix).
+std::vector<std::string> listening_sockets() {
+  constexpr std::string_view kListening = "00010000";  // __SO_ACCEPTCON
+  std::vector<std::string> names;
+  std::ifstream table("/proc/net/unix");
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream words(line);
+    std::string number, references, protocol, flags, type, state, inode, name;
+    words >> number >> references >> protocol >> flags >> type >> state >> inode >> std::ws;
+    if (flags == kListening && std::getline(words, name) && name.starts_with('@'))
+      names.push_back(name.substr(1));
+  }
+  return names;
+}
+
+bool somebody_listens(const std::string& rig) {
+  const auto address = address_of(rig);
+  if (!address) return false;
+  const auto connection = connect_to(*address);
+  return connection || connection.error().code == Errc::timeout;
+}
+
+/// The process at the other end; its pid is -1 if the kernel does not know it.
+ucred peer_of(int socket) {
+  ucred peer{.pid = -1, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
+  socklen_t size = sizeof peer;
+  if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) peer.pid = -1;
+  return peer;
+}
+
+}  // namespace
+
+Result<RigAddress> address_of(std::string_view rig) {
+  if (rig.empty() || rig.find_first_not_of(kNameCharacters) != std::string_view::npos)
+    return fail(
+        Errc::bad_config,
+        fmt::format("'{}' is not a valid name of a rig; use letters, digits, '_' and '-'", rig));
+  RigAddress address{.text = prefix().append(rig)};
+  if (address.text.size() >= sizeof address.socket.sun_path)
+    return fail(
+        Errc::bad_config,
+        fmt::format("{} is too long for a socket; give the rig a shorter name", address.text));
+  address.socket.sun_family = AF_UNIX;  // the first byte of sun_path stays 0: abstract
+  std::memcpy(address.socket.sun_path + 1, address.text.data(), address.text.size());
+  address.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + address.text.size());
+  return address;
+}
+
+std::string name_in(std::string_view address) {
+  const auto before = prefix();
+  if (!address.starts_with(before)) return {};
+  const auto name = address.substr(before.size());
+  return address_of(name) ? std::string(name) : std::string();
+}
+
+std::vector<std::string> living_rigs() {
+  std::vector<std::string> rigs;
+  for (const auto& socket : listening_sockets())
+    if (auto name = name_in(socket); !name.empty() && somebody_listens(name))
+      rigs.push_back(std::move(name));
+  std::ranges::sort(rigs);
+  return rigs;
+}
+
+Result<UniqueFd> connect_to(const RigAddress& address) {
+  UniqueFd socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const auto* where = reinterpret_cast<const sockaddr*>(&address.socket);
+  if (!socket || ::connect(socket.get(), where, address.size) != 0)
+    return errno == EAGAIN
+               ? fail(Errc::timeout,
+                      fmt::format("the supervisor at {} hangs: it accepts no connections",
+                                  address.text))
+               : fail(Errc::unavailable, fmt::format("no supervisor answers at {}: {}",
+                                                     address.text, std::strerror(errno)));
+  if (!is_of_this_user(socket.get()))
+    return fail(Errc::bad_config,
+                fmt::format("the process that listens at {} belongs to another user; the "
+                            "connection was closed",
+                            address.text));
+  return socket;
+}
+
+bool is_of_this_user(int socket) {
+  const auto peer = peer_of(socket);
+  return peer.pid >= 0 && peer.uid == getuid();
+}
+
+pid_t process_at_other_end(int socket) { return peer_of(socket).pid; }
+
+}  // namespace handcast::control

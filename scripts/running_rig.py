@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A running rig and its processes, for scripts/soak and scripts/storm. Uses only the standard library."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+HANDCAST = pathlib.Path(os.environ.get("HANDCAST_BIN", ROOT / "build/bin")).resolve() / "handcast"
+
+
+class Rig:
+    """A process of `handcast up` in a scope of its own."""
+
+    def __init__(self, rig_file, settings, log, scope=None):
+        self.scope = scope or f"{pathlib.Path(log.name).stem}-{os.getpid()}"
+        self.environment = {**os.environ, "HANDCAST_SCOPE": self.scope}
+        self.log = log
+        words = [word for setting in settings for word in ("--set", setting)]
+        self.process = subprocess.Popen([HANDCAST, "up", rig_file, *words], env=self.environment, stdout=log, stderr=log)
+
+    def run(self, *words, patience_s=30):
+        """Runs `handcast WORDS`. Returns the exit code and the output."""
+        answer = subprocess.run([HANDCAST, *words], env=self.environment, capture_output=True, text=True, timeout=patience_s)
+        return answer.returncode, answer.stdout
+
+    def status(self):
+        code, output = self.run("status", "--json")
+        return json.loads(output) if code == 0 else None
+
+    def wait_until_ready(self):
+        limit = time.monotonic() + 60
+        while time.monotonic() < limit and self.process.poll() is None:
+            now = self.status()
+            if now and all(service["state"] == "ready" for service in now["services"].values()):
+                return now
+            time.sleep(0.1)
+        raise SystemExit(f"the rig did not become ready; see {self.log.name}")
+
+    def supervisor(self):
+        """The keeper's child that runs `handcast up`: services lead their own sessions. None if there is no keeper."""
+        for pid in children_of(self.process.pid):
+            if name_of(pid).startswith("handcast") and session_of(pid) == session_of(self.process.pid):
+                return pid
+        return None
+
+    def members(self, status):
+        """The pids by name."""
+        members = {name: service["pid"] for name, service in status["services"].items() if service["pid"]}
+        supervisor = self.supervisor()
+        return {**members, "keeper" if supervisor else "supervisor": self.process.pid, **({"supervisor": supervisor} if supervisor else {})}
+
+    def stop(self):
+        self.process.send_signal(signal.SIGINT)
+        try:
+            code = self.process.wait(30)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            code = None
+        return code
+
+
+def children_of(pid):
+    try:
+        return [int(child) for child in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except OSError:
+        return []
+
+
+def name_of(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/comm").read_text().strip()
+    except OSError:
+        return ""
+
+
+def session_of(pid):
+    """The session of a process; None if it has died."""
+    try:
+        return os.getsid(pid)
+    except OSError:
+        return None
+
+
+def environment_of(pid):
+    """The environment of a process; empty if it has died."""
+    try:
+        return dict(entry.split("=", 1) for entry in pathlib.Path(f"/proc/{pid}/environ").read_text(errors="replace").split("\0") if "=" in entry)
+    except OSError:
+        return {}
+
+
+def arguments_of(pid):
+    """The command line of a process; empty if it has died."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/cmdline").read_text(errors="replace").split("\0")[:-1]
+    except OSError:
+        return []
+
+
+def processes_of(scope):
+    """The command lines of all processes of a scope, by pid."""
+    pids = [int(entry.name) for entry in pathlib.Path("/proc").iterdir() if entry.name.isdigit()]
+    return {pid: arguments for pid in pids if environment_of(pid).get("HANDCAST_SCOPE") == scope and (arguments := arguments_of(pid))}

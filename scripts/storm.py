@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The implementation of scripts/storm. Uses only the standard library."""
+import argparse
+import collections
+import csv
+import os
+import pathlib
+import random
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+from running_rig import ROOT, Rig, processes_of
+
+LONGEST_STOP_S = 5
+DOUBLE_AFTER_S = 3  # a replacement and the process that it replaces may overlap for less
+SETTINGS = ["camera.rate_hz=60", "projector.rate_hz=60", "projector.process.standby=true"]
+STOPS = ["down", "ctrl-c", "ctrl-c three times"]
+
+
+def parse_options():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--minutes", type=float, default=10)
+    parser.add_argument("--rig", default=ROOT / "config/rigs/twin.toml")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/storm")
+    parser.add_argument("--set", action="append", default=[], metavar="path=value")
+    parser.add_argument("--seed", type=int, default=1)
+    return parser.parse_args()
+
+
+def role_of(arguments):
+    """keeper, supervisor, or the name of a service; "" for commands such as `handcast down`."""
+    program = pathlib.Path(arguments[0]).name
+    if program == "handcast":
+        return "supervisor" if "--kept" in arguments else "keeper" if "up" in arguments[1:2] else ""
+    return program.removeprefix("handcast-") if program.startswith("handcast-") else ""
+
+
+class Folder:
+    """A small file system for the temporary files of a rig, or a plain folder where none may be mounted."""
+
+    def __init__(self):
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix="handcast-storm-"))
+        mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", self.path]
+        self.mounted = subprocess.run(mount, capture_output=True).returncode == 0
+        if not self.mounted:
+            print("storm: no file system may be mounted here; the disk is not filled")
+
+    def fill(self):
+        if not self.mounted:
+            return
+        try:
+            (self.path / "full").write_bytes(bytes(1 << 20))
+        except OSError:
+            pass  # that is the purpose
+
+    def empty(self):
+        for entry in self.path.iterdir():
+            shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
+
+    def close(self):
+        if self.mounted:
+            subprocess.run(["umount", self.path], capture_output=True)
+        shutil.rmtree(self.path, ignore_errors=True)
+
+
+class Doubles:
+    """Notices a role that two processes have for longer than a replacement takes."""
+
+    def __init__(self):
+        self.since = {}
+        self.found = []
+
+    def look(self, processes, stopped):
+        """`stopped`: pids that the storm has stopped; a hung supervisor and its successor do not count as two."""
+        counts = collections.Counter(role for pid, arguments in processes.items() if pid not in stopped and (role := role_of(arguments)))
+        now = time.monotonic()
+        for role, count in counts.items():
+            allowed = 2 if role not in ("keeper", "supervisor") else 1  # a worker and its spare
+            if count <= allowed:
+                self.since.pop(role, None)
+            elif now - self.since.setdefault(role, now) > DOUBLE_AFTER_S:
+                self.found.append(f"{count} x {role}")
+                self.since.pop(role)
+
+
+class Storm:
+    """One life of a rig, from `up` to darkness."""
+
+    def __init__(self, options, chance, folder):
+        self.chance, self.folder = chance, folder
+        self.events = collections.Counter()
+        self.doubles = Doubles()
+        self.stopped, self.idle = {}, []
+        os.environ.update(XDG_RUNTIME_DIR=str(folder.path), TMPDIR=str(folder.path))
+        self.rig = Rig(options.rig, SETTINGS + options.set, open(options.out / "rig.log", "a"))
+
+    def processes(self):
+        return processes_of(self.rig.scope)
+
+    def victim(self, *roles):
+        found = [pid for pid, arguments in self.processes().items() if (role := role_of(arguments)) and (not roles or role in roles)]
+        return self.chance.choice(found) if found else None
+
+    def signal(self, pid, number):
+        try:
+            os.kill(pid, number)
+        except (OSError, TypeError):
+            pass
+
+    def strike(self):
+        """One event."""
+        event = self.chance.choices(["kill", "stop", "kill supervisor", "stop supervisor", "kill keeper", "stop keeper", "disk full", "folder gone", "idle connections"],
+                                    [8, 4, 2, 2, 1, 1, 1, 1, 1])[0]
+        self.events[event] += 1
+        if event == "disk full":
+            self.folder.fill()
+        elif event == "folder gone":
+            self.folder.empty()
+        elif event == "idle connections":
+            self.connect_idly()
+        else:
+            what, _, whom = event.partition(" ")
+            pid = self.victim(*([whom] if whom else []))
+            self.signal(pid, signal.SIGKILL if what == "kill" else signal.SIGSTOP)
+            if what == "stop" and pid:
+                self.stopped[pid] = time.monotonic() + self.chance.uniform(0.5, 8)
+
+    def connect_idly(self):
+        for _ in range(64):
+            connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            connection.setblocking(False)
+            try:
+                connection.connect(f"\0handcast-{os.getuid()}/{self.rig.scope}/twin")
+            except OSError:
+                continue
+            self.idle.append(connection)
+
+    def let_go_on(self):
+        for pid, until_s in list(self.stopped.items()):
+            if time.monotonic() >= until_s:
+                self.signal(pid, signal.SIGCONT)
+                del self.stopped[pid]
+
+    def rage(self, seconds):
+        end_s = time.monotonic() + seconds
+        next_strike_s = time.monotonic() + 1
+        while time.monotonic() < end_s:
+            if time.monotonic() >= next_strike_s:
+                self.strike()
+                next_strike_s += self.chance.uniform(0.1, 2)
+            self.let_go_on()
+            self.doubles.look(self.processes(), self.stopped)
+            time.sleep(0.05)
+
+    def end(self):
+        """Stops the rig, with whatever is stopped or dead. Returns how, the time until darkness, and the processes that are left."""
+        how = self.chance.choice(STOPS)
+        begin_s = time.monotonic()
+        keepers = [pid for pid, arguments in self.processes().items() if role_of(arguments) == "keeper" and pid not in self.stopped]
+        if how == "down" or not keepers:
+            how = "down"
+            if services_in(self.processes()):
+                self.rig.run("down")
+        else:
+            for _ in range(3 if "three" in how else 1):
+                self.signal(keepers[0], signal.SIGINT)
+                time.sleep(0.1)
+        while services_in(self.processes()) and time.monotonic() < begin_s + 20:
+            time.sleep(0.02)
+        dark_s = time.monotonic() - begin_s
+        left = self.wait_for_the_rest()
+        for connection in self.idle:
+            connection.close()
+        return how, dark_s, left
+
+    def wait_for_the_rest(self):
+        """Keepers and supervisors end after the services. What the storm itself has stopped is continued first. Kills what is left."""
+        for pid in self.stopped:
+            self.signal(pid, signal.SIGCONT)
+        limit_s = time.monotonic() + 10
+        while self.processes() and time.monotonic() < limit_s:
+            self.rig.process.poll()
+            time.sleep(0.05)
+        left = self.processes()
+        for pid in left:
+            self.signal(pid, signal.SIGKILL)
+        self.rig.process.wait()
+        return [" ".join(arguments[:2]) for arguments in left.values()]
+
+
+def services_in(processes):
+    return [pid for pid, arguments in processes.items() if role_of(arguments) not in ("", "keeper", "supervisor")]
+
+
+def percentile(values, share):
+    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
+
+
+def main():
+    options = parse_options()
+    options.out.mkdir(parents=True, exist_ok=True)
+    chance, folder = random.Random(options.seed), Folder()
+    rows, events = [], collections.Counter()
+    end_s = time.monotonic() + 60 * options.minutes
+    try:
+        while time.monotonic() < end_s:
+            storm = Storm(options, chance, folder)
+            storm.rage(chance.uniform(4, 20))
+            how, dark_s, left = storm.end()
+            events += storm.events
+            rows.append({"life": len(rows) + 1, "events": storm.events.total(), "stopped by": how, "dark after s": round(dark_s, 2), "left": "; ".join(left), "doubles": "; ".join(storm.doubles.found)})
+            print("  ".join(f"{key}: {value}" for key, value in rows[-1].items()), flush=True)
+    finally:
+        folder.close()
+    with open(options.out / "storm.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+    times = [row["dark after s"] for row in rows]
+    late = sum(time_s > LONGEST_STOP_S for time_s in times)
+    left, doubles = (sum(bool(row[key]) for row in rows) for key in ("left", "doubles"))
+    print(f"{sum(events.values())} events in {len(rows)} lives: " + ", ".join(f"{count} {event}" for event, count in events.most_common()))
+    print(f"dark after p50 {percentile(times, 0.5):.2f} s, p99 {percentile(times, 0.99):.2f} s, max {max(times):.2f} s; "
+          f"later than {LONGEST_STOP_S} s: {late}; lives with processes left: {left}; with doubles: {doubles}")
+    sys.exit(1 if late or left or doubles else 0)
+
+
+if __name__ == "__main__":
+    main()

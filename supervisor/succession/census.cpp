@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/succession/census.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/control/rig_address.hpp"
+#include "ipc/daemon/contract.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+constexpr int kMostRounds = 5;  ///< of looking for services that are left
+
+std::optional<pid_t> pid_in(const std::string& name) {
+  pid_t pid = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), pid);
+  const bool whole = error == std::errc{} && end == name.data() + name.size();
+  return whole && pid > 1 ? std::optional(pid) : std::nullopt;
+}
+
+/// The value of a variable in an environment as /proc shows it; empty if it is not set.
+std::optional<std::string> value_in(std::string_view environment, std::string_view variable) {
+  while (!environment.empty()) {
+    const auto end = environment.find('\0');
+    const auto entry = environment.substr(0, end);
+    if (entry.starts_with(variable) && entry.substr(variable.size()).starts_with('='))
+      return std::string(entry.substr(variable.size() + 1));
+    environment = end == std::string_view::npos ? std::string_view() : environment.substr(end + 1);
+  }
+  return std::nullopt;
+}
+
+/// The number in a variable; -1 if there is none.
+std::int64_t number_in(std::string_view environment, std::string_view variable) {
+  const auto text = value_in(environment, variable).value_or("");
+  std::int64_t number = -1;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+std::string service_name(const std::filesystem::path& process) {
+  std::error_code error;
+  auto program = std::filesystem::read_symlink(process / "exe", error).filename().string();
+  if (const auto deleted = program.find(" (deleted)"); deleted != std::string::npos)
+    program.resize(deleted);
+  constexpr std::string_view kPrefix = "handcast-";
+  return program.starts_with(kPrefix) ? program.substr(kPrefix.size()) : program;
+}
+
+bool is_of_this_user(const std::filesystem::path& process) {
+  struct stat status {};
+  return stat(process.c_str(), &status) == 0 && status.st_uid == getuid();
+}
+
+/// The environment of a process as /proc shows it. It is empty for a moment while the process
+/// starts its program (execve), so it is read again then.
+std::string environment_of(const std::filesystem::path& process) {
+  constexpr int kMostReads = 5;
+  std::string environment;
+  for (int i = 0; i < kMostReads && environment.empty(); ++i) {
+    if (i > 0) usleep(1000);
+    std::ifstream file(process / "environ");
+    environment.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  return environment;
+}
+
+/// The process is opened before it is examined: from then on it does not matter if its pid is
+/// reused.
+std::optional<FoundProcess> examine(pid_t pid, const std::filesystem::path& folder) {
+  if (!is_of_this_user(folder) || getsid(pid) != pid) return std::nullopt;
+  auto pidfd = pidfd_of(pid);
+  if (!pidfd || has_ended(pidfd)) return std::nullopt;
+  const auto environment = environment_of(folder);
+  const auto address = value_in(environment, daemon::kRigVariable);
+  auto rig = control::name_in(address.value_or(""));
+  if (rig.empty()) return std::nullopt;
+  return FoundProcess{.rig = std::move(rig),
+                      .service = service_name(folder),
+                      .pid = pid,
+                      .pidfd = std::move(pidfd),
+                      .epoch_ns = number_in(environment, daemon::kEpochVariable),
+                      .state_fd = static_cast<int>(number_in(environment, daemon::kStateVariable))};
+}
+
+void send_signal(const UniqueFd& pidfd, int number) {
+  syscall(SYS_pidfd_send_signal, pidfd.get(), number, nullptr, 0);
+}
+
+}  // namespace
+
+UniqueFd pidfd_of(pid_t pid) { return UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, pid, 0))); }
+
+bool has_ended(const UniqueFd& pidfd) {
+  pollfd ended{.fd = pidfd.get(), .events = POLLIN, .revents = 0};
+  return poll(&ended, 1, 0) == 1;
+}
+
+bool ends_within(const UniqueFd& pidfd, double seconds) {
+  pollfd ended{.fd = pidfd.get(), .events = POLLIN, .revents = 0};
+  return poll(&ended, 1, static_cast<int>(std::max(seconds, 0.0) * 1e3) + 1) == 1;
+}
+
+void kill_now(pid_t pid, const UniqueFd& pidfd) {
+  if (has_ended(pidfd)) return;
+  kill(-pid, SIGKILL);  // it lives, so its pid has not been reused
+  send_signal(pidfd, SIGKILL);
+  ends_within(pidfd, 1);
+}
+
+std::vector<FoundProcess> find_services() {
+  std::vector<FoundProcess> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", error))
+    if (const auto pid = pid_in(entry.path().filename()))
+      if (auto process = examine(*pid, entry.path())) found.push_back(std::move(*process));
+  return found;
+}
+
+std::vector<FoundProcess> find_services(const std::string& name) {
+  auto found = find_services();
+  std::erase_if(found, [&](const auto& process) { return process.rig != name; });
+  return found;
+}
+
+int end_services(const std::string& name, double patience_s, std::int64_t before_ns) {
+  std::set<pid_t> ended;
+  const auto deadline = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(patience_s)));
+  for (int round = 0; round < kMostRounds; ++round) {
+    auto found = find_services(name);
+    std::erase_if(found, [&](const auto& process) { return process.epoch_ns > before_ns; });
+    if (found.empty()) break;
+    for (const auto& process : found) send_signal(process.pidfd, SIGTERM);
+    for (const auto& process : found) {
+      ended.insert(process.pid);
+      if (ends_within(process.pidfd, ns_to_seconds(deadline.time_ns() - now_ns()))) continue;
+      log::warning("{} (pid {}) does not stop; killed", process.service, process.pid);
+      kill_now(process.pid, process.pidfd);
+    }
+  }
+  return static_cast<int>(ended.size());
+}
+
+}  // namespace handcast::supervisor
