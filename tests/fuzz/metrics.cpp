@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exporter's part of HTTP: the answer to a scrape, from the status of a supervisor. The request
-// is read by civetweb, a library, and its contents are not used.
+// The figures that the exporter serves, from the status of a supervisor.
 // Limits: 10 s and 1 GB per input.
 #include "supervisor/metrics/metrics.hpp"
 
