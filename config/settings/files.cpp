@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/output_file.hpp"
 
 namespace handcast::config {
 namespace {
@@ -27,6 +28,7 @@ Result<std::string> read_text(const std::filesystem::path& file) {
 }
 
 Result<void> write_whole(const std::filesystem::path& file, const std::string& text) {
+  if (auto possible = check_output(file); !possible) return possible;
   const bool in_place = is_written_in_place(file);
   const auto target = in_place ? file.string() : file.string() + ".tmp";
   errno = 0;
@@ -40,9 +42,7 @@ Result<void> write_whole(const std::filesystem::path& file, const std::string& t
 }
 
 Result<void> check_writable(const std::filesystem::path& file) {
-  std::error_code unknown;
-  if (std::filesystem::is_directory(file, unknown))
-    return fail(Errc::bad_config, fmt::format("{}: is a folder", file.string()));
+  if (auto possible = check_output(file); !possible) return possible;
   const auto written_to =
       is_written_in_place(file) ? file : std::filesystem::absolute(file).parent_path();
   if (::access(written_to.c_str(), W_OK) == 0) return {};

@@ -232,6 +232,8 @@ void apply_assignment(std::string_view assignment, const Listing& listing, Fault
   const auto equals = assignment.find('=');
   if (equals == assignment.npos) return complain("must look like path=value");
   const auto path = assignment.substr(0, equals), text = assignment.substr(equals + 1);
+  if (assignment.find_first_of("\n\r") != assignment.npos)
+    return complain("must not contain a line break");
   if (find_section(listing, path)) return complain("is a section; set one of its settings");
   const auto* setting = find_setting(listing, path);
   if (!setting) return complain(unknown_path(listing, path));

@@ -15,6 +15,8 @@
 #include <jerror.h>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/output_file.hpp"
+#include "renderer/content/png_chunks.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -45,13 +47,16 @@ struct PngFile {
 template <class Pixel>
 Result<Image<Pixel>> decode_png(std::string_view bytes, const std::filesystem::path& file,
                                 std::uint32_t format) {
-  PngFile opened(bytes);
+  const auto plain = plain_png(bytes);
+  PngFile opened(plain.bytes);
   const auto broken = [&] {
     return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture.", file.string()));
   };
   if (!opened.is_well()) return broken();
   const auto width = opened.png.width, height = opened.png.height;
   if (std::max(width, height) > kLargestSide) return too_large(file, width, height);
+  if (!plain.fault.empty())
+    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), plain.fault));
   opened.png.format = format;
   Image<Pixel> image(static_cast<int>(width), static_cast<int>(height));
   const png_color black{};
@@ -161,6 +166,7 @@ Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
 }
 
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {
+  if (auto possible = check_output(file); !possible) return possible;
   std::vector<std::uint8_t> rgb;
   rgb.reserve(static_cast<std::size_t>(picture.width) * picture.height * 3);
   for (int y = 0; y < picture.height; ++y)

@@ -10,6 +10,7 @@
 #include "renderer/hand/gltf_file.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/hand/mesh_charts.hpp"
+#include "renderer/hand/mesh_checks.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -258,22 +259,6 @@ void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive,
   read_triangles(reader, primitive, first, count, hand);
 }
 
-/// Why the mesh cannot be a hand in metres. Empty if it can.
-std::string fault_of_size(const HandMesh& hand) {
-  constexpr float kFarthest_m = 1, kShortest_m = 0.02f;
-  constexpr std::size_t kWrist = 1;
-  const glm::vec3 wrist(hand.rest[kWrist][3]);
-  float farthest_m = 0;
-  for (const auto& joint : hand.rest)
-    farthest_m = std::max(farthest_m, glm::length(glm::vec3(joint[3]) - wrist));
-  for (const auto& position : hand.positions)
-    farthest_m = std::max(farthest_m, glm::length(position - wrist));
-  if (farthest_m < kFarthest_m && farthest_m > kShortest_m) return {};
-  return fmt::format(
-      "its mesh reaches {:.3g} m from the wrist; a hand in metres reaches {} to {} m", farthest_m,
-      kShortest_m, kFarthest_m);
-}
-
 /// Vertices without a normal get the mean normal of their triangles, weighted by area.
 void fill_missing_normals(HandMesh& hand) {
   std::vector<glm::vec3> sum(hand.vertex_count());
@@ -315,7 +300,7 @@ Result<HandMesh> load_hand(const std::filesystem::path& file, Side side) {
       read_primitive(reader, primitive, ours, hand);
   if (reader.trouble()) return refuse(*reader.trouble());
   if (hand.triangles.empty()) return refuse("its skinned mesh has no triangles");
-  if (const auto fault = fault_of_size(hand); !fault.empty()) return refuse(fault);
+  if (const auto fault = fault_of_mesh(hand); !fault.empty()) return refuse(fault);
   fill_missing_normals(hand);
   number_charts(hand);
   return hand;

@@ -46,7 +46,7 @@ struct HandMesh {
 /// with or without the prefix of a side. The palm, the tips and the metacarpals of the fingers may
 /// be missing: they get the frame of their parent. Errors (bad_config): no such file, not glTF, no
 /// skinned mesh, other joints missing (the message names them), more than 65,535 vertices, an index
-/// out of range, a number that is not finite.
+/// out of range, a number that is not finite, a mesh that cannot be a hand (fault_of_mesh()).
 Result<HandMesh> load_hand(const std::filesystem::path& file, Side side);
 
 /// The hand that is made at build time: in the folder named by the environment variable

@@ -21,7 +21,16 @@ endforeach()
 
 # oneDNN's own CMake file also requires OpenCL's headers.
 find_library(DNNL_LIBRARY dnnl REQUIRED)
-find_package(OpenMP REQUIRED COMPONENTS CXX)  # only to keep oneDNN to one thread
+# Only to keep oneDNN to one thread. Debian's oneDNN is linked with GNU's OpenMP, and clang finds
+# only its own.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  file(GLOB gnu_folder LIST_DIRECTORIES true /usr/lib/gcc/${CMAKE_LIBRARY_ARCHITECTURE}/*/include)
+  find_path(OMP_HEADER omp.h HINTS ${gnu_folder} REQUIRED NO_DEFAULT_PATH)
+  set(OpenMP_CXX_FLAGS -idirafter${OMP_HEADER})
+  set(OpenMP_CXX_LIBRARIES gomp)
+else()
+  find_package(OpenMP REQUIRED COMPONENTS CXX)
+endif()
 
 # handcast_feature(NAME "what is absent without it" FOUND): HANDCAST_WITH_NAME is AUTO (on if it was
 # found), ON (an error if it was not found) or OFF. Absent features are listed here and by

@@ -30,8 +30,12 @@ else()
 endif()
 
 # g++ 12 at -O3 reports overflows of std::string that do not exist.
-add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict
-  -Wno-array-bounds)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  add_compile_options(-Wall -Wextra -Wno-missing-field-initializers)
+else()
+  add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict
+    -Wno-array-bounds)
+endif()
 if(HANDCAST_SANITIZE)
   add_compile_options(-fsanitize=${HANDCAST_SANITIZE} -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${HANDCAST_SANITIZE})

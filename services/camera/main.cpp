@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ipc/msg/largest_images.hpp"
 #include "services/camera/camera.hpp"
+#include "services/camera/frame_size.hpp"
 #include "services/runtime/context.hpp"
 
 using namespace handcast;
@@ -35,6 +37,14 @@ static void run_camera(service::Context& context) {
   }
 }
 
+static Result<void> check_camera(const config::Rig& rig, const calib::Calibration& calibration) {
+  constexpr std::size_t kRoom = msg::kLargestCameraWidth_px * msg::kLargestCameraHeight_px;
+  const auto& camera = calibration.camera;
+  if (auto fits = camera::check_room(camera.width_px, camera.height_px, kRoom); !fits) return fits;
+  return service::check_backend("camera", rig.camera.backend, camera::camera_backends(), rig,
+                                calibration, now_ns());
+}
+
 int main(int argc, char** argv) {
   return service::run({.name = "camera",
                        .summary = "Delivers the frames of the infrared camera.",
@@ -42,5 +52,5 @@ int main(int argc, char** argv) {
                        .publishes = {"camera.frames"},
                        .settings = {"camera.rate_hz", "camera.exposure_ms"},
                        .backends = service::describe_rows(camera::camera_backends())},
-                      argc, argv, run_camera);
+                      argc, argv, run_camera, check_camera);
 }

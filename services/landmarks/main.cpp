@@ -53,6 +53,11 @@ static void run_landmarks(service::Context& context) {
   }
 }
 
+static Result<void> check_landmarks(const config::Rig& rig, const calib::Calibration& calibration) {
+  return service::check_backend("landmarks", rig.landmarks.backend, landmarks::detector_backends(),
+                                rig, calibration, now_ns());
+}
+
 int main(int argc, char** argv) {
   return service::run({.name = "landmarks",
                        .summary = "Finds the landmarks of the hands in camera images.",
@@ -60,5 +65,5 @@ int main(int argc, char** argv) {
                        .publishes = {"landmarks.hands"},
                        .subscribes = {"camera.frames", "pose.hands"},
                        .backends = service::describe_rows(landmarks::detector_backends())},
-                      argc, argv, run_landmarks);
+                      argc, argv, run_landmarks, check_landmarks);
 }

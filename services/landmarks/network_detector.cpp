@@ -82,8 +82,10 @@ Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
                                                         const calib::Calibration& calibration,
                                                         const std::int64_t&) {
   const auto& settings = rig.landmarks;
-  auto model = open_landmark_model(
-      settings.backend, {.executor = settings.executor, .folder = models_folder(settings.models)});
+  const auto folder = models_folder(settings.models);
+  if (!folder) return fail_in("landmarks.models", folder.error());
+  auto model =
+      open_landmark_model(settings.backend, {.executor = settings.executor, .folder = *folder});
   if (!model) return fail_in(fmt::format("landmarks '{}'", settings.backend), model.error());
   const bool converts = settings.definition == config::LandmarkDefinition::tracker &&
                         !model->landmarks->traits().finds_tracker_joints;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -57,21 +58,45 @@ msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side 
   return hand;
 }
 
+/// Why these cannot be landmarks in camera pixels. Empty if they can.
+std::string fault_of_points(const twin::Npy& array) {
+  constexpr double kFarthest_px = 1e5, kFraction = 1.5;
+  const std::size_t columns = array.shape[2];
+  double farthest = 0;
+  for (std::size_t i = 0; i < array.values.size(); ++i) {
+    const double value = array.values[i];
+    const bool is_sigma = i % columns == 2;
+    if (is_sigma && !(value >= 0 && value < kFarthest_px))
+      return fmt::format("the sigma of a landmark is {:g}", value);
+    if (!is_sigma && std::isfinite(value)) farthest = std::max(farthest, std::abs(value));
+  }
+  if (farthest >= kFarthest_px)
+    return fmt::format("a landmark is {:g} px away from the image", farthest);
+  if (farthest > 0 && farthest < kFraction)
+    return "its landmarks are within 1.5 px of the corner of the image; they must be in pixels, "
+           "are they fractions of the image?";
+  return {};
+}
+
 Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side) {
   const auto there = twin::is_there(file);
   if (!there) return tl::make_unexpected(there.error());
   if (!*there) return Track{};
-  const auto array = twin::read_npy(file);
-  if (!array) return tl::make_unexpected(array.error());
+  auto opened = twin::NpyFile::open(file);
+  if (!opened) return tl::make_unexpected(opened.error());
   const auto has_columns = [&](std::size_t columns) {
-    return array->shape == std::vector<std::size_t>{count, msg::kLandmarks, columns};
+    return opened->shape() == std::vector<std::size_t>{count, msg::kLandmarks, columns};
   };
   if (!has_columns(2) && !has_columns(3))
     return fail(Errc::bad_config, fmt::format("'{}' has the shape ({}); expected ({}, {}, 2) or, "
                                               "with sigmas, ({}, {}, 3), as many as "
                                               "landmarks_timestamps.npy",
-                                              file.string(), fmt::join(array->shape, ", "), count,
-                                              msg::kLandmarks, count, msg::kLandmarks));
+                                              file.string(), fmt::join(opened->shape(), ", "),
+                                              count, msg::kLandmarks, count, msg::kLandmarks));
+  const auto array = opened->read();
+  if (!array) return tl::make_unexpected(array.error());
+  if (const auto fault = fault_of_points(*array); !fault.empty())
+    return fail(Errc::bad_config, fmt::format("'{}': {}", file.string(), fault));
   Track track;
   for (std::size_t i = 0; i < count; ++i) track.push_back(hand_at(*array, i, side));
   return track;

@@ -76,6 +76,11 @@ static void run_observer(service::Context& context) {
   save(scores, context);
 }
 
+static Result<void> check_observer(const config::Rig& rig, const calib::Calibration& calibration) {
+  const auto judge = observer::LiveJudge::create(rig, calibration, now_ns());
+  return judge ? Result<void>() : tl::make_unexpected(judge.error());
+}
+
 /// The true hand comes from the twin's world, if there is one.
 static std::vector<std::string> settings() {
   const auto world = twin::kWorldSettings.paths();
@@ -90,5 +95,5 @@ int main(int argc, char** argv) {
                        .paced_by = "observer.rate_hz",
                        .subscribes = {"projection.frames"},
                        .settings = settings()},
-                      argc, argv, run_observer);
+                      argc, argv, run_observer, check_observer);
 }

@@ -28,11 +28,16 @@ static void run_pose(service::Context& context) {
   }
 }
 
+static Result<void> check_pose(const config::Rig& rig, const calib::Calibration& calibration) {
+  return service::check_backend("pose", rig.pose.backend, pose::pose_backends(), rig, calibration,
+                                now_ns());
+}
+
 int main(int argc, char** argv) {
   return service::run({.name = "pose",
                        .summary = "Delivers the hand poses of the tracker.",
                        .paced_by = "its device",
                        .publishes = {"pose.hands"},
                        .backends = service::describe_rows(pose::pose_backends())},
-                      argc, argv, run_pose);
+                      argc, argv, run_pose, check_pose);
 }

@@ -64,6 +64,12 @@ static void run_projector(service::Context& context) {
   }
 }
 
+/// The back end is not opened: it would write files or light up.
+static Result<void> check_projector(const config::Rig& rig, const calib::Calibration& calibration) {
+  const auto pipeline = renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, calibration);
+  return pipeline ? Result<void>() : tl::make_unexpected(pipeline.error());
+}
+
 int main(int argc, char** argv) {
   return service::run({.name = "projector",
                        .summary = "Projects light onto the hands that the sensors see.",
@@ -72,5 +78,5 @@ int main(int argc, char** argv) {
                        .subscribes = {"camera.frames", "pose.hands", "landmarks.hands"},
                        .settings = {"projector", "content", "hand", "cascade"},
                        .backends = service::describe_rows(projector::projector_backends())},
-                      argc, argv, run_projector);
+                      argc, argv, run_projector, check_projector);
 }

@@ -66,6 +66,18 @@ Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::stri
                                             join(names_of(table), ", ")));
 }
 
+/// Opens the back end called `name` and closes it again; one that only one process may open is left
+/// alone. Errors: those of open_backend().
+template <class Interface, class... Args>
+Result<void> check_backend(std::string_view what, std::string_view name,
+                           std::span<const Backend<Interface, Args...>> table,
+                           const Args&... args) {
+  for (const auto& row : table)
+    if (row.name == name && row.exclusive) return {};
+  const auto opened = open_backend(what, name, table, args...);
+  return opened ? Result<void>() : tl::make_unexpected(opened.error());
+}
+
 /// Whether a spare must not open this back end before its turn.
 template <class Interface, class... Args>
 bool is_exclusive(std::string_view name, std::span<const Backend<Interface, Args...>> table) {

@@ -35,6 +35,8 @@ Result<CommandLine> parse_command_line(int argc, const char* const* argv) {
       line.task = Task::backends;
     else if (option == "--describe")
       line.task = Task::describe;
+    else if (option == "--check")
+      line.task = Task::check;
     else if (!takes_value(option))
       return fail(Errc::bad_config,
                   fmt::format("unknown argument '{}'; --help lists the known ones", option));
@@ -43,7 +45,8 @@ Result<CommandLine> parse_command_line(int argc, const char* const* argv) {
     else if (const auto applied = apply(line, option, argv[++i]); !applied)
       return tl::make_unexpected(applied.error());
   }
-  if (line.task == Task::serve && line.config_file.empty())
+  const bool reads_rig = line.task == Task::serve || line.task == Task::check;
+  if (reads_rig && line.config_file.empty())
     return fail(
         Errc::bad_config,
         "--config FILE is missing; `handcast up FILE` starts this program with a whole rig");

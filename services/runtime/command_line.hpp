@@ -9,8 +9,8 @@ namespace handcast::service {
 
 /// The command line of a daemon.
 struct CommandLine {
-  /// The task of the process: to work, or to print what one of the options asks for.
-  enum class Task { serve, help, version, backends, describe };
+  /// The task of the process: to work, to check the rig, or to print what an option asks for.
+  enum class Task { serve, check, help, version, backends, describe };
   Task task = Task::serve;            ///< the last of these options, otherwise serve
   std::string config_file;            ///< --config FILE
   std::vector<std::string> settings;  ///< --set path=value, in their order

@@ -112,9 +112,12 @@ class Context {
 /// name of its back end, [NAME.process].
 daemon::ServiceDescription complete(daemon::ServiceDescription description);
 
-/// The main function of all daemons: parses the command line, loads the rig and runs `body`.
-/// Returns the exit code. `description` need not be complete().
+/// Opens what a daemon opens at its start, but neither rings nor devices, and closes it again.
+using Check = std::function<Result<void>(const config::Rig&, const calib::Calibration&)>;
+
+/// The main function of all daemons: parses the command line, loads the rig and runs `body`, or,
+/// with --check, `check`. Returns the exit code. `description` need not be complete().
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
-        const std::function<void(Context&)>& body);
+        const std::function<void(Context&)>& body, const Check& check = {});
 
 }  // namespace handcast::service

@@ -18,6 +18,8 @@ void print_help(const daemon::ServiceDescription& description) {
       "usage: handcast-{} --config RIG.toml [--set path=value]...\n\n"
       "  --config FILE      the rig file\n"
       "  --set path=value   a setting that overrides that of the file; may be repeated\n"
+      "  --check            opens what the rig names (files, models, calibration), prints what is\n"
+      "                     wrong, and ends\n"
       "  --backends         prints the back ends of this build, one per line\n"
       "  --describe         prints its rings, settings and back ends as JSON\n"
       "  --version, --help\n\n"
@@ -50,6 +52,30 @@ int serve(const daemon::ServiceDescription& description, const CommandLine& line
   give_up({Errc::unavailable, problem.what()});
 }
 
+/// What keeps a service from starting with this rig.
+std::vector<Error> find_faults(const config::Rig& rig, std::string_view service,
+                               const Check& check) {
+  std::vector<Error> faults;
+  const auto note = [&](const Result<void>& result) {
+    if (!result) faults.push_back(result.error());
+  };
+  note(check_scheduling(config::process_of(rig, service), service));
+  const auto calibration = calib::load_calibration(rig.calibration);
+  if (!calibration) faults.push_back(calibration.error());
+  if (check) note(check(rig, calibration.value_or(calib::reference_rig())));
+  return faults;
+}
+
+/// Prints the faults, one sentence per line.
+int examine(const daemon::ServiceDescription& description, const CommandLine& line,
+            const Check& check) {
+  log::set_level(log::Level::error);
+  const auto rig = config::load_rig(line.config_file, line.settings);
+  const auto faults = rig ? find_faults(*rig, description.name, check) : std::vector{rig.error()};
+  for (const auto& fault : faults) fmt::print("{}\n", printable(fault.what));
+  return faults.empty() ? kExitDone : exit_code_of(faults.front());
+}
+
 }  // namespace
 
 daemon::ServiceDescription complete(daemon::ServiceDescription description) {
@@ -61,7 +87,7 @@ daemon::ServiceDescription complete(daemon::ServiceDescription description) {
 }
 
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
-        const std::function<void(Context&)>& body) {
+        const std::function<void(Context&)>& body, const Check& check) {
   log::set_program(description.name);
   return run_program("handcast-" + description.name, argc, argv, [&](int count, char** words) {
     const auto line = parse_command_line(count, words);
@@ -70,6 +96,7 @@ int run(const daemon::ServiceDescription& description, int argc, char** argv,
       return kExitUsage;
     }
     if (line->task == CommandLine::Task::serve) return serve(description, *line, body);
+    if (line->task == CommandLine::Task::check) return examine(description, *line, check);
     print_answer(description, line->task);
     return kExitDone;
   });

@@ -20,23 +20,16 @@ namespace {
 
 using Note = std::optional<std::string>;
 
-Result<Note> use_cores(const std::vector<double>& cores, std::string_view service) {
-  if (cores.empty()) return Note{};
-  const auto there_are = sysconf(_SC_NPROCESSORS_CONF);
+/// The cores must be there.
+Note use_cores(const std::vector<double>& cores, std::string_view service) {
+  if (cores.empty()) return {};
   cpu_set_t set;
   CPU_ZERO(&set);
-  for (const double core : cores) {
-    if (core != std::floor(core) || core < 0 || core >= static_cast<double>(there_are))
-      return fail(
-          Errc::bad_config,
-          fmt::format("{}.process.cores: there is no core {:g}; this machine has cores 0 to {}",
-                      service, core, there_are - 1));
-    CPU_SET(static_cast<int>(core), &set);
-  }
-  if (sched_setaffinity(0, sizeof set, &set) == 0) return Note{};
-  return Note{
-      fmt::format("{}.process.cores: the process runs on all cores, the wanted ones are denied: {}",
-                  service, std::strerror(errno))};
+  for (const double core : cores) CPU_SET(static_cast<int>(core), &set);
+  if (sched_setaffinity(0, sizeof set, &set) == 0) return {};
+  return fmt::format(
+      "{}.process.cores: the process runs on all cores, the wanted ones are denied: {}", service,
+      std::strerror(errno));
 }
 
 Note use_priority(int priority, std::string_view service) {
@@ -72,13 +65,24 @@ Note lock_memory(bool wanted, std::string_view service) {
 
 }  // namespace
 
+Result<void> check_scheduling(const config::Process& process, std::string_view service) {
+  const auto there_are = sysconf(_SC_NPROCESSORS_CONF);
+  for (const double core : process.cores)
+    if (core != std::floor(core) || core < 0 || core >= static_cast<double>(there_are))
+      return fail(
+          Errc::bad_config,
+          fmt::format("{}.process.cores: there is no core {:g}; this machine has cores 0 to {}",
+                      service, core, there_are - 1));
+  return {};
+}
+
 Result<std::vector<std::string>> apply_scheduling(const config::Process& process,
                                                   std::string_view service) {
-  auto cores = use_cores(process.cores, service);
-  if (!cores) return tl::make_unexpected(cores.error());
+  if (const auto possible = check_scheduling(process, service); !possible)
+    return tl::make_unexpected(possible.error());
   std::vector<std::string> notes;
-  for (auto& note :
-       {*cores, use_priority(process.priority, service), lock_memory(process.lock_memory, service)})
+  for (auto& note : {use_cores(process.cores, service), use_priority(process.priority, service),
+                     lock_memory(process.lock_memory, service)})
     if (note) notes.push_back(*note);
   return notes;
 }

@@ -9,9 +9,12 @@
 
 namespace handcast::service {
 
+/// Checks whether this machine has the cores of [NAME.process]. Errors: bad_config (it does not).
+Result<void> check_scheduling(const config::Process& process, std::string_view service);
+
 /// Applies the cores, the priority and the memory lock of [NAME.process] to this process. Returns a
-/// sentence, to be logged, for each setting that the system does not permit. Errors: bad_config
-/// (the machine does not have these cores).
+/// sentence, to be logged, for each setting that the system does not permit. Errors: as
+/// check_scheduling().
 Result<std::vector<std::string>> apply_scheduling(const config::Process& process,
                                                   std::string_view service);
 

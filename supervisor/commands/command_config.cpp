@@ -1,64 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "config/rig.hpp"
-#include "config/settings/settings.hpp"
+#include "ipc/base/join.hpp"
 #include "supervisor/base/options.hpp"
+#include "supervisor/commands/check_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/spec/fingerprint.hpp"
-#include "supervisor/spec/service_spec.hpp"
+#include "supervisor/spec/catalogue.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 Catalogue installed_services() { return read_catalogue(catalogue_folder(program_folder())); }
 
-/// A line for each back end that this installation does not have.
-std::string unknown_backends(const config::Rig& rig, const Catalogue& catalogue) {
-  std::string lines;
-  for (const auto& service : services_of(rig, catalogue)) {
-    if (service.backend.empty()) continue;
-    if (const auto known = check_backend(catalogue, service.name, service.backend); !known)
-      lines += fmt::format("{}.backend: {}\n", service.name, known.error().what);
-  }
-  return lines;
-}
-
-/// A line for each file and folder that is missing although a service of this rig reads it.
-std::string missing_files(config::Rig rig, const Catalogue& catalogue) {
-  constexpr std::string_view kPlaces[] = {"calibration",
-                                          "hand.left",
-                                          "hand.right",
-                                          "content.left",
-                                          "content.right",
-                                          "twin.motion",
-                                          "camera.replay.directory",
-                                          "pose.replay.directory",
-                                          "landmarks.replay.directory"};
-  std::string lines;
-  const auto services = services_of(rig, catalogue);
-  const auto listing = config::list_settings(rig);
-  for (const auto path : kPlaces) {
-    const auto& file = *std::get<std::string*>(config::find_setting(listing, path)->target);
-    std::error_code unknown;
-    const bool is_read = std::ranges::any_of(services, [&](const ServiceSpec& service) {
-      return reads_setting(service.name, rig, catalogue, path);
-    });
-    if (is_read && !file.empty() && !file.starts_with("builtin:") &&
-        !std::filesystem::exists(file, unknown))
-      lines += fmt::format("{}: {} does not exist\n", path, file);
-  }
-  return lines;
-}
-
-/// Checks what the settings of a rig refer to. Prints what is wrong.
-int check(const config::Rig& rig, const std::string& file) {
-  const auto catalogue = installed_services();
-  const auto faults = unknown_backends(rig, catalogue) + missing_files(rig, catalogue);
+/// Prints what `up` would refuse about a rig.
+int check(const config::Rig& rig, const std::string& file,
+          const std::vector<std::string>& settings) {
+  const auto faults = faults_of(rig, file, settings);
   if (!faults.empty())
-    return complain(kExitConfig, fmt::format("{}:\n{}", file, faults.substr(0, faults.size() - 1)));
+    return complain(kExitConfig, fmt::format("{}:\n{}", file, join(faults, "\n")));
   fmt::print("{} is in order\n", file);
   return kExitDone;
 }
@@ -89,7 +49,7 @@ int run_config(const Arguments& arguments) {
           ? config::parse_rig("", std::filesystem::current_path() / "defaults", settings)
           : config::load_rig(options->words.front(), settings);
   if (!rig) return complain(rig.error());
-  if (checks) return check(*rig, options->words.front());
+  if (checks) return check(*rig, options->words.front(), settings);
   fmt::print("{}", config::print_rig(*rig));
   return kExitDone;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "ipc/base/output_file.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
@@ -31,6 +32,7 @@ int run_trace(const Arguments& given) {
   if (!history) return complain(history.error());
 
   const auto path = options->value("--out");
+  if (const auto possible = check_output(path); !possible) return complain(possible.error());
   const auto trace = perfetto_trace(*history, *rig, ClockReadings::now());
   std::ofstream file(path, std::ios::binary);
   file.write(trace.data(), static_cast<std::streamsize>(trace.size()));

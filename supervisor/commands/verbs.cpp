@@ -62,11 +62,14 @@ constexpr std::array kVerbs{
               "  --user NAME        the user as which it runs; default: the one who calls sudo\n"
               "  --print            prints the unit and writes nothing\n"},
     VerbEntry{
-        "config", "config --print [FILE] [--set path=value]... | --check FILE | --reference",
+        "config",
+        "config --print [FILE] [--set path=value]... | --check FILE [--set "
+        "path=value]... | --reference",
         "Prints a complete rig file, checks one, or explains all settings.", run_config,
         Group::set_up,
         "  --print      all settings, with defaults where FILE has none\n"
-        "  --check      every setting that is wrong, and every file and back end that is missing\n"
+        "  --check      everything that `handcast up` would refuse: settings, back ends, and the\n"
+        "               files that the services open\n"
         "  --reference  the page config/REFERENCE.md\n"},
     VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.",
               nullptr, Group::score},

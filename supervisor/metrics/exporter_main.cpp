@@ -95,9 +95,10 @@ int serve(const Options& options) {
 }
 
 int run_exporter(int argc, char** argv) {
-  const auto options = sort_options({argv + 1, argv + argc},
-                                    {.with_value = {"--config", "--set"},
-                                     .flags = {"--help", "--version", "--backends", "--describe"}});
+  const auto options =
+      sort_options({argv + 1, argv + argc},
+                   {.with_value = {"--config", "--set"},
+                    .flags = {"--help", "--version", "--backends", "--describe", "--check"}});
   if (!options) {
     log::error("{}", options.error().what);
     return kExitUsage;
@@ -108,6 +109,7 @@ int run_exporter(int argc, char** argv) {
   if (options->has("--version")) fmt::print("handcast-exporter {}\n", version());
   if (options->has("--help") || options->has("--version") || options->has("--describe"))
     return kExitDone;
+  if (options->has("--config") && options->has("--check")) return kExitDone;  // it opens nothing
   if (options->has("--config")) return serve(*options);
   log::error("--config FILE, the rig file, is needed");
   return kExitUsage;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "config/settings/files.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/control/rig_address.hpp"
@@ -28,12 +29,7 @@ constexpr std::int64_t kStoodStill_ns = 1'000'000'000;
 std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
 
 Result<void> write_report(const std::filesystem::path& folder, const nlohmann::json& report) {
-  const auto file = folder / "live.json";
-  std::ofstream out(file);
-  out << report.dump(2) << "\n";
-  out.close();
-  if (!out) return fail(Errc::unavailable, fmt::format("{} cannot be written", file.string()));
-  return {};
+  return config::write_whole(folder / "live.json", report.dump(2) + "\n");
 }
 
 }  // namespace

@@ -97,12 +97,6 @@ std::string fingerprint_of(std::string_view service, const config::Rig& rig,
   return hash.print();
 }
 
-bool reads_setting(std::string_view service, const config::Rig& rig, const Catalogue& catalogue,
-                   std::string_view path) {
-  const auto reads = reads_of(service, backend_of(service, rig), catalogue);
-  return reads && is_in(path, *reads);
-}
-
 std::string backend_of(std::string_view service, const config::Rig& rig) {
   auto copy = rig;
   const auto* backend = backend_in(service, config::list_settings(copy));

@@ -15,11 +15,6 @@ namespace handcast::supervisor {
 std::string fingerprint_of(std::string_view service, const config::Rig& rig,
                            const Catalogue& catalogue);
 
-/// True if the service reads this setting with the back end that the rig asks for. False if the
-/// catalogue does not have the service or the back end.
-bool reads_setting(std::string_view service, const config::Rig& rig, const Catalogue& catalogue,
-                   std::string_view path);
-
 /// The back end that the rig asks for; "" for a service without back ends.
 std::string backend_of(std::string_view service, const config::Rig& rig);
 /// The rig with another back end of a service.

@@ -5,17 +5,13 @@
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "ipc/msg/largest_images.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
 namespace {
-
-// The largest images that fit into a ring. The sizes of the rig's own images are not known here,
-// because the supervisor does not read calibrations.
-constexpr int kCameraWidth_px = 1280, kCameraHeight_px = 1024;
-constexpr int kProjectorWidth_px = 1024, kProjectorHeight_px = 768;
 
 /// The most slots that a ring can have: the recorder may be 0.25 s late at 946 Hz.
 constexpr int kMarkSlots = 254;
@@ -27,13 +23,14 @@ constexpr bool kNewestOnly = false, kWithHistory = true;
 std::vector<ipc::RingSpec> all_streams() {
   using ipc::RingSpec;
   return {
-      RingSpec::of<msg::CameraFrame>("camera.frames", kImageSlots, kNewestOnly,
-                                     msg::CameraFrame::bytes(kCameraWidth_px, kCameraHeight_px)),
+      RingSpec::of<msg::CameraFrame>(
+          "camera.frames", kImageSlots, kNewestOnly,
+          msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
       RingSpec::of<msg::HandPoses>("pose.hands", 64, kWithHistory),
       RingSpec::of<msg::Landmarks>("landmarks.hands", 32, kWithHistory),
       RingSpec::of<msg::Projection>(
           "projection.frames", kImageSlots, kNewestOnly,
-          msg::Projection::bytes(kProjectorWidth_px, kProjectorHeight_px)),
+          msg::Projection::bytes(msg::kLargestProjectorWidth_px, msg::kLargestProjectorHeight_px)),
   };
 }
 

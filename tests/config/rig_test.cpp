@@ -173,6 +173,27 @@ TEST(Paths, OfAFileStartAtItsFolder) {
   EXPECT_EQ(rig.content.left, "/rigs/a.png");
 }
 
+TEST(Rig, ANameThatNoFileCanHaveIsRefused) {
+  for (const auto& name : std::vector<std::string>{"", "a b", "a/b", "a\\tb", std::string(49, 'x')})
+    EXPECT_THAT(faults_of("name = \"" + name + "\""),
+                ElementsAre(HasSubstr("is not a valid name of a rig")))
+        << name;
+  EXPECT_THAT(faults_of("name = \"Desk_2-b\""), IsEmpty());
+}
+
+TEST(Rig, AnAssignmentIsOneLine) {
+  EXPECT_THAT(
+      faults_of("", {"camera.rate_hz=5\ncamera.exposure_ms=1"}),
+      ElementsAre(HasSubstr("camera.rate_hz=5"), HasSubstr("must not contain a line break")));
+  EXPECT_THAT(faults_of("", {"content.left=a\rb"}),
+              ElementsAre(HasSubstr("must not contain a line break")));
+}
+
+TEST(Rig, CoresAreWholeNumbers) {
+  EXPECT_THAT(faults_of("[pose.process]\ncores = [0, 1.5]"),
+              ElementsAre("/rigs/test.toml: pose.process.cores: 1.5 is not the number of a core"));
+}
+
 TEST(Paths, OfAnAssignmentStartAtTheCurrentFolder) {
   EXPECT_EQ(rig_of("", {"hand.left=hand.glb"}).hand.left,
             (std::filesystem::current_path() / "hand.glb").string());

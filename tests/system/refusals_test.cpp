@@ -98,8 +98,38 @@ TEST_F(Refusals, ConfigNamesEveryMissingFileAndUnknownBackEndThatTheRigUses) {
   const auto outcome = handcast({"config", "--check", file});
   EXPECT_EQ(outcome.exit_code, 100);
   EXPECT_THAT(outcome.log, AllOf(HasSubstr("camera.backend: camera has no back end 'webcam'"),
-                                 HasSubstr("none.toml does not exist"),
-                                 HasSubstr("pose.replay.directory"), Not(HasSubstr("unused"))));
+                                 HasSubstr("none.toml: cannot be read: No such file"),
+                                 HasSubstr("tape/timestamps.npy"), Not(HasSubstr("unused"))));
+}
+
+TEST_F(Refusals, ConfigOpensWhatTheServicesOpen) {
+  const auto refusal = [&](const std::string& toml) {
+    const auto outcome = handcast({"config", "--check", rig_file(toml)});
+    EXPECT_EQ(outcome.exit_code, 100) << toml;
+    return outcome.log;
+  };
+  std::ofstream(scratch_.path() / "odd.png") << "no picture";
+  std::ofstream(scratch_.path() / "odd.glb") << "no mesh";
+  std::ofstream(scratch_.path() / "odd.toml") << "[camera]\nwidth_px = 3\n";
+  EXPECT_THAT(refusal("[content]\nleft = \"odd.png\""), HasSubstr("odd.png' is not a PNG"));
+  EXPECT_THAT(refusal("[hand]\nright = \"odd.glb\""), HasSubstr("not a valid glTF file"));
+  EXPECT_THAT(refusal("calibration = \"odd.toml\""), HasSubstr("odd.toml:2: camera.width_px"));
+  EXPECT_THAT(refusal("[twin]\nmotion = \"builtin:jump\""), HasSubstr("built-in motion 'jump'"));
+  EXPECT_THAT(refusal("[content]\nleft = \"builtin:x\""), HasSubstr("built-in content 'x'"));
+  EXPECT_THAT(refusal("[pose.process]\ncores = [1023]"),
+              HasSubstr("pose.process.cores: there is no core 1023"));
+  EXPECT_THAT(refusal("[landmarks]\nbackend = \"handcast\"\nmodels = \"nowhere\""),
+              HasSubstr("nowhere: there is no such folder of models"));
+  EXPECT_THAT(refusal("name = \"a b\""), HasSubstr("'a b' is not a valid name"));
+  EXPECT_THAT(traces(), IsEmpty());
+}
+
+TEST_F(Refusals, ConfigNamesEachFaultOnce) {
+  const auto outcome = handcast({"config", "--check", rig_file("calibration = \"none.toml\"")});
+  const auto first = outcome.log.find("none.toml: cannot be read");
+  ASSERT_NE(first, std::string::npos) << outcome.log;
+  EXPECT_EQ(outcome.log.find("none.toml: cannot be read", first + 1), std::string::npos)
+      << outcome.log;
 }
 
 TEST_F(Refusals, AnEmptyArgumentIsOneThatAScriptForgot) {

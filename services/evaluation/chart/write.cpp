@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "ipc/base/output_file.hpp"
 #include "services/evaluation/chart/gnuplot.hpp"
 #include "services/evaluation/chart/svg.hpp"
 
@@ -12,6 +13,7 @@ namespace handcast::chart {
 namespace {
 
 Result<void> write_file(const std::filesystem::path& file, const std::string& text) {
+  if (auto possible = check_output(file); !possible) return possible;
   std::ofstream stream(file, std::ios::binary);
   stream << text;
   stream.close();

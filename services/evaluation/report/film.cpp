@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "ipc/base/output_file.hpp"
+#include "renderer/content/picture.hpp"
 #include "services/evaluation/page/html.hpp"
 
 namespace handcast::report {
@@ -18,12 +20,14 @@ namespace {
 constexpr double kLit = 80;  ///< change of the grey value that only projected light causes
 constexpr int kPanelWidth = 480, kPanelHeight = 360, kCaptionHeight = 40;
 
+/// Empty if the file cannot be read.
 cv::Mat read(const fs::path& file) {
-  try {
-    return cv::imread(file.string(), cv::IMREAD_COLOR);
-  } catch (const cv::Exception&) {
-    return {};
-  }
+  auto picture = renderer::read_picture(file);
+  if (!picture) return {};
+  cv::Mat bgr;
+  cv::cvtColor(cv::Mat(picture->height(), picture->width(), CV_8UC4, picture->row(0)), bgr,
+               cv::COLOR_RGBA2BGR);
+  return bgr;
 }
 
 std::vector<unsigned char> bytes_of(const fs::path& file) {
@@ -153,6 +157,11 @@ Film make_film(const Inputs& inputs, const fs::path& video_file) {
       film.problems.push_back(fmt::format("there are no pictures of {} in frames/", run.name));
   }
   if (runs.empty()) return film;
+  for (const auto& file : {video_file, fs::path(video_file).replace_extension(".png")})
+    if (const auto possible = check_output(file); !possible) {
+      film.problems.push_back(possible.error().what);
+      return film;
+    }
   try {
     shoot(film, runs, video_file);
   } catch (const cv::Exception& error) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "ipc/base/input_file.hpp"
+#include "services/evaluation/report/kinds.hpp"
 
 namespace handcast::report {
 namespace fs = std::filesystem;
@@ -14,10 +15,11 @@ namespace {
 using nlohmann::json;
 
 Source read_source(const fs::path& folder, const std::string& name) {
-  Source source{name, std::nullopt, ""};
+  Source source{.file = name};
   std::error_code unknown;
   if (!fs::exists(folder / name, unknown)) {
     source.problem = fmt::format("{} is missing", name);
+    source.missing = true;
     return source;
   }
   const auto text = read_input(folder / name, kMostText);
@@ -25,11 +27,13 @@ Source read_source(const fs::path& folder, const std::string& name) {
     source.problem = text.error().what;
     return source;
   }
-  auto content = json::parse(*text, nullptr, /*allow_exceptions=*/false);
-  if (content.is_object())
-    source.content = std::move(content);
-  else
+  auto content = parse_shallow(*text);
+  if (!content.is_object())
     source.problem = fmt::format("{} is not a JSON object", name);
+  else if (const auto wrong = wrong_kind(content); !wrong.empty())
+    source.problem = fmt::format("{}: {}", name, wrong);
+  else
+    source.content = std::move(content);
   return source;
 }
 
@@ -61,6 +65,16 @@ bool is_empty(const Inputs& inputs) {
 std::optional<double> Source::number(const json::json_pointer& place) const {
   if (!content || !content->contains(place) || !content->at(place).is_number()) return std::nullopt;
   return content->at(place).get<double>();
+}
+
+std::vector<std::string> faults_of(const Inputs& inputs) {
+  std::vector<std::string> faults;
+  const auto note = [&](const Source& source) {
+    if (!source.content && !source.missing) faults.push_back(source.problem);
+  };
+  for (const auto& run : inputs.runs) note(run.metrics);
+  for (const auto* source : {&inputs.equal_legs, &inputs.live, &inputs.observer}) note(*source);
+  return faults;
 }
 
 Result<Inputs> read_inputs(const fs::path& folder) {

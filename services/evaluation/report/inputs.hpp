@@ -13,9 +13,10 @@ namespace handcast::report {
 
 /// A JSON file of the folder.
 struct Source {
-  std::string file;                       ///< name of the file: "paper.json"
-  std::optional<nlohmann::json> content;  ///< an object; empty if there is a problem
-  std::string problem;                    ///< "paper.json is missing"; "" without a problem
+  std::string file;                         ///< name of the file: "paper.json"
+  std::optional<nlohmann::json> content{};  ///< an object; empty if there is a problem
+  std::string problem{};                    ///< "paper.json is missing"; "" without a problem
+  bool missing = false;                     ///< the problem is that there is no such file
 
   /// The number at a place of the content; empty if there is none.
   std::optional<double> number(const nlohmann::json::json_pointer& place) const;
@@ -44,5 +45,8 @@ struct Inputs {
 /// Reads the files of a folder. A missing or malformed file is a problem of its Source. Errors:
 /// bad_config (there is no such folder, or none of the files).
 Result<Inputs> read_inputs(const std::filesystem::path& folder);
+
+/// The problems of the files that are there, a sentence each.
+std::vector<std::string> faults_of(const Inputs& inputs);
 
 }  // namespace handcast::report

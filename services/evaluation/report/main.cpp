@@ -30,13 +30,14 @@ static int run_verb(int argc, char** argv) {
     return app.exit(problem) == 0 ? kExitDone : kExitUsage;
   }
 
-  const auto page = report::write_report(folder, imprint);
-  if (!page) {
-    fmt::print(stderr, "handcast report: {}\n", page.error().what);
-    return exit_code_of(page.error());
+  const auto written = report::write_report(folder, imprint);
+  if (!written) {
+    fmt::print(stderr, "handcast report: {}\n", written.error().what);
+    return exit_code_of(written.error());
   }
-  fmt::print("{}\n", page->string());
-  return kExitDone;
+  fmt::print("{}\n", written->page.string());
+  for (const auto& fault : written->faults) fmt::print(stderr, "handcast report: {}\n", fault);
+  return written->faults.empty() ? kExitDone : kExitBadResult;
 }
 
 int main(int argc, char** argv) {

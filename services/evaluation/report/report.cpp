@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/report/report.hpp"
 
-#include <fmt/format.h>
-
-#include <fstream>
+#include "config/settings/files.hpp"
 
 namespace handcast::report {
 namespace fs = std::filesystem;
@@ -20,25 +18,18 @@ static nlohmann::json gather_metrics(const Inputs& inputs) {
   return metrics;
 }
 
-static Result<void> write(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) return fail(Errc::unavailable, fmt::format("'{}' cannot be written", file.string()));
-  return {};
-}
-
-Result<fs::path> write_report(const fs::path& folder, const Imprint& imprint) {
+Result<Written> write_report(const fs::path& folder, const Imprint& imprint) {
   const auto inputs = read_inputs(folder);
   if (!inputs) return tl::make_unexpected(inputs.error());
   const Film film = make_film(*inputs, folder / "preview.mp4");
-  if (auto written = write(folder / "metrics.json", gather_metrics(*inputs).dump(2) + "\n");
+  if (auto written =
+          config::write_whole(folder / "metrics.json", gather_metrics(*inputs).dump(2) + "\n");
       !written)
     return tl::make_unexpected(written.error());
   const fs::path page = folder / "report.html";
-  if (auto written = write(page, make_page(*inputs, film, imprint)); !written)
+  if (auto written = config::write_whole(page, make_page(*inputs, film, imprint)); !written)
     return tl::make_unexpected(written.error());
-  return page;
+  return Written{page, faults_of(*inputs)};
 }
 
 }  // namespace handcast::report

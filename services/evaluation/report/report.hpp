@@ -2,16 +2,22 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "ipc/base/result.hpp"
 #include "services/evaluation/report/page.hpp"
 
 namespace handcast::report {
 
+/// What was written.
+struct Written {
+  std::filesystem::path page;       ///< report.html
+  std::vector<std::string> faults;  ///< files that are there and cannot be used, a sentence each
+};
+
 /// Writes metrics.json, preview.mp4 (if there are pictures) and report.html from the files of a
-/// folder into the same folder. Returns the path of the page. Errors: bad_config (there is nothing
+/// folder into the same folder. Errors: bad_config (there is nothing
 /// to report), unavailable (a file cannot be written).
-Result<std::filesystem::path> write_report(const std::filesystem::path& folder,
-                                           const Imprint& imprint);
+Result<Written> write_report(const std::filesystem::path& folder, const Imprint& imprint);
 
 }  // namespace handcast::report

@@ -49,6 +49,10 @@ Result<Merged> merge(const std::vector<std::filesystem::path>& files,
   for (const auto& file : files) {
     const auto table = read_table(file);
     if (!table) return tl::make_unexpected(table.error());
+    if (table->heading.columns.empty())
+      return fail(Errc::bad_data, fmt::format("{}: the file has no heading: it does not hold "
+                                              "results of a sweep",
+                                              file.string()));
     if (&file == &files.front()) whole.heading = table->heading;
     if (table->heading != whole.heading)
       return fail(Errc::bad_data,

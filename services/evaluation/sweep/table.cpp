@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/settings/files.hpp"
+#include "ipc/base/output_file.hpp"
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 
@@ -103,11 +104,13 @@ Result<void> check_row(const Row& row, const Heading& heading, const std::filesy
 
 std::string Heading::print() const { return stamp + "\n" + print_row(columns); }
 
+// A larger number, which no file of results can hold, is not one.
 std::size_t Heading::runs() const {
+  constexpr std::size_t kMostRuns = 10'000'000;
   const auto at = stamp.find(" runs=");
   std::size_t count = 0;
   if (at != stamp.npos) std::from_chars(stamp.data() + at + 6, stamp.data() + stamp.size(), count);
-  return count;
+  return count <= kMostRuns ? count : 0;
 }
 
 Heading heading_of(const Plan& plan, const Expansion& expansion, std::string_view version) {
@@ -191,7 +194,8 @@ Result<Table> read_table(const std::filesystem::path& file) {
     }
   }
   table.torn = text->substr(table.whole_bytes);
-  if (line > 1 && !table.heading.stamp.starts_with("# handcast sweep "))
+  if (line > 1 &&
+      (!table.heading.stamp.starts_with("# handcast sweep ") || table.heading.runs() == 0))
     return fail(Errc::bad_data,
                 fmt::format("{}: the file does not hold results of a sweep", file.string()));
   return table;
@@ -202,6 +206,7 @@ Result<void> write_table(const std::filesystem::path& file, const Table& table) 
   for (const auto& row : table.rows) newest[Table::index_of(row)] = &row;
   auto beside = file;
   beside += ".new";
+  if (auto possible = check_output(beside); !possible) return possible;
   std::ofstream stream(beside, std::ios::binary);
   stream << table.heading.print();
   for (const auto& [index, row] : newest) stream << print_row(*row);

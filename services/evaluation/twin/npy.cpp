@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include "services/evaluation/twin/npy.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <string_view>
 
 #include "ipc/base/input_file.hpp"
-#include "services/evaluation/twin/recording.hpp"
+#include "ipc/base/output_file.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -20,6 +25,8 @@ struct Layout {
   std::string type;
   std::vector<std::size_t> shape;
   std::size_t data_offset = 0;
+
+  std::size_t number_bytes() const { return type[2] == '4' ? 4 : 8; }
 };
 
 tl::unexpected<Error> damaged(const path& file, std::string_view what) {
@@ -81,6 +88,10 @@ Result<Layout> parse_layout(const path& file, std::string_view bytes) {
   if (type.size() < 5 || type[0] != '\'' || type[4] != '\'')
     return damaged(file, "the header has no plain number type");
   layout.type = type.substr(1, 3);
+  if (layout.type != "<f4" && layout.type != "<f8" && layout.type != "<i4" && layout.type != "<i8")
+    return damaged(file,
+                   fmt::format("the array holds '{}'; '<f4', '<f8', '<i4' and '<i8' are supported",
+                               layout.type));
   if (!value_of(header, "fortran_order").starts_with("False"))
     return damaged(file, "the array is not in C order");
   if (!parse_shape(value_of(header, "shape"), layout.shape))
@@ -89,17 +100,18 @@ Result<Layout> parse_layout(const path& file, std::string_view bytes) {
 }
 
 template <class T>
-void convert(std::string_view data, std::vector<double>& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
+void append(std::string_view data, std::vector<double>& values) {
+  for (; data.size() >= sizeof(T); data.remove_prefix(sizeof(T))) {
     T value;
-    std::memcpy(&value, data.data() + i * sizeof(T), sizeof(T));
-    values[i] = static_cast<double>(value);
+    std::memcpy(&value, data.data(), sizeof(T));
+    values.push_back(static_cast<double>(value));
   }
 }
 
 Result<void> write_array(const path& file, std::string_view type,
                          const std::vector<std::size_t>& shape, const void* data,
                          std::size_t bytes) {
+  if (auto possible = check_output(file); !possible) return possible;
   std::string tuple;
   for (const std::size_t extent : shape) tuple += fmt::format("{}, ", extent);
   std::string header =
@@ -116,36 +128,87 @@ Result<void> write_array(const path& file, std::string_view type,
   return {};
 }
 
-}  // namespace
+/// Reads up to `most` bytes, from the present place of the file.
+Result<std::string> read_some(int fd, std::size_t most, const path& file) {
+  std::string bytes(most, '\0');
+  std::size_t count = 0;
+  while (count < most) {
+    const auto got = ::read(fd, bytes.data() + count, most - count);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return damaged(file, std::strerror(errno));
+    if (got == 0) break;
+    count += static_cast<std::size_t>(got);
+  }
+  bytes.resize(count);
+  return bytes;
+}
 
-Result<Npy> read_npy(const path& file) {
-  const auto bytes = read_input(file, kMostArray);
-  if (!bytes) return tl::make_unexpected(bytes.error());
-  const auto layout = parse_layout(file, *bytes);
-  if (!layout) return tl::make_unexpected(layout.error());
+/// Appends the numbers in `data`.
+void append(std::string_view type, std::string_view data, std::vector<double>& values) {
+  if (type == "<f4") append<float>(data, values);
+  if (type == "<f8") append<double>(data, values);
+  if (type == "<i4") append<std::int32_t>(data, values);
+  if (type == "<i8") append<std::int64_t>(data, values);
+}
 
-  const std::string& type = layout->type;
-  if (type != "<f4" && type != "<f8" && type != "<i4" && type != "<i8")
-    return damaged(
-        file,
-        fmt::format("the array holds '{}'; '<f4', '<f8', '<i4' and '<i8' are supported", type));
-  const std::size_t size = type[2] == '4' ? 4 : 8;
-  const std::string_view data = std::string_view(*bytes).substr(layout->data_offset);
+/// The number of elements. Errors: bad_data (more than kMostNumbers, or not as many as the file
+/// has bytes for).
+Result<std::size_t> count_of(const path& file, const Layout& layout, std::size_t data_bytes) {
+  constexpr std::size_t kMostNumbers = 40'000'000;
   std::size_t count = 1;
-  for (const std::size_t extent : layout->shape) {
-    if (extent != 0 && count > data.size() / extent) return damaged(file, "the array is truncated");
+  for (const std::size_t extent : layout.shape) {
+    if (extent != 0 && count > kMostNumbers / extent)
+      return damaged(file, fmt::format("the array has more than {} numbers", kMostNumbers));
     count *= extent;
   }
-  if (data.size() != count * size)
-    return damaged(file, fmt::format("the array has {} bytes, but its shape requires {}",
-                                     data.size(), count * size));
+  const std::size_t needed = count * layout.number_bytes();
+  if (data_bytes != needed)
+    return damaged(file, fmt::format("the array {}: it has {} bytes, but its shape requires {}",
+                                     data_bytes < needed ? "is truncated" : "is too long",
+                                     data_bytes, needed));
+  return count;
+}
 
-  Npy array{layout->shape, std::vector<double>(count)};
-  if (type == "<f4") convert<float>(data, array.values);
-  if (type == "<f8") convert<double>(data, array.values);
-  if (type == "<i4") convert<std::int32_t>(data, array.values);
-  if (type == "<i8") convert<std::int64_t>(data, array.values);
+}  // namespace
+
+Result<NpyFile> NpyFile::open(const path& file) {
+  constexpr std::size_t kLongestHeader = 1 << 16;
+  auto fd = open_input(file, kMostArray);
+  if (!fd) return tl::make_unexpected(fd.error());
+  std::error_code failed;
+  const auto size = std::filesystem::file_size(file, failed);
+  if (failed) return damaged(file, failed.message());
+  const auto begin = read_some(fd->get(), kLongestHeader, file);
+  if (!begin) return tl::make_unexpected(begin.error());
+  auto layout = parse_layout(file, *begin);
+  if (!layout) return tl::make_unexpected(layout.error());
+  const auto count = count_of(file, *layout, size - std::min(size, layout->data_offset));
+  if (!count) return tl::make_unexpected(count.error());
+  return NpyFile(file, std::move(*fd), std::move(layout->type), std::move(layout->shape),
+                 layout->data_offset, *count);
+}
+
+Result<Npy> NpyFile::read() {
+  constexpr std::size_t kPart_bytes = 1 << 20;
+  if (::lseek(fd_.get(), static_cast<off_t>(data_offset_), SEEK_SET) < 0)
+    return damaged(file_, std::strerror(errno));
+  Npy array{shape_, {}};
+  array.values.reserve(count_);
+  while (array.values.size() < count_) {
+    const auto part = read_some(fd_.get(), kPart_bytes, file_);
+    if (!part) return tl::make_unexpected(part.error());
+    const auto before = array.values.size();
+    append(type_, *part, array.values);
+    if (array.values.size() == before) return damaged(file_, "the array is truncated");
+  }
+  array.values.resize(count_);  // the file may have grown
   return array;
+}
+
+Result<Npy> read_npy(const path& file) {
+  auto opened = NpyFile::open(file);
+  if (!opened) return tl::make_unexpected(opened.error());
+  return opened->read();
 }
 
 Result<void> write_npy_f32(const path& file, const std::vector<std::size_t>& shape,

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <optional>
+#include <span>
 
 #include "renderer/hand/maker/hand_shape.hpp"
 #include "services/evaluation/twin/leap_layout.hpp"
+#include "services/evaluation/twin/recording_checks.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -21,7 +22,6 @@ using std::filesystem::path;
 constexpr std::array<std::string_view, 2> kSideNames{"left", "right"};
 constexpr std::array<std::string_view, 3> kStampFiles{"timestamps.npy", "camera_timestamps.npy",
                                                       "landmarks_timestamps.npy"};
-constexpr double kMostStamp_us = 4e15;  ///< differences in ns fit in 64 bits
 /// Largest gap between the last time of one sensor and the first of another: an hour.
 constexpr std::int64_t kMostGap_ns = 3'600'000'000'000;
 constexpr double kForearm_mm = 250;  ///< written distance of the elbow, which poses do not hold
@@ -38,11 +38,14 @@ std::string text_of(const std::vector<std::size_t>& shape) {
 }
 
 Result<Npy> read_shaped(const path& file, const std::vector<std::size_t>& shape) {
-  auto array = read_npy(file);
+  auto opened = NpyFile::open(file);
+  if (!opened) return tl::make_unexpected(opened.error());
+  if (opened->shape() != shape)
+    return fail(Errc::bad_data,
+                fmt::format("{}: the array has shape {}, but must have shape {}", file.string(),
+                            text_of(opened->shape()), text_of(shape)));
+  auto array = opened->read();
   if (!array) return array;
-  if (array->shape != shape)
-    return fail(Errc::bad_data, fmt::format("{}: the array has shape {}, but must have shape {}",
-                                            file.string(), text_of(array->shape), text_of(shape)));
   for (const double value : array->values)
     if (!std::isfinite(value))
       return fail(Errc::bad_data,
@@ -91,37 +94,9 @@ Result<msg::HandPose> pose_of(msg::Side side, const double* joints, const double
   return pose;
 }
 
-/// The distance from the wrist to the knuckle of the middle finger, which no motion changes; the
-/// median of the samples in which the two are apart. Empty if there is none.
-std::optional<double> palm_length_m(const std::vector<msg::HandPose>& poses) {
-  std::vector<double> lengths;
-  for (const msg::HandPose& pose : poses) {
-    const auto& wrist = pose.joints[kWrist].position_m;
-    const auto& knuckle = pose.joints[kMiddleMetacarpal + 1].position_m;
-    const double length_m =
-        std::hypot(knuckle[0] - wrist[0], knuckle[1] - wrist[1], knuckle[2] - wrist[2]);
-    if (length_m > 0) lengths.push_back(length_m);
-  }
-  if (lengths.empty()) return std::nullopt;
-  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
-}
-
-/// Refuses a recording in another unit. A palm is 60 to 120 mm long.
-Result<void> check_scale(const std::vector<msg::HandPose>& poses, const path& file) {
-  constexpr double kShortest_mm = 45, kLongest_mm = 140;
-  const auto length_m = palm_length_m(poses);
-  if (!length_m) return {};
-  const double length_mm = 1000 * *length_m;
-  if (length_mm > kShortest_mm && length_mm < kLongest_mm) return {};
-  return fail(Errc::bad_data,
-              fmt::format("{}: the palm is {:.3g} mm long; joints must be in millimetres{}",
-                          file.string(), length_mm, length_mm < 1 ? ", are they in metres?" : ""));
-}
-
 Result<std::vector<msg::HandPose>> read_hand(const path& folder, std::size_t side,
-                                             std::size_t samples) {
+                                             std::span<const std::int64_t> time_ns) {
+  const std::size_t samples = time_ns.size();
   const auto joints = read_shaped(array_file(folder, "joints", side), {samples, kLeapJoints, 3});
   if (!joints) return tl::make_unexpected(joints.error());
   const auto bones = read_shaped(array_file(folder, "bones", side), {samples, kLeapBones, 4, 4});
@@ -138,8 +113,9 @@ Result<std::vector<msg::HandPose>> read_hand(const path& folder, std::size_t sid
                               pose.error().what));
     poses.push_back(*pose);
   }
-  const auto scaled = check_scale(poses, array_file(folder, "joints", side));
-  if (!scaled) return tl::make_unexpected(scaled.error());
+  if (const auto fault = fault_of_poses(poses, time_ns); !fault.empty())
+    return fail(Errc::bad_data,
+                fmt::format("{}: {}", array_file(folder, "joints", side).string(), fault));
   return poses;
 }
 
@@ -198,13 +174,18 @@ Result<bool> is_there(const path& file) {
 }
 
 Result<std::vector<std::int64_t>> read_stamps_ns(const path& file) {
-  const auto array = read_npy(file);
+  constexpr std::size_t kMostStamps = 100'000;  ///< the poses of two hands take 800 MB
+  auto opened = NpyFile::open(file);
+  if (!opened) return tl::make_unexpected(opened.error());
+  if (opened->count() > kMostStamps)
+    return fail(Errc::bad_data, fmt::format("{}: has {} times; at most {} are read", file.string(),
+                                            opened->count(), kMostStamps));
+  const auto array = opened->read();
   if (!array) return tl::make_unexpected(array.error());
+  if (const auto fault = fault_of_times(array->values); !fault.empty())
+    return fail(Errc::bad_data, fmt::format("{}: {}", file.string(), fault));
   std::vector<std::int64_t> times_ns;
   for (const double time_us : array->values) {
-    if (!(std::abs(time_us) < kMostStamp_us))
-      return fail(Errc::bad_data, fmt::format("{}: time {} is not a time in microseconds",
-                                              file.string(), times_ns.size()));
     const double whole_us = std::floor(time_us);
     const std::int64_t time_ns =
         static_cast<std::int64_t>(whole_us) * 1000 + std::llround((time_us - whole_us) * 1e3);
@@ -261,7 +242,7 @@ Result<Recording> read_recording(const path& folder) {
     const auto there = is_there(array_file(folder, "joints", side));
     if (!there) return tl::make_unexpected(there.error());
     if (!*there) continue;
-    auto hand = read_hand(folder, side, recording.time_ns.size());
+    auto hand = read_hand(folder, side, recording.time_ns);
     if (!hand) return tl::make_unexpected(hand.error());
     recording.hands[side] = std::move(*hand);
     any = true;

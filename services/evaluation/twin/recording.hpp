@@ -9,22 +9,9 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "services/evaluation/twin/npy.hpp"
 
 namespace handcast::twin {
-
-/// A NumPy array file (.npy, format 1-3, little-endian f4 f8 i4 i8, C order), as doubles.
-struct Npy {
-  std::vector<std::size_t> shape;  ///< extent of each dimension
-  std::vector<double> values;      ///< row-major; as many as the product of the extents
-};
-/// Reads an array. Errors: bad_config (the file cannot be opened), bad_data (malformed content).
-Result<Npy> read_npy(const std::filesystem::path& file);
-/// Writes values in row-major order as '<f4'. Errors: unavailable (the file cannot be written).
-Result<void> write_npy_f32(const std::filesystem::path& file, const std::vector<std::size_t>& shape,
-                           const std::vector<float>& values);
-/// Writes a one-dimensional array as '<i8'. Errors: unavailable (the file cannot be written).
-Result<void> write_npy_i64(const std::filesystem::path& file,
-                           const std::vector<std::int64_t>& values);
 
 /// The hands of a recording in OpenXR joints, metres.
 struct Recording {

@@ -94,9 +94,10 @@ handcast::Result<std::string> run(const Options& options) {
         fmt::format(
             "{} pictures, but {} files of joints; give one --joints per picture, in the same order",
             options.images.size(), options.joints.size()));
-  auto model = landmarks::open_landmark_model(
-      options.backend,
-      {.executor = options.executor, .folder = landmarks::models_folder(options.models)});
+  const auto folder = landmarks::models_folder(options.models);
+  if (!folder) return tl::make_unexpected(folder.error());
+  auto model = landmarks::open_landmark_model(options.backend,
+                                              {.executor = options.executor, .folder = *folder});
   if (!model) return tl::make_unexpected(model.error());
   landmarks::HandFinder finder(std::move(*model), options.hands);
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;

@@ -26,10 +26,12 @@ fs::path installed_folder() {
 
 }  // namespace
 
-fs::path models_folder(const std::string& configured) {
+Result<fs::path> models_folder(const std::string& configured) {
+  std::error_code ignored;
+  if (!configured.empty() && !fs::is_directory(configured, ignored))
+    return fail(Errc::bad_config, configured + ": there is no such folder of models");
   if (!configured.empty()) return configured;
   if (auto named = from_environment("HANDCAST_MODELS"); !named.empty()) return named;
-  std::error_code ignored;
   if (fs::is_directory(installed_folder(), ignored)) return installed_folder();
   return users_folder();
 }

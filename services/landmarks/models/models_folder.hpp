@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "ipc/base/result.hpp"
+
 namespace handcast::landmarks {
 
 /// The folder of the networks' files from outside. The first of these counts:
@@ -10,6 +12,7 @@ namespace handcast::landmarks {
 ///  2. HANDCAST_MODELS, if it is set;
 ///  3. share/handcast/models of the installation, if it exists;
 ///  4. handcast/models in $XDG_DATA_HOME or ~/.local/share, the default of scripts/get-models.
-std::filesystem::path models_folder(const std::string& configured);
+/// Errors: bad_config (`configured` is not a folder).
+Result<std::filesystem::path> models_folder(const std::string& configured);
 
 }  // namespace handcast::landmarks

@@ -164,7 +164,7 @@ std::vector<std::string> all_models() {
 int main(int argc, char** argv) try {
   using namespace handcast;
   using namespace handcast::landmarks::training;
-  landmarks::ModelOptions options{.folder = landmarks::models_folder("")};
+  landmarks::ModelOptions options{.folder = landmarks::models_folder("").value()};
   std::filesystem::path drawings;
   std::string executor(config::word_of(options.executor));
   std::vector<std::string> names = all_models(), motions, pictures;

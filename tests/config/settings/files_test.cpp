@@ -2,6 +2,7 @@
 #include "config/settings/files.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -44,6 +45,15 @@ TEST_F(Files, AreReplacedWholeAndNothingIsLeftBeside) {
       << "an open reader still gets the whole old file";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
   EXPECT_EQ(write_whole("/nowhere/observer.json", "x").error().code, Errc::unavailable);
+}
+
+TEST_F(Files, APipeOrFolderIsNotWrittenAndNotWaitedFor) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  for (const auto& [file, kind] : {std::pair{folder_ / "pipe", "a pipe"}, {folder_, "a folder"}}) {
+    EXPECT_THAT(write_whole(file, "text").error().what,
+                HasSubstr(std::string("cannot be written: it is ") + kind));
+    EXPECT_EQ(check_writable(file).error().code, Errc::bad_config);
+  }
 }
 
 TEST_F(Files, ALinkOrDeviceIsWrittenThroughAndNotReplaced) {

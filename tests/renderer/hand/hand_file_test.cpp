@@ -171,6 +171,33 @@ TEST_F(HandFile, AMeshThatIsNotInMetresIsRefused) {
   }
 }
 
+TEST_F(HandFile, TrianglesThatWouldTakeForeverToDrawAreRefused) {
+  HandMesh hand = mean_hand(Side::left);
+  std::array<std::uint16_t, 3> large{};
+  for (std::uint16_t k = 0; k < 3; ++k) {
+    large[k] = k;
+    hand.positions[k] = glm::vec3(k == 0 ? 0.3f : 0, k == 1 ? 0.3f : 0, k == 2 ? 0.3f : 0);
+  }
+  hand.triangles.resize(60'000, large);
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("m2 are possible"));
+  hand.positions[2] = hand.positions[1];
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("triangles have edges of"));
+}
+
+TEST_F(HandFile, TextureCoordinatesThatWouldTakeForeverToPaintAreRefused) {
+  HandMesh hand = mean_hand(Side::left);
+  for (std::size_t v = 0; v < hand.vertex_count(); ++v)
+    hand.uv[v] = {v % 2 == 0 ? 0.f : 1.f, v % 3 == 0 ? 0.f : 1.f};
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("texture coordinates cover the texture"));
+  hand = mean_hand(Side::left);
+  hand.uv[5].y = 2.3e38f;
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("texture coordinates contain ("));
+}
+
 TEST_F(HandFile, MoreTrianglesThanSixteenBitsNumberAreRefused) {
   HandMesh hand = mean_hand(Side::left);
   hand.triangles.resize(65'535, hand.triangles.front());

@@ -30,6 +30,11 @@ TEST(CommandLine, WhatCannotBeUnderstoodIsNamed) {
   EXPECT_EQ(parse({}).error().code, Errc::bad_config);
 }
 
+TEST(CommandLine, ACheckNeedsARig) {
+  EXPECT_EQ(parse({"--config", "rig.toml", "--check"})->task, CommandLine::Task::check);
+  EXPECT_THAT(parse({"--check"}).error().what, HasSubstr("--config FILE is missing"));
+}
+
 TEST(CommandLine, QuestionsNeedNoConfiguration) {
   EXPECT_EQ(parse({"--backends"})->task, CommandLine::Task::backends);
   EXPECT_EQ(parse({"--version"})->task, CommandLine::Task::version);

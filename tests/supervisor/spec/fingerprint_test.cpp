@@ -175,17 +175,6 @@ TEST(Fingerprint, ABackEndThatNobodyThoughtOfDependsOnAllButTheSupervisorsSettin
   EXPECT_TRUE(read_by("content", {}).contains("content.left"));  // a service of another year
 }
 
-TEST(ReadsSetting, AsTheDescriptionOfTheBackEndSays) {
-  EXPECT_TRUE(reads_setting("camera", {}, built(), "twin.motion"));
-  EXPECT_FALSE(reads_setting("camera", {}, built(), "camera.replay.directory"));
-  EXPECT_FALSE(reads_setting("camera", replay(), built(), "twin.motion"));
-  EXPECT_TRUE(reads_setting("camera", replay(), built(), "camera.replay.directory"));
-  EXPECT_TRUE(reads_setting("projector", replay(), built(), "content.left"));
-  config::Rig unknown;
-  unknown.camera.backend = "aravis";
-  EXPECT_FALSE(reads_setting("camera", unknown, built(), "camera.replay.directory"));
-}
-
 TEST(Fingerprint, AFileThatChangedUnderItsNameIsAChange) {
   const test::Scratch scratch;
   config::Rig rig;

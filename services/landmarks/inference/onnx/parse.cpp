@@ -162,6 +162,7 @@ Tensor read_tensor(Bytes message, std::string& name) {
 std::pair<std::string, Attribute> read_attribute(Bytes message) {
   std::string name, unused;
   Attribute attribute;
+  bool has_tensor = false;
   each_field(message, "attribute", [&](const Field& field) {
     switch (field.number) {
       case 1:
@@ -178,6 +179,7 @@ std::pair<std::string, Attribute> read_attribute(Bytes message) {
         break;
       case 5:
         attribute.tensor = read_tensor(field.bytes, unused);
+        has_tensor = true;
         break;
       case 7:
         append_floats(field, attribute.numbers);
@@ -192,6 +194,8 @@ std::pair<std::string, Attribute> read_attribute(Bytes message) {
         break;
     }
   });
+  if (attribute.kind == Attribute::kTensor && !has_tensor)
+    broken(fmt::format("it is damaged (the attribute '{}' has no value)", name));
   return {std::move(name), std::move(attribute)};
 }
 

@@ -89,13 +89,38 @@ TEST_F(Report, SaysWhatIsMissingAndShowsTheRest) {
   EXPECT_FALSE(std::filesystem::exists(folder() / "preview.mp4"));
 }
 
-TEST_F(Report, SurvivesFiguresOfTheWrongKind) {
-  test::write_json(
-      folder() / "twin.json",
-      {{"interior_mm", "none"}, {"bins", {1, 2}}, {"motion", 5}, {"stage_us", nullptr}});
-  test::write_json(folder() / "live.json",
-                   {{"rig", 7}, {"services", {{"ca~mera/1", nullptr}}}, {"rates", "fast"}});
-  EXPECT_THAT(page(), HasSubstr("ca~mera/1"));
+TEST_F(Report, FiguresOfTheWrongKindAreNamedAndNotShown) {
+  test::write_json(folder() / "live.json", test::live_of());
+  const auto fault_of = [&](const char* name, const nlohmann::json& json) {
+    test::write_json(folder() / name, json);
+    const auto written = write_report(folder(), imprint_);
+    std::filesystem::remove(folder() / name);
+    if (!written || written->faults.size() != 1) return std::string("(none)");
+    EXPECT_THAT(read("report.html"), HasSubstr(page::escape(written->faults.front())));
+    return written->faults.front();
+  };
+  EXPECT_EQ(fault_of("twin.json", {{"coverage", nullptr}, {"interior_mm", {{"p95", 1}}}}),
+            "(none)");
+  EXPECT_EQ(fault_of("twin.json", {{"interior_mm", "none"}}),
+            "twin.json: /interior_mm must be an object");
+  EXPECT_EQ(fault_of("twin.json", {{"interior_mm", {{"p95", "1"}}}}),
+            "twin.json: /interior_mm/p95 must be a number");
+  EXPECT_EQ(fault_of("twin.json", {{"coverage", "1"}}), "twin.json: /coverage must be a number");
+  EXPECT_EQ(fault_of("twin.json", {{"bins", {1, 2}}}), "twin.json: /bins must be an object");
+  EXPECT_EQ(fault_of("twin.json", {{"motion", 5}}), "twin.json: /motion must be a text");
+  EXPECT_EQ(fault_of("paper.json", {{"stage_us", {{"skin", {{"p50", true}}}}}}),
+            "paper.json: /stage_us/skin/p50 must be a number");
+  EXPECT_EQ(fault_of("observer.json", {{"frame_us", 3}}),
+            "observer.json: /frame_us must be an object");
+}
+
+TEST_F(Report, JsonThatIsNestedTooDeeplyIsNotRead) {
+  test::write_json(folder() / "live.json", test::live_of());
+  std::ofstream(folder() / "twin.json")
+      << "{\"a\":" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}";
+  const auto written = write_report(folder(), imprint_);
+  ASSERT_TRUE(written) << written.error().what;
+  EXPECT_THAT(written->faults, testing::ElementsAre("twin.json is not a JSON object"));
 }
 
 TEST_F(Report, EscapesWhatItDidNotWriteItself) {

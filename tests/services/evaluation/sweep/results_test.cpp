@@ -179,6 +179,19 @@ TEST_F(ResultsTest, AnEmptyFileIsATableOfNothing) {
   EXPECT_TRUE(table->rows.empty());
 }
 
+TEST_F(ResultsTest, AFileWithoutAHeadingIsNotMerged) {
+  const auto refusal = [&](const std::string& text) {
+    write_text(file("odd.csv"), text);
+    const auto merged = merge({file("odd.csv")}, file("merged.csv"));
+    return merged ? "(it was merged)" : merged.error().what;
+  };
+  EXPECT_THAT(refusal(""), HasSubstr("odd.csv: the file has no heading"));
+  EXPECT_THAT(refusal("# handcast sweep version=1 runs=6 plan=x"), HasSubstr("no heading"));
+  EXPECT_THAT(refusal("# handcast sweep version=1 runs=6 plan=x\n"), HasSubstr("no heading"));
+  EXPECT_THAT(refusal("# handcast sweep runs=99999999999999\nindex,variant\n"),
+              HasSubstr("does not hold results"));
+}
+
 TEST_F(ResultsTest, FilesOfTwoPlansAreNotMerged) {
   const auto mine = written("a.csv", {row(0, 1)});
   heading_.stamp += "x";

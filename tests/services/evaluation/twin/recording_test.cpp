@@ -165,10 +165,64 @@ TEST_F(RecordingFiles, ARecordingInMetresOrMicrometresIsRefusedWithTheSizeOfTheH
 
 TEST_F(RecordingFiles, TimesThatDoNotAscendAreRefused) {
   ASSERT_TRUE(write_recording(folder_, made_up_recording()));
-  ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {0, 10, 20, 20, 40}));
+  ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {0, 9000, 18000, 18000, 27000}));
   const auto read = read_recording(folder_);
   ASSERT_FALSE(read);
   EXPECT_THAT(read.error().what, HasSubstr("timestamps.npy: time 3"));
+}
+
+TEST_F(RecordingFiles, TimesInAnotherUnitAreRefusedWithItsName) {
+  ASSERT_TRUE(write_recording(folder_, made_up_recording()));
+  const auto refusal = [&](std::int64_t step) {
+    EXPECT_TRUE(write_npy_i64(file("timestamps.npy"),
+                              {50 * step, 51 * step, 52 * step, 53 * step, 54 * step}));
+    const auto read = read_recording(folder_);
+    return read ? "(it was read)" : read.error().what;
+  };
+  EXPECT_EQ(refusal(9'000), "(it was read)");
+  EXPECT_THAT(refusal(9'000'000), HasSubstr("timestamps.npy: the times are 9e+06 us apart"));
+  EXPECT_THAT(refusal(9'000'000), HasSubstr("are they in nanoseconds?"));
+  EXPECT_THAT(refusal(9), HasSubstr("are they in milliseconds?"));
+  EXPECT_THAT(refusal(1), HasSubstr("are they in milliseconds?"));
+}
+
+TEST_F(RecordingFiles, AHandThatJumpsOrIsFarAwayIsRefusedWithTheSample) {
+  const auto refusal = [&](int sample, float by_m) {
+    Recording odd = made_up_recording();
+    for (std::size_t i = 0; i < odd.hands[1].size(); ++i)
+      for (auto& joint : odd.hands[1][i].joints)
+        if (std::ssize(odd.hands[1]) - static_cast<int>(i) <= 5 - sample)
+          joint.position_m[1] += by_m;
+    EXPECT_TRUE(write_recording(folder_, odd));
+    const auto read = read_recording(folder_);
+    return read ? "(it was read)" : read.error().what;
+  };
+  EXPECT_EQ(refusal(2, 0.1f), "(it was read)");
+  EXPECT_EQ(refusal(0, 1.5f), "(it was read)");
+  EXPECT_THAT(refusal(2, 1.5f),
+              HasSubstr("joints_right.npy: sample 2: the wrist jumps by 1.5 m within 9 ms"));
+  EXPECT_THAT(refusal(0, 1000.f), HasSubstr("sample 0: the wrist is 1e+03 m away"));
+}
+
+TEST_F(RecordingFiles, AHandThatChangesItsSizeIsRefused) {
+  Recording odd = made_up_recording();
+  for (auto& joint : odd.hands[0][3].joints)
+    for (float& coordinate : joint.position_m) coordinate *= 3;
+  ASSERT_TRUE(write_recording(folder_, odd));
+  const auto read = read_recording(folder_);
+  ASSERT_FALSE(read);
+  EXPECT_THAT(read.error().what, HasSubstr("joints_left.npy: sample 3: the palm is "));
+}
+
+/// Its numbers would take memory before the shape is seen to be wrong.
+TEST_F(RecordingFiles, AnArrayOfAnotherShapeIsRefusedBeforeItsNumbersAreRead) {
+  ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {1}));
+  std::string bytes = bytes_of(file("timestamps.npy"));
+  bytes.replace(bytes.find("(1, ), }"), 16, "(30000000, ), } ");
+  write(file("timestamps.npy"), bytes);
+  std::filesystem::resize_file(file("timestamps.npy"), bytes.size() + 29'999'999 * 8);
+  EXPECT_THAT(read_stamps_ns(file("timestamps.npy")).error().what,
+              HasSubstr("has 30000000 times; at most 100000 are read"));
 }
 
 TEST_F(RecordingFiles, ATimeThatIsNoneIsRefused) {

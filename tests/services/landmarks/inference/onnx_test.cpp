@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "config/settings/choice.hpp"
 #include "services/landmarks/inference/onnx/wire.hpp"
@@ -67,6 +69,24 @@ TEST(OnnxReader, AConstantOfBothWholeAndOtherNumbersIsRefused) {
   const auto model = onnx::parse_model(std::move(file).take());
   ASSERT_FALSE(model);
   EXPECT_THAT(model.error().what, HasSubstr("both integers and floats"));
+}
+
+/// Found by fuzzing: written again, it was no model.
+TEST(OnnxReader, ATensorAttributeWithoutATensorIsRefused) {
+  onnx::Model model = little_model();
+  model.nodes[0].attributes["value"] = {.kind = onnx::Attribute::kTensor};
+  model.nodes[0].attributes["value"].tensor = random_tensor({2}, 1);
+  auto bytes = onnx::write_model(model);
+  ASSERT_TRUE(onnx::parse_model(bytes));
+  model.nodes[0].attributes["value"] = integer(3);
+  bytes = onnx::write_model(model);
+  const std::vector<std::uint8_t> kind{0xa0, 1, onnx::Attribute::kInteger};  // field 20
+  const auto value = std::ranges::search(bytes, std::string_view("value"));
+  const auto at = std::search(value.begin(), bytes.end(), kind.begin(), kind.end());
+  ASSERT_NE(at, bytes.end());
+  at[2] = onnx::Attribute::kTensor;
+  EXPECT_THAT(onnx::parse_model(bytes).error().what,
+              ::testing::HasSubstr("the attribute 'value' has no value"));
 }
 
 TEST(OnnxReader, FlippedBytesNeverCrashTheReaderOrTheExecutor) {

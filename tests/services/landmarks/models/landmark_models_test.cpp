@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 
 #include "services/landmarks/inference/network.hpp"
+#include "services/landmarks/models/models_folder.hpp"
 #include "services/landmarks/training/trial.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {
@@ -68,6 +70,15 @@ TEST_P(EveryModel, HasTheTraitsItSays) {
   const auto elsewhere = estimate(model, other);
   EXPECT_EQ(hand.points_px != elsewhere.points_px, traits.reads_tracker);
   EXPECT_GE(traits.passes_at_first, 1);
+}
+
+TEST(ModelsFolder, OneThatIsNamedMustBeThere) {
+  const test::Scratch scratch;
+  EXPECT_EQ(models_folder(scratch.path().string()).value(), scratch.path());
+  const auto missing = models_folder((scratch.path() / "nowhere").string());
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Errc::bad_config);
+  EXPECT_THAT(missing.error().what, ::testing::HasSubstr("nowhere: there is no such folder"));
 }
 
 TEST(LandmarkModels, AnUnknownOneIsRefusedAndTheKnownOnesAreNamed) {

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "renderer/hand/hand_mesh.hpp"
+
+namespace handcast::renderer {
+
+/// Why a mesh whose numbers are finite cannot be a hand in metres: its size, its surface, or its
+/// texture coordinates. Empty if it can. A mesh that passes takes a bounded time to draw and to
+/// paint, also if its triangles overlap.
+std::string fault_of_mesh(const HandMesh& hand);
+
+}  // namespace handcast::renderer

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/commands/check_rig.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/unique_fd.hpp"
+#include "supervisor/commands/verbs.hpp"
+#include "supervisor/spec/service_spec.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+/// What a program printed, and its exit code; -1 if a signal ended it.
+struct Outcome {
+  std::string output;
+  int exit_code = -1;
+};
+
+std::string read_all(int fd) {
+  std::string text;
+  std::array<char, 4096> part;
+  for (;;) {
+    const auto count = ::read(fd, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(part.data(), static_cast<std::size_t>(count));
+  }
+}
+
+/// Runs a program and waits for its end. Errors: bad_config (it cannot be started).
+Result<Outcome> run_and_read(const std::vector<std::string>& command) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) return fail(Errc::unavailable, std::strerror(errno));
+  const UniqueFd output(ends[0]);
+  UniqueFd input(ends[1]);
+  std::vector<char*> words;
+  for (const auto& word : command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, input.get(), STDOUT_FILENO);
+  pid_t pid = 0;
+  const int error = posix_spawn(&pid, words[0], &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0)
+    return fail(Errc::bad_config,
+                fmt::format("{}: cannot be started: {}", command.front(), std::strerror(error)));
+  input.reset();
+  Outcome outcome{read_all(output.get())};
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
+  return outcome;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The faults that the program of a service finds.
+std::vector<std::string> ask(const std::string& service, const std::filesystem::path& file,
+                             const std::vector<std::string>& settings) {
+  std::vector<std::string> command{(program_folder() / ("handcast-" + service)).string(),
+                                   "--config", file.string(), "--check"};
+  for (const auto& setting : settings) command.insert(command.end(), {"--set", setting});
+  const auto outcome = run_and_read(command);
+  if (!outcome) return {outcome.error().what};
+  if (outcome->exit_code == kExitDone) return {};
+  auto faults = lines_of(outcome->output);
+  if (faults.empty()) faults.push_back(service + ": its check failed without a reason");
+  return faults;
+}
+
+}  // namespace
+
+std::vector<std::string> faults_of(const config::Rig& rig, const std::filesystem::path& file,
+                                   const std::vector<std::string>& settings) {
+  const auto catalogue = read_catalogue(catalogue_folder(program_folder()));
+  std::vector<std::string> faults;
+  // Several services may name one fault, some after their own name.
+  const auto is_known = [&](const std::string& fault) {
+    return std::ranges::any_of(faults, [&](const std::string& known) {
+      return known.ends_with(fault) || fault.ends_with(known);
+    });
+  };
+  for (const auto& service : services_of(rig, catalogue)) {
+    const auto known = service.backend.empty()
+                           ? Result<void>()
+                           : check_backend(catalogue, service.name, service.backend);
+    if (!known) faults.push_back(fmt::format("{}.backend: {}", service.name, known.error().what));
+    if (!known) continue;
+    for (auto& fault : ask(service.name, file, settings))
+      if (!is_known(fault)) faults.push_back(std::move(fault));
+  }
+  return faults;
+}
+
+}  // namespace handcast::supervisor

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The figures that the exporter serves, from the status of a supervisor.
+// Limits: 10 s and 1 GB per input.
+#include "supervisor/metrics/metrics.hpp"
+
+#include "tests/fuzz/input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace handcast;
+  supervisor::RigLook look{.rig = "fuzz", .taken_ns = 1};
+  look.status = nlohmann::json::parse(data, data + size, nullptr, false);
+  if (!look.status.is_object()) return 0;  // so does RigWatcher
+  fuzz::require(!supervisor::metrics_text(look).empty());
+  return 0;
+}

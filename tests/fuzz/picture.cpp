@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// A PNG or JPEG file.
+// Limits: 10 s and 1 GB per input.
+#include "renderer/content/picture.hpp"
+
+#include "tests/fuzz/input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace handcast;
+  static fuzz::MemoryFile file;
+  file.write({data, size});
+  if (const auto picture = renderer::read_picture(file.path()))
+    fuzz::require(picture->width() > 0 && picture->height() > 0);
+  if (const auto grey = renderer::read_grey_png(file.path()))
+    fuzz::require(grey->width() > 0 && grey->height() > 0);
+  return 0;
+}
