@@ -7,15 +7,22 @@
 /// The contract of every back end of Painter. The test of a back end includes this file and
 /// instantiates the suite:
 ///
-///     INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&make_cpu_painter));
+///     INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&open_cpu));
 namespace handcast::renderer::test {
 
-using MakePainter = std::unique_ptr<Painter> (*)(int width_px, int height_px);
+/// Opens the painter. If it cannot be opened here, its tests are skipped and print the error.
+using OpenPainter = Result<std::unique_ptr<Painter>> (*)(int width_px, int height_px);
 
-class PainterContract : public testing::TestWithParam<MakePainter> {
+class PainterContract : public testing::TestWithParam<OpenPainter> {
  protected:
   static constexpr int kWidth = 200, kHeight = 150;
   static constexpr Rect kWhole{0, 0, kWidth, kHeight};
+
+  void SetUp() override {
+    auto opened = GetParam()(kWidth, kHeight);
+    if (!opened) GTEST_SKIP() << opened.error().what;
+    painter_ = std::move(*opened);
+  }
 
   std::uint32_t colour(int x, int y) { return painter_->colour().at(x, y); }
   std::uint32_t alpha(int x, int y) { return colour(x, y) >> 24; }
@@ -40,7 +47,7 @@ class PainterContract : public testing::TestWithParam<MakePainter> {
     return painter_->fill(mask.view(), settings_, region);
   }
 
-  std::unique_ptr<Painter> painter_ = GetParam()(kWidth, kHeight);
+  std::unique_ptr<Painter> painter_;
   config::Fill settings_{
       .method = config::FillMethod::reflect, .reach_px = 32, .fade_px = 0, .seam_uv = 0.04};
 };
