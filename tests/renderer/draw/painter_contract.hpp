@@ -158,6 +158,17 @@ TEST_P(PainterContract, OfTwoHandsTheNearerIsSeenInEitherOrder) {
   }
 }
 
+TEST_P(PainterContract, AtEqualDepthTheLaterTriangleIsSeen) {
+  Shape one;
+  one.rectangle({40, 40}, {90, 90}, 0.5f, 2);
+  one.rectangle({40, 40}, {90, 90}, 0.5f, 5);
+  draw(*painter_, one, kWhole);
+  EXPECT_EQ(surface(60, 60), surface_id(0, 5));
+  const std::array<DrawnHand, 2> hands{one.drawn(), one.drawn()};
+  painter_->draw(hands, kWhole);
+  EXPECT_EQ(surface(60, 60), surface_id(1, 5));
+}
+
 TEST_P(PainterContract, LightScalesTheColourAndNotWhetherItIsLit) {
   Shape shape(Texture(1, 1, 0xff80c040));
   shape.rectangle({10, 10}, {50, 50});
