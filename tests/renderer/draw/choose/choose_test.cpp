@@ -96,7 +96,8 @@ TEST(OpenPainter, AutoSaysWhatItMeasured) {
 
 #ifdef HANDCAST_WITH_GL
 TEST(OpenPainter, WithoutADisplayOfEglCpuDraws) {
-  // glvnd reads the drivers from this variable when the process first uses EGL.
+  // A new process: EGL reads the list of drivers once, and threads of a driver do not survive a fork.
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
         setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/dev/null", 1);
