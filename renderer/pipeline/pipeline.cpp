@@ -28,12 +28,9 @@ bool is_early(std::int64_t now_ns, std::int64_t origin_ns) {
 
 }  // namespace
 
-Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascade,
-                                                   const config::Content& content,
-                                                   const config::Hand& hand,
-                                                   const calib::Calibration& calibration,
-                                                   const Oracle& oracle,
-                                                   std::unique_ptr<Painter> painter) {
+Result<std::unique_ptr<Pipeline>> Pipeline::create(
+    const config::Cascade& cascade, const config::Content& content, const config::Hand& hand,
+    const calib::Calibration& calibration, const Oracle& oracle, std::unique_ptr<Painter> painter) {
   if (cascade.filter.method == config::FilterMethod::ideal && !oracle)
     return fail(Errc::bad_config,
                 "cascade.filter.method = \"ideal\" needs the true landmarks, which only `handcast "
@@ -44,9 +41,8 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascad
   auto right = HandPipeline::load(Side::right, cascade, content.right, hand.right, calibration,
                                   of_side(oracle, Side::right));
   if (!right) return fail_in("right hand", right.error());
-  return std::unique_ptr<Pipeline>(
-      new Pipeline(cascade, content, calibration, std::move(*left), std::move(*right),
-                   std::move(painter)));
+  return std::unique_ptr<Pipeline>(new Pipeline(cascade, content, calibration, std::move(*left),
+                                                std::move(*right), std::move(painter)));
 }
 
 Pipeline::Pipeline(const config::Cascade& settings, const config::Content& content,
@@ -139,14 +135,9 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
     colour = painter_->colour();
   }
   stages_.finish();
-  return {target_ns,
-          newest_,
-          region.empty() ? Rect{} : region,
-          colour,
-          frame_hands(),
-          foldovers,
-          counts,
-          stages_.marks()};
+  return {target_ns, newest_,        region.empty() ? Rect{} : region,
+          colour,    frame_hands(),  foldovers,
+          counts,    stages_.marks()};
 }
 
 /// The exposure of the image that a frame for `target_ns` can be registered to. The image is

@@ -43,15 +43,15 @@ WarpGrid bent_grid(const Rect& area) {
   WarpGrid bent{21, 21, area, {}};
   for (int row = 0; row < bent.rows; ++row)
     for (int column = 0; column < bent.columns; ++column)
-      bent.nodes.push_back(bent.source(column, row) + glm::vec2(3 * std::sin(row + column),
-                                                                2 * std::cos(row - column)));
+      bent.nodes.push_back(bent.source(column, row) +
+                           glm::vec2(3 * std::sin(row + column), 2 * std::cos(row - column)));
   return bent;
 }
 
 }  // namespace
 
-PainterScene::PainterScene(std::string its_name, int hands,
-                           const renderer::testing::Pose& pose, int width_px, int height_px)
+PainterScene::PainterScene(std::string its_name, int hands, const renderer::testing::Pose& pose,
+                           int width_px, int height_px)
     : name(std::move(its_name)), texture_(fine_pattern()) {
   const calib::Calibration calibration = rig_of(width_px, height_px);
   place_hand(Side::left, pose, hands == 1 ? 0 : -0.085f, calibration);
@@ -75,8 +75,8 @@ void PainterScene::place_hand(Side side, const renderer::testing::Pose& pose, fl
     const glm::vec3 at = glm::vec3(frames[j][3]) + glm::vec3(aside_m, 0, 0);
     reported.joints[j] = {{at.x, at.y, at.z}, {turn.x, turn.y, turn.z, turn.w}, 0.01f};
   }
-  Hand& hand = *hands_.emplace_back(
-      std::make_unique<Hand>(Hand{HandSurface(std::move(*mesh), 14), {}}));
+  Hand& hand =
+      *hands_.emplace_back(std::make_unique<Hand>(Hand{HandSurface(std::move(*mesh), 14), {}}));
   hand.skinned = hand.surface.pose(reported, {.fit = false}, calibration, 0.5f);
   region = region.joined(hand.surface.bounds(hand.skinned.landings_px));
 }
@@ -87,10 +87,10 @@ void PainterScene::make_mask(int width_px, int height_px) {
   mask = Image<std::uint8_t>(width_px, height_px);
   for (int y = kMaskMoved_px.y; y < height_px; ++y)
     for (int x = kMaskMoved_px.x; x < width_px; ++x)
-      mask.at(x, y) =
-          painter->surface().at(x - kMaskMoved_px.x, y - kMaskMoved_px.y) ? 255 : 0;
-  region = Rect{region.x0, region.y0, region.x1 + kMaskMoved_px.x, region.y1 + kMaskMoved_px.y}
-               .within(width_px, height_px);
+      mask.at(x, y) = painter->surface().at(x - kMaskMoved_px.x, y - kMaskMoved_px.y) ? 255 : 0;
+  region =
+      Rect{region.x0, region.y0, region.x1 + kMaskMoved_px.x, region.y1 + kMaskMoved_px.y}.within(
+          width_px, height_px);
 }
 
 }  // namespace handcast::bench

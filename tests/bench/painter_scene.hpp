@@ -18,11 +18,11 @@ class PainterScene {
   PainterScene(std::string name, int hands, const renderer::testing::Pose& pose, int width_px,
                int height_px);
 
-  std::string name;                           ///< e.g. "one hand, open"
-  std::vector<renderer::DrawnHand> drawn;     ///< borrows from this object
-  renderer::Image<std::uint8_t> mask;         ///< 255 hand, 0 not
-  renderer::Rect region;                      ///< of drawing and mask
-  renderer::WarpGrid grid;                    ///< 21 x 21 nodes over the screen, bent a little
+  std::string name;                        ///< e.g. "one hand, open"
+  std::vector<renderer::DrawnHand> drawn;  ///< borrows from this object
+  renderer::Image<std::uint8_t> mask;      ///< 255 hand, 0 not
+  renderer::Rect region;                   ///< of drawing and mask
+  renderer::WarpGrid grid;                 ///< 21 x 21 nodes over the screen, bent a little
 
  private:
   struct Hand {

@@ -58,7 +58,8 @@ class Bench {
 
   /// Opens the painters. Errors: those of open_gl_painter().
   Result<void> open() {
-    const auto opened = [&](GlOptions options, std::unique_ptr<GlPainter>& painter) -> Result<void> {
+    const auto opened = [&](GlOptions options,
+                            std::unique_ptr<GlPainter>& painter) -> Result<void> {
       auto one = open_gl_painter(settings_.width_px, settings_.height_px, options);
       if (!one) return tl::make_unexpected(one.error());
       painter = std::move(*one);
@@ -127,8 +128,8 @@ void print_scene(const PainterScene& scene, const SceneTimes& times) {
   const Rect& r = scene.region;
   fmt::print("\n{}: {} lit + {} filled px, region {}x{}\n", scene.name, times.cpu.counts.lit,
              times.cpu.counts.filled, r.width(), r.height());
-  fmt::print("  {:<26}{:>20}{:>20}{:>20}\n  {:<26}", "µs", "cpu", "gl, timer queries",
-             "gl, wall", "");
+  fmt::print("  {:<26}{:>20}{:>20}{:>20}\n  {:<26}", "µs", "cpu", "gl, timer queries", "gl, wall",
+             "");
   for (int i = 0; i < 3; ++i) fmt::print("{:>10}{:>10}", "p50", "p99");
   fmt::print("\n");
   print_row("draw", &times.cpu.draw, pass(times.passes, Pass::draw), nullptr);
@@ -152,8 +153,9 @@ double naive_us(const SceneTimes& times) {
 void print_gpu(const gl::Gpu& gpu) {
   fmt::print("GL_RENDERER: {}\nGL_VERSION:  {}\nEGL:         {}\n{}\n", gpu.renderer, gpu.version,
              gpu.platform,
-             gpu.is_software ? "This is a software renderer: it shows what is right, not what is fast."
-                             : "*** This is a hardware GPU. ***");
+             gpu.is_software
+                 ? "This is a software renderer: it shows what is right, not what is fast."
+                 : "*** This is a hardware GPU. ***");
 }
 
 int run(const Settings& settings) {
@@ -163,15 +165,15 @@ int run(const Settings& settings) {
     return 0;
   }
   print_gpu(bench.gpu());
-  fmt::print("{}x{} px, {} frames a scene; jump flooding: 1 + 10 passes on the screen, 1 + 5 on the "
-             "region\n",
-             settings.width_px, settings.height_px, settings.frames);
+  fmt::print(
+      "{}x{} px, {} frames a scene; jump flooding: 1 + 10 passes on the screen, 1 + 5 on the "
+      "region\n",
+      settings.width_px, settings.height_px, settings.frames);
   std::vector<Goal> goals;
-  for (const auto& [name, hands, pose] :
-       {std::tuple{"one hand, open", 1, renderer::testing::kOpen},
-        {"one hand, folded", 1, renderer::testing::kFist},
-        {"two hands, open", 2, renderer::testing::kOpen},
-        {"two hands, folded", 2, renderer::testing::kFist}}) {
+  for (const auto& [name, hands, pose] : {std::tuple{"one hand, open", 1, renderer::testing::kOpen},
+                                          {"one hand, folded", 1, renderer::testing::kFist},
+                                          {"two hands, open", 2, renderer::testing::kOpen},
+                                          {"two hands, folded", 2, renderer::testing::kFist}}) {
     const PainterScene scene(name, hands, pose, settings.width_px, settings.height_px);
     const auto times = bench.measure(scene);
     if (!times) {
@@ -197,8 +199,8 @@ bool parse(int argc, char** argv, Settings& settings) {
       settings.goals_file = argv[i + 1];
     } else if (option == "--frames") {
       settings.frames = std::atoi(argv[i + 1]);
-    } else if (option != "--size" || std::sscanf(argv[i + 1], "%dx%d", &settings.width_px,
-                                                 &settings.height_px) != 2) {
+    } else if (option != "--size" ||
+               std::sscanf(argv[i + 1], "%dx%d", &settings.width_px, &settings.height_px) != 2) {
       return false;
     }
   }

@@ -45,7 +45,7 @@ namespace handcast::renderer::gl {
   F(DISABLE, Disable)                                         \
   F(DISPATCHCOMPUTEINDIRECT, DispatchComputeIndirect)         \
   F(DISPATCHCOMPUTE, DispatchCompute)                         \
-  F(DRAWARRAYS, DrawArrays)                                      \
+  F(DRAWARRAYS, DrawArrays)                                   \
   F(DRAWELEMENTS, DrawElements)                               \
   F(ENABLE, Enable)                                           \
   F(ENABLEVERTEXARRAYATTRIB, EnableVertexArrayAttrib)         \

@@ -52,15 +52,16 @@ void expect_equal_light(const Frame& frame, const Frame& expected) {
 class FailingPainterTest : public ::testing::TestWithParam<config::FillMethod> {};
 INSTANTIATE_TEST_SUITE_P(Fills, FailingPainterTest,
                          ::testing::Values(config::FillMethod::none, config::FillMethod::reflect),
-                         [](const auto& each) { return std::string(words_of(each.param)[static_cast<int>(each.param)]); });
+                         [](const auto& each) {
+                           return std::string(words_of(each.param)[static_cast<int>(each.param)]);
+                         });
 
 TEST_P(FailingPainterTest, IsReplacedWithinTheFrameSoThatNoneIsDark) {
   const config::Cascade settings = cascade(config::CorrectMethod::vertices, GetParam());
   const calib::Calibration calibration = rig_above_hand();
   int draws = 0;
-  const auto failing =
-      *Pipeline::create(settings, {}, {}, calibration, {},
-                        std::make_unique<FailingPainter>(2, draws));
+  const auto failing = *Pipeline::create(settings, {}, {}, calibration, {},
+                                         std::make_unique<FailingPainter>(2, draws));
   const auto healthy = make_pipeline(settings);
   const auto hand = pose_of(Side::left);
   const auto image = image_of(calibration, {hand}, {6, 4});

@@ -80,8 +80,9 @@ TEST(OpenPainter, CpuIsSilent) {
 TEST(OpenPainter, GlNamesItsGpuOrSaysWhyCpuDraws) {
   std::unique_ptr<Painter> painter;
   const std::string log = log_of(PainterChoice::gl, painter);
-  EXPECT_THAT(log, testing::AnyOf(testing::ContainsRegex("painter gl: .+, a (software|hardware)"),
-                                  testing::ContainsRegex("cannot be opened: .+; drawing with cpu")));
+  EXPECT_THAT(log,
+              testing::AnyOf(testing::ContainsRegex("painter gl: .+, a (software|hardware)"),
+                             testing::ContainsRegex("cannot be opened: .+; drawing with cpu")));
   expect_draws(*painter);
 }
 
@@ -96,7 +97,8 @@ TEST(OpenPainter, AutoSaysWhatItMeasured) {
 
 #ifdef HANDCAST_WITH_GL
 TEST(OpenPainter, WithoutADisplayOfEglCpuDraws) {
-  // A new process: EGL reads the list of drivers once, and threads of a driver do not survive a fork.
+  // A new process: EGL reads the list of drivers once, and threads of a driver do not survive a
+  // fork.
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {

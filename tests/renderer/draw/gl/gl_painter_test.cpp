@@ -97,10 +97,8 @@ TEST_F(GlPainterTest, ALostContextIsReportedAndDoesNoHarm) {
   const auto function = [&]<class F>(F, const char* name) {
     return reinterpret_cast<F>(dlsym(egl, name));
   };
-  const EGLDisplay display =
-      function(PFNEGLGETCURRENTDISPLAYPROC{}, "eglGetCurrentDisplay")();
-  const EGLContext context =
-      function(PFNEGLGETCURRENTCONTEXTPROC{}, "eglGetCurrentContext")();
+  const EGLDisplay display = function(PFNEGLGETCURRENTDISPLAYPROC{}, "eglGetCurrentDisplay")();
+  const EGLContext context = function(PFNEGLGETCURRENTCONTEXTPROC{}, "eglGetCurrentContext")();
   function(PFNEGLMAKECURRENTPROC{}, "eglMakeCurrent")(display, EGL_NO_SURFACE, EGL_NO_SURFACE,
                                                       EGL_NO_CONTEXT);
   ASSERT_TRUE(function(PFNEGLDESTROYCONTEXTPROC{}, "eglDestroyContext")(display, context));

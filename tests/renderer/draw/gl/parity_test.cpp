@@ -49,8 +49,8 @@ struct Hand {
   Skinned skinned;
 
   DrawnHand drawn() const {
-    return {&surface.mesh(), &texture, skinned.landings_px, skinned.depth_m, skinned.light,
-            revision};
+    return {&surface.mesh(), &texture,      skinned.landings_px,
+            skinned.depth_m, skinned.light, revision};
   }
 };
 
@@ -77,9 +77,9 @@ Image<std::uint8_t> moved_silhouette(View<const SurfaceId> surface, int dx, int 
 /// What a pass may differ by. Where a pixel lies on an edge, or its source between two pixels, both
 /// results are right, and such pixels are few.
 struct Bounds {
-  double surface_share;             ///< of the lit pixels
-  double uv_mean, uv_p99, uv_max;   ///< a texel is 0.001
-  double colour_mean, colour_p99;   ///< a neighbouring texel may have any colour
+  double surface_share;            ///< of the lit pixels
+  double uv_mean, uv_p99, uv_max;  ///< a texel is 0.001
+  double colour_mean, colour_p99;  ///< a neighbouring texel may have any colour
 };
 
 void expect_within(const Bounds& bounds, const Difference& difference) {
@@ -119,8 +119,8 @@ class Parity : public testing::TestWithParam<std::string> {
     for (Hand& hand : hands_) {
       const auto frames = motion.at(hand.side, seconds);
       if (!frames) continue;
-      hand.skinned = hand.surface.pose(pose_of(hand.side, *frames), {.fit = false},
-                                       calibration_, 0.6f);
+      hand.skinned =
+          hand.surface.pose(pose_of(hand.side, *frames), {.fit = false}, calibration_, 0.6f);
       drawn_.push_back(hand.drawn());
       region = region.joined(hand.surface.bounds(hand.skinned.landings_px));
     }
