@@ -35,7 +35,8 @@ Result<Egl> load_egl() {
 #undef HANDCAST_EGL_LOAD
   const char* const extensions = egl.QueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (!has_extension(extensions, "EGL_EXT_platform_base"))
-    return fail(Errc::unavailable, "this EGL has no platform displays (EGL_EXT_platform_base)");
+    return fail(Errc::unavailable,
+                "EGL finds no driver with platform displays (EGL_EXT_platform_base)");
   egl.GetPlatformDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
       egl.GetProcAddress("eglGetPlatformDisplayEXT"));
   if (has_extension(extensions, "EGL_EXT_device_enumeration") ||
