@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <string>
+#include <string_view>
 
 #include "config/sections/process.hpp"
 #include "config/settings/field.hpp"
 
 namespace handcast::config {
 
+/// The back end that draws the frames.
+enum class PainterChoice {
+  cpu,        ///< one core of the processor
+  gl,         ///< a GPU, by OpenGL
+  automatic,  ///< the faster one
+};
+constexpr std::array<std::string_view, 3> words_of(PainterChoice) { return {"cpu", "gl", "auto"}; }
+
 /// [projector]
 struct Projector {
   std::string backend = "twin";
+  PainterChoice painter = PainterChoice::cpu;
   double rate_hz = 946;
   double latency_ms = 3.0;
   double software_ms = 1.2;
@@ -21,6 +32,11 @@ template <class Visitor>
 void describe(Visitor& visitor, Projector& projector) {
   visitor.field("backend", projector.backend,
                 "The output device; `handcast-projector --backends` lists them.");
+  visitor.field("painter", projector.painter,
+                "What draws the frames. cpu: one core. gl: a GPU, by OpenGL 4.5 and EGL, without a "
+                "window; cpu, if it cannot be opened or is lost. auto: both are measured for a "
+                "second at each start of the projector, and the faster one draws. The simulator "
+                "always draws with cpu.");
   visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"),
                 "Frames per second requested from the projector.");
   visitor.field("latency_ms", projector.latency_ms, between(0, 200, "ms"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -23,7 +24,16 @@ struct DrawnHand {
   std::span<const glm::vec2> position_px;  ///< projector px
   std::span<const float> depth_m;          ///< distance along the camera's axis; nearer wins
   std::span<const float> light;            ///< factor 0..1; empty: 1 everywhere
+  /// Number of the contents of `mesh` and `texture`, see new_revision(): as long as it is the same,
+  /// a back end may draw with a copy that it made before. 0: the contents may have changed.
+  std::uint64_t revision = 0;
 };
+
+/// A number that no DrawnHand had before. Any thread.
+inline std::uint64_t new_revision() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;  // only distinct, in no order
+}
 
 /// The surface that a pixel shows. 0: none. Otherwise hand index * 64 + chart, so that a step
 /// between charts or hands can be detected.
@@ -69,6 +79,10 @@ class Painter {
   virtual View<const glm::vec2> uv() = 0;
   virtual View<const SurfaceId> surface() = 0;
   /// @}
+
+  /// Why the painter has stopped for good, e.g. because its GPU was lost; empty if it has not. Ask
+  /// after colour(). Then the image is undefined: draw the frame again with another painter.
+  virtual std::optional<Error> failure() const { return {}; }
 };
 
 }  // namespace handcast::renderer

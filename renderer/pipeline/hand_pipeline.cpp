@@ -155,7 +155,7 @@ void HandPipeline::learn_widths(const HandFrame& frame, std::int64_t target_ns, 
 
 DrawnHand HandPipeline::drawn(const Skinned& skinned,
                               std::span<const glm::vec2> position_px) const {
-  return {&surface_.mesh(), &texture_, position_px, skinned.depth_m, skinned.light};
+  return {&surface_.mesh(), &texture_, position_px, skinned.depth_m, skinned.light, revision_};
 }
 
 FrameHand HandPipeline::described(const HandFrame& frame) const {

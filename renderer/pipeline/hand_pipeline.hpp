@@ -128,6 +128,7 @@ class HandPipeline {
   RungMover mover_;
   Untangler untangler_;
   Texture texture_;
+  std::uint64_t revision_ = new_revision();  ///< of the mesh and the texture
 };
 
 }  // namespace handcast::renderer

@@ -5,6 +5,7 @@
 #include <future>
 #include <utility>
 
+#include "ipc/base/log.hpp"
 #include "renderer/correct/deform.hpp"
 #include "renderer/draw/cpu/cpu_painter.hpp"
 #include "renderer/predict/plausible_pose.hpp"
@@ -28,11 +29,9 @@ bool is_early(std::int64_t now_ns, std::int64_t origin_ns) {
 
 }  // namespace
 
-Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascade,
-                                                   const config::Content& content,
-                                                   const config::Hand& hand,
-                                                   const calib::Calibration& calibration,
-                                                   const Oracle& oracle) {
+Result<std::unique_ptr<Pipeline>> Pipeline::create(
+    const config::Cascade& cascade, const config::Content& content, const config::Hand& hand,
+    const calib::Calibration& calibration, const Oracle& oracle, std::unique_ptr<Painter> painter) {
   if (cascade.filter.method == config::FilterMethod::ideal && !oracle)
     return fail(Errc::bad_config,
                 "cascade.filter.method = \"ideal\" needs the true landmarks, which only `handcast "
@@ -48,12 +47,13 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(const config::Cascade& cascad
   auto left = left_loaded.get();
   if (!left) return fail_in("left hand", left.error());
   if (!right) return fail_in("right hand", right.error());
-  return std::unique_ptr<Pipeline>(
-      new Pipeline(cascade, content, calibration, std::move(*left), std::move(*right)));
+  return std::unique_ptr<Pipeline>(new Pipeline(cascade, content, calibration, std::move(*left),
+                                                std::move(*right), std::move(painter)));
 }
 
 Pipeline::Pipeline(const config::Cascade& settings, const config::Content& content,
-                   const calib::Calibration& calibration, HandPipeline left, HandPipeline right)
+                   const calib::Calibration& calibration, HandPipeline left, HandPipeline right,
+                   std::unique_ptr<Painter> painter)
     : settings_(settings),
       camera_from_tracker_(calibration.camera_from_tracker),
       shading_(static_cast<float>(content.shading)),
@@ -61,7 +61,11 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
       both_{std::move(left), std::move(right)},
       mask_(settings.mask, calibration),
       late_(registration_of(settings), settings.filter, calibration),
-      painter_(make_cpu_painter(calibration.projector_width_px, calibration.projector_height_px)) {}
+      painter_(std::move(painter)),
+      substitute_(
+          make_cpu_painter(calibration.projector_width_px, calibration.projector_height_px)) {
+  if (!painter_) painter_ = std::move(substitute_);
+}
 
 void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
   const std::int64_t origin_ns = reported.header.origin_ns;
@@ -130,16 +134,16 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
   if (is_masked) learn_widths(target_ns);
   if (!is_masked) region = landing_bounds();
 
-  const FillCounts counts = paint(region, is_masked);
+  FillCounts counts = paint(region, is_masked);
+  View<const std::uint32_t> colour = painter_->colour();
+  if (replace_failed_painter()) {
+    counts = paint(region, is_masked);
+    colour = painter_->colour();
+  }
   stages_.finish();
-  return {target_ns,
-          newest_,
-          region.empty() ? Rect{} : region,
-          painter_->colour(),
-          frame_hands(),
-          foldovers,
-          counts,
-          stages_.marks()};
+  return {target_ns, newest_,        region.empty() ? Rect{} : region,
+          colour,    frame_hands(),  foldovers,
+          counts,    stages_.marks()};
 }
 
 /// The exposure of the image that a frame for `target_ns` can be registered to. The image is
@@ -262,6 +266,15 @@ FillCounts Pipeline::paint(const Rect& region, bool is_masked) {
   const FillCounts counts = painter_->fill(mask_.in_projector(), settings_.fill, region);
   stages_.mark(Stage::fill);
   return counts;
+}
+
+/// Returns true if the frame must be painted again.
+bool Pipeline::replace_failed_painter() {
+  const auto failure = painter_->failure();
+  if (!failure || !substitute_) return false;
+  log::warning("{}; drawing with cpu until the next start", failure->what);
+  painter_ = std::move(substitute_);
+  return true;
 }
 
 std::span<const FrameHand> Pipeline::frame_hands() {

@@ -32,13 +32,16 @@ class Pipeline {
   /// the filter "ideal", in a simulator.
   using Oracle = std::function<std::optional<LandmarkPoints>(Side side, std::int64_t time_ns)>;
 
-  /// Loads both hands and their contents. Errors (bad_config): a hand file or a content cannot be
-  /// loaded; the filter is "ideal" and there is no oracle.
+  /// Loads both hands and their contents. `painter`: draws the frames; it is for images of the
+  /// projector's size. If it stops (Painter::failure()), and without one, cpu draws. Errors
+  /// (bad_config): a hand file or a content cannot be loaded; the filter is "ideal" and there is no
+  /// oracle.
   static Result<std::unique_ptr<Pipeline>> create(const config::Cascade& cascade,
                                                   const config::Content& content,
                                                   const config::Hand& hand,
                                                   const calib::Calibration& calibration,
-                                                  const Oracle& oracle = {});
+                                                  const Oracle& oracle = {},
+                                                  std::unique_ptr<Painter> painter = nullptr);
 
   /// Takes a message that arrived at `now_ns`. A message with an origin more than 50 ms later than
   /// that is dropped: all messages until its origin would count as older. So is a pose that is not
@@ -78,7 +81,8 @@ class Pipeline {
   };
 
   Pipeline(const config::Cascade& settings, const config::Content& content,
-           const calib::Calibration& calibration, HandPipeline left, HandPipeline right);
+           const calib::Calibration& calibration, HandPipeline left, HandPipeline right,
+           std::unique_ptr<Painter> painter);
 
   void predict(std::int64_t now_ns, std::int64_t target_ns, std::optional<std::int64_t> image_ns);
   std::optional<std::int64_t> expected_image_ns(std::int64_t target_ns) const;
@@ -95,6 +99,7 @@ class Pipeline {
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
   Rect landing_bounds() const;
   FillCounts paint(const Rect& region, bool is_masked);
+  bool replace_failed_painter();
   std::span<const FrameHand> frame_hands();
 
   config::Cascade settings_;
@@ -106,6 +111,7 @@ class Pipeline {
   HandMask mask_;
   LateRegistration late_;
   std::unique_ptr<Painter> painter_;
+  std::unique_ptr<Painter> substitute_;  ///< for a painter that fails; made early, as it takes ms
   StageClock stages_;
   msg::MadeFrom newest_;                ///< the newest messages, and the image of the last frame
   std::int64_t now_ns_ = 0;             ///< of the last frame

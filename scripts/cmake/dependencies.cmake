@@ -68,6 +68,12 @@ if(HANDCAST_WITH_OPENCV_DNN)
   target_include_directories(opencv_dnn SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 endif()
 
+# Only headers: libEGL is loaded at run time.
+find_path(EGL_HEADERS EGL/eglext.h)
+find_path(GL_HEADERS GL/glcorearb.h)
+handcast_found(found EGL_HEADERS GL_HEADERS)
+handcast_feature(GL "painter gl, which draws on a GPU (libegl-dev libgl-dev)" ${found})
+
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
 handcast_feature(PROMETHEUS "metrics for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})

@@ -110,6 +110,21 @@ function(handcast_module)
   handcast_use(${target} ${scope} ${ARG_USES})
 endfunction()
 
+# handcast_embed(source HEADER header NAMESPACE name FILES variable file ...): makes a source with the texts of files as constants of type
+# std::string_view, which the header declares.
+function(handcast_embed source)
+  cmake_parse_arguments(ARG "" "HEADER;NAMESPACE" "FILES" ${ARGN})
+  set(text "#include \"${ARG_HEADER}\"\n\nnamespace ${ARG_NAMESPACE} {\n")
+  while(ARG_FILES)
+    list(POP_FRONT ARG_FILES variable file)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(READ ${file} content)
+    string(APPEND text "extern const std::string_view ${variable} = R\"file(${content})file\";\n")
+  endwhile()
+  string(APPEND text "}  // namespace ${ARG_NAMESPACE}\n")
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${source} CONTENT "@text@" @ONLY)
+endfunction()
+
 # handcast_program(name SOURCES a.cpp ... USES folder ... [LIBRARIES target ...] [NOT_INSTALLED]): an executable in bin/
 function(handcast_program name)
   cmake_parse_arguments(ARG "NOT_INSTALLED" "" "SOURCES;USES;LIBRARIES" ${ARGN})

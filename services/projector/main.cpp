@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "renderer/draw/choose/open_painter.hpp"
 #include "services/projector/inputs.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
@@ -27,8 +28,11 @@ static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std:
 /// projection.frames.
 static void run_projector(service::Context& context) {
   const auto& rig = context.rig();
-  const auto pipeline =
-      must(renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, context.calibration()));
+  const auto& calibration = context.calibration();
+  const auto pipeline = must(renderer::Pipeline::create(
+      rig.cascade, rig.content, rig.hand, calibration, {},
+      renderer::open_painter(rig.projector.painter, calibration.projector_width_px,
+                             calibration.projector_height_px)));
   if (service::is_exclusive(rig.projector.backend, projector::projector_backends()))
     context.stand_by();
   const auto projector = must(projector::open_projector(rig));

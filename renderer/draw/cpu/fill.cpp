@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "renderer/base/clones.hpp"
 #include "renderer/draw/cpu/passes.hpp"
 
@@ -69,34 +67,15 @@ FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, Frame
   return counts;
 }
 
-void Filler::set_up(const config::Fill& settings) {
-  if (reach_px_ == settings.reach_px && fade_px_ == settings.fade_px &&
-      seam_uv_ == settings.seam_uv)
-    return;
-  reach_px_ = settings.reach_px;
-  fade_px_ = settings.fade_px;
-  seam_uv_ = settings.seam_uv;
-  for (int square = 0; square <= NearestPixel::kLargestReach * NearestPixel::kLargestReach;
-       ++square) {
-    const double length_px = std::sqrt(square), left_px = reach_px_ - length_px;
-    const double strength = fade_px_ > 0   ? std::clamp(left_px / fade_px_, 0.0, 1.0)
-                            : left_px >= 0 ? 1.0
-                                           : 0.0;
-    const float limit_uv = seam_limit_uv(settings, static_cast<float>(length_px));
-    strength_[square] = static_cast<std::uint16_t>(std::lround(256 * strength));
-    squared_limit_uv_[square] = limit_uv * limit_uv;
-  }
-}
-
 void Filler::make_patches(const config::Fill& settings, Rect region,
                           std::span<const Texture* const> textures, const FrameBuffer& frame) {
-  set_up(settings);
+  table_.set_up(settings);
   std::vector<Sampler> samplers;
   for (const Texture* texture : textures) samplers.emplace_back(texture);
   patches_.clear();
   for (const NearestSeed& seed :
-       nearest_.find(part_of(lit_, region), part_of(unlit_, region), reach_px_)) {
-    const std::uint32_t full = strength_[seed.squared_px];
+       nearest_.find(part_of(lit_, region), part_of(unlit_, region), table_.reach_px)) {
+    const std::uint32_t full = table_.strength[seed.squared_px];
     if (full == 0) continue;
     const int x = seed.x + region.x0, y = seed.y + region.y0;
     const int seed_x = x + seed.dx, seed_y = y + seed.dy;
@@ -107,7 +86,7 @@ void Filler::make_patches(const config::Fill& settings, Rect region,
                         mirror_y < region.y1;
     if (inside && frame.surface.row(mirror_y)[mirror_x] == surface) {
       const glm::vec2 step = uv - frame.uv.row(mirror_y)[mirror_x];
-      if (glm::dot(step, step) <= squared_limit_uv_[seed.squared_px]) uv += step;
+      if (glm::dot(step, step) <= table_.squared_limit_uv[seed.squared_px]) uv += step;
     }
     const Sampler& sampler = samplers[surface / 64];
     const std::uint32_t* texel = sampler.texels + sampler.index(uv.x, uv.y);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "config/sections/cascade.hpp"
 #include "renderer/correct/deform.hpp"
+#include "renderer/draw/cpu/fill_table.hpp"
 #include "renderer/draw/cpu/frame_buffer.hpp"
 #include "renderer/draw/cpu/nearest_pixel.hpp"
 #include "renderer/draw/cpu/raster.hpp"
+#include "renderer/draw/cpu/warp_cells.hpp"
 #include "renderer/draw/painter.hpp"
 
 /// The passes of the painter on the processor. Every region must be within the image. One thread.
@@ -32,8 +33,7 @@ class Drawer {
 
 /// Rasterises the moved cells of a grid with their source positions as the interpolated values,
 /// then copies the drawing from there (nearest pixel). Where cells overlap, the later one in the
-/// grid wins (row by row, from the left). The outermost cells extend by half a pixel, to the edge
-/// of the corner pixels, so that a grid at rest moves nothing and loses nothing.
+/// grid wins (row by row, from the left).
 class Warper {
  public:
   /// Warps the part `from` of `in` into `region` of `out`. `target` is overwritten.
@@ -41,11 +41,7 @@ class Warper {
             RasterTarget& target, FrameBuffer& out);
 
  private:
-  void place_nodes(const WarpGrid& grid);
-  void list_cells(const WarpGrid& grid, Rect from);
-
-  std::vector<Corner> corners_;
-  std::vector<TriangleIndices> triangles_;
+  WarpCells cells_;
   std::vector<std::int64_t> areas_;
   std::vector<std::uint8_t> ids_;
 };
@@ -57,7 +53,7 @@ class Warper {
 ///     uv(p_C) = 2 uv(p_D) - uv(p'_D)
 ///
 /// or uv(p_D), if p'_D is not lit, is on another surface, or if the step from uv(p'_D) to uv(p_D)
-/// is longer than seam_limit_uv().
+/// is longer than FillTable allows.
 class Filler {
  public:
   /// For drawings of the given size in pixels.
@@ -78,9 +74,6 @@ class Filler {
     SurfaceId surface;
     std::uint8_t light;
   };
-  static constexpr int kSquares = NearestPixel::kLargestReach * NearestPixel::kLargestReach + 1;
-
-  void set_up(const config::Fill& settings);
   FillCounts sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame);
   void make_patches(const config::Fill& settings, Rect region,
                     std::span<const Texture* const> textures, const FrameBuffer& frame);
@@ -89,18 +82,7 @@ class Filler {
   Plane<std::uint8_t> lit_, unlit_;  ///< regions D and C of the paper, 255 or 0
   NearestPixel nearest_;
   std::vector<Patch> patches_;
-  int reach_px_ = 0;
-  double fade_px_ = 0, seam_uv_ = 0;
-  // By the square of the distance of a fill.
-  std::array<std::uint16_t, kSquares> strength_{};  ///< 0..256
-  std::array<float, kSquares> squared_limit_uv_{};  ///< seam_limit_uv() squared
+  FillTable table_;
 };
-
-/// The longest step in texture coordinates over a reflection of `distance_px` that does not cross a
-/// seam. It is seam_uv up to 8 px and grows in proportion beyond, as the steps on a smooth surface
-/// do.
-inline float seam_limit_uv(const config::Fill& settings, float distance_px) {
-  return static_cast<float>(settings.seam_uv) * std::max(1.f, distance_px / 8.f);
-}
 
 }  // namespace handcast::renderer::cpu

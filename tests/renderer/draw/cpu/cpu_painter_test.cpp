@@ -5,7 +5,11 @@
 
 namespace handcast::renderer::test {
 
-INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&make_cpu_painter),
+static Result<std::unique_ptr<Painter>> open_cpu(int width_px, int height_px) {
+  return make_cpu_painter(width_px, height_px);
+}
+
+INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&open_cpu),
                          [](const auto&) { return "one_core"; });
 
 }  // namespace handcast::renderer::test

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/draw/cpu/fill_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handcast::renderer::cpu {
+
+bool FillTable::set_up(const config::Fill& settings) {
+  if (reach_px == settings.reach_px && fade_px_ == settings.fade_px && seam_uv_ == settings.seam_uv)
+    return false;
+  reach_px = settings.reach_px;
+  fade_px_ = settings.fade_px;
+  seam_uv_ = settings.seam_uv;
+  for (int square = 0; square < kSquares; ++square) {
+    const double length_px = std::sqrt(square), left_px = reach_px - length_px;
+    const double part = fade_px_ > 0   ? std::clamp(left_px / fade_px_, 0.0, 1.0)
+                        : left_px >= 0 ? 1.0
+                                       : 0.0;
+    const auto limit_uv = static_cast<float>(seam_uv_ * std::max(1.0, length_px / 8));
+    strength[square] = static_cast<std::uint16_t>(std::lround(256 * part));
+    squared_limit_uv[square] = limit_uv * limit_uv;
+  }
+  return true;
+}
+
+}  // namespace handcast::renderer::cpu

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/draw/gl/context.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+namespace handcast::renderer::gl {
+namespace {
+
+constexpr std::array kVersion{EGL_CONTEXT_MAJOR_VERSION,       4,
+                              EGL_CONTEXT_MINOR_VERSION,       5,
+                              EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+
+/// A context that reports a reset of the GPU, or, if the driver has none, one that does not.
+EGLContext create_context(const Egl& egl, EGLDisplay display, EGLConfig config) {
+  std::array<EGLint, kVersion.size() + 3> attributes{};
+  std::copy(kVersion.begin(), kVersion.end(), attributes.begin());
+  attributes[kVersion.size()] = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
+  attributes[kVersion.size() + 1] = EGL_LOSE_CONTEXT_ON_RESET;
+  attributes.back() = EGL_NONE;
+  EGLContext context = egl.CreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) {
+    attributes[kVersion.size()] = EGL_NONE;
+    context = egl.CreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  }
+  return context;
+}
+
+/// A configuration of the display for contexts without a surface; EGL_NO_CONFIG_KHR if it needs
+/// none.
+EGLConfig config_of(const Egl& egl, EGLDisplay display, const char* extensions) {
+  if (has_extension(extensions, "EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
+  constexpr std::array<EGLint, 5> kWanted{EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE,
+                                          EGL_OPENGL_BIT, EGL_NONE};
+  EGLConfig config = EGL_NO_CONFIG_KHR;
+  EGLint count = 0;
+  egl.ChooseConfig(display, kWanted.data(), &config, 1, &count);
+  return config;
+}
+
+bool draws_in_software(std::string_view renderer) {
+  for (const std::string_view name : {"llvmpipe", "softpipe", "swrast", "SwiftShader", "lavapipe"})
+    if (renderer.find(name) != std::string_view::npos) return true;
+  return false;
+}
+
+std::string_view reset_name(GLenum status) {
+  switch (status) {
+    case GL_GUILTY_CONTEXT_RESET:
+      return "the GPU was reset because of this program";
+    case GL_INNOCENT_CONTEXT_RESET:
+      return "the GPU was reset because of another program";
+    default:
+      return "the GPU was reset";
+  }
+}
+
+}  // namespace
+
+std::string Gpu::sentence() const {
+  return fmt::format("{}, {}", renderer, is_software ? "a software renderer" : "a hardware GPU");
+}
+
+Result<std::unique_ptr<Context>> Context::open() {
+  const auto egl = load_egl();
+  if (!egl) return tl::make_unexpected(egl.error());
+  std::string reasons;
+  for (const DisplayCandidate& candidate : display_candidates(*egl)) {
+    auto context = open(*egl, candidate);
+    if (context) return context;
+    reasons += fmt::format("; {}: {}", candidate.platform, context.error().what);
+  }
+  return fail(Errc::unavailable,
+              fmt::format("no display of EGL has OpenGL 4.5 core without a window{}",
+                          reasons.empty() ? "; EGL lists none" : reasons));
+}
+
+Result<std::unique_ptr<Context>> Context::open(const Egl& egl, const DisplayCandidate& candidate) {
+  const auto failed = [&](const char* what) {
+    return fail(Errc::unavailable, fmt::format("{} ({})", what, error_name(egl.GetError())));
+  };
+  if (candidate.display == EGL_NO_DISPLAY) return failed("there is no such display");
+  if (!egl.Initialize(candidate.display, nullptr, nullptr)) return failed("it cannot be opened");
+  const char* const extensions = egl.QueryString(candidate.display, EGL_EXTENSIONS);
+  if (!has_extension(extensions, "EGL_KHR_surfaceless_context"))
+    return fail(Errc::unavailable, "it has no EGL_KHR_surfaceless_context");
+  if (!egl.BindAPI(EGL_OPENGL_API)) return failed("it has no OpenGL");
+  const EGLConfig config = config_of(egl, candidate.display, extensions);
+  EGLContext handle = create_context(egl, candidate.display, config);
+  if (handle == EGL_NO_CONTEXT) return failed("it has no OpenGL 4.5 core");
+  std::unique_ptr<Context> context(new Context(egl, candidate.display, handle));
+  if (const auto loaded = context->load(candidate.platform); !loaded)
+    return tl::make_unexpected(loaded.error());
+  return context;
+}
+
+Result<void> Context::load(const std::string& platform) {
+  if (!make_current()) return fail(Errc::unavailable, *lost_);
+  auto functions = load_functions(egl_.GetProcAddress);
+  if (!functions) return tl::make_unexpected(functions.error());
+  gl_ = *functions;
+  const auto text = [&](GLenum name) {
+    const GLubyte* const value = gl_.GetString(name);
+    return std::string(value ? reinterpret_cast<const char*>(value) : "unknown");
+  };
+  gpu_ = {text(GL_RENDERER), text(GL_VERSION), platform, false};
+  gpu_.is_software = draws_in_software(gpu_.renderer);
+  return {};
+}
+
+Context::~Context() {
+  release();
+  egl_.DestroyContext(display_, context_);
+}
+
+bool Context::make_current() {
+  if (lost_) return false;
+  if (egl_.GetCurrentContext() == context_) return true;
+  if (egl_.BindAPI(EGL_OPENGL_API) &&
+      egl_.MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
+    return true;
+  lose(fmt::format("the context of OpenGL cannot be used ({})", error_name(egl_.GetError())));
+  return false;
+}
+
+void Context::release() {
+  if (egl_.GetCurrentContext() == context_)
+    egl_.MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
+void Context::check() {
+  if (lost_) return;
+  if (const GLenum status = gl_.GetGraphicsResetStatus(); status != GL_NO_ERROR) {
+    lose(std::string(reset_name(status)));
+  } else if (const GLenum error = gl_.GetError(); error != GL_NO_ERROR) {
+    lose(error == GL_OUT_OF_MEMORY ? "the GPU is out of memory"
+                                   : fmt::format("OpenGL reports error {:#x}", error));
+  }
+}
+
+void Context::lose(std::string reason) {
+  if (!lost_) lost_ = std::move(reason);
+}
+
+}  // namespace handcast::renderer::gl

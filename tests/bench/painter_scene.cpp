@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/painter_scene.hpp"
+
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <stdexcept>
+
+#include "renderer/draw/cpu/cpu_painter.hpp"
+
+namespace handcast::bench {
+namespace {
+
+using namespace renderer;
+
+constexpr double kDistance_m = 0.73;
+constexpr glm::ivec2 kMaskMoved_px{12, 3};
+
+/// The reference rig with a projector of this size, and tracker space such that a hand at rest is
+/// seen from its back, fingers up.
+calib::Calibration rig_of(int width_px, int height_px) {
+  calib::Calibration calibration = calib::reference_rig();
+  const double scale_x = static_cast<double>(width_px) / calibration.projector_width_px,
+               scale_y = static_cast<double>(height_px) / calibration.projector_height_px;
+  calibration.projector_from_camera =
+      glm::dmat3(scale_x, 0, 0, 0, scale_y, 0, 0, 0, 1) * calibration.projector_from_camera;
+  calibration.projector_width_px = width_px;
+  calibration.projector_height_px = height_px;
+  calibration.camera_from_tracker =
+      glm::dmat4({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0.09, kDistance_m, 1});
+  return calibration;
+}
+
+Texture fine_pattern() {
+  Texture texture(1024, 640);
+  for (int y = 0; y < texture.height(); ++y)
+    for (int x = 0; x < texture.width(); ++x)
+      texture.at(x, y) =
+          0xff000000u | static_cast<std::uint32_t>(x * 65'793 + y * 2'777) % 0xffffffu;
+  return texture;
+}
+
+WarpGrid bent_grid(const Rect& area) {
+  WarpGrid bent{21, 21, area, {}};
+  for (int row = 0; row < bent.rows; ++row)
+    for (int column = 0; column < bent.columns; ++column)
+      bent.nodes.push_back(bent.source(column, row) +
+                           glm::vec2(3 * std::sin(row + column), 2 * std::cos(row - column)));
+  return bent;
+}
+
+}  // namespace
+
+PainterScene::PainterScene(std::string its_name, int hands, const renderer::testing::Pose& pose,
+                           int width_px, int height_px)
+    : name(std::move(its_name)), texture_(fine_pattern()) {
+  const calib::Calibration calibration = rig_of(width_px, height_px);
+  place_hand(Side::left, pose, hands == 1 ? 0 : -0.085f, calibration);
+  if (hands > 1) place_hand(Side::right, pose, 0.085f, calibration);
+  for (const auto& hand : hands_)
+    drawn.push_back({&hand->surface.mesh(), &texture_, hand->skinned.landings_px,
+                     hand->skinned.depth_m, hand->skinned.light, hand->revision});
+  make_mask(width_px, height_px);
+  grid = bent_grid({0, 0, width_px, height_px});
+}
+
+void PainterScene::place_hand(Side side, const renderer::testing::Pose& pose, float aside_m,
+                              const calib::Calibration& calibration) {
+  auto mesh = load_hand_or_default({}, side);
+  if (!mesh) throw std::runtime_error(mesh.error().what);
+  const JointFrames frames = posed(*mesh, pose);
+  msg::HandPose reported;
+  reported.side = side;
+  for (int j = 0; j < kJoints; ++j) {
+    const glm::quat turn = glm::quat_cast(glm::mat3(frames[j]));
+    const glm::vec3 at = glm::vec3(frames[j][3]) + glm::vec3(aside_m, 0, 0);
+    reported.joints[j] = {{at.x, at.y, at.z}, {turn.x, turn.y, turn.z, turn.w}, 0.01f};
+  }
+  Hand& hand =
+      *hands_.emplace_back(std::make_unique<Hand>(Hand{HandSurface(std::move(*mesh), 14), {}}));
+  hand.skinned = hand.surface.pose(reported, {.fit = false}, calibration, 0.5f);
+  region = region.joined(hand.surface.bounds(hand.skinned.landings_px));
+}
+
+void PainterScene::make_mask(int width_px, int height_px) {
+  const auto painter = make_cpu_painter(width_px, height_px);
+  painter->draw(drawn, {0, 0, width_px, height_px});
+  mask = Image<std::uint8_t>(width_px, height_px);
+  for (int y = kMaskMoved_px.y; y < height_px; ++y)
+    for (int x = kMaskMoved_px.x; x < width_px; ++x)
+      mask.at(x, y) = painter->surface().at(x - kMaskMoved_px.x, y - kMaskMoved_px.y) ? 255 : 0;
+  region =
+      Rect{region.x0, region.y0, region.x1 + kMaskMoved_px.x, region.y1 + kMaskMoved_px.y}.within(
+          width_px, height_px);
+}
+
+}  // namespace handcast::bench
