@@ -10,6 +10,7 @@ namespace handcast::renderer::cpu {
 
 /// What the fill needs to know of a distance, by its square in px. All painters fill by this table.
 struct FillTable {
+  /// Size of the tables: one more than the square of the largest reach.
   static constexpr int kSquares = NearestPixel::kLargestReach * NearestPixel::kLargestReach + 1;
 
   /// Computes the table for these settings. Returns false if it already is that of these settings.

@@ -11,11 +11,12 @@ namespace handcast::renderer::gl {
 
 /// The parts of a hand that do not change from frame to frame, in the GPU's memory.
 struct HandAssets {
-  Buffer vertices;          ///< per vertex: texture coordinates (2 floats), chart (uint)
-  Buffer triangles;         ///< three indices of 16 bits each
-  GLsizei index_count = 0;  ///< three times the number of triangles
-  Image2d content;          ///< R32UI: the texture
-  std::uint64_t revision = 0, used = 0;
+  Buffer vertices;             ///< per vertex: texture coordinates (2 floats), chart (uint)
+  Buffer triangles;            ///< three indices of 16 bits each
+  GLsizei index_count = 0;     ///< three times the number of triangles
+  Image2d content;             ///< R32UI: the texture
+  std::uint64_t revision = 0;  ///< DrawnHand::revision of the copy
+  std::uint64_t used = 0;      ///< number of the last draw that used it
 
   /// Bytes of a vertex.
   static constexpr GLsizei kVertexBytes = 12;

@@ -16,6 +16,8 @@ class Object {
   Object() = default;
   /// Takes the name.
   Object(Context& context, GLuint name) : context_(&context), name_(name) {}
+  /// Moves the name.
+  /// @{
   Object(Object&& other) noexcept
       : context_(other.context_), name_(std::exchange(other.name_, 0)) {}
   Object& operator=(Object&& other) noexcept {
@@ -23,6 +25,7 @@ class Object {
     std::swap(name_, other.name_);
     return *this;
   }
+  /// @}
   ~Object() {
     if (name_ == 0 || !context_->make_current()) return;
     if constexpr (requires(const Functions& gl) { (gl.*kDelete)(1, &name_); }) {

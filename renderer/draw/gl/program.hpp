@@ -11,10 +11,10 @@ namespace handcast::renderer::gl {
 struct ShaderSource {
   GLenum stage;           ///< e.g. GL_VERTEX_SHADER
   std::string_view name;  ///< for messages, e.g. "draw.vert"
-  std::string_view text;  ///< GLSL without its #version line
+  std::string_view text;  ///< GLSL without the line of its version
 };
 
-/// Compiles and links a program. Each text is preceded by the #version line and common.glsl.
+/// Compiles and links a program. Each text is preceded by the line of its version and common.glsl.
 /// Errors (unavailable): the driver refuses a shader; the message has its name and the driver's
 /// reason.
 Result<Program> make_program(Context& context, std::initializer_list<ShaderSource> sources);
