@@ -194,11 +194,11 @@ TEST_F(BareRig, OnlyDaemonsOfTheRigAreEndedAsStraysNotWhateverElseIsAChildOfTheK
 TEST_F(BareRig, AReloadWhoseServiceCannotStartDoesNotStopARigThatIsNotUpYet) {
   make_daemon("landmarks", kNeverReady);
   std::filesystem::remove(programs_ / "handcast-observer");
-  write_rig(std::string("[supervisor]\nready_s = 60\n") + kNoObserver);
+  write_rig(std::string("[supervisor]\nready_s = 8\n") + kNoObserver);
   const auto rig = up();
   ASSERT_TRUE(
       eventually([] { return services().is_object() && services()["landmarks"]["pid"] != 0; }));
-  write_rig(std::string("[supervisor]\nready_s = 60\n") + kObserver);
+  write_rig(std::string("[supervisor]\nready_s = 8\n") + kObserver);
   const auto reloaded = reload();
   ASSERT_FALSE(reloaded);
   EXPECT_THAT(reloaded.error().what, HasSubstr("observer is failed"));
