@@ -99,9 +99,9 @@ std::string for_journal(Level level, std::string text) {
 
 void write(Level level, std::string_view line) {
   if (level < threshold().load(std::memory_order_relaxed)) return;
-  const auto text = for_journal(
-      level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
-                         kNames[static_cast<std::size_t>(level)], printable(line)));
+  const auto text =
+      for_journal(level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
+                                     kNames[static_cast<std::size_t>(level)], printable(line)));
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 

@@ -73,8 +73,7 @@ Result<UniqueFd> listen_on(int port) {
 }  // namespace
 
 std::optional<HttpRequest> parse_http_request(std::string_view bytes) {
-  if (bytes.find("\r\n\r\n") == bytes.npos && bytes.find("\n\n") == bytes.npos)
-    return std::nullopt;
+  if (bytes.find("\r\n\r\n") == bytes.npos && bytes.find("\n\n") == bytes.npos) return std::nullopt;
   auto line = bytes.substr(0, bytes.find_first_of("\r\n"));
   const auto first = line.find(' '), last = line.rfind(' ');
   if (first == line.npos || first == last || !line.substr(last + 1).starts_with("HTTP/1."))

@@ -223,8 +223,7 @@ std::string metrics_text(const RigLook& look) {
 }
 
 Result<HttpServer> serve_metrics(int port, std::function<RigLook()> look) {
-  auto server = HttpServer::listen(
-      port, [look = std::move(look)] { return metrics_text(look()); });
+  auto server = HttpServer::listen(port, [look = std::move(look)] { return metrics_text(look()); });
   if (server) return server;
   return fail(Errc::bad_config, fmt::format("{}; set supervisor.metrics_port to another port, or "
                                             "to 0",

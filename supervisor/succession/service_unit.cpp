@@ -31,10 +31,9 @@ std::string word(const std::string& text) {
 }
 
 std::string command_of(const UnitSpec& spec) {
-  const auto out =
-      spec.out.empty() ? fmt::format("\"%S/handcast/{}\"", spec.rig) : word(spec.out);
-  auto command = fmt::format("{} up --no-keeper {} --out {}", word(spec.program),
-                             word(spec.rig_file), out);
+  const auto out = spec.out.empty() ? fmt::format("\"%S/handcast/{}\"", spec.rig) : word(spec.out);
+  auto command =
+      fmt::format("{} up --no-keeper {} --out {}", word(spec.program), word(spec.rig_file), out);
   for (const auto& setting : spec.settings) command += " --set " + word(setting);
   return command;
 }

@@ -51,7 +51,8 @@ TEST(Log, ALineCanBeParsedAgainAndOthersCannot) {
   ASSERT_TRUE(parsed);
   EXPECT_EQ(parsed->level, log::Level::warning);
   EXPECT_EQ(parsed->sentence, "the  sentence");
-  for (const char* other : {"", " ", "one", "one two", "1.0 camera", "terminate called after error"})
+  for (const char* other :
+       {"", " ", "one", "one two", "1.0 camera", "terminate called after error"})
     EXPECT_FALSE(log::parse(other)) << other;
 }
 

@@ -60,7 +60,9 @@ std::string answer_to(int port, std::string_view request) {
 class HttpWithPatience : public ::testing::Test {
  protected:
   explicit HttpWithPatience(std::int64_t patience_ns)
-      : server_(HttpServer::listen(0, [this] { return ++asked_, body_; }, patience_ns).value()),
+      : server_(HttpServer::listen(
+                    0, [this] { return ++asked_, body_; }, patience_ns)
+                    .value()),
         port_(server_.port()) {}
 
   std::atomic<int> asked_{0};

@@ -89,8 +89,8 @@ std::string analyzed(const std::string& arguments, const UnitSpec& spec) {
   const test::Scratch scratch;
   const auto file = scratch.path() / unit_name(spec);
   std::ofstream(file) << unit_text(spec);
-  return test::output_of("/bin/bash", {"-c", "systemd-analyze " + arguments + " " + file.string() +
-                                                 "; echo exit $?"});
+  return test::output_of(
+      "/bin/bash", {"-c", "systemd-analyze " + arguments + " " + file.string() + "; echo exit $?"});
 }
 
 bool can_analyze() { return std::filesystem::exists("/usr/bin/systemd-analyze"); }
@@ -114,20 +114,20 @@ TEST(ServiceUnit, OfTheMachineIsAtMostThreeOfTenExposed) {
 
 TEST(ServiceUnit, OfTheMachineIsShutInAndHasARuntimeFolder) {
   const auto text = unit_text(desk(true));
-  EXPECT_THAT(
-      text,
-      AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nPrivateTmp=yes\n"), HasSubstr("\nUser=daemon\n"),
-            HasSubstr("\nSupplementaryGroups=video\n"), HasSubstr("\nOOMScoreAdjust=-"),
-            HasSubstr("\nWantedBy=multi-user.target\n"), Not(HasSubstr("default.target"))));
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nPrivateTmp=yes\n"),
+                    HasSubstr("\nUser=daemon\n"), HasSubstr("\nSupplementaryGroups=video\n"),
+                    HasSubstr("\nOOMScoreAdjust=-"), HasSubstr("\nWantedBy=multi-user.target\n"),
+                    Not(HasSubstr("default.target"))));
   EXPECT_EQ(unit_folder(desk(true)), "/etc/systemd/system");
 }
 
 TEST(ServiceUnit, OfAUserAsksForNothingAUserCannotHave) {
   const auto text = unit_text(desk(false));
-  EXPECT_THAT(
-      text, AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")),
-                  Not(HasSubstr("\nSupplementaryGroups=")),
-                  Not(HasSubstr("\nOOMScoreAdjust=")), HasSubstr("\nWantedBy=default.target\n")));
+  EXPECT_THAT(text,
+              AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")),
+                    Not(HasSubstr("\nSupplementaryGroups=")), Not(HasSubstr("\nOOMScoreAdjust=")),
+                    HasSubstr("\nWantedBy=default.target\n")));
 }
 
 TEST(ServiceUnit, PathsAndSettingsReachTheCommandAsTheyAre) {
@@ -136,9 +136,8 @@ TEST(ServiceUnit, PathsAndSettingsReachTheCommandAsTheyAre) {
   spec.settings = {"name=\"sofa\""};
   EXPECT_THAT(
       unit_text(spec),
-      HasSubstr(
-          R"(up --no-keeper "/my rigs/100%% $$HOME/a\"b\\c.toml" --out "%S/handcast/desk" )"
-          R"(--set "name=\"sofa\"")"));
+      HasSubstr(R"(up --no-keeper "/my rigs/100%% $$HOME/a\"b\\c.toml" --out "%S/handcast/desk" )"
+                R"(--set "name=\"sofa\"")"));
 }
 
 }  // namespace
