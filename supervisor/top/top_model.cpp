@@ -27,6 +27,11 @@ double number_in(const json& object, const char* key) {
   return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
 }
 
+/// The same, limited to what can be converted to nanoseconds or to an int.
+double small_number_in(const json& object, const char* key) {
+  return std::clamp(number_in(object, key), 0.0, 1e9);
+}
+
 /// Counts per second; empty if the count decreased, because another process counts now.
 std::optional<double> rate(std::uint64_t before, std::uint64_t now, std::int64_t span_ns) {
   if (now < before || span_ns <= 0) return std::nullopt;
@@ -36,7 +41,7 @@ std::optional<double> rate(std::uint64_t before, std::uint64_t now, std::int64_t
 /// E.g. "died 10 times within 60 s; again in 2.1 s: last line of its log".
 std::string trouble_in(const json& service) {
   auto trouble = text_in(service, "reason");
-  if (const auto wait_s = number_in(service, "retry_s"); wait_s > 0)
+  if (const auto wait_s = small_number_in(service, "retry_s"); wait_s > 0)
     trouble += fmt::format("{}again in {}", trouble.empty() ? "" : "; ",
                            text_of_span(seconds_to_ns(wait_s)));
   const auto log = service.find("log");
@@ -61,8 +66,8 @@ ServiceRow service_row(const std::string& name, const json& service, const RigLo
                  .trouble = trouble_in(service),
                  .pid = pid_in(service, "pid"),
                  .spare_pid = pid_in(service, "standby"),
-                 .restarts = static_cast<int>(number_in(service, "restarts")),
-                 .uptime_s = number_in(service, "uptime_s")};
+                 .restarts = static_cast<int>(small_number_in(service, "restarts")),
+                 .uptime_s = small_number_in(service, "uptime_s")};
   const auto* usage = usage_in(now, row.pid);
   const auto* earlier = usage_in(before, row.pid);
   if (usage) row.usage = *usage;
@@ -173,7 +178,7 @@ bool RingRow::late() const {
 TopModel compare(const RigLook& before, const RigLook& now) {
   TopModel model{.rig = now.rig, .missing = now.missing};
   const Names names(now);
-  if (now.status.is_object()) model.uptime_s = number_in(now.status, "uptime_s");
+  if (now.status.is_object()) model.uptime_s = small_number_in(now.status, "uptime_s");
   if (now.status.contains("services"))
     for (const auto& [name, service] : now.status["services"].items())
       model.services.push_back(service_row(name, service, before, now));

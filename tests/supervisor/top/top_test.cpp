@@ -39,6 +39,21 @@ Style style_of(const std::vector<Line>& lines, std::string_view text) {
   return Style::plain;
 }
 
+/// Found by fuzzing the exporter.
+TEST(Model, NumbersThatNoStatusHasAreLimited) {
+  auto look = test::look_at(1);
+  auto& camera = look.status["services"]["camera"];
+  camera["retry_s"] = 2.2e10;
+  camera["restarts"] = 1e300;
+  camera["uptime_s"] = -1e300;
+  const auto model = compare(look, look);
+  const auto row = std::ranges::find(model.services, "camera", &ServiceRow::name);
+  ASSERT_NE(row, model.services.end());
+  EXPECT_EQ(row->restarts, 1'000'000'000);
+  EXPECT_EQ(row->uptime_s, 0);
+  EXPECT_NE(row->trouble, "");
+}
+
 TEST(TopModel, RatesAreBetweenTwoLooks) {
   const auto model = two_seconds();
   EXPECT_DOUBLE_EQ(model.services[0].cores.value(), 0.25);
