@@ -107,7 +107,7 @@ TEST_F(ReplayCamera, SaysWhichFileIsNoPicture) {
 
 TEST_F(ReplayCamera, SaysWhenTimesAndPicturesDoNotPair) {
   test::write_pictures(scratch_.path(), 2, kWidth, kHeight);
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "camera_timestamps.npy", {0, 10, 20}));
+  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "camera_timestamps.npy", {0, 10'000, 20'000}));
   expect_refused("3 times for 2 images");
 }
 

@@ -204,12 +204,15 @@ TEST(Simulation, ATraceThatIsCutShortIsSaid) {
 
 TEST(Simulation, ANameThatIsNotUtf8IsWrittenAllTheSame) {
   const test::Scratch folder;
-  auto options = short_run();
-  options.settings = {"name=caf\xe9"};
+  auto recorded = short_run(), options = short_run();
+  recorded.record_directory = (folder.path() / "caf\xe9").string();
+  ASSERT_TRUE(run(recorded));
+  options.settings = {"twin.motion=" + recorded.record_directory};
   options.json_file = (folder.path() / "metrics.json").string();
   const auto done = run(options);
   ASSERT_TRUE(done) << done.error().what;
-  EXPECT_EQ(nlohmann::json::parse(std::ifstream(options.json_file))["rig"], "caf\xef\xbf\xbd");
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(options.json_file))["motion"],
+            (folder.path() / "caf\xef\xbf\xbd").string());
 }
 
 TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
