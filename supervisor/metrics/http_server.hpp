@@ -12,7 +12,8 @@ namespace handcast::supervisor {
 
 /// The first line of a request.
 struct HttpRequest {
-  std::string_view method, path;  ///< the path without a query; both empty: not HTTP
+  std::string_view method;  ///< "GET"; "" if the request is not HTTP
+  std::string_view path;    ///< without a query; "" if the request is not HTTP
 };
 
 /// The request at the start of `bytes`, to which its parts refer. Empty if its end has not arrived

@@ -109,9 +109,8 @@ class Keeper {
     sigaddset(&children, SIGCHLD);
     sigprocmask(SIG_UNBLOCK, &children, nullptr);
     fcntl(there_.get(), F_SETFD, 0);
-    execve(command_.argument_pointers[0], command_.argument_pointers.data(),
-           command_.environment_pointers.data());
-    print_line(fmt::format("handcast: {}: {}", command_.arguments[0], std::strerror(errno)));
+    execve(command_.arguments()[0], command_.arguments(), command_.environment());
+    print_line(fmt::format("handcast: {}: {}", command_.arguments()[0], std::strerror(errno)));
     _exit(kExitRetry);
   }
 
@@ -213,7 +212,7 @@ class Keeper {
         fmt::format("handcast: the supervisor died {} times within a minute and is not started "
                     "again; its services continue to run: "
                     "`handcast up` takes them over, `handcast down` stops them",
-                    kDeathsInAMinute));
+                    SupervisorDeaths::kDeathsInAMinute));
     return kExitRetry;
   }
 

@@ -24,8 +24,11 @@ class StateMemory {
   static Result<StateMemory> create();
   /// Maps the memory of another process. Errors: bad_data (the file is something else).
   static Result<StateMemory> open(UniqueFd file);
+  /// `other` has no memory afterwards.
+  /// @{
   StateMemory(StateMemory&& other) noexcept;
   StateMemory& operator=(StateMemory&& other) noexcept;
+  /// @}
   ~StateMemory();
 
   /// The descriptor that services inherit.

@@ -7,15 +7,11 @@
 
 namespace handcast::supervisor {
 
-/// A life shorter than this counts as a failed start.
-inline constexpr std::int64_t kShortLife_ns = 1'000'000'000;
-inline constexpr std::int64_t kFirstPause_ns = 50'000'000;
-inline constexpr std::int64_t kMinute_ns = 60'000'000'000;
-inline constexpr int kDeathsInAMinute = 10;
-
 /// The deaths of the supervisors of one keeper.
 class SupervisorDeaths {
  public:
+  static constexpr int kDeathsInAMinute = 10;  ///< after which no supervisor is started again
+
   /// Adds a death. Times are CLOCK_MONOTONIC.
   void add(std::int64_t started_ns, std::int64_t died_ns) {
     recent_ns_[count_++ % recent_ns_.size()] = died_ns;
@@ -33,6 +29,10 @@ class SupervisorDeaths {
   }
 
  private:
+  static constexpr std::int64_t kShortLife_ns = 1'000'000'000;  ///< a failed start is shorter
+  static constexpr std::int64_t kFirstPause_ns = 50'000'000;
+  static constexpr std::int64_t kMinute_ns = 60'000'000'000;
+
   std::array<std::int64_t, kDeathsInAMinute> recent_ns_{};
   std::size_t count_ = 0;
   int short_lives_ = 0;

@@ -27,7 +27,6 @@ class HandcastSigma : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     rig_.landmarks.backend = "handcast";
-    rig_.landmarks.models = "/none";
     const auto detector = open_detector(rig_, calib::reference_rig(), 0);
     ASSERT_TRUE(detector) << detector.error().what;
     for (const char* motion :
