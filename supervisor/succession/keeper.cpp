@@ -15,6 +15,7 @@
 #include <cstring>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -91,7 +92,7 @@ class Keeper {
     exit_.reset();
     supervisor_ = fork();
     last_beat_ns_ = last_look_ns_ = now_ns();
-    has_beaten_ = false;
+    has_beaten_ = is_killed_ = false;
     if (supervisor_ == 0) become_supervisor();
     if (supervisor_ < 0) return;
     setpgid(supervisor_, supervisor_);  // both processes do this, because either may run first
@@ -126,7 +127,12 @@ class Keeper {
     const auto now = now_ns();
     if (now - std::exchange(last_look_ns_, now) > kStoodStill_ns) last_beat_ns_ = now;
     take_beats(now);
-    if (supervisor_ > 0 && now - last_beat_ns_ > longest_silence_ns()) kill_supervisor(now);
+    if (supervisor_ <= 0 || is_killed_) return;
+    if (stop_requests_ >= kImpatient)
+      kill_supervisor("does not stop");
+    else if (now - last_beat_ns_ > longest_silence_ns())
+      kill_supervisor(fmt::format("has given no sign of life for {:.1f} s",
+                                  ns_to_seconds(now - last_beat_ns_)));
   }
 
   void handle(int signal_number) {
@@ -149,15 +155,13 @@ class Keeper {
   }
 
   std::int64_t longest_silence_ns() const {
-    if (stop_requests_ >= kImpatient) return 0;
     return has_beaten_ || stop_requests_ > 0 ? kLongestSilence_ns : kFirstBeat_ns;
   }
 
-  void kill_supervisor(std::int64_t now) {
-    log::warning("the supervisor (pid {}) has given no sign of life for {:.1f} s; killed",
-                 supervisor_, ns_to_seconds(now - last_beat_ns_));
+  void kill_supervisor(std::string_view why) {
+    log::warning("the supervisor (pid {}) {}; killed", supervisor_, why);
     kill(supervisor_, SIGKILL);
-    last_beat_ns_ = now;
+    is_killed_ = true;
   }
 
   /// Reaps all children that have ended. Stores the end of the supervisor, reports the others.
@@ -233,6 +237,7 @@ class Keeper {
   std::string rig_;            ///< name of the rig, from the beats; "" before the first one
   bool is_stopping_ = false;   ///< Beat::stopping of the last beat
   bool has_beaten_ = false;    ///< the present supervisor has
+  bool is_killed_ = false;     ///< the present supervisor was killed by the keeper
   std::int64_t last_beat_ns_ = 0;
   std::int64_t last_look_ns_ = 0;
   std::optional<Exit> exit_;
