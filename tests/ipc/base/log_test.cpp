@@ -46,8 +46,9 @@ TEST(Log, ElsewhereALineHasNoPriority) {
 }
 
 TEST(Log, ALineCanBeParsedAgainAndOthersCannot) {
-  const auto line = written(false, log::Level::warning, "the  sentence");
-  const auto parsed = log::parse(line.substr(0, line.size() - 1));
+  auto line = written(false, log::Level::warning, "the  sentence");
+  line.pop_back();  // the end of the line
+  const auto parsed = log::parse(line);
   ASSERT_TRUE(parsed);
   EXPECT_EQ(parsed->level, log::Level::warning);
   EXPECT_EQ(parsed->sentence, "the  sentence");
