@@ -178,28 +178,32 @@ TEST_F(Control, ClientsThatAskNothingDoNotShutOthersOut) {
 }
 
 TEST_F(Control, AClientThatWaitsForItsAnswerIsKeptWhenOthersComeIn) {
-  std::optional<ControlServer::Reply> later;
+  std::optional<ControlServer::Reply> down;
+  std::atomic<bool> is_waiting = false;
   serve([&](const Request& request, ControlServer::Reply reply) {
-    if (request.verb == Verb::down)
-      later = std::move(reply);
-    else
-      reply(success());
+    if (request.verb == Verb::down) {
+      down = std::move(reply);
+      is_waiting = true;
+      return;
+    }
+    (*down)(success());
+    reply(success());
   });
   const auto answered = while_it_turns([&] {
-    auto down = std::async(std::launch::async, [] {
+    auto answer = std::async(std::launch::async, [] {
       return ask_with_descriptors("desk", {.verb = Verb::down}, 20s).has_value();
     });
-    while (!later) usleep(1000);
+    while (!is_waiting) usleep(1000);
     std::vector<UniqueFd> idle;
     const auto address = address_of("desk").value();
     while (idle.size() < 100) {
       if (auto socket = connect_to(address))
         idle.push_back(std::move(*socket));
       else
-        usleep(1000);
+        usleep(1000);  // the queue is full
     }
-    (*later)(success());
-    return down.get();
+    EXPECT_TRUE(ask("desk", {}));
+    return answer.get();
   });
   EXPECT_TRUE(answered);
 }
