@@ -64,7 +64,7 @@ RigFolder::RigFolder() : programs_(folder_of_programs()) {
   std::string name = (std::filesystem::temp_directory_path() / "handcast-bench-XXXXXX").string();
   if (!::mkdtemp(name.data())) give_up("no folder for a rig");
   folder_ = name;
-  ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
+  ::setenv("HANDCAST_SCOPE", folder_.c_str(), 1);
   rig_text_ = text_of("config/rigs/twin.toml");
   if (rig_text_.find(kSetting) == std::string::npos)
     give_up(fmt::format("config/rigs/twin.toml has no '{}' to change", kSetting));

@@ -13,7 +13,7 @@
 namespace handcast::bench {
 
 /// A temporary folder with a copy of config/rigs/twin.toml, whose camera can also replay a short
-/// recording. It is the XDG_RUNTIME_DIR of this process, so that its rigs meet no others. The
+/// recording. It is the HANDCAST_SCOPE of this process, so that its rigs meet no others. The
 /// programs are those of HANDCAST_BIN, or those beside this program.
 class RigFolder {
  public:
