@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A running rig and its processes, for scripts/soak and scripts/storm. Uses only the standard library."""
+import argparse
 import json
 import os
 import pathlib
@@ -9,6 +10,17 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HANDCAST = pathlib.Path(os.environ.get("HANDCAST_BIN", ROOT / "build/bin")).resolve() / "handcast"
+
+
+def options_parser(name, minutes):
+    """The options that scripts which run a rig for some minutes have in common. `name`: that of the folder in out/."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--minutes", type=float, default=minutes)
+    parser.add_argument("--rig", default=ROOT / "config/rigs/twin.toml")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / name)
+    parser.add_argument("--set", action="append", default=[], metavar="path=value")
+    parser.add_argument("--seed", type=int, default=1)
+    return parser
 
 
 class Rig:

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The implementation of scripts/soak. Uses only the standard library."""
-import argparse
 import csv
 import os
 import pathlib
@@ -10,7 +9,7 @@ import signal
 import sys
 import time
 
-from running_rig import ROOT, Rig
+from running_rig import Rig, options_parser
 
 SAMPLE_EVERY_S = 5
 MOST_MISSED_PERCENT = 1  # more than in quiet: what a busy machine misses anyway is not the kills' doing
@@ -21,14 +20,9 @@ COLOURS = ("#1b6ca8", "#c1440e", "#3a7d44", "#7b4b94", "#b8860b", "#555555", "#0
 
 
 def parse_options():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--minutes", type=float, default=30)
-    parser.add_argument("--rig", default=ROOT / "config/rigs/twin.toml")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/soak")
-    parser.add_argument("--set", action="append", default=[], metavar="path=value")
+    parser = options_parser("soak", minutes=30)
     parser.add_argument("--every", type=float, default=2)
     parser.add_argument("--kill-supervisor", type=float, default=60)
-    parser.add_argument("--seed", type=int, default=1)
     return parser.parse_args()
 
 

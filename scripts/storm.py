@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The implementation of scripts/storm. Uses only the standard library."""
-import argparse
 import collections
 import csv
 import os
@@ -15,22 +14,12 @@ import sys
 import tempfile
 import time
 
-from running_rig import ROOT, Rig, processes_of
+from running_rig import Rig, options_parser, processes_of
 
 LONGEST_STOP_S = 5
 DOUBLE_AFTER_S = 3  # a replacement and the process that it replaces may overlap for less
 SETTINGS = ["camera.rate_hz=60", "projector.rate_hz=60", "projector.process.standby=true"]
 STOPS = ["down", "ctrl-c", "ctrl-c three times"]
-
-
-def parse_options():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--minutes", type=float, default=10)
-    parser.add_argument("--rig", default=ROOT / "config/rigs/twin.toml")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/storm")
-    parser.add_argument("--set", action="append", default=[], metavar="path=value")
-    parser.add_argument("--seed", type=int, default=1)
-    return parser.parse_args()
 
 
 def role_of(arguments):
@@ -203,7 +192,7 @@ def percentile(values, share):
 
 
 def main():
-    options = parse_options()
+    options = options_parser("storm", minutes=10).parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     chance, folder = random.Random(options.seed), Folder()
     rows, events = [], collections.Counter()

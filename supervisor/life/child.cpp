@@ -6,7 +6,6 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/words.hpp"
+#include "supervisor/base/pidfd.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -174,7 +174,7 @@ Result<Child> Child::spawn(const ChildSpec& spec) {
 
   Child child;
   child.pid_ = *pid;
-  child.pidfd_ = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, child.pid_, 0)));
+  child.pidfd_ = open_pidfd(child.pid_);
   if (!child.pidfd_) return cannot("watching " + spec.program.string());
   child.log_ = std::move(plan->log.read);
   child.ready_ = std::move(plan->ready.read);
@@ -182,10 +182,10 @@ Result<Child> Child::spawn(const ChildSpec& spec) {
   return child;
 }
 
-Child Child::adopt(AdoptedProcess process, ExitReports& reports) {
+Child Child::adopt(AdoptedProcess process, KeeperLink& keeper) {
   Child child;
   child.pid_ = process.saved.pid;
-  child.reports_ = &reports;
+  child.keeper_ = &keeper;
   child.pidfd_ = std::move(process.pidfd);
   child.log_ = std::move(process.log);
   return child;
@@ -195,7 +195,7 @@ Child::~Child() {
   if (pid_ <= 0 || reaped_) return;
   if (!pidfd_) ::kill(pid_, SIGKILL);
   signal(SIGKILL);
-  if (!reports_) {
+  if (!keeper_) {
     waitpid(pid_, nullptr, 0);
     return;
   }
@@ -205,21 +205,18 @@ Child::~Child() {
 
 // Uses the pidfd: the pid of an adopted process may have been reused.
 void Child::signal(int number) {
-  if (!reaped_ && pidfd_) syscall(SYS_pidfd_send_signal, pidfd_.get(), number, nullptr, 0);
+  if (!reaped_ && pidfd_) send_signal(pidfd_, number);
 }
 
 void Child::give_turn() {
   if (turn_ && daemon::give_turn(turn_.get())) turn_.reset();
 }
 
-bool Child::has_ended() const {
-  pollfd ended{.fd = pidfd_.get(), .events = POLLIN, .revents = 0};
-  return poll(&ended, 1, 0) == 1;
-}
+bool Child::has_ended() const { return supervisor::has_ended(pidfd_); }
 
 std::optional<Exit> Child::try_reap() {
   if (reaped_) return std::nullopt;
-  if (reports_) return try_reap_adopted();
+  if (keeper_) return try_reap_adopted();
   siginfo_t info{};
   if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
       info.si_pid == 0)
@@ -236,8 +233,8 @@ std::optional<Exit> Child::try_reap_adopted() {
     ended_ns_ = now_ns();
     kill(-pid_, SIGKILL);  // the pid was freed only a moment ago
   }
-  reports_->read();
-  auto exit = reports_->take(pid_);
+  keeper_->read();
+  auto exit = keeper_->take(pid_);
   if (!exit) exit = exit_told_by_kernel(pidfd_.get());
   const bool hopeless = now_ns() - ended_ns_ > kReportWait_ns;
   if (!exit && !hopeless) return std::nullopt;

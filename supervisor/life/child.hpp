@@ -13,7 +13,7 @@
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/daemon/handover.hpp"
 #include "supervisor/base/exit.hpp"
-#include "supervisor/life/exit_reports.hpp"
+#include "supervisor/life/keeper_link.hpp"
 #include "supervisor/life/saved_service.hpp"
 
 namespace handcast::supervisor {
@@ -37,13 +37,13 @@ class Child {
   /// Starts a process. Errors: bad_config (no such program), unavailable (no more processes or
   /// descriptors).
   static Result<Child> spawn(const ChildSpec& spec);
-  /// Takes over a process that an earlier supervisor started. `reports` must outlive the object.
-  static Child adopt(AdoptedProcess process, ExitReports& reports);
+  /// Takes over a process that an earlier supervisor started. `keeper` must outlive the object.
+  static Child adopt(AdoptedProcess process, KeeperLink& keeper);
   /// `other` has no process afterwards.
   Child(Child&& other) noexcept
       : pid_(std::exchange(other.pid_, -1)),
         reaped_(other.reaped_),
-        reports_(other.reports_),
+        keeper_(other.keeper_),
         ended_ns_(other.ended_ns_),
         pidfd_(std::move(other.pidfd_)),
         log_(std::move(other.log_)),
@@ -55,7 +55,7 @@ class Child {
   /// The pid; -1 after a move.
   pid_t pid() const { return pid_; }
   /// True if an earlier supervisor started the process.
-  bool is_adopted() const { return reports_ != nullptr; }
+  bool is_adopted() const { return keeper_ != nullptr; }
   /// A descriptor that is readable when the process has ended.
   int pidfd() const { return pidfd_.get(); }
   /// The output of the process (stdout and stderr). Non-blocking.
@@ -82,8 +82,8 @@ class Child {
 
   pid_t pid_ = -1;
   bool reaped_ = false;
-  ExitReports* reports_ = nullptr;  ///< set for an adopted process
-  std::int64_t ended_ns_ = 0;       ///< when the end of an adopted process was noticed
+  KeeperLink* keeper_ = nullptr;  ///< set for an adopted process
+  std::int64_t ended_ns_ = 0;     ///< when the end of an adopted process was noticed
   UniqueFd pidfd_, log_, ready_, turn_;
 };
 

@@ -198,7 +198,7 @@ void Service::inherit(const SavedService& saved) {
 
 void Service::adopt(AdoptedProcess process) {
   const auto started_ns = start_ns_of(process.saved.started_ticks);
-  watch_worker(Child::adopt(std::move(process), *launch_.reports));
+  watch_worker(Child::adopt(std::move(process), *launch_.keeper));
   handle(event::Adopted{started_ns});
 }
 

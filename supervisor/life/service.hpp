@@ -32,7 +32,7 @@ struct Launch {
   /// @{
   double ready_s = 10, stop_s = 3, silent_s = 2;
   /// @}
-  ExitReports* reports = nullptr;  ///< the ends of processes of an earlier supervisor
+  KeeperLink* keeper = nullptr;  ///< tells the ends of processes of an earlier supervisor
   /// The clock and the view of processes; a test has its own.
   /// @{
   std::function<std::int64_t()> now = now_ns;

@@ -49,7 +49,8 @@ Service::Look LiveRig::look_at(const Service& service, std::int64_t now) const {
 }
 
 RigView LiveRig::view() const {
-  return {name, services.all(), recorder, started_ns, now_ns(), keeper_died};
+  return {name,       services.all(), recorder,
+          started_ns, now_ns(),       launch.keeper && launch.keeper->keeper_died()};
 }
 
 }  // namespace handcast::supervisor

@@ -44,7 +44,6 @@ struct LiveRig {
   Phase phase = Phase::starting;  ///< the present phase
   std::int64_t started_ns;        ///< start of the rig, under whichever supervisor
   AppliedRig applied;             ///< what its services read
-  bool keeper_died = false;       ///< the keeper has died: no successor follows this supervisor
   Launch launch;                  ///< the parameters of its services
   Catalogue catalogue;            ///< the services that are installed
   RingSet rings;                  ///< its rings

@@ -44,7 +44,7 @@ RigRunner::RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop)
            .stop = [this] { begin_stop(kExitDone); }}) {
   rig_.launch.program_folder = options_.program_folder;
   if (const auto address = control::address_of(rig.name)) rig_.launch.rig = address->text;
-  rig_.launch.reports = &reports_;
+  rig_.launch.keeper = &keeper_;
   rig_.catalogue = read_catalogue(catalogue_folder(options_.program_folder));
 }
 
@@ -83,11 +83,10 @@ Result<void> RigRunner::watch_signals_and_time() {
   signals_ = std::move(*signals);
   timer_ = std::move(*timer);
 
-  if (reports_.fd() >= 0) {
-    loop_.watch(reports_.fd(), [this] {
-      reports_.read();
-      if (reports_.fd() >= 0) return tick();
-      rig_.keeper_died = true;
+  if (keeper_.fd() >= 0) {
+    loop_.watch(keeper_.fd(), [this] {
+      keeper_.read();
+      if (keeper_.fd() >= 0) return tick();
       log::warning("the keeper has died; `handcast up` with the same arguments starts another one");
     });
   }
@@ -108,7 +107,7 @@ Result<void> RigRunner::watch_signals_and_time() {
 Result<void> RigRunner::make_parts() {
   auto adopted = adopt(rig_.name);
   if (!adopted) return tl::make_unexpected(adopted.error());
-  reports_.read();
+  keeper_.read();
 
   const auto specs = services_of(rig_.config, rig_.catalogue);
   if (const auto made = make_rings_and_files(*adopted, specs); !made) {
@@ -184,7 +183,7 @@ void RigRunner::tick() {
 void RigRunner::beat(std::int64_t now) {
   if (now < next_beat_ns_) return;
   next_beat_ns_ = now + kBeatToKeeper_ns;
-  reports_.beat(rig_.name, rig_.stops());
+  keeper_.beat(rig_.name, rig_.stops());
 }
 
 /// Does the work after each turn of the event loop that is less urgent than replacing a service
@@ -279,7 +278,7 @@ void RigRunner::begin_stop(int exit_code) {
   exit_code_ = exit_code;
   rig_.phase = Phase::stopping;
   stop_by_ns_ = now_ns() + seconds_to_ns(rig_.launch.stop_s);
-  reports_.beat(rig_.name, true);
+  keeper_.beat(rig_.name, true);
   notify_systemd("STOPPING=1");
   requests_.on_stopping();
   for (const auto& service : rig_.services.all())

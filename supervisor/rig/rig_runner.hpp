@@ -66,7 +66,7 @@ class RigRunner {
   RunOptions options_;
   EventLoop loop_;
   UniqueFd signals_, timer_;
-  ExitReports reports_ = ExitReports::from_environment();
+  KeeperLink keeper_ = KeeperLink::from_environment();
   LiveRig rig_;
   std::unique_ptr<ControlServer> control_;
   Requests requests_;

@@ -17,7 +17,7 @@ struct RigView {
   const Recorder& recorder;     ///< LiveRig::recorder
   std::int64_t started_ns = 0;  ///< LiveRig::started_ns
   std::int64_t now_ns = 0;      ///< the moment, CLOCK_MONOTONIC
-  bool keeper_died = false;     ///< LiveRig::keeper_died
+  bool keeper_died = false;     ///< KeeperLink::keeper_died()
 };
 
 /// The status of a rig, as `handcast status --json` prints it.

@@ -9,7 +9,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/rig_address.hpp"
-#include "supervisor/succession/census.hpp"
+#include "supervisor/base/pidfd.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -21,10 +21,10 @@ bool lives(const AdoptedRig& adopted, pid_t pid) {
       adopted.services, [&](const AdoptedProcess& process) { return process.saved.pid == pid; });
 }
 
-void report_deaths(const AdoptedRig& adopted, ExitReports& reports) {
+void report_deaths(const AdoptedRig& adopted, KeeperLink& keeper) {
   for (const auto& saved : adopted.saved.services) {
     if (saved.pid == 0 || saved.state != State::ready || lives(adopted, saved.pid)) continue;
-    const auto exit = reports.take(saved.pid).value_or(Exit{.unknown = true});
+    const auto exit = keeper.take(saved.pid).value_or(Exit{.unknown = true});
     log::warning("{} (pid {}) died while there was no supervisor ({})", saved.name, saved.pid,
                  exit.describe());
   }
@@ -40,7 +40,7 @@ bool end_supervisor_without_keeper(const std::string& name) {
   if (!socket) return false;
   const auto pid = control::process_at_other_end(socket->get());
   log::info("the keeper of rig '{}' has died; its supervisor (pid {}) is replaced", name, pid);
-  const auto pidfd = pidfd_of(pid);
+  const auto pidfd = open_pidfd(pid);
   if (!pidfd) return false;
   kill_now(pid, pidfd);
   return true;
@@ -54,7 +54,7 @@ Result<void> take_rings(AdoptedRig& adopted, LiveRig& rig, const std::vector<Ser
 }
 
 void take_services(AdoptedRig adopted, LiveRig& rig) {
-  report_deaths(adopted, *rig.launch.reports);
+  report_deaths(adopted, *rig.launch.keeper);
   for (auto& saved : adopted.saved.services) {
     if (saved.pid != 0 && !lives(adopted, saved.pid)) ++saved.restarts;  // it will be started again
     if (auto* service = rig.services.find(saved.name)) service->inherit(saved);

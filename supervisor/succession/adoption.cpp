@@ -15,8 +15,8 @@
 #include "ipc/base/log.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/ring/row_owner.hpp"
+#include "supervisor/base/pidfd.hpp"
 #include "supervisor/base/process.hpp"
-#include "supervisor/succession/census.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
@@ -144,20 +144,19 @@ void kill_all(const std::vector<FoundProcess>& processes) {
 std::optional<std::pair<StateMemory, SavedRig>> newest_state(const std::string& name,
                                                              const std::vector<FoundProcess>& found,
                                                              const Stored& stored) {
-  const auto read = [&](UniqueFd file) -> std::optional<std::pair<StateMemory, SavedRig>> {
-    auto memory = StateMemory::open(std::move(file));
+  const auto read =
+      [&](Result<StateMemory> memory) -> std::optional<std::pair<StateMemory, SavedRig>> {
     if (!memory) return std::nullopt;
     auto saved = memory->load(name);
     if (!saved) return std::nullopt;
     return std::pair(std::move(*memory), std::move(*saved));
   };
-  for (const auto& process : found) {
-    const auto file = fmt::format("/proc/{}/fd/{}", process.pid, process.state_fd);
-    if (auto state = read(UniqueFd(::open(file.c_str(), O_RDWR | O_CLOEXEC)))) return state;
-  }
+  for (const auto& process : found)
+    if (auto state = read(state_memory_of(process))) return state;
   for (const auto& [stored_name, fd] : stored)
     if (stored_name == kStateName)
-      if (auto state = read(UniqueFd(fcntl(fd.get(), F_DUPFD_CLOEXEC, 3)))) return state;
+      if (auto state = read(StateMemory::open(UniqueFd(fcntl(fd.get(), F_DUPFD_CLOEXEC, 3)))))
+        return state;
   return std::nullopt;
 }
 
@@ -201,6 +200,11 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   if (!rings) return std::nullopt;  // systemd did not keep all of them, but they are not in use
   return AdoptedRig{std::move(saved), std::move(memory), std::move(*rings),
                     keep_the_ready(std::move(living))};
+}
+
+Result<StateMemory> state_memory_of(const FoundProcess& service) {
+  const auto file = fmt::format("/proc/{}/fd/{}", service.pid, service.state_fd);
+  return StateMemory::open(UniqueFd(::open(file.c_str(), O_RDWR | O_CLOEXEC)));
 }
 
 std::vector<std::string> orphaned_rigs() {

@@ -6,6 +6,7 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/shm/segment.hpp"
+#include "supervisor/succession/census.hpp"
 #include "supervisor/succession/saved_rig.hpp"
 #include "supervisor/succession/state_memory.hpp"
 
@@ -34,6 +35,8 @@ struct AdoptedRig {
 /// (stop_rig()).
 Result<std::optional<AdoptedRig>> adopt(const std::string& name);
 
+/// The memory with the saved state that a service holds open. Errors: bad_data (it has none).
+Result<StateMemory> state_memory_of(const FoundProcess& service);
 /// The names of this user's rigs whose services live without a supervisor, sorted.
 std::vector<std::string> orphaned_rigs();
 /// The saved state of a rig, from its living services. Empty if there is none.

@@ -2,10 +2,8 @@
 #include "supervisor/succession/census.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <signal.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,6 +19,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
+#include "supervisor/base/pidfd.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -85,7 +84,7 @@ std::string environment_of(const std::filesystem::path& process) {
 /// reused.
 std::optional<FoundProcess> examine(pid_t pid, const std::filesystem::path& folder) {
   if (!is_of_this_user(folder) || getsid(pid) != pid) return std::nullopt;
-  auto pidfd = pidfd_of(pid);
+  auto pidfd = open_pidfd(pid);
   if (!pidfd || has_ended(pidfd)) return std::nullopt;
   const auto environment = environment_of(folder);
   const auto address = value_in(environment, daemon::kRigVariable);
@@ -99,30 +98,7 @@ std::optional<FoundProcess> examine(pid_t pid, const std::filesystem::path& fold
                       .state_fd = static_cast<int>(number_in(environment, daemon::kStateVariable))};
 }
 
-void send_signal(const UniqueFd& pidfd, int number) {
-  syscall(SYS_pidfd_send_signal, pidfd.get(), number, nullptr, 0);
-}
-
 }  // namespace
-
-UniqueFd pidfd_of(pid_t pid) { return UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, pid, 0))); }
-
-bool has_ended(const UniqueFd& pidfd) {
-  pollfd ended{.fd = pidfd.get(), .events = POLLIN, .revents = 0};
-  return poll(&ended, 1, 0) == 1;
-}
-
-bool ends_within(const UniqueFd& pidfd, double seconds) {
-  pollfd ended{.fd = pidfd.get(), .events = POLLIN, .revents = 0};
-  return poll(&ended, 1, static_cast<int>(std::max(seconds, 0.0) * 1e3) + 1) == 1;
-}
-
-void kill_now(pid_t pid, const UniqueFd& pidfd) {
-  if (has_ended(pidfd)) return;
-  kill(-pid, SIGKILL);  // it lives, so its pid has not been reused
-  send_signal(pidfd, SIGKILL);
-  ends_within(pidfd, 1);
-}
 
 std::vector<FoundProcess> find_services() {
   std::vector<FoundProcess> found;

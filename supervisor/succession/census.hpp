@@ -33,13 +33,4 @@ std::vector<FoundProcess> find_services(const std::string& name);
 /// was started after `before_ns`. Returns the number of processes that were found.
 int end_services(const std::string& name, double patience_s, std::int64_t before_ns);
 
-/// True if the process has ended, reaped or not.
-bool has_ended(const UniqueFd& pidfd);
-/// True if the process ends within this time.
-bool ends_within(const UniqueFd& pidfd, double seconds);
-/// Kills a process and its process group, and waits for its end, at most a second.
-void kill_now(pid_t pid, const UniqueFd& pidfd);
-/// A pidfd of a process; empty if it has ended.
-UniqueFd pidfd_of(pid_t pid);
-
 }  // namespace handcast::supervisor

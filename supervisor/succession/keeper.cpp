@@ -23,7 +23,7 @@
 #include "ipc/base/unique_fd.hpp"
 #include "supervisor/base/console.hpp"
 #include "supervisor/base/exit.hpp"
-#include "supervisor/life/exit_reports.hpp"
+#include "supervisor/life/keeper_link.hpp"
 #include "supervisor/succession/census.hpp"
 #include "supervisor/succession/supervisor_command.hpp"
 #include "supervisor/succession/supervisor_deaths.hpp"

@@ -10,7 +10,7 @@ inline constexpr const char* kKeeperName = "handcast-keeper";
 
 /// Makes this process the keeper of a supervisor, the program `arguments[0]` with its arguments.
 /// The keeper starts the supervisor in its own process group. It reaps the services of a supervisor
-/// that died (PR_SET_CHILD_SUBREAPER), reports their ends (life/exit_reports.hpp), and forwards
+/// that died (PR_SET_CHILD_SUBREAPER), reports their ends (life/keeper_link.hpp), and forwards
 /// SIGINT, SIGTERM and SIGHUP. It kills a supervisor that sends no beat for two seconds, and at
 /// once when the same stop signal comes for the third time. It starts a successor if the supervisor
 /// is killed by a signal, or if a successor exits with kExitRetry; but if the rig was to be

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/rig_address.hpp"
+#include "supervisor/base/pidfd.hpp"
 #include "supervisor/base/process.hpp"
 #include "supervisor/succession/census.hpp"
 #include "supervisor/succession/keeper.hpp"
@@ -37,11 +37,7 @@ struct Process {
   explicit operator bool() const { return static_cast<bool>(pidfd); }
 };
 
-Process open_process(pid_t pid) { return {pid, pid > 1 ? pidfd_of(pid) : UniqueFd()}; }
-
-void send_signal(const Process& process, int number) {
-  syscall(SYS_pidfd_send_signal, process.pidfd.get(), number, nullptr, 0);
-}
+Process open_process(pid_t pid) { return {pid, pid > 1 ? open_pidfd(pid) : UniqueFd()}; }
 
 Process supervisor_of(const control::RigAddress& address) {
   const auto socket = control::connect_to(address);
@@ -86,12 +82,12 @@ Forced end_by_force(const std::string& name, const Process& supervisor, std::int
   const auto keeper = keeper_of(supervisor, name);
   const auto found = static_cast<int>(find_services(name).size());
   if (keeper) {
-    send_signal(keeper, SIGTERM);
+    send_signal(keeper.pidfd, SIGTERM);
     if (!ends_within(keeper.pidfd, kKeeper_s)) kill_now(keeper.pid, keeper.pidfd);
   }
   if (supervisor && !has_ended(supervisor.pidfd)) {
     log::warning("the supervisor of rig '{}' (pid {}) hangs; killed", name, supervisor.pid);
-    send_signal(supervisor, SIGKILL);
+    send_signal(supervisor.pidfd, SIGKILL);
     ends_within(supervisor.pidfd, 1);
   }
   return {std::max(found, end_services(name, kServices_s, before_ns)), static_cast<bool>(keeper)};

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "supervisor/life/exit_reports.hpp"
+#include "supervisor/life/keeper_link.hpp"
 #include "supervisor/succession/keeper.hpp"
 
 namespace handcast::supervisor {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The supervisor is killed: services and light continue, and the next supervisor takes them over.
+#include "supervisor/succession/adoption.hpp"
+
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -8,8 +10,6 @@
 
 #include "ipc/control/rig_address.hpp"
 #include "ipc/ring/ring_view.hpp"
-#include "supervisor/succession/census.hpp"
-#include "supervisor/succession/state_memory.hpp"
 #include "tests/system/running_rig.hpp"
 #include "tests/system/variable.hpp"
 
@@ -27,10 +27,7 @@ class Adoption : public SystemTest {
   /// @{
   supervisor::StateMemory memory() const {
     const Variable scope(control::kScopeVariable, scratch_.path().string());
-    const auto service = std::move(supervisor::find_services("twin").at(0));
-    const auto file =
-        "/proc/" + std::to_string(service.pid) + "/fd/" + std::to_string(service.state_fd);
-    return supervisor::StateMemory::open(UniqueFd(open(file.c_str(), O_RDWR | O_CLOEXEC))).value();
+    return supervisor::state_memory_of(supervisor::find_services("twin").at(0)).value();
   }
   supervisor::SavedRig state() const { return memory().load("twin").value(); }
   /// @}

@@ -167,7 +167,7 @@ TEST(Child, AServiceOutlivesItsSupervisor) {
 
 TEST(Child, TheEndOfAnAdoptedProcessThatNobodyReportsIsUnknown) {
   unsetenv("HANDCAST_KEEPER_FD");
-  auto reports = ExitReports::from_environment();
+  auto reports = KeeperLink::from_environment();
   auto other = shell("exec sleep 1000").value();
   AdoptedProcess process;
   process.saved.pid = other.pid();

@@ -1,75 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/life/service.hpp"
+// The processes of a service over their lives.
+#include <sys/mman.h>
 
-#include <gmock/gmock.h>
-#include <signal.h>
-#include <stdlib.h>
-#include <sys/stat.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
-#include <fstream>
-
-#include "ipc/base/clock.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/ring/writer.hpp"
 #include "supervisor/base/process.hpp"
+#include "tests/supervisor/life/service_fixture.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 using testing::ElementsAre;
-
-/// A service whose program is a shell script of the test.
-class ServiceTest : public testing::Test {
- protected:
-  void SetUp() override {
-    char name[] = "/tmp/handcast-service-XXXXXX";
-    ASSERT_NE(mkdtemp(name), nullptr);
-    launch_.program_folder = name;
-    launch_.stop_s = 0.2;
-    launch_.ready_s = 20;
-    timer_ = open_timer(5'000'000).value();
-    loop_.watch(timer_.get(), [this] {
-      drain(timer_.get());
-      for (const auto& service : services_) service->tick(now_ns(), look());
-      ++ticks_;
-    });
-  }
-  void TearDown() override {
-    services_.clear();
-    std::filesystem::remove_all(launch_.program_folder);
-  }
-
-  Service& service(const std::string& script) {
-    const auto program = launch_.program_folder / "handcast-pose";
-    std::ofstream(program) << "#!/bin/bash\n" << script << "\n";
-    chmod(program.c_str(), 0755);
-    services_.push_back(std::make_unique<Service>(
-        ServiceSpec{.name = "pose", .stream = "pose.hands", .backend = "twin", .process = process_},
-        launch_, loop_, [this](Service&, Notice notice) { notices_.push_back(notice); }));
-    return *services_.back();
-  }
-  Service::Look look() const {
-    return {.needs_are_ready = needs_are_ready_, .last_sign_ns = now_ns()};
-  }
-  void run_until(const std::function<bool()>& done) {
-    const auto limit = Deadline::in(std::chrono::seconds(30));
-    while (!done() && !limit.passed()) loop_.turn();
-    ASSERT_TRUE(done());
-  }
-
-  EventLoop loop_ = EventLoop::open().value();
-  UniqueFd timer_;
-  Launch launch_;
-  config::Process process_;
-  std::vector<std::unique_ptr<Service>> services_;
-  std::vector<Notice> notices_;
-  bool needs_are_ready_ = true;
-  int ticks_ = 0;
-};
-
-constexpr auto kWorks = "echo >&$HANDCAST_READY_FD; exec sleep 1000";
 
 TEST_F(ServiceTest, IsReadyWhenItSaysSoAndStopsWhenAsked) {
   auto& pose = service(kWorks);
@@ -204,16 +145,7 @@ TEST_F(ServiceTest, AnAdoptedServiceGoesOnAsItWasAndIsReplacedWhenItDies) {
   auto& first = service(kWorks);
   first.start();
   run_until([&] { return first.state() == State::ready; });
-  auto reports = ExitReports::from_environment();
-  launch_.reports = &reports;
-  AdoptedProcess process{
-      .saved = first.saved(),
-      .pidfd = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, first.pid(), 0))),
-      .log = {}};
-  process.saved.restarts = 3;
-  auto& second = service(kWorks);
-  second.inherit(process.saved);
-  second.adopt(std::move(process));
+  auto& second = adopting(first, kWorks, 3);
   EXPECT_EQ(second.state(), State::ready);
   EXPECT_EQ(second.pid(), first.pid());
   EXPECT_EQ(second.restarts(), 3);
@@ -221,7 +153,6 @@ TEST_F(ServiceTest, AnAdoptedServiceGoesOnAsItWasAndIsReplacedWhenItDies) {
   ::kill(adopted, SIGKILL);
   run_until([&] { return second.state() == State::ready && second.pid() != adopted; });
   EXPECT_EQ(second.restarts(), 4);
-  services_.pop_back();  // before `reports`
 }
 
 TEST_F(ServiceTest, OnlyASwapIsInheritedAsASwap) {
@@ -306,185 +237,6 @@ TEST_F(PublishingService, MayBeSilentAsLongAsItsNeedsAreNotReady) {
 }
 
 /// A service with a spare. Each process that has prepared itself leaves its number in a file of its
-/// own.
-class ServiceWithSpare : public ServiceTest {
- protected:
-  void SetUp() override {
-    ServiceTest::SetUp();
-    process_.standby = true;
-  }
-  Service& ready_service() {
-    auto& pose = service(kSpares);
-    pose.start();
-    run_until([&] { return pose.state() == State::ready && pose.spare_pid() != 0; });
-    return pose;
-  }
-  static constexpr auto kSpares =
-      "if [ -n \"$HANDCAST_STANDBY_FD\" ]; then\n"
-      "  printf s >&$HANDCAST_READY_FD\n"
-      "  read -n 1 -u $HANDCAST_STANDBY_FD || exit 0\n"
-      "fi\n"
-      "echo >&$HANDCAST_READY_FD; exec sleep 1000";
-};
-
-TEST_F(ServiceWithSpare, TheSpareTakesOverWhenTheWorkerDies) {
-  auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
-  ::kill(worker, SIGKILL);
-  run_until([&] { return pose.pid() != worker && pose.state() == State::ready; });
-  EXPECT_EQ(pose.pid(), spare);
-  EXPECT_EQ(pose.restarts(), 1);
-  run_until([&] { return pose.spare_pid() != 0; });
-  EXPECT_NE(pose.spare_pid(), spare) << "there is a new one";
-}
-
-TEST_F(ServiceWithSpare, ASpareThatDiesIsReplacedAndDoesNotCount) {
-  auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
-  ::kill(spare, SIGKILL);
-  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
-  EXPECT_EQ(pose.pid(), worker);
-  EXPECT_EQ(pose.restarts(), 0);
-  EXPECT_EQ(pose.state(), State::ready);
-}
-
-TEST_F(ServiceWithSpare, ASpareThatHangsIsReplaced) {
-  launch_.silent_s = 0.2;
-  auto& pose = ready_service();
-  const auto spare =
-      pose.spare_pid();  // the script says one 's' and then nothing, as if it were stopped
-  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
-  EXPECT_EQ(pose.restarts(), 0);
-}
-
-/// A service without standby whose processes can be prepared, except with the back end "broken".
-class ReplacedService : public ServiceWithSpare {
- protected:
-  void SetUp() override {
-    ServiceWithSpare::SetUp();
-    process_.standby = false;
-  }
-  Service& ready_service() {
-    auto& pose = service(
-        "case \"$*\" in *pose.backend=broken*) echo '1.0 pose error it is broken' >&2; exit 100;;"
-        " esac\n" +
-        std::string(kSpares));
-    pose.start();
-    run_until([&] { return pose.state() == State::ready; });
-    return pose;
-  }
-  static Settings with_backend(const Service& service, const std::string& backend) {
-    auto wanted = service.settings();
-    wanted.spec.backend = wanted.swapped = backend;
-    wanted.spec.fingerprint = "of " + backend;
-    return wanted;
-  }
-};
-
-TEST_F(ReplacedService, TheOldProcessWorksUntilTheNewOneCanAndTheSettingsChangeWithIt) {
-  auto& pose = ready_service();
-  const auto before = pose.pid();
-  pose.prepare(with_backend(pose, "replay"), {}, false);
-  run_until([&] { return pose.replacement_is_prepared(); });
-  EXPECT_EQ(pose.pid(), before);
-  EXPECT_EQ(pose.state(), State::ready);
-  EXPECT_EQ(pose.spec().backend, "twin") << "that is what works";
-  EXPECT_EQ(pose.saved().swapped, "") << "and what a successor would continue";
-  pose.hand_over();
-  EXPECT_EQ(pose.spec().backend, "replay");
-  EXPECT_EQ(pose.saved().swapped, "replay");
-  EXPECT_EQ(pose.saved().fingerprint, "of replay");
-  EXPECT_NE(pose.pid(), before);
-  run_until([&] { return pose.state() == State::ready && ::kill(before, 0) != 0; });
-  EXPECT_FALSE(pose.has_replacement());
-  EXPECT_EQ(pose.restarts(), 0);
-  pose.stop();
-  run_until([&] { return pose.state() == State::stopped; });
-}
-
-TEST_F(ReplacedService, OneThatCannotBePreparedSaysWhyAndTheOldProcessGoesOn) {
-  auto& pose = ready_service();
-  const auto before = pose.pid();
-  pose.prepare(with_backend(pose, "broken"), {}, false);
-  run_until([&] { return !pose.has_replacement(); });
-  EXPECT_EQ(pose.replacement_problem(), "it is broken");
-  EXPECT_EQ(pose.pid(), before);
-  EXPECT_EQ(pose.state(), State::ready);
-  pose.hand_over();
-  EXPECT_EQ(pose.pid(), before) << "there is nothing to hand over to";
-  ::kill(before, SIGKILL);
-  run_until([&] { return pose.pid() != before && pose.state() == State::ready; });
-  EXPECT_EQ(pose.spec().backend, "twin") << "the old settings";
-}
-
-TEST_F(ReplacedService, OneThatNeedsTheDeviceGetsItsTurnAfterTheOldProcessHasEnded) {
-  auto& pose = ready_service();
-  const auto before = pose.pid();
-  pose.prepare(with_backend(pose, "replay"), {.alone = true}, false);
-  run_until([&] { return pose.replacement_is_prepared(); });
-  pose.hand_over();
-  EXPECT_EQ(pose.pid(), before);
-  EXPECT_EQ(pose.state(), State::stopping);
-  run_until([&] { return pose.pid() != before && pose.state() == State::ready; });
-  EXPECT_NE(::kill(before, 0), 0);
-  EXPECT_EQ(pose.spec().backend, "replay");
-}
-
-TEST_F(ReplacedService, AStopInTheMiddleEndsBothAndLeavesTheOldSettings) {
-  auto& pose = ready_service();
-  pose.prepare(with_backend(pose, "replay"), {}, false);
-  run_until([&] { return pose.replacement_is_prepared(); });
-  pose.stop();
-  run_until([&] { return pose.state() == State::stopped; });
-  EXPECT_FALSE(pose.is_running());
-  EXPECT_EQ(pose.spec().backend, "twin");
-  pose.start();
-  run_until([&] { return pose.state() == State::ready; });
-  EXPECT_EQ(pose.spec().backend, "twin");
-}
-
-TEST_F(ReplacedService, AnAdoptedProcessIsReplacedToo) {
-  auto& first = ready_service();
-  auto reports = ExitReports::from_environment();
-  launch_.reports = &reports;
-  AdoptedProcess process{
-      .saved = first.saved(),
-      .pidfd = UniqueFd(static_cast<int>(syscall(SYS_pidfd_open, first.pid(), 0))),
-      .log = {}};
-  auto& second = service(kSpares);
-  second.inherit(process.saved);
-  second.adopt(std::move(process));
-  const auto adopted = second.pid();
-  second.prepare(second.settings(), {}, true);
-  run_until([&] { return second.replacement_is_prepared(); });
-  second.hand_over();
-  run_until([&] { return second.state() == State::ready && second.spare_pid() == 0; });
-  EXPECT_NE(second.pid(), adopted);
-  second.stop();
-  run_until([&] { return second.state() == State::stopped; });
-  services_.pop_back();  // before `reports`
-}
-
-TEST_F(ServiceWithSpare, StopEndsBoth) {
-  auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
-  pose.stop();
-  run_until([&] { return pose.state() == State::stopped; });
-  EXPECT_NE(::kill(worker, 0), 0);
-  EXPECT_NE(::kill(spare, 0), 0);
-  EXPECT_FALSE(pose.is_running());
-}
-
-TEST_F(ServiceWithSpare, RestartReplacesBoth) {
-  auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
-  pose.restart();
-  run_until([&] {
-    return pose.state() == State::ready && pose.pid() != worker && pose.spare_pid() != 0 &&
-           pose.spare_pid() != spare;
-  });
-  EXPECT_NE(pose.pid(), spare) << "a spare of the old settings does not take over";
-}
 
 }  // namespace
 }  // namespace handcast::supervisor

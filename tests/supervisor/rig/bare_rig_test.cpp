@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rigs of daemons without real work: how the supervisor and its successor handle them.
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -89,12 +88,7 @@ class BareRig : public testing::Test {
   /// The applied rig as TOML.
   static std::string applied() { return state_of("desk").value().applied; }
   /// The memory in which the supervisor saves its state.
-  static StateMemory memory() {
-    const auto service = std::move(find_services("desk").at(0));
-    const auto file =
-        "/proc/" + std::to_string(service.pid) + "/fd/" + std::to_string(service.state_fd);
-    return StateMemory::open(UniqueFd(::open(file.c_str(), O_RDWR | O_CLOEXEC))).value();
-  }
+  static StateMemory memory() { return state_memory_of(find_services("desk").at(0)).value(); }
   static json services() {
     const auto answer =
         control::ask("desk", {.verb = control::Verb::status, .service = {}, .backend = {}});

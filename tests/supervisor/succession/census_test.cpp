@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "supervisor/base/pidfd.hpp"
 #include "tests/supervisor/succession/orphans.hpp"
 
 namespace handcast::supervisor {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/life/exit_reports.hpp"
+#include "supervisor/life/keeper_link.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -14,44 +14,44 @@
 namespace handcast::supervisor {
 namespace {
 
-class ExitReportsTest : public testing::Test {
+class KeeperLinkTest : public testing::Test {
  protected:
   void SetUp() override {
     std::array<int, 2> ends{};
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
     keeper_ = UniqueFd(ends[0]);
     setenv(kKeeperVariable, std::to_string(ends[1]).c_str(), 1);
-    reports_ = ExitReports::from_environment();
+    link_ = KeeperLink::from_environment();
   }
   void tell(ExitReport report) const {
     ASSERT_EQ(send(keeper_.get(), &report, sizeof report, 0), static_cast<ssize_t>(sizeof report));
   }
 
   UniqueFd keeper_;
-  ExitReports reports_;
+  KeeperLink link_;
 };
 
-TEST_F(ExitReportsTest, EachEndIsToldOnce) {
+TEST_F(KeeperLinkTest, EachEndIsToldOnce) {
   tell({11, CLD_EXITED, 100});
   tell({12, CLD_KILLED, SIGSEGV});
   tell({13, CLD_DUMPED, SIGABRT});
-  EXPECT_EQ(reports_.take(11), std::nullopt);  // not read yet
-  reports_.read();
-  EXPECT_TRUE(reports_.take(11)->asks_for_a_person());
-  EXPECT_EQ(reports_.take(12)->describe(), "signal 11 (Segmentation fault)");
-  EXPECT_TRUE(reports_.take(13)->signalled);
-  EXPECT_EQ(reports_.take(11), std::nullopt);
-  EXPECT_EQ(reports_.take(99), std::nullopt);
+  EXPECT_EQ(link_.take(11), std::nullopt);  // not read yet
+  link_.read();
+  EXPECT_TRUE(link_.take(11)->asks_for_a_person());
+  EXPECT_EQ(link_.take(12)->describe(), "signal 11 (Segmentation fault)");
+  EXPECT_TRUE(link_.take(13)->signalled);
+  EXPECT_EQ(link_.take(11), std::nullopt);
+  EXPECT_EQ(link_.take(99), std::nullopt);
 }
 
-TEST_F(ExitReportsTest, ServicesDoNotInheritTheSocket) {
+TEST_F(KeeperLinkTest, ServicesDoNotInheritTheSocket) {
   EXPECT_EQ(getenv(kKeeperVariable), nullptr);
-  EXPECT_EQ(fcntl(reports_.fd(), F_GETFD), FD_CLOEXEC);
+  EXPECT_EQ(fcntl(link_.fd(), F_GETFD), FD_CLOEXEC);
 }
 
-TEST_F(ExitReportsTest, ABeatTellsTheKeeperTheRigAndWhetherItStops) {
+TEST_F(KeeperLinkTest, ABeatTellsTheKeeperTheRigAndWhetherItStops) {
   for (const bool stopping : {false, true}) {
-    reports_.beat("desk", stopping);
+    link_.beat("desk", stopping);
     Beat beat;
     ASSERT_EQ(recv(keeper_.get(), &beat, sizeof beat, MSG_DONTWAIT), sizeof beat);
     EXPECT_STREQ(beat.rig.data(), "desk");
@@ -59,45 +59,45 @@ TEST_F(ExitReportsTest, ABeatTellsTheKeeperTheRigAndWhetherItStops) {
   }
 }
 
-TEST_F(ExitReportsTest, TheKeepersDeathIsNoticedAndNoKeeperIsNotADeadOne) {
-  EXPECT_FALSE(reports_.keeper_died());
+TEST_F(KeeperLinkTest, TheKeepersDeathIsNoticedAndNoKeeperIsNotADeadOne) {
+  EXPECT_FALSE(link_.keeper_died());
   keeper_.reset();
-  reports_.read();
-  EXPECT_TRUE(reports_.keeper_died());
-  EXPECT_FALSE(ExitReports::from_environment().keeper_died());
+  link_.read();
+  EXPECT_TRUE(link_.keeper_died());
+  EXPECT_FALSE(KeeperLink::from_environment().keeper_died());
 }
 
-TEST_F(ExitReportsTest, WhatIsNoReportIsPassedOver) {
+TEST_F(KeeperLinkTest, WhatIsNoReportIsPassedOver) {
   send(keeper_.get(), "gossip", 6, 0);
   tell({11, CLD_EXITED, 0});
-  reports_.read();
-  EXPECT_TRUE(reports_.take(11)->is_success());
+  link_.read();
+  EXPECT_TRUE(link_.take(11)->is_success());
 }
 
-TEST_F(ExitReportsTest, AKeeperThatDiesLeavesItsLastReports) {
+TEST_F(KeeperLinkTest, AKeeperThatDiesLeavesItsLastReports) {
   tell({11, CLD_EXITED, 3});
   keeper_.reset();
-  reports_.read();
-  EXPECT_EQ(reports_.take(11)->code, 3);
-  EXPECT_EQ(reports_.fd(), -1);
-  reports_.read();
+  link_.read();
+  EXPECT_EQ(link_.take(11)->code, 3);
+  EXPECT_EQ(link_.fd(), -1);
+  link_.read();
 }
 
-TEST(ExitReports, WithoutAKeeperThereIsNothingToRead) {
+TEST(KeeperLink, WithoutAKeeperThereIsNothingToRead) {
   for (const auto* value : {"", "two", "-1", "1", "9999", "12abc"}) {
     setenv(kKeeperVariable, value, 1);
-    auto reports = ExitReports::from_environment();
+    auto reports = KeeperLink::from_environment();
     EXPECT_EQ(reports.fd(), -1) << value;
     reports.read();
   }
 }
 
-TEST(ExitReports, ManyThatNobodyAsksAboutDoNotFillTheMemory) {
+TEST(KeeperLink, ManyThatNobodyAsksAboutDoNotFillTheMemory) {
   std::array<int, 2> ends{};
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
   const UniqueFd keeper(ends[0]);
   setenv(kKeeperVariable, std::to_string(ends[1]).c_str(), 1);
-  auto reports = ExitReports::from_environment();
+  auto reports = KeeperLink::from_environment();
   int left = 0;
   for (pid_t pid = 2; pid < 5000; ++pid) {
     const ExitReport report{pid, CLD_EXITED, 0};

@@ -34,11 +34,11 @@ inline constexpr std::int64_t kBeatToKeeper_ns = 200'000'000;
 /// The supervisor's end of the socket pair to its keeper. It gets the ends of processes that are
 /// not children of this supervisor: the services of a supervisor that died become children of its
 /// keeper, which reaps them and sends an ExitReport for each. It sends beats.
-class ExitReports {
+class KeeperLink {
  public:
   /// Takes the socket that kKeeperVariable names, and unsets the variable. Without a keeper there
   /// are no reports.
-  static ExitReports from_environment();
+  static KeeperLink from_environment();
 
   /// A descriptor that is readable when a report has arrived. Non-blocking. -1 if there is no
   /// keeper.

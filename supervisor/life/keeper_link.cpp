@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/life/exit_reports.hpp"
+#include "supervisor/life/keeper_link.hpp"
 
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -52,17 +52,17 @@ constexpr unsigned long kPidfdGetInfo = _IOC(_IOC_READ | _IOC_WRITE, 0xFF, 11, s
 
 }  // namespace
 
-ExitReports ExitReports::from_environment() {
-  ExitReports reports;
+KeeperLink KeeperLink::from_environment() {
+  KeeperLink link;
   const int fd = take_number(kKeeperVariable);
-  if (!is_report_socket(fd)) return reports;
+  if (!is_report_socket(fd)) return link;
   fcntl(fd, F_SETFD, FD_CLOEXEC);
-  reports.socket_ = UniqueFd(fd);
-  reports.had_keeper_ = true;
-  return reports;
+  link.socket_ = UniqueFd(fd);
+  link.had_keeper_ = true;
+  return link;
 }
 
-void ExitReports::read() {
+void KeeperLink::read() {
   ExitReport report;
   ssize_t size = 0;
   while (socket_ && (size = recv(socket_.get(), &report, sizeof report, MSG_DONTWAIT)) > 0) {
@@ -73,13 +73,13 @@ void ExitReports::read() {
   if (size == 0) socket_.reset();  // the keeper has ended
 }
 
-void ExitReports::beat(std::string_view rig, bool stopping) {
+void KeeperLink::beat(std::string_view rig, bool stopping) {
   Beat beat{.stopping = stopping};
   rig.copy(beat.rig.data(), beat.rig.size() - 1);
   send(socket_.get(), &beat, sizeof beat, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
-std::optional<Exit> ExitReports::take(pid_t pid) {
+std::optional<Exit> KeeperLink::take(pid_t pid) {
   const auto exit = exits_.extract(pid);
   return exit ? std::optional(exit.mapped()) : std::nullopt;
 }

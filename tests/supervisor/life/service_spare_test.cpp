@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// A service with two processes: a worker and its spare, or its replacement.
+#include "tests/supervisor/life/service_fixture.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+using testing::ElementsAre;
+
+/// own.
+class ServiceWithSpare : public ServiceTest {
+ protected:
+  void SetUp() override {
+    ServiceTest::SetUp();
+    process_.standby = true;
+  }
+  Service& ready_service() {
+    auto& pose = service(kSpares);
+    pose.start();
+    run_until([&] { return pose.state() == State::ready && pose.spare_pid() != 0; });
+    return pose;
+  }
+  static constexpr auto kSpares =
+      "if [ -n \"$HANDCAST_STANDBY_FD\" ]; then\n"
+      "  printf s >&$HANDCAST_READY_FD\n"
+      "  read -n 1 -u $HANDCAST_STANDBY_FD || exit 0\n"
+      "fi\n"
+      "echo >&$HANDCAST_READY_FD; exec sleep 1000";
+};
+
+TEST_F(ServiceWithSpare, TheSpareTakesOverWhenTheWorkerDies) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  ::kill(worker, SIGKILL);
+  run_until([&] { return pose.pid() != worker && pose.state() == State::ready; });
+  EXPECT_EQ(pose.pid(), spare);
+  EXPECT_EQ(pose.restarts(), 1);
+  run_until([&] { return pose.spare_pid() != 0; });
+  EXPECT_NE(pose.spare_pid(), spare) << "there is a new one";
+}
+
+TEST_F(ServiceWithSpare, ASpareThatDiesIsReplacedAndDoesNotCount) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  ::kill(spare, SIGKILL);
+  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  EXPECT_EQ(pose.pid(), worker);
+  EXPECT_EQ(pose.restarts(), 0);
+  EXPECT_EQ(pose.state(), State::ready);
+}
+
+TEST_F(ServiceWithSpare, ASpareThatHangsIsReplaced) {
+  launch_.silent_s = 0.2;
+  auto& pose = ready_service();
+  const auto spare =
+      pose.spare_pid();  // the script says one 's' and then nothing, as if it were stopped
+  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  EXPECT_EQ(pose.restarts(), 0);
+}
+
+/// A service without standby whose processes can be prepared, except with the back end "broken".
+class ReplacedService : public ServiceWithSpare {
+ protected:
+  void SetUp() override {
+    ServiceWithSpare::SetUp();
+    process_.standby = false;
+  }
+  Service& ready_service() {
+    auto& pose = service(
+        "case \"$*\" in *pose.backend=broken*) echo '1.0 pose error it is broken' >&2; exit 100;;"
+        " esac\n" +
+        std::string(kSpares));
+    pose.start();
+    run_until([&] { return pose.state() == State::ready; });
+    return pose;
+  }
+  static Settings with_backend(const Service& service, const std::string& backend) {
+    auto wanted = service.settings();
+    wanted.spec.backend = wanted.swapped = backend;
+    wanted.spec.fingerprint = "of " + backend;
+    return wanted;
+  }
+};
+
+TEST_F(ReplacedService, TheOldProcessWorksUntilTheNewOneCanAndTheSettingsChangeWithIt) {
+  auto& pose = ready_service();
+  const auto before = pose.pid();
+  pose.prepare(with_backend(pose, "replay"), {}, false);
+  run_until([&] { return pose.replacement_is_prepared(); });
+  EXPECT_EQ(pose.pid(), before);
+  EXPECT_EQ(pose.state(), State::ready);
+  EXPECT_EQ(pose.spec().backend, "twin") << "that is what works";
+  EXPECT_EQ(pose.saved().swapped, "") << "and what a successor would continue";
+  pose.hand_over();
+  EXPECT_EQ(pose.spec().backend, "replay");
+  EXPECT_EQ(pose.saved().swapped, "replay");
+  EXPECT_EQ(pose.saved().fingerprint, "of replay");
+  EXPECT_NE(pose.pid(), before);
+  run_until([&] { return pose.state() == State::ready && ::kill(before, 0) != 0; });
+  EXPECT_FALSE(pose.has_replacement());
+  EXPECT_EQ(pose.restarts(), 0);
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+}
+
+TEST_F(ReplacedService, OneThatCannotBePreparedSaysWhyAndTheOldProcessGoesOn) {
+  auto& pose = ready_service();
+  const auto before = pose.pid();
+  pose.prepare(with_backend(pose, "broken"), {}, false);
+  run_until([&] { return !pose.has_replacement(); });
+  EXPECT_EQ(pose.replacement_problem(), "it is broken");
+  EXPECT_EQ(pose.pid(), before);
+  EXPECT_EQ(pose.state(), State::ready);
+  pose.hand_over();
+  EXPECT_EQ(pose.pid(), before) << "there is nothing to hand over to";
+  ::kill(before, SIGKILL);
+  run_until([&] { return pose.pid() != before && pose.state() == State::ready; });
+  EXPECT_EQ(pose.spec().backend, "twin") << "the old settings";
+}
+
+TEST_F(ReplacedService, OneThatNeedsTheDeviceGetsItsTurnAfterTheOldProcessHasEnded) {
+  auto& pose = ready_service();
+  const auto before = pose.pid();
+  pose.prepare(with_backend(pose, "replay"), {.alone = true}, false);
+  run_until([&] { return pose.replacement_is_prepared(); });
+  pose.hand_over();
+  EXPECT_EQ(pose.pid(), before);
+  EXPECT_EQ(pose.state(), State::stopping);
+  run_until([&] { return pose.pid() != before && pose.state() == State::ready; });
+  EXPECT_NE(::kill(before, 0), 0);
+  EXPECT_EQ(pose.spec().backend, "replay");
+}
+
+TEST_F(ReplacedService, AStopInTheMiddleEndsBothAndLeavesTheOldSettings) {
+  auto& pose = ready_service();
+  pose.prepare(with_backend(pose, "replay"), {}, false);
+  run_until([&] { return pose.replacement_is_prepared(); });
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_FALSE(pose.is_running());
+  EXPECT_EQ(pose.spec().backend, "twin");
+  pose.start();
+  run_until([&] { return pose.state() == State::ready; });
+  EXPECT_EQ(pose.spec().backend, "twin");
+}
+
+TEST_F(ReplacedService, AnAdoptedProcessIsReplacedToo) {
+  auto& first = ready_service();
+  auto& second = adopting(first, kSpares, 0);
+  const auto adopted = second.pid();
+  second.prepare(second.settings(), {}, true);
+  run_until([&] { return second.replacement_is_prepared(); });
+  second.hand_over();
+  run_until([&] { return second.state() == State::ready && second.spare_pid() == 0; });
+  EXPECT_NE(second.pid(), adopted);
+  second.stop();
+  run_until([&] { return second.state() == State::stopped; });
+}
+
+TEST_F(ServiceWithSpare, StopEndsBoth) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  pose.stop();
+  run_until([&] { return pose.state() == State::stopped; });
+  EXPECT_NE(::kill(worker, 0), 0);
+  EXPECT_NE(::kill(spare, 0), 0);
+  EXPECT_FALSE(pose.is_running());
+}
+
+TEST_F(ServiceWithSpare, RestartReplacesBoth) {
+  auto& pose = ready_service();
+  const auto worker = pose.pid(), spare = pose.spare_pid();
+  pose.restart();
+  run_until([&] {
+    return pose.state() == State::ready && pose.pid() != worker && pose.spare_pid() != 0 &&
+           pose.spare_pid() != spare;
+  });
+  EXPECT_NE(pose.pid(), spare) << "a spare of the old settings does not take over";
+}
+
+}  // namespace
+}  // namespace handcast::supervisor
