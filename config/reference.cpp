@@ -19,8 +19,8 @@ constexpr std::string_view kHead =
     "changes one setting for one run,\n"
     "for example `--set cascade.fill.method=none`. A relative path in a rig file starts at the "
     "folder of that file, a relative\n"
-    "path in `--set` at the current folder. `handcast config --check FILE` lists everything that "
-    "`handcast up` would refuse.\n";
+    "path in `--set` at the current folder. `handcast config --check FILE` lists what `handcast "
+    "up` would refuse; it opens no device, output or port.\n";
 
 /// Escapes bars, which would end the cell of a table.
 std::string cell(std::string_view text) {

@@ -9,6 +9,7 @@
 #include "config/settings/files.hpp"
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
+#include "ipc/base/rig_name.hpp"
 
 namespace handcast::config {
 namespace {
@@ -34,19 +35,6 @@ void resolve_paths(const Listing& listing, const std::filesystem::path& folder) 
   }
 }
 
-/// Names of rigs are parts of the names of files, sockets and systemd's units.
-void check_name(const std::string& name, std::string_view file, Faults& faults) {
-  constexpr std::size_t kLongest = 48;
-  constexpr std::string_view kCharacters =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-  if (name.empty() || name.size() > kLongest ||
-      name.find_first_not_of(kCharacters) != std::string::npos)
-    faults.add(
-        fmt::format("{}: name: '{}' is not a valid name of a rig; use up to {} letters, "
-                    "digits, '_' and '-'",
-                    file, name, kLongest));
-}
-
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
   for (const auto* service : {"camera", "pose", "landmarks", "projector", "observer"})
     for (const double core : process_of(rig, service).cores)
@@ -57,7 +45,9 @@ void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
 
 /// Checks conditions between settings, and those that their ranges do not express.
 void check_together(const Rig& rig, std::string_view file, Faults& faults) {
-  check_name(rig.name, file, faults);
+  if (!is_rig_name(rig.name))
+    faults.add(fmt::format("{}: name: '{}' is not a valid name of a rig; {}", file, rig.name,
+                           kRigNameRule));
   check_cores(rig, file, faults);
   const auto& correct = rig.cascade.correct;
   if (correct.bone_short_px >= correct.bone_long_px)

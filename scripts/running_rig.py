@@ -26,16 +26,19 @@ def options_parser(name, minutes):
 class Rig:
     """A process of `handcast up` in a scope of its own."""
 
-    def __init__(self, rig_file, settings, log, scope=None):
-        self.scope = scope or f"{pathlib.Path(log.name).stem}-{os.getpid()}"
+    def __init__(self, rig_file, settings, log):
+        self.scope = f"{pathlib.Path(log.name).stem}-{os.getpid()}"
         self.environment = {**os.environ, "HANDCAST_SCOPE": self.scope}
         self.log = log
         words = [word for setting in settings for word in ("--set", setting)]
         self.process = subprocess.Popen([HANDCAST, "up", rig_file, *words], env=self.environment, stdout=log, stderr=log)
 
     def run(self, *words, patience_s=30):
-        """Runs `handcast WORDS`. Returns the exit code and the output."""
-        answer = subprocess.run([HANDCAST, *words], env=self.environment, capture_output=True, text=True, timeout=patience_s)
+        """Runs `handcast WORDS`. Returns the exit code, None if it did not end in time, and the output."""
+        try:
+            answer = subprocess.run([HANDCAST, *words], env=self.environment, capture_output=True, text=True, timeout=patience_s)
+        except subprocess.TimeoutExpired:
+            return None, ""
         return answer.returncode, answer.stdout
 
     def status(self):

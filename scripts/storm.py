@@ -41,16 +41,17 @@ class Folder:
             print("storm: no file system may be mounted here; the disk is not filled")
 
     def fill(self):
-        if not self.mounted:
-            return
+        """Returns whether the file system could be filled."""
         try:
-            (self.path / "full").write_bytes(bytes(1 << 20))
+            (self.path / "full").write_bytes(bytes(1 << 20 if self.mounted else 0))
         except OSError:
-            pass  # that is the purpose
+            return True
+        return False
 
     def empty(self):
         for entry in self.path.iterdir():
             shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
+        return True
 
     def close(self):
         if self.mounted:
@@ -97,38 +98,48 @@ class Storm:
         return self.chance.choice(found) if found else None
 
     def signal(self, pid, number):
+        """Returns whether there was such a process."""
         try:
             os.kill(pid, number)
+            return True
         except (OSError, TypeError):
-            pass
+            return False
 
     def strike(self):
         """One event."""
         event = self.chance.choices(["kill", "stop", "kill supervisor", "stop supervisor", "kill keeper", "stop keeper", "disk full", "folder gone", "idle connections"],
                                     [8, 4, 2, 2, 1, 1, 1, 1, 1])[0]
-        self.events[event] += 1
         if event == "disk full":
-            self.folder.fill()
+            happened = self.folder.fill()
         elif event == "folder gone":
-            self.folder.empty()
+            happened = self.folder.empty()
         elif event == "idle connections":
-            self.connect_idly()
+            happened = self.connect_idly() > 0
         else:
             what, _, whom = event.partition(" ")
-            pid = self.victim(*([whom] if whom else []))
-            self.signal(pid, signal.SIGKILL if what == "kill" else signal.SIGSTOP)
-            if what == "stop" and pid:
-                self.stopped[pid] = time.monotonic() + self.chance.uniform(0.5, 8)
+            happened = self.hit(self.victim(*([whom] if whom else [])), what)
+        self.events[event] += happened
+
+    def hit(self, pid, what):
+        """Kills a process, or stops it for some seconds. Returns whether it lived."""
+        hit = self.signal(pid, signal.SIGKILL if what == "kill" else signal.SIGSTOP)
+        if hit and what == "stop":
+            self.stopped[pid] = time.monotonic() + self.chance.uniform(0.5, 8)
+        return hit
 
     def connect_idly(self):
-        for _ in range(64):
+        """Connects to the control socket and asks nothing. Returns the number of connections."""
+        addresses = [line.split()[-1] for line in pathlib.Path("/proc/net/unix").read_text().splitlines() if f"/{self.rig.scope}/" in line]
+        before = len(self.idle)
+        for address in addresses[:1] * 64:
             connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             connection.setblocking(False)
             try:
-                connection.connect(f"\0handcast-{os.getuid()}/{self.rig.scope}/twin")
+                connection.connect("\0" + address.removeprefix("@"))
             except OSError:
                 continue
             self.idle.append(connection)
+        return len(self.idle) - before
 
     def let_go_on(self):
         for pid, until_s in list(self.stopped.items()):
@@ -154,8 +165,7 @@ class Storm:
         keepers = [pid for pid, arguments in self.processes().items() if role_of(arguments) == "keeper" and pid not in self.stopped]
         if how == "down" or not keepers:
             how = "down"
-            if services_in(self.processes()):
-                self.rig.run("down")
+            self.rig.run("down")
         else:
             for _ in range(3 if "three" in how else 1):
                 self.signal(keepers[0], signal.SIGINT)
@@ -200,8 +210,12 @@ def main():
     try:
         while time.monotonic() < end_s:
             storm = Storm(options, chance, folder)
-            storm.rage(chance.uniform(4, 20))
-            how, dark_s, left = storm.end()
+            try:
+                storm.rage(chance.uniform(4, 20))
+                how, dark_s, left = storm.end()
+            except BaseException:
+                storm.wait_for_the_rest()
+                raise
             events += storm.events
             rows.append({"life": len(rows) + 1, "events": storm.events.total(), "stopped by": how, "dark after s": round(dark_s, 2), "left": "; ".join(left), "doubles": "; ".join(storm.doubles.found)})
             print("  ".join(f"{key}: {value}" for key, value in rows[-1].items()), flush=True)

@@ -15,14 +15,6 @@ namespace {
 
 constexpr auto kPatience = std::chrono::milliseconds(100);
 
-/// False if nobody listens at the control socket. A supervisor that hangs is there.
-bool has_supervisor(const std::string& rig) {
-  const auto address = control::address_of(rig);
-  if (!address) return false;
-  const auto connection = control::connect_to(*address);
-  return connection || connection.error().code == Errc::timeout;
-}
-
 /// Whether this error of rig_ring() means that another rig has taken the name: one without the
 /// stream, or one of another version, whose answers and rings cannot be read.
 bool is_of_another_rig(Errc code) { return code == Errc::bad_config || code == Errc::bad_data; }
@@ -47,7 +39,7 @@ Result<void> RigPresence::silent() {
   const auto now = now_ns();
   if (now < next_check_ns_) return {};
   next_check_ns_ = now + times_.silence_ns;
-  if (!has_supervisor(rig_)) return absent(now);
+  if (!control::has_supervisor(rig_)) return absent(now);
   absent_since_ns_ = 0;
   return same_ring();
 }

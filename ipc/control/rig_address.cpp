@@ -13,11 +13,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "ipc/base/rig_name.hpp"
+
 namespace handcast::control {
 namespace {
-
-constexpr std::string_view kNameCharacters =
-    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
 
 /// The text before the name in the addresses of this user and scope.
 std::string prefix() {
@@ -40,13 +39,6 @@ std::vector<std::string> listening_sockets() {
   return names;
 }
 
-bool somebody_listens(const std::string& rig) {
-  const auto address = address_of(rig);
-  if (!address) return false;
-  const auto connection = connect_to(*address);
-  return connection || connection.error().code == Errc::timeout;
-}
-
 /// The process at the other end; its pid is -1 if the kernel does not know it.
 ucred peer_of(int socket) {
   ucred peer{.pid = -1, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
@@ -58,10 +50,9 @@ ucred peer_of(int socket) {
 }  // namespace
 
 Result<RigAddress> address_of(std::string_view rig) {
-  if (rig.empty() || rig.find_first_not_of(kNameCharacters) != std::string_view::npos)
-    return fail(
-        Errc::bad_config,
-        fmt::format("'{}' is not a valid name of a rig; use letters, digits, '_' and '-'", rig));
+  if (!is_rig_name(rig))
+    return fail(Errc::bad_config,
+                fmt::format("'{}' is not a valid name of a rig; {}", rig, kRigNameRule));
   RigAddress address{.text = prefix().append(rig)};
   if (address.text.size() >= sizeof address.socket.sun_path)
     return fail(
@@ -83,10 +74,17 @@ std::string name_in(std::string_view address) {
 std::vector<std::string> living_rigs() {
   std::vector<std::string> rigs;
   for (const auto& socket : listening_sockets())
-    if (auto name = name_in(socket); !name.empty() && somebody_listens(name))
+    if (auto name = name_in(socket); !name.empty() && has_supervisor(name))
       rigs.push_back(std::move(name));
   std::ranges::sort(rigs);
   return rigs;
+}
+
+bool has_supervisor(const std::string& rig) {
+  const auto address = address_of(rig);
+  if (!address) return false;
+  const auto connection = connect_to(*address);
+  return connection || connection.error().code == Errc::timeout;
 }
 
 Result<UniqueFd> connect_to(const RigAddress& address) {

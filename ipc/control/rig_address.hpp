@@ -20,13 +20,13 @@ inline constexpr const char* kScopeVariable = "HANDCAST_SCOPE";
 
 /// The address of a rig's control socket.
 struct RigAddress {
-  std::string text;      ///< "handcast-UID/SCOPE/RIG"; unique on the machine
+  std::string text;      ///< "handcast-UID/SCOPE/RIG"; unique in its network namespace
   sockaddr_un socket{};  ///< the same as a socket address
   socklen_t size = 0;    ///< of the socket address, in bytes
 };
 
-/// The address of this user's rig `rig`. Errors: bad_config (the name has other characters than
-/// letters, digits, '_' and '-', or is too long).
+/// The address of this user's rig `rig`. Errors: bad_config (it is not a name of a rig, or the
+/// scope is too long).
 Result<RigAddress> address_of(std::string_view rig);
 
 /// The name of the rig whose address has this text; "" if it is not a rig of this user and scope.
@@ -34,6 +34,9 @@ std::string name_in(std::string_view address);
 
 /// The names of this user's rigs that have a supervisor, sorted.
 std::vector<std::string> living_rigs();
+
+/// True if a process of this user listens at the rig's address, even if it hangs.
+bool has_supervisor(const std::string& rig);
 
 /// Connects to a rig's supervisor. Does not wait. Errors: unavailable (no process listens), timeout
 /// (the listener does not accept the connection), bad_config (the listener belongs to another

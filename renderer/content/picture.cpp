@@ -21,7 +21,6 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::uint32_t kLargestSide = 8192;
 constexpr std::uint32_t kOpaque = 0xff000000u;
 
 tl::unexpected<Error> too_large(const std::filesystem::path& file, std::uint32_t width,

@@ -20,7 +20,8 @@ Result<Texture> read_picture(const std::filesystem::path& file);
 /// larger than 8192 px on a side.
 Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file);
 
-/// Writes RGBA8 as a PNG file without alpha. Errors: unavailable if the file cannot be written.
+/// Writes RGBA8 as a PNG file without alpha. Errors: unavailable (the file cannot be
+/// written), those of check_output().
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture);
 
 }  // namespace handcast::renderer

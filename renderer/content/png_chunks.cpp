@@ -46,10 +46,9 @@ std::uint64_t bytes_of_rows(std::uint64_t width, std::uint64_t height, std::uint
 /// Bytes of the image data before compression. Empty if the header is malformed, or the picture
 /// larger than any that is read.
 std::optional<std::uint64_t> bytes_of_image(std::string_view header) {
-  constexpr std::uint64_t kMostSide = 8192;
   if (header.size() != 13) return std::nullopt;
   const std::uint64_t width = number_at(header, 0), height = number_at(header, 4);
-  if (width > kMostSide || height > kMostSide) return std::nullopt;
+  if (width > kLargestSide || height > kLargestSide) return std::nullopt;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(header[i]); };
   constexpr std::array<int, 7> kChannels{1, 0, 3, 1, 2, 0, 4};  // by colour type
   if (byte(9) >= kChannels.size() || byte(8) > 16) return std::nullopt;
@@ -111,13 +110,14 @@ PlainPng plain_png(std::string_view file) {
   Inflation inflation;
   each_chunk(file, [&](std::string_view type, std::string_view data, std::string_view whole) {
     if (std::ranges::find(kNeeded, type) == kNeeded.end()) return;
-    if (type == "IHDR") expected = bytes_of_image(data);
+    if (type == "IHDR" && !expected) expected = bytes_of_image(data);  // libpng reads one
     if (type == "IDAT" && data.empty()) return;
-    if (type == "IDAT" && expected) inflation.add(data, *expected + kSlack);
+    if (type == "IDAT" && expected) {
+      inflation.add(data, *expected + kSlack);
+      if (inflation.count() > *expected + kSlack) plain.fault = "has more image data than pixels";
+    }
     plain.bytes += whole;
   });
-  if (expected && inflation.count() > *expected + kSlack)
-    plain.fault = "has more image data than pixels";
   return plain;
 }
 

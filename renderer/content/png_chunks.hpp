@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,9 @@
 /// 20 s, or 8 GB of memory.
 
 namespace handcast::renderer {
+
+/// The largest width and height of a picture that is read, in pixels.
+inline constexpr std::uint32_t kLargestSide = 8192;
 
 /// A PNG file that has only what its pixels need.
 struct PlainPng {

@@ -61,11 +61,7 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
       both_{std::move(left), std::move(right)},
       mask_(settings.mask, calibration),
       late_(registration_of(settings), settings.filter, calibration),
-      painter_(std::move(painter)),
-      substitute_(
-          make_cpu_painter(calibration.projector_width_px, calibration.projector_height_px)) {
-  if (!painter_) painter_ = std::move(substitute_);
-}
+      painter_(painter ? std::move(painter) : make_cpu_painter(screen_.x1, screen_.y1)) {}
 
 void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
   const std::int64_t origin_ns = reported.header.origin_ns;
@@ -271,9 +267,9 @@ FillCounts Pipeline::paint(const Rect& region, bool is_masked) {
 /// Returns true if the frame must be painted again.
 bool Pipeline::replace_failed_painter() {
   const auto failure = painter_->failure();
-  if (!failure || !substitute_) return false;
+  if (!failure) return false;
   log::warning("{}; drawing with cpu until the next start", failure->what);
-  painter_ = std::move(substitute_);
+  painter_ = make_cpu_painter(screen_.x1, screen_.y1);
   return true;
 }
 

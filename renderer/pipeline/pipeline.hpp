@@ -111,7 +111,6 @@ class Pipeline {
   HandMask mask_;
   LateRegistration late_;
   std::unique_ptr<Painter> painter_;
-  std::unique_ptr<Painter> substitute_;  ///< for a painter that fails; made early, as it takes ms
   StageClock stages_;
   msg::MadeFrom newest_;                ///< the newest messages, and the image of the last frame
   std::int64_t now_ns_ = 0;             ///< of the last frame

@@ -66,7 +66,9 @@ std::string fault_of_points(const twin::Npy& array) {
   for (std::size_t i = 0; i < array.values.size(); ++i) {
     const double value = array.values[i];
     const bool is_sigma = i % columns == 2;
-    if (is_sigma && !(value >= 0 && value < kFarthest_px))
+    const bool was_seen =
+        is_sigma && std::isfinite(array.values[i - 1]) && std::isfinite(array.values[i - 2]);
+    if (was_seen && !(value >= 0 && value < kFarthest_px))
       return fmt::format("the sigma of a landmark is {:g}", value);
     if (!is_sigma && std::isfinite(value)) farthest = std::max(farthest, std::abs(value));
   }

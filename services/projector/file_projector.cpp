@@ -50,6 +50,11 @@ class FileProjector final : public Projector {
       return fail(Errc::unavailable, fmt::format("projector 'file': '{}' cannot be opened: {}",
                                                  folder_.string(), std::strerror(errno)));
     for (const auto limit = Deadline::in(kClaim); flock(folder.get(), LOCK_EX | LOCK_NB) != 0;) {
+      if (errno != EWOULDBLOCK) {
+        log::warning("projector 'file': '{}' cannot be locked: {}", folder_.string(),
+                     std::strerror(errno));
+        break;
+      }
       if (limit.passed())
         return fail(
             Errc::unavailable,

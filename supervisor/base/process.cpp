@@ -16,35 +16,39 @@ namespace handcast::supervisor {
 
 namespace {
 
-constexpr int kStateField = 3, kParentField = 4, kStartField = 22;  // of /proc/PID/stat (proc(5))
+constexpr int kStateField = 3, kParentField = 4, kStartField = 22;
 
-/// A field from the third on. "PID (name) state ppid ...": the name may contain any characters, so
-/// fields are counted after it. Empty if there is no such process, or only a zombie.
-std::optional<std::string> stat_field(pid_t pid, int wanted) {
-  std::ifstream file(fmt::format("/proc/{}/stat", pid));
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  const auto behind_name = text.rfind(") ");
-  if (behind_name == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(behind_name + 2));
-  std::string field;
-  for (int number = kStateField; number <= wanted; ++number) {
-    if (!(fields >> field)) return std::nullopt;
-    if (number == kStateField && (field == "Z" || field == "X")) return std::nullopt;
-  }
-  return field;
+/// A field of a process; "" if there is no such process, or only a zombie.
+std::string field_of_living(pid_t pid, int number) {
+  const std::filesystem::path folder = fmt::format("/proc/{}", pid);
+  const auto state = stat_field(folder, kStateField);
+  return state == "Z" || state == "X" ? "" : stat_field(folder, number);
 }
 
 }  // namespace
 
+// "PID (name) state ppid ...": the name may contain any characters, so fields are counted after it.
+std::string stat_field(const std::filesystem::path& folder, int number) {
+  std::ifstream file(folder / "stat");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const auto behind_name = text.rfind(") ");
+  if (behind_name == std::string::npos) return {};
+  std::istringstream fields(text.substr(behind_name + 2));
+  std::string field;
+  for (int i = kStateField; i <= number; ++i)
+    if (!(fields >> field)) return {};
+  return field;
+}
+
 std::optional<std::uint64_t> start_ticks_of(pid_t pid) {
-  const auto field = stat_field(pid, kStartField);
-  return field ? std::optional(std::strtoull(field->c_str(), nullptr, 10)) : std::nullopt;
+  const auto field = field_of_living(pid, kStartField);
+  return field.empty() ? std::nullopt : std::optional(std::strtoull(field.c_str(), nullptr, 10));
 }
 
 std::optional<pid_t> parent_of(pid_t pid) {
-  const auto field = stat_field(pid, kParentField);
-  return field ? std::optional(static_cast<pid_t>(std::strtol(field->c_str(), nullptr, 10)))
-               : std::nullopt;
+  const auto field = field_of_living(pid, kParentField);
+  return field.empty() ? std::nullopt
+                       : std::optional(static_cast<pid_t>(std::strtol(field.c_str(), nullptr, 10)));
 }
 
 std::int64_t start_ns_of(std::uint64_t ticks) {

@@ -3,9 +3,15 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <string>
 
 namespace handcast::supervisor {
+
+/// A field of the file `stat` of a process or thread (proc(5)), counted from 1, from the third on;
+/// `folder`: /proc/PID or /proc/PID/task/TID. "" if there is no such process.
+std::string stat_field(const std::filesystem::path& folder, int number);
 
 /// The start time of a process in clock ticks since boot (/proc/PID/stat, field 22). Together with
 /// the pid it identifies the process, because pids are reused. Empty if there is no such process,

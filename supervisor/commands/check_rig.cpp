@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,8 +13,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <sstream>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "supervisor/commands/verbs.hpp"
@@ -27,10 +31,14 @@ struct Outcome {
   int exit_code = -1;
 };
 
-std::string read_all(int fd) {
+/// What comes until the end of the file; empty if that is later than the deadline.
+std::optional<std::string> read_all(int fd, Deadline deadline) {
   std::string text;
   std::array<char, 4096> part;
   for (;;) {
+    const auto left_ns = std::max<std::int64_t>(deadline.time_ns() - now_ns(), 0);
+    pollfd readable{.fd = fd, .events = POLLIN, .revents = 0};
+    if (poll(&readable, 1, static_cast<int>(ns_to_ms(left_ns))) == 0) return std::nullopt;
     const auto count = ::read(fd, part.data(), part.size());
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return text;
@@ -38,8 +46,9 @@ std::string read_all(int fd) {
   }
 }
 
-/// Runs a program and waits for its end. Errors: bad_config (it cannot be started).
-Result<Outcome> run_and_read(const std::vector<std::string>& command) {
+/// Runs a program and waits for its end. Errors: bad_config (it cannot be started, or does not end
+/// in time), unavailable (no descriptors).
+Result<Outcome> run_and_read(const std::vector<std::string>& command, double patience_s) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return fail(Errc::unavailable, std::strerror(errno));
   const UniqueFd output(ends[0]);
@@ -57,10 +66,16 @@ Result<Outcome> run_and_read(const std::vector<std::string>& command) {
     return fail(Errc::bad_config,
                 fmt::format("{}: cannot be started: {}", command.front(), std::strerror(error)));
   input.reset();
-  Outcome outcome{read_all(output.get())};
+  const auto printed =
+      read_all(output.get(), Deadline::in(std::chrono::nanoseconds(seconds_to_ns(patience_s))));
+  if (!printed) kill(pid, SIGKILL);
+  Outcome outcome{printed.value_or("")};
   int status = 0;
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
+  if (!printed)
+    return fail(Errc::bad_config, fmt::format("{}: its check did not end within {:g} s",
+                                              command.front(), patience_s));
   if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
   return outcome;
 }
@@ -74,11 +89,11 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// The faults that the program of a service finds.
 std::vector<std::string> ask(const std::string& service, const std::filesystem::path& file,
-                             const std::vector<std::string>& settings) {
+                             const std::vector<std::string>& settings, double patience_s) {
   std::vector<std::string> command{(program_folder() / ("handcast-" + service)).string(),
                                    "--config", file.string(), "--check"};
   for (const auto& setting : settings) command.insert(command.end(), {"--set", setting});
-  const auto outcome = run_and_read(command);
+  const auto outcome = run_and_read(command, patience_s);
   if (!outcome) return {outcome.error().what};
   if (outcome->exit_code == kExitDone) return {};
   auto faults = lines_of(outcome->output);
@@ -104,7 +119,7 @@ std::vector<std::string> faults_of(const config::Rig& rig, const std::filesystem
                            : check_backend(catalogue, service.name, service.backend);
     if (!known) faults.push_back(fmt::format("{}.backend: {}", service.name, known.error().what));
     if (!known) continue;
-    for (auto& fault : ask(service.name, file, settings))
+    for (auto& fault : ask(service.name, file, settings, rig.supervisor.ready_s))
       if (!is_known(fault)) faults.push_back(std::move(fault));
   }
   return faults;

@@ -75,6 +75,8 @@ int run_install_units(const Arguments& arguments) {
   if (!rig) return complain(rig.error());
   if (const auto named = control::address_of(rig->name); !named) return complain(named.error());
 
+  if (options->has("--user") && !options->has("--system"))
+    return complain(kExitUsage, "install-units: --user needs --system");
   auto user = user_of(*options);
   if (!user) return complain(user.error());
   std::filesystem::path out;

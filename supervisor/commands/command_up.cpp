@@ -3,11 +3,14 @@
 
 #include <cstdlib>
 
+#include "ipc/base/log.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/rig_runner.hpp"
+#include "supervisor/rig/takeover.hpp"
 #include "supervisor/succession/keeper.hpp"
 
 namespace handcast::supervisor {
@@ -58,6 +61,10 @@ Result<void> create_out(const std::optional<std::filesystem::path>& out) {
 int run(RunOptions options) {
   if (const auto created = create_out(options.out); !created) return complain(created.error());
   const auto applied = applied_before(options.rig_file, options.settings);
+  if (applied &&
+      (!control::has_supervisor(applied->name) || end_supervisor_without_keeper(applied->name)))
+    log::info("rig '{}' continues with its applied settings; `handcast reload` reads {}",
+              applied->name, options.rig_file.string());
   const auto rig = applied ? *applied : config::load_rig(options.rig_file, options.settings);
   if (!rig) return complain(rig.error());
   auto runner = RigRunner::open(*rig, std::move(options));

@@ -68,8 +68,8 @@ constexpr std::array kVerbs{
         "Prints a complete rig file, checks one, or explains all settings.", run_config,
         Group::set_up,
         "  --print      all settings, with defaults where FILE has none\n"
-        "  --check      everything that `handcast up` would refuse: settings, back ends, and the\n"
-        "               files that the services open\n"
+        "  --check      what `handcast up` would refuse: settings, back ends, and the files that\n"
+        "               the services open; devices, outputs and ports are not opened\n"
         "  --reference  the page config/REFERENCE.md\n"},
     VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.",
               nullptr, Group::score},

@@ -8,17 +8,16 @@
 #include <iterator>
 #include <string>
 
+#include "supervisor/base/process.hpp"
+
 namespace handcast::supervisor {
 namespace {
 
-/// The state of a thread, the third field of its stat file; 0 if there is no such thread. The
-/// second field is the name in parentheses, which may contain any characters.
+/// The state of a thread; 0 if there is no such thread.
 char state_in(const std::filesystem::path& thread) {
-  std::ifstream file(thread / "stat");
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  const auto behind_name = text.rfind(") ");
-  return behind_name == std::string::npos || behind_name + 2 >= text.size() ? '\0'
-                                                                            : text[behind_name + 2];
+  constexpr int kStateField = 3;
+  const auto state = stat_field(thread, kStateField);
+  return state.empty() ? '\0' : state.front();
 }
 
 /// The sum of the three counters of schedstat: ns on a processor, ns of waiting, number of slices.

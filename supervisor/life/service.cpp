@@ -78,9 +78,9 @@ Service::MaybeEvent Service::carry_out(const action::Promote&) {
 }
 
 Service::MaybeEvent Service::carry_out(const action::HandOver&) {
+  epoch_before_ = stream_ ? stream_->epoch() : 0;  // before the new process may publish
   worker_->signal(SIGTERM);
   auto next = spare_->promote();
-  epoch_before_ = stream_ ? stream_->epoch() : 0;
   auto before = worker_->release();
   watch_worker(std::move(next));
   watch_spare(std::move(before), log_);

@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "ipc/base/log.hpp"
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
@@ -28,14 +27,11 @@ Result<AppliedRig> make_applied(const config::Rig& rig) {
 
 std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
                                           const std::vector<std::string>& settings) {
-  for (const auto& name : orphaned_rigs()) {
+  for (const auto& name : rigs_with_services()) {
     const auto saved = state_of(name);
     if (!saved || saved->rig_file != rig_file || saved->settings != settings) continue;
     const auto rig = config::parse_rig(saved->applied, rig_file);
-    if (!rig || rig->name != name) continue;
-    log::info("rig '{}' continues with its applied settings; `handcast reload` reads {}", name,
-              rig_file.string());
-    return *rig;
+    if (rig && rig->name == name) return *rig;
   }
   return std::nullopt;
 }

@@ -19,8 +19,8 @@ struct AppliedRig {
 /// Stores a rig for its services. Errors: unavailable.
 Result<AppliedRig> make_applied(const config::Rig& rig);
 
-/// The applied rig of a supervisor that died and was started with these arguments. Empty if there
-/// is none, or if none of its services lives.
+/// The applied rig of a supervisor that was started with these arguments and has living services,
+/// whether it lives itself or not. Empty if there is none.
 std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,
                                           const std::vector<std::string>& settings);
 

@@ -67,12 +67,13 @@ void Changes::tick() {
     if (service.replacement_is_prepared()) {
       hand_over(service, pending);
     } else if (!service.has_replacement()) {
-      const auto sentence =
-          pending.wanted.empty()
-              ? fmt::format("{} was not restarted, the old process goes on: {}", name,
-                            service.replacement_problem())
-              : fmt::format("{} did not start with '{}', '{}' goes on: {}", name, pending.wanted,
-                            pending.before, service.replacement_problem());
+      const auto what = pending.wanted.empty()
+                            ? fmt::format("{} was not restarted", name)
+                            : fmt::format("{} did not start with '{}'", name, pending.wanted);
+      const auto old =
+          pending.before.empty() ? "the old process" : fmt::format("'{}'", pending.before);
+      const auto rest = old + (service.works() ? " goes on" : " does not work either");
+      const auto sentence = fmt::format("{}, {}: {}", what, rest, service.replacement_problem());
       pending_.extract(found).mapped().reply(control::failure(sentence));
     }
   }

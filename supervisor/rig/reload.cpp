@@ -29,7 +29,7 @@ bool has_settled(const Service& service) {
 
 }  // namespace
 
-// Rings and candidate have no visible effect.
+// Making the rings and the candidate changes nothing that a service sees.
 Result<Reload> Reload::begin(LiveRig& rig, config::Rig wanted, bool revives) {
   auto plan = plan_reload(rig, std::move(wanted), revives);
   if (auto possible = check_reload(rig, plan); !possible)
@@ -111,6 +111,7 @@ void Reload::apply(std::int64_t now) {
     } else if (contains(replaced_, spec.name)) {
       begun_[spec.name] = patience_until(now);
       service->hand_over();
+      service->update(spec);  // also if the replacement dies before it takes over
     } else {
       service->update(spec);
     }

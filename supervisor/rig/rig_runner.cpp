@@ -6,7 +6,6 @@
 #include <stdlib.h>
 
 #include <csignal>
-#include <fstream>
 #include <limits>
 #include <utility>
 
@@ -61,14 +60,10 @@ Result<std::unique_ptr<RigRunner>> RigRunner::open(const config::Rig& rig, RunOp
 
 /// The process that listens at the control socket is the rig's supervisor.
 Result<void> RigRunner::claim_name() {
-  const auto listen = [this] {
-    return ControlServer::listen(
-        rig_.name, loop_, [this](const control::Request& request, ControlServer::Reply reply) {
-          requests_.answer(request, std::move(reply));
-        });
-  };
-  auto control = listen();
-  if (!control && end_supervisor_without_keeper(rig_.name)) control = listen();
+  auto control = ControlServer::listen(
+      rig_.name, loop_, [this](const control::Request& request, ControlServer::Reply reply) {
+        requests_.answer(request, std::move(reply));
+      });
   if (!control) return tl::make_unexpected(control.error());
   control_ = std::move(*control);
   return {};

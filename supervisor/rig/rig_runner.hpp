@@ -29,7 +29,7 @@ struct RunOptions {
 class RigRunner {
  public:
   /// Claims the rig's name and creates its rings, or takes over a rig whose
-  /// supervisor died, or has lost its keeper. Does not start services. Errors: bad_config,
+  /// supervisor died. Does not start services. Errors: bad_config,
   /// unavailable; living services of the rig are left as they are then.
   static Result<std::unique_ptr<RigRunner>> open(const config::Rig& rig, RunOptions options);
   /// Runs until a request, a signal or the end of `seconds` stops the rig. Returns the exit code of

@@ -141,9 +141,8 @@ void kill_all(const std::vector<FoundProcess>& processes) {
 }
 
 /// The state that services hold open, or that systemd has stored. Empty if none can be read.
-std::optional<std::pair<StateMemory, SavedRig>> newest_state(const std::string& name,
-                                                             const std::vector<FoundProcess>& found,
-                                                             const Stored& stored) {
+std::optional<std::pair<StateMemory, SavedRig>> readable_state(
+    const std::string& name, const std::vector<FoundProcess>& found, const Stored& stored) {
   const auto read =
       [&](Result<StateMemory> memory) -> std::optional<std::pair<StateMemory, SavedRig>> {
     if (!memory) return std::nullopt;
@@ -176,7 +175,7 @@ Result<ipc::Segment> make_ring(const ipc::RingSpec& spec) {
 Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   const auto stored = taken_from_systemd();
   auto found = find_services(name);
-  auto state = newest_state(name, found, stored);
+  auto state = readable_state(name, found, stored);
   if (!state) {
     if (!found.empty())
       log::warning(
@@ -207,20 +206,20 @@ Result<StateMemory> state_memory_of(const FoundProcess& service) {
   return StateMemory::open(UniqueFd(::open(file.c_str(), O_RDWR | O_CLOEXEC)));
 }
 
-std::vector<std::string> orphaned_rigs() {
+std::vector<std::string> rigs_with_services() {
   std::set<std::string> rigs;
   for (const auto& process : find_services()) rigs.insert(process.rig);
-  const auto has_supervisor = [](const std::string& rig) {
-    const auto connection = control::address_of(rig).and_then(
-        [](const auto& address) { return control::connect_to(address); });
-    return connection || connection.error().code == Errc::timeout;
-  };
-  std::erase_if(rigs, has_supervisor);
   return {rigs.begin(), rigs.end()};
 }
 
+std::vector<std::string> orphaned_rigs() {
+  auto rigs = rigs_with_services();
+  std::erase_if(rigs, control::has_supervisor);
+  return rigs;
+}
+
 std::optional<SavedRig> state_of(const std::string& name) {
-  auto state = newest_state(name, find_services(name), {});
+  auto state = readable_state(name, find_services(name), {});
   return state ? std::optional(std::move(state->second)) : std::nullopt;
 }
 

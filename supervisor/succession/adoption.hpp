@@ -37,7 +37,9 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name);
 
 /// The memory with the saved state that a service holds open. Errors: bad_data (it has none).
 Result<StateMemory> state_memory_of(const FoundProcess& service);
-/// The names of this user's rigs whose services live without a supervisor, sorted.
+/// The names of this user's rigs that have living services, sorted.
+std::vector<std::string> rigs_with_services();
+/// Those of them that have no supervisor.
 std::vector<std::string> orphaned_rigs();
 /// The saved state of a rig, from its living services. Empty if there is none.
 std::optional<SavedRig> state_of(const std::string& name);

@@ -67,6 +67,14 @@ bool is_of_this_user(const std::filesystem::path& process) {
   return stat(process.c_str(), &status) == 0 && status.st_uid == getuid();
 }
 
+/// Names of rigs belong to a network namespace, but /proc shows the processes of all of them.
+bool is_of_this_network(const std::filesystem::path& process) {
+  struct stat here {
+  }, there{};
+  return stat("/proc/self/ns/net", &here) == 0 && stat((process / "ns/net").c_str(), &there) == 0 &&
+         here.st_dev == there.st_dev && here.st_ino == there.st_ino;
+}
+
 /// The environment of a process as /proc shows it. It is empty for a moment while the process
 /// starts its program (execve), so it is read again then.
 std::string environment_of(const std::filesystem::path& process) {
@@ -89,7 +97,7 @@ std::optional<FoundProcess> examine(pid_t pid, const std::filesystem::path& fold
   const auto environment = environment_of(folder);
   const auto address = value_in(environment, daemon::kRigVariable);
   auto rig = control::name_in(address.value_or(""));
-  if (rig.empty()) return std::nullopt;
+  if (rig.empty() || !is_of_this_network(folder)) return std::nullopt;
   return FoundProcess{.rig = std::move(rig),
                       .service = service_name(folder),
                       .pid = pid,

@@ -13,7 +13,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -139,7 +138,8 @@ class Keeper {
     if (signal_number == SIGCHLD) return reap();
     if (signal_number == 0) return;
     sigaddset(&received_, signal_number);
-    stop_requests_ = std::max(stop_requests_, ++received_count_[signal_number]);
+    stop_requests_ =
+        std::max(stop_requests_, ++received_count_[static_cast<std::size_t>(signal_number)]);
     if (supervisor_ > 0) kill(supervisor_, signal_number);
   }
 
@@ -182,11 +182,15 @@ class Keeper {
   /// True if the present supervisor follows one that died and the rig cannot be taken over now.
   bool cannot_take_over() const { return is_successor_ && exit_ && exit_->code == kExitRetry; }
 
-  /// True if the rig was to be stopped when its supervisor died. Before the first beat of any
-  /// supervisor there are no services.
-  bool must_stop_the_rig() const { return !rig_.empty() && (is_stopping_ || stop_requests_ > 0); }
+  /// True if the rig was to be stopped when its supervisor died. Before the first beat the rig is
+  /// not known, and only a successor can stop it; but not if supervisors hang so early.
+  bool must_stop_the_rig() const {
+    if (rig_.empty()) return stop_requests_ > 0 && is_killed_;
+    return stop_requests_ > 0 || is_stopping_;
+  }
 
   int stop_the_rig() {
+    if (rig_.empty()) return see_off(kExitBadResult);
     const auto patience_s = stop_requests_ >= kImpatient ? 0 : kServices_s;
     const int ended = end_services(rig_, patience_s, now_ns());
     see_off(kExitDone);
@@ -230,8 +234,8 @@ class Keeper {
   /// The stop signals received so far. A successor gets them, too, because the rig still has to be
   /// stopped.
   sigset_t received_{};
-  std::map<int, int> received_count_;  ///< how often each came
-  int stop_requests_ = 0;              ///< how often the most frequent one came
+  std::array<int, NSIG> received_count_{};  ///< how often each came
+  int stop_requests_ = 0;                   ///< how often the most frequent one came
   pid_t supervisor_ = -1;
   bool is_successor_ = false;  ///< the present supervisor follows one that died
   std::string rig_;            ///< name of the rig, from the beats; "" before the first one

@@ -113,7 +113,7 @@ Result<StopReport> stop_rig(const std::string& name) {
     const auto supervisor = supervisor_of(*address);
     const auto forced = end_by_force(name, supervisor, before_ns);
     report.ended += forced.ended;
-    if (!supervisor || forced.had_keeper || !supervisor_comes_back(*address)) break;
+    if (forced.had_keeper || !supervisor_comes_back(*address)) break;
   }
   if (const auto left = find_services(name); !left.empty())
     return fail(Errc::unavailable,

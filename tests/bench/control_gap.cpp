@@ -36,7 +36,8 @@ void GapWatch::look() {
     if (seen.newest_published_ns == 0) continue;  // it was overwritten meanwhile
     const auto gap_ns = seen.newest_published_ns - newest_ns_;
     if (newest_ns_ != 0) longest_ns_ = std::max(longest_ns_.load(), gap_ns);
-    if (newest_ns_ != 0 && seen.epoch != epoch_) pause_ns_ = std::max(pause_ns_.load(), gap_ns);
+    if (newest_ns_ != 0 && seen.epoch != epoch_)
+      pause_ns_ = std::max(pause_ns_.load(), seen.pause_ns);
     sequence = seen.sequence;
     newest_ns_ = seen.newest_published_ns;
     epoch_ = seen.epoch;

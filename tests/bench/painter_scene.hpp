@@ -14,7 +14,7 @@ namespace handcast::bench {
 /// that sees them 12 px further.
 class PainterScene {
  public:
-  /// One hand (the left one) or two, 0.73 m from the projector. The hand files must exist.
+  /// One hand (the left one) or two, 0.73 m from the camera. The hand files must exist.
   PainterScene(std::string name, int hands, const renderer::testing::Pose& pose, int width_px,
                int height_px);
 

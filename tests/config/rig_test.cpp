@@ -163,17 +163,7 @@ TEST(Assignment, FaultsAreToldWithThoseOfTheFile) {
           "--set observer.enabled: must look like path=value"));
 }
 
-TEST(Paths, OfAFileStartAtItsFolder) {
-  const auto rig = rig_of(
-      "calibration = 'c.toml'\n[twin]\nmotion = '../lmc'\n[camera.replay]\ndirectory = "
-      "'/abs'\n[content]\nleft = 'a.png'\n");
-  EXPECT_EQ(rig.calibration, "/rigs/c.toml");
-  EXPECT_EQ(rig.twin.motion, "/lmc");
-  EXPECT_EQ(rig.camera.replay.directory, "/abs");
-  EXPECT_EQ(rig.content.left, "/rigs/a.png");
-}
-
-TEST(Rig, ANameThatNoFileCanHaveIsRefused) {
+TEST(Rig, ANameThatNoRigCanHaveIsRefused) {
   for (const auto& name : std::vector<std::string>{"", "a b", "a/b", "a\\tb", std::string(49, 'x')})
     EXPECT_THAT(faults_of("name = \"" + name + "\""),
                 ElementsAre(HasSubstr("is not a valid name of a rig")))
@@ -192,6 +182,16 @@ TEST(Rig, AnAssignmentIsOneLine) {
 TEST(Rig, CoresAreWholeNumbers) {
   EXPECT_THAT(faults_of("[pose.process]\ncores = [0, 1.5]"),
               ElementsAre("/rigs/test.toml: pose.process.cores: 1.5 is not the number of a core"));
+}
+
+TEST(Paths, OfAFileStartAtItsFolder) {
+  const auto rig = rig_of(
+      "calibration = 'c.toml'\n[twin]\nmotion = '../lmc'\n[camera.replay]\ndirectory = "
+      "'/abs'\n[content]\nleft = 'a.png'\n");
+  EXPECT_EQ(rig.calibration, "/rigs/c.toml");
+  EXPECT_EQ(rig.twin.motion, "/lmc");
+  EXPECT_EQ(rig.camera.replay.directory, "/abs");
+  EXPECT_EQ(rig.content.left, "/rigs/a.png");
 }
 
 TEST(Paths, OfAnAssignmentStartAtTheCurrentFolder) {

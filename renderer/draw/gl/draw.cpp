@@ -66,12 +66,12 @@ void Drawer::draw_hand(const HandAssets& assets, int index, cpu::Facing facing,
   gl.DrawElements(GL_TRIANGLES, assets.index_count, GL_UNSIGNED_SHORT, nullptr);
 }
 
-bool Drawer::draw(std::span<const DrawnHand> hands, std::span<const HandAssets* const> assets,
+void Drawer::draw(std::span<const DrawnHand> hands, std::span<const HandAssets* const> assets,
                   const Rect& region, const Layers& out) {
   std::size_t vertices = 0;
   for (const DrawnHand& hand : hands) vertices += hand.mesh->vertex_count();
   auto* placed = reinterpret_cast<Placed*>(ring_->next(vertices * sizeof(Placed)));
-  if (placed == nullptr) return false;
+  if (placed == nullptr) return;
   facings_.clear();
   for (const DrawnHand& hand : hands) {
     facings_.push_back(place(hand, placed));
@@ -89,7 +89,6 @@ bool Drawer::draw(std::span<const DrawnHand> hands, std::span<const HandAssets* 
     offset += hands[i].mesh->vertex_count() * sizeof(Placed);
   }
   ring_->sent();
-  return true;
 }
 
 }  // namespace handcast::renderer::gl

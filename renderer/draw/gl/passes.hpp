@@ -23,9 +23,8 @@ class Drawer {
  public:
   /// Errors (unavailable): those of make_program().
   static Result<Drawer> create(Context& context, glm::ivec2 size_px);
-  /// Draws `hands` into `region` of `out`. Returns false, and draws nothing, if the context is
-  /// lost.
-  bool draw(std::span<const DrawnHand> hands, std::span<const HandAssets* const> assets,
+  /// Draws `hands` into `region` of `out`; nothing if the context is lost.
+  void draw(std::span<const DrawnHand> hands, std::span<const HandAssets* const> assets,
             const Rect& region, const Layers& out);
 
  private:
@@ -53,9 +52,8 @@ class Warper {
  public:
   /// Errors (unavailable): those of make_program().
   static Result<Warper> create(Context& context, glm::ivec2 size_px);
-  /// Warps the part `from` of `in` into `region` of `out`. Returns false, and draws nothing, if the
-  /// context is lost.
-  bool warp(const WarpGrid& grid, const Rect& from, const Rect& region, const Layers& in,
+  /// Warps the part `from` of `in` into `region` of `out`; nothing if the context is lost.
+  void warp(const WarpGrid& grid, const Rect& from, const Rect& region, const Layers& in,
             const Layers& out);
 
  private:

@@ -10,7 +10,7 @@ namespace handcast::renderer::gl {
 /// One stage of a program.
 struct ShaderSource {
   GLenum stage;           ///< e.g. GL_VERTEX_SHADER
-  std::string_view name;  ///< for messages, e.g. "draw.vert"
+  std::string_view name;  ///< for messages, e.g. "draw_vertex"
   std::string_view text;  ///< GLSL without the line of its version
 };
 

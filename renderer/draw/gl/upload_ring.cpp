@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/draw/gl/upload_ring.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace handcast::renderer::gl {
@@ -14,9 +15,9 @@ void UploadRing::release_slots() {
 }
 
 std::byte* UploadRing::next(std::size_t bytes) {
-  if (bytes > slot_bytes_) {
+  if (bytes > slot_bytes_ || slot_bytes_ == 0) {
     release_slots();  // the old buffer lives until the GPU has read it
-    slot_bytes_ = (bytes * 3 / 2 + 255) / 256 * 256;
+    slot_bytes_ = (std::max<std::size_t>(bytes, 1) * 3 / 2 + 255) / 256 * 256;
     mapped_ = MappedBuffer(context_, kSlots * slot_bytes_, GL_MAP_WRITE_BIT);
   }
   slot_ = (slot_ + 1) % kSlots;

@@ -26,13 +26,13 @@ Warper::Warper(Context& context, Program program)
   gl.EnableVertexArrayAttrib(vertices_.name(), 0);
 }
 
-bool Warper::warp(const WarpGrid& grid, const Rect& from, const Rect& region, const Layers& in,
+void Warper::warp(const WarpGrid& grid, const Rect& from, const Rect& region, const Layers& in,
                   const Layers& out) {
   cells_.set(grid, from);
   const std::size_t node_bytes = cells_.corners.size() * sizeof(glm::vec4),
                     index_bytes = cells_.triangles.size() * sizeof(cells_.triangles[0]);
   std::byte* const data = ring_->next(node_bytes + index_bytes);
-  if (data == nullptr) return false;
+  if (data == nullptr) return;
   auto* node = reinterpret_cast<glm::vec4*>(data);
   for (const cpu::Corner& corner : cells_.corners)
     *node++ = {static_cast<float>(corner.x) / 16, static_cast<float>(corner.y) / 16, corner.u,
@@ -55,7 +55,6 @@ bool Warper::warp(const WarpGrid& grid, const Rect& from, const Rect& region, co
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * cells_.triangles.size()),
                   GL_UNSIGNED_SHORT, reinterpret_cast<const void*>(ring_->offset() + node_bytes));
   ring_->sent();
-  return true;
 }
 
 }  // namespace handcast::renderer::gl

@@ -7,7 +7,7 @@ namespace handcast::report {
 
 /// The first value of a file of results that is not of the kind that the report needs, as
 /// "/coverage must be a number"; empty if there is none. Values that are missing or null were not
-/// measured.
+/// measured. The members of "bins" and "services" are not checked.
 std::string wrong_kind(const nlohmann::json& results);
 
 /// Parses JSON that is nested at most 32 deep. Returns a discarded value if the text is none.

@@ -2,6 +2,7 @@
 #include "services/evaluation/twin/npy.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -175,9 +176,9 @@ Result<NpyFile> NpyFile::open(const path& file) {
   constexpr std::size_t kLongestHeader = 1 << 16;
   auto fd = open_input(file, kMostArray);
   if (!fd) return tl::make_unexpected(fd.error());
-  std::error_code failed;
-  const auto size = std::filesystem::file_size(file, failed);
-  if (failed) return damaged(file, failed.message());
+  struct stat status {};
+  if (::fstat(fd->get(), &status) != 0) return damaged(file, std::strerror(errno));
+  const auto size = static_cast<std::uint64_t>(status.st_size);
   const auto begin = read_some(fd->get(), kLongestHeader, file);
   if (!begin) return tl::make_unexpected(begin.error());
   auto layout = parse_layout(file, *begin);

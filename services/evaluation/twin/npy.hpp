@@ -50,10 +50,12 @@ class NpyFile {
 
 /// Reads an array of any shape. Errors: as NpyFile::open().
 Result<Npy> read_npy(const std::filesystem::path& file);
-/// Writes values in row-major order as '<f4'. Errors: unavailable (the file cannot be written).
+/// Writes values in row-major order as '<f4'. Errors: unavailable (the file cannot be written),
+/// those of check_output().
 Result<void> write_npy_f32(const std::filesystem::path& file, const std::vector<std::size_t>& shape,
                            const std::vector<float>& values);
-/// Writes a one-dimensional array as '<i8'. Errors: unavailable (the file cannot be written).
+/// Writes a one-dimensional array as '<i8'. Errors: unavailable (the file cannot be written),
+/// those of check_output().
 Result<void> write_npy_i64(const std::filesystem::path& file,
                            const std::vector<std::int64_t>& values);
 

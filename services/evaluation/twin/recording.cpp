@@ -174,7 +174,7 @@ Result<bool> is_there(const path& file) {
 }
 
 Result<std::vector<std::int64_t>> read_stamps_ns(const path& file) {
-  constexpr std::size_t kMostStamps = 100'000;  ///< the poses of two hands take 800 MB
+  constexpr std::size_t kMostStamps = 10'000'000;  // 80 MB
   auto opened = NpyFile::open(file);
   if (!opened) return tl::make_unexpected(opened.error());
   if (opened->count() > kMostStamps)
@@ -227,12 +227,16 @@ Result<void> remove_recording(const path& folder) {
 }
 
 Result<Recording> read_recording(const path& folder) {
+  constexpr std::size_t kMostPoses = 100'000;  // those of two hands take 800 MB
   const path stamps = folder / "timestamps.npy";
   auto times_ns = read_stamps_ns(stamps);
   if (!times_ns) return tl::make_unexpected(times_ns.error());
   if (times_ns->size() < 2)
     return fail(Errc::bad_data,
                 fmt::format("{}: a recording needs at least two times", stamps.string()));
+  if (times_ns->size() > kMostPoses)
+    return fail(Errc::bad_data, fmt::format("{}: has {} poses; at most {} are read",
+                                            stamps.string(), times_ns->size(), kMostPoses));
   Recording recording;
   recording.first_ns = times_ns->front();
   recording.time_ns = std::move(*times_ns);

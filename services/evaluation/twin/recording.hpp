@@ -23,14 +23,16 @@ struct Recording {
 
 /// Reads timestamps.npy (us), joints_{left,right}.npy (n,42,3 mm) and bones_{left,right}.npy
 /// (n,22,4,4), all in Leap's layout. Errors: bad_config (a file is missing, or there is no hand),
-/// bad_data (a malformed file, fewer than two times).
+/// bad_data (a malformed file; fewer than two or more than 100,000 times; lengths or times that are
+/// not in the unit of the layout).
 Result<Recording> read_recording(const std::filesystem::path& folder);
 /// Writes the same files, and removes those of a hand that is not in the recording. Errors:
 /// unavailable (a file cannot be written or removed), bad_data (a hand without a pose per time).
 Result<void> write_recording(const std::filesystem::path& folder, const Recording& recording);
 
 /// Reads an array of ascending times in microseconds of the recording's clock. Errors: as read_npy,
-/// and bad_data (a time out of range or not later than the one before it).
+/// and bad_data (more than 10,000,000 times; a time out of range or not later than the one before
+/// it; steps that no sensor has, because the unit is another).
 Result<std::vector<std::int64_t>> read_stamps_ns(const std::filesystem::path& file);
 /// The times of each sensor of a recording, from those of timestamps.npy, camera_timestamps.npy and
 /// landmarks_timestamps.npy that exist. Errors: as read_stamps_ns, and bad_config (times more than

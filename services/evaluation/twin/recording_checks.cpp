@@ -28,7 +28,7 @@ bool is_step_of_a_sensor(double step_us) {
   return step_us >= kShortestStep_us && step_us <= kLongestStep_us;
 }
 
-/// ", are they in nanoseconds?": the unit in which the step would be one of a sensor.
+/// "; are they in nanoseconds?": the unit in which the step would be one of a sensor.
 std::string guessed_unit(double step) {
   for (const auto& [us, unit] :
        {std::pair{1e-3, "nanoseconds"}, {1e3, "milliseconds"}, {1e6, "seconds"}})

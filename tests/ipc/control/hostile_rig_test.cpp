@@ -4,7 +4,7 @@
 
 #include "ipc/control/control_client.hpp"
 #include "tests/ipc/control/listening_rig.hpp"
-#include "tests/supervisor/runtime_scratch.hpp"
+#include "tests/supervisor/scope_scratch.hpp"
 
 namespace handcast::control {
 namespace {
@@ -17,7 +17,7 @@ class HostileRig : public testing::Test {
   static Result<Answer> ask_for_rings() {
     return ask_with_descriptors("desk", {.verb = Verb::rings}, 500ms);
   }
-  supervisor::RuntimeScratch scratch_;
+  supervisor::ScopeScratch scratch_;
 };
 
 TEST_F(HostileRig, AnAnswerThatIsNoneIsRefusedWithASentence) {

@@ -46,6 +46,15 @@ std::string picture(const std::string& extra, const std::string& surplus) {
          chunk("IDAT", compressed(rows + surplus)) + chunk("IEND", "");
 }
 
+/// The same with a bomb, and with a header of a large picture behind it.
+std::string picture_with_second_header() {
+  auto bytes = picture("", std::string(50'000'000, '\0'));
+  const auto end = chunk("IEND", "");
+  bytes.resize(bytes.size() - end.size());
+  return bytes +
+         chunk("IHDR", big_endian(8192) + big_endian(8192) + std::string("\x08\2\0\0\0", 5)) + end;
+}
+
 class Png : public testing::Test {
  protected:
   Result<Image<std::uint8_t>> read(const std::string& bytes) const {
@@ -55,6 +64,12 @@ class Png : public testing::Test {
   }
   test::Scratch scratch_;
 };
+
+TEST_F(Png, ASecondHeaderDoesNotRaiseTheLimitOfTheImageData) {
+  const auto image = read(picture_with_second_header());
+  ASSERT_FALSE(image);
+  EXPECT_THAT(image.error().what, HasSubstr("more image data than pixels"));
+}
 
 TEST_F(Png, ChunksThatNoPixelNeedsAreLeftOut) {
   const auto with = picture(chunk("gAMA", big_endian(45455)) +

@@ -86,6 +86,18 @@ TEST_F(ReplayDetector, GivesTheSigmasOfARecordingThatHasThem) {
       << "one without";
 }
 
+TEST_F(ReplayDetector, ALandmarkThatWasNotSeenNeedsNoSigma) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> values{none, none, none};
+  while (values.size() < 2 * msg::kLandmarks * 3) values.insert(values.end(), {100, 200, 1});
+  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
+  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  EXPECT_TRUE(open()) << open().error().what;
+  values[5] = none;  // of a landmark that was seen
+  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
+  EXPECT_FALSE(open());
+}
+
 TEST_F(ReplayDetector, SaysWhatItMisses) {
   expect_refused("landmarks_timestamps.npy");
   ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));

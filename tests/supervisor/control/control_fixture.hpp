@@ -10,7 +10,7 @@
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "supervisor/control/control_server.hpp"
-#include "tests/supervisor/runtime_scratch.hpp"
+#include "tests/supervisor/scope_scratch.hpp"
 
 namespace handcast::supervisor {
 
@@ -37,12 +37,21 @@ class Control : public testing::Test {
     return result.get();
   }
 
+  /// Connects to a rig; waits while the queue of its connections is full.
+  static UniqueFd connect_patiently(const RigAddress& address) {
+    for (;;) {
+      auto socket = connect_to(address);
+      if (socket || socket.error().code != Errc::timeout) return std::move(socket.value());
+      usleep(1000);
+    }
+  }
+
   static std::size_t count_descriptors() {
     return static_cast<std::size_t>(
         std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}));
   }
 
-  RuntimeScratch scratch_;
+  ScopeScratch scratch_;
   EventLoop loop_ = EventLoop::open().value();
   UniqueFd timer_ = open_timer(1'000'000).value();
   std::unique_ptr<ControlServer> server_;

@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 
 #include "supervisor/top/top_look.hpp"
 #include "tests/supervisor/control/control_fixture.hpp"
@@ -12,9 +11,7 @@ namespace handcast::supervisor {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 void refuse(const Request&, const ControlServer::Reply& reply) { reply(failure("no")); }
 
@@ -167,11 +164,7 @@ TEST_F(Control, ClientsThatAskNothingDoNotShutOthersOut) {
   const auto address = address_of("desk").value();
   std::vector<UniqueFd> idle;
   while_it_turns([&] {
-    for (int i = 0; i < 200; ++i) {
-      auto socket = connect_to(address);
-      for (; !socket; socket = connect_to(address)) usleep(1000);  // the queue is full
-      idle.push_back(std::move(*socket));
-    }
+    while (idle.size() < 200) idle.push_back(connect_patiently(address));
     return 0;
   });
   EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
@@ -196,12 +189,7 @@ TEST_F(Control, AClientThatWaitsForItsAnswerIsKeptWhenOthersComeIn) {
     while (!is_waiting) usleep(1000);
     std::vector<UniqueFd> idle;
     const auto address = address_of("desk").value();
-    while (idle.size() < 100) {
-      if (auto socket = connect_to(address))
-        idle.push_back(std::move(*socket));
-      else
-        usleep(1000);  // the queue is full
-    }
+    while (idle.size() < 100) idle.push_back(connect_patiently(address));
     EXPECT_TRUE(ask("desk", {}));
     return answer.get();
   });

@@ -3,6 +3,7 @@
 #include "ipc/control/rig_address.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 
@@ -69,11 +70,13 @@ TEST_F(RigAddressTest, ANameIsFreeAfterItsProcessWasKilled) {
   ASSERT_EQ(pipe(ready.data()), 0);
   const pid_t child = fork();
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     auto loop = EventLoop::open().value();
     const auto server = ControlServer::listen("desk", loop, refuse);
     [[maybe_unused]] const auto told = write(ready[1], server ? "y" : "n", 1);
-    pause();
+    for (;;) pause();
   }
+  close(ready[1]);
   char word = 0;
   ASSERT_EQ(read(ready[0], &word, 1), 1);
   ASSERT_EQ(word, 'y');

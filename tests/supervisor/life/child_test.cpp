@@ -167,12 +167,12 @@ TEST(Child, AServiceOutlivesItsSupervisor) {
 
 TEST(Child, TheEndOfAnAdoptedProcessThatNobodyReportsIsUnknown) {
   unsetenv("HANDCAST_KEEPER_FD");
-  auto reports = KeeperLink::from_environment();
+  auto link = KeeperLink::from_environment();
   auto other = shell("exec sleep 1000").value();
   AdoptedProcess process;
   process.saved.pid = other.pid();
   process.pidfd = UniqueFd(dup(other.pidfd()));
-  auto adopted = Child::adopt(std::move(process), reports);
+  auto adopted = Child::adopt(std::move(process), link);
   EXPECT_FALSE(adopted.try_reap());
   adopted.signal(SIGTERM);
   auto exit = adopted.try_reap();

@@ -86,9 +86,9 @@ TEST_F(KeeperLinkTest, AKeeperThatDiesLeavesItsLastReports) {
 TEST(KeeperLink, WithoutAKeeperThereIsNothingToRead) {
   for (const auto* value : {"", "two", "-1", "1", "9999", "12abc"}) {
     setenv(kKeeperVariable, value, 1);
-    auto reports = KeeperLink::from_environment();
-    EXPECT_EQ(reports.fd(), -1) << value;
-    reports.read();
+    auto link = KeeperLink::from_environment();
+    EXPECT_EQ(link.fd(), -1) << value;
+    link.read();
   }
 }
 
@@ -97,14 +97,14 @@ TEST(KeeperLink, ManyThatNobodyAsksAboutDoNotFillTheMemory) {
   ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()), 0);
   const UniqueFd keeper(ends[0]);
   setenv(kKeeperVariable, std::to_string(ends[1]).c_str(), 1);
-  auto reports = KeeperLink::from_environment();
+  auto link = KeeperLink::from_environment();
   int left = 0;
   for (pid_t pid = 2; pid < 5000; ++pid) {
     const ExitReport report{pid, CLD_EXITED, 0};
     ASSERT_EQ(send(keeper.get(), &report, sizeof report, 0), static_cast<ssize_t>(sizeof report));
-    reports.read();
+    link.read();
   }
-  for (pid_t pid = 2; pid < 5000; ++pid) left += reports.take(pid) ? 1 : 0;
+  for (pid_t pid = 2; pid < 5000; ++pid) left += link.take(pid) ? 1 : 0;
   EXPECT_GT(left, 0);
   EXPECT_LE(left, 1024);
 }

@@ -14,7 +14,7 @@
 #include "ipc/control/rig_address.hpp"
 #include "supervisor/succession/adoption.hpp"
 #include "supervisor/succession/census.hpp"
-#include "tests/supervisor/runtime_scratch.hpp"
+#include "tests/supervisor/scope_scratch.hpp"
 #include "tests/system/command.hpp"
 #include "tests/system/variable.hpp"
 
@@ -105,7 +105,7 @@ class BareRig : public testing::Test {
                         {.verb = control::Verb::restart, .service = service, .backend = {}});
   }
 
-  RuntimeScratch scratch_;
+  ScopeScratch scratch_;
   const std::filesystem::path file_ = scratch_.path() / "desk.toml",
                               programs_ = scratch_.path() / "programs";
   std::optional<Variable> bin_;
@@ -183,6 +183,25 @@ TEST_F(BareRig, OnlyDaemonsOfTheRigAreEndedAsStraysNotWhateverElseIsAChildOfTheK
   replace_supervisor(*rig);
   EXPECT_TRUE(eventually([&] { return !is_alive(stray); }));
   EXPECT_TRUE(is_alive(other));
+}
+
+TEST_F(BareRig, AnUpAfterTheKeepersDeathGoesOnWithTheAppliedRigAndOtherArgumentsChangeNothing) {
+  auto rig = ready_rig();
+  const auto before = applied();
+  const auto camera = pid_of("camera"), supervisor = rig->supervisor();
+  rig->signal(SIGKILL);
+  rig->wait();
+  write_rig(std::string("[camera]\nrate_hz = 50\n") + kNoObserver);
+
+  Command other(scratch_.path(), {"up", file_.string(), "--set", "camera.exposure_ms=1"});
+  EXPECT_EQ(other.wait(), 111);
+  EXPECT_TRUE(is_alive(supervisor));
+
+  rig = up();
+  ASSERT_TRUE(eventually([&] { return rig->supervisor() > 0 && !is_alive(supervisor); }));
+  ASSERT_TRUE(eventually([] { return services().is_object(); }));
+  EXPECT_EQ(pid_of("camera"), camera);
+  EXPECT_TRUE(applied() == before);
 }
 
 TEST_F(BareRig, AReloadWhoseServiceCannotStartDoesNotStopARigThatIsNotUpYet) {
@@ -272,7 +291,7 @@ class DescribedRig : public BareRig {
     return eventually([&] { return daemons(name).size() == 2; });
   }
 };
-TEST_F(DescribedRig, ARestartReplacesAServiceWithoutAPauseThatAReaderWouldNotice) {
+TEST_F(DescribedRig, ARestartReplacesAServiceAndSaysHowLongItsStreamPaused) {
   const auto rig = ready_rig();
   for (const auto& name : kDaemons) {
     const auto before = pid_of(name);
@@ -362,7 +381,7 @@ TEST_F(DescribedRig, AServiceThatDiesWhileItsReplacementPreparesIsStartedAgainMe
   EXPECT_EQ(services()["pose"]["restarts"], 1);
 }
 
-TEST_F(BareRig, AnUpThatCannotTakeOverLeavesTheAppliedFileAsItWas) {
+TEST_F(BareRig, AnUpThatCannotTakeOverLeavesTheAppliedRigAsItWas) {
   auto rig = ready_rig();
   const auto before = applied();
   const auto supervisor = rig->supervisor();

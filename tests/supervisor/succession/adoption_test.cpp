@@ -18,7 +18,7 @@
 #include "supervisor/base/event_loop.hpp"
 #include "supervisor/base/process.hpp"
 #include "supervisor/life/child.hpp"
-#include "tests/supervisor/runtime_scratch.hpp"
+#include "tests/supervisor/scope_scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -86,7 +86,7 @@ class AdoptionTest : public testing::Test {
     return adopt("desk");
   }
 
-  RuntimeScratch scratch_;
+  ScopeScratch scratch_;
   std::uint64_t inode_ = 0;
   std::optional<ipc::Writer<msg::StageMarks>> writer_;
   SavedRig saved_;
@@ -157,6 +157,16 @@ TEST_F(AdoptionTest, AProcessThatHasTheNumberByNowIsNotTouched) {
   EXPECT_THAT((*adopted)->services, SizeIs(1));
   usleep(50'000);
   EXPECT_EQ(stranger->try_reap(), std::nullopt);
+}
+
+TEST_F(AdoptionTest, AnotherServiceThatHasTheNumberByNowIsKilledNotAdopted) {
+  service("pose", "exec sleep 1000");
+  auto& other = service("camera", "exec sleep 1000");
+  saved_.services.back().started_ticks -= 1;
+  const auto adopted = adopt_after_death();
+  ASSERT_TRUE(adopted && *adopted);
+  EXPECT_THAT((*adopted)->services, SizeIs(1));
+  EXPECT_EQ(other.try_reap()->code, SIGKILL);
 }
 
 TEST_F(AdoptionTest, OneThatWasStartedAfterTheStateWasSavedIsKilled) {

@@ -4,10 +4,8 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "supervisor/base/pidfd.hpp"
+#include "supervisor/life/process_activity.hpp"
 #include "tests/supervisor/succession/orphans.hpp"
 
 namespace handcast::supervisor {
@@ -55,16 +53,10 @@ TEST_F(Census, ServicesAreAskedAndThenKilled) {
   EXPECT_THAT(find_services("desk"), IsEmpty());
 }
 
-bool is_stopped(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  return text.find(") T ") != std::string::npos;
-}
-
 TEST_F(Census, AStoppedServiceIsEndedToo) {
   auto& child = service("exec sleep 1000");
   child.signal(SIGSTOP);
-  while (!is_stopped(child.pid())) usleep(1000);
+  while (!look_at_process(child.pid())->all_stopped) usleep(1000);
   EXPECT_EQ(end_services("desk", 0.1, now_ns()), 1);
   EXPECT_EQ(child.try_reap()->code, SIGKILL);
 }

@@ -15,7 +15,7 @@
 #include "ipc/base/clock.hpp"
 #include "supervisor/base/exit.hpp"
 #include "supervisor/base/process.hpp"
-#include "tests/supervisor/runtime_scratch.hpp"
+#include "tests/supervisor/scope_scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -79,7 +79,7 @@ class KeeperTest : public testing::Test {
     return child;
   }
 
-  RuntimeScratch scratch_;
+  ScopeScratch scratch_;
   pid_t keeper_ = -1;
 };
 
@@ -228,6 +228,17 @@ TEST_F(KeeperTest, ASupervisorThatDiesWhileTheRigStopsHasNoSuccessor) {
   EXPECT_EQ(wait(), kExitBadResult);
   EXPECT_THAT(notes(), ElementsAre("life"));
   EXPECT_THAT(log(), HasSubstr("before rig 'desk' had stopped"));
+}
+
+TEST_F(KeeperTest, AStopBeforeTheFirstBeatEndsASupervisorThatHangsForGood) {
+  keep_script("echo life >> $NOTES; trap '' TERM INT; while :; do sleep 0.1; done");
+  ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
+  for (int i = 0; i < 3; ++i) {
+    kill(keeper_, SIGINT);
+    usleep(150'000);
+  }
+  EXPECT_EQ(wait(), kExitBadResult);
+  EXPECT_THAT(notes(), ElementsAre("life"));
 }
 
 TEST_F(KeeperTest, TheThirdStopSignalKillsASupervisorThatDoesNotStop) {

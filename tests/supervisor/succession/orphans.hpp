@@ -10,7 +10,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "supervisor/life/child.hpp"
-#include "tests/supervisor/runtime_scratch.hpp"
+#include "tests/supervisor/scope_scratch.hpp"
 
 namespace handcast::supervisor {
 
@@ -35,7 +35,7 @@ class Orphans : public testing::Test {
     return child;
   }
 
-  RuntimeScratch scratch_;
+  ScopeScratch scratch_;
   std::vector<std::unique_ptr<Child>> children_;
 };
 

@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 namespace handcast::supervisor {
 namespace {
 
@@ -74,6 +76,7 @@ TEST(StateMemory, AnotherFileIsNotMistakenForIt) {
 TEST(StateMemory, AKilledWriterLeavesAWholeState) {
   auto memory = StateMemory::create().value();
   ASSERT_TRUE(memory.save(desk(1)));
+  std::int64_t newest_ns = 1;
   for (int round = 0; round < 30; ++round) {
     const pid_t writer = fork();
     if (writer == 0)
@@ -84,7 +87,9 @@ TEST(StateMemory, AKilledWriterLeavesAWholeState) {
     const auto loaded = elsewhere(memory).load("desk");
     ASSERT_TRUE(loaded) << loaded.error().what;
     EXPECT_EQ(loaded->services.at(0).pid, 4711);
+    newest_ns = std::max(newest_ns, loaded->epoch_ns);
   }
+  EXPECT_GT(newest_ns, 1) << "no writer has ever saved";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 
@@ -25,6 +26,7 @@ class StopRig : public Orphans {
     EXPECT_EQ(pipe(ready.data()), 0);
     const pid_t child = fork();
     if (child == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
       const auto address = control::address_of("desk").value();
       const UniqueFd listener(socket(AF_UNIX, SOCK_STREAM, 0));
       bind(listener.get(), reinterpret_cast<const sockaddr*>(&address.socket), address.size);
@@ -32,9 +34,10 @@ class StopRig : public Orphans {
       [[maybe_unused]] const auto told = write(ready[1], "y", 1);
       for (;;) pause();
     }
+    close(ready[1]);
     char word = 0;
     EXPECT_EQ(read(ready[0], &word, 1), 1);
-    for (const int end : ready) close(end);
+    close(ready[0]);
     return child;
   }
 };

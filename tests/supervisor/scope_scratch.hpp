@@ -7,10 +7,10 @@
 namespace handcast::supervisor {
 
 /// A scope of rigs of this test's own (HANDCAST_SCOPE) and a folder, as long as it lives.
-class RuntimeScratch {
+class ScopeScratch {
  public:
-  RuntimeScratch() { setenv("HANDCAST_SCOPE", scratch_.path().c_str(), 1); }
-  ~RuntimeScratch() { unsetenv("HANDCAST_SCOPE"); }
+  ScopeScratch() { setenv("HANDCAST_SCOPE", scratch_.path().c_str(), 1); }
+  ~ScopeScratch() { unsetenv("HANDCAST_SCOPE"); }
   const std::filesystem::path& path() const { return scratch_.path(); }
 
  private:
