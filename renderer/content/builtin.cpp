@@ -23,7 +23,8 @@ constexpr Colour kPaper{252, 248, 240}, kInk{24, 28, 44};
 std::uint32_t packed(Colour colour) {
   // In double the sum is exact, so this rounds like std::lround(), which is a slow call.
   const auto byte = [](float value) {
-    return static_cast<std::uint32_t>(static_cast<double>(std::clamp(value, 0.f, 255.f)) + 0.5);
+    const double rounded = static_cast<double>(std::clamp(value, 0.f, 255.f)) + 0.5;
+    return static_cast<std::uint32_t>(rounded);
   };
   return 0xff000000u | byte(colour.b) << 16 | byte(colour.g) << 8 | byte(colour.r);
 }

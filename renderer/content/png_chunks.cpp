@@ -50,9 +50,9 @@ std::optional<std::uint64_t> bytes_of_image(std::string_view header) {
   const std::uint64_t width = number_at(header, 0), height = number_at(header, 4);
   if (width > kLargestSide || height > kLargestSide) return std::nullopt;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(header[i]); };
-  constexpr std::array<int, 7> kChannels{1, 0, 3, 1, 2, 0, 4};  // by colour type
+  constexpr std::array<std::uint64_t, 7> kChannels{1, 0, 3, 1, 2, 0, 4};  // by colour type
   if (byte(9) >= kChannels.size() || byte(8) > 16) return std::nullopt;
-  const auto bits = static_cast<std::uint64_t>(byte(8) * kChannels[byte(9)]);
+  const std::uint64_t bits = byte(8) * kChannels[byte(9)];
   if (byte(12) == 0) return bytes_of_rows(width, height, bits);
   struct Pass {
     std::uint64_t x, y, step_x, step_y;

@@ -54,6 +54,7 @@ Result<Outcome> run_and_read(const std::vector<std::string>& command, double pat
   const UniqueFd output(ends[0]);
   UniqueFd input(ends[1]);
   std::vector<char*> words;
+  words.reserve(command.size() + 1);
   for (const auto& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   posix_spawn_file_actions_t actions;

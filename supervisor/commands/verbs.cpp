@@ -91,6 +91,7 @@ std::span<const VerbEntry> verbs() { return kVerbs; }
 
 std::vector<std::string> verb_names() {
   std::vector<std::string> names;
+  names.reserve(kVerbs.size());
   for (const auto& verb : kVerbs) names.emplace_back(verb.name);
   return names;
 }

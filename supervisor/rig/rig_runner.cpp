@@ -105,7 +105,7 @@ Result<void> RigRunner::make_parts() {
   keeper_.read();
 
   const auto specs = services_of(rig_.config, rig_.catalogue);
-  if (const auto made = make_rings_and_files(*adopted, specs); !made) {
+  if (auto made = make_rings_and_files(*adopted, specs); !made) {
     if (!*adopted) return made;
     return fail(made.error().code,
                 fmt::format("the running services of rig '{0}' cannot be taken over: {1}; "

@@ -37,7 +37,7 @@ Filler::Filler(Context& context, Program sort, Program fill, glm::ivec2 size_px)
           make_buffer(context, cpu::FillTable::kSquares * sizeof(Limit), GL_DYNAMIC_STORAGE_BIT)),
       counts_read_(context, sizeof(Counts), GL_MAP_READ_BIT) {
   const auto pixels = static_cast<std::size_t>(size_px.x) * size_px.y;
-  const auto word_rows = static_cast<std::size_t>(size_px.y / 32 + 1);
+  const auto word_rows = static_cast<std::size_t>(size_px.y) / 32 + 1;
   words_ = make_buffer(context, word_rows * size_px.x * sizeof(std::uint32_t), 0);
   list_ = make_buffer(context, pixels * sizeof(std::uint32_t), 0);
 }
@@ -51,8 +51,7 @@ bool Filler::upload(View<const std::uint8_t> mask, const Rect& region) {
   const Functions& gl = context_->gl();
   gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, ring_->buffer());
   gl.TextureSubImage2D(mask_.name(), 0, region.x0, region.y0, region.width(), region.height(),
-                       GL_RED_INTEGER, GL_UNSIGNED_BYTE,
-                       reinterpret_cast<const void*>(ring_->offset()));
+                       GL_RED_INTEGER, GL_UNSIGNED_BYTE, ring_->pointer());
   gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   ring_->sent();
   return true;

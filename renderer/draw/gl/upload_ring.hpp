@@ -27,6 +27,10 @@ class UploadRing {
   GLuint buffer() const { return mapped_.buffer.name(); }
   std::size_t offset() const { return slot_ * slot_bytes_; }
   /// @}
+  /// Where the byte `place` of the slot is in the bound buffer, as OpenGL takes it.
+  const void* pointer(std::size_t place = 0) const {
+    return reinterpret_cast<const void*>(offset() + place);  // NOLINT(performance-no-int-to-ptr)
+  }
 
  private:
   static constexpr std::size_t kSlots = 3;

@@ -53,7 +53,7 @@ void Warper::warp(const WarpGrid& grid, const Rect& from, const Rect& region, co
   gl.VertexArrayElementBuffer(vertices_.name(), ring_->buffer());
   gl.BindVertexArray(vertices_.name());
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * cells_.triangles.size()),
-                  GL_UNSIGNED_SHORT, reinterpret_cast<const void*>(ring_->offset() + node_bytes));
+                  GL_UNSIGNED_SHORT, ring_->pointer(node_bytes));
   ring_->sent();
 }
 
