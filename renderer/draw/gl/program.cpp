@@ -13,7 +13,7 @@ namespace {
 
 /// The driver's message on one line.
 std::string reason_of(const std::string& log) {
-  std::string line(log.c_str());
+  std::string line = log.substr(0, log.find('\0'));
   while (!line.empty() && (line.back() == '\n' || line.back() == ' ')) line.pop_back();
   for (char& c : line)
     if (c == '\n') c = ';';

@@ -43,7 +43,7 @@ std::string wrong_kind(const json& value, Kind kind, const std::string& place) {
   if (kind == Kind::text) return value.is_string() ? "" : place + " must be a text";
   if (!value.is_object()) return place + " must be an object";
   for (const auto& [name, member] : value.items()) {
-    const auto inner = place + "/" + name;
+    const auto inner = fmt::format("{}/{}", place, name);
     auto wrong = kind == Kind::figures                    ? wrong_kind(member, Kind::number, inner)
                  : kind == Kind::tables                   ? wrong_kind(member, Kind::figures, inner)
                  : member.is_object() || member.is_null() ? ""

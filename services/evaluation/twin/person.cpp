@@ -50,6 +50,7 @@ glm::vec3 median_place_mm(const std::vector<msg::HandPose>& poses, int joint) {
 
 float median_length_mm(const std::vector<msg::HandPose>& poses, int joint) {
   std::vector<float> lengths;
+  lengths.reserve(poses.size());
   for (const auto& pose : poses)
     lengths.push_back(1e3f * glm::distance(place_m(pose, joint), place_m(pose, joint + 1)));
   return median(lengths);

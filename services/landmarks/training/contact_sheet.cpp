@@ -23,9 +23,9 @@ void draw_point(renderer::Texture& sheet, int left, int top, glm::vec2 place, st
 void draw_sample(renderer::Texture& sheet, int left, int top, const Sample& sample) {
   for (int y = 0; y < kTile; ++y)
     for (int x = 0; x < kTile; ++x) {
-      const int grey =
-          sample
-              .image[static_cast<std::size_t>(y / kZoom * handcast_network::kSide_px + x / kZoom)];
+      const auto row = static_cast<std::size_t>(y / kZoom),
+                 column = static_cast<std::size_t>(x / kZoom);
+      const int grey = sample.image[row * handcast_network::kSide_px + column];
       sheet.at(left + x, top + y) = colour(grey, grey, grey);
     }
   for (std::size_t i = 0; i < sample.truth.size(); ++i) {

@@ -146,9 +146,10 @@ void Film::leak(Dice& dice) {
 void Film::cover(Dice& dice) {
   const float angle = dice.between(0, 6.28f), c = std::cos(angle), s = std::sin(angle);
   const float edge = dice.between(0.1f, 0.45f) * kSide, dark = dice.between(0, 0.08f);
+  constexpr float kMiddle = kSide / 2.f;
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x)
-      if ((static_cast<float>(x) - kSide / 2) * c + (static_cast<float>(y) - kSide / 2) * s > edge)
+      if ((static_cast<float>(x) - kMiddle) * c + (static_cast<float>(y) - kMiddle) * s > edge)
         image_[y * kSide + x] = dark;
 }
 
