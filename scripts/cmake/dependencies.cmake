@@ -74,6 +74,12 @@ find_path(GL_HEADERS GL/glcorearb.h)
 handcast_found(found EGL_HEADERS GL_HEADERS)
 handcast_feature(GL "painter gl, which draws on a GPU (libegl-dev libgl-dev)" ${found})
 
+find_package(glfw3 QUIET)
+find_package(OpenGL QUIET COMPONENTS OpenGL)
+find_package(X11 QUIET)
+handcast_found(found glfw3_FOUND OpenGL_OpenGL_FOUND X11_Xrandr_FOUND)
+handcast_feature(WINDOW "light in a window (libglfw3-dev libgl-dev libxrandr-dev)" ${found})
+
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
 handcast_feature(PROMETHEUS "metrics for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})
