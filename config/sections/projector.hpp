@@ -26,13 +26,14 @@ struct ProjectorWindow {
 
 template <class Visitor>
 void describe(Visitor& visitor, ProjectorWindow& window) {
-  visitor.field("monitor", window.monitor,
-                "The monitor or projector: its output (HDMI-1), the model in its EDID, or an index; a "
-                "name that does not exist gets a list of them. Empty: the only one besides the "
-                "primary one.");
+  visitor.field(
+      "monitor", window.monitor,
+      "The monitor or projector: its output (HDMI-1), the model in its EDID, or an index; a "
+      "name that does not exist gets a list of them. Empty: the only one besides the "
+      "primary one.");
   visitor.field("full_screen", window.full_screen,
-                "Covers the monitor, with the video mode that is nearest to the size in the "
-                "calibration and rate_hz. Off: a window among others, to try a rig.");
+                "Covers the monitor, in its current video mode. Off: a window among others, to try "
+                "a rig.");
   visitor.field("vsync", window.vsync,
                 "Frames change between two refreshes. Off: the light comes up to a refresh sooner, "
                 "but the picture may be torn.");

@@ -36,8 +36,7 @@ void Blit::upload(View<const std::uint32_t> picture, const Rect& region) {
 
 void Blit::finish() { glFinish(); }
 
-void Blit::draw(View<const std::uint32_t> picture, Rect region, int to_width_px,
-                int to_height_px) {
+void Blit::draw(View<const std::uint32_t> picture, Rect region, int to_width_px, int to_height_px) {
   glClear(GL_COLOR_BUFFER_BIT);
   region = region.within(picture.width, picture.height);
   if (region.empty()) return;

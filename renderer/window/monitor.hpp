@@ -26,7 +26,8 @@ std::string describe(const Monitor& monitor, std::size_t index);
 
 /// The index of the monitor that is meant by `wanted`: an output, a model, or an index. Empty: the
 /// only one that is not primary. The primary one is only chosen by its name or index. Errors, with
-/// a list of the monitors: bad_config (several fit), unavailable (none fits; it may be switched off).
+/// a list of the monitors: bad_config (several fit), unavailable (none fits; it may be switched
+/// off).
 Result<std::size_t> choose_monitor(std::span<const Monitor> monitors, std::string_view wanted);
 
 /// The name of a display in its EDID (VESA E-EDID 1.4, 3.10.3.4: descriptor 0xFC). Empty if it has

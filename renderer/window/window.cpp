@@ -161,26 +161,22 @@ Result<void> Window::Screen::create() {
   return {};
 }
 
-/// Puts the window on its monitor, with the video mode nearest to the settings.
+/// Puts the window on its monitor. The monitor keeps its video mode, because another one may not
+/// fit into the screen of the server, which ends the process that asks for it.
 void Window::Screen::appear() {
   has_appeared_ = true;
-  if (!settings_.full_screen) {
-    const GLFWvidmode* mode = glfwGetVideoMode(glfwGetPrimaryMonitor());
-    rate_hz_ = mode != nullptr ? mode->refreshRate : 0;
-    return glfwShowWindow(window_);
-  }
-  glfwSetWindowMonitor(window_, monitor_, 0, 0, settings_.width_px, settings_.height_px,
-                       settings_.rate_hz > 0 ? static_cast<int>(settings_.rate_hz + 0.5)
-                                             : GLFW_DONT_CARE);
-  const GLFWvidmode* mode = glfwGetVideoMode(monitor_);
+  const GLFWvidmode* mode = glfwGetVideoMode(monitor_ ? monitor_ : glfwGetPrimaryMonitor());
+  rate_hz_ = mode != nullptr ? mode->refreshRate : 0;
+  if (!settings_.full_screen) return glfwShowWindow(window_);
   if (mode == nullptr) return;
-  rate_hz_ = mode->refreshRate;
-  log::info("light on monitor '{}', {}x{} at {} Hz", monitor_name_, mode->width, mode->height,
-            mode->refreshRate);
-  if (mode->width != settings_.width_px || mode->height != settings_.height_px)
+  const int width = mode->width, height = mode->height;
+  glfwSetWindowMonitor(window_, monitor_, 0, 0, width, height, mode->refreshRate);
+  log::info("light on monitor '{}', {}x{} at {} Hz", monitor_name_, width, height, rate_hz_);
+  if (width != settings_.width_px || height != settings_.height_px)
     log::warning(
-        "monitor '{}' has no mode of {}x{}, the size in the calibration; the picture is scaled",
-        monitor_name_, settings_.width_px, settings_.height_px);
+        "monitor '{0}' has {1}x{2} pixels and the calibration {3}x{4}, so the picture is scaled; "
+        "`xrandr --output {0} --mode {3}x{4}` may change it",
+        monitor_name_, width, height, settings_.width_px, settings_.height_px);
 }
 
 /// Undoes what a user or another program did to a full-screen window.

@@ -21,7 +21,6 @@ struct WindowSettings {
   /// @}
   bool full_screen = false;  ///< on `monitor`, without cursor; otherwise among other windows
   std::string monitor;       ///< see choose_monitor() in monitor.hpp
-  double rate_hz = 0;        ///< wanted refresh rate of the monitor; 0: any
   bool vsync = true;         ///< show() waits for the refresh of the monitor
   /// Called when the connection to the display server is lost; must end the process. Empty: the
   /// process ends with exit code 1.

@@ -60,8 +60,8 @@ static void run_projector(service::Context& context) {
     const std::int64_t drawn_ns = now_ns();
     const auto times =
         projector->present(frame, frame_id, brightness.at(drawn_ns), Deadline::in(50ms));
-    next_ns = times && times->next_ns != 0 ? horizon.begin_ns(times->next_ns)
-                                           : pacer.next_ns(now_ns());
+    next_ns =
+        times && times->next_ns != 0 ? horizon.begin_ns(times->next_ns) : pacer.next_ns(now_ns());
     if (!times) {
       context.tolerate(times.error());
       continue;

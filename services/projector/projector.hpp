@@ -4,10 +4,10 @@
 #include <memory>
 #include <span>
 
+#include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
-#include "calib/calibration.hpp"
 #include "renderer/output/light.hpp"
 #include "renderer/pipeline/pipeline.hpp"
 #include "services/runtime/backends.hpp"

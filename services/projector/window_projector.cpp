@@ -30,10 +30,10 @@ class WindowProjector final : public Projector {
     const auto shown = window_->show(picture_.view(), frame.region);
     if (!shown) return fail(shown.error().code, "projector 'window': " + shown.error().what);
     const auto refresh_ns = window_->refresh_ns();
-    return PresentTimes{.handed_ns = shown->handed_ns,
-                        .lit_ns = shown->shown_ns + latency_ns_ +
-                                  refresh_ns.value_or(period_ns_) / 2,
-                        .next_ns = refresh_ns ? shown->shown_ns + *refresh_ns : 0};
+    return PresentTimes{
+        .handed_ns = shown->handed_ns,
+        .lit_ns = shown->shown_ns + latency_ns_ + refresh_ns.value_or(period_ns_) / 2,
+        .next_ns = refresh_ns ? shown->shown_ns + *refresh_ns : 0};
   }
 
  private:
@@ -59,11 +59,9 @@ Result<std::unique_ptr<Projector>> open_window(const config::Rig& rig,
                                         .height_px = height_px,
                                         .full_screen = settings.window.full_screen,
                                         .monitor = settings.window.monitor,
-                                        .rate_hz = settings.rate_hz,
                                         .vsync = settings.window.vsync,
                                         .when_display_is_lost = end_without_display});
-  if (!window)
-    return fail(window.error().code, "projector 'window': " + window.error().what);
+  if (!window) return fail(window.error().code, "projector 'window': " + window.error().what);
   return std::make_unique<WindowProjector>(settings, width_px, height_px, std::move(*window));
 }
 

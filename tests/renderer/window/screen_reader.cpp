@@ -24,12 +24,25 @@ Connection connect() { return Connection(XOpenDisplay(nullptr)); }
 
 std::uint32_t pixel(int x, int y) {
   const auto display = connect();
-  XImage* image = XGetImage(display.get(), DefaultRootWindow(display.get()), x, y, 1, 1, AllPlanes,
-                            ZPixmap);
+  XImage* image =
+      XGetImage(display.get(), DefaultRootWindow(display.get()), x, y, 1, 1, AllPlanes, ZPixmap);
   if (image == nullptr) return 0;
   const auto rgb = static_cast<std::uint32_t>(XGetPixel(image, 0, 0));
   XDestroyImage(image);
   return 0xff000000u | (rgb & 0xff) << 16 | (rgb & 0xff00) | (rgb >> 16 & 0xff);
+}
+
+int lit_pixels(int left, int top, int width, int height) {
+  const auto display = connect();
+  XImage* image =
+      XGetImage(display.get(), DefaultRootWindow(display.get()), left, top,
+                static_cast<unsigned>(width), static_cast<unsigned>(height), AllPlanes, ZPixmap);
+  if (image == nullptr) return 0;
+  int lit = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) lit += (XGetPixel(image, x, y) & 0xffffff) != 0 ? 1 : 0;
+  XDestroyImage(image);
+  return lit;
 }
 
 void paint_the_desktop(unsigned long rgb) {

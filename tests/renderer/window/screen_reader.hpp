@@ -9,6 +9,8 @@ namespace handcast::test {
 
 /// The colour of a pixel of the screen, RGBA8 with red in the lowest byte.
 std::uint32_t pixel(int x, int y);
+/// Number of pixels that are not black in a rectangle of the screen.
+int lit_pixels(int left, int top, int width, int height);
 /// Fills what no window covers. `rgb`: 0xRRGGBB.
 void paint_the_desktop(unsigned long rgb);
 /// Gives an output an EDID with this name.

@@ -37,8 +37,8 @@ class WindowTest : public testing::Test {
     if (!server_) GTEST_SKIP() << test::DisplayServer::why();
   }
   static WindowSettings full_screen() {
-    return {.title = "light", .width_px = 800, .height_px = 600, .full_screen = true,
-            .vsync = false};
+    return {
+        .title = "light", .width_px = 800, .height_px = 600, .full_screen = true, .vsync = false};
   }
   /// Shows the red square until it is seen.
   bool shows_red_at(Window& window, int x, int y) const {

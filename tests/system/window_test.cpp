@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rig whose light is a window, while its display server and its monitor come and go.
+#include <gmock/gmock.h>
+
+#include "tests/display_server.hpp"
+#include "tests/renderer/window/screen_reader.hpp"
+#include "tests/system/running_rig.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+using testing::HasSubstr;
+
+class LightInAWindow : public SystemTest {
+ protected:
+  void SetUp() override {
+    SystemTest::SetUp();
+    if (!server_) GTEST_SKIP() << test::DisplayServer::why();
+    test::paint_the_desktop(0);
+  }
+  /// Lit pixels of the monitor DUMMY1.
+  static bool is_lit() { return test::lit_pixels(1024, 0, 800, 600) > 1000; }
+
+  test::DisplayServer server_;
+};
+
+TEST_F(LightInAWindow, ComesBackWithTheDisplayServer) {
+  const auto rig = up({"--set", "projector.backend=window"});
+  wait_until_light();
+  ASSERT_TRUE(eventually(is_lit));
+  const auto camera = service("camera")["pid"];
+  server_.end();
+  ASSERT_TRUE(eventually([&] { return service("projector")["restarts"] > 0; }));
+  ASSERT_TRUE(server_.start());
+  EXPECT_TRUE(eventually(is_lit));
+  EXPECT_EQ(service("camera")["pid"], camera);
+  EXPECT_THAT(rig->log(), HasSubstr("the connection to the display server is lost"));
+}
+
+TEST_F(LightInAWindow, ComesBackToItsMonitor) {
+  const auto rig = up({"--set", "projector.backend=window"});
+  wait_until_light();
+  ASSERT_TRUE(eventually(is_lit));
+  const auto projector = service("projector")["pid"];
+  ASSERT_TRUE(server_.unplug());
+  ASSERT_TRUE(eventually(
+      [&] { return rig->log().find("monitor 'DUMMY1' is unplugged") != std::string::npos; }));
+  EXPECT_EQ(test::lit_pixels(0, 0, 1024, 768), 0) << "nothing is shown on the other monitor";
+  ASSERT_TRUE(server_.plug_in());
+  EXPECT_TRUE(eventually(is_lit));
+  EXPECT_EQ(service("projector")["pid"], projector);
+}
+
+TEST_F(LightInAWindow, IsGoneAfterDown) {
+  const auto rig = up({"--set", "projector.backend=window"});
+  wait_until_light();
+  ASSERT_TRUE(eventually(is_lit));
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_TRUE(eventually([] { return test::lit_pixels(0, 0, 1824, 600) == 0; }));
+}
+
+}  // namespace
+}  // namespace handcast::system_test
