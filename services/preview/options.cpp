@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "ipc/base/version.hpp"
 
@@ -55,6 +58,7 @@ Result<Parsed> parse(int argc, char** argv) {
   } catch (const CLI::ParseError& problem) {
     return fail(Errc::bad_config, problem.what());
   }
+  if (!std::isfinite(options.after_s)) return fail(Errc::bad_config, "--after: nan is no number");
   if (!size.empty())
     if (auto set = set_size(size, options.look); !set) return tl::make_unexpected(set.error());
   if (layers.empty()) return parsed;
