@@ -88,12 +88,6 @@ TEST_F(Preview, AShotShowsTheHandTheRegionsOnItAndTheLight) {
   EXPECT_EQ(kCamera.count(image, is_lit_hand), 0) << "a layer that was not chosen";
 }
 
-TEST_F(Preview, ARigWithoutAHandIsShownToo) {
-  const auto rig = up({"--set", "twin.motion=builtin:enter_leave", "--set", "pose.rate_hz=1"});
-  wait_until_light();
-  EXPECT_EQ(shot().width(), kWidth);
-}
-
 TEST_F(Preview, TheRigKnowsNothingOfAPreview) {
   const auto rig = up();
   wait_until_light();
@@ -119,8 +113,6 @@ TEST_F(Preview, WithoutARigItSaysSo) {
   const auto outcome = handcast({"preview", "--shot", in_scratch("a.png")});
   EXPECT_EQ(outcome.exit_code, 111);
   EXPECT_THAT(outcome.log, HasSubstr("no rig is up"));
-  EXPECT_THAT(handcast({"preview", "--rig", "desk", "--shot", in_scratch("a.png")}).log,
-              HasSubstr("desk"));
 }
 
 TEST_F(Preview, AFileThatCannotBeWrittenIsRefusedWithASentence) {
