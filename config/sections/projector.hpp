@@ -17,6 +17,28 @@ enum class PainterChoice {
 };
 constexpr std::array<std::string_view, 3> words_of(PainterChoice) { return {"cpu", "gl", "auto"}; }
 
+/// [projector.window]
+struct ProjectorWindow {
+  std::string monitor;
+  bool full_screen = true;
+  bool vsync = true;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, ProjectorWindow& window) {
+  visitor.field(
+      "monitor", window.monitor,
+      "The monitor or projector: its output (HDMI-1), the model in its EDID, or an index; a "
+      "name that does not exist gets a list of them. Empty: the only one besides the "
+      "primary one.");
+  visitor.field("full_screen", window.full_screen,
+                "Covers the monitor, with the video mode that is nearest to the size in the "
+                "calibration and rate_hz. Off: a window among others, to try a rig.");
+  visitor.field("vsync", window.vsync,
+                "Frames change between two refreshes. Off: the light comes up to a refresh sooner, "
+                "but the picture may be torn.");
+}
+
 /// [projector]
 struct Projector {
   std::string backend = "twin";
@@ -25,6 +47,10 @@ struct Projector {
   double latency_ms = 3.0;
   double software_ms = 1.2;
   double frame_wait_ms = 0;
+  double brightness = 1;
+  double gamma = 0;
+  double fade_s = 0.5;
+  ProjectorWindow window;
   Process process;
 };
 
@@ -48,6 +74,15 @@ void describe(Visitor& visitor, Projector& projector) {
   visitor.field(
       "frame_wait_ms", projector.frame_wait_ms, between(0, 100, "ms"),
       "How long a projector frame may wait for a newer camera image. 0: it does not wait.");
+  visitor.field("brightness", projector.brightness, between(0, 1),
+                "Factor of the light, a limit for people's eyes. 1: all of it.");
+  visitor.field("gamma", projector.gamma, between(0, 5),
+                "The projector turns a level 0..1 into the light level^gamma. 0: as in sRGB, the "
+                "encoding of pictures.");
+  visitor.field("fade_s", projector.fade_s, between(0, 10, "s"),
+                "How long the light of a rig takes to full brightness at its start. A projector "
+                "that replaces another one does not fade.");
+  visitor.section("window", projector.window, "The back end `window`.");
   visitor.section("process", projector.process, "The process of the service.");
 }
 

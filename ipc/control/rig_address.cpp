@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -24,19 +25,46 @@ std::string prefix() {
   return fmt::format("handcast-{}/{}/", getuid(), scope ? scope : "");
 }
 
-/// The names of the listening sockets in the abstract namespace (proc(5), /proc/net/unix).
-std::vector<std::string> listening_sockets() {
+/// A listening socket in the abstract namespace.
+struct Listening {
+  std::string name;
+  std::string inode;
+};
+
+/// All of them (proc(5), /proc/net/unix).
+std::vector<Listening> listening_sockets() {
   constexpr std::string_view kListening = "00010000";  // __SO_ACCEPTCON
-  std::vector<std::string> names;
+  std::vector<Listening> found;
   std::ifstream table("/proc/net/unix");
   for (std::string line; std::getline(table, line);) {
     std::istringstream words(line);
     std::string number, references, protocol, flags, type, state, inode, name;
     words >> number >> references >> protocol >> flags >> type >> state >> inode >> std::ws;
     if (flags == kListening && std::getline(words, name) && name.starts_with('@'))
-      names.push_back(name.substr(1));
+      found.push_back({name.substr(1), inode});
   }
-  return names;
+  return found;
+}
+
+/// The entries of a folder; those that can be read, because processes end meanwhile.
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> entries;
+  std::error_code error;
+  for (auto entry = std::filesystem::directory_iterator(folder, error);
+       !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+    entries.push_back(entry->path());
+  return entries;
+}
+
+/// A process that has the socket open and that this user may examine; -1 if there is none.
+pid_t holder_of(const std::string& inode) {
+  const auto wanted = "socket:[" + inode + "]";
+  std::error_code ignored;
+  for (const auto& process : entries_of("/proc"))
+    for (const auto& file : entries_of(process / "fd"))
+      if (std::filesystem::read_symlink(file, ignored) == wanted)
+        return static_cast<pid_t>(std::atoi(process.filename().c_str()));
+  return -1;
 }
 
 /// The process at the other end; its pid is -1 if the kernel does not know it.
@@ -74,7 +102,7 @@ std::string name_in(std::string_view address) {
 std::vector<std::string> living_rigs() {
   std::vector<std::string> rigs;
   for (const auto& socket : listening_sockets())
-    if (auto name = name_in(socket); !name.empty() && has_supervisor(name))
+    if (auto name = name_in(socket.name); !name.empty() && has_supervisor(name))
       rigs.push_back(std::move(name));
   std::ranges::sort(rigs);
   return rigs;
@@ -110,6 +138,13 @@ bool is_of_this_user(int socket) {
   return peer.pid >= 0 && peer.uid == getuid();
 }
 
-pid_t process_at_other_end(int socket) { return peer_of(socket).pid; }
+pid_t listener_of(const RigAddress& address) {
+  const auto connection = connect_to(address);
+  if (connection) return peer_of(connection->get()).pid;
+  if (connection.error().code == Errc::timeout)
+    for (const auto& socket : listening_sockets())
+      if (socket.name == address.text) return holder_of(socket.inode);
+  return -1;
+}
 
 }  // namespace handcast::control

@@ -45,8 +45,8 @@ Result<UniqueFd> connect_to(const RigAddress& address);
 
 /// True if the process at the other end of a Unix socket belongs to this user.
 bool is_of_this_user(int socket);
-/// The pid of the process at the other end of a connected Unix socket: for a client, that of the
-/// process that listens. -1 if it is unknown.
-pid_t process_at_other_end(int socket);
+/// The pid of the process of this user that listens at an address, even if it accepts no
+/// connections. -1 if there is none.
+pid_t listener_of(const RigAddress& address);
 
 }  // namespace handcast::control

@@ -78,6 +78,12 @@ pkg_check_modules(cairo QUIET IMPORTED_TARGET cairo)
 handcast_found(found cairo_FOUND)
 handcast_feature(CAIRO "pictures of a running rig, handcast preview (libcairo2-dev)" ${found})
 
+find_package(glfw3 QUIET)
+find_package(OpenGL QUIET COMPONENTS OpenGL)
+find_package(X11 QUIET)
+handcast_found(found glfw3_FOUND OpenGL_OpenGL_FOUND X11_Xrandr_FOUND)
+handcast_feature(WINDOW "light in a window (libglfw3-dev libgl-dev libxrandr-dev)" ${found})
+
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
 handcast_feature(PROMETHEUS "metrics for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})

@@ -5,8 +5,9 @@
 
 namespace handcast::projector {
 
-Result<std::unique_ptr<Projector>> open_twin(const config::Rig&);
-Result<std::unique_ptr<Projector>> open_file(const config::Rig&);
+Result<std::unique_ptr<Projector>> open_twin(const config::Rig&, const calib::Calibration&);
+Result<std::unique_ptr<Projector>> open_file(const config::Rig&, const calib::Calibration&);
+Result<std::unique_ptr<Projector>> open_window(const config::Rig&, const calib::Calibration&);
 
 static constexpr std::array kBackends{
     ProjectorBackend{.name = "twin",
@@ -17,12 +18,20 @@ static constexpr std::array kBackends{
                                  "folder of `up --out`, or in the "
                                  "current folder; keeps 100 of them.",
                      .open = open_file},
+#ifdef HANDCAST_WITH_WINDOW
+    ProjectorBackend{.name = "window",
+                     .sentence = "Shows the light on a monitor or projector of an X server, in a "
+                                 "window or full screen.",
+                     .open = open_window},
+#endif
 };
 
 std::span<const ProjectorBackend> projector_backends() { return kBackends; }
 
-Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig) {
-  return service::open_backend("projector", rig.projector.backend, projector_backends(), rig);
+Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig,
+                                                  const calib::Calibration& calibration) {
+  return service::open_backend("projector", rig.projector.backend, projector_backends(), rig,
+                               calibration);
 }
 
 }  // namespace handcast::projector

@@ -30,12 +30,12 @@ class FileProjector final : public Projector {
       : clock_(settings), folder_(std::move(folder)) {}
 
   Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id,
-                               Deadline deadline) override {
+                               const renderer::LightTable& light, Deadline deadline) override {
     if (auto claimed = claim(); !claimed) return tl::make_unexpected(claimed.error());
     auto times = clock_.take(deadline);
     if (!times || frame_id % kEvery != 0) return times;
     const fs::path file = folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept);
-    if (const auto written = write(frame, file); !written)
+    if (const auto written = write(frame, light, file); !written)
       return fail(Errc::bad_data, "projector 'file': " + written.error().what);
     return times;
   }
@@ -67,14 +67,11 @@ class FileProjector final : public Projector {
     return {};
   }
 
-  /// Writes the whole projector image, dark outside the region of the frame and where alpha is 0.
-  static Result<void> write(const renderer::Frame& frame, const fs::path& file) {
+  /// Writes the whole projector image, dark outside the region of the frame.
+  static Result<void> write(const renderer::Frame& frame, const renderer::LightTable& light,
+                            const fs::path& file) {
     renderer::Texture image(frame.colour.width, frame.colour.height);
-    const auto& region = frame.region;
-    for (int y = region.y0; y < region.y1; ++y)
-      for (int x = region.x0; x < region.x1; ++x)
-        if (const std::uint32_t rgba = frame.colour.at(x, y); rgba >> 24 != 0)
-          image.at(x, y) = rgba;
+    renderer::write_light(frame.colour, frame.region, light, image.view());
     return renderer::write_png(file, image.view());
   }
 
@@ -85,7 +82,7 @@ class FileProjector final : public Projector {
 
 }  // namespace
 
-Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig) {
+Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig, const calib::Calibration&) {
   const fs::path folder = daemon::out_folder().value_or(".") / "light";
   std::error_code error;
   fs::create_directories(folder, error);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/draw/choose/open_painter.hpp"
+#include "services/projector/brightness.hpp"
 #include "services/projector/inputs.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
@@ -35,19 +36,20 @@ static void run_projector(service::Context& context) {
                              calibration.projector_height_px)));
   if (service::is_exclusive(rig.projector.backend, projector::projector_backends()))
     context.stand_by();
-  const auto projector = must(projector::open_projector(rig));
+  const auto projector = must(projector::open_projector(rig, calibration));
   context.stand_by();
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")));
   projector::Pacer pacer(rig.projector.rate_hz);
   projector::Horizon horizon(rig.projector);
+  projector::Brightness brightness(rig.projector, context.epoch_ns());
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
 
   context.ready();
   const auto running = [&] { return context.running(); };
-  for (std::uint64_t frame_id = 0; projector::sleep_while(running, pacer.next_ns(now_ns()));
-       ++frame_id) {
+  std::int64_t next_ns = pacer.next_ns(now_ns());
+  for (std::uint64_t frame_id = 0; projector::sleep_while(running, next_ns); ++frame_id) {
     const Deadline image_deadline =
         Deadline::at_ns(now_ns() + ms_to_ns(rig.projector.frame_wait_ms));
     if (const auto delivered = inputs.deliver(*pipeline, image_deadline); !delivered)
@@ -56,12 +58,15 @@ static void run_projector(service::Context& context) {
     const std::int64_t begin_ns = now_ns();
     const auto frame = pipeline->render(begin_ns, horizon.target_ns(begin_ns), inputs.image());
     const std::int64_t drawn_ns = now_ns();
-    const auto times = projector->present(frame, frame_id, Deadline::in(50ms));
+    const auto times =
+        projector->present(frame, frame_id, brightness.at(drawn_ns), Deadline::in(50ms));
+    next_ns =
+        times && times->next_ns != 0 ? horizon.begin_ns(times->next_ns) : pacer.next_ns(now_ns());
     if (!times) {
       context.tolerate(times.error());
       continue;
     }
-    horizon.learn(times->handed_ns - begin_ns);
+    horizon.learn(begin_ns, *times);
     projector::publish_projection(frame, frame_id, *times, projections);
     context.mark({frame_id, frame.made_from.image_ns},
                  time_sheet(frame, begin_ns, drawn_ns, *times), frame.made_from);

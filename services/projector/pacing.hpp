@@ -6,6 +6,7 @@
 
 #include "config/sections/projector.hpp"
 #include "ipc/base/clock.hpp"
+#include "services/projector/projector.hpp"
 
 namespace handcast::projector {
 
@@ -48,39 +49,56 @@ bool sleep_while(const Running& running, std::int64_t time_ns) {
   return false;
 }
 
-/// Predicts when the light of a frame will be seen: after the time of the software, the latency of
-/// the projector, and half of the time it is lit. The time of the software is the median of the
-/// last 31 frames, so one slow frame does not change it.
+/// Predicts when the light of a frame will be seen, by the last 31 frames: the medians of the time
+/// of the software and of the time from there to the light, so one slow frame does not change them.
 class Horizon {
  public:
   /// Starts with the times of the settings.
   explicit Horizon(const config::Projector& settings)
-      : light_ns_(ms_to_ns(settings.latency_ms) + seconds_to_ns(0.5 / settings.rate_hz)),
-        software_ns_(ms_to_ns(settings.software_ms)) {
-    recent_ns_.fill(software_ns_);
-  }
+      : software_(ms_to_ns(settings.software_ms)),
+        light_(ms_to_ns(settings.latency_ms) + seconds_to_ns(0.5 / settings.rate_hz)) {}
 
   /// The middle of the time at which a frame that is begun at `begin_ns` will be lit.
   std::int64_t target_ns(std::int64_t begin_ns) const {
-    return begin_ns + software_ns_ + light_ns_;
+    return begin_ns + software_.median_ns() + light_.median_ns();
+  }
+  /// When to begin a frame that the projector can take at `handed_ns`: a little sooner than needed,
+  /// because a frame that misses its refresh waits for a whole one.
+  std::int64_t begin_ns(std::int64_t handed_ns) const {
+    return handed_ns - software_.median_ns() - software_.median_ns() / 4 - kMargin_ns;
   }
   /// The expected time from the begin of a frame until it is handed over.
-  std::int64_t software_ns() const { return software_ns_; }
+  std::int64_t software_ns() const { return software_.median_ns(); }
 
-  /// Adds a measurement: the time from the begin of the last frame until it was handed over.
-  void learn(std::int64_t software_ns) {
-    recent_ns_[learnt_++ % recent_ns_.size()] = software_ns;
-    auto sorted = recent_ns_;
-    const auto middle = sorted.begin() + sorted.size() / 2;
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    software_ns_ = *middle;
+  /// Adds the times of a frame that was begun at `begin_ns`.
+  void learn(std::int64_t begin_ns, const PresentTimes& times) {
+    software_.add(times.handed_ns - begin_ns);
+    light_.add(times.lit_ns - times.handed_ns);
   }
 
  private:
-  std::int64_t light_ns_;
-  std::int64_t software_ns_;
-  std::array<std::int64_t, 31> recent_ns_{};
-  std::size_t learnt_ = 0;
+  static constexpr std::int64_t kMargin_ns = 300'000;
+
+  /// The median of the last times.
+  class Recent {
+   public:
+    explicit Recent(std::int64_t first_ns) : median_ns_(first_ns) { recent_ns_.fill(first_ns); }
+    std::int64_t median_ns() const { return median_ns_; }
+    void add(std::int64_t time_ns) {
+      recent_ns_[count_++ % recent_ns_.size()] = time_ns;
+      auto sorted = recent_ns_;
+      const auto middle = sorted.begin() + sorted.size() / 2;
+      std::nth_element(sorted.begin(), middle, sorted.end());
+      median_ns_ = *middle;
+    }
+
+   private:
+    std::array<std::int64_t, 31> recent_ns_{};
+    std::size_t count_ = 0;
+    std::int64_t median_ns_;
+  };
+
+  Recent software_, light_;
 };
 
 }  // namespace handcast::projector

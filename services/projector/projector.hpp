@@ -4,9 +4,11 @@
 #include <memory>
 #include <span>
 
+#include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
+#include "renderer/output/light.hpp"
 #include "renderer/pipeline/pipeline.hpp"
 #include "services/runtime/backends.hpp"
 
@@ -16,6 +18,9 @@ namespace handcast::projector {
 struct PresentTimes {
   std::int64_t handed_ns = 0;  ///< when the projector took the frame
   std::int64_t lit_ns = 0;     ///< the middle of the time it is lit
+  /// When the projector can take the next frame, if it has a rhythm of its own; 0: frames are drawn
+  /// at projector.rate_hz.
+  std::int64_t next_ns = 0;
 };
 
 /// Turns frames into light. One thread.
@@ -23,21 +28,23 @@ class Projector {
  public:
   virtual ~Projector() = default;
 
-  /// Hands a frame over. If frames come faster than the projector takes them, waits until the
-  /// deadline. The frame may be reused when the call returns. Errors: timeout (this frame is not
-  /// shown), bad_data (this frame could not be written), disconnected.
+  /// Hands a frame over, whose levels the table turns into those of the projector. If frames come
+  /// faster than the projector takes them, waits until the deadline. The frame may be reused when
+  /// the call returns. Errors: timeout (this frame is not shown), bad_data (this frame could not be
+  /// written), disconnected.
   virtual Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id,
-                                       Deadline deadline) = 0;
+                                       const renderer::LightTable& light, Deadline deadline) = 0;
 };
 
-/// A back end, opened with the rig.
-using ProjectorBackend = service::Backend<Projector, config::Rig>;
+/// A back end, opened with the rig and its calibration.
+using ProjectorBackend = service::Backend<Projector, config::Rig, calib::Calibration>;
 
 /// All back ends of this build.
 std::span<const ProjectorBackend> projector_backends();
 
 /// Opens the back end rig.projector.backend. Errors: bad_config (unknown back end, or its settings
 /// are wrong), and those of the back end.
-Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig);
+Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig,
+                                                  const calib::Calibration& calibration);
 
 }  // namespace handcast::projector

@@ -9,7 +9,8 @@ namespace {
 class TwinProjector final : public Projector {
  public:
   explicit TwinProjector(const config::Projector& settings) : clock_(settings) {}
-  Result<PresentTimes> present(const renderer::Frame&, std::int64_t, Deadline deadline) override {
+  Result<PresentTimes> present(const renderer::Frame&, std::int64_t, const renderer::LightTable&,
+                               Deadline deadline) override {
     return clock_.take(deadline);
   }
 
@@ -19,7 +20,7 @@ class TwinProjector final : public Projector {
 
 }  // namespace
 
-Result<std::unique_ptr<Projector>> open_twin(const config::Rig& rig) {
+Result<std::unique_ptr<Projector>> open_twin(const config::Rig& rig, const calib::Calibration&) {
   return std::make_unique<TwinProjector>(rig.projector);
 }
 

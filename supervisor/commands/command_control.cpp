@@ -35,6 +35,7 @@ Outcome send(const std::string& rig_name, const control::Request& request) {
 std::string print_pauses(const nlohmann::json& answer) {
   std::vector<std::string> parts;
   const auto pauses_ms = answer.value("pauses_ms", std::map<std::string, double>());
+  parts.reserve(pauses_ms.size());
   for (const auto& [name, pause_ms] : pauses_ms)
     parts.push_back(fmt::format("{} {:.0f} ms", name, pause_ms));
   return parts.empty() ? "" : "; paused for: " + join(parts, ", ");

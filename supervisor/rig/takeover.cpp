@@ -35,13 +35,10 @@ void report_deaths(const AdoptedRig& adopted, KeeperLink& keeper) {
 bool end_supervisor_without_keeper(const std::string& name) {
   const auto status = control::ask_with_descriptors(name, {}, kPatience);
   if (!status || !status->object["status"].value("keeper_died", false)) return false;
-  const auto address = control::address_of(name);
-  const auto socket = control::connect_to(*address);
-  if (!socket) return false;
-  const auto pid = control::process_at_other_end(socket->get());
-  log::info("the keeper of rig '{}' has died; its supervisor (pid {}) is replaced", name, pid);
-  const auto pidfd = open_pidfd(pid);
+  const auto pid = control::listener_of(*control::address_of(name));
+  const auto pidfd = pid > 0 ? open_pidfd(pid) : UniqueFd();
   if (!pidfd) return false;
+  log::info("the keeper of rig '{}' has died; its supervisor (pid {}) is replaced", name, pid);
   kill_now(pid, pidfd);
   return true;
 }

@@ -39,11 +39,6 @@ struct Process {
 
 Process open_process(pid_t pid) { return {pid, pid > 1 ? open_pidfd(pid) : UniqueFd()}; }
 
-Process supervisor_of(const control::RigAddress& address) {
-  const auto socket = control::connect_to(address);
-  return socket ? open_process(control::process_at_other_end(socket->get())) : Process{};
-}
-
 bool is_keeper(const Process& process) {
   std::ifstream file(fmt::format("/proc/{}/comm", process.pid));
   std::string name;
@@ -64,10 +59,10 @@ Process keeper_of(const Process& supervisor, const std::string& name) {
   return {};
 }
 
-bool supervisor_comes_back(const control::RigAddress& address) {
+bool supervisor_comes_back(const std::string& name) {
   for (const auto limit = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(kRevival_s)));
        !limit.passed(); usleep(20'000))
-    if (control::connect_to(address)) return true;
+    if (control::has_supervisor(name)) return true;
   return false;
 }
 
@@ -110,15 +105,15 @@ Result<StopReport> stop_rig(const std::string& name) {
       report.ended += end_services(name, kServices_s, before_ns);
       return report;
     }
-    const auto supervisor = supervisor_of(*address);
+    const auto supervisor = open_process(control::listener_of(*address));
     const auto forced = end_by_force(name, supervisor, before_ns);
     report.ended += forced.ended;
-    if (forced.had_keeper || !supervisor_comes_back(*address)) break;
+    if (forced.had_keeper || !supervisor_comes_back(name)) break;
   }
   if (const auto left = find_services(name); !left.empty())
     return fail(Errc::unavailable,
                 fmt::format("{} processes of rig '{}' cannot be stopped", left.size(), name));
-  if (control::connect_to(*address))
+  if (control::has_supervisor(name))
     return fail(Errc::unavailable,
                 fmt::format("rig '{}' is started again and again; is it a unit of systemd? "
                             "`systemctl --user stop handcast-{}` stops that",

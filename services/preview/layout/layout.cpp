@@ -51,7 +51,7 @@ std::string time_text(double seconds) {
 }
 
 void draw_head(Canvas& canvas, const Box& box, const Scene& scene, const Gauges& gauges,
-               bool frozen) {
+               const Look& look) {
   const double y = box.y + 28;
   canvas.text({box.x + 2, y}, gauges.rig, theme::kHead, theme::kInk);
   const double name_px = canvas.width_of(gauges.rig, theme::kHead);
@@ -61,8 +61,11 @@ void draw_head(Canvas& canvas, const Box& box, const Scene& scene, const Gauges&
   ill.insert(ill.end(), scene.missing.begin(), scene.missing.end());
   auto state = ill.empty() ? "all services are ready" : ill.front();
   if (ill.size() > 1) state += fmt::format("  (and {} more)", ill.size() - 1);
-  if (frozen) state = "frozen: space goes on";
-  const auto colour = frozen ? theme::kTail : ill.empty() ? theme::kGood : theme::kBad;
+  if (look.frozen) state = "frozen: space goes on";
+  if (!look.note.empty()) state = look.note;
+  const auto colour = look.frozen || !look.note.empty() ? theme::kTail
+                      : ill.empty()                     ? theme::kGood
+                                                        : theme::kBad;
   canvas.text({box.right() - 2, y}, state, theme::kText, theme::kInk, Align::right);
   canvas.disc({box.right() - 14 - canvas.width_of(state, theme::kText), y - 4}, 4, colour);
 }
@@ -165,7 +168,7 @@ renderer::Texture draw(const Scene& scene, const Gauges& gauges, const Look& loo
                             ? static_cast<double>(scene.camera.width()) / scene.camera.height()
                             : 4.0 / 3;
   const auto boxes = plan(canvas.width(), canvas.height(), aspect);
-  draw_head(canvas, boxes.head, scene, gauges, look.frozen);
+  draw_head(canvas, boxes.head, scene, gauges, look);
   draw_camera_panel(canvas, boxes.camera, scene, look.layers);
   draw_light_panel(canvas, boxes.light, scene);
   const auto [rates_s, ages_s] = spans_of(gauges);

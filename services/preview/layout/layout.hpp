@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
+
 #include "renderer/base/image.hpp"
 #include "services/preview/layout/gauges.hpp"
 #include "services/preview/layout/layer.hpp"
@@ -16,6 +18,7 @@ struct Look {
   Layers layers = default_layers();  ///< the layers of the camera panel
   bool frozen = false;               ///< says that the picture stands still
   bool help = false;                 ///< shows the keys
+  std::string note;                  ///< a sentence at the top; empty: none
 };
 
 /// The smallest and the largest side of a picture.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "services/projector/brightness.hpp"
+
 namespace handcast::projector {
 namespace {
 
@@ -55,11 +57,50 @@ TEST(Horizon, StartsWithTheSoftwareTimeOfTheRig) {
 
 TEST(Horizon, FollowsTheMeasuredTimeAndNotOneSlowFrame) {
   Horizon horizon(projector());
-  for (int i = 0; i < 40; ++i) horizon.learn(1 * kMs);
-  horizon.learn(50 * kMs);
+  const auto learn = [&](int frames, std::int64_t software_ms, std::int64_t light_ms) {
+    for (int i = 0; i < frames; ++i)
+      horizon.learn(kMs, {.handed_ns = (1 + software_ms) * kMs,
+                          .lit_ns = (1 + software_ms + light_ms) * kMs});
+  };
+  learn(40, 1, 4);
+  learn(1, 50, 50);
   EXPECT_EQ(horizon.software_ns(), 1 * kMs);
-  for (int i = 0; i < 40; ++i) horizon.learn(4 * kMs);
-  EXPECT_EQ(horizon.target_ns(0), (4 + 3 + 1) * kMs);
+  EXPECT_EQ(horizon.target_ns(0), (1 + 4) * kMs);
+  learn(40, 4, 9);
+  EXPECT_EQ(horizon.target_ns(0), (4 + 9) * kMs);
+}
+
+TEST(Horizon, BeginsAFrameEarlyEnoughForTheProjector) {
+  Horizon horizon(projector());
+  EXPECT_LT(horizon.begin_ns(100 * kMs), 98 * kMs);
+  EXPECT_GT(horizon.begin_ns(100 * kMs), 96 * kMs);
+}
+
+TEST(Horizon, DoesNotBeginEverEarlierIfFramesWaitForTheProjector) {
+  Horizon horizon(projector());
+  for (std::int64_t refresh = 1; refresh <= 200; ++refresh) {
+    const std::int64_t next_ns = refresh * 16 * kMs;
+    const std::int64_t begin_ns = horizon.begin_ns(next_ns);
+    horizon.learn(begin_ns, {.handed_ns = begin_ns + 2 * kMs, .lit_ns = next_ns + 3 * kMs});
+  }
+  EXPECT_EQ(horizon.software_ns(), 2 * kMs);
+  EXPECT_NEAR(horizon.target_ns(horizon.begin_ns(0)), 3 * kMs, 1000);
+}
+
+TEST(Brightness, RisesAtTheStartOfARig) {
+  config::Projector settings;
+  settings.fade_s = 1;
+  constexpr std::int64_t kEpoch_ns = 50'000 * kMs, kFirst_ns = kEpoch_ns + 2'000 * kMs;
+  Brightness brightness(settings, kEpoch_ns);
+  EXPECT_EQ(brightness.at(kFirst_ns)[255], 0);
+  const auto half = brightness.at(kFirst_ns + 500 * kMs);
+  EXPECT_EQ(half, renderer::light_table(settings, 0.5));
+  EXPECT_EQ(brightness.at(kFirst_ns + 1'000 * kMs), renderer::light_table(settings));
+}
+
+TEST(Brightness, IsFullAtOnceInAProcessThatReplacesAnotherOne) {
+  Brightness brightness(config::Projector(), 50'000 * kMs);
+  EXPECT_EQ(brightness.at(90'000 * kMs), renderer::light_table(config::Projector()));
 }
 
 }  // namespace

@@ -57,11 +57,10 @@ TEST_F(RigAddressTest, TheNameBelongsToTheProcessThatListens) {
   const auto second = ControlServer::listen("desk", loop_, refuse);
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error().what, HasSubstr("'desk' is up already"));
-  const auto connection = connect_to(address_of("desk").value());
-  ASSERT_TRUE(connection);
-  EXPECT_EQ(process_at_other_end(connection->get()), getpid());
+  EXPECT_EQ(listener_of(address_of("desk").value()), getpid());
   first->reset();
   EXPECT_THAT(living_rigs(), IsEmpty());
+  EXPECT_EQ(listener_of(address_of("desk").value()), -1);
   EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse));
 }
 

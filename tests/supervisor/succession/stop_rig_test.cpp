@@ -65,6 +65,19 @@ TEST_F(StopRig, ASupervisorThatHangsIsKilledAndItsServicesAreEnded) {
   EXPECT_THAT(find_services("desk"), IsEmpty());
 }
 
+TEST_F(StopRig, ASupervisorThatHangsIsKilledEvenIfItAcceptsNoMoreConnections) {
+  const pid_t supervisor = hung_supervisor();
+  std::vector<UniqueFd> idle;
+  for (auto next = control::connect_to(*control::address_of("desk")); next;
+       next = control::connect_to(*control::address_of("desk")))
+    idle.push_back(std::move(*next));
+  ASSERT_TRUE(control::has_supervisor("desk"));
+  const auto stopped = stop_rig("desk");
+  ASSERT_TRUE(stopped) << stopped.error().what;
+  EXPECT_EQ(waitpid(supervisor, nullptr, WNOHANG), supervisor);
+  EXPECT_FALSE(control::has_supervisor("desk"));
+}
+
 TEST_F(StopRig, AnInvalidNameIsRefused) {
   const auto stopped = stop_rig("../desk");
   ASSERT_FALSE(stopped);

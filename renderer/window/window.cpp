@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/window/window.hpp"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+#include "renderer/window/blit.hpp"
+#include "renderer/window/monitor.hpp"
+#include "renderer/window/x11.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+/// The reason of the last failure of GLFW.
+std::string& last_reason() {
+  static std::string reason = "no reason given";
+  return reason;
+}
+
+/// GLFW, which is initialised at most once at a time.
+class Library {
+ public:
+  static Result<std::unique_ptr<Library>> open() {
+    glfwSetErrorCallback([](int, const char* sentence) { last_reason() = sentence; });
+    if (glfwInit() != GLFW_TRUE)
+      return fail(Errc::unavailable,
+                  fmt::format("no display can be opened ({}); DISPLAY must name an X server that "
+                              "this user may use",
+                              last_reason()));
+    return std::unique_ptr<Library>(new Library);
+  }
+  ~Library() { glfwTerminate(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+
+ private:
+  Library() = default;
+};
+
+struct Connected {
+  std::vector<GLFWmonitor*> handles;
+  std::vector<Monitor> monitors;
+};
+
+Connected connected() {
+  int count = 0;
+  GLFWmonitor** handles = glfwGetMonitors(&count);
+  Connected found;
+  for (int i = 0; i < count; ++i) {
+    const GLFWvidmode* mode = glfwGetVideoMode(handles[i]);
+    if (mode == nullptr) continue;
+    found.handles.push_back(handles[i]);
+    found.monitors.push_back({.output = glfwGetMonitorName(handles[i]),
+                              .model = model_of(x11::edid_of(handles[i])),
+                              .width_px = mode->width,
+                              .height_px = mode->height,
+                              .rate_hz = static_cast<double>(mode->refreshRate),
+                              .is_primary = i == 0});  // GLFW lists the primary one first
+  }
+  return found;
+}
+
+/// The character, if it is one of ASCII.
+std::string text_of(unsigned codepoint) {
+  return codepoint < 128 ? std::string(1, static_cast<char>(codepoint)) : std::string();
+}
+
+}  // namespace
+
+class Window::Screen {
+ public:
+  Screen(std::unique_ptr<Library> library, WindowSettings settings)
+      : library_(std::move(library)), settings_(std::move(settings)) {}
+  ~Screen() {
+    blit_.reset();
+    if (window_ != nullptr) glfwDestroyWindow(window_);
+  }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  Result<void> create();
+  Result<Shown> show(View<const std::uint32_t> picture, Rect region);
+  std::optional<std::int64_t> refresh_ns() const;
+  std::vector<std::string> take_keys() { return std::exchange(keys_, {}); }
+  bool is_closed() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
+  std::pair<int, int> size_px() const;
+
+ private:
+  Result<void> find_monitor();
+  void appear();
+  void keep_in_front();
+  Shown draw(View<const std::uint32_t> picture, Rect region);
+
+  std::unique_ptr<Library> library_;
+  WindowSettings settings_;
+  GLFWwindow* window_ = nullptr;
+  GLFWmonitor* monitor_ = nullptr;  ///< of a full-screen window, while it is plugged in
+  std::string monitor_name_;        ///< its output, by which it is found again
+  double rate_hz_ = 0;              ///< of the monitor; 0: unknown
+  std::unique_ptr<Blit> blit_;
+  bool has_appeared_ = false;
+  std::vector<std::string> keys_;
+
+  static Screen* the_screen_;  ///< GLFW reports monitors without a window
+};
+
+Window::Screen* Window::Screen::the_screen_ = nullptr;
+
+/// Finds the monitor of a full-screen window: at first the one in the settings, later the same one.
+Result<void> Window::Screen::find_monitor() {
+  const auto [handles, monitors] = connected();
+  const auto chosen =
+      choose_monitor(monitors, monitor_name_.empty() ? settings_.monitor : monitor_name_);
+  if (!chosen) return tl::make_unexpected(chosen.error());
+  monitor_ = handles[*chosen];
+  monitor_name_ = monitors[*chosen].output;
+  return {};
+}
+
+Result<void> Window::Screen::create() {
+  if (settings_.full_screen)
+    if (auto found = find_monitor(); !found) return found;
+  x11::when_display_is_lost(settings_.when_display_is_lost);
+
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+  glfwWindowHint(GLFW_FOCUS_ON_SHOW, settings_.full_screen ? GLFW_FALSE : GLFW_TRUE);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  window_ = glfwCreateWindow(settings_.width_px, settings_.height_px, settings_.title.c_str(),
+                             nullptr, nullptr);
+  if (window_ == nullptr)
+    return fail(Errc::unavailable, fmt::format("no window can be opened: {}", last_reason()));
+  if (settings_.full_screen) glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(settings_.vsync ? 1 : 0);
+  blit_ = std::make_unique<Blit>();
+
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned codepoint) {
+    static_cast<Screen*>(glfwGetWindowUserPointer(window))->keys_.push_back(text_of(codepoint));
+  });
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS)
+      static_cast<Screen*>(glfwGetWindowUserPointer(window))->keys_.emplace_back("Escape");
+  });
+  the_screen_ = this;
+  glfwSetMonitorCallback([](GLFWmonitor* monitor, int event) {
+    if (event != GLFW_DISCONNECTED || monitor != the_screen_->monitor_) return;
+    log::warning("monitor '{}' is unplugged", the_screen_->monitor_name_);
+    the_screen_->monitor_ = nullptr;
+    glfwHideWindow(the_screen_->window_);  // GLFW would leave it on the operator's screen
+    the_screen_->has_appeared_ = false;
+  });
+  return {};
+}
+
+/// Puts the window on its monitor, with the video mode nearest to the settings.
+void Window::Screen::appear() {
+  has_appeared_ = true;
+  if (!settings_.full_screen) {
+    const GLFWvidmode* mode = glfwGetVideoMode(glfwGetPrimaryMonitor());
+    rate_hz_ = mode != nullptr ? mode->refreshRate : 0;
+    return glfwShowWindow(window_);
+  }
+  glfwSetWindowMonitor(
+      window_, monitor_, 0, 0, settings_.width_px, settings_.height_px,
+      settings_.rate_hz > 0 ? static_cast<int>(settings_.rate_hz + 0.5) : GLFW_DONT_CARE);
+  const GLFWvidmode* mode = glfwGetVideoMode(monitor_);
+  if (mode == nullptr) return;
+  rate_hz_ = mode->refreshRate;
+  log::info("light on monitor '{}', {}x{} at {} Hz", monitor_name_, mode->width, mode->height,
+            mode->refreshRate);
+  if (mode->width != settings_.width_px || mode->height != settings_.height_px)
+    log::warning(
+        "monitor '{}' has no mode of {}x{}, the size in the calibration; the picture is scaled",
+        monitor_name_, settings_.width_px, settings_.height_px);
+}
+
+/// Undoes what a user or another program did to a full-screen window.
+void Window::Screen::keep_in_front() {
+  if (!settings_.full_screen) return;
+  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) glfwRestoreWindow(window_);
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
+}
+
+Shown Window::Screen::draw(View<const std::uint32_t> picture, Rect region) {
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  blit_->draw(picture, region, width, height);
+  const std::int64_t handed_ns = now_ns();
+  glfwSwapBuffers(window_);
+  blit_->finish();
+  return {handed_ns, now_ns()};
+}
+
+Result<Shown> Window::Screen::show(View<const std::uint32_t> picture, Rect region) {
+  glfwPollEvents();
+  if (settings_.full_screen && monitor_ == nullptr) {
+    if (!find_monitor())
+      return fail(Errc::timeout, fmt::format("monitor '{}' is unplugged", monitor_name_));
+    log::info("monitor '{}' is there again", monitor_name_);
+  }
+  if (!has_appeared_) appear();
+  keep_in_front();
+  return draw(picture, region);
+}
+
+std::optional<std::int64_t> Window::Screen::refresh_ns() const {
+  if (!settings_.vsync || rate_hz_ <= 0) return {};
+  return static_cast<std::int64_t>(1e9 / rate_hz_);
+}
+
+std::pair<int, int> Window::Screen::size_px() const {
+  std::pair<int, int> size;
+  glfwGetFramebufferSize(window_, &size.first, &size.second);
+  return size;
+}
+
+Window::Window(std::unique_ptr<Screen> screen) : screen_(std::move(screen)) {}
+Window::~Window() = default;
+
+Result<std::unique_ptr<Window>> Window::open(WindowSettings settings) {
+  auto library = Library::open();
+  if (!library) return tl::make_unexpected(library.error());
+  auto screen = std::make_unique<Screen>(std::move(*library), std::move(settings));
+  if (auto created = screen->create(); !created) return tl::make_unexpected(created.error());
+  return std::unique_ptr<Window>(new Window(std::move(screen)));
+}
+
+Result<Shown> Window::show(View<const std::uint32_t> picture, Rect region) {
+  return screen_->show(picture, region);
+}
+std::optional<std::int64_t> Window::refresh_ns() const { return screen_->refresh_ns(); }
+std::vector<std::string> Window::take_keys() { return screen_->take_keys(); }
+bool Window::is_closed() const { return screen_->is_closed(); }
+int Window::width_px() const { return screen_->size_px().first; }
+int Window::height_px() const { return screen_->size_px().second; }
+
+}  // namespace handcast::renderer

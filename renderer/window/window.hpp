@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ipc/base/result.hpp"
+#include "renderer/base/image.hpp"
+
+namespace handcast::renderer {
+
+/// What a window is opened with.
+struct WindowSettings {
+  std::string title;
+  /// Size of the picture, and of a window that is not full screen.
+  /// @{
+  int width_px = 640, height_px = 480;
+  /// @}
+  bool full_screen = false;  ///< on `monitor`, without cursor; otherwise among other windows
+  std::string monitor;       ///< see choose_monitor() in monitor.hpp
+  double rate_hz = 0;        ///< wanted refresh rate of the monitor; 0: any
+  bool vsync = true;         ///< show() waits for the refresh of the monitor
+  /// Called when the connection to the display server is lost; must end the process. Empty: the
+  /// process ends with exit code 1.
+  std::function<void()> when_display_is_lost;
+};
+
+/// The times of a shown picture, CLOCK_MONOTONIC.
+struct Shown {
+  std::int64_t handed_ns = 0;  ///< when the window system got it
+  std::int64_t shown_ns = 0;   ///< when the window system had taken it; with vsync, the refresh
+};
+
+/// A window that shows pictures (X11 and OpenGL by GLFW). It is hidden until the first show(). Only
+/// one per process, used by its main thread.
+class Window {
+ public:
+  /// Opens it. Errors: bad_config (several monitors fit), unavailable (no display, no such monitor,
+  /// no OpenGL).
+  static Result<std::unique_ptr<Window>> open(WindowSettings settings);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// Shows a picture of RGBA8, black outside of `region`, scaled to the window. Returns when the
+  /// monitor shows it (`vsync`), or when the window system has it. Errors: timeout (the monitor is
+  /// unplugged; show() comes back to it when it is there again).
+  Result<Shown> show(View<const std::uint32_t> picture, Rect region);
+
+  /// Time from one refresh of the monitor to the next; empty without vsync or a known rate.
+  std::optional<std::int64_t> refresh_ns() const;
+  /// The characters typed and "Escape", since the last call.
+  std::vector<std::string> take_keys();
+  /// True if the user has closed the window. A full-screen window stays open.
+  bool is_closed() const;
+  /// Current size in pixels, of a window that the user may have resized.
+  /// @{
+  int width_px() const;
+  int height_px() const;
+  /// @}
+
+ private:
+  class Screen;
+  explicit Window(std::unique_ptr<Screen> screen);
+  std::unique_ptr<Screen> screen_;
+};
+
+}  // namespace handcast::renderer

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
+#include "renderer/window/window.hpp"
+#include "services/projector/light_clock.hpp"
+
+namespace handcast::projector {
+namespace {
+
+/// A window as a projector. The light of a frame is assumed `latency_ms` after the window system
+/// took it, and in the middle of a refresh.
+class WindowProjector final : public Projector {
+ public:
+  WindowProjector(const config::Projector& settings, int width_px, int height_px,
+                  std::unique_ptr<renderer::Window> window)
+      : clock_(settings),
+        latency_ns_(ms_to_ns(settings.latency_ms)),
+        period_ns_(seconds_to_ns(1 / settings.rate_hz)),
+        picture_(width_px, height_px),
+        window_(std::move(window)) {}
+
+  Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t,
+                               const renderer::LightTable& light, Deadline deadline) override {
+    if (!window_->refresh_ns())
+      if (const auto free = clock_.take(deadline); !free) return free;
+    renderer::write_light(frame.colour, frame.region, light, picture_.view());
+    const auto shown = window_->show(picture_.view(), frame.region);
+    if (!shown) return fail(shown.error().code, "projector 'window': " + shown.error().what);
+    const auto refresh_ns = window_->refresh_ns();
+    return PresentTimes{
+        .handed_ns = shown->handed_ns,
+        .lit_ns = shown->shown_ns + latency_ns_ + refresh_ns.value_or(period_ns_) / 2,
+        .next_ns = refresh_ns ? shown->shown_ns + *refresh_ns : 0};
+  }
+
+ private:
+  LightClock clock_;  ///< the rhythm without that of a monitor
+  std::int64_t latency_ns_, period_ns_;
+  renderer::Texture picture_;
+  std::unique_ptr<renderer::Window> window_;
+};
+
+[[noreturn]] void end_without_display() {
+  log::error("projector 'window': the connection to the display server is lost");
+  std::_Exit(kExitRetry);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Projector>> open_window(const config::Rig& rig,
+                                               const calib::Calibration& calibration) {
+  const auto& settings = rig.projector;
+  const int width_px = calibration.projector_width_px, height_px = calibration.projector_height_px;
+  auto window = renderer::Window::open({.title = "handcast: " + rig.name,
+                                        .width_px = width_px,
+                                        .height_px = height_px,
+                                        .full_screen = settings.window.full_screen,
+                                        .monitor = settings.window.monitor,
+                                        .rate_hz = settings.rate_hz,
+                                        .vsync = settings.window.vsync,
+                                        .when_display_is_lost = end_without_display});
+  if (!window) return fail(window.error().code, "projector 'window': " + window.error().what);
+  return std::make_unique<WindowProjector>(settings, width_px, height_px, std::move(*window));
+}
+
+}  // namespace handcast::projector

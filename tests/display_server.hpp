@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "tests/scratch.hpp"
+
+namespace handcast::test {
+
+/// An X server whose monitors exist only in memory (Xorg with the driver dummy): DUMMY0 of 1024 x
+/// 768, which is primary, and DUMMY1 of 800 x 600 to its right. $DISPLAY names it while it lives.
+class DisplayServer {
+ public:
+  DisplayServer() {
+    const auto file = scratch_.path() / "xorg.conf";
+    std::ofstream(file) << R"(
+Section "Device"
+  Identifier "card"
+  Driver "dummy"
+  VideoRam 64000
+EndSection
+Section "Monitor"
+  Identifier "any"
+  HorizSync 5-1000
+  VertRefresh 5-500
+EndSection
+Section "Screen"
+  Identifier "screen"
+  Device "card"
+  Monitor "any"
+  DefaultDepth 24
+  SubSection "Display"
+    Depth 24
+    Virtual 2048 2048
+    Modes "1024x768"
+  EndSubSection
+EndSection
+Section "ServerFlags"
+  Option "AutoAddDevices" "false"
+EndSection
+)";
+    std::array<int, 2> number{};
+    if (pipe(number.data()) != 0) return;
+    pid_ = fork();
+    if (pid_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      const auto log = scratch_.path() / "log", out = scratch_.path() / "out";
+      if (std::freopen(out.c_str(), "w", stderr) == nullptr) _exit(1);
+      execl("/usr/lib/xorg/Xorg", "Xorg", "-displayfd", fmt::format("{}", number[1]).c_str(),
+            "-config", file.c_str(), "-logfile", log.c_str(), "-noreset", "-novtswitch",
+            "-nolisten", "tcp", nullptr);
+      _exit(1);
+    }
+    close(number[1]);
+    std::array<char, 16> text{};
+    const auto length = read(number[0], text.data(), text.size() - 1);
+    close(number[0]);
+    if (length <= 0) return;
+    name_ = fmt::format(":{}", std::atoi(text.data()));
+    ::setenv("DISPLAY", name_.c_str(), 1);
+    works_ = xrandr("--addmode DUMMY1 800x600") && plug_in();
+  }
+  ~DisplayServer() {
+    end();
+    ::unsetenv("DISPLAY");
+  }
+  DisplayServer(const DisplayServer&) = delete;
+  DisplayServer& operator=(const DisplayServer&) = delete;
+
+  /// False if there is no such server on this machine; why() says why.
+  explicit operator bool() const { return works_; }
+  static std::string why() {
+    return "no X server: Xorg with the driver dummy, and xrandr, are needed (scripts/setup "
+           "--tests), and it must be started by root";
+  }
+  const std::string& name() const { return name_; }
+
+  /// Plugs DUMMY1 in and out. Its state changes when it is asked for, as by `xrandr --query`.
+  /// @{
+  bool plug_in() const {
+    return xrandr("--output DUMMY1 --mode 800x600 --right-of DUMMY0") && xrandr("--query");
+  }
+  bool unplug() const { return xrandr("--output DUMMY1 --off") && xrandr("--query"); }
+  /// @}
+
+  /// Kills the server.
+  void end() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+
+ private:
+  static bool xrandr(const std::string& arguments) {
+    return std::system(("xrandr " + arguments + " >/dev/null 2>&1").c_str()) == 0;
+  }
+
+  Scratch scratch_;
+  pid_t pid_ = -1;
+  std::string name_;
+  bool works_ = false;
+};
+
+}  // namespace handcast::test

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+/// What a person would see and do at the X server of $DISPLAY.
+namespace handcast::test {
+
+/// The colour of a pixel of the screen, RGBA8 with red in the lowest byte.
+std::uint32_t pixel(int x, int y);
+/// Fills what no window covers. `rgb`: 0xRRGGBB.
+void paint_the_desktop(unsigned long rgb);
+/// Gives an output an EDID with this name.
+void set_edid_name(std::string_view output, std::string_view name);
+
+}  // namespace handcast::test
