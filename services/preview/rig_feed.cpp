@@ -20,7 +20,8 @@ using namespace std::chrono_literals;
 constexpr std::array kStreams{"camera.frames", "pose.hands", "landmarks.hands",
                               "projection.frames"};
 constexpr std::array kAgesOf{"image", "tracker", "landmarks"};
-constexpr std::size_t kMostAtOnce = 64;  ///< messages of one stream at one look
+constexpr std::int64_t kLate_ns = 100'000'000;  ///< later, the poses of the last look are gone
+constexpr std::size_t kMostAtOnce = 64;         ///< messages of one stream at one look
 
 Result<World> world_of(const std::string& rig) {
   const auto answer = control::ask_with_descriptors(rig, {.verb = control::Verb::rig}, 2s);
@@ -112,7 +113,15 @@ Result<void> RigFeed::take_all(Input<T>& input) {
   return {};
 }
 
+double RigFeed::age_period_s() const {
+  if (age_times_.size() < 2) return ns_to_seconds(kPeriod_ns);
+  return ns_to_seconds(age_times_.back() - age_times_.front()) /
+         static_cast<double>(age_times_.size() - 1);
+}
+
 void RigFeed::take_ages(const msg::Projection& projection) {
+  age_times_.push_back(now_ns());
+  if (age_times_.size() > kAges) age_times_.pop_front();
   const auto& from = projection.made_from;
   const std::int64_t light_ns = projection.lit_ns != 0 ? projection.lit_ns : projection.target_ns;
   constexpr double kMost_ms = 1e4;
@@ -141,11 +150,15 @@ void RigFeed::ask_status() {
 }
 
 Result<void> RigFeed::look() {
+  const auto now = now_ns();
+  const bool in_time = now - looked_ns_ < kLate_ns;
+  looked_ns_ = now;
   shown_ = std::exchange(newest_, {});
   if (auto well = take_pair(); !well) return well;
   // A rig that sends nothing new is shown as it was.
-  if (!newest_.projection) newest_.projection = std::move(shown_.projection);
-  if (!newest_.frame) newest_.frame = std::move(shown_.frame);
+  if (!newest_.projection) newest_.projection = std::exchange(shown_.projection, {});
+  if (!newest_.frame) newest_.frame = std::exchange(shown_.frame, {});
+  if (!in_time) shown_ = {};
   if (auto well = take_all(poses_); !well) return well;
   if (auto well = take_all(landmarks_); !well) return well;
   take_rates();
@@ -161,9 +174,8 @@ Scene RigFeed::scene() {
 }
 
 Gauges RigFeed::gauges() const {
-  Gauges gauges{.rig = rig_,
-                .rates_period_s = ns_to_seconds(kRate_ns),
-                .ages_period_s = ns_to_seconds(kPeriod_ns)};
+  Gauges gauges{
+      .rig = rig_, .rates_period_s = ns_to_seconds(kRate_ns), .ages_period_s = age_period_s()};
   if (!silent_.empty()) gauges.ill.push_back(silent_);
   read_status(status_, gauges);
   const auto add = [&](const char* name, const auto& input) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -33,7 +34,8 @@ class RigFeed {
   /// not wait for messages; waits at most 0.1 s for a supervisor that hangs. Errors: disconnected
   /// (the rig is down).
   Result<void> look();
-  /// The scene of the last look() but one, whose motion is known by now.
+  /// The scene of the last look() but one, whose motion is known by now. If that was too long ago,
+  /// of the last one.
   Scene scene();
   /// The figures up to now.
   Gauges gauges() const;
@@ -64,6 +66,7 @@ class RigFeed {
   template <class T>
   Result<void> take_all(Input<T>& input);
   void take_ages(const msg::Projection& projection);
+  double age_period_s() const;
   void take_rates();
   void ask_status();
 
@@ -78,7 +81,9 @@ class RigFeed {
   Pair newest_, shown_;
   std::array<Series, 3> ages_ms_{Series(kAges), Series(kAges), Series(kAges)};
   nlohmann::json status_;
+  std::deque<std::int64_t> age_times_;  ///< when ages were added, oldest first
   std::int64_t next_rate_ns_ = 0;
+  std::int64_t looked_ns_ = 0;  ///< the last look()
 };
 
 }  // namespace handcast::preview

@@ -6,6 +6,7 @@
 
 #include "renderer/content/picture.hpp"
 #include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::system_test {
 namespace {
@@ -127,6 +128,15 @@ TEST_F(Preview, AFileThatCannotBeWrittenIsRefusedWithASentence) {
     EXPECT_THAT(outcome.log, HasSubstr(file));
   }
   EXPECT_TRUE(std::filesystem::exists("/dev/full"));
+}
+
+TEST_F(Preview, WithoutADisplayItNamesTheWayWithoutOne) {
+  const Variable display("DISPLAY", "");
+  const auto rig = up();
+  wait_until_light();
+  const auto outcome = handcast({"preview"});
+  EXPECT_THAT(outcome.exit_code, testing::AnyOf(100, 111)) << "this build may have no window";
+  EXPECT_THAT(outcome.log, HasSubstr("use --shot FILE.png"));
 }
 
 TEST_F(Preview, NonsenseOnTheCommandLineIsRefused) {

@@ -83,6 +83,13 @@ class Canvas::Cairo {
 
   cairo_t* get() const { return context_.get(); }
   cairo_surface_t* surface() const { return surface_.get(); }
+  int width_px() const { return cairo_image_surface_get_width(surface()); }
+  int height_px() const { return cairo_image_surface_get_height(surface()); }
+  double scale() const {
+    cairo_matrix_t matrix;
+    cairo_get_matrix(get(), &matrix);
+    return matrix.xx;
+  }
   void use(Colour colour) const {
     cairo_set_source_rgba(get(), colour.red, colour.green, colour.blue, colour.alpha);
   }
@@ -107,18 +114,19 @@ class Canvas::Cairo {
   std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
 };
 
-Canvas::Canvas(int width_px, int height_px, Colour background)
+Canvas::Canvas(int width_px, int height_px, Colour background, double scale)
     : cairo_(std::make_unique<Cairo>(width_px, height_px)) {
   cairo_->use(background);
   cairo_paint(cairo_->get());
+  cairo_scale(cairo_->get(), scale, scale);
   cairo_set_line_join(cairo_->get(), CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(cairo_->get(), CAIRO_LINE_CAP_ROUND);
 }
 
 Canvas::~Canvas() = default;
 
-int Canvas::width() const { return cairo_image_surface_get_width(cairo_->surface()); }
-int Canvas::height() const { return cairo_image_surface_get_height(cairo_->surface()); }
+double Canvas::width() const { return cairo_->width_px() / cairo_->scale(); }
+double Canvas::height() const { return cairo_->height_px() / cairo_->scale(); }
 
 void Canvas::fill(const Box& box, Colour colour, double radius_px) {
   if (!is_finite(box) || box.width <= 0 || box.height <= 0) return;
@@ -227,11 +235,11 @@ void Canvas::unclip() { cairo_reset_clip(cairo_->get()); }
 
 renderer::Texture Canvas::picture() const {
   cairo_surface_flush(cairo_->surface());
-  renderer::Texture picture(width(), height());
+  renderer::Texture picture(cairo_->width_px(), cairo_->height_px());
   const auto* data = cairo_image_surface_get_data(cairo_->surface());
   if (!data) return picture;
   const int stride = cairo_image_surface_get_stride(cairo_->surface());
-  for (int y = 0; y < height(); ++y) {
+  for (int y = 0; y < picture.height(); ++y) {
     const auto* in =
         reinterpret_cast<const std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * stride);
     auto* out = picture.row(y);

@@ -57,16 +57,17 @@ using Line = std::pair<glm::vec2, glm::vec2>;
 /// in px from the top left corner, y down. Numbers that are not finite draw nothing. One thread.
 class Canvas {
  public:
-  /// A canvas of one colour. Both sizes at least 1.
-  Canvas(int width_px, int height_px, Colour background);
+  /// A canvas of one colour. Both sizes at least 1. All positions and sizes that are given to its
+  /// functions are multiplied by `scale`.
+  Canvas(int width_px, int height_px, Colour background, double scale = 1);
   ~Canvas();
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
-  /// Size in pixels.
+  /// Size in the unit of positions: pixels divided by the scale.
   /// @{
-  int width() const;
-  int height() const;
+  double width() const;
+  double height() const;
   /// @}
 
   /// Fills a rectangle with round corners.

@@ -50,6 +50,15 @@ std::string time_text(double seconds) {
   return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
+/// A small picture is a large one made smaller, so that texts do not collide; a very large one is
+/// made larger, so that they can be read.
+double scale_of(int width_px, int height_px) {
+  const auto fits = [&](double width, double height) {
+    return std::min(width_px / width, height_px / height);
+  };
+  return fits(1400, 780) < 1 ? fits(1400, 780) : std::max(fits(1920, 1080), 1.0);
+}
+
 void draw_head(Canvas& canvas, const Box& box, const Scene& scene, const Gauges& gauges,
                const Look& look) {
   const double y = box.y + 28;
@@ -163,7 +172,8 @@ Box fitted(const Box& box, double width, double height) {
 
 renderer::Texture draw(const Scene& scene, const Gauges& gauges, const Look& look) {
   const auto side = [](int px) { return std::clamp(px, kSmallestSide_px, kLargestSide_px); };
-  Canvas canvas(side(look.width_px), side(look.height_px), theme::kBackground);
+  const int width_px = side(look.width_px), height_px = side(look.height_px);
+  Canvas canvas(width_px, height_px, theme::kBackground, scale_of(width_px, height_px));
   const double aspect = scene.camera.width() > 0
                             ? static_cast<double>(scene.camera.width()) / scene.camera.height()
                             : 4.0 / 3;

@@ -109,6 +109,13 @@ TEST(Layout, AnyContentsAtAnySizeGivesAPictureOfThatSize) {
     }
 }
 
+TEST(Layout, AHalfSizedPictureIsTheSamePictureMadeSmaller) {
+  const auto large = draw({}, {}, {.width_px = 1400, .height_px = 780}),
+             small = draw({}, {}, {.width_px = 700, .height_px = 390});
+  for (const auto& [x, y] : {std::pair{100, 100}, std::pair{5, 300}, std::pair{690, 380}})
+    EXPECT_EQ(small.at(x, y), large.at(2 * x, 2 * y)) << x << " " << y;
+}
+
 TEST(Layout, AbsurdSizesAreLimited) {
   EXPECT_EQ(draw({}, {}, {.width_px = -5, .height_px = 0}).width(), kSmallestSide_px);
 }
