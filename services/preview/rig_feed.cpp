@@ -137,7 +137,9 @@ void RigFeed::take_rates() {
   if (now < next_rate_ns_ + kRate_ns) return;
   next_rate_ns_ = std::max(next_rate_ns_ + kRate_ns, now - kRate_ns);
   const auto take = [](auto& input) {
-    if (input.stream) input.held_hz.add(static_cast<float>(input.meter.take_hz()));
+    if (!input.stream) return;
+    const auto hz = static_cast<float>(input.meter.take_hz());
+    if (hz > 0 || !input.held_hz.values().empty()) input.held_hz.add(hz);  // not before the start
   };
   take(camera_), take(poses_), take(landmarks_), take(light_);
   ask_status();

@@ -35,7 +35,7 @@ std::string written(std::string_view text) {
     // common planes are left out.
     const bool is_common =
         length < 4 &&
-        (first != 0xe0 || (rest.size() > 0 && static_cast<unsigned char>(rest[0]) >= 0xa0)) &&
+        (first != 0xe0 || (!rest.empty() && static_cast<unsigned char>(rest[0]) >= 0xa0)) &&
         first != 0xed;
     const bool is_good = length > 0 && is_common && rest.size() == length - 1 &&
                          std::ranges::all_of(rest, continues) && first >= 0x20 && first != 0x7f;
@@ -218,7 +218,7 @@ void Canvas::image(renderer::View<const std::uint32_t> rgba, const Box& box) {
   cairo_translate(cairo, box.x, box.y);
   cairo_scale(cairo, box.width / rgba.width, box.height / rgba.height);
   cairo_set_source_surface(cairo, surface.get(), 0, 0);
-  cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_GOOD);
+  cairo_pattern_set_filter(cairo_get_source(cairo), CAIRO_FILTER_BILINEAR);
   cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
   cairo_paint(cairo);
   cairo_restore(cairo);

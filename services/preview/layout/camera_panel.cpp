@@ -31,7 +31,7 @@ std::uint32_t blend(std::uint32_t below, Colour colour) {
   const auto part = [&](int shift, float value) {
     const float mixed =
         static_cast<float>(below >> shift & 255) * (1 - colour.alpha) + 255 * value * colour.alpha;
-    return static_cast<std::uint32_t>(mixed + 0.5f) << shift;
+    return static_cast<std::uint32_t>(std::lround(mixed)) << shift;
   };
   return 0xff000000u | part(0, colour.red) | part(8, colour.green) | part(16, colour.blue);
 }
