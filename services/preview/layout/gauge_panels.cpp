@@ -155,11 +155,13 @@ void draw_stages(Canvas& canvas, const Box& box, const Gauges& gauges) {
   if (rows == 0) return;
   const double width = (box.width - 2 * kInset_px) / kColumns;
   const double height = std::min(box.height / static_cast<double>(rows), kMostRow_px);
-  for (std::size_t i = 0; i < gauges.stages.size(); ++i)
+  for (std::size_t i = 0; i < gauges.stages.size(); ++i) {
+    const std::size_t column = i / rows, row = i % rows;
     draw_stage(canvas,
-               {box.x + static_cast<double>(i / rows) * (width + 2 * kInset_px),
-                box.y + static_cast<double>(i % rows) * height, width, height},
+               {box.x + static_cast<double>(column) * (width + 2 * kInset_px),
+                box.y + static_cast<double>(row) * height, width, height},
                gauges.stages[i]);
+  }
 }
 
 }  // namespace handcast::preview

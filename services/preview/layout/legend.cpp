@@ -36,11 +36,12 @@ void write_region(Canvas& canvas, glm::vec2 at, const Scene& scene, std::size_t 
 
 void draw_legend(Canvas& canvas, const Box& box, const Scene& scene) {
   const double column = (box.width - 2 * theme::kInset_px) / 2;
-  for (std::size_t i = 0; i < kRegions; ++i)
-    write_region(canvas,
-                 glm::vec2(box.x + static_cast<double>(i / 2) * (column + 2 * theme::kInset_px),
-                           box.y + 14 + 20.0 * static_cast<double>(i % 2)),
-                 scene, i, column);
+  for (std::size_t i = 0; i < kRegions; ++i) {
+    const std::size_t right = i / 2, below = i % 2;
+    const glm::vec2 place(box.x + static_cast<double>(right) * (column + 2 * theme::kInset_px),
+                          box.y + 14 + 20.0 * static_cast<double>(below));
+    write_region(canvas, place, scene, i, column);
+  }
   const glm::vec2 at(box.x, box.y + 62);
   const glm::vec2 other(box.x + column + 2 * theme::kInset_px, box.y + 62);
   const std::array<Line, 1> bone{Line{at + glm::vec2(0, -4), at + glm::vec2(11, -4)}};

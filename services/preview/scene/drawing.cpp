@@ -65,7 +65,7 @@ void fill(Image<std::uint8_t>& covered, const Corners& triangle) {
   for (int y = first; y <= last; ++y) {
     const auto [left, right] = span_in(triangle, y);
     const int x0 = std::max(left, 0), x1 = std::min(right, covered.width() - 1);
-    if (x0 <= x1) std::memset(covered.row(y) + x0, 255, static_cast<std::size_t>(x1 - x0 + 1));
+    if (x0 <= x1) std::fill(covered.row(y) + x0, covered.row(y) + x1 + 1, std::uint8_t{255});
   }
 }
 
@@ -126,7 +126,7 @@ std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedH
     for (int i = 0; i < 3; ++i) edges.push_back(std::minmax({triangle[i], triangle[(i + 1) % 3]}));
   });
   std::ranges::sort(edges);
-  edges.erase(std::ranges::unique(edges).begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<std::pair<glm::vec2, glm::vec2>> lines;
   for (const auto& [from, to] : edges) lines.emplace_back(image_px[from], image_px[to]);
   return lines;
