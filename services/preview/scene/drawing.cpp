@@ -128,6 +128,7 @@ std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedH
   std::ranges::sort(edges);
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<std::pair<glm::vec2, glm::vec2>> lines;
+  lines.reserve(edges.size());
   for (const auto& [from, to] : edges) lines.emplace_back(image_px[from], image_px[to]);
   return lines;
 }
