@@ -26,7 +26,7 @@ struct Received {
 
 /// Restarts and stops take as long as the services do.
 bool may_take_long(Verb verb) {
-  return verb != Verb::status && verb != Verb::rings && verb != Verb::history;
+  return verb == Verb::down || verb == Verb::restart || verb == Verb::swap || verb == Verb::reload;
 }
 
 /// Waits until the socket is readable. Errors: timeout.

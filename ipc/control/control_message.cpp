@@ -11,8 +11,8 @@
 namespace handcast::control {
 namespace {
 
-constexpr std::array<std::string_view, 7> kVerbs{"status", "down",  "restart", "swap",
-                                                 "reload", "rings", "history"};
+constexpr std::array<std::string_view, 8> kVerbs{"status", "down",  "restart", "swap",
+                                                 "reload", "rings", "history", "rig"};
 
 std::string text_of(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);

@@ -24,6 +24,8 @@
 ///                                                        and their descriptors
 ///   {"verb":"history","seconds":10}                      {"ok":true} and the descriptor of a
 ///                                                        snapshot (record/history.hpp)
+///   {"verb":"rig"}                                       {"ok":true,"rig":"..."}: the applied rig
+///                                                        as TOML, all paths absolute
 ///
 /// Descriptors come with the first byte of the answer (SCM_RIGHTS). The answer to what cannot be
 /// done is {"ok":false,"error":"one sentence"}.
@@ -33,7 +35,7 @@ namespace handcast::control {
 inline constexpr std::size_t kMostDescriptors = 253;
 
 /// What can be asked for; see the top of this file.
-enum class Verb { status, down, restart, swap, reload, rings, history };
+enum class Verb { status, down, restart, swap, reload, rings, history, rig };
 
 /// What a rig is asked for.
 struct Request {

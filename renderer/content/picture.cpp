@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstdio>
+#include <string>
 #include <string_view>
 #include <vector>
 // needs cstdio
@@ -14,8 +15,8 @@
 // needs jpeglib.h
 #include <jerror.h>
 
+#include "config/settings/files.hpp"
 #include "ipc/base/input_file.hpp"
-#include "ipc/base/output_file.hpp"
 #include "renderer/content/png_chunks.hpp"
 
 namespace handcast::renderer {
@@ -165,7 +166,6 @@ Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
 }
 
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {
-  if (auto possible = check_output(file); !possible) return possible;
   std::vector<std::uint8_t> rgb;
   rgb.reserve(static_cast<std::size_t>(picture.width) * picture.height * 3);
   for (int y = 0; y < picture.height; ++y)
@@ -178,9 +178,14 @@ Result<void> write_png(const std::filesystem::path& file, View<const std::uint32
   png.height = static_cast<png_uint_32>(picture.height);
   png.format = PNG_FORMAT_RGB;
   png.flags = PNG_IMAGE_FLAG_FAST;
-  if (png_image_write_to_file(&png, file.c_str(), 0, rgb.data(), 0, nullptr)) return {};
-  return fail(Errc::unavailable,
-              fmt::format("The picture '{}' cannot be written: {}.", file.string(), png.message));
+  // Not png_image_write_to_file(), which removes the file if it fails, even if it is a device.
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(png), '\0');
+  png_alloc_size_t size = bytes.size();
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, rgb.data(), 0, nullptr))
+    return fail(Errc::unavailable,
+                fmt::format("The picture '{}' cannot be made: {}.", file.string(), png.message));
+  bytes.resize(size);
+  return config::write_whole(file, bytes);
 }
 
 }  // namespace handcast::renderer

@@ -20,8 +20,7 @@ Result<Texture> read_picture(const std::filesystem::path& file);
 /// larger than 8192 px on a side.
 Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file);
 
-/// Writes RGBA8 as a PNG file without alpha. Errors: unavailable (the file cannot be
-/// written), those of check_output().
+/// Writes RGBA8 as a PNG file without alpha, by config::write_whole(). Errors: those of it.
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture);
 
 }  // namespace handcast::renderer

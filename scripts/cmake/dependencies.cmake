@@ -74,6 +74,10 @@ find_path(GL_HEADERS GL/glcorearb.h)
 handcast_found(found EGL_HEADERS GL_HEADERS)
 handcast_feature(GL "painter gl, which draws on a GPU (libegl-dev libgl-dev)" ${found})
 
+pkg_check_modules(cairo QUIET IMPORTED_TARGET cairo)
+handcast_found(found cairo_FOUND)
+handcast_feature(CAIRO "pictures of a running rig, handcast preview (libcairo2-dev)" ${found})
+
 find_package(glfw3 QUIET)
 find_package(OpenGL QUIET COMPONENTS OpenGL)
 find_package(X11 QUIET)

@@ -40,6 +40,9 @@ constexpr std::array kVerbs{
               "Watches rings and services in the terminal.", run_top, Group::look,
               "  --once       prints one look and ends\n  --json       prints one look as JSON\n  "
               "--rig NAME   which rig, if several are up\n"},
+    VerbEntry{"preview", "preview [--rig NAME] [--shot FILE.png] [--after S] [--layers LIST]",
+              "Shows what a rig sees and casts, in a window or as a picture.", nullptr,
+              Group::look},
     VerbEntry{
         "latency", "latency [--seconds N] [--json] [--rig NAME]",
         "Shows the time that each step took, from exposure to light.", run_latency, Group::look,

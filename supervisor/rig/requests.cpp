@@ -54,6 +54,13 @@ void give_history(LiveRig& rig, const control::Request& request, const Reply& re
   reply(success(), {snapshot->get()});
 }
 
+/// Sends the rig as the services read it, for tools that need its calibration and settings.
+void give_rig(const LiveRig& rig, const Reply& reply) {
+  auto answer = success();
+  answer["rig"] = rig.applied.toml;
+  reply(answer);
+}
+
 std::string no_service(const LiveRig& rig, const std::string& name) {
   std::vector<std::string> names;
   for (const auto& each : rig.services.all()) names.push_back(each->spec().name);
@@ -80,6 +87,8 @@ void Requests::answer(const control::Request& request, Reply reply) {
       return give_rings(rig_, reply);
     case Verb::history:
       return give_history(rig_, request, reply);
+    case Verb::rig:
+      return give_rig(rig_, reply);
   }
 }
 

@@ -43,7 +43,7 @@ TEST(ControlMessage, ARequestForThePastSaysHowMuchOfIt) {
 }
 
 TEST(ControlMessage, EveryVerbHasItsName) {
-  for (const auto verb : {Verb::status, Verb::down, Verb::reload, Verb::rings})
+  for (const auto verb : {Verb::status, Verb::down, Verb::reload, Verb::rings, Verb::rig})
     EXPECT_EQ(parse_request(print_request({.verb = verb}))->verb, verb);
 }
 

@@ -148,6 +148,14 @@ TEST(Content, WhatIsWrittenIsReadBackAndBrokenFilesAreNotPictures) {
   EXPECT_FALSE(write_png("/nowhere/picture.png", picture.view()));
 }
 
+TEST(Picture, AFullDeviceIsASentenceAndTheDeviceStays) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const auto written = write_png("/dev/full", Texture(4, 4, 0xffffffffu).view());
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, Errc::unavailable);
+  EXPECT_TRUE(std::filesystem::exists("/dev/full"));
+}
+
 /// Each coefficient of each of three components in a scan of its own, after the mean: 190 scans.
 std::vector<jpeg_scan_info> one_scan_per_coefficient() {
   std::vector<jpeg_scan_info> scans{{3, {0, 1, 2}, 0, 0, 0, 0}};
