@@ -27,14 +27,27 @@ int white_of(const renderer::Image<std::uint8_t>& camera) {
   return 255;
 }
 
-std::uint32_t blend(std::uint32_t below, Colour colour) {
-  const auto part = [&](int shift, float value) {
-    const float mixed =
-        static_cast<float>(below >> shift & 255) * (1 - colour.alpha) + 255 * value * colour.alpha;
-    return static_cast<std::uint32_t>(std::lround(mixed)) << shift;
-  };
-  return 0xff000000u | part(0, colour.red) | part(8, colour.green) | part(16, colour.blue);
-}
+/// Puts a colour on many pixels, in whole numbers, because there are hundreds of thousands.
+class Tint {
+ public:
+  explicit Tint(Colour colour)
+      : below_(static_cast<std::uint32_t>(std::lround(256 * (1 - colour.alpha)))) {
+    const float share = 255 * 256 * colour.alpha;
+    added_ = {static_cast<std::uint32_t>(share * colour.red),
+              static_cast<std::uint32_t>(share * colour.green),
+              static_cast<std::uint32_t>(share * colour.blue)};
+  }
+  std::uint32_t on(std::uint32_t below) const {
+    const auto part = [&](int shift, std::uint32_t added) {
+      return ((below >> shift & 255) * below_ + added) >> 8 << shift;
+    };
+    return 0xff000000u | part(0, added_[0]) | part(8, added_[1]) | part(16, added_[2]);
+  }
+
+ private:
+  std::uint32_t below_;                 ///< share of what is below, of 256
+  std::array<std::uint32_t, 3> added_;  ///< 256 times the level that the colour adds
+};
 
 std::uint32_t blend(std::uint32_t below, std::uint32_t light) {
   return (light >> 24) == 0 ? below : light | 0xff000000u;
@@ -49,9 +62,11 @@ renderer::Texture pixels_of(const Scene& scene, const Layers& layers) {
     for (std::size_t i = 0; i < camera.size(); ++i)
       pixels.pixels()[i] = 0xff000000u | std::min(255u, camera[i] * 255u / white) * 0x010101u;
   const auto& regions = scene.regions.pixels();
-  if (shows(layers, Layer::regions) && regions.size() == camera.size())
+  if (shows(layers, Layer::regions) && regions.size() == camera.size()) {
+    const std::vector<Tint> tints(theme::kRegion.begin(), theme::kRegion.end());
     for (std::size_t i = 0; i < camera.size(); ++i)
-      pixels.pixels()[i] = blend(pixels.pixels()[i], theme::kRegion[regions[i] % kRegions]);
+      pixels.pixels()[i] = tints[regions[i] % kRegions].on(pixels.pixels()[i]);
+  }
   const auto& light = scene.light_on_camera.pixels();
   if (shows(layers, Layer::light) && light.size() == camera.size())
     for (std::size_t i = 0; i < camera.size(); ++i)

@@ -44,6 +44,34 @@ glm::vec2 mean_of(const std::vector<glm::vec2>& points) {
   return sum / static_cast<float>(points.size());
 }
 
+constexpr int kMargin_px = 64;  ///< more than a hand moves between image and light
+
+/// The smallest rectangle of whole pixels around points, and kMargin_px more. Empty without points.
+renderer::Rect around(const std::vector<glm::vec2>& points) {
+  renderer::Rect bounds;
+  for (const auto point : points) {
+    const auto px = glm::ivec2(glm::clamp(point, -1e6f, 1e6f));
+    bounds = bounds.joined({px.x, px.y, px.x + 1, px.y + 1});
+  }
+  return bounds.empty() ? bounds : bounds.grown(kMargin_px);
+}
+
+/// The part of the image that shows the hands or their light.
+renderer::Rect busy_part(const std::vector<ShownHand>& hands, const msg::Projection& projection,
+                         const calib::Calibration& calibration) {
+  renderer::Rect part;
+  for (const auto& hand : hands) part = part.joined(around(hand.joints_px));
+  const double left = projection.region_x_px, top = projection.region_y_px,
+               right = left + projection.region_width_px,
+               bottom = top + projection.region_height_px;
+  std::vector<glm::vec2> corners;
+  for (const auto corner : {glm::dvec2(left, top), glm::dvec2(right, top), glm::dvec2(left, bottom),
+                            glm::dvec2(right, bottom)})
+    corners.emplace_back(calibration.camera.distort(calibration.to_camera(corner)));
+  if (projection.region_width_px > 0) part = part.joined(around(corners));
+  return part;
+}
+
 /// The pixel of an image at a position; `none` outside.
 template <class Pixel>
 Pixel pixel_at(const renderer::Image<Pixel>& image, glm::vec2 at, Pixel none) {
@@ -129,8 +157,9 @@ void SceneMaker::add_light(const msg::Projection& projection, const std::vector<
   const int width = scene.camera.width(), height = scene.camera.height();
   scene.light_on_camera = renderer::Texture(width, height);
   if (hand_px_.data) scene.regions = renderer::Image<std::uint8_t>(width, height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
+  const auto part = busy_part(scene.hands, projection, world_->calibration).within(width, height);
+  for (int y = part.y0; y < part.y1; ++y)
+    for (int x = part.x0; x < part.x1; ++x) {
       const glm::vec2 px(x, y);
       const auto nearest = std::ranges::min_element(
           motions, {}, [px](const Motion& motion) { return glm::distance(px, motion.centre_px); });
@@ -143,6 +172,9 @@ void SceneMaker::add_light(const msg::Projection& projection, const std::vector<
       scene.regions.at(x, y) = static_cast<std::uint8_t>(region);
       ++scene.region_px[static_cast<std::size_t>(region)];
     }
+  if (hand_px_.data)
+    scene.region_px[static_cast<std::size_t>(region_of(false, false))] +=
+        scene.regions.pixels().size() - static_cast<std::size_t>(part.width()) * part.height();
 }
 
 void SceneMaker::add_drawing(const msg::Projection& projection, const std::vector<Motion>& motions,
