@@ -26,7 +26,7 @@ class Inputs {
   /// except timeout.
   template <class Pipeline>
   Result<void> deliver(Pipeline& pipeline, Deadline image_deadline) {
-    const auto taken = take_image(image_deadline);
+    auto taken = take_image(image_deadline);
     if (auto pushed = push_all(poses_, pipeline); !pushed) return pushed;
     if (auto pushed = push_all(landmarks_, pipeline); !pushed) return pushed;
     return taken;

@@ -25,7 +25,7 @@ class WindowProjector final : public Projector {
   Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t,
                                const renderer::LightTable& light, Deadline deadline) override {
     if (!window_->refresh_ns())
-      if (const auto free = clock_.take(deadline); !free) return free;
+      if (auto free = clock_.take(deadline); !free) return free;
     renderer::write_light(frame.colour, frame.region, light, picture_.view());
     const auto shown = window_->show(picture_.view(), frame.region);
     if (!shown) return fail(shown.error().code, "projector 'window': " + shown.error().what);
