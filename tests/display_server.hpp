@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -54,7 +55,9 @@ class DisplayServer {
     if (pid_ == 0) run(number[1]);
     close(number[1]);
     std::array<char, 16> text{};
-    const auto length = read(number[0], text.data(), text.size() - 1);
+    pollfd answer{number[0], POLLIN, 0};
+    const bool answers = poll(&answer, 1, kPatience_ms) == 1;
+    const auto length = answers ? read(number[0], text.data(), text.size() - 1) : 0;
     close(number[0]);
     if (length <= 0) return false;
     name_ = fmt::format(":{}", std::atoi(text.data()));
@@ -71,6 +74,7 @@ class DisplayServer {
   }
 
  private:
+  static constexpr int kPatience_ms = 20'000;
   static constexpr std::string_view kSettings = R"(
 Section "Device"
   Identifier "card"
@@ -104,9 +108,9 @@ EndSection
     const std::string log = scratch_.path() / "log", file = scratch_.path() / "xorg.conf",
                       out = scratch_.path() / "out", descriptor = fmt::format("{}", number);
     if (std::freopen(out.c_str(), "w", stderr) == nullptr) _exit(1);
-    std::vector<const char*> words{
-        "Xorg",      "-displayfd", descriptor.c_str(), "-config",   file.c_str(), "-logfile",
-        log.c_str(), "-noreset",   "-novtswitch",      "-nolisten", "tcp"};
+    std::vector<const char*> words{"Xorg",        "-displayfd", descriptor.c_str(), "-config",
+                                   file.c_str(),  "-logfile",   log.c_str(),        "-noreset",
+                                   "-novtswitch", "-sharevts",  "-nolisten",        "tcp"};
     if (!name_.empty()) words.push_back(name_.c_str());
     words.push_back(nullptr);
     execv("/usr/lib/xorg/Xorg", const_cast<char* const*>(words.data()));
