@@ -16,7 +16,19 @@
 
 #include "tests/scratch.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 namespace handcast::test {
+
+#ifdef __SANITIZE_ADDRESS__
+/// Mesa's driver leaks its options for each connection to a server. It is unloaded afterwards, so
+/// its leaks cannot be told by their place.
+using IgnoreLeaks = __lsan::ScopedDisabler;
+#else
+struct IgnoreLeaks {};
+#endif
 
 /// An X server whose monitors exist only in memory (Xorg with the driver dummy): DUMMY0 of 1024 x
 /// 768, which is primary, and DUMMY1 of 800 x 600 to its right. $DISPLAY names it while it lives.
@@ -121,6 +133,7 @@ EndSection
     return std::system(("xrandr " + arguments + " >/dev/null 2>&1").c_str()) == 0;
   }
 
+  [[no_unique_address]] IgnoreLeaks ignore_leaks_;
   Scratch scratch_;
   pid_t pid_ = -1;
   std::string name_;
