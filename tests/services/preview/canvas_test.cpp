@@ -7,6 +7,11 @@
 #include <limits>
 #include <string>
 
+#ifdef __SANITIZE_ADDRESS__
+/// Cairo keeps patterns of fontconfig until the process ends.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+#endif
+
 namespace handcast::preview {
 namespace {
 
