@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <pthread.h>
 #include <sys/file.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <future>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -34,9 +36,9 @@ class FileProjector final : public Projector {
     if (auto claimed = claim(); !claimed) return tl::make_unexpected(claimed.error());
     auto times = clock_.take(deadline);
     if (!times || frame_id % kEvery != 0) return times;
-    const fs::path file = folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept);
-    if (const auto written = write(frame, light, file); !written)
+    if (const auto written = last_written(); !written)
       return fail(Errc::bad_data, "projector 'file': " + written.error().what);
+    write(frame, light, folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept));
     return times;
   }
 
@@ -67,17 +69,26 @@ class FileProjector final : public Projector {
     return {};
   }
 
-  /// Writes the whole projector image, dark outside the region of the frame.
-  static Result<void> write(const renderer::Frame& frame, const renderer::LightTable& light,
-                            const fs::path& file) {
+  /// Begins to write the whole projector image, dark outside the region of the frame. The light
+  /// does not wait for the encoder, which takes as long as twenty frames.
+  void write(const renderer::Frame& frame, const renderer::LightTable& light,
+             const fs::path& file) {
     renderer::Texture image(frame.colour.width, frame.colour.height);
     renderer::write_light(frame.colour, frame.region, light, image.view());
-    return renderer::write_png(file, image.view());
+    written_ = std::async(std::launch::async, [image = std::move(image), file] {
+      const sched_param none{};
+      pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);  // the daemon may be real-time
+      return renderer::write_png(file, image.view());
+    });
   }
+
+  /// Waits for the last picture, and returns whether it was written.
+  Result<void> last_written() { return written_.valid() ? written_.get() : Result<void>(); }
 
   LightClock clock_;
   fs::path folder_;
   UniqueFd lock_;  ///< the locked folder; set by the first present()
+  std::future<Result<void>> written_;
 };
 
 }  // namespace

@@ -30,7 +30,7 @@ class Projector {
 
   /// Hands a frame over, whose levels the table turns into those of the projector. If frames come
   /// faster than the projector takes them, waits until the deadline. The frame may be reused when
-  /// the call returns. Errors: timeout (this frame is not shown), bad_data (this frame could not be
+  /// the call returns. Errors: timeout (this frame is not shown), bad_data (a frame could not be
   /// written), disconnected.
   virtual Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id,
                                        const renderer::LightTable& light, Deadline deadline) = 0;

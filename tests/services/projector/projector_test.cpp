@@ -94,12 +94,13 @@ TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
   ::setenv("HANDCAST_OUT", scratch.path().c_str(), 1);
   config::Rig rig;
   rig.projector.backend = "file";
-  const auto projector = open_projector(rig, {});
+  auto projector = open_projector(rig, {});
   ::unsetenv("HANDCAST_OUT");
   ASSERT_TRUE(projector) << projector.error().what;
   SmallFrame small;
   small.pixels.at(0, 0) = 0xFFFFFFFF;  // outside the region, as left over from an older frame
   ASSERT_TRUE((*projector)->present(small.frame, 0, kLight, Deadline::in(5s)));
+  projector->reset();  // the picture is written
 
   const cv::Mat picture = cv::imread((scratch.path() / "light" / "light_000.png").string());
   ASSERT_EQ(picture.size(), cv::Size(32, 24));
@@ -124,6 +125,23 @@ TEST(FileProjector, TwoCannotWriteIntoOneFolder) {
   EXPECT_THAT(refused.error().what, testing::HasSubstr("another rig writes"));
   first->reset();
   EXPECT_TRUE((*second)->present(small.frame, 1, kLight, Deadline::in(5s)));
+}
+
+TEST(FileProjector, SaysWhenAPictureCannotBeWritten) {
+  test::Scratch scratch;
+  ::setenv("HANDCAST_OUT", scratch.path().c_str(), 1);
+  config::Rig rig;
+  rig.projector.backend = "file";
+  const auto projector = open_projector(rig, {});
+  ::unsetenv("HANDCAST_OUT");
+  std::filesystem::create_directory(scratch.path() / "light" / "light_000.png");
+  SmallFrame small;
+  ASSERT_TRUE((*projector)->present(small.frame, 0, kLight, Deadline::in(5s)));
+  const auto refused = (*projector)->present(small.frame, 100, kLight, Deadline::in(5s));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::bad_data);
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("light_000.png"));
+  EXPECT_TRUE((*projector)->present(small.frame, 200, kLight, Deadline::in(5s)));
 }
 
 TEST(FileProjector, SaysWhenItsFolderCannotBeMade) {
