@@ -39,6 +39,10 @@ class ArrayReader {
         if (!std::isfinite(value))
           return complain(fmt::format("its {} contain a number that is not finite", what)),
                  std::vector<T>{};
+        if (value < double(std::numeric_limits<T>::lowest()) ||
+            value > double(std::numeric_limits<T>::max()))
+          return complain(fmt::format("its {} contain {:.6g}, which is out of range", what, value)),
+                 std::vector<T>{};
         numbers.push_back(static_cast<T>(value));
       }
     return numbers;

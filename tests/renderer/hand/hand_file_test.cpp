@@ -246,6 +246,15 @@ TEST_F(HandFile, AnIndexBeyondTheVerticesIsSaid) {
   EXPECT_THAT(refusal(file), HasSubstr("a triangle refers to vertex"));
 }
 
+TEST_F(HandFile, ANegativeIndexIsSaid) {
+  static constexpr int kSignedByte = 5120;
+  const auto file = changed([](json& gltf) {
+    const int indices = gltf["meshes"][0]["primitives"][0]["indices"];
+    gltf["accessors"][indices]["componentType"] = kSignedByte;
+  });
+  EXPECT_THAT(refusal(file), HasSubstr("out of range"));
+}
+
 TEST_F(HandFile, AnAccessorBeyondItsBufferIsSaid) {
   const auto file = changed([](json& gltf) { gltf["accessors"][0]["count"] = 1000000; });
   EXPECT_THAT(refusal(file), HasSubstr("outside"));
