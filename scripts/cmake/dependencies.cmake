@@ -82,7 +82,7 @@ find_package(glfw3 QUIET)
 find_package(OpenGL QUIET COMPONENTS OpenGL)
 find_package(X11 QUIET)
 handcast_found(found glfw3_FOUND OpenGL_OpenGL_FOUND X11_Xrandr_FOUND)
-handcast_feature(WINDOW "light in a window (libglfw3-dev libgl-dev libxrandr-dev)" ${found})
+handcast_feature(WINDOW "light in a window (libglfw3-dev libopengl-dev libxrandr-dev)" ${found})
 
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
