@@ -110,11 +110,11 @@ class Window::Screen {
 
 Window::Screen* Window::Screen::the_screen_ = nullptr;
 
-/// Finds the monitor of a full-screen window: at first the one in the settings, later the same one.
+/// Finds the monitor of a full-screen window: the one in the settings, or the one it was on before.
 Result<void> Window::Screen::find_monitor() {
   const auto [handles, monitors] = connected();
   const auto chosen =
-      choose_monitor(monitors, monitor_name_.empty() ? settings_.monitor : monitor_name_);
+      choose_monitor(monitors, settings_.monitor.empty() ? monitor_name_ : settings_.monitor);
   if (!chosen) return tl::make_unexpected(chosen.error());
   monitor_ = handles[*chosen];
   monitor_name_ = monitors[*chosen].output;

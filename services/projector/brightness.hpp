@@ -14,7 +14,7 @@ namespace handcast::projector {
 class Brightness {
  public:
   /// `epoch_ns`: the start of the rig, see service::Context. The first light of a rig that is older
-  /// than kStart replaces that of another process and does not fade.
+  /// than 10 s replaces that of another process and does not fade.
   Brightness(const config::Projector& settings, std::int64_t epoch_ns)
       : settings_(settings), epoch_ns_(epoch_ns), table_(renderer::light_table(settings)) {}
 

@@ -70,7 +70,7 @@ class FileProjector final : public Projector {
   }
 
   /// Begins to write the whole projector image, dark outside the region of the frame. The light
-  /// does not wait for the encoder, which takes as long as twenty frames.
+  /// does not wait for the encoder, which takes longer than a frame.
   void write(const renderer::Frame& frame, const renderer::LightTable& light,
              const fs::path& file) {
     renderer::Texture image(frame.colour.width, frame.colour.height);

@@ -4,14 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <numeric>
 #include <vector>
+
+#include "tests/renderer/window/edid_block.hpp"
 
 namespace handcast::renderer {
 namespace {
 
+using test::edid_with;
 using testing::HasSubstr;
 
 const Monitor kDesk{"eDP-1", "", 1920, 1080, 60, true};
@@ -56,16 +56,6 @@ TEST(ChooseMonitor, AnAbsentOneMayComeLater) {
     EXPECT_EQ(refused.error().code, Errc::unavailable);
   }
   EXPECT_THAT(choose_monitor({}, "").error().what, HasSubstr("no monitor is connected"));
-}
-
-/// A block of EDID with the name in its third descriptor.
-std::array<std::uint8_t, 128> edid_with(std::string_view name) {
-  std::array<std::uint8_t, 128> edid{0, 255, 255, 255, 255, 255, 255, 0};
-  edid[54] = 1;  // the first descriptor is a timing
-  edid[54 + 36 + 3] = 0xFC;
-  std::copy(name.begin(), name.end(), edid.begin() + 54 + 36 + 5);
-  edid[127] = static_cast<std::uint8_t>(256 - std::accumulate(edid.begin(), edid.end(), 0) % 256);
-  return edid;
 }
 
 TEST(ModelOf, IsTheNameInTheEdid) { EXPECT_EQ(model_of(edid_with("EPSON PJ\n    ")), "EPSON PJ"); }

@@ -5,10 +5,10 @@
 #include <X11/Xutil.h>
 #include <X11/extensions/Xrandr.h>
 
-#include <algorithm>
-#include <array>
 #include <memory>
-#include <numeric>
+#include <string>
+
+#include "tests/renderer/window/edid_block.hpp"
 
 namespace handcast::test {
 namespace {
@@ -53,12 +53,7 @@ void paint_the_desktop(unsigned long rgb) {
 }
 
 void set_edid_name(std::string_view output, std::string_view name) {
-  std::array<unsigned char, 128> edid{0, 255, 255, 255, 255, 255, 255, 0};
-  edid[54 + 3] = 0xFC;
-  std::ranges::copy(name, edid.begin() + 54 + 5);
-  edid[54 + 5 + name.size()] = '\n';
-  edid[127] = static_cast<unsigned char>(256 - std::accumulate(edid.begin(), edid.end(), 0) % 256);
-
+  const auto edid = edid_with(std::string(name) + '\n');
   const auto display = connect();
   auto* resources = XRRGetScreenResourcesCurrent(display.get(), DefaultRootWindow(display.get()));
   const Atom property = XInternAtom(display.get(), RR_PROPERTY_RANDR_EDID, False);

@@ -89,13 +89,18 @@ std::vector<std::string_view> all() { return service::names_of(projector_backend
 INSTANTIATE_TEST_SUITE_P(Backends, ProjectorContract, testing::ValuesIn(all()),
                          [](const auto& named) { return std::string(named.param); });
 
-TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
-  test::Scratch scratch;
-  ::setenv("HANDCAST_OUT", scratch.path().c_str(), 1);
+Result<std::unique_ptr<Projector>> open_file_projector(const std::filesystem::path& folder) {
+  ::setenv("HANDCAST_OUT", folder.c_str(), 1);
   config::Rig rig;
   rig.projector.backend = "file";
   auto projector = open_projector(rig, {});
   ::unsetenv("HANDCAST_OUT");
+  return projector;
+}
+
+TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
+  test::Scratch scratch;
+  auto projector = open_file_projector(scratch.path());
   ASSERT_TRUE(projector) << projector.error().what;
   SmallFrame small;
   small.pixels.at(0, 0) = 0xFFFFFFFF;  // outside the region, as left over from an older frame
@@ -111,12 +116,8 @@ TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
 
 TEST(FileProjector, TwoCannotWriteIntoOneFolder) {
   test::Scratch scratch;
-  ::setenv("HANDCAST_OUT", scratch.path().c_str(), 1);
-  config::Rig rig;
-  rig.projector.backend = "file";
-  auto first = open_projector(rig, {});
-  const auto second = open_projector(rig, {});  // a spare is opened while the first one works
-  ::unsetenv("HANDCAST_OUT");
+  auto first = open_file_projector(scratch.path());
+  const auto second = open_file_projector(scratch.path());  // a spare, while the first one works
   SmallFrame small;
   ASSERT_TRUE((*first)->present(small.frame, 1, kLight, Deadline::in(5s)));
   const auto refused = (*second)->present(small.frame, 1, kLight, Deadline::in(5s));
@@ -129,11 +130,7 @@ TEST(FileProjector, TwoCannotWriteIntoOneFolder) {
 
 TEST(FileProjector, SaysWhenAPictureCannotBeWritten) {
   test::Scratch scratch;
-  ::setenv("HANDCAST_OUT", scratch.path().c_str(), 1);
-  config::Rig rig;
-  rig.projector.backend = "file";
-  const auto projector = open_projector(rig, {});
-  ::unsetenv("HANDCAST_OUT");
+  const auto projector = open_file_projector(scratch.path());
   std::filesystem::create_directory(scratch.path() / "light" / "light_000.png");
   SmallFrame small;
   ASSERT_TRUE((*projector)->present(small.frame, 0, kLight, Deadline::in(5s)));
@@ -145,11 +142,7 @@ TEST(FileProjector, SaysWhenAPictureCannotBeWritten) {
 }
 
 TEST(FileProjector, SaysWhenItsFolderCannotBeMade) {
-  ::setenv("HANDCAST_OUT", "/dev/null", 1);
-  config::Rig rig;
-  rig.projector.backend = "file";
-  const auto projector = open_projector(rig, {});
-  ::unsetenv("HANDCAST_OUT");
+  const auto projector = open_file_projector("/dev/null");
   ASSERT_FALSE(projector);
   EXPECT_EQ(projector.error().code, Errc::bad_config);
   EXPECT_THAT(projector.error().what, testing::HasSubstr("/dev/null/light"));
