@@ -45,6 +45,23 @@ int lit_pixels(int left, int top, int width, int height) {
   return lit;
 }
 
+bool shows_a_window() {
+  const auto display = connect();
+  Window root = 0, parent = 0, *windows = nullptr;
+  unsigned count = 0;
+  if (!XQueryTree(display.get(), DefaultRootWindow(display.get()), &root, &parent, &windows,
+                  &count))
+    return false;
+  bool shown = false;
+  for (unsigned i = 0; i < count; ++i) {
+    XWindowAttributes state{};
+    shown |=
+        XGetWindowAttributes(display.get(), windows[i], &state) && state.map_state == IsViewable;
+  }
+  if (windows != nullptr) XFree(windows);
+  return shown;
+}
+
 void paint_the_desktop(unsigned long rgb) {
   const auto display = connect();
   XSetWindowBackground(display.get(), DefaultRootWindow(display.get()), rgb);

@@ -11,6 +11,8 @@ namespace handcast::test {
 std::uint32_t pixel(int x, int y);
 /// Number of pixels that are not black in a rectangle of the screen.
 int lit_pixels(int left, int top, int width, int height);
+/// True if a window is shown, wherever it is.
+bool shows_a_window();
 /// Fills what no window covers. `rgb`: 0xRRGGBB.
 void paint_the_desktop(unsigned long rgb);
 /// Gives an output an EDID with this name.
