@@ -68,6 +68,17 @@ TEST(CameraPanel, TheRegionsHaveFourColours) {
   EXPECT_EQ(colours.size(), 4u);
 }
 
+TEST(CameraPanel, ARegionHasItsColourInProportionToItsOpacity) {
+  Scene scene;
+  scene.camera = renderer::Image<std::uint8_t>(kSide_px, kSide_px);  // black
+  scene.regions = renderer::Image<std::uint8_t>(kSide_px, kSide_px, 1);
+  const auto pixel = camera_panel(scene).at(200, 200);
+  const auto& colour = theme::kRegion[1];
+  EXPECT_NEAR(pixel & 255, 255 * colour.alpha * colour.red, 2);
+  EXPECT_NEAR(pixel >> 8 & 255, 255 * colour.alpha * colour.green, 2);
+  EXPECT_NEAR(pixel >> 16 & 255, 255 * colour.alpha * colour.blue, 2);
+}
+
 TEST(CameraPanel, OnlyTheChosenLayersAreDrawn) {
   auto scene = one_landmark(0);
   scene.camera = renderer::Image<std::uint8_t>(kSide_px, kSide_px, 200);
