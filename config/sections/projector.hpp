@@ -17,6 +17,51 @@ enum class PainterChoice {
 };
 constexpr std::array<std::string_view, 3> words_of(PainterChoice) { return {"cpu", "gl", "auto"}; }
 
+/// The sub-frames that share one output frame, for a projector that shows them one after the other.
+enum class Packing {
+  none,          ///< an output frame is one frame
+  planes_24x1,   ///< 24 frames of 1 bit, one per bit of RGB8
+  planes_8x3,    ///< 8 frames of 1 bit per colour
+  quadrants_4,   ///< 4 colour frames of half the width and height
+  quadrants_12,  ///< 12 grey frames of half the width and height
+};
+constexpr std::array<std::string_view, 5> words_of(Packing) {
+  return {"none", "24x1", "8x3", "quadrants_rgb", "quadrants_grey"};
+}
+
+/// [projector.file]
+struct ProjectorFile {
+  bool film = false;
+  int every = 100;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, ProjectorFile& file) {
+  visitor.field("film", file.film, "Writes one film, light.avi, instead of pictures.");
+  visitor.field("every", file.every, between(1, 100000), "The first of so many frames is written.");
+}
+
+/// [projector.kms]
+struct ProjectorKms {
+  std::string card;
+  std::string connector;
+  std::string mode;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, ProjectorKms& kms) {
+  visitor.field("card", kms.card,
+                "The device of the graphics card: /dev/dri/card0. Empty: the first one with the "
+                "connector.");
+  visitor.field(
+      "connector", kms.connector,
+      "The projector: its connector (HDMI-A-1) or the model in its EDID; a name that does "
+      "not exist gets a list of them. Empty: the only one that is connected.");
+  visitor.field("mode", kms.mode,
+                "WIDTHxHEIGHT or WIDTHxHEIGHT@HZ. Empty: the projector's size at the rate next to "
+                "rate_hz.");
+}
+
 /// [projector.window]
 struct ProjectorWindow {
   std::string monitor;
@@ -50,6 +95,11 @@ struct Projector {
   double brightness = 1;
   double gamma = 0;
   double fade_s = 0.5;
+  Packing packing = Packing::none;
+  bool dither = true;
+  bool late_latch = false;
+  ProjectorFile file;
+  ProjectorKms kms;
   ProjectorWindow window;
   Process process;
 };
@@ -82,6 +132,22 @@ void describe(Visitor& visitor, Projector& projector) {
   visitor.field("fade_s", projector.fade_s, between(0, 10, "s"),
                 "How long the light of a rig takes to full brightness at its start. A projector "
                 "that replaces another one does not fade.");
+  visitor.field(
+      "packing", projector.packing,
+      "The sub-frames in an output frame, for a projector that shows them one after the "
+      "other; each is drawn for the time of its own light, and rate_hz counts them. none: "
+      "one frame. 24x1: 24 frames of 1 bit. 8x3: 8 frames of 1 bit per colour. "
+      "quadrants_rgb: 4 frames of half the width and height. quadrants_grey: 12 of them, "
+      "without colour.");
+  visitor.field("dither", projector.dither,
+                "24x1, 8x3: a level between black and white becomes a pattern of both, which "
+                "changes from frame to frame. Off: levels of at least half the light become "
+                "white.");
+  visitor.field("late_latch", projector.late_latch,
+                "Just before it is handed over, a frame is moved by what a newer camera image or "
+                "pose says.");
+  visitor.section("file", projector.file, "The back end `file`.");
+  visitor.section("kms", projector.kms, "The back end `kms`.");
   visitor.section("window", projector.window, "The back end `window`.");
   visitor.section("process", projector.process, "The process of the service.");
 }
@@ -91,6 +157,7 @@ struct Content {
   std::string left = "builtin:atlas";
   std::string right = "builtin:atlas";
   double shading = 0.0;
+  bool smooth = true;
 };
 
 template <class Visitor>
@@ -102,6 +169,10 @@ void describe(Visitor& visitor, Content& content) {
   visitor.field(
       "shading", content.shading, between(0, 1),
       "Strength of the shading by a light that shines from the projector. 0: no shading.");
+  visitor.field(
+      "smooth", content.smooth,
+      "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "
+      "in each frame, but fine lines break up and edges have steps.");
 }
 
 /// [hand]
