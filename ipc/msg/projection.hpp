@@ -30,10 +30,10 @@ struct ProjectedHand {
   std::array<Landing, kMaxVertices> landings{};  ///< the first `vertex_count` are valid
 };
 
-/// The image that was handed to the projector. The pixels of the lit region (RGBA8; alpha 0: dark,
-/// above 0: light meant for a hand) follow the struct row by row without padding; everything
-/// outside the region is dark.
-/// Published by: services/projector ("projection.frames").  Read by: services/observer, previews.
+/// The image that was handed to the projector. The pixels of the lit region (RGBA8; alpha:
+/// the share of the pixel that is hand, 0: dark) follow the struct row by row without padding;
+/// everything outside the region is dark. Published by: services/projector ("projection.frames").
+/// Read by: services/observer, previews.
 struct Projection {
   static constexpr std::string_view layout = "Projection/2";  ///< see type_hash()
 

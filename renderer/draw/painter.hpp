@@ -11,6 +11,7 @@
 #include "config/sections/cascade.hpp"
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
+#include "renderer/base/mip_chain.hpp"
 #include "renderer/correct/deform.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 
@@ -20,7 +21,7 @@ namespace handcast::renderer {
 /// of draw(), the texture until the last fill() of the drawing.
 struct DrawnHand {
   const HandMesh* mesh = nullptr;          ///< triangles, texture coordinates and charts
-  const Texture* texture = nullptr;        ///< nullptr: white
+  const MipChain* texture = nullptr;       ///< nullptr: white
   std::span<const glm::vec2> position_px;  ///< projector px
   std::span<const float> depth_m;          ///< distance along the camera's axis; nearer wins
   std::span<const float> light;            ///< factor 0..1; empty: 1 everywhere
@@ -66,12 +67,15 @@ class Painter {
   /// warped in `region`.
   virtual void warp(const WarpGrid& grid, Rect from, Rect region) = 0;
 
-  /// Removes light where `mask` is 0 and fills the parts of the hand that have no light. `mask` has
-  /// the projector's size. Does nothing if the method is none. See `docs/method.md#fill`.
+  /// Removes light where `mask` is 0 and fills the parts of the hand that have no light. Where the
+  /// mask is between 0 and 255, the share of the pixel that is hand, the pixel gets this share of
+  /// its light, and its alpha is the share. `mask` has the projector's size. Does nothing if the
+  /// method is none. See `docs/method.md#fill`.
   virtual FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings,
                           Rect region) = 0;
 
-  /// The image after the last pass: RGBA8, alpha 0 where it is dark. Valid until the next pass.
+  /// The image after the last pass: RGBA8, alpha 0 where it is dark, 255 inside the hand. Valid
+  /// until the next pass.
   virtual View<const std::uint32_t> colour() = 0;
   /// Texture coordinates and surface ids after the last pass. Texture coordinates are undefined
   /// where the id is 0. Valid until the next pass.

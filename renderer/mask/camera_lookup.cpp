@@ -23,6 +23,18 @@ std::uint64_t load8(const std::uint8_t* bytes) {
   return word;
 }
 
+/// The mask at `fine` (1/4096 px), between the pixel `corner` and its right and lower neighbours.
+std::uint8_t between(View<const std::uint8_t> mask, glm::ivec2 corner, glm::ivec2 fine) {
+  constexpr int kBits = 6, kWhole = 1 << kBits;
+  const int right = fine.x >> (kFineBits - kBits) & (kWhole - 1),
+            down = fine.y >> (kFineBits - kBits) & (kWhole - 1);
+  const std::uint8_t *upper = mask.row(corner.y) + corner.x, *lower = upper + mask.stride;
+  if (upper[0] == upper[1] && upper[0] == lower[0] && upper[0] == lower[1]) return upper[0];
+  const int sum = (kWhole - down) * ((kWhole - right) * upper[0] + right * upper[1]) +
+                  down * ((kWhole - right) * lower[0] + right * lower[1]);
+  return static_cast<std::uint8_t>(sum >> 2 * kBits);
+}
+
 /// Bounds of what `map` makes of the outline of `region`, sampled at nine points per side and grown
 /// by a pixel. Positions beyond +-`limit` and infinite ones are clamped.
 template <class Map>
@@ -48,10 +60,11 @@ Rect bounds_of(Rect region, double limit, Map map) {
 
 }  // namespace
 
-CameraLookup::CameraLookup(const calib::Calibration& calibration)
+CameraLookup::CameraLookup(const calib::Calibration& calibration, bool smooth)
     : width_(calibration.projector_width_px),
       height_(calibration.projector_height_px),
       columns_((width_ + kStep - 1) / kStep + 1),
+      smooth_(smooth),
       calibration_(calibration) {
   const int rows = (height_ + kStep - 1) / kStep + 1;
   table_.reserve(static_cast<std::size_t>(columns_) * rows);
@@ -91,7 +104,8 @@ void CameraLookup::resample(View<const std::uint8_t> mask, Rect region, View<std
       const Rect part = whole.overlap(region);
       if (part.width() == kStep && part.height() == kStep && resample_uniform(mask, block, out))
         continue;
-      resample_block(mask, block, part, out);
+      smooth_ ? resample_block<true>(mask, block, part, out)
+              : resample_block<false>(mask, block, part, out);
     }
   }
 }
@@ -104,10 +118,11 @@ bool CameraLookup::resample_uniform(View<const std::uint8_t> mask, const Block& 
       std::minmax({block.top_left.x, block.top_right.x, block.bottom_left.x, block.bottom_right.x});
   const auto [up, down] =
       std::minmax({block.top_left.y, block.top_right.y, block.bottom_left.y, block.bottom_right.y});
-  // Rounds to the nearest pixel, with 1/8 px of margin at the near corners. The far corners are a
+  // The pixels that are read, with 1/8 px of margin at the near corners. The far corners are a
   // pixel beyond the block, which is margin enough for the curvature of the map.
-  const int x0 = (left + kUnits * 3 / 8) >> kUnitBits, x1 = (right + kUnits / 2) >> kUnitBits;
-  const int y0 = (up + kUnits * 3 / 8) >> kUnitBits, y1 = (down + kUnits / 2) >> kUnitBits;
+  const int near = smooth_ ? -kUnits / 8 : kUnits * 3 / 8, far = smooth_ ? kUnits : kUnits / 2;
+  const int x0 = (left + near) >> kUnitBits, x1 = (right + far) >> kUnitBits;
+  const int y0 = (up + near) >> kUnitBits, y1 = (down + far) >> kUnitBits;
   if (x0 < 0 || y0 < 0 || y1 >= mask.height || x1 - x0 >= 8 || x0 + 8 > mask.width) return false;
 
   std::uint64_t any = 0, all = ~0ull;
@@ -125,21 +140,23 @@ bool CameraLookup::resample_uniform(View<const std::uint8_t> mask, const Block& 
   return true;
 }
 
+template <bool kSmooth>
 void CameraLookup::resample_block(View<const std::uint8_t> mask, const Block& block, Rect part,
                                   View<std::uint8_t> out) const {
-  constexpr int kHalf = kFine / 2;
+  constexpr int kRound = kSmooth ? 0 : kFine / 2;
   for (int y = part.y0; y < part.y1; ++y) {
     const int down = y - block.y;
     const glm::ivec2 left = block.top_left * kStep + (block.bottom_left - block.top_left) * down;
     const glm::ivec2 right =
         block.top_right * kStep + (block.bottom_right - block.top_right) * down;
     const glm::ivec2 step = right - left;
-    glm::ivec2 at = left * kStep + step * (part.x0 - block.x) + kHalf;
+    glm::ivec2 at = left * kStep + step * (part.x0 - block.x) + kRound;
     std::uint8_t* line = out.row(y);
     for (int x = part.x0; x < part.x1; ++x, at += step) {
       const int cx = at.x >> kFineBits, cy = at.y >> kFineBits;
-      const bool inside = cx >= 0 && cy >= 0 && cx < mask.width && cy < mask.height;
-      line[x] = inside ? mask.at(cx, cy) : 0;
+      constexpr int kMore = kSmooth ? 1 : 0;
+      const bool inside = cx >= 0 && cy >= 0 && cx + kMore < mask.width && cy + kMore < mask.height;
+      line[x] = !inside ? 0 : kSmooth ? between(mask, {cx, cy}, at) : mask.at(cx, cy);
     }
   }
 }

@@ -14,9 +14,9 @@ namespace handcast::renderer {
 /// table that is computed once per calibration.
 class CameraLookup {
  public:
-  /// Computes the table.
-  explicit CameraLookup(const calib::Calibration& calibration);
-  /// Resamples a mask from the camera's image to the projector, nearest pixel: out(x, y) =
+  /// Computes the table. `smooth`: resample() interpolates instead of taking the nearest pixel.
+  explicit CameraLookup(const calib::Calibration& calibration, bool smooth = false);
+  /// Resamples a mask from the camera's image to the projector: out(x, y) =
   /// mask(then_from_now(c)), where c is the camera image pixel of projector pixel (x, y); 0 outside
   /// `mask`. Writes the pixels of `region` (projector px, clipped to the screen). `then_from_now`
   /// maps the image position of a spot on the hand at the target time to the one at the exposure.
@@ -36,10 +36,12 @@ class CameraLookup {
                     const Similarity& then_from_now) const;
   bool resample_uniform(View<const std::uint8_t> mask, const Block& block,
                         View<std::uint8_t> out) const;
+  template <bool kSmooth>
   void resample_block(View<const std::uint8_t> mask, const Block& block, Rect part,
                       View<std::uint8_t> out) const;
 
   int width_ = 0, height_ = 0, columns_ = 0;
+  bool smooth_;
   calib::Calibration calibration_;
   /// Image positions of every 8th projector pixel of every 8th row; bilinear in between.
   std::vector<glm::vec2> table_;

@@ -39,11 +39,11 @@ Rect moved_back(const Rect& region, const Similarity& move) {
 
 }  // namespace
 
-HandMask::HandMask(const config::Mask& settings, const calib::Calibration& calibration)
+HandMask::HandMask(const config::Mask& settings, const calib::Calibration& calibration, bool smooth)
     : settings_(settings),
       calibration_(calibration),
       finder_(settings),
-      lookup_(calibration),
+      lookup_(calibration, smooth),
       projector_mask_(calibration.projector_width_px, calibration.projector_height_px) {}
 
 void HandMask::clear_camera_mask(int width, int height) {

@@ -37,8 +37,10 @@ class HandMask {
     /// @}
   };
 
-  /// Without an image. Copies the settings and the calibration.
-  HandMask(const config::Mask& settings, const calib::Calibration& calibration);
+  /// Without an image. Copies the settings and the calibration. `smooth`: the mask in the projector
+  /// has shares of pixels at its edges.
+  HandMask(const config::Mask& settings, const calib::Calibration& calibration,
+           bool smooth = false);
 
   /// Finds the hands in an image.
   void find(const TimedImage& camera, std::span<const Expected> hands);
@@ -57,8 +59,8 @@ class HandMask {
   /// hands. Returns the region that contains the masks. Where the bounds of two hands overlap, both
   /// masks move as the second hand does, or as the one that is shown.
   Rect advance(std::span<const Expected> hands);
-  /// The masks of the last advance(), in the projector's size: 255 hand, 0 not. Defined inside the
-  /// returned region only.
+  /// The masks of the last advance(), in the projector's size: 255 hand, 0 not, or the
+  /// share of the pixel that is hand. Defined inside the returned region only.
   GreyView in_projector() const { return projector_mask_.view(); }
 
  private:

@@ -4,18 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/base/srgb.hpp"
+
 namespace handcast::renderer {
 namespace {
-
-/// The light 0..1 of a level 0..1, IEC 61966-2-1, and its inverse.
-/// @{
-double srgb_light(double level) {
-  return level <= 0.04045 ? level / 12.92 : std::pow((level + 0.055) / 1.055, 2.4);
-}
-double srgb_level(double light) {
-  return light <= 0.0031308 ? light * 12.92 : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
-/// @}
 
 constexpr std::uint32_t kOpaque = 0xff000000u;
 

@@ -33,7 +33,7 @@ config::Registration registration_of(const config::Cascade& settings) {
 
 HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
                            const calib::Calibration& calibration, HandSurface surface,
-                           Texture texture, LandmarkOracle oracle)
+                           MipChain picture, LandmarkOracle oracle)
     : side_(side),
       settings_(settings),
       calibration_(calibration),
@@ -43,22 +43,23 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
       surface_(std::move(surface)),
       mover_(surface_.mesh()),
       untangler_(surface_.mesh()),
-      texture_(std::move(texture)) {}
+      picture_(std::move(picture)) {}
 
 Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settings,
-                                        const std::string& content, const std::string& hand_file,
+                                        const config::Content& content, const config::Hand& hand,
                                         const calib::Calibration& calibration,
                                         LandmarkOracle oracle) {
-  auto mesh = load_hand_or_default(hand_file, side);
+  const bool is_left = side == Side::left;
+  auto mesh = load_hand_or_default(is_left ? hand.left : hand.right, side);
   if (!mesh) return tl::make_unexpected(mesh.error());
-  auto texture = load_content(content, *mesh);
+  auto texture = load_content(is_left ? content.left : content.right, *mesh);
   if (!texture) return tl::make_unexpected(texture.error());
   if (mesh->vertex_count() > msg::kMaxVertices)
     log::warning("the hand has {} vertices: observers receive the landings of the first {} only",
                  mesh->vertex_count(), msg::kMaxVertices);
   HandSurface surface(std::move(*mesh), settings.mask.forearm_mm);
-  return HandPipeline(side, settings, calibration, std::move(surface), std::move(*texture),
-                      std::move(oracle));
+  return HandPipeline(side, settings, calibration, std::move(surface),
+                      MipChain(*texture, content.smooth), std::move(oracle));
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
@@ -155,7 +156,7 @@ void HandPipeline::learn_widths(const HandFrame& frame, std::int64_t target_ns, 
 
 DrawnHand HandPipeline::drawn(const Skinned& skinned,
                               std::span<const glm::vec2> position_px) const {
-  return {&surface_.mesh(), &texture_, position_px, skinned.depth_m, skinned.light, revision_};
+  return {&surface_.mesh(), &picture_, position_px, skinned.depth_m, skinned.light, revision_};
 }
 
 FrameHand HandPipeline::described(const HandFrame& frame) const {

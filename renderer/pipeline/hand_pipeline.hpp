@@ -6,6 +6,7 @@
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
+#include "config/sections/projector.hpp"
 #include "renderer/correct/rung_mover.hpp"
 #include "renderer/correct/untangle.hpp"
 #include "renderer/draw/painter.hpp"
@@ -37,11 +38,11 @@ struct HandFrame {
 /// order of their declaration, on the frame that it returned; each may be left out. One thread.
 class HandPipeline {
  public:
-  /// Loads the mesh and the content of a hand. `content`: see load_content(). `hand_file`: see
-  /// load_hand_or_default(). `oracle`: see make_landmark_filter(). Errors (bad_config): those of
-  /// load_hand() and load_content().
+  /// Loads the mesh and the content of one hand of the settings. `oracle`: see
+  /// make_landmark_filter(). Errors (bad_config): those of load_hand_or_default() and
+  /// load_content().
   static Result<HandPipeline> load(Side side, const config::Cascade& settings,
-                                   const std::string& content, const std::string& hand_file,
+                                   const config::Content& content, const config::Hand& hand,
                                    const calib::Calibration& calibration, LandmarkOracle oracle);
 
   /// Which hand it is.
@@ -100,7 +101,7 @@ class HandPipeline {
   void learn_widths(const HandFrame& frame, std::int64_t target_ns, GreyView mask);
 
   /// The hand for the painter, with its vertices at `position_px`. Borrows the mesh and the
-  /// texture.
+  /// picture.
   DrawnHand drawn(const Skinned& skinned, std::span<const glm::vec2> position_px) const;
   /// Bounds of the drawn vertices if they are at `position_px`.
   Rect bounds(std::span<const glm::vec2> position_px) const { return surface_.bounds(position_px); }
@@ -109,7 +110,7 @@ class HandPipeline {
 
  private:
   HandPipeline(Side side, const config::Cascade& settings, const calib::Calibration& calibration,
-               HandSurface surface, Texture texture, LandmarkOracle oracle);
+               HandSurface surface, MipChain picture, LandmarkOracle oracle);
 
   LandmarkPoints to_projector(const LandmarkPoints& camera_px) const;
   LateRegistration::Hand late_hand(const HandFrame& frame) const;
@@ -127,8 +128,8 @@ class HandPipeline {
   HandSurface surface_;
   RungMover mover_;
   Untangler untangler_;
-  Texture texture_;
-  std::uint64_t revision_ = new_revision();  ///< of the mesh and the texture
+  MipChain picture_;
+  std::uint64_t revision_ = new_revision();  ///< of the mesh and the picture
 };
 
 }  // namespace handcast::renderer

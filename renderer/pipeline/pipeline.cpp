@@ -39,10 +39,10 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(
   // On two threads, because a hand takes most of the time of a start. Deferred: on this thread, if
   // there is no other one.
   auto left_loaded = std::async(std::launch::async | std::launch::deferred, [&] {
-    return HandPipeline::load(Side::left, cascade, content.left, hand.left, calibration,
+    return HandPipeline::load(Side::left, cascade, content, hand, calibration,
                               of_side(oracle, Side::left));
   });
-  auto right = HandPipeline::load(Side::right, cascade, content.right, hand.right, calibration,
+  auto right = HandPipeline::load(Side::right, cascade, content, hand, calibration,
                                   of_side(oracle, Side::right));
   auto left = left_loaded.get();
   if (!left) return fail_in("left hand", left.error());
@@ -59,7 +59,7 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
       shading_(static_cast<float>(content.shading)),
       screen_{0, 0, calibration.projector_width_px, calibration.projector_height_px},
       both_{std::move(left), std::move(right)},
-      mask_(settings.mask, calibration),
+      mask_(settings.mask, calibration, content.smooth),
       late_(registration_of(settings), settings.filter, calibration),
       painter_(painter ? std::move(painter) : make_cpu_painter(screen_.x1, screen_.y1)) {}
 

@@ -35,7 +35,7 @@ std::optional<float> reach_px(GreyView mask, glm::vec2 start, glm::vec2 way, flo
                       place.y < static_cast<float>(mask.height - 1);
     if (!seen) return std::nullopt;
     const glm::ivec2 at(glm::round(place));
-    if (mask.at(at.x, at.y) == 0) return (static_cast<float>(step) - 0.5f) * kStride_px;
+    if (mask.at(at.x, at.y) < 128) return (static_cast<float>(step) - 0.5f) * kStride_px;
   }
   return std::nullopt;
 }

@@ -113,22 +113,18 @@ const SimulatedRun& find(const Runs& runs, const std::string& label, const std::
   });
 }
 
-/// Median frame times by rung: short turns, so that whatever else the machine does meets all alike.
+/// Median frame times by rung.
 std::map<std::string, double> frame_times_us() {
-  constexpr int kTurns = 4, kFrames = 150;
-  std::map<std::string, std::vector<double>> samples;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    for (const auto& rung : rung_names()) {
-      config::Cascade cascade;
-      cascade.ladder.rung = *config::choice_named<config::RungChoice>(rung);
-      const FrameTimes times = time_frames(cascade, 0.9, kFrames);
-      auto& all = samples[rung];
-      all.insert(all.end(), times.frame_us.begin(), times.frame_us.end());
-    }
-    fmt::print(stderr, "speed: {} of {} turns\n", turn + 1, kTurns);
+  constexpr int kFrames = 1000;
+  std::vector<FrameScene> scenes;
+  for (const auto& rung : rung_names()) {
+    scenes.push_back({.name = rung});
+    scenes.back().cascade.ladder.rung = *config::choice_named<config::RungChoice>(rung);
   }
+  const std::vector<FrameTimes> times = time_frames(scenes, kFrames);
   std::map<std::string, double> medians;
-  for (auto& [rung, all] : samples) medians[rung] = all.empty() ? std::nan("") : median(all);
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    medians[scenes[i].name] = times[i].error.empty() ? median(times[i].frame_us) : std::nan("");
   return medians;
 }
 

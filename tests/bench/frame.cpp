@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the time of a frame goes on one core, and the nearest-pixel transform beside OpenCV's.
-//   bench_frame [--goals FILE] [Google Benchmark's options]
-#include <benchmark/benchmark.h>
+// Where the time of a frame goes on one core: one hand and two, open and folded; how the time grows
+// with screen, image and hand; what filtered pictures cost; and the nearest-pixel transform beside
+// OpenCV's.
+//   bench_frame [--frames N] [--goals FILE]
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <cstring>
-#include <string>
-#include <vector>
+#include <set>
 
-#include "renderer/draw/cpu/cpu_painter.hpp"
-#include "tests/bench/capsule_hand.hpp"
 #include "tests/bench/frame_pipeline.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/nearest_against_opencv.hpp"
@@ -18,71 +17,87 @@
 namespace handcast::bench {
 namespace {
 
-constexpr renderer::Rect kWholeFrame{0, 0, 1024, 768};
+using renderer::testing::kFist;
+using renderer::testing::kOpen;
 
-/// One hand drawn and the same hand 12 px further in the mask.
-struct PainterScene {
-  CapsuleHand hand, moved = shifted();
-  renderer::Image<std::uint8_t> mask = silhouette(moved);
-  renderer::Rect region = hand.bounds().joined(moved.bounds()).grown(4).within(1024, 768);
-  std::unique_ptr<renderer::Painter> painter = renderer::make_cpu_painter(1024, 768);
-  renderer::DrawnHand drawn = hand.drawn();
+double p50(const FrameTimes& times) { return median(times.frame_us); }
+double p99(const FrameTimes& times) { return percentile(times.frame_us, 0.99); }
 
-  static CapsuleHand shifted() {
-    CapsuleHand hand;
-    hand.shift({12, 3});
-    return hand;
-  }
-};
-
-renderer::WarpGrid bent_grid() {
-  renderer::WarpGrid grid{21, 21, kWholeFrame, {}};
-  for (int row = 0; row < 21; ++row) {
-    for (int column = 0; column < 21; ++column) {
-      grid.nodes.emplace_back(column * 1023 / 20.f + 3 * std::sin(row + column),
-                              row * 767 / 20.f + 2 * std::cos(row - column));
-    }
-  }
-  return grid;
+/// One column per scene, one row per stage.
+void print_stages(std::span<const FrameScene> scenes, std::span<const FrameTimes> all) {
+  std::set<std::string> stages;
+  for (const FrameTimes& times : all)
+    for (const auto& [stage, samples] : times.stage_us) stages.insert(stage);
+  stages.erase("frame");
+  fmt::print("{:<10}", "µs p50/p99");
+  for (const FrameScene& scene : scenes) fmt::print(" {:>18}", scene.name);
+  const auto row = [&](std::string_view name, auto cell) {
+    fmt::print("\n{:<10}", name);
+    for (const FrameTimes& times : all) fmt::print(" {:>18}", cell(times));
+  };
+  row("lit+filled", [](const FrameTimes& times) {
+    return fmt::format("{}+{} px", times.lit_px, times.filled_px);
+  });
+  for (const std::string& stage : stages)
+    row(stage, [&](const FrameTimes& times) -> std::string {
+      const auto found = times.stage_us.find(stage);
+      if (found == times.stage_us.end()) return "";
+      return fmt::format("{:.0f}/{:.0f}", median(found->second), percentile(found->second, 0.99));
+    });
+  row("frame", [](const FrameTimes& times) -> std::string {
+    if (!times.error.empty()) return "not measured";
+    return fmt::format("{:.0f}/{:.0f}", p50(times), p99(times));
+  });
+  fmt::print("\n");
+  for (const FrameTimes& times : all)
+    if (!times.error.empty()) fmt::print("not measured: {}\n", times.error);
 }
 
-void draw(benchmark::State& state) {
-  PainterScene scene;
-  for (auto _ : state) scene.painter->draw({&scene.drawn, 1}, scene.region);
-}
-BENCHMARK(draw)->Unit(benchmark::kMicrosecond);
-
-void draw_and_warp(benchmark::State& state) {
-  PainterScene scene;
-  const renderer::WarpGrid grid = bent_grid();
-  for (auto _ : state) {
-    scene.painter->draw({&scene.drawn, 1}, scene.region);
-    scene.painter->warp(grid, scene.region, scene.region);
+/// Frames of one hand and two, and the goals for them.
+void measure_hands(int frames, std::vector<Goal>& goals) {
+  const std::vector<FrameScene> scenes{{.name = "one, open"},
+                                       {.name = "one, folded", .pose = kFist},
+                                       {.name = "two, open", .hands = 2},
+                                       {.name = "two, folded", .hands = 2, .pose = kFist}};
+  const auto times = time_frames(scenes, frames);
+  fmt::print("hands at 0.73 m\n");
+  print_stages(scenes, times);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (!times[i].error.empty()) continue;
+    const bool one = scenes[i].hands == 1;
+    goals.push_back({fmt::format("cpu frame, {} p50", scenes[i].name), p50(times[i]) / 1000,
+                     one ? 0.9 : 1.6, "ms"});
+    if (one)
+      goals.push_back(
+          {fmt::format("cpu frame, {} p99", scenes[i].name), p99(times[i]) / 1000, 1.05, "ms"});
   }
 }
-BENCHMARK(draw_and_warp)->Unit(benchmark::kMicrosecond);
 
-void draw_and_fill(benchmark::State& state) {
-  PainterScene scene;
-  const config::Fill settings;
-  for (auto _ : state) {
-    scene.painter->draw({&scene.drawn, 1}, scene.region);
-    benchmark::DoNotOptimize(scene.painter->fill(scene.mask.view(), settings, scene.region));
-  }
+/// What filtered pictures and shares of pixels cost, in the same run.
+void measure_smoothness(int frames) {
+  FrameScene paper{.name = "grid warp (paper)"};
+  paper.cascade.filter.method = config::FilterMethod::paper;
+  paper.cascade.correct.method = config::CorrectMethod::grid;
+  const std::vector<FrameScene> scenes{
+      {.name = "smooth"}, {.name = "not smooth", .smooth = false}, paper};
+  fmt::print("\nwhat content.smooth costs, one open hand\n");
+  print_stages(scenes, time_frames(scenes, frames));
 }
-BENCHMARK(draw_and_fill)->Unit(benchmark::kMicrosecond);
 
-void print_frame(const char* title, const FrameTimes& times) {
-  if (!times.error.empty()) {
-    fmt::print("{}: not measured: {}\n", title, times.error);
-    return;
-  }
-  fmt::print("{} ({} lit + {} filled px), µs\n  {:<10} {:>8} {:>8}\n", title, times.lit_px,
-             times.filled_px, "", "p50", "p99");
-  for (const auto& [stage, samples] : times.stage_us)
-    fmt::print("  {:<10} {:8.1f} {:8.1f}\n", stage, median(samples), percentile(samples, 0.99));
-  fmt::print("  {:<10} {:8.1f} {:8.1f}\n", "render()", median(times.frame_us),
-             percentile(times.frame_us, 0.99));
+/// Nothing may grow with the screen or the image when the hand does not.
+void measure_growth(int frames, std::vector<Goal>& goals) {
+  const std::vector<FrameScene> scenes{
+      {.name = "0.8 MP"},
+      {.name = "2.1 MP", .screen_width_px = 1920, .screen_height_px = 1080},
+      {.name = "8.3 MP", .screen_width_px = 3840, .screen_height_px = 2160},
+      {.name = "camera 1.6 MP", .image_width_px = 1440, .image_height_px = 1080},
+      {.name = "far, 1.1 m", .distance_m = 1.1},
+      {.name = "near, 0.55 m", .distance_m = 0.55}};
+  const auto times = time_frames(scenes, frames);
+  fmt::print("\nhow the time grows: the screen, the camera's image (0.4 MP), the hand\n");
+  print_stages(scenes, times);
+  goals.push_back({"frame, screen 8.3 MP / 0.8 MP", p50(times[2]) / p50(times[0]), 1.1, "times"});
+  goals.push_back({"frame, camera 1.6 MP / 0.4 MP", p50(times[3]) / p50(times[0]), 1.1, "times"});
 }
 
 void print_comparison(const char* title, const NearestComparison& c) {
@@ -93,28 +108,17 @@ void print_comparison(const char* title, const NearestComparison& c) {
       c.wrong_opencv);
 }
 
-std::vector<Goal> measure_goals() {
-  config::Cascade ours, paper;
-  paper.filter.method = config::FilterMethod::paper;
-  paper.correct.method = config::CorrectMethod::grid;
-  constexpr double kUsual_m = 0.9, kNear_m = 0.55;
-  const FrameTimes frame = time_frames(ours, kUsual_m, 3000);
-  print_frame("cpu frame, vertices corrected", frame);
-  print_frame("the same, the hand filling the image", time_frames(ours, kNear_m, 1000));
-  print_frame("cpu frame, image warped by a grid", time_frames(paper, kUsual_m, 1000));
+void measure_nearest(std::vector<Goal>& goals) {
   const NearestComparison full = compare_nearest(true, 150), region = compare_nearest(false, 300);
+  fmt::print("\n");
   print_comparison("full frame", full);
-  print_comparison("region 350x350", region);
-  std::vector<Goal> goals;
-  if (frame.error.empty())
-    goals.push_back({"cpu frame 1024x768 p50", median(frame.frame_us) / 1000, 1.2, "ms"});
+  print_comparison("region", region);
   goals.push_back({"nearest pixel, OpenCV / ours, full frame", full.opencv_us / full.ours_us, 20,
                    "times", true});
   goals.push_back({"nearest pixel, OpenCV / ours, region", region.opencv_us / region.ours_us, 3,
                    "times", true});
   goals.push_back(
       {"wrong labels", static_cast<double>(full.wrong_ours + region.wrong_ours), 0, "px"});
-  return goals;
 }
 
 }  // namespace
@@ -122,24 +126,26 @@ std::vector<Goal> measure_goals() {
 
 int main(int argc, char** argv) {
   using namespace handcast::bench;
+  int frames = 3000;
   std::string goals_file;
-  std::vector<char*> rest{argv[0]};
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--goals") == 0 && i + 1 < argc) {
-      goals_file = argv[++i];
+  for (int i = 1; i < argc; i += 2) {
+    if (i + 1 < argc && std::strcmp(argv[i], "--frames") == 0) {
+      frames = std::atoi(argv[i + 1]);
+    } else if (i + 1 < argc && std::strcmp(argv[i], "--goals") == 0) {
+      goals_file = argv[i + 1];
     } else {
-      rest.push_back(argv[i]);
+      fmt::print(stderr, "usage: bench_frame [--frames N] [--goals FILE]\n");
+      return 2;
     }
   }
-  auto count = static_cast<int>(rest.size());
-  benchmark::Initialize(&count, rest.data());
-  if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 1;
-  const std::vector<Goal> goals = measure_goals();
+  std::vector<Goal> goals;
+  measure_hands(frames, goals);
+  measure_smoothness(frames / 2);
+  measure_growth(frames / 2, goals);
+  measure_nearest(goals);
+  fmt::print("\n");
   print_goals(goals);
-  if (!goals_file.empty() && !write_goals(goals_file, goals)) {
-    fmt::print(stderr, "bench_frame: cannot write '{}'.\n", goals_file);
-    return 1;
-  }
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
+  if (goals_file.empty() || write_goals(goals_file, goals)) return 0;
+  fmt::print(stderr, "bench_frame: cannot write '{}'.\n", goals_file);
+  return 1;
 }

@@ -1,12 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "config/sections/cascade.hpp"
+#include "tests/renderer/poses.hpp"
 
 namespace handcast::bench {
+
+/// What the frames show: hands swaying 0.6 m/s before the reference rig.
+struct FrameScene {
+  std::string name;
+  int hands = 1;  ///< the left one, or both
+  renderer::testing::Pose pose = renderer::testing::kOpen;
+  double distance_m = 0.73;  ///< as far as the twin's
+  /// Size of the screen and of the camera's image. The hand keeps its size in pixels.
+  /// @{
+  int screen_width_px = 1024, screen_height_px = 768, image_width_px = 720, image_height_px = 540;
+  /// @}
+  bool smooth = true;  ///< config::Content::smooth
+  config::Cascade cascade{};
+};
 
 struct FrameTimes {
   std::vector<double> frame_us;                         ///< render() as its caller sees it
@@ -15,8 +31,9 @@ struct FrameTimes {
   std::string error;                                    ///< where it could not run
 };
 
-/// Whole frames of Pipeline on one core: the paper's rig, one left hand `distance_m` away (0.9:
-/// some 45,000 px) swaying 0.6 m/s, the tracker 9 ms and the landmarks 16 ms late and 5 px off.
-FrameTimes time_frames(const config::Cascade& cascade, double distance_m, int frames);
+/// Whole frames of Pipeline on one core, the scenes in short turns, so that whatever else the
+/// machine does meets all alike. The tracker is 9 ms and the landmarks are 16 ms late and 5 px
+/// off.
+std::vector<FrameTimes> time_frames(std::span<const FrameScene> scenes, int frames);
 
 }  // namespace handcast::bench

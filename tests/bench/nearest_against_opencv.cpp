@@ -4,8 +4,9 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "renderer/draw/cpu/cpu_painter.hpp"
 #include "renderer/draw/cpu/nearest_pixel.hpp"
-#include "tests/bench/capsule_hand.hpp"
+#include "tests/bench/painter_scene.hpp"
 #include "tests/bench/percentiles.hpp"
 
 namespace handcast::bench {
@@ -22,16 +23,17 @@ struct Problem {
   Image<std::uint8_t> seeds, wanted;
 };
 
-Problem moved_hand(renderer::Rect area) {
-  CapsuleHand hand;
-  const Image<std::uint8_t> drawn = silhouette(hand);
-  hand.shift({12, 3});
-  const Image<std::uint8_t> seen = silhouette(hand);
+Problem moved_hand(bool whole_frame) {
+  constexpr renderer::Rect kScreen{0, 0, 1024, 768};
+  const PainterScene scene("", 1, renderer::testing::kOpen, kScreen.x1, kScreen.y1);
+  const auto painter = renderer::make_cpu_painter(kScreen.x1, kScreen.y1);
+  painter->draw(scene.drawn, kScreen);
+  const renderer::Rect area = whole_frame ? kScreen : scene.region;
   Problem problem{{area.width(), area.height()}, {area.width(), area.height()}};
   for (int y = 0; y < area.height(); ++y) {
     for (int x = 0; x < area.width(); ++x) {
-      const std::uint8_t lit = drawn.at(x + area.x0, y + area.y0),
-                         on_hand = seen.at(x + area.x0, y + area.y0);
+      const std::uint8_t lit = painter->surface().at(x + area.x0, y + area.y0) ? 255 : 0,
+                         on_hand = scene.mask.at(x + area.x0, y + area.y0);
       problem.seeds.at(x, y) = lit & on_hand;
       problem.wanted.at(x, y) = on_hand & ~lit;
     }
@@ -82,8 +84,7 @@ int count_wrong_of_opencv(const Problem& problem, const std::map<std::pair<int, 
 
 NearestComparison compare_nearest(bool whole_frame, int rounds) {
   cv::setNumThreads(1);
-  const Problem problem = moved_hand(whole_frame ? renderer::Rect{0, 0, 1024, 768}
-                                                 : renderer::Rect{380, 280, 730, 630});
+  const Problem problem = moved_hand(whole_frame);
   cv::Mat unlit(problem.seeds.height(), problem.seeds.width(), CV_8UC1), distance, labels;
   for (int y = 0; y < unlit.rows; ++y) {
     for (int x = 0; x < unlit.cols; ++x)

@@ -11,7 +11,7 @@ struct NearestComparison {
 
 /// A hand that moved 12 px: fill what is uncovered from what is still lit, within 32 px.
 /// `whole_frame`: both get all 1024x768 pixels, of which ours looks at those around the wanted ones
-/// only; OpenCV labels every pixel and knows no bound. Otherwise both get 350x350.
+/// only; OpenCV labels every pixel and knows no bound. Otherwise both get the region of the hand.
 NearestComparison compare_nearest(bool whole_frame, int rounds);
 
 }  // namespace handcast::bench

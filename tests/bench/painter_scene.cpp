@@ -2,10 +2,10 @@
 #include "tests/bench/painter_scene.hpp"
 
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <stdexcept>
 
 #include "renderer/draw/cpu/cpu_painter.hpp"
+#include "tests/renderer/hand_pose.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -51,13 +51,13 @@ WarpGrid bent_grid(const Rect& area) {
 }  // namespace
 
 PainterScene::PainterScene(std::string its_name, int hands, const renderer::testing::Pose& pose,
-                           int width_px, int height_px)
-    : name(std::move(its_name)), texture_(fine_pattern()) {
+                           int width_px, int height_px, bool smooth)
+    : name(std::move(its_name)), picture_(fine_pattern(), smooth) {
   const calib::Calibration calibration = rig_of(width_px, height_px);
   place_hand(Side::left, pose, hands == 1 ? 0 : -0.085f, calibration);
   if (hands > 1) place_hand(Side::right, pose, 0.085f, calibration);
   for (const auto& hand : hands_)
-    drawn.push_back({&hand->surface.mesh(), &texture_, hand->skinned.landings_px,
+    drawn.push_back({&hand->surface.mesh(), &picture_, hand->skinned.landings_px,
                      hand->skinned.depth_m, hand->skinned.light, hand->revision});
   make_mask(width_px, height_px);
   grid = bent_grid({0, 0, width_px, height_px});
@@ -67,14 +67,7 @@ void PainterScene::place_hand(Side side, const renderer::testing::Pose& pose, fl
                               const calib::Calibration& calibration) {
   auto mesh = load_hand_or_default({}, side);
   if (!mesh) throw std::runtime_error(mesh.error().what);
-  const JointFrames frames = posed(*mesh, pose);
-  msg::HandPose reported;
-  reported.side = side;
-  for (int j = 0; j < kJoints; ++j) {
-    const glm::quat turn = glm::quat_cast(glm::mat3(frames[j]));
-    const glm::vec3 at = glm::vec3(frames[j][3]) + glm::vec3(aside_m, 0, 0);
-    reported.joints[j] = {{at.x, at.y, at.z}, {turn.x, turn.y, turn.z, turn.w}, 0.01f};
-  }
+  const msg::HandPose reported = pose_of(side, posed(*mesh, pose), {aside_m, 0, 0});
   Hand& hand =
       *hands_.emplace_back(std::make_unique<Hand>(Hand{HandSurface(std::move(*mesh), 14), {}}));
   hand.skinned = hand.surface.pose(reported, {.fit = false}, calibration, 0.5f);

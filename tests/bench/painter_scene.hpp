@@ -15,8 +15,9 @@ namespace handcast::bench {
 class PainterScene {
  public:
   /// One hand (the left one) or two, 0.73 m from the camera. The hand files must exist.
+  /// `smooth`: see MipChain.
   PainterScene(std::string name, int hands, const renderer::testing::Pose& pose, int width_px,
-               int height_px);
+               int height_px, bool smooth = true);
 
   std::string name;                        ///< e.g. "one hand, open"
   std::vector<renderer::DrawnHand> drawn;  ///< borrows from this object
@@ -35,7 +36,7 @@ class PainterScene {
                   const calib::Calibration& calibration);
   void make_mask(int width_px, int height_px);
 
-  renderer::Texture texture_;
+  renderer::MipChain picture_;
   std::vector<std::unique_ptr<Hand>> hands_;
 };
 

@@ -16,7 +16,8 @@ constexpr int kRings = 45, kSegments = 45;  // 2 x 45 x 45 triangles; a hand has
 /// An ellipsoid in the middle of the screen, and the mask of a hand that has moved on.
 class Scene {
  public:
-  Scene(int width_px, int height_px) : texture_(1024, 640, 0xffc0c0c0), mask_(width_px, height_px) {
+  Scene(int width_px, int height_px)
+      : texture_(Texture(1024, 640, 0xffc0c0c0), true), mask_(width_px, height_px) {
     const auto unit_px = static_cast<float>(height_px);
     const glm::vec2 centre(width_px / 2, height_px / 2), radius(0.13f * unit_px, 0.19f * unit_px),
         moved = centre + 0.016f * unit_px;
@@ -69,7 +70,7 @@ class Scene {
   }
 
   HandMesh mesh_;
-  Texture texture_;
+  MipChain texture_;
   std::vector<glm::vec2> position_px_;
   std::vector<float> depth_m_;
   Image<std::uint8_t> mask_;

@@ -15,7 +15,7 @@ class CpuPainter final : public Painter {
   CpuPainter(int width_px, int height_px)
       : width_(width_px),
         height_(height_px),
-        target_(width_px, height_px),
+        target_(width_px, kBand),
         filler_(width_px, height_px),
         frame_(width_px, height_px) {}
 
@@ -53,7 +53,7 @@ class CpuPainter final : public Painter {
   Filler filler_;
   FrameBuffer frame_;
   std::unique_ptr<FrameBuffer> moved_;  ///< the target of warp(); made by the first one
-  std::vector<const Texture*> textures_;
+  std::vector<const MipChain*> textures_;
 };
 
 }  // namespace

@@ -4,7 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/base/srgb.hpp"
+
 namespace handcast::renderer::cpu {
+
+ShareTable share_table() {
+  ShareTable table{};
+  for (std::size_t share = 0; share < table.size(); ++share)
+    table[share] =
+        static_cast<std::uint16_t>(std::lround(256 * srgb_level(static_cast<double>(share) / 255)));
+  return table;
+}
 
 bool FillTable::set_up(const config::Fill& settings) {
   if (reach_px == settings.reach_px && fade_px_ == settings.fade_px && seam_uv_ == settings.seam_uv)

@@ -8,6 +8,12 @@
 
 namespace handcast::renderer::cpu {
 
+/// The factor (0..256) of a pixel's levels for the share (0..255) of the pixel that is hand: the
+/// light is proportional to the share.
+using ShareTable = std::array<std::uint16_t, 256>;
+/// The table of all painters.
+ShareTable share_table();
+
 /// What the fill needs to know of a distance, by its square in px. All painters fill by this table.
 struct FillTable {
   /// Size of the tables: one more than the square of the largest reach.

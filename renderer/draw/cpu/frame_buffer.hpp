@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -12,6 +11,15 @@
 
 namespace handcast::renderer::cpu {
 
+/// How a pixel reads its picture: the shading factor (0..255) and the level of the mip chain.
+/// @{
+constexpr std::uint16_t shade_of(std::uint32_t light, std::uint32_t level) {
+  return static_cast<std::uint16_t>(light | level << 8);
+}
+constexpr std::uint32_t light_of(std::uint16_t shade) { return shade & 0xff; }
+constexpr std::int32_t level_of(std::uint16_t shade) { return shade >> 8; }
+/// @}
+
 /// The drawing between the passes. All planes have the projector's size.
 struct FrameBuffer {
   /// A dark drawing.
@@ -19,7 +27,7 @@ struct FrameBuffer {
       : colour(width, height),
         uv(width, height),
         surface(width, height),
-        light(width, height),
+        shade(width, height),
         lit(static_cast<std::size_t>(height)) {}
 
   /// Makes row `y` dark in [x0, x1), except for the span `written`, which the caller writes next.
@@ -44,45 +52,8 @@ struct FrameBuffer {
   Plane<std::uint32_t> colour;  ///< RGBA8, alpha 0 where dark
   Plane<glm::vec2> uv;          ///< texture coordinates; undefined where dark
   Plane<SurfaceId> surface;     ///< 0 where dark
-  Plane<std::uint8_t> light;    ///< shading factor, 0..255; undefined where dark
+  Plane<std::uint16_t> shade;   ///< see shade_of(); undefined where dark
   std::vector<Span> lit;        ///< per row: everything outside this span is dark
 };
-
-/// Looks up the nearest texel of a texture. Coordinates outside 0..1 are clamped.
-struct Sampler {
-  /// Borrows the texture; nullptr: white.
-  explicit Sampler(const Texture* texture) {
-    static const Texture kWhite(1, 1, 0xffffffff);
-    if (texture == nullptr) texture = &kWhite;
-    texels = texture->pixels().data();
-    stride = texture->width();
-    width = static_cast<float>(texture->width());
-    height = static_cast<float>(texture->height());
-  }
-
-  /// The index into `texels` of the texel at texture coordinates (u, v).
-  [[gnu::always_inline]] std::int32_t index(float u, float v) const {
-    const auto column = static_cast<std::int32_t>(std::min(std::max(u * width, 0.f), width - 1));
-    const auto line = static_cast<std::int32_t>(std::min(std::max(v * height, 0.f), height - 1));
-    return line * stride + column;
-  }
-
-  const std::uint32_t* texels;  ///< RGBA8
-  std::int32_t stride;          ///< texels from one row to the next
-  /// Size in texels.
-  /// @{
-  float width, height;
-  /// @}
-};
-
-/// The alpha of an opaque colour.
-constexpr std::uint32_t kOpaque = 0xff000000;
-
-/// Red, green and blue of a colour times `factor` / 256 (0..256); alpha 0.
-[[gnu::always_inline]] inline std::uint32_t dimmed(std::uint32_t colour, std::uint32_t factor) {
-  const std::uint32_t red_blue = ((colour & 0xff00ff) * factor >> 8) & 0xff00ff;
-  const std::uint32_t green = ((colour & 0x00ff00) * factor >> 8) & 0x00ff00;
-  return red_blue | green;
-}
 
 }  // namespace handcast::renderer::cpu

@@ -10,6 +10,7 @@
 #include "renderer/draw/cpu/frame_buffer.hpp"
 #include "renderer/draw/cpu/nearest_pixel.hpp"
 #include "renderer/draw/cpu/raster.hpp"
+#include "renderer/draw/cpu/sampler.hpp"
 #include "renderer/draw/cpu/warp_cells.hpp"
 #include "renderer/draw/painter.hpp"
 
@@ -19,15 +20,22 @@ namespace handcast::renderer::cpu {
 /// Draws in two steps: geometry into a raster target, then colour for the visible pixels.
 class Drawer {
  public:
-  /// Draws `hands` into `region` of `out`. `target` is overwritten.
+  /// Draws `hands` into `region` of `out`. `target` is overwritten, a band at a time.
   void draw(std::span<const DrawnHand> hands, Rect region, RasterTarget& target, FrameBuffer& out);
 
  private:
-  void rasterise_hand(const DrawnHand& hand, int index, Rect region, RasterTarget& target);
+  /// A hand in the projector's image.
+  struct Placed {
+    std::vector<Corner> corners;
+    std::vector<std::int64_t> areas;
+    std::vector<std::uint8_t> ids;
+    TriangleList list;
+    TriangleBins bins;
+  };
+  void place(const DrawnHand& hand, int index, Rect region);
+  void colour_band(Rect band, RasterTarget& target, FrameBuffer& out) const;
 
-  std::vector<Corner> corners_;
-  std::vector<std::int64_t> areas_;
-  std::vector<std::uint8_t> ids_;
+  std::vector<Placed> placed_;  ///< by index; kept for their memory
   std::vector<Sampler> samplers_;
 };
 
@@ -36,12 +44,14 @@ class Drawer {
 /// grid wins (row by row, from the left).
 class Warper {
  public:
-  /// Warps the part `from` of `in` into `region` of `out`. `target` is overwritten.
+  /// Warps the part `from` of `in` into `region` of `out`. `target` is overwritten, a band at a
+  /// time.
   void warp(const WarpGrid& grid, Rect from, Rect region, const FrameBuffer& in,
             RasterTarget& target, FrameBuffer& out);
 
  private:
   WarpCells cells_;
+  TriangleBins bins_;
   std::vector<std::int64_t> areas_;
   std::vector<std::uint8_t> ids_;
 };
@@ -62,25 +72,27 @@ class Filler {
   /// Removes light outside `mask` and fills inside it, in `region` of `frame`. `textures`: one per
   /// hand of the drawing; nullptr: white.
   FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings, Rect region,
-                  std::span<const Texture* const> textures, FrameBuffer& frame);
+                  std::span<const MipChain* const> textures, FrameBuffer& frame);
 
  private:
   struct Patch {
     std::int16_t x, y;
     glm::vec2 uv;
-    const std::uint32_t* texel;
-    std::uint16_t factor;  ///< of the texel's colour, 0..256: light times strength of the fill
-    std::uint8_t alpha;
+    const Sampler* sampler;
+    Footprint place;
+    std::uint16_t factor;  ///< of the picture's colour, 0..256: light times strength of the fill
+    std::uint16_t shade;
     SurfaceId surface;
-    std::uint8_t light;
   };
   FillCounts sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame);
   void make_patches(const config::Fill& settings, Rect region,
-                    std::span<const Texture* const> textures, const FrameBuffer& frame);
+                    std::span<const MipChain* const> textures, const FrameBuffer& frame);
   void apply_patches(FrameBuffer& frame) const;
+  static void put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame);
 
   Plane<std::uint8_t> lit_, unlit_;  ///< regions D and C of the paper, 255 or 0
   NearestPixel nearest_;
+  std::vector<Sampler> samplers_;
   std::vector<Patch> patches_;
   FillTable table_;
 };

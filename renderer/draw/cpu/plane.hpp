@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <sys/mman.h>
+
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -10,7 +12,8 @@ namespace handcast::renderer::cpu {
 
 /// The pixels that a pass works on. Rows start on cache lines, have room for whole vectors past
 /// their end, and are not a multiple of a page apart: otherwise the rows of one triangle would
-/// share cache sets.
+/// share cache sets. They lie in huge pages, because a block of pixels touches as many rows of
+/// several planes as a processor has entries for small ones.
 template <class T>
 class Plane {
  public:
@@ -37,7 +40,8 @@ class Plane {
   /// @}
 
  private:
-  static constexpr std::align_val_t kAlignment{64};
+  static constexpr std::size_t kHugePage = 2 << 20;
+  static constexpr std::align_val_t kAlignment{kHugePage};
   struct Free {
     void operator()(T* pixels) const { ::operator delete[](pixels, kAlignment); }
   };
@@ -48,7 +52,9 @@ class Plane {
   }
   std::size_t count() const { return static_cast<std::size_t>(stride_) * height_; }
   static std::unique_ptr<T[], Free> allocate(std::size_t count) {
-    auto* pixels = static_cast<T*>(::operator new[](count * sizeof(T), kAlignment));
+    const std::size_t bytes = (count * sizeof(T) + kHugePage - 1) / kHugePage * kHugePage;
+    auto* pixels = static_cast<T*>(::operator new[](bytes, kAlignment));
+    madvise(pixels, bytes, MADV_HUGEPAGE);  // only faster: no matter if it is refused
     std::uninitialized_value_construct_n(pixels, count);
     return std::unique_ptr<T[], Free>(pixels);
   }

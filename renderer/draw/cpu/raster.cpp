@@ -2,8 +2,10 @@
 #include "renderer/draw/cpu/raster.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 
 #include "renderer/base/clones.hpp"
 
@@ -34,7 +36,7 @@ struct Setup {
   std::array<std::int64_t, 3> edge;                    ///< at the first pixel of the first block
   std::array<std::int32_t, 3> edge_dx, edge_dy;        ///< change per pixel
   Values start, dx, dy;                                ///< at the same pixel; change per pixel
-  std::uint32_t id;
+  std::uint32_t id_level;  ///< the parts of the tag that are equal in the whole triangle
 };
 
 /// Pixels exactly on a top or left edge belong to the triangle; those on other edges do not.
@@ -87,6 +89,18 @@ inline bool is_top_left(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy
   s.start.light += 0.5f;  // rounds when it is truncated
 }
 
+/// The level of a picture that has about one texel per pixel in this triangle: half the binary
+/// logarithm of the texels per pixel, rounded.
+[[gnu::always_inline]] inline std::uint32_t level_of(const Corner& a, const Corner& b,
+                                                     const Corner& c, std::int64_t doubled_area,
+                                                     const TriangleList& list) {
+  const float cross = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
+  const float ratio =
+      std::abs(cross) * list.texels * (kSubpixels * kSubpixels) / static_cast<float>(doubled_area);
+  const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(2 * ratio) >> 23) - 127;
+  return static_cast<std::uint32_t>(std::clamp(exponent >> 1, 0, list.last_level));
+}
+
 /// An edge value at the first pixel of a block, narrowed to 32 bits such that all lanes keep their
 /// sign: lanes differ by at most 2 * 3 * 16 * 960,000 < 2^27.
 template <bool kLarge>
@@ -122,7 +136,7 @@ struct LaneSteps {
 [[gnu::always_inline]] inline void write_block(PixelBlock& block,
                                                const std::array<std::int32_t, 3> edge,
                                                const Values at, const LaneSteps& steps,
-                                               std::uint32_t id) {
+                                               std::uint32_t id_level) {
 #pragma GCC ivdep
 #pragma GCC unroll 1
   for (int i = 0; i < kLanes; ++i) {
@@ -137,7 +151,7 @@ struct LaneSteps {
     block.depth[i] = hit ? depth : old_depth;
     block.u[i] = hit ? at.u + steps.u[i] : old_u;
     block.v[i] = hit ? at.v + steps.v[i] : old_v;
-    block.tag[i] = hit ? light << 8 | id : old_tag;
+    block.tag[i] = hit ? light << 8 | id_level : old_tag;
   }
 }
 
@@ -156,7 +170,7 @@ template <bool kLarge>
     for (int column = s.first_column; column <= s.last_column; ++column) {
       write_block(blocks[column],
                   {narrowed<kLarge>(edge[0]), narrowed<kLarge>(edge[1]), narrowed<kLarge>(edge[2])},
-                  at, steps, s.id);
+                  at, steps, s.id_level);
       at = at + right;
       for (int k = 0; k < 3; ++k) edge[k] += std::int64_t{s.edge_dx[k]} * kBlockSide;
     }
@@ -172,6 +186,13 @@ template <bool kLarge>
     if (std::abs(s.edge_dx[k]) > kLargest || std::abs(s.edge_dy[k]) > kLargest) return true;
   }
   return false;
+}
+
+/// True if the triangle has an area and is turned to the side that is drawn.
+bool is_drawn(const TriangleList& list, std::size_t triangle) {
+  const std::int64_t area = list.doubled_areas[triangle];
+  return area != 0 && !(list.facing == Facing::positive && area < 0) &&
+         !(list.facing == Facing::negative && area > 0);
 }
 
 }  // namespace
@@ -205,20 +226,45 @@ RasterTarget::RasterTarget(int width, int height)
     std::fill_n(block.depth, kLanes, std::numeric_limits<float>::infinity());
 }
 
-void RasterTarget::clear() {
-  for (int y = 0; y < block_rows(); ++y) {
+void RasterTarget::start(int first) {
+  for (int y = first_; y < first_ + static_cast<int>(drawn_.size()); ++y) {
     for (int x = drawn(y).x0; x < drawn(y).x1; ++x)
       std::fill_n(row(y)[x].depth, kLanes, std::numeric_limits<float>::infinity());
     drawn(y) = {};
   }
+  first_ = first;
 }
 
-HANDCAST_CLONES void rasterise(const TriangleList& list, Rect region, RasterTarget& target) {
+void TriangleBins::sort(const TriangleList& list, Rect region) {
+  const int last_band = (region.y1 - 1) / kBand;
+  first_.assign(static_cast<std::size_t>(last_band) + 2, 0);
+  bands_.resize(list.triangles.size());
   for (std::size_t t = 0; t < list.triangles.size(); ++t) {
+    bands_[t] = {};
+    if (!is_drawn(list, t)) continue;
+    const auto& [a, b, c] = list.triangles[t];
+    const auto [top, bottom] =
+        std::minmax({list.corners[a].y, list.corners[b].y, list.corners[c].y});
+    const int y0 = std::max((top + kSubpixels - 1) >> 4, region.y0),
+              y1 = std::min((bottom >> 4) + 1, region.y1);
+    if (y0 >= y1) continue;
+    bands_[t] = {static_cast<std::uint16_t>(y0 / kBand),
+                 static_cast<std::uint16_t>((y1 - 1) / kBand + 1)};
+    for (int band = bands_[t].first; band < bands_[t].end; ++band) ++first_[band];
+  }
+  std::exclusive_scan(first_.begin(), first_.end(), first_.begin(), 0u);
+  triangles_.resize(first_.back());
+  // Counts up to the begin of the next band, so that the bands move up by one.
+  for (std::uint32_t t = 0; t < bands_.size(); ++t)
+    for (int band = bands_[t].first; band < bands_[t].end; ++band) triangles_[first_[band]++] = t;
+  std::rotate(first_.begin(), first_.end() - 1, first_.end());
+  first_.front() = 0;
+}
+
+HANDCAST_CLONES void rasterise(const TriangleList& list, std::span<const std::uint32_t> triangles,
+                               Rect region, RasterTarget& target) {
+  for (const std::uint32_t t : triangles) {
     const std::int64_t area = list.doubled_areas[t];
-    if (area == 0 || (list.facing == Facing::positive && area < 0) ||
-        (list.facing == Facing::negative && area > 0))
-      continue;
     const TriangleIndices& corner = list.triangles[t];
     const Corner& a = list.corners[corner[0]];
     const Corner& b = list.corners[corner[area > 0 ? 1 : 2]];
@@ -229,7 +275,7 @@ HANDCAST_CLONES void rasterise(const TriangleList& list, Rect region, RasterTarg
     set_edge(1, b, c, s);
     set_edge(2, c, a, s);
     set_values(a, b, c, std::abs(area), s);
-    s.id = list.ids[corner[0]];
+    s.id_level = list.ids[corner[0]] | level_of(a, b, c, std::abs(area), list) << 20;
     is_large(s) ? fill_blocks<true>(s, target) : fill_blocks<false>(s, target);
   }
 }

@@ -82,30 +82,30 @@ struct alignas(64) PixelBlock {
   /// @{
   float u[kLanes], v[kLanes];
   /// @}
-  std::uint32_t tag[kLanes];  ///< light (0..256) << 8 | id
+  std::uint32_t tag[kLanes];  ///< id | light << 8 | level << 20
 };
 
-/// The image that the rasteriser writes, in blocks.
+/// Rows of blocks in a band. An image is drawn band by band, so that what the rasteriser writes is
+/// still in the cache when it is coloured.
+constexpr int kBandRows = 8;
+/// Height of a band in pixels.
+constexpr int kBand = kBandRows * kBlockSide;
+
+/// The part of the image that the rasteriser writes, in blocks.
 class RasterTarget {
  public:
-  /// An empty image of the given size in pixels.
+  /// An empty image of the given size in pixels, with its first row at the top.
   RasterTarget(int width, int height);
 
-  /// Removes everything drawn.
-  void clear();
-  /// Number of rows of blocks.
-  int block_rows() const { return static_cast<int>(drawn_.size()); }
+  /// Removes everything drawn, and moves the image down: row `first` of blocks is its first one.
+  void start(int first = 0);
   /// The first block of a row of blocks.
   /// @{
-  PixelBlock* row(int block_row) {
-    return blocks_.data() + static_cast<std::size_t>(block_row) * columns_;
-  }
-  const PixelBlock* row(int block_row) const {
-    return blocks_.data() + static_cast<std::size_t>(block_row) * columns_;
-  }
+  PixelBlock* row(int block_row) { return blocks_.data() + line(block_row) * columns_; }
+  const PixelBlock* row(int block_row) const { return blocks_.data() + line(block_row) * columns_; }
   /// @}
   /// The columns of blocks in a row of blocks outside of which nothing was drawn.
-  Span& drawn(int block_row) { return drawn_[static_cast<std::size_t>(block_row)]; }
+  Span& drawn(int block_row) { return drawn_[line(block_row)]; }
 
   /// One pixel of a block.
   struct Pixel {
@@ -123,7 +123,9 @@ class RasterTarget {
   }
 
  private:
-  int columns_;
+  std::size_t line(int block_row) const { return static_cast<std::size_t>(block_row - first_); }
+
+  int columns_, first_ = 0;
   std::vector<PixelBlock> blocks_;
   std::vector<Span> drawn_;
 };
@@ -131,7 +133,8 @@ class RasterTarget {
 /// The parts of PixelBlock::tag.
 /// @{
 constexpr std::uint32_t id_of_tag(std::uint32_t tag) { return tag & 0xff; }
-constexpr std::uint32_t light_of_tag(std::uint32_t tag) { return tag >> 8; }
+constexpr std::uint32_t light_of_tag(std::uint32_t tag) { return tag >> 8 & 0xfff; }  ///< 0..256
+constexpr std::uint32_t level_of_tag(std::uint32_t tag) { return tag >> 20; }
 /// @}
 
 /// The triangles of one surface, borrowed.
@@ -141,10 +144,37 @@ struct TriangleList {
   std::span<const std::int64_t> doubled_areas;  ///< per triangle, see facing_of()
   std::span<const std::uint8_t> ids;            ///< per vertex; a triangle has the id of its first
   Facing facing = Facing::both;                 ///< which triangles are drawn
+  /// Size of the picture, and its last level: a triangle reads the level with about one texel per
+  /// pixel.
+  /// @{
+  float texels = 0;
+  std::int32_t last_level = 0;
+  /// @}
 };
 
-/// Draws into the blocks that `region` touches, which must be within the image. The nearer triangle
-/// wins; at equal depth, the later one.
-void rasterise(const TriangleList& list, Rect region, RasterTarget& target);
+/// The triangles of a list by the bands that they touch, in the order of the list.
+class TriangleBins {
+ public:
+  /// Sorts the triangles that are drawn and may touch `region`, which must not reach above or left
+  /// of the image.
+  void sort(const TriangleList& list, Rect region);
+  /// Indices of triangles, valid until the next sort().
+  std::span<const std::uint32_t> of_band(int band) const {
+    return std::span(triangles_).subspan(first_[band], first_[band + 1] - first_[band]);
+  }
+
+ private:
+  struct Bands {
+    std::uint16_t first, end;
+  };
+  std::vector<Bands> bands_;          ///< per triangle of the list
+  std::vector<std::uint32_t> first_;  ///< per band: index into triangles_
+  std::vector<std::uint32_t> triangles_;
+};
+
+/// Draws triangles of a list into the blocks that `region` touches, which must be within the
+/// target. The nearer triangle wins; at equal depth, the later one.
+void rasterise(const TriangleList& list, std::span<const std::uint32_t> triangles, Rect region,
+               RasterTarget& target);
 
 }  // namespace handcast::renderer::cpu

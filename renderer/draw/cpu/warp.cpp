@@ -43,9 +43,18 @@ void fetch(const std::array<std::int32_t, kLanes>& places, int column, int row, 
     out.surface.row(y)[x] = surface;
     out.colour.row(y)[x] = in.colour.row(0)[place];
     out.uv.row(y)[x] = in.uv.row(0)[place];
-    out.light.row(y)[x] = in.light.row(0)[place];
+    out.shade.row(y)[x] = in.shade.row(0)[place];
     out.lit[y] = out.lit[y].joined({x, x + 1});
   }
+}
+
+void fetch_band(RasterTarget& target, Rect from, Rect band, const FrameBuffer& in,
+                FrameBuffer& out) {
+  std::array<std::int32_t, kLanes> places;
+  for (int row = band.y0 / kBlockSide; row * kBlockSide < band.y1; ++row)
+    for (int column = target.drawn(row).x0; column < target.drawn(row).x1; ++column)
+      if (find_sources(target.row(row)[column], in.colour.stride(), from, places.data()))
+        fetch(places, column, row, band, in, out);
 }
 
 }  // namespace
@@ -55,15 +64,14 @@ void Warper::warp(const WarpGrid& grid, Rect from, Rect region, const FrameBuffe
   cells_.set(grid, from);
   facing_of(cells_.corners, cells_.triangles, areas_);
   ids_.assign(cells_.corners.size(), 1);
-  target.clear();
-  rasterise({cells_.corners, cells_.triangles, areas_, ids_, Facing::both}, region, target);
+  const TriangleList cells{cells_.corners, cells_.triangles, areas_, ids_, Facing::both};
+  bins_.sort(cells, region);
   for (int y = region.y0; y < region.y1; ++y) out.darken(y, region.x0, region.x1, {});
-  std::array<std::int32_t, kLanes> places;
-  for (int row = region.y0 / kBlockSide; row * kBlockSide < region.y1; ++row) {
-    for (int column = target.drawn(row).x0; column < target.drawn(row).x1; ++column) {
-      if (find_sources(target.row(row)[column], in.colour.stride(), from, places.data()))
-        fetch(places, column, row, region, in, out);
-    }
+  for (int band = region.y0 / kBand; band * kBand < region.y1; ++band) {
+    const Rect part = Rect{region.x0, band * kBand, region.x1, (band + 1) * kBand}.overlap(region);
+    target.start(band * kBandRows);
+    rasterise(cells, bins_.of_band(band), part, target);
+    fetch_band(target, from, part, in, out);
   }
 }
 

@@ -57,6 +57,8 @@ void Drawer::draw_hand(const HandAssets& assets, int index, cpu::Facing facing,
     gl.CullFace(facing == cpu::Facing::positive ? GL_BACK : GL_FRONT);
   }
   gl.ProgramUniform1ui(program_.name(), 1, surface_id(index, 0));
+  gl.ProgramUniform4i(program_.name(), 2, assets.picture.x, assets.picture.y, assets.picture.z,
+                      assets.picture.w);
   gl.BindTextureUnit(0, assets.content.name());
   gl.VertexArrayVertexBuffer(vertices_.name(), 0, assets.vertices.name(), 0,
                              HandAssets::kVertexBytes);

@@ -36,6 +36,9 @@ Filler::Filler(Context& context, Program sort, Program fill, glm::ivec2 size_px)
       limits_(
           make_buffer(context, cpu::FillTable::kSquares * sizeof(Limit), GL_DYNAMIC_STORAGE_BIT)),
       counts_read_(context, sizeof(Counts), GL_MAP_READ_BIT) {
+  const cpu::ShareTable shares = cpu::share_table();
+  const std::vector<std::uint32_t> words(shares.begin(), shares.end());
+  shares_ = make_buffer(context, words.size() * sizeof(words[0]), 0, words.data());
   const auto pixels = static_cast<std::size_t>(size_px.x) * size_px.y;
   const auto word_rows = static_cast<std::size_t>(size_px.y) / 32 + 1;
   words_ = make_buffer(context, word_rows * size_px.x * sizeof(std::uint32_t), 0);
@@ -66,20 +69,26 @@ void Filler::set_table(const config::Fill& settings) {
   context_->gl().ProgramUniform1i(fill_.name(), 1, table_.reach_px);
 }
 
-void Filler::bind(std::span<const GLuint> contents, const Layers& frame) const {
+void Filler::bind(std::span<const HandAssets* const> contents, const Layers& frame) const {
   const Functions& gl = context_->gl();
   gl.BindTextureUnit(0, mask_.name());
-  for (GLuint i = 0; i < contents.size(); ++i) gl.BindTextureUnit(1 + i, contents[i]);
-  gl.BindImageTexture(0, frame.tag.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG8UI);
-  gl.BindImageTexture(1, frame.colour.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+  for (GLuint i = 0; i < contents.size(); ++i) {
+    const glm::ivec4& picture = contents[i]->picture;
+    gl.BindTextureUnit(1 + i, contents[i]->content.name());
+    gl.ProgramUniform4i(fill_.name(), 2 + static_cast<GLint>(i), picture.x, picture.y, picture.z,
+                        picture.w);
+  }
+  gl.BindImageTexture(0, frame.tag.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8UI);
+  gl.BindImageTexture(1, frame.colour.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
   gl.BindImageTexture(2, frame.uv.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RG32F);
-  const std::array buffers{words_.name(), list_.name(), counts_.name(), limits_.name()};
+  const std::array buffers{words_.name(), list_.name(), counts_.name(), limits_.name(),
+                           shares_.name()};
   for (GLuint i = 0; i < buffers.size(); ++i)
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffers[i]);
 }
 
 void Filler::fill(const config::Fill& settings, const Rect& region,
-                  std::span<const GLuint> contents, const Layers& frame) {
+                  std::span<const HandAssets* const> contents, const Layers& frame) {
   const Functions& gl = context_->gl();
   set_table(settings);
   constexpr Counts kNone{0, 1, 1, 0, 0, 0};

@@ -34,8 +34,7 @@ class Painting final : public GlPainter {
     region = region.within(size_px_.x, size_px_.y);
     if (region.empty() || !context_->make_current()) return;
     const auto assets = assets_.find(hands);
-    contents_.clear();
-    for (const HandAssets* one : assets) contents_.push_back(one->content.name());
+    contents_.assign(assets.begin(), assets.end());
     timer_.measure(Pass::draw, [&] { drawer_.draw(hands, assets, region, frame_); });
     read_back_.changed(region);
   }
@@ -93,7 +92,7 @@ class Painting final : public GlPainter {
   Layers frame_;
   std::unique_ptr<Layers> moved_;  ///< the target of warp(); made by the first one
   ReadBack read_back_;
-  std::vector<GLuint> contents_;  ///< textures of the drawing, one per hand
+  std::vector<const HandAssets*> contents_;  ///< of the drawing, one per hand
 };
 
 /// Sets the state that no pass changes.

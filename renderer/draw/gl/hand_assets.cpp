@@ -12,25 +12,28 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == HandAssets::kVertexBytes);
 
-Image2d copy_texture(Context& context, const Texture* texture) {
-  static const Texture kWhite(1, 1, 0xffffffff);
-  if (texture == nullptr) texture = &kWhite;
-  Image2d image = make_image(context, GL_R32UI, texture->width(), texture->height());
-  context.gl().TextureSubImage2D(image.name(), 0, 0, 0, texture->width(), texture->height(),
-                                 GL_RED_INTEGER, GL_UNSIGNED_INT, texture->pixels().data());
+Image2d copy_texels(Context& context, View<const std::uint32_t> texels) {
+  Image2d image = make_image(context, GL_R32UI, texels.width, texels.height);
+  context.gl().TextureSubImage2D(image.name(), 0, 0, 0, texels.width, texels.height, GL_RED_INTEGER,
+                                 GL_UNSIGNED_INT, texels.data);
   return image;
 }
 
 }  // namespace
 
 HandAssets AssetCache::copy(const DrawnHand& hand) {
+  static const MipChain kWhite;
+  const MipChain& content = hand.texture != nullptr ? *hand.texture : kWhite;
   const HandMesh& mesh = *hand.mesh;
   std::vector<Vertex> vertices(mesh.vertex_count());
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = {mesh.uv[i], mesh.chart[i]};
   return {make_buffer(context_, vertices.size() * sizeof(Vertex), 0, vertices.data()),
           make_buffer(context_, mesh.triangles.size() * sizeof(mesh.triangles[0]), 0,
                       mesh.triangles.data()),
-          static_cast<GLsizei>(3 * mesh.triangles.size()), copy_texture(context_, hand.texture),
+          static_cast<GLsizei>(3 * mesh.triangles.size()),
+          copy_texels(context_, content.texels()),
+          {content.width(), content.height(), content.padded_height(),
+           content.smooth() ? content.levels() - 1 : -1},
           hand.revision};
 }
 

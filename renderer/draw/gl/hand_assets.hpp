@@ -14,7 +14,8 @@ struct HandAssets {
   Buffer vertices;             ///< per vertex: texture coordinates (2 floats), chart (uint)
   Buffer triangles;            ///< three indices of 16 bits each
   GLsizei index_count = 0;     ///< three times the number of triangles
-  Image2d content;             ///< R32UI: the texture
+  Image2d content;             ///< R32UI: MipChain::texels()
+  glm::ivec4 picture{};        ///< see `picture` in shaders/common.glsl
   std::uint64_t revision = 0;  ///< DrawnHand::revision of the copy
   std::uint64_t used = 0;      ///< number of the last draw that used it
 

@@ -7,7 +7,7 @@ namespace handcast::renderer::gl {
 
 Layers::Layers(Context& context, int width, int height, GLuint depth)
     : uv(make_image(context, GL_RG32F, width, height)),
-      tag(make_image(context, GL_RG8UI, width, height)),
+      tag(make_image(context, GL_RGBA8UI, width, height)),
       colour(make_image(context, GL_R32UI, width, height)),
       framebuffer(make_framebuffer(context)) {
   const Functions& gl = context.gl();
@@ -22,7 +22,7 @@ Layers::Layers(Context& context, int width, int height, GLuint depth)
       GL_FRAMEBUFFER_COMPLETE)
     context.lose("the GPU cannot draw into these formats at once");
   gl.ClearTexImage(uv.name(), 0, GL_RG, GL_FLOAT, nullptr);
-  gl.ClearTexImage(tag.name(), 0, GL_RG_INTEGER, GL_UNSIGNED_BYTE, nullptr);
+  gl.ClearTexImage(tag.name(), 0, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE, nullptr);
   gl.ClearTexImage(colour.name(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 }
 

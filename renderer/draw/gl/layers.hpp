@@ -12,7 +12,7 @@ struct Layers {
   Layers(Context& context, int width, int height, GLuint depth);
 
   Image2d uv;      ///< RG32F: texture coordinates; undefined where dark
-  Image2d tag;     ///< RG8UI: surface id (0 where dark) and shading factor
+  Image2d tag;     ///< RGBA8UI: surface id (0 where dark), shading factor, level of the picture
   Image2d colour;  ///< R32UI: RGBA8 with red in the lowest byte; 0 where dark
   /// Has `uv`, `tag` and `colour` as colour attachments 0, 1 and 2.
   Framebuffer framebuffer;

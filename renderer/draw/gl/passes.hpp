@@ -74,9 +74,9 @@ class Filler {
   static Result<Filler> create(Context& context, glm::ivec2 size_px);
   /// Copies `region` of the mask to the GPU. Returns false if the context is lost.
   bool upload(View<const std::uint8_t> mask, const Rect& region);
-  /// Fills `region` of `frame` by the mask uploaded last. `contents`: one texture per hand.
-  void fill(const config::Fill& settings, const Rect& region, std::span<const GLuint> contents,
-            const Layers& frame);
+  /// Fills `region` of `frame` by the mask uploaded last. `contents`: one per hand.
+  void fill(const config::Fill& settings, const Rect& region,
+            std::span<const HandAssets* const> contents, const Layers& frame);
   /// The counts of the last fill(), valid after the commands up to now are finished (wait()).
   FillCounts counts() const;
 
@@ -88,14 +88,14 @@ class Filler {
 
   Filler(Context& context, Program sort, Program fill, glm::ivec2 size_px);
   void set_table(const config::Fill& settings);
-  void bind(std::span<const GLuint> contents, const Layers& frame) const;
+  void bind(std::span<const HandAssets* const> contents, const Layers& frame) const;
 
   Context* context_;
   Program sort_, fill_;
   Image2d mask_;
   std::unique_ptr<UploadRing> ring_;
   cpu::FillTable table_;
-  Buffer words_, list_, counts_, limits_;
+  Buffer words_, list_, counts_, limits_, shares_;
   MappedBuffer counts_read_;
 };
 

@@ -55,7 +55,6 @@ Photographer::Photographer(const twin::Twin& twin, const calib::Calibration& cal
       calibration_(calibration),
       painter_(renderer::make_cpu_painter(calibration.projector_width_px,
                                           calibration.projector_height_px)),
-      white_(4, 4, 0xffffffffu),
       picture_(calibration.projector_width_px, calibration.projector_height_px) {}
 
 void Photographer::pose(const renderer::HandMesh& hand, const twin::JointFrames& joints,

@@ -35,7 +35,7 @@ class Photographer {
   const twin::Twin& twin_;
   calib::Calibration calibration_;
   std::unique_ptr<renderer::Painter> painter_;
-  renderer::Texture white_;
+  renderer::MipChain white_;
   std::array<Surface, msg::kMaxHands> surfaces_;
   renderer::Image<std::uint32_t> picture_;
 };

@@ -56,13 +56,14 @@ class Light {
         height_(static_cast<int>(projection.region_height_px)) {}
 
   Rect region() const { return {x_, y_, x_ + width_, y_ + height_}; }
-  /// Writes lit[x0 .. x1) of row y of the projector: 1 if the pixel is lit, else 0.
+  /// Writes lit[x0 .. x1) of row y of the projector: 1 if at least half of the pixel
+  /// is lit, else 0.
   void row(int y, int x0, int x1, std::uint8_t* lit) const {
     std::fill(lit + x0, lit + x1, std::uint8_t{0});
     if (y < y_ || y >= y_ + height_) return;
     const int first = std::max(x0, x_), last = std::min(x1, x_ + width_);
     const std::uint32_t* pixels = pixels_ + static_cast<std::ptrdiff_t>(y - y_) * width_ - x_;
-    for (int x = first; x < last; ++x) lit[x] = pixels[x] >> 24 != 0;
+    for (int x = first; x < last; ++x) lit[x] = pixels[x] >> 24 >= 128;
   }
 
  private:

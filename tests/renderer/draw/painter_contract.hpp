@@ -301,6 +301,50 @@ TEST_P(PainterContract, AfterTheFillThereIsLightOnTheHandOnlyAndAllOverIt) {
   EXPECT_EQ(counts.dark, 0);
 }
 
+TEST_P(PainterContract, ASmallFilteredPictureShowsTheMeanOfItsLight) {
+  Texture checks(256, 256);
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x) checks.at(x, y) = (x + y) % 2 ? 0xffffffffu : 0xff000000u;
+  Shape shape(checks, true);
+  shape.rectangle({10, 10}, {138, 138}, 1, 1, {0, 0}, 2);  // two texels per pixel
+  draw(*painter_, shape, kWhole);
+  for (int y = 12; y < 130; ++y)
+    for (int x = 12; x < 130; ++x)
+      ASSERT_NEAR(static_cast<int>(colour(x, y) & 0xff), 188, 1) << x << ' ' << y;
+}
+
+TEST_P(PainterContract, BetweenTheTexelsOfAFilteredPictureTheLightIsMixed) {
+  Texture edge(2, 1, 0xff000000u);
+  edge.at(1, 0) = 0xffffffffu;
+  Shape shape(edge, true);
+  shape.rectangle({0, 10}, {128, 60}, 1, 1, {0, 0}, 2);  // 64 px per texel
+  draw(*painter_, shape, kWhole);
+  const auto red = [&](int x) { return static_cast<double>(colour(x, 30) & 0xff); };
+  EXPECT_EQ(red(20), 0);
+  EXPECT_EQ(red(110), 255);
+  for (int x = 33; x < 96; ++x) {
+    ASSERT_GE(red(x), red(x - 1));
+    ASSERT_NEAR(red(x) * red(x) / 65025, (x - 32) / 64., 0.02) << x;
+  }
+}
+
+TEST_P(PainterContract, APixelThatIsHandInPartGetsThisPartOfItsLight) {
+  Shape shape(Texture(1, 1, 0xffc8c8c8), true);
+  shape.rectangle({20, 20}, {60, 60});
+  draw(*painter_, shape, kWhole);
+  Image<std::uint8_t> mask = mask_of(kWidth, kHeight, {20, 20, 70, 61});
+  mask.at(40, 30) = 64;  // drawn
+  mask.at(65, 30) = 64;  // filled
+  fill(mask);
+  EXPECT_EQ(colour(41, 30), 0xffc8c8c8u);
+  EXPECT_EQ(colour(64, 30), 0xffc8c8c8u);
+  for (const int x : {40, 65}) {
+    EXPECT_EQ(alpha(x, 30), 64u) << x;
+    // A quarter of the light of sRGB 200 is sRGB 106; the factor 137 / 256 of the level is near.
+    EXPECT_NEAR(static_cast<int>(colour(x, 30) & 0xff), 107, 1) << x;
+  }
+}
+
 TEST_P(PainterContract, TheFillContinuesALinearTextureExactly) {
   Shape shape;
   shape.rectangle({19.5f, 19.5f}, {119.5f, 99.5f});

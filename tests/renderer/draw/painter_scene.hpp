@@ -16,7 +16,8 @@ namespace handcast::renderer::test {
 /// A drawn hand made of loose triangles or sheets, in projector px.
 class Shape {
  public:
-  explicit Shape(Texture texture = ramp_texture()) : texture_(std::move(texture)) {}
+  explicit Shape(Texture texture = ramp_texture(), bool smooth = false)
+      : texture_(std::move(texture)), chain_(texture_, smooth) {}
 
   /// Red grows with u and green with v, so each texel is unique.
   static Texture ramp_texture() {
@@ -43,10 +44,10 @@ class Shape {
                                static_cast<std::uint16_t>(c)});
   }
 
-  /// A rectangle with uv = position / 256 + `uv_offset`.
+  /// A rectangle with uv = position / 256 * `uv_scale` + `uv_offset`.
   void rectangle(glm::vec2 low, glm::vec2 high, float depth_m = 1, std::uint8_t chart = 1,
-                 glm::vec2 uv_offset = {0, 0}) {
-    const auto uv = [&](glm::vec2 px) { return px / 256.f + uv_offset; };
+                 glm::vec2 uv_offset = {0, 0}, float uv_scale = 1) {
+    const auto uv = [&](glm::vec2 px) { return px * uv_scale / 256.f + uv_offset; };
     const glm::vec2 right{high.x, low.y}, left{low.x, high.y};
     const int a = vertex(low, uv(low), depth_m, chart),
               b = vertex(right, uv(right), depth_m, chart),
@@ -58,7 +59,7 @@ class Shape {
 
   void dim(float light) { std::fill(light_.begin(), light_.end(), light); }
   DrawnHand drawn(bool shaded = false) const {
-    return {&mesh_, &texture_, position_px_, depth_m_,
+    return {&mesh_, &chain_, position_px_, depth_m_,
             shaded ? std::span<const float>(light_) : std::span<const float>()};
   }
   const HandMesh& mesh() const { return mesh_; }
@@ -69,6 +70,7 @@ class Shape {
  private:
   HandMesh mesh_;
   Texture texture_;
+  MipChain chain_;
   std::vector<glm::vec2> position_px_;
   std::vector<float> depth_m_, light_;
 };

@@ -43,7 +43,7 @@ struct Scene {
   }
 };
 
-using Pixels = Image<std::uint32_t>;  ///< projector pixels, 0 if dark
+using Pixels = Image<std::uint32_t>;  ///< projector pixels, 0 if less than half of it is lit
 
 Pixels light_of(const Scene& scene, bool advance) {
   config::Cascade settings;
@@ -58,7 +58,7 @@ Pixels light_of(const Scene& scene, bool advance) {
   Pixels light(scene.calibration.projector_width_px, scene.calibration.projector_height_px);
   for (int y = frame.region.y0; y < frame.region.y1; ++y)
     for (int x = frame.region.x0; x < frame.region.x1; ++x)
-      if (frame.colour.at(x, y) >> 24) light.at(x, y) = frame.colour.at(x, y);
+      if (frame.colour.at(x, y) >> 24 >= 128) light.at(x, y) = frame.colour.at(x, y);
   return light;
 }
 

@@ -11,9 +11,10 @@
 
 namespace handcast::renderer {
 
+/// By default its pictures are not smooth, so that a pixel is either lit or dark.
 inline std::unique_ptr<Pipeline> make_pipeline(
     const config::Cascade& settings = {}, const calib::Calibration& calibration = rig_above_hand(),
-    const config::Content& content = {}) {
+    const config::Content& content = {.smooth = false}) {
   auto pipeline = Pipeline::create(settings, content, {}, calibration);
   if (!pipeline) throw std::runtime_error(pipeline.error().what);
   return std::move(*pipeline);
@@ -45,7 +46,7 @@ inline void feed_landmarks(Pipeline& pipeline, const calib::Calibration& calibra
 
 inline bool lit(const Frame& frame, int x, int y) {
   const Rect& r = frame.region;
-  return x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1 && (frame.colour.at(x, y) >> 24) > 0;
+  return x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1 && frame.colour.at(x, y) >> 24 > 0;
 }
 
 /// The number of lit pixels in `part` of a frame.

@@ -75,8 +75,8 @@ class Rig {
 
   static constexpr glm::vec3 kBias{0.005f, 0, 0};
   calib::Calibration calibration_ = rig_above_hand();
-  HandPipeline hand_ =
-      *HandPipeline::load(Side::left, on_landmarks(), "builtin:white", {}, calibration_, {});
+  HandPipeline hand_ = *HandPipeline::load(Side::left, on_landmarks(), {.left = "builtin:white"},
+                                           {}, calibration_, {});
 };
 
 TEST(HandPipeline, AHandThatIsTrackedAndSeenIsExact) { EXPECT_LT(Rig().worst_px(600), 3); }

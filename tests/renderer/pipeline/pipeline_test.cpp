@@ -120,6 +120,27 @@ TEST(Pipeline, TrackingSaysWhatRenderingWouldUse) {
   EXPECT_TRUE(tracked[0].landings.empty());
 }
 
+TEST_P(EverySide, TheEdgeOfASmoothPictureIsLitInPart) {
+  const auto calibration = rig_above_hand();
+  const auto hand = pose_of(GetParam());
+  const auto image = image_of(calibration, {hand});
+  double shares = 0, whole = 0;
+  int partly = 0;
+  for (const bool smooth : {false, true}) {
+    const auto pipeline = make_pipeline({}, calibration, {.smooth = smooth});
+    feed_still(*pipeline, {hand});
+    const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {image.view(), 102 * kMs});
+    for (int y = frame.region.y0; y < frame.region.y1; ++y)
+      for (int x = frame.region.x0; x < frame.region.x1; ++x) {
+        const std::uint32_t alpha = frame.colour.at(x, y) >> 24;
+        (smooth ? shares : whole) += alpha / 255.;
+        partly += alpha > 0 && alpha < 255;
+      }
+  }
+  EXPECT_GT(partly, 1500);
+  EXPECT_NEAR(shares / whole, 1, 0.003) << "the hand must keep its size";
+}
+
 TEST(Pipeline, NoLightStaysWhereTheHandWas) {
   const auto calibration = rig_above_hand();
   const auto pipeline = make_pipeline();

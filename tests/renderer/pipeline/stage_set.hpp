@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <vector>
 
 #include "calib/calibration.hpp"
@@ -11,6 +10,7 @@
 #include "renderer/hand/maker/hand_shape.hpp"
 #include "renderer/pipeline/pipeline.hpp"
 #include "renderer/skin/skinning.hpp"
+#include "tests/renderer/hand_pose.hpp"
 
 /// @file
 /// A scene for tests of the pipeline: poses, landmarks and images of the default hands.
@@ -31,16 +31,7 @@ inline calib::Calibration rig_above_hand() {
 inline msg::HandPose pose_of(Side side, glm::vec3 moved_m = {}) {
   static const std::array<HandMesh, 2> hands{*load_hand_or_default({}, Side::left),
                                              *load_hand_or_default({}, Side::right)};
-  msg::HandPose pose;
-  pose.side = side;
-  pose.confidence = 1;
-  for (int j = 0; j < kJoints; ++j) {
-    const glm::mat4& rest = hands[static_cast<std::size_t>(side)].rest[j];
-    const glm::quat turn = glm::quat_cast(glm::mat3(rest));
-    const glm::vec3 at = glm::vec3(rest[3]) + moved_m;
-    pose.joints[j] = {{at.x, at.y, at.z}, {turn.x, turn.y, turn.z, turn.w}, 0.01f};
-  }
-  return pose;
+  return pose_of(side, hands[static_cast<std::size_t>(side)].rest, moved_m);
 }
 
 inline msg::HandPoses poses_of(std::int64_t origin_ns, std::initializer_list<msg::HandPose> hands) {

@@ -8,7 +8,26 @@ uint dimmed(uint colour, uint factor) {
   return red_blue | green;
 }
 
-// The nearest texel of a picture of this size. Coordinates outside 0..1 are clamped.
-ivec2 texel_at(vec2 uv, ivec2 size) {
-  return ivec2(min(max(uv * vec2(size), 0.0), vec2(size) - 1.0));
+// Reads a mip chain (renderer/base/mip_chain.hpp) as the cpu painter does. Texture coordinates
+// outside 0..1 are clamped. `picture`: width, height and padded height of the picture in texels,
+// and its last level; -1: the nearest texel of the only level is read. Alpha of the result: any.
+uint picture_at(usampler2D texels, ivec4 picture, vec2 uv, int level) {
+  vec2 size = vec2(picture.xy);
+  if (picture.w < 0)
+    return texelFetch(texels, 1 + ivec2(min(max(uv * size, 0.0), size - 1.0)), 0).r;
+  size *= float(256 >> level) / 256.0;
+  ivec2 place = ivec2(256.0 * (min(max(uv * size, 0.0), size) + 0.5));
+  ivec2 part = place & 255;
+  place >>= 8;
+  place.y += 2 * level + 2 * (picture.z - (picture.z >> level));
+  int both = part.x * part.y >> 8;
+  vec4 weights = vec4(256 - part.x - part.y + both, part.x - both, part.y - both, both);
+  uvec4 texel = uvec4(texelFetch(texels, place, 0).r, texelFetch(texels, place + ivec2(1, 0), 0).r,
+                      texelFetch(texels, place + ivec2(0, 1), 0).r,
+                      texelFetch(texels, place + ivec2(1, 1), 0).r);
+  // The light of a level is taken as its square.
+  vec4 red = vec4(texel & 0xffu), green = vec4(texel >> 8 & 0xffu), blue = vec4(texel >> 16 & 0xffu);
+  uvec3 level_rgb = uvec3(sqrt(vec3(dot(weights, red * red), dot(weights, green * green),
+                                    dot(weights, blue * blue))) / 16.0 + 0.5);
+  return level_rgb.r | level_rgb.g << 8 | level_rgb.b << 16;
 }

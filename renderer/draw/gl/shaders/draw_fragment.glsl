@@ -2,16 +2,26 @@
 layout(location = 0) in vec3 uv_light;
 layout(location = 1) flat in uint id;
 
+layout(location = 2) uniform ivec4 picture;
 layout(binding = 0) uniform usampler2D content;
 
 layout(location = 0) out vec2 out_uv;
-layout(location = 1) out uvec2 out_tag;
+layout(location = 1) out uvec4 out_tag;
 layout(location = 2) out uint out_colour;
 
+// The level of the picture that has about one texel per pixel in this triangle: half the binary
+// logarithm of the texels per pixel, rounded.
+int level_here() {
+  vec2 right = dFdx(uv_light.xy), down = dFdy(uv_light.xy);
+  float ratio = abs(right.x * down.y - right.y * down.x) * float(picture.x) * float(picture.y);
+  int exponent = (floatBitsToInt(2.0 * ratio) >> 23) - 127;
+  return clamp(exponent >> 1, 0, max(picture.w, 0));
+}
+
 void main() {
-  uint level = uint(clamp(uv_light.z + 0.5, 0.0, 256.0));
-  uint texel = texelFetch(content, texel_at(uv_light.xy, textureSize(content, 0)), 0).r;
+  uint light = uint(clamp(uv_light.z + 0.5, 0.0, 256.0));
+  int level = level_here();
   out_uv = uv_light.xy;
-  out_tag = uvec2(id, level - (level >> 8));
-  out_colour = dimmed(texel, level) | 0xff000000u;
+  out_tag = uvec4(id, light - (light >> 8), level, 0);
+  out_colour = dimmed(picture_at(content, picture, uv_light.xy, level), light) | 0xff000000u;
 }

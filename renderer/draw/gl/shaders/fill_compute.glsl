@@ -9,12 +9,14 @@ layout(local_size_x = 64) in;
 
 layout(location = 0) uniform ivec4 region;  // x0, y0, x1, y1
 layout(location = 1) uniform int reach_px;  // at most 32
+layout(location = 2) uniform ivec4 pictures[4];
 
+layout(binding = 0) uniform usampler2D mask;
 layout(binding = 1) uniform usampler2D content0;  // of the four hands
 layout(binding = 2) uniform usampler2D content1;
 layout(binding = 3) uniform usampler2D content2;
 layout(binding = 4) uniform usampler2D content3;
-layout(binding = 0, rg8ui) uniform restrict uimage2D tag;
+layout(binding = 0, rgba8ui) uniform restrict uimage2D tag;
 layout(binding = 1, r32ui) uniform restrict writeonly uimage2D colour;
 layout(binding = 2, rg32f) uniform restrict image2D uv;
 
@@ -29,6 +31,7 @@ layout(binding = 2, std430) restrict buffer Counts {
   uint lit_count, wanted_count, filled_count;
 };
 layout(binding = 3, std430) restrict readonly buffer Table { Limit limits[]; };  // by squared px
+layout(binding = 4, std430) restrict readonly buffer Shares { uint share_factors[256]; };
 
 const int kNone = 1000;  // rows; out of reach
 
@@ -62,12 +65,12 @@ int rows_to_lit(int x, int y) {
   return down < up ? down : -up;
 }
 
-uint content_texel(uint hand, vec2 at) {
+uint content_at(uint hand, vec2 at, int level) {
   switch (hand) {
-    case 0u: return texelFetch(content0, texel_at(at, textureSize(content0, 0)), 0).r;
-    case 1u: return texelFetch(content1, texel_at(at, textureSize(content1, 0)), 0).r;
-    case 2u: return texelFetch(content2, texel_at(at, textureSize(content2, 0)), 0).r;
-    default: return texelFetch(content3, texel_at(at, textureSize(content3, 0)), 0).r;
+    case 0u: return picture_at(content0, pictures[0], at, level);
+    case 1u: return picture_at(content1, pictures[1], at, level);
+    case 2u: return picture_at(content2, pictures[2], at, level);
+    default: return picture_at(content3, pictures[3], at, level);
   }
 }
 
@@ -96,19 +99,20 @@ bool fill(ivec2 at) {
   if (limit.strength == 0u) return false;
 
   ivec2 seed = at + to_seed, mirror = seed + to_seed;
-  uvec2 surface_light = imageLoad(tag, seed).rg;
+  uvec4 seen = imageLoad(tag, seed);  // surface, light, level
   vec2 coordinates = imageLoad(uv, seed).rg;
-  if (is_lit(mirror) && imageLoad(tag, mirror).r == surface_light.r) {
+  if (is_lit(mirror) && imageLoad(tag, mirror).r == seen.r) {
     vec2 step_uv = coordinates - imageLoad(uv, mirror).rg;
     if (dot(step_uv, step_uv) <= limit.squared_limit_uv) coordinates += step_uv;
   }
-  uint texel = content_texel(surface_light.r / 64u, coordinates);
-  uint light = surface_light.g;
-  uint factor = (light + (light >> 7)) * limit.strength >> 8;
-  uint alpha = max(1u, 255u * limit.strength >> 8);
+  uint texel = content_at(seen.r / 64u, coordinates, int(seen.b));
+  uint factor = (seen.g + (seen.g >> 7)) * limit.strength >> 8;
+  uint share = texelFetch(mask, at, 0).r;
+  uint filled = dimmed(texel, factor);
+  if (share != 255u) filled = dimmed(filled, share_factors[share]);
   imageStore(uv, at, vec4(coordinates, 0, 0));
-  imageStore(tag, at, uvec4(surface_light, 0, 0));
-  imageStore(colour, at, uvec4(dimmed(texel, factor) | alpha << 24));
+  imageStore(tag, at, seen);
+  imageStore(colour, at, uvec4(filled | share << 24));
   return true;
 }
 

@@ -9,7 +9,7 @@ layout(binding = 2) uniform usampler2D colour;
 layout(location = 1) uniform ivec4 from;  // x0, y0, x1, y1
 
 layout(location = 0) out vec2 out_uv;
-layout(location = 1) out uvec2 out_tag;
+layout(location = 1) out uvec4 out_tag;
 layout(location = 2) out uint out_colour;
 
 void main() {
@@ -17,6 +17,6 @@ void main() {
   bool inside = all(greaterThanEqual(at, from.xy)) && all(lessThan(at, from.zw));
   at = clamp(at, from.xy, from.zw - 1);
   out_uv = texelFetch(uv, at, 0).rg;
-  out_tag = inside ? texelFetch(tag, at, 0).rg : uvec2(0);
+  out_tag = inside ? texelFetch(tag, at, 0) : uvec4(0);
   out_colour = inside ? texelFetch(colour, at, 0).r : 0u;
 }

@@ -50,6 +50,15 @@ Sheet jittered_grid(unsigned seed) {
   return sheet;
 }
 
+/// Draws band by band into a target of the whole image.
+void draw(const TriangleList& list, RasterTarget& target) {
+  TriangleBins bins;
+  bins.sort(list, kWhole);
+  for (int band = 0; band * kBand < kHeight; ++band)
+    rasterise(list, bins.of_band(band),
+              Rect{0, band * kBand, kWidth, (band + 1) * kBand}.overlap(kWhole), target);
+}
+
 TEST(Raster, EveryPixelOfASheetBelongsToExactlyOneTriangle) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     Sheet sheet = jittered_grid(seed);
@@ -58,7 +67,7 @@ TEST(Raster, EveryPixelOfASheetBelongsToExactlyOneTriangle) {
     for (const TriangleIndices& one : all) {
       sheet.triangles = {one};
       RasterTarget target(kWidth, kHeight);
-      rasterise(sheet.list(Facing::both), kWhole, target);
+      draw(sheet.list(Facing::both), target);
       for (int i = 0; i < kWidth * kHeight; ++i)
         hits[i] += std::isfinite(target.at(i % kWidth, i / kWidth).depth);
     }
@@ -85,17 +94,17 @@ TEST(Raster, TheSidesOfAClosedSurfaceAreToldApartWhicheverWayItIsWound) {
 TEST(Raster, OnlyTheAskedForSideIsDrawn) {
   Sheet sheet = jittered_grid(3);
   RasterTarget target(kWidth, kHeight);
-  rasterise(sheet.list(Facing::negative), kWhole, target);
+  draw(sheet.list(Facing::negative), target);
   EXPECT_TRUE(std::isinf(target.at(40, 40).depth));
-  rasterise(sheet.list(Facing::positive), kWhole, target);
+  draw(sheet.list(Facing::positive), target);
   EXPECT_TRUE(std::isfinite(target.at(40, 40).depth));
 }
 
-TEST(Raster, ClearingForgetsEverythingDrawn) {
+TEST(Raster, StartingForgetsEverythingDrawn) {
   Sheet sheet = jittered_grid(5);
   RasterTarget target(kWidth, kHeight);
-  rasterise(sheet.list(Facing::both), kWhole, target);
-  target.clear();
+  draw(sheet.list(Facing::both), target);
+  target.start();
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x)
       ASSERT_TRUE(std::isinf(target.at(x, y).depth)) << x << ' ' << y;
@@ -108,7 +117,7 @@ TEST(Raster, OfEquallyNearTrianglesTheLaterIsSeen) {
                    {0, 0, 1, 1, 0, 0}, {640, 0, 1, 1, 0, 0}, {0, 640, 1, 1, 0, 0}};
   sheet.triangles = {{0, 1, 2}, {3, 4, 5}};
   RasterTarget target(kWidth, kHeight);
-  rasterise(sheet.list(Facing::both), kWhole, target);
+  draw(sheet.list(Facing::both), target);
   EXPECT_EQ(target.at(10, 10).u, 1);
 }
 

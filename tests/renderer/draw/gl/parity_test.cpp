@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <sstream>
 
 #include "renderer/content/textures.hpp"
@@ -12,6 +11,7 @@
 #include "renderer/skin/hand_surface.hpp"
 #include "services/evaluation/twin/motions.hpp"
 #include "tests/renderer/draw/gl/difference.hpp"
+#include "tests/renderer/hand_pose.hpp"
 
 namespace handcast::renderer::test {
 namespace {
@@ -23,28 +23,16 @@ std::vector<std::string> motion_names() {
   return names;
 }
 
-msg::HandPose pose_of(Side side, const JointFrames& frames) {
-  msg::HandPose pose;
-  pose.side = side;
-  pose.confidence = 1;
-  for (int j = 0; j < kJoints; ++j) {
-    const glm::quat turn = glm::quat_cast(glm::mat3(frames[j]));
-    const glm::vec3 at(frames[j][3]);
-    pose.joints[j] = {{at.x, at.y, at.z}, {turn.x, turn.y, turn.z, turn.w}, 0.01f};
-  }
-  return pose;
-}
-
 /// One hand of the scene, skinned for one frame.
 struct Hand {
   explicit Hand(Side which)
       : side(which),
         surface(*load_hand_or_default({}, which), 14),
-        texture(*load_content("builtin:atlas", surface.mesh())) {}
+        texture(*load_content("builtin:atlas", surface.mesh()), true) {}
 
   Side side;
   HandSurface surface;
-  Texture texture;
+  MipChain texture;
   std::uint64_t revision = new_revision();
   Skinned skinned;
 
@@ -65,13 +53,20 @@ WarpGrid bent_grid(const Rect& area) {
   return grid;
 }
 
-/// The light of a drawing, moved.
+/// The light of a drawing, moved, with shares of pixels at its edges.
 Image<std::uint8_t> moved_silhouette(View<const SurfaceId> surface, int dx, int dy) {
   Image<std::uint8_t> mask(surface.width, surface.height);
   for (int y = std::max(dy, 0); y < std::min(surface.height, surface.height + dy); ++y)
     for (int x = std::max(dx, 0); x < std::min(surface.width, surface.width + dx); ++x)
       mask.at(x, y) = surface.at(x - dx, y - dy) ? 255 : 0;
-  return mask;
+  Image<std::uint8_t> soft = mask;
+  for (int y = 1; y + 1 < mask.height(); ++y)
+    for (int x = 1; x + 1 < mask.width(); ++x)
+      soft.at(x, y) =
+          static_cast<std::uint8_t>((4 * mask.at(x, y) + mask.at(x - 1, y) + mask.at(x + 1, y) +
+                                     mask.at(x, y - 1) + mask.at(x, y + 1)) /
+                                    8);
+  return soft;
 }
 
 /// What a pass may differ by. Where a pixel lies on an edge, or its source between two pixels, both
