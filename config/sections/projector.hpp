@@ -97,7 +97,6 @@ struct Projector {
   double fade_s = 0.5;
   Packing packing = Packing::none;
   bool dither = true;
-  bool late_latch = false;
   ProjectorFile file;
   ProjectorKms kms;
   ProjectorWindow window;
@@ -143,9 +142,6 @@ void describe(Visitor& visitor, Projector& projector) {
                 "24x1, 8x3: a level between black and white becomes a pattern of both, which "
                 "changes from frame to frame. Off: levels of at least half the light become "
                 "white.");
-  visitor.field("late_latch", projector.late_latch,
-                "Just before it is handed over, a frame is moved by what a newer camera image or "
-                "pose says.");
   visitor.section("file", projector.file, "The back end `file`.");
   visitor.section("kms", projector.kms, "The back end `kms`.");
   visitor.section("window", projector.window, "The back end `window`.");

@@ -28,7 +28,15 @@ enum class Stage : std::uint32_t {
   draw,
   warp,
   fill,
-  compose,
+  /// @}
+  /// What a GPU did within draw, warp and fill, by its own clock; each ends when the frame is
+  /// drawn.
+  /// @{
+  gpu_draw,
+  gpu_warp,
+  gpu_upload,
+  gpu_fill,
+  gpu_read,
   /// @}
   frame,    ///< the whole projector frame in software
   present,  ///< handing the frame to the projector
@@ -38,8 +46,9 @@ enum class Stage : std::uint32_t {
 
 /// The names of the stages in reports, in the order of Stage.
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::count)> kStageNames{
-    "capture", "sample", "detect", "predict", "mask",    "register", "advance", "skin",
-    "correct", "draw",   "warp",   "fill",    "compose", "frame",    "present", "light"};
+    "capture",    "sample",   "detect",   "predict", "mask",    "register", "advance",
+    "skin",       "correct",  "draw",     "warp",    "fill",    "gpu_draw", "gpu_warp",
+    "gpu_upload", "gpu_fill", "gpu_read", "frame",   "present", "light"};
 
 /// The time that one stage of one frame took.
 struct StageMark {
@@ -56,13 +65,13 @@ struct StageMark {
 /// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's
 /// recorder, the observer.
 struct StageMarks {
-  static constexpr std::string_view layout = "StageMarks/4";  ///< see type_hash()
+  static constexpr std::string_view layout = "StageMarks/5";  ///< see type_hash()
 
   Header header;               ///< frame_id and origin_ns of the frame
   MadeFrom made_from;          ///< the inputs of a projector frame; zeros in all other frames
   std::uint32_t count = 0;     ///< number of marks
   std::uint32_t reserved = 0;  ///< padding
-  std::array<StageMark, 16> marks{};  ///< the first `count` are valid
+  std::array<StageMark, 20> marks{};  ///< the first `count` are valid
 };
 
 }  // namespace handcast::msg

@@ -25,12 +25,19 @@ Light in_linear_light(std::uint32_t rgba) {
 }
 
 std::uint32_t in_srgb(const Light& light) {
-  std::uint32_t rgba = 0;
-  for (int channel = 0; channel < 4; ++channel) {
-    const double level = channel < 3 ? srgb_level(light[channel]) : light[channel];
-    rgba |= static_cast<std::uint32_t>(std::lround(255 * level)) << 8 * channel;
-  }
-  return rgba;
+  constexpr int kSteps = 4096;  // a step is 0.8 levels where the curve is steepest
+  static const auto kLevel = [] {
+    std::array<std::uint8_t, kSteps + 1> levels{};
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      levels[i] =
+          static_cast<std::uint8_t>(std::lround(255 * srgb_level(static_cast<double>(i) / kSteps)));
+    return levels;
+  }();
+  const auto level = [&](int channel) -> std::uint32_t {
+    return kLevel[static_cast<std::size_t>(std::lround(kSteps * light[channel]))];
+  };
+  const auto alpha = static_cast<std::uint32_t>(std::lround(255 * light[3]));
+  return level(0) | level(1) << 8 | level(2) << 16 | alpha << 24;
 }
 
 /// Half the size, rounded up: the last texel of an odd row is the mean of what there is.

@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "config/sections/cascade.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/msg/stage_mark.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/base/mip_chain.hpp"
 #include "renderer/correct/deform.hpp"
@@ -24,7 +26,7 @@ struct DrawnHand {
   const MipChain* texture = nullptr;       ///< nullptr: white
   std::span<const glm::vec2> position_px;  ///< projector px
   std::span<const float> depth_m;          ///< distance along the camera's axis; nearer wins
-  std::span<const float> light;            ///< factor 0..1; empty: 1 everywhere
+  std::span<const float> light;            ///< factor of the levels, 0..1; empty: 1 everywhere
   /// Number of the contents of `mesh` and `texture`, see new_revision(): as long as it is the same,
   /// a back end may draw with a copy that it made before. 0: the contents may have changed.
   std::uint64_t revision = 0;
@@ -83,6 +85,14 @@ class Painter {
   virtual View<const glm::vec2> uv() = 0;
   virtual View<const SurfaceId> surface() = 0;
   /// @}
+
+  /// A pass on another processor, and how long it took by the clock of that processor.
+  struct DevicePass {
+    msg::Stage stage;
+    std::int64_t took_ns;
+  };
+  /// The passes since the last call, if the painter measures them. Ask after colour().
+  virtual std::vector<DevicePass> device_passes() { return {}; }
 
   /// Why the painter has stopped for good, e.g. because its GPU was lost; empty if it has not. Ask
   /// after colour(). Then the image is undefined: draw the frame again with another painter.

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "renderer/base/clones.hpp"
+
 namespace handcast::renderer {
 namespace {
 
@@ -23,16 +25,65 @@ std::uint64_t load8(const std::uint8_t* bytes) {
   return word;
 }
 
-/// The mask at `fine` (1/4096 px), between the pixel `corner` and its right and lower neighbours.
-std::uint8_t between(View<const std::uint8_t> mask, glm::ivec2 corner, glm::ivec2 fine) {
-  constexpr int kBits = 6, kWhole = 1 << kBits;
-  const int right = fine.x >> (kFineBits - kBits) & (kWhole - 1),
-            down = fine.y >> (kFineBits - kBits) & (kWhole - 1);
-  const std::uint8_t *upper = mask.row(corner.y) + corner.x, *lower = upper + mask.stride;
-  if (upper[0] == upper[1] && upper[0] == lower[0] && upper[0] == lower[1]) return upper[0];
-  const int sum = (kWhole - down) * ((kWhole - right) * upper[0] + right * upper[1]) +
-                  down * ((kWhole - right) * lower[0] + right * lower[1]);
-  return static_cast<std::uint8_t>(sum >> 2 * kBits);
+constexpr int kPartBits = 6, kWhole = 1 << kPartBits;  ///< of a camera px, in weights
+
+/// The mean of the pixels (0, 0), (1, 0) in `upper` and (0, 1), (1, 1) in `lower`, the left one in
+/// the lower byte, by the weights of the right and the lower ones.
+[[gnu::always_inline]] inline std::int32_t mean_of(std::int32_t upper, std::int32_t lower,
+                                                   std::int32_t right, std::int32_t down) {
+  const std::int32_t above = (kWhole - right) * (upper & 255) + right * (upper >> 8),
+                     below = (kWhole - right) * (lower & 255) + right * (lower >> 8);
+  return ((kWhole - down) * above + down * below) >> 2 * kPartBits;
+}
+
+/// The part of a camera px in a position.
+[[gnu::always_inline]] inline std::int32_t part_of(std::int32_t fine) {
+  return fine >> (kFineBits - kPartBits) & (kWhole - 1);
+}
+
+/// Interpolates 8 pixels of a row whose neighbours are all inside the mask. `at`, `step`: the
+/// position of the first one, and to the next, in fine units.
+HANDCAST_CLONES void interpolate_row(const std::uint8_t* mask, std::int32_t stride, glm::ivec2 at,
+                                     glm::ivec2 step, std::uint8_t* __restrict out) {
+  std::int32_t index[kStep], right[kStep], down[kStep];
+  std::uint16_t upper[kStep], lower[kStep];
+  for (std::int32_t i = 0; i < kStep; ++i) {
+    const std::int32_t x = at.x + i * step.x, y = at.y + i * step.y;
+    index[i] = (y >> kFineBits) * stride + (x >> kFineBits);
+    right[i] = part_of(x);
+    down[i] = part_of(y);
+  }
+  for (int i = 0; i < kStep; ++i) {
+    std::memcpy(&upper[i], mask + index[i], 2);
+    std::memcpy(&lower[i], mask + index[i] + stride, 2);
+  }
+  for (int i = 0; i < kStep; ++i)
+    out[i] = static_cast<std::uint8_t>(mean_of(upper[i], lower[i], right[i], down[i]));
+}
+
+/// One pixel; 0 outside the mask.
+std::uint8_t interpolated(View<const std::uint8_t> mask, glm::ivec2 at) {
+  const int x = at.x >> kFineBits, y = at.y >> kFineBits;
+  const auto pixel = [&](int column, int row) -> int {
+    const bool inside = column >= 0 && row >= 0 && column < mask.width && row < mask.height;
+    return inside ? mask.at(column, row) : 0;
+  };
+  return static_cast<std::uint8_t>(mean_of(pixel(x, y) | pixel(x + 1, y) << 8,
+                                           pixel(x, y + 1) | pixel(x + 1, y + 1) << 8,
+                                           part_of(at.x), part_of(at.y)));
+}
+
+/// True if the pixel and its right and lower neighbours are inside the mask.
+bool has_neighbours(View<const std::uint8_t> mask, glm::ivec2 at) {
+  const int x = at.x >> kFineBits, y = at.y >> kFineBits;
+  return x >= 0 && y >= 0 && x + 1 < mask.width && y + 1 < mask.height;
+}
+
+/// The pixel nearest to a position; 0 outside the mask.
+std::uint8_t nearest(View<const std::uint8_t> mask, glm::ivec2 at) {
+  const int x = (at.x + kFine / 2) >> kFineBits, y = (at.y + kFine / 2) >> kFineBits;
+  const bool inside = x >= 0 && y >= 0 && x < mask.width && y < mask.height;
+  return inside ? mask.at(x, y) : 0;
 }
 
 /// Bounds of what `map` makes of the outline of `region`, sampled at nine points per side and grown
@@ -104,8 +155,7 @@ void CameraLookup::resample(View<const std::uint8_t> mask, Rect region, View<std
       const Rect part = whole.overlap(region);
       if (part.width() == kStep && part.height() == kStep && resample_uniform(mask, block, out))
         continue;
-      smooth_ ? resample_block<true>(mask, block, part, out)
-              : resample_block<false>(mask, block, part, out);
+      resample_block(mask, block, part, out);
     }
   }
 }
@@ -140,24 +190,24 @@ bool CameraLookup::resample_uniform(View<const std::uint8_t> mask, const Block& 
   return true;
 }
 
-template <bool kSmooth>
 void CameraLookup::resample_block(View<const std::uint8_t> mask, const Block& block, Rect part,
                                   View<std::uint8_t> out) const {
-  constexpr int kRound = kSmooth ? 0 : kFine / 2;
+  const bool is_whole = part.width() == kStep;
   for (int y = part.y0; y < part.y1; ++y) {
     const int down = y - block.y;
     const glm::ivec2 left = block.top_left * kStep + (block.bottom_left - block.top_left) * down;
     const glm::ivec2 right =
         block.top_right * kStep + (block.bottom_right - block.top_right) * down;
     const glm::ivec2 step = right - left;
-    glm::ivec2 at = left * kStep + step * (part.x0 - block.x) + kRound;
+    glm::ivec2 at = left * kStep + step * (part.x0 - block.x);
     std::uint8_t* line = out.row(y);
-    for (int x = part.x0; x < part.x1; ++x, at += step) {
-      const int cx = at.x >> kFineBits, cy = at.y >> kFineBits;
-      constexpr int kMore = kSmooth ? 1 : 0;
-      const bool inside = cx >= 0 && cy >= 0 && cx + kMore < mask.width && cy + kMore < mask.height;
-      line[x] = !inside ? 0 : kSmooth ? between(mask, {cx, cy}, at) : mask.at(cx, cy);
+    if (smooth_ && is_whole && has_neighbours(mask, at) &&
+        has_neighbours(mask, at + (kStep - 1) * step)) {
+      interpolate_row(mask.data, mask.stride, at, step, line + part.x0);
+      continue;
     }
+    for (int x = part.x0; x < part.x1; ++x, at += step)
+      line[x] = smooth_ ? interpolated(mask, at) : nearest(mask, at);
   }
 }
 

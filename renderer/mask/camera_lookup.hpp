@@ -36,7 +36,6 @@ class CameraLookup {
                     const Similarity& then_from_now) const;
   bool resample_uniform(View<const std::uint8_t> mask, const Block& block,
                         View<std::uint8_t> out) const;
-  template <bool kSmooth>
   void resample_block(View<const std::uint8_t> mask, const Block& block, Rect part,
                       View<std::uint8_t> out) const;
 

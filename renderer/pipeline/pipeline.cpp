@@ -136,6 +136,7 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
     counts = paint(region, is_masked);
     colour = painter_->colour();
   }
+  for (const auto& [stage, took_ns] : painter_->device_passes()) stages_.add(stage, took_ns);
   stages_.finish();
   return {target_ns, newest_,        region.empty() ? Rect{} : region,
           colour,    frame_hands(),  foldovers,

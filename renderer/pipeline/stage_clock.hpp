@@ -22,6 +22,10 @@ class StageClock {
     marks_.push_back({stage, detail, last_ns_, end_ns});
     last_ns_ = end_ns;
   }
+  /// Adds what another processor did for `took_ns` within the stages marked so far.
+  void add(msg::Stage stage, std::int64_t took_ns) {
+    marks_.push_back({stage, 0, last_ns_ - took_ns, last_ns_});
+  }
   /// Adds the mark of the whole frame, from start() to now.
   void finish() { marks_.push_back({msg::Stage::frame, 0, start_ns_, now_ns()}); }
 

@@ -22,7 +22,7 @@ struct Skinned {
   std::span<const glm::vec2> seen_px;  ///< projector px, in the pose that was skinned
   std::span<glm::vec2> landings_px;    ///< the same; to be moved by the step "correct"
   std::span<const float> depth_m;      ///< distance along the camera's axis
-  std::span<const float> light;        ///< factor 0..1; empty: 1 everywhere
+  std::span<const float> light;        ///< factor of the levels, 0..1; empty: 1 everywhere
   /// Sign of the area (projector px, y down) of a triangle that faces the camera.
   float facing_sign = -1;
 };

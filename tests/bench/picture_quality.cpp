@@ -197,19 +197,6 @@ Result<void> measure_similarity(PictureQuality& out) {
       Studio::Drawings drawings;
       for (int i = 0; i < 60; ++i, now_ns += 2 * kMs)
         if (i % 20 == 0 || i == 59) drawings = studio->draw(now_ns, moment, calibration);
-        cv::Mat all, e;
-        cv::Mat a = drawings.hard(drawings.region), b = drawings.smooth(drawings.region),
-                c = drawings.reference(drawings.region);
-        cv::absdiff(b, c, e);
-        std::vector<cv::Mat> v{a, b, c, e * 3};
-        cv::hconcat(v, all);
-        all.convertTo(all, CV_8U);
-        Texture t(all.cols, all.rows);
-        for (int y = 0; y < all.rows; ++y)
-          for (int x = 0; x < all.cols; ++x)
-            t.at(x, y) = 0xff000000u | all.at<uchar>(y, x) * 0x10101u;
-        (void)write_png(fmt::format("/tmp/pics_{}_{}.png", name, seconds), t.view());
-      }
       now_ns += 1000 * kMs;  // the next pose is another hand's
       out.similarity.push_back(
           {fmt::format("{} at {} s", name, seconds),

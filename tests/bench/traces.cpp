@@ -42,7 +42,7 @@ const std::array kMarkers{Marker{"camera", 525, {Stage::capture}},
                           Marker{"projector",
                                  946,
                                  {Stage::predict, Stage::skin, Stage::correct, Stage::mask,
-                                  Stage::draw, Stage::warp, Stage::fill, Stage::compose}}};
+                                  Stage::draw, Stage::warp, Stage::fill, Stage::gpu_draw}}};
 
 constexpr int kMarkSlots = 254;  ///< as in supervisor/life/streams.cpp
 constexpr std::int64_t kPoll_ns = 50'000'000;

@@ -5,7 +5,10 @@
 
 #include <fstream>
 #include <map>
+#include <stdexcept>
 
+#include "config/rig.hpp"
+#include "ipc/control/control_client.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {
@@ -163,6 +166,23 @@ TEST_F(Reload, ASwappedBackEndStaysUntilTheFileNamesAnother) {
   EXPECT_EQ(handcast({"reload"}).exit_code, 0);
   EXPECT_EQ(service("projector")["backend"], "file");
   EXPECT_THAT(changed_since(before), UnorderedElementsAre("camera", "landmarks"));
+}
+
+TEST_F(Reload, ToolsGetTheRigAsTheServicesReadIt) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto applied = [] {
+    const auto answer = control::ask("desk", {.verb = control::Verb::rig});
+    if (!answer) throw std::runtime_error(answer.error().what);
+    const auto read = config::parse_rig((*answer)["rig"].get<std::string>(), "applied rig");
+    if (!read) throw std::runtime_error(read.error().what);
+    return *read;
+  };
+  EXPECT_EQ(applied().name, "desk");
+  EXPECT_EQ(applied().projector.rate_hz, 60);
+  EXPECT_EQ(applied().projector.backend, "twin");
+  ASSERT_EQ(handcast({"swap", "projector", "file"}).exit_code, 0);
+  EXPECT_EQ(applied().projector.backend, "file");
 }
 
 TEST_F(Reload, SettingsWithWhichOneServiceCannotWorkChangeNothing) {

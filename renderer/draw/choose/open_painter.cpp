@@ -19,7 +19,7 @@ struct OpenedGl {
 
 Result<OpenedGl> open_gl([[maybe_unused]] int width_px, [[maybe_unused]] int height_px) {
 #ifdef HANDCAST_WITH_GL
-  auto painter = open_gl_painter(width_px, height_px);
+  auto painter = open_gl_painter(width_px, height_px, {.is_timed = true});
   if (!painter) return tl::make_unexpected(painter.error());
   const gl::Gpu& gpu = (*painter)->gpu();
   std::string name = fmt::format("{} (EGL {})", gpu.sentence(), gpu.platform);

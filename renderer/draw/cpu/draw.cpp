@@ -68,7 +68,8 @@ template <bool kFirst, bool kSmooth>
       at.index[i] = sampler.nearest(block.u[i], block.v[i]) & mask;
     }
   }
-  // Single loads are faster than the gather instructions of most processors.
+  // The barriers keep the compiler from reading by gather instructions, which take longer than
+  // single loads on most processors.
   asm volatile("" : "+m"(at));
 #pragma GCC unroll 16
   for (int i = 0; i < kLanes; ++i) sampler.read<kSmooth>(at, i);

@@ -78,6 +78,16 @@ class Painting final : public GlPainter {
   }
   const Gpu& gpu() const override { return context_->gpu(); }
   PassTimes pass_times() override { return timer_.take(); }
+  std::vector<DevicePass> device_passes() override {
+    std::vector<DevicePass> passes;
+    const PassTimes times = timer_.take();
+    for (std::size_t i = 0; i < times.size(); ++i)
+      if (times[i] > 0)
+        passes.push_back(
+            {static_cast<msg::Stage>(static_cast<std::size_t>(msg::Stage::gpu_draw) + i),
+             static_cast<std::int64_t>(1000 * times[i])});
+    return passes;
+  }
 
  private:
   std::unique_ptr<Context> context_;  // first: the objects below are of this context

@@ -7,7 +7,7 @@
 
 namespace handcast::renderer::gl {
 
-/// What the GPU does for one frame.
+/// What the GPU does for one frame, in the order of msg::Stage from gpu_draw on.
 enum class Pass { draw, warp, upload, fill, read };
 /// The names of the passes.
 constexpr std::array<std::string_view, 5> kPassNames{"draw", "warp", "upload", "fill", "read"};

@@ -184,6 +184,51 @@ TEST_P(Lookup, TheShortCutForUniformBlocksChangesNothing) {
   }
 }
 
+TEST_P(Lookup, ASmoothMaskIsInterpolatedBetweenTheCameraPixels) {
+  draw_checks(mask);
+  const CameraLookup smooth(calibration, true);
+  for (const Similarity& move :
+       {Similarity(), similarity(1, 0, {17.3f, -9.8f}), similarity(0.7f, 0.3f, {90, -40})}) {
+    smooth.resample(mask.view(), screen, out.view(), move);
+    int compared = 0;
+    double worst = 0, mean = 0;
+    for (int y = 0; y < screen.y1; ++y)
+      for (int x = 0; x < screen.x1; ++x) {
+        const glm::vec2 then = move(glm::vec2(camera_of(x, y)));
+        const glm::ivec2 at(glm::floor(then));
+        if (at.x < 0 || at.y < 0 || at.x + 1 >= mask.width() || at.y + 1 >= mask.height()) continue;
+        const glm::vec2 part = then - glm::vec2(at);
+        const float above = glm::mix(static_cast<float>(mask.at(at.x, at.y)),
+                                     static_cast<float>(mask.at(at.x + 1, at.y)), part.x),
+                    below = glm::mix(static_cast<float>(mask.at(at.x, at.y + 1)),
+                                     static_cast<float>(mask.at(at.x + 1, at.y + 1)), part.x);
+        const double off = std::abs(glm::mix(above, below, part.y) - out.at(x, y));
+        worst = std::max(worst, off);
+        mean += off;
+        ++compared;
+      }
+    EXPECT_LT(worst, 2 * 0.2 * 255);  // 0.2 px of the table, in both directions
+    EXPECT_LT(mean / compared, 1);
+    EXPECT_GT(compared, 100000);
+  }
+}
+
+TEST_P(Lookup, TheShortCutsOfASmoothMaskChangeNothing) {
+  draw_checks(mask);
+  mask.at(300, 250) ^= 255;
+  const CameraLookup smooth(calibration, true);
+  Image<std::uint8_t> by_pixels(out.width(), out.height(), 77);
+  for (const Similarity& move :
+       {Similarity(), similarity(1, 0, {17.3f, -9.8f}), similarity(1.9f, -1, {-200, 300})}) {
+    smooth.resample(mask.view(), screen, out.view(), move);
+    for (int x = 0; x < screen.x1; ++x)
+      smooth.resample(mask.view(), {x, 0, x + 1, screen.y1}, by_pixels.view(), move);
+    for (int y = 0; y < screen.y1; ++y)
+      for (int x = 0; x < screen.x1; ++x)
+        ASSERT_EQ(out.at(x, y), by_pixels.at(x, y)) << x << ' ' << y;
+  }
+}
+
 TEST_P(Lookup, AHandThatWasOutsideTheImageIsNotSeen) {
   std::fill(mask.pixels().begin(), mask.pixels().end(), 255);
   for (const Similarity& move :

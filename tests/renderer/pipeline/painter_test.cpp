@@ -60,7 +60,7 @@ TEST_P(FailingPainterTest, IsReplacedWithinTheFrameSoThatNoneIsDark) {
   const config::Cascade settings = cascade(config::CorrectMethod::vertices, GetParam());
   const calib::Calibration calibration = rig_above_hand();
   int draws = 0;
-  const auto failing = *Pipeline::create(settings, {}, {}, calibration, {},
+  const auto failing = *Pipeline::create(settings, {.smooth = false}, {}, calibration, {},
                                          std::make_unique<FailingPainter>(2, draws));
   const auto healthy = make_pipeline(settings);
   const auto hand = pose_of(Side::left);

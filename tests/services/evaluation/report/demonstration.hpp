@@ -41,7 +41,7 @@ inline nlohmann::json metrics_of(const std::string& rig, double error_mm) {
   json["bins"][">1.0"] = {
       {"frames", 0}, {"interior_mm", {{"mean", nullptr}, {"p95", nullptr}}}, {"coverage", nullptr}};
   double time_us = 20;
-  for (const char* stage : {"predict", "skin", "correct", "mask", "draw", "fill", "compose"}) {
+  for (const char* stage : {"predict", "skin", "correct", "mask", "draw", "fill"}) {
     json["stage_us"][stage] = {{"p50", time_us}, {"p99", 1.6 * time_us}};
     time_us += 35;
   }
