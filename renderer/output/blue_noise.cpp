@@ -14,7 +14,7 @@ class Crowd {
  public:
   Crowd() {
     for (int offset = -kReach; offset <= kReach; ++offset)
-      weight_[static_cast<std::size_t>(offset + kReach)] =
+      weight_[offset + kReach] =
           std::exp(-static_cast<float>(offset * offset) / (2 * kSigma_px * kSigma_px));
   }
 
@@ -24,8 +24,7 @@ class Crowd {
     const int x = pixel % kPatternSize, y = pixel / kPatternSize;
     for (int dy = -kReach; dy <= kReach; ++dy)
       for (int dx = -kReach; dx <= kReach; ++dx) {
-        const float weight = weight_[static_cast<std::size_t>(dx + kReach)] *
-                             weight_[static_cast<std::size_t>(dy + kReach)];
+        const float weight = weight_[dx + kReach] * weight_[dy + kReach];
         crowding_.at((x + dx) & (kPatternSize - 1), (y + dy) & (kPatternSize - 1)) +=
             on ? weight : -weight;
       }

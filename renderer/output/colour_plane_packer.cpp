@@ -43,8 +43,7 @@ class ColourPlanePacker final : public Packer {
   ColourPlanePacker(const config::Projector& settings, int width_px, int height_px)
       : Packer(width_px, height_px, 1),
         limits_(settings, kPlanes, levels()),
-        rgba_limits_(4 * static_cast<std::size_t>(kPlanes * limits_.size() * limits_.row_size()),
-                     0xff),
+        rgba_limits_(4 * kPlanes * static_cast<std::size_t>(limits_.to_next_plane()), 0xff),
         row_(static_cast<std::size_t>(width_px)) {}
 
   void add(View<const std::uint32_t> drawing, Rect region, int first, int count) override {

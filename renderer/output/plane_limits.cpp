@@ -13,7 +13,7 @@ PlaneLimits<Value>::PlaneLimits(const config::Projector& settings, int planes,
     : settings_(settings),
       dither_(planes),
       values_(values),
-      limits_(static_cast<std::size_t>(planes * dither_.size() * row_size())) {}
+      limits_(planes * static_cast<std::size_t>(to_next_plane())) {}
 
 template <class Value>
 std::vector<Value> PlaneLimits<Value>::limits_for(int count, std::span<const float> light) const {

@@ -38,10 +38,10 @@ class SubFramePlan {
   void start(std::int64_t now_ns) {
     if (hand_over_ns_ == 0) hand_over_ns_ = now_ns;
     if (next_sub_frame_ > 0) hand_over_ns_ += output_period_ns();
-    const std::int64_t soonest_ns = now_ns + drawing_.median_ns() + reserve_ns();
+    const std::int64_t soonest_ns = now_ns + drawing_.median_ns() + reserve_ns(),
+                       period_ns = std::max<std::int64_t>(output_period_ns(), 1);
     if (hand_over_ns_ < soonest_ns)
-      hand_over_ns_ += (soonest_ns - hand_over_ns_ + output_period_ns() - 1) / output_period_ns() *
-                       output_period_ns();
+      hand_over_ns_ += (soonest_ns - hand_over_ns_ + period_ns - 1) / period_ns * period_ns;
     next_sub_frame_ = 0;
   }
   /// The next drawing; empty if all sub-frames are drawn, or there is no time for another drawing.

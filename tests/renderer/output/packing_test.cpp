@@ -153,7 +153,7 @@ TEST(Quadrants, AreTheDrawingsInTheOrderOfThePropixx) {
         {0, 0, kWidth / 2, kHeight / 2}, k, 1);
   for (int k = 0; k < 4; ++k)
     EXPECT_THAT(test::quadrant_of(packer->image(), k).pixels(),
-                testing::Each(kOpaque | table[60 * static_cast<std::size_t>(k + 1)]))
+                testing::Each(kOpaque | table[60 * k + 60]))
         << k;
 }
 
