@@ -36,6 +36,13 @@ LightTable light_table(const config::Projector& settings, double fade) {
   return table;
 }
 
+std::array<float, 256> light_of_levels() {
+  std::array<float, 256> light{};
+  for (std::size_t i = 0; i < light.size(); ++i)
+    light[i] = static_cast<float>(srgb_light(static_cast<double>(i) / 255));
+  return light;
+}
+
 void write_light(View<const std::uint32_t> frame, Rect region, const LightTable& table,
                  View<std::uint32_t> out) {
   region = region.within(frame.width, frame.height);

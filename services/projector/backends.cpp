@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "calib/sub_frames.hpp"
+#include "config/sections/sub_frames.hpp"
 #include "services/projector/projector.hpp"
 
 namespace handcast::projector {
@@ -30,8 +32,10 @@ std::span<const ProjectorBackend> projector_backends() { return kBackends; }
 
 Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig,
                                                   const calib::Calibration& calibration) {
-  return service::open_backend("projector", rig.projector.backend, projector_backends(), rig,
-                               calibration);
+  config::Rig of_output = rig;
+  of_output.projector = config::output_of(rig.projector);
+  return service::open_backend("projector", rig.projector.backend, projector_backends(), of_output,
+                               calib::output_of(calibration, rig.projector.packing));
 }
 
 }  // namespace handcast::projector

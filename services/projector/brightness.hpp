@@ -20,15 +20,19 @@ class Brightness {
 
   /// The table for the light at `time_ns`, which must not decrease. Valid until the next call.
   const renderer::LightTable& at(std::int64_t time_ns) {
+    if (!is_risen_) table_ = renderer::light_table(settings_, fade_at(time_ns));
+    return table_;
+  }
+  /// The share of the full brightness at `time_ns`, which must not decrease, 0 to 1.
+  double fade_at(std::int64_t time_ns) {
     if (first_ns_ == 0) {
       first_ns_ = time_ns;
       is_risen_ = settings_.fade_s == 0 || time_ns - epoch_ns_ > kStart_ns;
     }
-    if (is_risen_) return table_;
+    if (is_risen_) return 1;
     const double fade = ns_to_ms(time_ns - first_ns_) / (1e3 * settings_.fade_s);
     is_risen_ = fade >= 1;
-    table_ = renderer::light_table(settings_, std::min(fade, 1.));
-    return table_;
+    return std::min(fade, 1.);
   }
 
  private:

@@ -4,26 +4,13 @@
 #include "services/projector/inputs.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
+#include "services/projector/show_sub_frames.hpp"
+#include "services/projector/time_sheet.hpp"
 #include "services/runtime/context.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
-
-/// The stages of a frame: those inside the cascade, the whole frame, its presentation and its
-/// light.
-static std::vector<msg::StageMark> time_sheet(const renderer::Frame& frame, std::int64_t begin_ns,
-                                              std::int64_t drawn_ns,
-                                              const projector::PresentTimes& times) {
-  std::vector<msg::StageMark> marks;
-  for (const auto& mark : frame.stages)
-    if (mark.stage < msg::Stage::frame) marks.push_back(mark);
-  marks.push_back({msg::Stage::frame, 0, begin_ns, drawn_ns});
-  marks.push_back({msg::Stage::present, 0, drawn_ns, times.handed_ns});
-  if (times.lit_ns > times.handed_ns)
-    marks.push_back({msg::Stage::light, 0, times.handed_ns, times.lit_ns});
-  return marks;
-}
 
 /// Draws and presents one frame per projector period, and publishes it to the ring
 /// projection.frames.
@@ -41,10 +28,13 @@ static void run_projector(service::Context& context) {
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")));
-  projector::Pacer pacer(rig.projector.rate_hz);
-  projector::Horizon horizon(rig.projector);
   projector::Brightness brightness(rig.projector, context.epoch_ns());
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
+  if (rig.projector.packing != config::Packing::none)
+    return projector::show_sub_frames(
+        context, {*pipeline, inputs, *projector, brightness, std::move(projections)});
+  projector::Pacer pacer(rig.projector.rate_hz);
+  projector::Horizon horizon(rig.projector);
 
   context.ready();
   const auto running = [&] { return context.running(); };
@@ -69,7 +59,7 @@ static void run_projector(service::Context& context) {
     horizon.learn(begin_ns, *times);
     projector::publish_projection(frame, frame_id, *times, projections);
     context.mark({frame_id, frame.made_from.image_ns},
-                 time_sheet(frame, begin_ns, drawn_ns, *times), frame.made_from);
+                 projector::time_sheet(frame.stages, begin_ns, drawn_ns, *times), frame.made_from);
   }
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "config/sections/projector.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/projector/projector.hpp"
+#include "services/projector/recent_median.hpp"
 
 namespace handcast::projector {
 
@@ -49,8 +49,8 @@ bool sleep_while(const Running& running, std::int64_t time_ns) {
   return false;
 }
 
-/// Predicts when the light of a frame will be seen, by the last 31 frames: the medians of the time
-/// of the software and of the time from there to the light, so one slow frame does not change them.
+/// Predicts when the light of a frame will be seen, by the medians of the time of the software and
+/// of the time from there to the light.
 class Horizon {
  public:
   /// Starts with the times of the settings.
@@ -79,26 +79,7 @@ class Horizon {
  private:
   static constexpr std::int64_t kMargin_ns = 300'000;
 
-  /// The median of the last times.
-  class Recent {
-   public:
-    explicit Recent(std::int64_t first_ns) : median_ns_(first_ns) { recent_ns_.fill(first_ns); }
-    std::int64_t median_ns() const { return median_ns_; }
-    void add(std::int64_t time_ns) {
-      recent_ns_[count_++ % recent_ns_.size()] = time_ns;
-      auto sorted = recent_ns_;
-      const auto middle = sorted.begin() + sorted.size() / 2;
-      std::nth_element(sorted.begin(), middle, sorted.end());
-      median_ns_ = *middle;
-    }
-
-   private:
-    std::array<std::int64_t, 31> recent_ns_{};
-    std::size_t count_ = 0;
-    std::int64_t median_ns_;
-  };
-
-  Recent software_, light_;
+  RecentMedian software_, light_;
 };
 
 }  // namespace handcast::projector

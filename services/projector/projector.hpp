@@ -42,8 +42,9 @@ using ProjectorBackend = service::Backend<Projector, config::Rig, calib::Calibra
 /// All back ends of this build.
 std::span<const ProjectorBackend> projector_backends();
 
-/// Opens the back end rig.projector.backend. Errors: bad_config (unknown back end, or its settings
-/// are wrong), and those of the back end.
+/// Opens the back end rig.projector.backend. With `projector.packing`, it gets the settings and the
+/// image size of output frames; `calibration` is that for a sub-frame. Errors: bad_config (unknown
+/// back end, or its settings are wrong), and those of the back end.
 Result<std::unique_ptr<Projector>> open_projector(const config::Rig& rig,
                                                   const calib::Calibration& calibration);
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -22,6 +24,7 @@ class WindowProjector final : public Projector {
       : clock_(settings),
         latency_ns_(ms_to_ns(settings.latency_ms)),
         period_ns_(seconds_to_ns(1 / settings.rate_hz)),
+        is_packed_(settings.packing != config::Packing::none),
         picture_(width_px, height_px),
         window_(std::move(window)) {}
 
@@ -32,6 +35,8 @@ class WindowProjector final : public Projector {
     renderer::write_light(frame.colour, frame.region, light, picture_.view());
     const auto shown = window_->show(picture_.view(), frame.region);
     if (!shown) return fail(shown.error().code, "projector 'window': " + shown.error().what);
+    if (is_packed_)
+      if (auto whole = check_size(); !whole) return tl::make_unexpected(whole.error());
     const auto refresh_ns = window_->refresh_ns();
     compare_rates(refresh_ns);
     return PresentTimes{
@@ -41,6 +46,16 @@ class WindowProjector final : public Projector {
   }
 
  private:
+  /// Sub-frames in the bits or quarters of a frame do not survive that it is scaled.
+  Result<void> check_size() const {
+    const int width_px = window_->width_px(), height_px = window_->height_px();
+    if (width_px == picture_.width() && height_px == picture_.height()) return {};
+    return fail(Errc::bad_config,
+                fmt::format("projector 'window': its {}x{} pixels must be the {}x{} of the "
+                            "calibration, because projector.packing is set: sub-frames cannot be "
+                            "scaled",
+                            width_px, height_px, picture_.width(), picture_.height()));
+  }
   /// Warns once if the monitor's rate is not the one in the settings: figures of missed frames
   /// would be wrong.
   void compare_rates(std::optional<std::int64_t> refresh_ns) {
@@ -53,7 +68,7 @@ class WindowProjector final : public Projector {
 
   LightClock clock_;  ///< the rhythm without that of a monitor
   std::int64_t latency_ns_, period_ns_;
-  bool has_compared_ = false;
+  bool is_packed_, has_compared_ = false;
   renderer::Texture picture_;
   std::unique_ptr<renderer::Window> window_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <exception>
 
+#include "calib/sub_frames.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
@@ -43,7 +44,7 @@ int serve(const daemon::ServiceDescription& description, const CommandLine& line
   for (const auto& note :
        must(apply_scheduling(config::process_of(rig, description.name), description.name)))
     log::warning("{}", note);
-  auto calibration = must(calib::load_calibration(rig.calibration));
+  auto calibration = must(calib::load_calibration(rig.calibration, rig.projector.packing));
   Context context(description, std::move(rig), calibration);
   body(context);
   log::info("stopped");
@@ -60,7 +61,7 @@ std::vector<Error> find_faults(const config::Rig& rig, std::string_view service,
     if (!result) faults.push_back(result.error());
   };
   note(check_scheduling(config::process_of(rig, service), service));
-  const auto calibration = calib::load_calibration(rig.calibration);
+  const auto calibration = calib::load_calibration(rig.calibration, rig.projector.packing);
   if (!calibration) faults.push_back(calibration.error());
   if (check) note(check(rig, calibration.value_or(calib::reference_rig())));
   return faults;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib/calibration.hpp"
+#include "calib/sub_frames.hpp"
 #include "config/settings/files.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/evaluation/simulate/score.hpp"
@@ -115,7 +115,7 @@ Result<std::string> run(const Options& options) {
       return tl::make_unexpected(writable.error());
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
-  const auto calibration = calib::load_calibration(rig->calibration);
+  const auto calibration = calib::load_calibration(rig->calibration, rig->projector.packing);
   if (!calibration) return tl::make_unexpected(calibration.error());
 
   const auto json = score_in_sight(*rig, *calibration, options);

@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 
-#include "calib/calibration.hpp"
+#include "calib/sub_frames.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/result.hpp"
 #include "services/evaluation/simulate/virtual_rig.hpp"

@@ -1,18 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/simulate/simulation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "config/sections/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
 #include "renderer/pipeline/projection.hpp"
 
 namespace handcast::simulate {
+namespace {
+
+/// The time from the inputs of a frame to the middle of its light. With sub-frames, the mean: they
+/// are drawn one after the other before their output frame is handed over, and lit one after the
+/// other afterwards (projector::SubFramePlan).
+std::int64_t leg_ns(const config::Projector& projector) {
+  const double sub_frames = config::sub_frames_of(projector.packing),
+               period_ms = 1e3 / projector.rate_hz;
+  const double drawing_ms =
+      sub_frames == 1 ? projector.software_ms : std::min(projector.software_ms, period_ms);
+  return ms_to_ns(drawing_ms * (sub_frames + 1) / 2 + projector.latency_ms) +
+         seconds_to_ns(0.5 * sub_frames / projector.rate_hz);
+}
+
+}  // namespace
 
 Simulation::Simulation(const config::Rig& rig, const calib::Calibration& calibration,
                        renderer::Pipeline& pipeline, SensorFeed& feed, int draw_every)
     : rate_hz_(rig.projector.rate_hz),
-      leg_ns_(ms_to_ns(rig.projector.software_ms + rig.projector.latency_ms) +
-              seconds_to_ns(0.5 / rig.projector.rate_hz)),
+      leg_ns_(leg_ns(rig.projector)),
       pipeline_(pipeline),
       feed_(feed),
       draw_every_(draw_every),

@@ -27,7 +27,7 @@ simulate::Options options_of(const Plan& plan) {
 Result<nlohmann::json> score(const Plan& plan, const Run& run) try {
   const auto rig = rig_of(plan, run);
   if (!rig) return tl::make_unexpected(rig.error());
-  const auto calibration = calib::load_calibration(rig->calibration);
+  const auto calibration = calib::load_calibration(rig->calibration, rig->projector.packing);
   if (!calibration) return tl::make_unexpected(calibration.error());
   return simulate::score(*rig, *calibration, options_of(plan));
 } catch (const std::exception& problem) {

@@ -3,10 +3,12 @@
 
 #include <utility>
 
+#include "calib/sub_frames.hpp"
+
 namespace handcast::preview {
 
 Result<World> load_world(const config::Rig& rig) {
-  auto calibration = calib::load_calibration(rig.calibration);
+  auto calibration = calib::load_calibration(rig.calibration, rig.projector.packing);
   if (!calibration) return tl::make_unexpected(std::move(calibration.error()));
   World world{.calibration = *calibration,
               .mask = rig.cascade.mask,

@@ -8,6 +8,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "services/projector/show_sub_frames.hpp"
 #include "tests/display_server.hpp"
 #include "tests/scratch.hpp"
 
@@ -83,6 +84,18 @@ TEST_P(ProjectorContract, ADeadlineInThePastIsATimeoutNotAHang) {
   ASSERT_FALSE(busy);
   EXPECT_EQ(busy.error().code, Errc::timeout);
   EXPECT_TRUE(projector_->present(small_.frame, 6, kLight, Deadline::in(5s)));
+}
+
+TEST(PackedProjector, TheBackEndTakesOutputFramesAtTheirRate) {
+  config::Rig rig;
+  rig.projector.packing = config::Packing::planes_8x3;
+  rig.projector.rate_hz = 800;
+  rig.projector.latency_ms = 4;
+  const auto projector = open_projector(rig, {});
+  ASSERT_TRUE(projector) << projector.error().what;
+  const auto times = (*projector)->present(SmallFrame().frame, 1, kLight, Deadline::in(5s));
+  ASSERT_TRUE(times);
+  EXPECT_EQ(times->lit_ns - times->handed_ns, to_ns(4ms) + to_ns(5ms)) << "half of 8 sub-frames";
 }
 
 std::vector<std::string_view> all() { return service::names_of(projector_backends()); }

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace handcast::projector {
+
+/// The median of the last 31 times, which a single slow frame does not change.
+class RecentMedian {
+ public:
+  /// Starts as if all times so far had been `first_ns`.
+  explicit RecentMedian(std::int64_t first_ns) : median_ns_(first_ns) { recent_ns_.fill(first_ns); }
+
+  /// The median.
+  std::int64_t median_ns() const { return median_ns_; }
+  /// Adds a time.
+  void add(std::int64_t time_ns) {
+    recent_ns_[count_++ % recent_ns_.size()] = time_ns;
+    auto sorted = recent_ns_;
+    const auto middle = sorted.begin() + sorted.size() / 2;
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    median_ns_ = *middle;
+  }
+
+ private:
+  std::array<std::int64_t, 31> recent_ns_{};
+  std::size_t count_ = 0;
+  std::int64_t median_ns_;
+};
+
+}  // namespace handcast::projector

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/projector/show_sub_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "calib/sub_frames.hpp"
+#include "config/settings/choice.hpp"
+#include "renderer/output/packing.hpp"
+#include "services/projector/pacing.hpp"
+#include "services/projector/sub_frame_messages.hpp"
+#include "services/projector/sub_frame_plan.hpp"
+
+namespace handcast::projector {
+namespace {
+
+std::unique_ptr<renderer::Packer> packer_for(const service::Context& context) {
+  const auto output = calib::output_of(context.calibration(), context.rig().projector.packing);
+  return renderer::make_packer(context.rig().projector, output.projector_width_px,
+                               output.projector_height_px);
+}
+
+/// The levels of a packed frame are those of the projector.
+renderer::LightTable unchanged() {
+  renderer::LightTable table{};
+  for (std::size_t level = 0; level < table.size(); ++level)
+    table[level] = static_cast<std::uint8_t>(level);
+  return table;
+}
+
+/// Draws, packs and hands over one output frame after the other.
+class SubFrameLoop {
+ public:
+  SubFrameLoop(service::Context& context, SubFrameShow show)
+      : context_(context),
+        show_(std::move(show)),
+        packer_(packer_for(context)),
+        plan_(context.rig().projector),
+        messages_(std::move(show_.projections),
+                  [&context](const auto& header, auto stages, const auto& made_from) {
+                    context.mark(header, stages, made_from);
+                  }) {}
+
+  void run() {
+    for (std::int64_t output_id = 0; draw_all(); ++output_id)
+      if (!present(output_id)) return;
+  }
+
+ private:
+  /// Draws the sub-frames. False if the service ends.
+  bool draw_all() {
+    plan_.start(now_ns());
+    packer_->begin(show_.brightness.fade_at(now_ns()));
+    renderer::Frame frame;
+    while (const auto next = plan_.next(now_ns())) {
+      if (!sleep_and_publish(next->begin_ns)) return false;
+      const std::int64_t start_ns = now_ns();
+      frame = draw(*next);
+      plan_.drawn(*next, now_ns() - start_ns);
+    }
+    if (const int left = plan_.left_to_draw(); left > 0) {
+      packer_->add(frame.colour, frame.region, sub_frames() - left, left);
+      messages_.extend(left);
+    }
+    return true;
+  }
+
+  renderer::Frame draw(const SubFramePlan::Drawing& drawing) {
+    if (const auto delivered = show_.inputs.deliver(show_.pipeline, Deadline::now()); !delivered)
+      context_.tolerate(delivered.error());
+    const std::int64_t begin_ns = now_ns();
+    const auto frame = show_.pipeline.render(begin_ns, drawing.target_ns, show_.inputs.image());
+    const std::int64_t drawn_ns = now_ns();
+    packer_->add(frame.colour, frame.region, drawing.first, drawing.count);
+    messages_.keep(frame, drawing.count, begin_ns, drawn_ns);
+    return frame;
+  }
+
+  /// Hands the output frame over. False if the service ends.
+  bool present(std::int64_t output_id) {
+    if (!has_rhythm_ && !sleep_and_publish(plan_.hand_over_ns())) return false;
+    renderer::Frame output;
+    output.colour = packer_->image();
+    output.region = packer_->region();
+    const auto times =
+        show_.projector.present(output, output_id, unchanged_,
+                                Deadline::at_ns(now_ns() + 50'000'000 + plan_.output_period_ns()));
+    if (!times) {
+      messages_.drop();
+      context_.tolerate(times.error());
+      return true;
+    }
+    has_rhythm_ = times->next_ns != 0;
+    plan_.presented(*times);
+    messages_.handed_over(plan_, static_cast<std::uint64_t>(output_id * sub_frames()), *times);
+    return true;
+  }
+
+  /// Publishes the messages that are due until `time_ns`. False if the service ends.
+  bool sleep_and_publish(std::int64_t time_ns) {
+    const auto running = [this] { return context_.running(); };
+    for (;;) {
+      messages_.publish(now_ns());
+      const std::int64_t due_ns = messages_.due_ns();
+      if (!sleep_while(running, std::min(time_ns, due_ns))) return false;
+      if (time_ns < due_ns) return true;
+    }
+  }
+  int sub_frames() const { return config::sub_frames_of(context_.rig().projector.packing); }
+
+  const renderer::LightTable unchanged_ = unchanged();
+
+  service::Context& context_;
+  SubFrameShow show_;
+  std::unique_ptr<renderer::Packer> packer_;
+  SubFramePlan plan_;
+  SubFrameMessages messages_;
+  bool has_rhythm_ = false;  ///< the projector says when it takes the next output frame
+};
+
+}  // namespace
+
+void show_sub_frames(service::Context& context, SubFrameShow show) {
+  SubFrameLoop loop(context, std::move(show));
+  context.ready();
+  loop.run();
+}
+
+}  // namespace handcast::projector

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "ipc/msg/projection.hpp"
+#include "ipc/ring/writer.hpp"
+#include "renderer/pipeline/pipeline.hpp"
+#include "services/projector/brightness.hpp"
+#include "services/projector/inputs.hpp"
+#include "services/projector/projector.hpp"
+#include "services/runtime/context.hpp"
+
+namespace handcast::projector {
+
+/// What a projector of sub-frames is driven with.
+struct SubFrameShow {
+  renderer::Pipeline& pipeline;
+  Inputs& inputs;
+  Projector& projector;
+  Brightness& brightness;
+  ipc::Writer<msg::Projection> projections;
+};
+
+/// Draws the sub-frames of each output frame (SubFramePlan), packs them (renderer::Packer), hands
+/// the output frame over and publishes a message for each sub-frame, until the service ends. Calls
+/// context.ready().
+void show_sub_frames(service::Context& context, SubFrameShow show);
+
+}  // namespace handcast::projector
