@@ -8,12 +8,15 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "renderer/output/edid.hpp"
 #include "renderer/window/blit.hpp"
 #include "renderer/window/monitor.hpp"
 #include "renderer/window/x11.hpp"
 
 namespace handcast::renderer {
 namespace {
+
+constexpr std::int64_t kLookEvery_ns = 250'000'000;
 
 /// The reason of the last failure of GLFW.
 std::string& last_reason() {
@@ -92,6 +95,7 @@ class Window::Screen {
  private:
   Result<void> find_monitor();
   void appear();
+  bool covers_monitor() const;
   void keep_in_front();
   Shown draw(View<const std::uint32_t> picture, Rect region);
 
@@ -103,6 +107,7 @@ class Window::Screen {
   double rate_hz_ = 0;              ///< of the monitor; 0: unknown
   std::unique_ptr<Blit> blit_;
   bool has_appeared_ = false;
+  std::int64_t next_look_ns_ = 0;  ///< when to look again whether the window covers the monitor
   std::vector<std::string> keys_;
 
   static Screen* the_screen_;  ///< GLFW reports monitors without a window
@@ -179,11 +184,29 @@ void Window::Screen::appear() {
         monitor_name_, width, height, settings_.width_px, settings_.height_px);
 }
 
+bool Window::Screen::covers_monitor() const {
+  const GLFWvidmode* mode = glfwGetVideoMode(monitor_);
+  if (mode == nullptr) return true;
+  int x = 0, y = 0, width = 0, height = 0, monitor_x = 0, monitor_y = 0;
+  glfwGetMonitorPos(monitor_, &monitor_x, &monitor_y);
+  glfwGetWindowPos(window_, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  return glfwGetWindowAttrib(window_, GLFW_VISIBLE) == GLFW_TRUE && x == monitor_x &&
+         y == monitor_y && width == mode->width && height == mode->height;
+}
+
 /// Undoes what a user or another program did to a full-screen window.
 void Window::Screen::keep_in_front() {
   if (!settings_.full_screen) return;
   if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) glfwRestoreWindow(window_);
   glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  if (now_ns() < next_look_ns_) return;  // it takes the server some time
+  next_look_ns_ = now_ns() + kLookEvery_ns;
+  if (covers_monitor()) return;
+  log::warning("another program moved, resized or hid the window on monitor '{}'; it is put back",
+               monitor_name_);
+  glfwSetWindowMonitor(window_, nullptr, 0, 0, settings_.width_px, settings_.height_px, 0);
+  appear();
 }
 
 Shown Window::Screen::draw(View<const std::uint32_t> picture, Rect region) {
