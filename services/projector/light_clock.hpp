@@ -1,10 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include "services/projector/projector.hpp"
 
 namespace handcast::projector {
+
+/// Counts the refreshes between frames by their times.
+class Refreshes {
+ public:
+  /// Number of refreshes from the last frame to this one (msg::LightNote::refreshes); 0 for the
+  /// first one.
+  std::uint32_t since_last(std::int64_t time_ns, std::int64_t refresh_ns) {
+    const std::int64_t span_ns = time_ns - std::exchange(last_ns_, time_ns);
+    if (span_ns == time_ns) return 0;
+    return static_cast<std::uint32_t>(
+        std::max<std::int64_t>((span_ns + refresh_ns / 2) / refresh_ns, 1));
+  }
+
+ private:
+  std::int64_t last_ns_ = 0;
+};
 
 /// The times of a simulated projector. It takes one frame per period on average, and lights it for
 /// one period, `latency_ms` after it was handed over. After a late frame the next one may follow
@@ -27,11 +45,15 @@ class LightClock {
     }
     const std::int64_t handed_ns = now_ns();
     free_ns_ = std::max(free_ns_ + period_ns_, handed_ns);
-    return PresentTimes{handed_ns, handed_ns + latency_ns_ + period_ns_ / 2};
+    return PresentTimes{
+        .handed_ns = handed_ns,
+        .lit_ns = handed_ns + latency_ns_ + period_ns_ / 2,
+        .note = {msg::LightSource::settings, refreshes_.since_last(handed_ns, period_ns_)}};
   }
 
  private:
   std::int64_t period_ns_, latency_ns_;
+  Refreshes refreshes_;
   std::int64_t free_ns_ = 0;  ///< when the projector can take the next frame
 };
 

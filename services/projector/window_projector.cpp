@@ -37,6 +37,8 @@ class WindowProjector final : public Projector {
     return PresentTimes{
         .handed_ns = shown->handed_ns,
         .lit_ns = shown->shown_ns + latency_ns_ + refresh_ns.value_or(period_ns_) / 2,
+        .note = {msg::LightSource::window,
+                 refreshes_.since_last(shown->shown_ns, refresh_ns.value_or(period_ns_))},
         .next_ns = refresh_ns ? shown->shown_ns + *refresh_ns : 0};
   }
 
@@ -53,6 +55,7 @@ class WindowProjector final : public Projector {
 
   LightClock clock_;  ///< the rhythm without that of a monitor
   std::int64_t latency_ns_, period_ns_;
+  Refreshes refreshes_;
   bool has_compared_ = false;
   renderer::Texture picture_;
   std::unique_ptr<renderer::Window> window_;
