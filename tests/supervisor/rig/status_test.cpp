@@ -31,6 +31,21 @@ TEST(Status, AServiceThatIsWellHasOneLine) {
   EXPECT_THAT(print_with(service(json::object())), Not(HasSubstr("tried again")));
 }
 
+TEST(Status, SaysWhoKnowsWhenLightComes) {
+  json status{
+      {"rig", "desk"},
+      {"uptime_s", 7},
+      {"services", json::object()},
+      {"rings", json::object()},
+      {"stage_us", json::object()},
+      {"light", {{"times_by", "kernel"}, {"missed_refreshes", 12345678}, {"doubled_frames", 2}}}};
+  EXPECT_THAT(print_status(status),
+              HasSubstr("light: 12345678 refreshes without a new frame, 2 frames shown for several "
+                        "refreshes; times by the kernel\n"));
+  status["light"] = nullptr;
+  EXPECT_THAT(print_status(status), Not(HasSubstr("light:")));
+}
+
 TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {
   const auto text = print_with(service({{"state", "degraded"},
                                         {"last_exit", "exit 111"},
