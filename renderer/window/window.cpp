@@ -94,6 +94,7 @@ class Window::Screen {
 
  private:
   Result<void> find_monitor();
+  void warm_up();
   void appear();
   bool covers_monitor() const;
   void keep_in_front();
@@ -146,6 +147,7 @@ Result<void> Window::Screen::create() {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(settings_.vsync ? 1 : 0);
   blit_ = std::make_unique<Blit>();
+  warm_up();
 
   glfwSetWindowUserPointer(window_, this);
   glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned codepoint) {
@@ -164,6 +166,17 @@ Result<void> Window::Screen::create() {
     the_screen_->has_appeared_ = false;
   });
   return {};
+}
+
+/// Draws a picture that nobody sees: drivers compile their programs and take memory for the first
+/// one, which takes 50 ms with llvmpipe.
+void Window::Screen::warm_up() {
+  const Image<std::uint32_t> black(settings_.width_px, settings_.height_px);
+  const GLFWvidmode* mode = monitor_ != nullptr ? glfwGetVideoMode(monitor_) : nullptr;
+  const int width = mode != nullptr ? mode->width : settings_.width_px,
+            height = mode != nullptr ? mode->height : settings_.height_px;
+  blit_->draw(black.view(), {0, 0, black.width(), black.height()}, width, height);
+  blit_->finish();
 }
 
 /// Puts the window on its monitor. The monitor keeps its video mode, because another one may not
