@@ -59,8 +59,9 @@ Display display_of(int card, const std::string& path, const drmModeConnector& co
                   .is_connected = connector.connection == DRM_MODE_CONNECTED,
                   .modes = {}};
   for (int i = 0; i < connector.count_modes; ++i)
-    if ((connector.modes[i].flags & DRM_MODE_FLAG_INTERLACE) == 0)
-      display.modes.push_back(mode_of(connector.modes[i]));
+    if (const auto mode = mode_of(connector.modes[i]);
+        mode.rate_hz > 0 && (mode.timing.flags & DRM_MODE_FLAG_INTERLACE) == 0)
+      display.modes.push_back(mode);
   std::stable_partition(display.modes.begin(), display.modes.end(), [](const Mode& mode) {
     return (mode.timing.type & DRM_MODE_TYPE_PREFERRED) != 0;
   });
