@@ -19,6 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLastFlip = 200ms;  ///< longest wait for a flip before the picture is changed back
+constexpr auto kHang = 2s;         ///< a card that takes longer for a flip hangs
 constexpr auto kRetry = 500ms;     ///< time between two attempts to light a display
 
 /// Waits until the card has an event.
@@ -168,9 +169,12 @@ Result<void> Screen::await_flip(Deadline deadline) {
   };
   while (is_flipping_) {
     if (!has_event(card_.get(), deadline))
-      return fail(Errc::timeout, fmt::format("'{}' has not shown the last picture until the "
-                                             "deadline",
-                                             display_.connector));
+      return now_ns() - handed_ns_ > to_ns(kHang)
+                 ? fail(Errc::disconnected, fmt::format("'{}' has stopped to show pictures on '{}'",
+                                                        display_.card, display_.connector))
+                 : fail(Errc::timeout, fmt::format("'{}' has not shown the last picture until the "
+                                                   "deadline",
+                                                   display_.connector));
     if (drmHandleEvent(card_.get(), &context) != 0)
       return fail(Errc::disconnected, fmt::format("'{}' is gone", display_.card));
   }
@@ -179,12 +183,14 @@ Result<void> Screen::await_flip(Deadline deadline) {
 
 /// Lets the card change the buffers at the next refresh.
 Result<void> Screen::commit_flip() {
+  const std::int64_t handed_ns = now_ns();
   Request request;
   request.set(pipe_.plane, "FB_ID", buffers_[1 - front_]->id());
   const int number =
       request.commit(card_.get(), DRM_MODE_PAGE_FLIP_EVENT | DRM_MODE_ATOMIC_NONBLOCK, this);
   if (number != 0) return tl::make_unexpected(why_not_flipped(number, display_));
   is_flipping_ = true;
+  handed_ns_ = handed_ns;
   front_ = 1 - front_;
   return {};
 }
@@ -204,11 +210,10 @@ Result<Flip> Screen::show(View<const std::uint32_t> picture, Rect region, Deadli
   if (auto free = await_flip(deadline); !free) return tl::make_unexpected(free.error());
   buffers_[1 - front_]->draw(picture, region);
 
-  const std::int64_t handed_ns = now_ns();
   const auto before = last_;
   if (auto committed = commit_flip(); !committed) return tl::make_unexpected(committed.error());
   if (auto shown = await_flip(deadline); !shown) return tl::make_unexpected(shown.error());
-  return Flip{handed_ns, last_->time_ns, before ? last_->sequence - before->sequence : 0};
+  return Flip{handed_ns_, last_->time_ns, before ? last_->sequence - before->sequence : 0};
 }
 
 }  // namespace handcast::renderer::kms

@@ -51,7 +51,7 @@ class Screen {
 
   /// Shows a picture of RGBA8, black outside of `region`, at the next refresh, and waits for it.
   /// Errors: timeout (the deadline, or the display is unplugged; it is dark then, and show() comes
-  /// back to it when it is there again), disconnected (the card is gone).
+  /// back to it when it is there again), disconnected (the card is gone or hangs).
   Result<Flip> show(View<const std::uint32_t> picture, Rect region, Deadline deadline);
 
   /// Time from one refresh to the next.
@@ -79,8 +79,9 @@ class Screen {
   std::size_t front_ = 0;     ///< the buffer that is shown
   bool has_changed_ = false;  ///< the card is no longer in its former state
   bool is_on_ = false;
-  std::int64_t retry_ns_ = 0;  ///< when to come back to the display again, after a failure
-  bool is_flipping_ = false;   ///< the event of a flip has not arrived yet
+  std::int64_t retry_ns_ = 0;   ///< when to come back to the display again, after a failure
+  bool is_flipping_ = false;    ///< the event of a flip has not arrived yet
+  std::int64_t handed_ns_ = 0;  ///< when the card got the last picture
   struct Event {
     std::int64_t time_ns = 0;
     std::uint32_t sequence = 0;  ///< the number of the refresh

@@ -2,6 +2,7 @@
 #include "ipc/base/clock.hpp"
 #include "renderer/kms/screen.hpp"
 #include "services/projector/projector.hpp"
+#include "services/projector/refreshes.hpp"
 
 namespace handcast::projector {
 namespace {
@@ -46,6 +47,7 @@ Result<std::unique_ptr<Projector>> open_kms(const config::Rig& rig,
                                              .height_px = height_px,
                                              .rate_hz = settings.rate_hz});
   if (!screen) return fail_in("projector 'kms'", screen.error());
+  warn_if_rates_differ((*screen)->refresh_ns(), settings);
   return std::make_unique<KmsProjector>(settings, width_px, height_px, std::move(*screen));
 }
 

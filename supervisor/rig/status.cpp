@@ -92,6 +92,19 @@ std::string text_of(const json& value, std::string_view unit = "") {
   return fmt::format("{:.6g}{}", value.get<double>(), unit);
 }
 
+/// "light: 59.9 Hz of 60 Hz; 3 refreshes without a new frame, ...". "" if none came.
+std::string print_light(const json& status) {
+  const auto light = status.value("light", json());
+  if (light.is_null()) return "";
+  const auto ring = status["rings"].value("projection.frames", json::object());
+  return fmt::format(
+      "\nlight: {} of {}; {} refreshes without a new frame, {} frames shown for several refreshes; "
+      "times by the {}\n",
+      text_of(ring.value("held_hz", json()), " Hz"),
+      text_of(ring.value("wanted_hz", json()), " Hz"), light["missed_refreshes"].dump(),
+      light["doubled_frames"].dump(), text_of(light["times_by"]));
+}
+
 /// The trouble of a service: "died 10 times within 60 s; tried again in 4.2 s". "" if it has none.
 std::string print_trouble(const json& service) {
   std::string text =
@@ -146,13 +159,7 @@ std::string print_status(const json& status) {
     text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>10}\n", name,
                         text_of(ring["wanted_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
                         text_of(ring["newest_age_ms"], " ms"), text_of(ring["count"]));
-  if (const auto light = status.value("light", json()); !light.is_null())
-    text += fmt::format(
-        "\nlight: {} refreshes without a new frame, {} frames shown for several refreshes; times "
-        "by "
-        "the {}\n",
-        light["missed_refreshes"].dump(), light["doubled_frames"].dump(),
-        text_of(light["times_by"]));
+  text += print_light(status);
   text +=
       fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
   for (const auto& [stage, times] : status["stage_us"].items())

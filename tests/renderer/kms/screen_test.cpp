@@ -231,6 +231,16 @@ TEST_F(KmsScreen, ACardThatNeverFlipsIsATimeoutNotAHang) {
   EXPECT_TRUE(show_until(**screen, true));
 }
 
+TEST_F(KmsScreen, ACardThatHangsEndsTheScreen) {
+  auto screen = Screen::open(settings());
+  ASSERT_TRUE(screen) << screen.error().what;
+  card_.set({.never_flips = true});
+  const Square square;
+  auto shown = show(**screen, square);
+  EXPECT_EQ(shown.error().code, Errc::disconnected) << "after the five seconds of this test";
+  EXPECT_THAT(shown.error().what, HasSubstr("stopped to show pictures"));
+}
+
 TEST_F(KmsScreen, ACardThatIsPulledOutEndsTheScreen) {
   auto screen = Screen::open(settings());
   ASSERT_TRUE(screen) << screen.error().what;

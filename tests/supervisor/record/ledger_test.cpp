@@ -67,6 +67,8 @@ TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
   }
   marks.marks[0].detail = 0x2ff;  // no source
   ledger.add("projector", marks);
+  marks.marks[0] = {msg::Stage::draw, msg::detail_of({msg::LightSource::window, 7}), 0, 1};
+  ledger.add("projector", marks);
   EXPECT_EQ(ledger.light().source, msg::LightSource::kernel);
   EXPECT_EQ(ledger.light().missed, 4u);
   EXPECT_EQ(ledger.light().doubled, 2u);

@@ -36,12 +36,14 @@ TEST(Status, SaysWhoKnowsWhenLightComes) {
       {"rig", "desk"},
       {"uptime_s", 7},
       {"services", json::object()},
-      {"rings", json::object()},
+      {"rings",
+       {{"projection.frames",
+         {{"wanted_hz", 60}, {"held_hz", 59.5}, {"newest_age_ms", 1}, {"count", 9}}}}},
       {"stage_us", json::object()},
       {"light", {{"times_by", "kernel"}, {"missed_refreshes", 12345678}, {"doubled_frames", 2}}}};
   EXPECT_THAT(print_status(status),
-              HasSubstr("light: 12345678 refreshes without a new frame, 2 frames shown for several "
-                        "refreshes; times by the kernel\n"));
+              HasSubstr("light: 59.5 Hz of 60 Hz; 12345678 refreshes without a new frame, 2 frames "
+                        "shown for several refreshes; times by the kernel\n"));
   status["light"] = nullptr;
   EXPECT_THAT(print_status(status), Not(HasSubstr("light:")));
 }
