@@ -79,11 +79,10 @@ Result<void> Screen::choose_mode() {
   return {};
 }
 
-/// Gives the display its mode and the black front buffer, without what may lie above the picture
-/// (the cursor) and without a colour table.
-Result<void> Screen::light_up() {
+/// Adds what gives the display its mode and the front buffer, without what may lie above the
+/// picture (the cursor) and without a colour table.
+void Screen::add_light(Request& request) const {
   const auto& [connector, crtc, plane, others, order] = pipe_;
-  Request request;
   request.set(connector, "CRTC_ID", crtc.id());
   request.set(connector, "link-status", DRM_MODE_LINK_STATUS_GOOD);  // trains a lost link again
   request.set(crtc, "MODE_ID", mode_blob_.id());
@@ -102,23 +101,28 @@ Result<void> Screen::light_up() {
         std::pair("SRC_H", settings_.height_px << 16), std::pair("CRTC_W", mode_.width_px),
         std::pair("CRTC_H", mode_.height_px)})
     request.set(plane, name, static_cast<std::uint64_t>(value));
+}
 
-  const bool is_scaled =
-      mode_.width_px != settings_.width_px || mode_.height_px != settings_.height_px;
+Error Screen::why_not_lit(int number) const {
+  return {Errc::unavailable,
+          fmt::format("'{}' refuses the mode {} for '{}'{}: {}; choose another projector.kms.mode",
+                      display_.card, describe(mode_), display_.connector,
+                      is_scaled() ? fmt::format(" with the picture of {}x{} pixels scaled",
+                                                settings_.width_px, settings_.height_px)
+                                  : "",
+                      std::strerror(number))};
+}
+
+Result<void> Screen::light_up() {
+  Request request;
+  add_light(request);
   if (const int number = request.commit(card_.get(), DRM_MODE_ATOMIC_ALLOW_MODESET); number != 0)
-    return fail(Errc::unavailable,
-                fmt::format("'{}' refuses the mode {} for '{}'{}: {}; choose another "
-                            "projector.kms.mode",
-                            display_.card, describe(mode_), display_.connector,
-                            is_scaled ? fmt::format(" with the picture of {}x{} pixels scaled",
-                                                    settings_.width_px, settings_.height_px)
-                                      : "",
-                            std::strerror(number)));
+    return tl::make_unexpected(why_not_lit(number));
   is_on_ = has_changed_ = true;
   last_.reset();
   log::info("light on '{}' of '{}'{}, mode {}", display_.connector, display_.card,
             display_.model.empty() ? "" : " (" + display_.model + ")", describe(mode_));
-  if (is_scaled)
+  if (is_scaled())
     log::warning(
         "the mode {} has another size than the calibration, {}x{}, so the picture is scaled",
         describe(mode_), settings_.width_px, settings_.height_px);

@@ -61,6 +61,11 @@ class Screen {
   Screen(ScreenSettings settings, UniqueFd card, Display display);
   Result<void> prepare();
   Result<void> choose_mode();
+  bool is_scaled() const {
+    return mode_.width_px != settings_.width_px || mode_.height_px != settings_.height_px;
+  }
+  void add_light(Request& request) const;
+  Error why_not_lit(int number) const;
   Result<void> light_up();
   void go_dark();
   Result<void> come_back();

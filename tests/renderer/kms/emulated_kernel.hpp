@@ -2,6 +2,7 @@
 #pragma once
 #include <xf86drm.h>
 
+#include <array>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -10,6 +11,12 @@
 #include "tests/renderer/kms/emulated_card.hpp"
 
 namespace handcast::test {
+
+/// The memory at an address that is a number in the kernel's structs.
+template <class T>
+T* at(std::uint64_t address) {
+  return reinterpret_cast<T*>(address);  // NOLINT(performance-no-int-to-ptr)
+}
 
 /// The state of the card and the kernel's rules for it. Any thread.
 class EmulatedCard::Kernel {
@@ -32,6 +39,9 @@ class EmulatedCard::Kernel {
   friend class EmulatedCard;
 
   using Id = std::uint32_t;
+  static constexpr Id kCrtc0 = 51, kCrtc1 = 52, kPlane0 = 61, kPlane1 = 62, kCursor = 63;
+  static constexpr std::array kCrtcs{kCrtc0, kCrtc1};
+  static constexpr std::uint64_t kMemory = 64 << 20;
   struct Property {
     std::string name;
     std::uint32_t flags = 0;
@@ -121,5 +131,8 @@ class EmulatedCard::Kernel {
   std::condition_variable ends_;
   std::thread refreshes_;
 };
+
+/// The kernel's part of the card of this process; null without a card.
+std::shared_ptr<EmulatedCard::Kernel>& the_kernel();
 
 }  // namespace handcast::test
