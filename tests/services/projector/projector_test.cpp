@@ -106,12 +106,13 @@ TEST_P(ProjectorContract, SaysWhoKnowsWhenLightCameAndHowManyRefreshesHadNoNewFr
 }
 
 TEST_P(ProjectorContract, ADeadlineInThePastIsATimeoutNotAHang) {
-  for (int i = 1; i <= 4; ++i)  // the first one may be slow, and then the others follow at once
-    ASSERT_TRUE(projector_->present(small_.frame, i, kLight, Deadline::in(5s)));
-  const auto busy = projector_->present(small_.frame, 5, kLight, Deadline::now());
+  // A frame that takes longer than a period, on a busy machine, is not followed by a wait.
+  auto busy = projector_->present(small_.frame, 1, kLight, Deadline::in(5s));
+  for (int i = 2; busy && i < 500; ++i)
+    busy = projector_->present(small_.frame, i, kLight, Deadline::now());
   ASSERT_FALSE(busy);
   EXPECT_EQ(busy.error().code, Errc::timeout);
-  EXPECT_TRUE(projector_->present(small_.frame, 6, kLight, Deadline::in(5s)));
+  EXPECT_TRUE(projector_->present(small_.frame, 500, kLight, Deadline::in(5s)));
 }
 
 std::vector<std::string_view> all() { return service::names_of(projector_backends()); }
