@@ -197,7 +197,7 @@ void film_grey_levels(Projector& projector, const std::filesystem::path& file, i
     for (int y = 6; y < 10; ++y)
       std::fill_n(small.pixels.row(y) + 8, 4, 0xff000000u | (0x101010u * static_cast<unsigned>(i)));
     ASSERT_TRUE(projector.present(small.frame, i, kLight, Deadline::in(5s)));
-    const auto wanted = static_cast<std::size_t>(i / every + 1);
+    const auto wanted = static_cast<std::size_t>(i / every) + 1;
     for (const auto limit = Deadline::in(20s);
          lit_pixels_of(file).size() < wanted && !limit.passed();)
       sleep_until_ns(now_ns() + to_ns(1ms));
