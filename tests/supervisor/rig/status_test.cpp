@@ -11,7 +11,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-json service(json more) {
+json service(const json& more) {
   json status{{"state", "ready"},  {"pid", 42},         {"backend", "twin"},
               {"uptime_s", 3},     {"restarts", 0},     {"last_exit", nullptr},
               {"reason", nullptr}, {"retry_s", nullptr}};
