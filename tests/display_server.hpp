@@ -69,10 +69,9 @@ class DisplayServer {
     std::array<char, 16> text{};
     pollfd answer{number[0], POLLIN, 0};
     const bool answers = poll(&answer, 1, kPatience_ms) == 1;
-    const auto length = answers ? read(number[0], text.data(), text.size() - 1) : 0;
+    const auto length = answers ? read(number[0], text.data(), text.size()) : 0;
     close(number[0]);
     if (length <= 0) return false;
-    name_ = fmt::format(":{}", std::atoi(text.data()));
     ::setenv("DISPLAY", name_.c_str(), 1);
     works_ = xrandr("--addmode DUMMY1 800x600") && plug_in();
     return works_;
@@ -123,7 +122,7 @@ EndSection
     std::vector<const char*> words{"Xorg",        "-displayfd", descriptor.c_str(), "-config",
                                    file.c_str(),  "-logfile",   log.c_str(),        "-noreset",
                                    "-novtswitch", "-sharevts",  "-nolisten",        "tcp"};
-    if (!name_.empty()) words.push_back(name_.c_str());
+    words.push_back(name_.c_str());
     words.push_back(nullptr);
     execv("/usr/lib/xorg/Xorg", const_cast<char* const*>(words.data()));
     _exit(1);
@@ -136,7 +135,8 @@ EndSection
   [[no_unique_address]] IgnoreLeaks ignore_leaks_;
   Scratch scratch_;
   pid_t pid_ = -1;
-  std::string name_;
+  /// Its own number: the next free one could be taken by another test while this server is dead.
+  std::string name_ = fmt::format(":{}", 1000 + getpid() % 50'000);
   bool works_ = false;
 };
 

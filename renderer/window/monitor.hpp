@@ -30,8 +30,4 @@ std::string describe(const Monitor& monitor, std::size_t index);
 /// off).
 Result<std::size_t> choose_monitor(std::span<const Monitor> monitors, std::string_view wanted);
 
-/// The name of a display in its EDID (VESA E-EDID 1.4, 3.10.3.4: descriptor 0xFC). Empty if it has
-/// none, or if the block is damaged.
-std::string model_of(std::span<const std::uint8_t> edid);
-
 }  // namespace handcast::renderer

@@ -8,12 +8,15 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "renderer/output/edid.hpp"
 #include "renderer/window/blit.hpp"
 #include "renderer/window/monitor.hpp"
 #include "renderer/window/x11.hpp"
 
 namespace handcast::renderer {
 namespace {
+
+constexpr std::int64_t kLookEvery_ns = 250'000'000;
 
 /// The reason of the last failure of GLFW.
 std::string& last_reason() {
@@ -91,7 +94,9 @@ class Window::Screen {
 
  private:
   Result<void> find_monitor();
+  void warm_up();
   void appear();
+  bool covers_monitor() const;
   void keep_in_front();
   Shown draw(View<const std::uint32_t> picture, Rect region);
 
@@ -103,6 +108,7 @@ class Window::Screen {
   double rate_hz_ = 0;              ///< of the monitor; 0: unknown
   std::unique_ptr<Blit> blit_;
   bool has_appeared_ = false;
+  std::int64_t next_look_ns_ = 0;  ///< when to look again whether the window covers the monitor
   std::vector<std::string> keys_;
 
   static Screen* the_screen_;  ///< GLFW reports monitors without a window
@@ -141,6 +147,7 @@ Result<void> Window::Screen::create() {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(settings_.vsync ? 1 : 0);
   blit_ = std::make_unique<Blit>();
+  warm_up();
 
   glfwSetWindowUserPointer(window_, this);
   glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned codepoint) {
@@ -161,6 +168,17 @@ Result<void> Window::Screen::create() {
   return {};
 }
 
+/// Draws a picture that nobody sees: drivers compile their programs and take memory for the first
+/// one, which takes 50 ms with llvmpipe.
+void Window::Screen::warm_up() {
+  const Image<std::uint32_t> black(settings_.width_px, settings_.height_px);
+  const GLFWvidmode* mode = monitor_ != nullptr ? glfwGetVideoMode(monitor_) : nullptr;
+  const int width = mode != nullptr ? mode->width : settings_.width_px,
+            height = mode != nullptr ? mode->height : settings_.height_px;
+  blit_->draw(black.view(), {0, 0, black.width(), black.height()}, width, height);
+  blit_->finish();
+}
+
 /// Puts the window on its monitor. The monitor keeps its video mode, because another one may not
 /// fit into the screen of the server, which ends the process that asks for it.
 void Window::Screen::appear() {
@@ -179,11 +197,29 @@ void Window::Screen::appear() {
         monitor_name_, width, height, settings_.width_px, settings_.height_px);
 }
 
+bool Window::Screen::covers_monitor() const {
+  const GLFWvidmode* mode = glfwGetVideoMode(monitor_);
+  if (mode == nullptr) return true;
+  int x = 0, y = 0, width = 0, height = 0, monitor_x = 0, monitor_y = 0;
+  glfwGetMonitorPos(monitor_, &monitor_x, &monitor_y);
+  glfwGetWindowPos(window_, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  return glfwGetWindowAttrib(window_, GLFW_VISIBLE) == GLFW_TRUE && x == monitor_x &&
+         y == monitor_y && width == mode->width && height == mode->height;
+}
+
 /// Undoes what a user or another program did to a full-screen window.
 void Window::Screen::keep_in_front() {
   if (!settings_.full_screen) return;
   if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) glfwRestoreWindow(window_);
   glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  if (now_ns() < next_look_ns_) return;  // it takes the server some time
+  next_look_ns_ = now_ns() + kLookEvery_ns;
+  if (covers_monitor()) return;
+  log::warning("another program moved, resized or hid the window on monitor '{}'; it is put back",
+               monitor_name_);
+  glfwSetWindowMonitor(window_, nullptr, 0, 0, settings_.width_px, settings_.height_px, 0);
+  appear();
 }
 
 Shown Window::Screen::draw(View<const std::uint32_t> picture, Rect region) {

@@ -84,6 +84,10 @@ find_package(X11 QUIET)
 handcast_found(found glfw3_FOUND OpenGL_OpenGL_FOUND X11_Xrandr_FOUND)
 handcast_feature(WINDOW "light in a window (libglfw3-dev libopengl-dev libxrandr-dev)" ${found})
 
+pkg_check_modules(drm QUIET IMPORTED_TARGET libdrm)
+handcast_found(found drm_FOUND)
+handcast_feature(KMS "light on a projector without a window system (libdrm-dev)" ${found})
+
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
 handcast_feature(PROMETHEUS "metrics for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})

@@ -10,21 +10,29 @@ namespace handcast::projector {
 Result<std::unique_ptr<Projector>> open_twin(const config::Rig&, const calib::Calibration&);
 Result<std::unique_ptr<Projector>> open_file(const config::Rig&, const calib::Calibration&);
 Result<std::unique_ptr<Projector>> open_window(const config::Rig&, const calib::Calibration&);
+Result<std::unique_ptr<Projector>> open_kms(const config::Rig&, const calib::Calibration&);
 
 static constexpr std::array kBackends{
     ProjectorBackend{.name = "twin",
                      .sentence = "Models a projector: takes frames at its rate, shows none.",
                      .open = open_twin},
     ProjectorBackend{.name = "file",
-                     .sentence = "Writes every 100th frame as a PNG picture to light/ in the "
-                                 "folder of `up --out`, or in the "
-                                 "current folder; keeps 100 of them.",
+                     .sentence = "Writes the light to light/ in the folder of `up --out`, or in "
+                                 "the current folder: as PNG pictures, of which it keeps 100, or "
+                                 "as a film.",
                      .open = open_file},
 #ifdef HANDCAST_WITH_WINDOW
     ProjectorBackend{.name = "window",
                      .sentence = "Shows the light on a monitor or projector of an X server, in a "
                                  "window or full screen.",
                      .open = open_window},
+#endif
+#ifdef HANDCAST_WITH_KMS
+    ProjectorBackend{.name = "kms",
+                     .sentence = "Shows the light on a monitor or projector without a window "
+                                 "system; the kernel tells when it came.",
+                     .open = open_kms,
+                     .exclusive = true},
 #endif
 };
 

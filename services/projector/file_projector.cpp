@@ -1,44 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <pthread.h>
 #include <sys/file.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <future>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/daemon/contract.hpp"
-#include "renderer/content/picture.hpp"
 #include "services/projector/light_clock.hpp"
+#include "services/projector/picture_writer.hpp"
 
 namespace handcast::projector {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kEvery = 100;              ///< every kEvery-th frame is written
 constexpr auto kClaim = std::chrono::seconds(1);  ///< longest wait for the folder
-constexpr std::int64_t kKept = 100;  ///< number of files, then the oldest is overwritten
 
-/// Writes the light as images, to see it without hardware: PNG files in light/ of the folder for
-/// kept files, or of the current folder if there is none.
+/// Writes the light to files, to see it without hardware: in light/ of the folder for kept files,
+/// or of the current folder if there is none.
 class FileProjector final : public Projector {
  public:
   FileProjector(const config::Projector& settings, fs::path folder)
-      : clock_(settings), folder_(std::move(folder)) {}
+      : clock_(settings),
+        every_(settings.file.every),
+        folder_(std::move(folder)),
+        writer_(folder_, settings.file.film) {}
 
   Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t frame_id,
                                const renderer::LightTable& light, Deadline deadline) override {
     if (auto claimed = claim(); !claimed) return tl::make_unexpected(claimed.error());
     auto times = clock_.take(deadline);
-    if (!times || frame_id % kEvery != 0) return times;
-    if (const auto written = last_written(); !written)
+    if (!times || frame_id % every_ != 0) return times;
+    if (const auto written = writer_.write(frame, light, times->lit_ns); !written)
       return fail(Errc::bad_data, "projector 'file': " + written.error().what);
-    write(frame, light, folder_ / fmt::format("light_{:03}.png", frame_id / kEvery % kKept));
     return times;
   }
 
@@ -69,26 +67,11 @@ class FileProjector final : public Projector {
     return {};
   }
 
-  /// Begins to write the whole projector image, dark outside the region of the frame. The light
-  /// does not wait for the encoder, which takes longer than a frame.
-  void write(const renderer::Frame& frame, const renderer::LightTable& light,
-             const fs::path& file) {
-    renderer::Texture image(frame.colour.width, frame.colour.height);
-    renderer::write_light(frame.colour, frame.region, light, image.view());
-    written_ = std::async(std::launch::async, [image = std::move(image), file] {
-      const sched_param none{};
-      pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);  // the daemon may be real-time
-      return renderer::write_png(file, image.view());
-    });
-  }
-
-  /// Waits for the last picture, and returns whether it was written.
-  Result<void> last_written() { return written_.valid() ? written_.get() : Result<void>(); }
-
   LightClock clock_;
+  std::int64_t every_;
   fs::path folder_;
   UniqueFd lock_;  ///< the locked folder; set by the first present()
-  std::future<Result<void>> written_;
+  PictureWriter writer_;
 };
 
 }  // namespace
@@ -100,7 +83,7 @@ Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig, const calib
   if (error)
     return fail(Errc::bad_config, fmt::format("projector 'file': '{}' cannot be created: {}",
                                               folder.string(), error.message()));
-  log::info("every {}th frame is written to '{}'", kEvery, folder.string());
+  log::info("the first of {} frames is written to '{}'", rig.projector.file.every, folder.string());
   return std::make_unique<FileProjector>(rig.projector, folder);
 }
 

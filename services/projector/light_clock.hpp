@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <cstdint>
 
 #include "services/projector/projector.hpp"
+#include "services/projector/refreshes.hpp"
 
 namespace handcast::projector {
 
@@ -27,11 +29,15 @@ class LightClock {
     }
     const std::int64_t handed_ns = now_ns();
     free_ns_ = std::max(free_ns_ + period_ns_, handed_ns);
-    return PresentTimes{handed_ns, handed_ns + latency_ns_ + period_ns_ / 2};
+    return PresentTimes{
+        .handed_ns = handed_ns,
+        .lit_ns = handed_ns + latency_ns_ + period_ns_ / 2,
+        .note = {msg::LightSource::settings, refreshes_.since_last(handed_ns, period_ns_)}};
   }
 
  private:
   std::int64_t period_ns_, latency_ns_;
+  Refreshes refreshes_;
   std::int64_t free_ns_ = 0;  ///< when the projector can take the next frame
 };
 

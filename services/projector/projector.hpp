@@ -8,6 +8,7 @@
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/msg/light_source.hpp"
 #include "renderer/output/light.hpp"
 #include "renderer/pipeline/pipeline.hpp"
 #include "services/runtime/backends.hpp"
@@ -18,6 +19,7 @@ namespace handcast::projector {
 struct PresentTimes {
   std::int64_t handed_ns = 0;  ///< when the projector took the frame
   std::int64_t lit_ns = 0;     ///< the middle of the time it is lit
+  msg::LightNote note;         ///< who said when it is lit
   /// When the projector can take the next frame, if it has a rhythm of its own; 0: frames are drawn
   /// at projector.rate_hz.
   std::int64_t next_ns = 0;

@@ -80,8 +80,10 @@ class SubFramePlan {
   /// The times of a sub-frame whose output frame has `times`. A projector takes only whole output
   /// frames: `handed_ns` is the time that is as long before its light as for the first sub-frame.
   PresentTimes times_of(int sub_frame, const PresentTimes& times) const {
-    return {times.handed_ns + sub_frame * period_ns_,
-            times.lit_ns + (2 * sub_frame + 1 - sub_frames_) * period_ns_ / 2};
+    const std::uint32_t refreshes = sub_frame == 0 ? times.note.refreshes : 0;
+    return {.handed_ns = times.handed_ns + sub_frame * period_ns_,
+            .lit_ns = times.lit_ns + (2 * sub_frame + 1 - sub_frames_) * period_ns_ / 2,
+            .note = {times.note.source, refreshes}};
   }
   /// Time from one output frame to the next.
   std::int64_t output_period_ns() const { return sub_frames_ * period_ns_; }

@@ -20,7 +20,7 @@ inline std::vector<msg::StageMark> time_sheet(std::span<const msg::StageMark> st
   marks.push_back({msg::Stage::frame, 0, begin_ns, drawn_ns});
   marks.push_back({msg::Stage::present, 0, drawn_ns, times.handed_ns});
   if (times.lit_ns > times.handed_ns)
-    marks.push_back({msg::Stage::light, 0, times.handed_ns, times.lit_ns});
+    marks.push_back({msg::Stage::light, msg::detail_of(times.note), times.handed_ns, times.lit_ns});
   return marks;
 }
 

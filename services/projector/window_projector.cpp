@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdlib>
-#include <optional>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -21,7 +19,8 @@ class WindowProjector final : public Projector {
  public:
   WindowProjector(const config::Projector& settings, int width_px, int height_px,
                   std::unique_ptr<renderer::Window> window)
-      : clock_(settings),
+      : settings_(settings),
+        clock_(settings),
         latency_ns_(ms_to_ns(settings.latency_ms)),
         period_ns_(seconds_to_ns(1 / settings.rate_hz)),
         is_packed_(settings.packing != config::Packing::none),
@@ -38,10 +37,13 @@ class WindowProjector final : public Projector {
     if (is_packed_)
       if (auto whole = check_size(); !whole) return tl::make_unexpected(whole.error());
     const auto refresh_ns = window_->refresh_ns();
-    compare_rates(refresh_ns);
+    if (refresh_ns && !std::exchange(has_compared_, true))
+      warn_if_rates_differ(*refresh_ns, settings_);
     return PresentTimes{
         .handed_ns = shown->handed_ns,
         .lit_ns = shown->shown_ns + latency_ns_ + refresh_ns.value_or(period_ns_) / 2,
+        .note = {msg::LightSource::window,
+                 refreshes_.since_last(shown->shown_ns, refresh_ns.value_or(period_ns_))},
         .next_ns = refresh_ns ? shown->shown_ns + *refresh_ns : 0};
   }
 
@@ -56,18 +58,11 @@ class WindowProjector final : public Projector {
                             "scaled",
                             width_px, height_px, picture_.width(), picture_.height()));
   }
-  /// Warns once if the monitor's rate is not the one in the settings: figures of missed frames
-  /// would be wrong.
-  void compare_rates(std::optional<std::int64_t> refresh_ns) {
-    const double share =
-        static_cast<double>(refresh_ns.value_or(period_ns_)) / static_cast<double>(period_ns_);
-    if (!std::exchange(has_compared_, true) && std::abs(share - 1) > 0.02)
-      log::warning("the monitor runs at {:.4g} Hz and projector.rate_hz is {:.4g}",
-                   1e9 / static_cast<double>(*refresh_ns), 1e9 / static_cast<double>(period_ns_));
-  }
 
+  config::Projector settings_;
   LightClock clock_;  ///< the rhythm without that of a monitor
   std::int64_t latency_ns_, period_ns_;
+  Refreshes refreshes_;
   bool is_packed_, has_compared_ = false;
   renderer::Texture picture_;
   std::unique_ptr<renderer::Window> window_;

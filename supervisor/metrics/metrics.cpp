@@ -204,6 +204,26 @@ MetricFamily rungs_of(const nlohmann::json& status) {
   return rungs.family;
 }
 
+std::vector<MetricFamily> families_of_light(const nlohmann::json& status) {
+  auto source = Family::gauge("handcast_light_times_info",
+                              "What says when light comes (label by); always 1.");
+  auto missed = Family::counter("handcast_light_missed_refreshes_total",
+                                "Refreshes of the output without a new frame.");
+  auto doubled = Family::counter("handcast_light_doubled_frames_total",
+                                 "Frames that the output showed for several refreshes.");
+  auto wanted = Family::gauge("handcast_light_wanted_hertz",
+                              "Frames per second that the projector is asked for.");
+  const nlohmann::json::json_pointer rate("/rings/projection.frames/wanted_hz");
+  if (status.contains(rate) && status[rate].is_number()) wanted.add({}, status[rate].get<double>());
+  if (status.contains("light") && status["light"].is_object()) {
+    const auto& light = status["light"];
+    source.add({{"by", light.value("times_by", "")}}, 1);
+    missed.add({}, light.value("missed_refreshes", 0.0));
+    doubled.add({}, light.value("doubled_frames", 0.0));
+  }
+  return {source.family, missed.family, doubled.family, wanted.family};
+}
+
 std::vector<MetricFamily> metrics_of(const RigLook& look) {
   const auto model = compare(look, look);
   auto families = families_of_rig(model);
@@ -212,6 +232,7 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   append(families, families_of_readers(model.rings));
   families.push_back(stages_of(look.status));
   families.push_back(rungs_of(look.status));
+  append(families, families_of_light(look.status));
   std::erase_if(families, [](const auto& family) { return family.metric.empty(); });
   return families;
 }

@@ -72,6 +72,8 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
     const auto stage = static_cast<std::size_t>(mark.stage);
     if (stage >= msg::kStageNames.size()) continue;  // values from shared memory may be invalid
     stages_[std::string(msg::kStageNames[stage])].add(mark.end_ns, mark.end_ns - mark.begin_ns);
+    if (const auto note = msg::light_note_in(mark.detail); note && mark.stage == msg::Stage::light)
+      light_.add(*note);
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})
       if (const auto rung = msg::rung_in(mark.detail, side))

@@ -11,6 +11,7 @@
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "supervisor/record/histogram.hpp"
+#include "supervisor/record/light_count.hpp"
 
 namespace handcast::supervisor {
 
@@ -77,11 +78,14 @@ class Ledger {
   const std::map<std::string, StageTimes, std::less<>>& stages() const { return stages_; }
   /// Number of drawn hands that got each rung of the ladder, by msg::Rung.
   const std::array<std::uint64_t, msg::kRungs>& rungs() const { return rungs_; }
+  /// The light of the projector.
+  const LightCount& light() const { return light_; }
 
  private:
   std::map<std::string, FrameCount, std::less<>> frames_;
   std::map<std::string, StageTimes, std::less<>> stages_;
   std::array<std::uint64_t, msg::kRungs> rungs_{};
+  LightCount light_;
 };
 
 }  // namespace handcast::supervisor

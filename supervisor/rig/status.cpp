@@ -66,6 +66,14 @@ json ring_status(const Service& service, const RigView& rig) {
           {"newest_age_ms", or_null(frames.newest_age_ms(rig.now_ns))}};
 }
 
+/// The light of the output; null if none came.
+json light_status(const LightCount& light) {
+  if (!light.source) return {};
+  return {{"times_by", msg::kLightSourceNames[static_cast<std::size_t>(*light.source)]},
+          {"missed_refreshes", light.missed},
+          {"doubled_frames", light.doubled}};
+}
+
 json summary_of(const Histogram& times) {
   return {{"p50", rounded(times.percentile_ns(0.50) * 1e-3)},
           {"p99", rounded(times.percentile_ns(0.99) * 1e-3)},
@@ -82,6 +90,19 @@ std::string text_of(const json& value, std::string_view unit = "") {
   if (value.is_null()) return "-";
   if (value.is_string()) return value.get<std::string>();
   return fmt::format("{:.6g}{}", value.get<double>(), unit);
+}
+
+/// "light: 59.9 Hz of 60 Hz; 3 refreshes without a new frame, ...". "" if none came.
+std::string print_light(const json& status) {
+  const auto light = status.value("light", json());
+  if (light.is_null()) return "";
+  const auto ring = status["rings"].value("projection.frames", json::object());
+  return fmt::format(
+      "\nlight: {} of {}; {} refreshes without a new frame, {} frames shown for several refreshes; "
+      "times by the {}\n",
+      text_of(ring.value("held_hz", json()), " Hz"),
+      text_of(ring.value("wanted_hz", json()), " Hz"), light["missed_refreshes"].dump(),
+      light["doubled_frames"].dump(), text_of(light["times_by"]));
 }
 
 /// The trouble of a service: "died 10 times within 60 s; tried again in 4.2 s". "" if it has none.
@@ -104,6 +125,7 @@ json status_of(const RigView& rig) {
     if (!service->spec().stream.empty())
       status["rings"][service->spec().stream] = ring_status(*service, rig);
   }
+  status["light"] = light_status(rig.recorder.ledger().light());
   status["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages())
     status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
@@ -137,6 +159,7 @@ std::string print_status(const json& status) {
     text += fmt::format("{:<20} {:>12} {:>12} {:>12} {:>10}\n", name,
                         text_of(ring["wanted_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
                         text_of(ring["newest_age_ms"], " ms"), text_of(ring["count"]));
+  text += print_light(status);
   text +=
       fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
   for (const auto& [stage, times] : status["stage_us"].items())
@@ -164,6 +187,7 @@ json live_report(const RigView& rig) {
     const auto held_hz = rig.recorder.ledger().frames(spec.name).held_hz(rig.now_ns);
     report["rates"][spec.name] = {{"wanted_hz", wanted_hz(spec)}, {"held_hz", rounded(held_hz)}};
   }
+  report["light"] = light_status(rig.recorder.ledger().light());
   report["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages())
     report["stage_us"][stage] = summary_of(times.whole_run());

@@ -148,6 +148,14 @@ Misses misses_of(const HistorySnapshot& history, std::size_t service, double wan
   return misses;
 }
 
+LightCount light_of(const HistorySnapshot& history) {
+  LightCount light;
+  for (const auto& frame : history.frames)
+    if (const auto* mark = find_mark(frame, Stage::light))
+      if (const auto note = msg::light_note_in(mark->detail)) light.add(*note);
+  return light;
+}
+
 double seconds_in(const HistorySnapshot& history) {
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max(), last_ns = 0;
   for (const auto& frame : history.frames) {
@@ -174,7 +182,8 @@ std::int64_t Spans::percentile_ns(double share) const {
 
 LatencyTable measure_latency(const HistorySnapshot& history,
                              const std::map<std::string, double>& wanted_hz) {
-  LatencyTable table{seconds_in(history), stage_latencies(history), way_latencies(history), {}};
+  LatencyTable table{
+      seconds_in(history), stage_latencies(history), way_latencies(history), {}, light_of(history)};
   for (std::size_t service = 0; service < history.services.size(); ++service) {
     const auto asked = wanted_hz.find(history.services[service]);
     auto misses = misses_of(history, service, asked == wanted_hz.end() ? 0 : asked->second);

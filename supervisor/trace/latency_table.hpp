@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "supervisor/record/history.hpp"
+#include "supervisor/record/light_count.hpp"
 
 namespace handcast::supervisor {
 
@@ -67,6 +68,7 @@ struct LatencyTable {
   std::vector<StageLatency> stages;  ///< the stages of all services
   std::vector<WayLatency> ways;      ///< the ways from sensors to light
   std::vector<Misses> misses;        ///< the rates of all services with frames
+  LightCount light;                  ///< of the projector
 };
 
 /// Computes the table. `wanted_hz`: the configured rates by service; services without a fixed rate

@@ -2,6 +2,11 @@
 // A rig whose light is a window, while its display server and its monitor come and go.
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+
+#include "ipc/base/clock.hpp"
 #include "tests/display_server.hpp"
 #include "tests/renderer/window/screen_reader.hpp"
 #include "tests/system/running_rig.hpp"
@@ -49,6 +54,52 @@ TEST_F(LightInAWindow, ComesBackToItsMonitor) {
   ASSERT_TRUE(server_.plug_in());
   EXPECT_TRUE(eventually(is_lit));
   EXPECT_EQ(service("projector")["pid"], projector);
+}
+
+/// HANDCAST_WINDOW_MINUTES=10 sets how long (without ctest, which ends it after five minutes).
+/// Every two seconds the window is resized or hidden, or its monitor unplugged; each tenth time the
+/// server dies.
+TEST_F(LightInAWindow, LivesThroughMinutesOfDisturbance) {
+  const char* text = std::getenv("HANDCAST_WINDOW_MINUTES");
+  const auto minutes = std::chrono::duration<double, std::ratio<60>>(text ? std::atof(text) : 0.1);
+  const auto rig = up({"--set", "projector.backend=window"});
+  wait_until_light();
+  ASSERT_TRUE(eventually(is_lit));
+  const auto camera = service("camera")["pid"];
+  int deaths = 0, disturbances = 0;
+  const auto limit = Deadline::in(std::chrono::duration_cast<std::chrono::nanoseconds>(minutes));
+  while (!limit.passed()) {
+    switch (++disturbances % 10) {
+      case 0: {
+        const auto restarts = service("projector")["restarts"];
+        server_.end();
+        ASSERT_TRUE(eventually([&] { return service("projector")["restarts"] > restarts; }));
+        ASSERT_TRUE(server_.start());
+        ++deaths;
+        break;
+      }
+      case 3:
+      case 7:
+        ASSERT_TRUE(server_.unplug());
+        ASSERT_TRUE(server_.plug_in());
+        break;
+      case 1:
+      case 5:
+      case 9:
+        test::hide_windows();
+        break;
+      default:
+        test::resize_windows(40 * (disturbances % 10), 300);
+    }
+    ASSERT_TRUE(eventually(is_lit)) << "after disturbance " << disturbances;
+    sleep_until_ns(now_ns() + seconds_to_ns(2));
+    ASSERT_TRUE(eventually(is_lit)) << "two seconds after disturbance " << disturbances;
+  }
+  EXPECT_EQ(service("camera")["pid"], camera);
+  std::cout << disturbances << " disturbances, " << deaths << " deaths of the server, "
+            << service("projector")["restarts"] << " restarts of the projector, " << light()
+            << " frames\n";
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
 }
 
 TEST_F(LightInAWindow, IsGoneAfterDown) {

@@ -6,12 +6,9 @@
 
 #include <vector>
 
-#include "tests/renderer/window/edid_block.hpp"
-
 namespace handcast::renderer {
 namespace {
 
-using test::edid_with;
 using testing::HasSubstr;
 
 const Monitor kDesk{"eDP-1", "", 1920, 1080, 60, true};
@@ -57,22 +54,6 @@ TEST(ChooseMonitor, AnAbsentOneMayComeLater) {
   }
   EXPECT_THAT(choose_monitor({}, "").error().what, HasSubstr("no monitor is connected"));
 }
-
-TEST(ModelOf, IsTheNameInTheEdid) { EXPECT_EQ(model_of(edid_with("EPSON PJ\n    ")), "EPSON PJ"); }
-
-TEST(ModelOf, MayFillTheDescriptor) {
-  EXPECT_EQ(model_of(edid_with("THIRTEEN LONG")), "THIRTEEN LONG");
-}
-
-TEST(ModelOf, OfADamagedBlockIsEmpty) {
-  auto edid = edid_with("EPSON PJ\n");
-  EXPECT_EQ(model_of(std::span(edid).first(100)), "");
-  EXPECT_EQ(model_of({}), "");
-  edid[60] ^= 1;  // the checksum is wrong
-  EXPECT_EQ(model_of(edid), "");
-}
-
-TEST(ModelOf, HasNoControlCharacters) { EXPECT_EQ(model_of(edid_with("A\x1b[2JB\n")), "A[2JB"); }
 
 }  // namespace
 }  // namespace handcast::renderer

@@ -7,8 +7,9 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "tests/renderer/window/edid_block.hpp"
+#include "tests/renderer/output/edid_block.hpp"
 
 namespace handcast::test {
 namespace {
@@ -19,6 +20,22 @@ struct Close {
 using Connection = std::unique_ptr<Display, Close>;
 
 Connection connect() { return Connection(XOpenDisplay(nullptr)); }
+
+std::vector<Window> shown_windows(const Connection& display) {
+  Window root = 0, parent = 0, *windows = nullptr;
+  unsigned count = 0;
+  std::vector<Window> shown;
+  if (!XQueryTree(display.get(), DefaultRootWindow(display.get()), &root, &parent, &windows,
+                  &count))
+    return shown;
+  for (unsigned i = 0; i < count; ++i) {
+    XWindowAttributes state{};
+    if (XGetWindowAttributes(display.get(), windows[i], &state) && state.map_state == IsViewable)
+      shown.push_back(windows[i]);
+  }
+  if (windows != nullptr) XFree(windows);
+  return shown;
+}
 
 }  // namespace
 
@@ -47,19 +64,21 @@ int lit_pixels(int left, int top, int width, int height) {
 
 bool shows_a_window() {
   const auto display = connect();
-  Window root = 0, parent = 0, *windows = nullptr;
-  unsigned count = 0;
-  if (!XQueryTree(display.get(), DefaultRootWindow(display.get()), &root, &parent, &windows,
-                  &count))
-    return false;
-  bool shown = false;
-  for (unsigned i = 0; i < count; ++i) {
-    XWindowAttributes state{};
-    shown |=
-        XGetWindowAttributes(display.get(), windows[i], &state) && state.map_state == IsViewable;
-  }
-  if (windows != nullptr) XFree(windows);
-  return shown;
+  return !shown_windows(display).empty();
+}
+
+void resize_windows(int width, int height) {
+  const auto display = connect();
+  for (const auto window : shown_windows(display))
+    XResizeWindow(display.get(), window, static_cast<unsigned>(width),
+                  static_cast<unsigned>(height));
+  XSync(display.get(), False);
+}
+
+void hide_windows() {
+  const auto display = connect();
+  for (const auto window : shown_windows(display)) XUnmapWindow(display.get(), window);
+  XSync(display.get(), False);
 }
 
 void paint_the_desktop(unsigned long rgb) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-/// What a person would see and do at the X server of $DISPLAY.
+/// What a person or another program would see and do at the X server of $DISPLAY.
 namespace handcast::test {
 
 /// The colour of a pixel of the screen, RGBA8 with red in the lowest byte.
@@ -13,6 +13,11 @@ std::uint32_t pixel(int x, int y);
 int lit_pixels(int left, int top, int width, int height);
 /// True if a window is shown, wherever it is.
 bool shows_a_window();
+/// Resizes, or hides, all windows that are shown.
+/// @{
+void resize_windows(int width, int height);
+void hide_windows();
+/// @}
 /// Fills what no window covers. `rgb`: 0xRRGGBB.
 void paint_the_desktop(unsigned long rgb);
 /// Gives an output an EDID with this name.

@@ -107,6 +107,23 @@ TEST_F(WindowTest, ComesBackToAMonitorThatWasUnplugged) {
   EXPECT_TRUE(shows_red_at(**window, kLeft + 150, 100));
 }
 
+TEST_F(WindowTest, CoversItsMonitorAgainAfterAnotherProgramResizedIt) {
+  auto window = Window::open(full_screen());
+  ASSERT_TRUE(window) << window.error().what;
+  ASSERT_TRUE(shows_red_at(**window, kLeft + 150, 100));
+  test::resize_windows(80, 60);
+  EXPECT_TRUE(shows_red_at(**window, kLeft + 150, 100));
+}
+
+TEST_F(WindowTest, ComesBackAfterAnotherProgramHidIt) {
+  auto window = Window::open(full_screen());
+  ASSERT_TRUE(window) << window.error().what;
+  ASSERT_TRUE(shows_red_at(**window, kLeft + 150, 100));
+  test::paint_the_desktop(0x00ff00);
+  test::hide_windows();
+  EXPECT_TRUE(shows_red_at(**window, kLeft + 150, 100));
+}
+
 TEST_F(WindowTest, FindsAMonitorByTheModelInItsEdid) {
   test::set_edid_name("DUMMY1", "EPSON PJ");
   auto settings = full_screen();

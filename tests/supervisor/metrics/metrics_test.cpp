@@ -57,6 +57,19 @@ TEST(Metrics, RingsAndReadersHaveTheirCounts) {
       << "nothing was published: no age";
 }
 
+TEST(Metrics, TheLightSaysWhoKnowsItsTimesAndWhatTheOutputMissed) {
+  auto look = look_at(10);
+  EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_light"))) << "none came";
+  look.status["light"] = {
+      {"times_by", "window system"}, {"missed_refreshes", 7}, {"doubled_frames", 5}};
+  look.status["rings"]["projection.frames"] = {{"wanted_hz", 60}};
+  const auto text = metrics_text(look);
+  EXPECT_THAT(text, HasSubstr(R"(handcast_light_times_info{by="window system"} 1)"));
+  EXPECT_THAT(text, HasSubstr("handcast_light_missed_refreshes_total 7"));
+  EXPECT_THAT(text, HasSubstr("handcast_light_doubled_frames_total 5"));
+  EXPECT_THAT(text, HasSubstr("handcast_light_wanted_hertz 60"));
+}
+
 TEST(Metrics, StagesAreInSeconds) {
   const auto text = metrics_text(look_at(10));
   EXPECT_THAT(text, HasSubstr(R"(handcast_stage_seconds{stage="draw",quantile="0.5"} 0.0015)"));

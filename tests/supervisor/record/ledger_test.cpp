@@ -56,6 +56,31 @@ TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
   EXPECT_EQ(ledger.rungs(), (std::array<std::uint64_t, msg::kRungs>{1, 0, 0, 0, 0, 0, 1}));
 }
 
+TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
+  Ledger ledger;
+  EXPECT_FALSE(ledger.light().source);
+  auto marks = frame_at(kSecond_ns);
+  marks.marks[0].stage = msg::Stage::light;
+  for (const std::uint32_t refreshes : {0u, 1u, 4u, 1u, 2u}) {
+    marks.marks[0].detail = msg::detail_of({msg::LightSource::kernel, refreshes});
+    ledger.add("projector", marks);
+  }
+  marks.marks[0].detail = 0x2ff;  // no source
+  ledger.add("projector", marks);
+  marks.marks[0] = {msg::Stage::draw, msg::detail_of({msg::LightSource::window, 7}), 0, 1};
+  ledger.add("projector", marks);
+  EXPECT_EQ(ledger.light().source, msg::LightSource::kernel);
+  EXPECT_EQ(ledger.light().missed, 4u);
+  EXPECT_EQ(ledger.light().doubled, 2u);
+}
+
+TEST(LightNote, ManyRefreshesDoNotChangeTheSource) {
+  const auto note = msg::light_note_in(msg::detail_of({msg::LightSource::window, 0xffffffff}));
+  ASSERT_TRUE(note);
+  EXPECT_EQ(note->source, msg::LightSource::window);
+  EXPECT_EQ(note->refreshes, 0xffffffu);
+}
+
 TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
   Ledger ledger;
   const auto start = 100 * kSecond_ns;

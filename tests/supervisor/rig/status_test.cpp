@@ -11,7 +11,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-json service(json more) {
+json service(const json& more) {
   json status{{"state", "ready"},  {"pid", 42},         {"backend", "twin"},
               {"uptime_s", 3},     {"restarts", 0},     {"last_exit", nullptr},
               {"reason", nullptr}, {"retry_s", nullptr}};
@@ -29,6 +29,23 @@ std::string print_with(const json& pose) {
 
 TEST(Status, AServiceThatIsWellHasOneLine) {
   EXPECT_THAT(print_with(service(json::object())), Not(HasSubstr("tried again")));
+}
+
+TEST(Status, SaysWhoKnowsWhenLightComes) {
+  json status{
+      {"rig", "desk"},
+      {"uptime_s", 7},
+      {"services", json::object()},
+      {"rings",
+       {{"projection.frames",
+         {{"wanted_hz", 60}, {"held_hz", 59.5}, {"newest_age_ms", 1}, {"count", 9}}}}},
+      {"stage_us", json::object()},
+      {"light", {{"times_by", "kernel"}, {"missed_refreshes", 12345678}, {"doubled_frames", 2}}}};
+  EXPECT_THAT(print_status(status),
+              HasSubstr("light: 59.5 Hz of 60 Hz; 12345678 refreshes without a new frame, 2 frames "
+                        "shown for several refreshes; times by the kernel\n"));
+  status["light"] = nullptr;
+  EXPECT_THAT(print_status(status), Not(HasSubstr("light:")));
 }
 
 TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {

@@ -147,6 +147,20 @@ TEST(Latency, ThePageNamesWhatItShowsAndTheJsonHasTheSameFigures) {
   EXPECT_EQ(json["end_to_end"][0]["count"], 99);
 }
 
+TEST(Latency, TheLightHasItsSourceAndItsMissedRefreshes) {
+  History history(60);
+  for (int i = 0; i < 3; ++i) {
+    auto lit = mark(Stage::light, i * 30, i * 30 + 1);
+    lit.detail = msg::detail_of({msg::LightSource::kernel, i == 2 ? 3u : 1u});
+    history.add("projector", frame(static_cast<std::uint64_t>(i), 0, {lit}), 0);
+  }
+  const auto table = table_of(history);
+  EXPECT_THAT(print_latency(table), HasSubstr("on the surface, by the kernel."));
+  EXPECT_THAT(print_latency(table), HasSubstr("light: 2 refreshes without a new frame, 1 frames"));
+  EXPECT_EQ(to_json(table)["light"]["times_by"], "kernel");
+  EXPECT_EQ(to_json(table)["light"]["missed_refreshes"], 2);
+}
+
 TEST(Latency, OfNothingIsAnEmptyPage) {
   const auto table = table_of(History(60));
   EXPECT_TRUE(table.stages.empty());

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/projector/picture_writer.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ipc/base/log.hpp"
+#include "renderer/content/picture.hpp"
+#include "renderer/output/jpeg.hpp"
+
+namespace handcast::projector {
+namespace {
+
+constexpr std::uint64_t kKept = 100;  ///< number of pictures, then the oldest is overwritten
+
+/// The first of light.avi, light-2.avi, light-3.avi … that does not exist.
+std::filesystem::path new_film_in(const std::filesystem::path& folder) {
+  auto file = folder / "light.avi";
+  for (int number = 2; std::filesystem::exists(file); ++number)
+    file = folder / fmt::format("light-{}.avi", number);
+  return file;
+}
+
+}  // namespace
+
+PictureWriter::PictureWriter(std::filesystem::path folder, bool is_film)
+    : folder_(std::move(folder)), is_film_(is_film), thread_([this] { work(); }) {}
+
+PictureWriter::~PictureWriter() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+  if (written_ + left_out_ > 0)
+    log::info("{} frames are in '{}', {} were left out", written_, folder_.string(), left_out_);
+}
+
+Result<void> PictureWriter::write(const renderer::Frame& frame, const renderer::LightTable& light,
+                                  std::int64_t time_ns) {
+  const std::lock_guard lock(mutex_);
+  if (is_busy_) {
+    if (left_out_++ == 0)
+      log::warning(
+          "frames come faster than they can be written to '{}' and are left out; a larger "
+          "projector.file.every leaves out none",
+          folder_.string());
+    return {};
+  }
+  if (picture_.width() != frame.colour.width || picture_.height() != frame.colour.height) {
+    picture_ = renderer::Texture(frame.colour.width, frame.colour.height);
+    lit_ = {};
+  }
+  for (int y = lit_.y0; y < lit_.y1; ++y) std::fill_n(picture_.row(y) + lit_.x0, lit_.width(), 0);
+  lit_ = frame.region.within(picture_.width(), picture_.height());
+  renderer::write_light(frame.colour, lit_, light, picture_.view());
+  time_ns_ = time_ns;
+  is_busy_ = true;
+  changed_.notify_all();
+  return std::exchange(last_, {});
+}
+
+void PictureWriter::work() {
+  const sched_param none{};
+  pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);  // the daemon may be real-time
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [&] { return is_busy_ || is_ending_; });
+    if (!is_busy_) return;
+    lock.unlock();
+    auto written = is_film_ ? write_to_film() : write_picture();
+    lock.lock();
+    if (written) ++written_;
+    last_ = std::move(written);
+    is_busy_ = false;
+  }
+}
+
+Result<void> PictureWriter::write_picture() {
+  return renderer::write_png(folder_ / fmt::format("light_{:03}.png", number_++ % kKept),
+                             picture_.view());
+}
+
+Result<void> PictureWriter::begin_film() {
+  auto film = renderer::Film::create(new_film_in(folder_), picture_.width(), picture_.height());
+  if (!film) return tl::make_unexpected(film.error());
+  film_.emplace(std::move(*film));
+  return {};
+}
+
+Result<void> PictureWriter::write_to_film() {
+  const auto jpeg = renderer::jpeg_of(picture_.view());
+  if (film_ && !film_->has_room_for(jpeg.size())) film_.reset();
+  if (!film_)
+    if (auto begun = begin_film(); !begun) return begun;
+  return film_->add(jpeg, time_ns_);
+}
+
+}  // namespace handcast::projector

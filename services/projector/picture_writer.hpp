@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "ipc/base/result.hpp"
+#include "renderer/output/film.hpp"
+#include "renderer/output/light.hpp"
+#include "renderer/pipeline/frame.hpp"
+
+namespace handcast::projector {
+
+/// Writes the light of frames to files on a thread of its own, as PNG pictures or as a film. A
+/// frame that comes before the last one is written is left out. One thread calls it.
+class PictureWriter {
+ public:
+  /// Writes to light_000.png … light_099.png in the folder, then from the first again, or to
+  /// light.avi: light-2.avi if there is one, and so on.
+  PictureWriter(std::filesystem::path folder, bool is_film);
+  /// Waits until the last frame is written.
+  ~PictureWriter();
+  PictureWriter(const PictureWriter&) = delete;
+  PictureWriter& operator=(const PictureWriter&) = delete;
+
+  /// Begins to write the whole projector image, dark outside the region of the frame, and returns
+  /// at once. Errors: unavailable, bad_config (the frame before could
+  /// not be written).
+  Result<void> write(const renderer::Frame& frame, const renderer::LightTable& light,
+                     std::int64_t time_ns);
+
+ private:
+  void work();
+  Result<void> write_picture();
+  Result<void> write_to_film();
+  Result<void> begin_film();
+
+  std::filesystem::path folder_;
+  bool is_film_;
+  std::uint64_t written_ = 0, left_out_ = 0;
+
+  std::mutex mutex_;  ///< for what follows
+  std::condition_variable changed_;
+  bool is_busy_ = false, is_ending_ = false;
+  Result<void> last_;  ///< whether the last frame was written
+  // The thread's own while is_busy_.
+  renderer::Texture picture_;
+  renderer::Rect lit_;
+  std::int64_t time_ns_ = 0;
+  std::uint64_t number_ = 0;  ///< of the next picture
+  std::optional<renderer::Film> film_;
+
+  std::thread thread_;
+};
+
+}  // namespace handcast::projector
