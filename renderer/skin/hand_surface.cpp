@@ -62,7 +62,7 @@ HANDCAST_CLONES void shade_all(const float* normal, int count, float shading, fl
                                float* light) {
   for (int v = 0; v < count; ++v) {
     const float lambert = normal[3 * v + 2] < 0 ? -normal[3 * v + 2] : 0.0f;
-    light[v] = fast_srgb_level(presence * (1 - shading + shading * lambert));
+    light[v] = presence * fast_srgb_level(1 - shading + shading * lambert);
   }
 }
 
@@ -95,7 +95,7 @@ Skinned HandSurface::pose(const msg::HandPose& pose, const config::Skin& setting
   project_all(&positions_m_[0].x, count, &projector_from_space[0][0], kNearest_m, &seen_px_[0].x,
               depth_m_.data());
   if (shaded) shade_all(&normals_[0].x, count, shading, presence, light_.data());
-  if (!shaded) std::fill(light_.begin(), light_.end(), fast_srgb_level(presence));
+  if (!shaded) std::fill(light_.begin(), light_.end(), presence);
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());
   return {seen_px_, landings_px_, depth_m_, lit_fully ? std::span<const float>() : light_,
           glm::determinant(projector_from_space) > 0 ? -1.0f : 1.0f};

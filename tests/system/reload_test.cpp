@@ -10,6 +10,7 @@
 #include "config/rig.hpp"
 #include "ipc/control/control_client.hpp"
 #include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::system_test {
 namespace {
@@ -171,6 +172,7 @@ TEST_F(Reload, ASwappedBackEndStaysUntilTheFileNamesAnother) {
 TEST_F(Reload, ToolsGetTheRigAsTheServicesReadIt) {
   write_rig_with(kCalm, kNoObserver);
   const auto rig = up_with_the_file();
+  const Variable scope("HANDCAST_SCOPE", scratch_.path());
   const auto applied = [] {
     const auto answer = control::ask("desk", {.verb = control::Verb::rig});
     if (!answer) throw std::runtime_error(answer.error().what);
@@ -180,9 +182,10 @@ TEST_F(Reload, ToolsGetTheRigAsTheServicesReadIt) {
   };
   EXPECT_EQ(applied().name, "desk");
   EXPECT_EQ(applied().projector.rate_hz, 60);
-  EXPECT_EQ(applied().projector.backend, "twin");
-  ASSERT_EQ(handcast({"swap", "projector", "file"}).exit_code, 0);
-  EXPECT_EQ(applied().projector.backend, "file");
+  write_rig_with("rate_hz = 50", kNoObserver);
+  EXPECT_NE(applied().camera.rate_hz, 50) << "the file counts when it is applied";
+  ASSERT_EQ(handcast({"reload"}).exit_code, 0);
+  EXPECT_EQ(applied().camera.rate_hz, 50);
 }
 
 TEST_F(Reload, SettingsWithWhichOneServiceCannotWorkChangeNothing) {
