@@ -6,7 +6,7 @@
 #include "config/sections/projector.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/projector/projector.hpp"
-#include "services/projector/recent_median.hpp"
+#include "services/projector/recent_times.hpp"
 
 namespace handcast::projector {
 
@@ -79,7 +79,7 @@ class Horizon {
  private:
   static constexpr std::int64_t kMargin_ns = 300'000;
 
-  RecentMedian software_, light_;
+  RecentTimes software_, light_;
 };
 
 }  // namespace handcast::projector

@@ -7,7 +7,7 @@
 #include "config/sections/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/projector/projector.hpp"
-#include "services/projector/recent_median.hpp"
+#include "services/projector/recent_times.hpp"
 
 namespace handcast::projector {
 
@@ -53,9 +53,9 @@ class SubFramePlan {
     if (fitting < 1 && next_sub_frame_ > 0) return std::nullopt;
     const auto drawings =
         static_cast<int>(std::clamp<std::int64_t>(fitting, 1, static_cast<std::int64_t>(left)));
-    // Half a drawing earlier than needed: a slow one costs no sub-frame.
+    // Early enough for slower drawings than usual, which would cost the last sub-frames.
     Drawing drawing{next_sub_frame_, (left + drawings / 2) / drawings,
-                    last_ns - left * each_ns - each_ns / 2};
+                    last_ns - left * drawing_.upper_quartile_ns() - each_ns / 2};
     drawing.target_ns = hand_over_ns_ + light_.median_ns() +
                         (2 * drawing.first + drawing.count - sub_frames_) * period_ns_ / 2;
     return drawing;
@@ -94,8 +94,8 @@ class SubFramePlan {
 
   int sub_frames_;
   std::int64_t period_ns_;
-  RecentMedian drawing_;  ///< time of a drawing
-  RecentMedian light_;    ///< from handing over to the middle of the light
+  RecentTimes drawing_;  ///< time of a drawing
+  RecentTimes light_;    ///< from handing over to the middle of the light
   std::int64_t hand_over_ns_ = 0;
   int next_sub_frame_ = 0;
 };
