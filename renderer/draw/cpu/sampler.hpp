@@ -47,6 +47,7 @@ struct Footprint {
     };
     const float squares = upper_left * square(a) + upper_right * square(b) +
                           lower_left * square(c) + lower_right * square(d);
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): lround is no vector instruction
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::sqrt(squares) / 16 + 0.5f));
   };
   return mean(0) | mean(8) << 8 | mean(16) << 16;
