@@ -53,9 +53,10 @@ class SubFramePlan {
     if (fitting < 1 && next_sub_frame_ > 0) return std::nullopt;
     const auto drawings =
         static_cast<int>(std::clamp<std::int64_t>(fitting, 1, static_cast<std::int64_t>(left)));
-    // Early enough for slower drawings than usual, which would cost the last sub-frames.
+    // Early enough for slower drawings than usual, which would cost the last sub-frames: ahead by
+    // one and a half.
     Drawing drawing{next_sub_frame_, (left + drawings / 2) / drawings,
-                    last_ns - left * drawing_.upper_quartile_ns() - each_ns / 2};
+                    last_ns - left * drawing_.upper_quartile_ns() - 3 * each_ns / 2};
     drawing.target_ns = hand_over_ns_ + light_.median_ns() +
                         (2 * drawing.first + drawing.count - sub_frames_) * period_ns_ / 2;
     return drawing;
