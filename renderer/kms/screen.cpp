@@ -74,6 +74,12 @@ Result<void> Screen::choose_mode() {
       display_.modes, settings_.mode, {settings_.width_px, settings_.height_px, settings_.rate_hz});
   if (!chosen) return fail_in(fmt::format("display {}", describe(display_)), chosen.error());
   mode_ = display_.modes[*chosen];
+  if (is_scaled() && !settings_.may_scale)
+    return fail(
+        Errc::bad_config,
+        fmt::format("display {}: the mode {} must have the {}x{} pixels of the picture, "
+                    "because projector.packing is set: sub-frames cannot be scaled",
+                    describe(display_), describe(mode_), settings_.width_px, settings_.height_px));
   refresh_ns_ = seconds_to_ns(1 / mode_.rate_hz);
   mode_blob_ = Blob(card_.get(), &mode_.timing, sizeof mode_.timing);
   return {};

@@ -27,6 +27,7 @@ struct ScreenSettings {
   int width_px = 0, height_px = 0;
   double rate_hz = 0;
   /// @}
+  bool may_scale = true;  ///< a mode of another size than the picture's may be taken
 };
 
 /// A picture that a display shows. Times are CLOCK_MONOTONIC.

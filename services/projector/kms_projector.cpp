@@ -40,12 +40,14 @@ Result<std::unique_ptr<Projector>> open_kms(const config::Rig& rig,
                                             const calib::Calibration& calibration) {
   const auto& settings = rig.projector;
   const int width_px = calibration.projector_width_px, height_px = calibration.projector_height_px;
-  auto screen = renderer::kms::Screen::open({.card = settings.kms.card,
-                                             .connector = settings.kms.connector,
-                                             .mode = settings.kms.mode,
-                                             .width_px = width_px,
-                                             .height_px = height_px,
-                                             .rate_hz = settings.rate_hz});
+  auto screen =
+      renderer::kms::Screen::open({.card = settings.kms.card,
+                                   .connector = settings.kms.connector,
+                                   .mode = settings.kms.mode,
+                                   .width_px = width_px,
+                                   .height_px = height_px,
+                                   .rate_hz = settings.rate_hz,
+                                   .may_scale = settings.packing == config::Packing::none});
   if (!screen) return fail_in("projector 'kms'", screen.error());
   warn_if_rates_differ((*screen)->refresh_ns(), settings);
   return std::make_unique<KmsProjector>(settings, width_px, height_px, std::move(*screen));

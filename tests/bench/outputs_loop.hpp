@@ -17,7 +17,7 @@ struct SubFrameTimes {
   double output_hz = 0;  ///< output frames handed over per second
 };
 
-/// Draws `sub_frames` sub-frames with a hand that sways (SwayingHand, 0.9 m away).
+/// Draws `sub_frames` sub-frames with a hand that sways (SwayingHands, 0.73 m away).
 SubFrameTimes draw_sub_frames(const config::Projector& settings, int sub_frames);
 
 }  // namespace handcast::bench

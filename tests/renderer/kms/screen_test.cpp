@@ -218,6 +218,16 @@ TEST_F(KmsScreen, ScalesThePictureIfTheCardCan) {
   EXPECT_EQ(card_.state().at("61.CRTC_W"), "1920");
 }
 
+TEST_F(KmsScreen, SubFramesAreNotScaled) {
+  card_.set({.can_scale = true});
+  auto wanted = settings();
+  wanted.mode = "1920x1080";
+  wanted.may_scale = false;
+  const Error error = refusal(wanted);
+  EXPECT_EQ(error.code, Errc::bad_config);
+  EXPECT_THAT(error.what, HasSubstr("sub-frames cannot be scaled"));
+}
+
 TEST_F(KmsScreen, ACardThatNeverFlipsIsATimeoutNotAHang) {
   auto screen = Screen::open(settings());
   ASSERT_TRUE(screen) << screen.error().what;
