@@ -145,8 +145,10 @@ struct LaneSteps {
     const float old_depth = block.depth[i], old_u = block.u[i], old_v = block.v[i];
     const std::uint32_t old_tag = block.tag[i];
     const float depth = at.depth + steps.depth[i];
-    const auto light =
-        static_cast<std::uint32_t>(static_cast<std::int32_t>(at.light + steps.light[i]));
+    // At the tip of a sliver the plane of the light may leave its range by rounding.
+    const std::int32_t plane = static_cast<std::int32_t>(at.light + steps.light[i]),
+                       raised = plane > 0 ? plane : 0;
+    const auto light = static_cast<std::uint32_t>(raised < 256 ? raised : 256);
     const bool hit = (outside >= 0) & (depth <= old_depth);
     block.depth[i] = hit ? depth : old_depth;
     block.u[i] = hit ? at.u + steps.u[i] : old_u;

@@ -62,7 +62,7 @@ struct Lookup {
   Footprint place(int i) const { return {index[i], right[i], down[i]}; }
 };
 
-/// Reads a mip chain. Texture coordinates outside 0..1 are clamped.
+/// Reads a mip chain. Texture coordinates outside 0..1 are clamped; NaN is taken as 0.
 struct Sampler {
   /// Borrows the chain; nullptr: white.
   explicit Sampler(const MipChain* picture) {
@@ -79,8 +79,8 @@ struct Sampler {
 
   /// The index of the texel of level 0 at texture coordinates (u, v).
   [[gnu::always_inline]] std::int32_t nearest(float u, float v) const {
-    const auto column = static_cast<std::int32_t>(std::min(std::max(u * width, 0.f), width - 1));
-    const auto line = static_cast<std::int32_t>(std::min(std::max(v * height, 0.f), height - 1));
+    const auto column = static_cast<std::int32_t>(std::min(std::max(0.f, u * width), width - 1));
+    const auto line = static_cast<std::int32_t>(std::min(std::max(0.f, v * height), height - 1));
     return (line + 1) * stride + column + 1;
   }
 
@@ -90,8 +90,8 @@ struct Sampler {
     const float scale = static_cast<float>(kOne >> level) / kOne;
     // 0.5 is the centre of the border, and the level begins at 1.
     const float columns = width * scale, rows = height * scale;
-    const float x = std::min(std::max(u * columns, 0.f), columns) + 0.5f,
-                y = std::min(std::max(v * rows, 0.f), rows) + 0.5f;
+    const float x = std::min(std::max(0.f, u * columns), columns) + 0.5f,
+                y = std::min(std::max(0.f, v * rows), rows) + 0.5f;
     const auto right = static_cast<std::int32_t>(256 * x),
                down = static_cast<std::int32_t>(256 * y);
     const std::int32_t first_row = 2 * level + 2 * (padded_height - (padded_height >> level));

@@ -49,8 +49,9 @@ class Tint {
   std::array<std::uint32_t, 3> added_;  ///< 256 times the level that the colour adds
 };
 
+/// The light where it covers at least half of a pixel.
 std::uint32_t blend(std::uint32_t below, std::uint32_t light) {
-  return (light >> 24) == 0 ? below : light | 0xff000000u;
+  return light >> 24 < 128 ? below : light | 0xff000000u;
 }
 
 /// Image, regions and light, in the size of the image.

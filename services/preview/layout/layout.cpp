@@ -118,6 +118,13 @@ void draw_camera_panel(Canvas& canvas, const Box& box, const Scene& scene, const
   draw_camera(canvas, fitted(inside, width, height), scene, layers);
 }
 
+/// The light of a projection as it is seen: its levels contain the share that is its alpha.
+renderer::Texture as_seen(renderer::Texture light) {
+  for (std::uint32_t& pixel : light.pixels())
+    if (pixel != 0) pixel |= 0xff000000u;
+  return light;
+}
+
 void draw_light_panel(Canvas& canvas, const Box& box, const Scene& scene) {
   const int width = scene.light.width(), height = scene.light.height();
   const auto note =
@@ -131,7 +138,7 @@ void draw_light_panel(Canvas& canvas, const Box& box, const Scene& scene) {
   if (width < 1) return draw_nothing(canvas, inside, "no light yet");
   const auto frame = fitted(inside, width, height);
   canvas.fill(frame, Colour::of(0x000000));
-  canvas.image(scene.light.view(), frame);
+  canvas.image(as_seen(scene.light).view(), frame);
 }
 
 void draw_help(Canvas& canvas) {

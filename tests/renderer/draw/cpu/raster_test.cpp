@@ -121,5 +121,37 @@ TEST(Raster, OfEquallyNearTrianglesTheLaterIsSeen) {
   EXPECT_EQ(target.at(10, 10).u, 1);
 }
 
+/// Rounding takes the plane of the light out of its range in triangles like these.
+TEST(Raster, TheLightOfASliverStaysInItsRange) {
+  constexpr Rect kScreen{0, 0, 1920, 1080};
+  RasterTarget target(kScreen.x1, kScreen.y1);
+  Sheet sheet;
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> x(0, 16 * 1919), y(0, 16 * 1079), aside(-64, 64);
+  int drawn = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Corner a{x(random), y(random), 1, 0, 0, 0}, b{x(random), y(random), 1, 0, 0, 0},
+        c{a.x + 2 * aside(random), a.y + aside(random), 1, 1, 1, 256};
+    sheet.corners = {a, b, c};
+    sheet.triangles = {{0, 1, 2}};
+    const TriangleList list = sheet.list(Facing::both);
+    const std::vector<std::uint32_t> first{0};
+    target.start();
+    rasterise(list, first, kScreen, target);
+    for (int row = 0; row < kScreen.y1; ++row) {
+      const Span columns = target.drawn(row / kBlockSide);
+      for (int column = columns.x0 * kBlockSide;
+           column < std::min(columns.x1 * kBlockSide, kScreen.x1); ++column) {
+        const auto pixel = target.at(column, row);
+        if (std::isinf(pixel.depth)) continue;
+        ++drawn;
+        ASSERT_LE(light_of_tag(pixel.tag), 256u) << i;
+        ASSERT_EQ(level_of_tag(pixel.tag), 0u) << i;
+      }
+    }
+  }
+  EXPECT_GT(drawn, 1000);
+}
+
 }  // namespace
 }  // namespace handcast::renderer::cpu
