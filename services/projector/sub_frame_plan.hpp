@@ -31,6 +31,7 @@ class SubFramePlan {
       : sub_frames_(config::sub_frames_of(settings.packing)),
         period_ns_(seconds_to_ns(1 / settings.rate_hz)),
         drawing_(std::max<std::int64_t>(ms_to_ns(settings.software_ms), 1)),
+        all_drawings_(0),
         light_(ms_to_ns(settings.latency_ms) + output_period_ns() / 2) {}
 
   /// Begins an output frame, which is handed over as soon as possible: one drawing must be possible
@@ -56,14 +57,17 @@ class SubFramePlan {
     // Early enough for slower drawings than usual, which would cost the last sub-frames: ahead by
     // one and a half.
     Drawing drawing{next_sub_frame_, (left + drawings / 2) / drawings,
-                    last_ns - left * drawing_.upper_quartile_ns() - 3 * each_ns / 2};
+                    last_ns - usual_ns() - 3 * each_ns / 2};
     drawing.target_ns = hand_over_ns_ + light_.median_ns() +
                         (2 * drawing.first + drawing.count - sub_frames_) * period_ns_ / 2;
     return drawing;
   }
   /// Notes that the drawing is done, and how long it took.
   void drawn(const Drawing& drawing, std::int64_t took_ns) {
+    if (drawing.first == 0) drawn_ns_ = 0;
+    drawn_ns_ += drawing.count * took_ns;
     next_sub_frame_ = drawing.first + drawing.count;
+    if (left_to_draw() == 0) all_drawings_.add(drawn_ns_);
     drawing_.add(std::max<std::int64_t>(took_ns, 1));
   }
   /// Number of sub-frames without a drawing.
@@ -90,15 +94,23 @@ class SubFramePlan {
   std::int64_t output_period_ns() const { return sub_frames_ * period_ns_; }
 
  private:
+  /// The time that the drawings of all sub-frames left usually take. The first ones take longer
+  /// than the others, because the caches are cold after the wait.
+  std::int64_t usual_ns() const {
+    const std::int64_t later_ns = left_to_draw() * drawing_.upper_quartile_ns();
+    return next_sub_frame_ == 0 ? std::max(later_ns, all_drawings_.upper_quartile_ns()) : later_ns;
+  }
   /// For the last drawing, if it is slow, and for the projector.
   std::int64_t reserve_ns() const { return 300'000 + drawing_.median_ns() / 4; }
 
   int sub_frames_;
   std::int64_t period_ns_;
-  RecentTimes drawing_;  ///< time of a drawing
-  RecentTimes light_;    ///< from handing over to the middle of the light
+  RecentTimes drawing_;       ///< time of a drawing
+  RecentTimes all_drawings_;  ///< time of all drawings of an output frame
+  RecentTimes light_;         ///< from handing over to the middle of the light
   std::int64_t hand_over_ns_ = 0;
   int next_sub_frame_ = 0;
+  std::int64_t drawn_ns_ = 0;  ///< time of the drawings of this output frame so far
 };
 
 }  // namespace handcast::projector
