@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "renderer/base/clones.hpp"
+#include "renderer/base/load_eight.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -18,12 +19,6 @@ constexpr int kFineBits = 12;           ///< 64 * 8 * 8 units per camera px, bet
 constexpr int kFine = 1 << kFineBits;
 constexpr float kFar_px = 1e5f;  ///< outside any image
 static_assert(kFine == kUnits * kStep * kStep);
-
-std::uint64_t load8(const std::uint8_t* bytes) {
-  std::uint64_t word;
-  std::memcpy(&word, bytes, sizeof word);
-  return word;
-}
 
 constexpr int kPartBits = 6, kWhole = 1 << kPartBits;  ///< of a camera px, in weights
 
@@ -177,7 +172,7 @@ bool CameraLookup::resample_uniform(View<const std::uint8_t> mask, const Block& 
 
   std::uint64_t any = 0, all = ~0ull;
   for (int cy = y0; cy <= y1; ++cy) {
-    const std::uint64_t eight = load8(mask.row(cy) + x0);
+    const std::uint64_t eight = load_eight(mask.row(cy) + x0);
     any |= eight;
     all &= eight;
   }

@@ -101,6 +101,5 @@ handcast_found(found GNUPLOT)
 handcast_feature(GNUPLOT "drawing of charts, handcast chart (gnuplot-nox)" ${found})
 
 find_package(GTest QUIET)
-find_package(benchmark QUIET)
-handcast_found(found GTest_FOUND benchmark_FOUND)
-handcast_feature(TESTS "tests and benchmarks (libgtest-dev libgmock-dev libbenchmark-dev)" ${found})
+handcast_found(found GTest_FOUND)
+handcast_feature(TESTS "tests and benchmarks (libgtest-dev libgmock-dev)" ${found})

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstring>
-
 #include "renderer/base/clones.hpp"
+#include "renderer/base/load_eight.hpp"
 #include "renderer/draw/cpu/passes.hpp"
 
 namespace handcast::renderer::cpu {
@@ -43,12 +42,6 @@ HANDCAST_CLONES void darken_spilt(const Sorting row, int x0, int x1) {
   for (int x = x0; x < x1; ++x) row.colour[x] = row.lit[x] ? row.colour[x] : 0;
 }
 
-std::uint64_t eight(const std::uint8_t* pixels) {
-  std::uint64_t word;
-  std::memcpy(&word, pixels, sizeof word);
-  return word;
-}
-
 /// Gives the pixels [x0, x1) of a row that are hand in part the same part of their light.
 void soften_row(const std::uint8_t* mask, std::uint32_t* colour, int x0, int x1) {
   static const ShareTable kTable = share_table();
@@ -58,7 +51,7 @@ void soften_row(const std::uint8_t* mask, std::uint32_t* colour, int x0, int x1)
   };
   int x = x0;
   for (; x + 8 <= x1; x += 8) {
-    const std::uint64_t word = eight(mask + x);
+    const std::uint64_t word = load_eight(mask + x);
     if (word == 0 || word == ~std::uint64_t{0}) continue;
     for (int i = 0; i < 8; ++i) soften(x + i);
   }

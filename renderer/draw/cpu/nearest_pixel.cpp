@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "renderer/base/clones.hpp"
+#include "renderer/base/load_eight.hpp"
 
 namespace handcast::renderer::cpu {
 namespace {
@@ -41,16 +42,10 @@ HANDCAST_CLONES void square_row(const std::int8_t* __restrict to_seed,
   for (int x = 0; x < count; ++x) squares[x] = static_cast<std::int16_t>(to_seed[x] * to_seed[x]);
 }
 
-inline std::uint64_t eight(const std::uint8_t* pixels) {
-  std::uint64_t word;
-  std::memcpy(&word, pixels, sizeof word);
-  return word;
-}
-
 /// The first pixel that is set; `count` if none is.
 int first_set(const std::uint8_t* pixels, int count) {
   int x = 0;
-  while (x + 8 <= count && eight(pixels + x) == 0) x += 8;
+  while (x + 8 <= count && load_eight(pixels + x) == 0) x += 8;
   while (x < count && pixels[x] == 0) ++x;
   return x;
 }
@@ -58,7 +53,7 @@ int first_set(const std::uint8_t* pixels, int count) {
 /// One past the last pixel that is set. At least one must be.
 int end_of_set(const std::uint8_t* pixels, int count) {
   int x = count;
-  while (x >= 8 && eight(pixels + x - 8) == 0) x -= 8;
+  while (x >= 8 && load_eight(pixels + x - 8) == 0) x -= 8;
   while (pixels[x - 1] == 0) --x;
   return x;
 }

@@ -145,7 +145,7 @@ struct LaneSteps {
     const float old_depth = block.depth[i], old_u = block.u[i], old_v = block.v[i];
     const std::uint32_t old_tag = block.tag[i];
     const float depth = at.depth + steps.depth[i];
-    // At the tip of a sliver the plane of the light may leave its range by rounding.
+    // In huge triangles rounding takes the light out of its range.
     const std::int32_t plane = static_cast<std::int32_t>(at.light + steps.light[i]),
                        raised = plane > 0 ? plane : 0;
     const auto light = static_cast<std::uint32_t>(raised < 256 ? raised : 256);

@@ -254,6 +254,33 @@ TEST_P(PainterContract, CornersFarBeyondTheImageDoNoHarm) {
   EXPECT_EQ(lit_pixels(), kWidth * kHeight);
 }
 
+TEST_P(PainterContract, ASmallFilteredPictureShowsTheMeanOfItsLight) {
+  Texture checks(256, 256);
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 256; ++x) checks.at(x, y) = (x + y) % 2 ? 0xffffffffu : 0xff000000u;
+  Shape shape(checks, true);
+  shape.rectangle({10, 10}, {138, 138}, 1, 1, {0, 0}, 2);  // two texels per pixel
+  draw(*painter_, shape, kWhole);
+  for (int y = 12; y < 130; ++y)
+    for (int x = 12; x < 130; ++x)
+      ASSERT_NEAR(static_cast<int>(colour(x, y) & 0xff), 188, 1) << x << ' ' << y;
+}
+
+TEST_P(PainterContract, BetweenTheTexelsOfAFilteredPictureTheLightIsMixed) {
+  Texture edge(2, 1, 0xff000000u);
+  edge.at(1, 0) = 0xffffffffu;
+  Shape shape(edge, true);
+  shape.rectangle({0, 10}, {128, 60}, 1, 1, {0, 0}, 2);  // 64 px per texel
+  draw(*painter_, shape, kWhole);
+  const auto red = [&](int x) { return static_cast<double>(colour(x, 30) & 0xff); };
+  EXPECT_EQ(red(20), 0);
+  EXPECT_EQ(red(110), 255);
+  for (int x = 33; x < 96; ++x) {
+    ASSERT_GE(red(x), red(x - 1));
+    ASSERT_NEAR(red(x) * red(x) / 65025, (x - 32) / 64., 0.02) << x;
+  }
+}
+
 // ---- fill
 
 TEST_P(PainterContract, WithoutAHandInTheMaskEverythingIsDark) {
@@ -299,33 +326,6 @@ TEST_P(PainterContract, AfterTheFillThereIsLightOnTheHandOnlyAndAllOverIt) {
   EXPECT_EQ(counts.lit, 88 * 75);
   EXPECT_EQ(counts.filled, 100 * 80 - 88 * 75);
   EXPECT_EQ(counts.dark, 0);
-}
-
-TEST_P(PainterContract, ASmallFilteredPictureShowsTheMeanOfItsLight) {
-  Texture checks(256, 256);
-  for (int y = 0; y < 256; ++y)
-    for (int x = 0; x < 256; ++x) checks.at(x, y) = (x + y) % 2 ? 0xffffffffu : 0xff000000u;
-  Shape shape(checks, true);
-  shape.rectangle({10, 10}, {138, 138}, 1, 1, {0, 0}, 2);  // two texels per pixel
-  draw(*painter_, shape, kWhole);
-  for (int y = 12; y < 130; ++y)
-    for (int x = 12; x < 130; ++x)
-      ASSERT_NEAR(static_cast<int>(colour(x, y) & 0xff), 188, 1) << x << ' ' << y;
-}
-
-TEST_P(PainterContract, BetweenTheTexelsOfAFilteredPictureTheLightIsMixed) {
-  Texture edge(2, 1, 0xff000000u);
-  edge.at(1, 0) = 0xffffffffu;
-  Shape shape(edge, true);
-  shape.rectangle({0, 10}, {128, 60}, 1, 1, {0, 0}, 2);  // 64 px per texel
-  draw(*painter_, shape, kWhole);
-  const auto red = [&](int x) { return static_cast<double>(colour(x, 30) & 0xff); };
-  EXPECT_EQ(red(20), 0);
-  EXPECT_EQ(red(110), 255);
-  for (int x = 33; x < 96; ++x) {
-    ASSERT_GE(red(x), red(x - 1));
-    ASSERT_NEAR(red(x) * red(x) / 65025, (x - 32) / 64., 0.02) << x;
-  }
 }
 
 TEST_P(PainterContract, APixelThatIsHandInPartGetsThisPartOfItsLight) {
