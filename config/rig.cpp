@@ -36,11 +36,22 @@ void resolve_paths(const Listing& listing, const std::filesystem::path& folder) 
 }
 
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
-  for (const auto* service : {"camera", "pose", "landmarks", "projector", "observer"})
+  for (const auto* service : {"camera", "pose", "landmarks", "projector", "dlp", "observer"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,
                                service, core));
+}
+
+void check_currents(const Dlp& dlp, std::string_view file, Faults& faults) {
+  const auto check = [&](std::string_view name, double current) {
+    if (current > dlp.limit)
+      faults.add(
+          fmt::format("{}: dlp.{}: {} is above dlp.limit, {}", file, name, current, dlp.limit));
+  };
+  check("red", dlp.red);
+  check("green", dlp.green);
+  check("blue", dlp.blue);
 }
 
 /// Checks conditions between settings, and those that their ranges do not express.
@@ -49,6 +60,7 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
     faults.add(fmt::format("{}: name: '{}' is not a valid name of a rig; {}", file, rig.name,
                            kRigNameRule));
   check_cores(rig, file, faults);
+  check_currents(rig.dlp, file, faults);
   const auto& correct = rig.cascade.correct;
   if (correct.bone_short_px >= correct.bone_long_px)
     faults.add(
@@ -68,6 +80,7 @@ Process process_of(const Rig& rig, std::string_view service) {
   if (service == "pose") return rig.pose.process;
   if (service == "landmarks") return rig.landmarks.process;
   if (service == "projector") return rig.projector.process;
+  if (service == "dlp") return rig.dlp.process;
   if (service == "observer") return rig.observer.process;
   return {};
 }

@@ -7,6 +7,7 @@
 
 #include "config/renamed_settings.hpp"
 #include "config/sections/cascade.hpp"
+#include "config/sections/dlp.hpp"
 #include "config/sections/projector.hpp"
 #include "config/sections/sensors.hpp"
 #include "config/sections/supervisor.hpp"
@@ -26,6 +27,7 @@ struct Rig {
   Pose pose;
   Landmarks landmarks;
   Projector projector;
+  Dlp dlp;
   Content content;
   Hand hand;
   Cascade cascade;
@@ -48,6 +50,7 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("pose", rig.pose, "The hand tracker.");
   visitor.section("landmarks", rig.landmarks, "The landmark detector.");
   visitor.section("projector", rig.projector, "The projector.");
+  visitor.section("dlp", rig.dlp, "The projector's own controller.");
   visitor.section("content", rig.content, "The pictures on the hands.");
   visitor.section("hand", rig.hand, "The model of the hand that is drawn.");
   visitor.section("cascade", rig.cascade, "The steps from sensor data to light.");

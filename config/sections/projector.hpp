@@ -38,7 +38,7 @@ struct ProjectorFile {
 template <class Visitor>
 void describe(Visitor& visitor, ProjectorFile& file) {
   visitor.field("film", file.film, "Writes one film, light.avi, instead of pictures.");
-  visitor.field("every", file.every, between(1, 100000), "The first of so many frames is written.");
+  visitor.field("every", file.every, between(1, 100000), "Every n-th frame is written.");
 }
 
 /// [projector.kms]
@@ -138,10 +138,11 @@ void describe(Visitor& visitor, Projector& projector) {
       "one frame. 24x1: 24 frames of 1 bit. 8x3: 8 frames of 1 bit per colour. "
       "quadrants_rgb: 4 frames of half the width and height. quadrants_grey: 12 of them, "
       "without colour.");
-  visitor.field("dither", projector.dither,
-                "24x1, 8x3: a level between black and white becomes a pattern of both, which "
-                "changes from frame to frame. Off: levels of at least half the light become "
-                "white.");
+  visitor.field(
+      "dither", projector.dither,
+      "24x1, 8x3: a level between black and white becomes a pattern of both, which "
+      "changes from sub-frame to sub-frame. Off: levels of at least half the light become "
+      "white.");
   visitor.section("file", projector.file, "The back end `file`.");
   visitor.section("kms", projector.kms, "The back end `kms`.");
   visitor.section("window", projector.window, "The back end `window`.");

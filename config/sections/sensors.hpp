@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/sections/executor.hpp"
 #include "config/sections/process.hpp"
@@ -23,12 +24,128 @@ void describe(Visitor& visitor, Replay& replay) {
   visitor.field("loop", replay.loop, "Start again at the end of the recording.");
 }
 
+/// When the images of a recording are delivered.
+enum class Pace {
+  recorded,  ///< at the times at which they were taken
+  fastest,   ///< each as soon as the one before it was taken
+};
+constexpr std::array<std::string_view, 2> words_of(Pace) { return {"recorded", "fastest"}; }
+
+/// [camera.replay]
+struct CameraReplay {
+  std::string directory;
+  bool loop = true;
+  Pace pace = Pace::recorded;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, CameraReplay& replay) {
+  visitor.field("directory", replay.directory,
+                "The recording: a folder that `handcast record` has written, a folder of PNG "
+                "images, a film, or a .npy file; relative to the rig file.");
+  visitor.field("loop", replay.loop, "Start again at the end of the recording.");
+  visitor.field("pace", replay.pace,
+                "recorded: images come at the times at which they were taken. fastest: each one "
+                "comes as soon as the one before it has been delivered.");
+}
+
+/// How a GenICam camera sends its pixels.
+enum class PixelFormat { mono8, mono10, mono10_packed, mono12, mono12_packed };
+constexpr std::array<std::string_view, 5> words_of(PixelFormat) {
+  return {"Mono8", "Mono10", "Mono10p", "Mono12", "Mono12p"};
+}
+
+/// What starts an exposure.
+enum class Trigger {
+  free_run,  ///< the camera's own clock, at rate_hz
+  line,      ///< a hardware line
+  software,  ///< a command of the service, at rate_hz
+};
+constexpr std::array<std::string_view, 3> words_of(Trigger) {
+  return {"free_run", "line", "software"};
+}
+
+/// [camera.aravis]
+struct Aravis {
+  std::string device;
+  int offset_x_px = 0;
+  int offset_y_px = 0;
+  int binning = 1;
+  PixelFormat format = PixelFormat::mono8;
+  double gain_db = 0;
+  Trigger trigger = Trigger::free_run;
+  std::string trigger_line = "Line1";
+  std::string exposure_line;
+  int packet_bytes = 0;
+  double packet_delay_us = 0;
+  std::vector<std::string> features;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, Aravis& aravis) {
+  visitor.field("device", aravis.device,
+                "The camera: its serial number, name or address, as `handcast devices` lists it. "
+                "Empty: the only one that is attached.");
+  visitor.field("offset_x_px", aravis.offset_x_px, between(0, 65535, "px"),
+                "The left end of the region of the sensor that is read. Its size is that of the "
+                "calibration.");
+  visitor.field("offset_y_px", aravis.offset_y_px, between(0, 65535, "px"), "Its upper end.");
+  visitor.field("binning", aravis.binning, between(1, 8),
+                "So many columns and rows of the sensor become one pixel.");
+  visitor.field("format", aravis.format,
+                "How the camera sends a pixel. The 8 highest bits are used. A p at the end: "
+                "packed.");
+  visitor.field("gain_db", aravis.gain_db, between(0, 60, "dB"), "Analogue gain.");
+  visitor.field("trigger", aravis.trigger,
+                "What starts an exposure. free_run: the camera's clock. line: trigger_line. "
+                "software: a command of the service. The last two: rate_hz is what is expected.");
+  visitor.field("trigger_line", aravis.trigger_line, "The input of the hardware trigger.");
+  visitor.field("exposure_line", aravis.exposure_line,
+                "The output that is active during the exposure, for infrared lamps. Empty: none.");
+  visitor.field("packet_bytes", aravis.packet_bytes, between(0, 65535, "B"),
+                "GigE: size of a packet. 0: the largest one that reaches this computer.");
+  visitor.field("packet_delay_us", aravis.packet_delay_us, between(0, 100000, "us"),
+                "GigE: pause after each packet, if several cameras share a link.");
+  visitor.field("features", aravis.features,
+                "Further GenICam features, in their order: [\"GammaEnable=false\", "
+                "\"BlackLevel=4\"].");
+}
+
+/// How a webcam sends its pixels.
+enum class WebcamFormat { automatic, grey, y10, y16, yuyv, nv12, mjpeg };
+constexpr std::array<std::string_view, 7> words_of(WebcamFormat) {
+  return {"auto", "GREY", "Y10", "Y16", "YUYV", "NV12", "MJPEG"};
+}
+
+/// [camera.v4l2]
+struct V4l2 {
+  std::string device;
+  WebcamFormat format = WebcamFormat::automatic;
+  std::vector<std::string> controls;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, V4l2& v4l2) {
+  visitor.field("device", v4l2.device,
+                "The camera: /dev/video0, or its name or bus, as `handcast devices` lists them. "
+                "Empty: the only one that is attached.");
+  visitor.field("format", v4l2.format,
+                "How the camera sends its pixels. auto: the first of GREY, Y16, Y10, NV12, YUYV "
+                "and MJPEG that it has in the size of the calibration.");
+  visitor.field("controls", v4l2.controls,
+                "Further controls, in their order, by the names of the kernel: "
+                "[\"power_line_frequency=0\", \"gain=20\"].");
+}
+
 /// [camera]
 struct Camera {
   std::string backend = "twin";
   double rate_hz = 525;
   double exposure_ms = 1.85;
-  Replay replay;
+  double delivery_ms = 0;
+  Aravis aravis;
+  V4l2 v4l2;
+  CameraReplay replay;
   Process process;
 };
 
@@ -40,15 +157,35 @@ void describe(Visitor& visitor, Camera& camera) {
                 "Frames per second requested from the camera.");
   visitor.field("exposure_ms", camera.exposure_ms, between(0.01, 100, "ms"),
                 "Duration of the exposure.");
-  visitor.section("replay", camera.replay,
-                  "For backend = \"replay\": grey PNG images in camera/ with their times in "
-                  "camera_timestamps.npy.");
+  visitor.field("delivery_ms", camera.delivery_ms, between(0, 100, "ms"),
+                "aravis, v4l2: the least time from the end of an exposure until its image has "
+                "arrived: readout and transfer.");
+  visitor.section("aravis", camera.aravis,
+                  "For backend = \"aravis\": a GigE Vision or USB3 Vision camera.");
+  visitor.section("v4l2", camera.v4l2, "For backend = \"v4l2\": a webcam.");
+  visitor.section("replay", camera.replay, "For backend = \"replay\".");
   visitor.section("process", camera.process, "The process of the service.");
+}
+
+/// [pose.none]
+struct PoseNone {
+  double distance_m = 0.73;
+  double hand_length_mm = 0;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, PoseNone& none) {
+  visitor.field("distance_m", none.distance_m, between(0.1, 10, "m"),
+                "Distance of the hand from the camera.");
+  visitor.field(
+      "hand_length_mm", none.hand_length_mm, between(0, 300, "mm"),
+      "From the wrist to the tip of the middle finger. 0: the length of handcast's hand.");
 }
 
 /// [pose]
 struct Pose {
   std::string backend = "twin";
+  PoseNone none;
   Replay replay;
   Process process;
 };
@@ -57,6 +194,9 @@ template <class Visitor>
 void describe(Visitor& visitor, Pose& pose) {
   visitor.field("backend", pose.backend,
                 "The source of hand poses; `handcast-pose --backends` lists them.");
+  visitor.section("none", pose.none,
+                  "For backend = \"none\": a rig without a tracker. The landmarks are lifted to "
+                  "the distance of the hand.");
   visitor.section("replay", pose.replay,
                   "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and "
                   "bones_{left,right}.npy.");

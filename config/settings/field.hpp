@@ -36,7 +36,7 @@ constexpr Range at_least(double min, std::string_view unit = "") {
 // Collector (settings.hpp) is the visitor. The loader, the printer (commented TOML), `--set
 // path=value` and REFERENCE.md use the listing that it makes. The default of a setting is the
 // initial value of its member. Types of fields: bool, int, double, std::string,
-// std::vector<double>, and enums with words (choice.hpp). section() calls describe() of the member,
-// found by argument-dependent lookup.
+// std::vector<double>, std::vector<std::string>, and enums with words (choice.hpp). section() calls
+// describe() of the member, found by argument-dependent lookup.
 
 }  // namespace handcast::config

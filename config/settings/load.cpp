@@ -23,8 +23,9 @@ Complaint outside(double number, const Setting& setting) {
 
 /// E.g. "must be a number, 1..2000 Hz".
 Complaint expected(const Setting& setting) {
-  constexpr std::string_view kKinds[] = {"true or false",  "a whole number",    "a number",
-                                         "text in quotes", "a list of numbers", "a word in quotes"};
+  constexpr std::string_view kKinds[] = {"true or false",   "a whole number",    "a number",
+                                         "text in quotes",  "a list of numbers", "a list of texts",
+                                         "a word in quotes"};
   const auto allowed = print_allowed(setting);
   return fmt::format("must be {}{}{}", kKinds[setting.target.index()], allowed.empty() ? "" : ", ",
                      allowed);
@@ -96,6 +97,17 @@ Complaint store(std::vector<double>& target, const Value& value, const Setting& 
     if (auto complaint = store(numbers[i], (*array)[i], setting); !complaint.empty())
       return complaint;
   target = std::move(numbers);
+  return {};
+}
+
+Complaint store(std::vector<std::string>& target, const Value& value, const Setting& setting) {
+  const auto* array = std::get_if<Array>(&value.data);
+  if (!array) return wrong_kind(value, setting);
+  std::vector<std::string> texts(array->size());
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    if (auto complaint = store(texts[i], (*array)[i], setting); !complaint.empty())
+      return complaint;
+  target = std::move(texts);
   return {};
 }
 
@@ -186,13 +198,15 @@ std::string unknown_path(const Listing& listing, std::string_view path) {
   return fmt::format("there is no such setting{}", hint);
 }
 
-/// Parses the value of an assignment: text without quotes is taken literally, everything else is
-/// TOML. Empty if it is not valid TOML.
+/// Parses the value of an assignment: text without quotes is taken literally, also as the only
+/// element of a list of texts; everything else is TOML. Empty if it is not valid TOML.
 std::optional<Value> read_assigned(std::string_view text, const Target& target) {
   const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
   const bool is_text =
       std::holds_alternative<std::string*>(target) || std::holds_alternative<ChoiceTarget>(target);
   if (is_text && !quoted) return Value{std::string(text), 1};
+  if (std::holds_alternative<std::vector<std::string>*>(target) && !text.starts_with('['))
+    return Value{Array{Value{std::string(text), 1}}, 1};
   const bool bare_list =
       std::holds_alternative<std::vector<double>*>(target) && !text.starts_with('[');
   const auto document = parse_document(

@@ -15,13 +15,6 @@ std::string print(int whole) { return fmt::format("{}", whole); }
 /// The shortest text that reads back as the same number.
 std::string print(double number) { return fmt::format("{}", number); }
 
-std::string print(const std::vector<double>& numbers) {
-  std::vector<std::string> texts;
-  texts.reserve(numbers.size());
-  for (const double number : numbers) texts.push_back(print(number));
-  return fmt::format("[{}]", join(texts, ", "));
-}
-
 std::string print(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -36,6 +29,14 @@ std::string print(const std::string& text) {
     }
   }
   return quoted + '"';
+}
+
+template <class T>
+std::string print(const std::vector<T>& elements) {
+  std::vector<std::string> texts;
+  texts.reserve(elements.size());
+  for (const T& element : elements) texts.push_back(print(element));
+  return fmt::format("[{}]", join(texts, ", "));
 }
 
 std::string print_target(const ChoiceTarget& choice) { return print(std::string(choice.word())); }

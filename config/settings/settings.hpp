@@ -36,7 +36,8 @@ struct ChoiceTarget {
 };
 
 /// The value of a setting, in the struct that holds it.
-using Target = std::variant<bool*, int*, double*, std::string*, std::vector<double>*, ChoiceTarget>;
+using Target = std::variant<bool*, int*, double*, std::string*, std::vector<double>*,
+                            std::vector<std::string>*, ChoiceTarget>;
 
 /// One declared setting of a struct, which must outlive it.
 struct Setting {
@@ -80,6 +81,9 @@ class Collector {
     add(name, &value, {}, sentence);
   }
   void field(std::string_view name, std::string& value, std::string_view sentence) {
+    add(name, &value, {}, sentence);
+  }
+  void field(std::string_view name, std::vector<std::string>& value, std::string_view sentence) {
     add(name, &value, {}, sentence);
   }
   template <Choice Enum>
@@ -129,7 +133,7 @@ Listing list_settings(T& declared) {
 /// The setting at `path`, inside `listing`; null if there is none.
 const Setting* find_setting(const Listing& listing, std::string_view path);
 
-/// The value in TOML: true, 525, "twin", [0.1, 2].
+/// The value in TOML: true, 525, "twin", [0.1, 2], ["a", "b"].
 std::string print_value(const Setting& setting);
 
 /// The allowed values: "1..2000 Hz", "at least 0 ms", "one of: hold, velocity"; empty if all are

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "ipc/msg/frame_losses.hpp"
 #include "ipc/msg/header.hpp"
 #include "ipc/msg/tail.hpp"
 
@@ -14,10 +15,13 @@ namespace handcast::msg {
 /// Published by: services/camera ("camera.frames").  Read by: services/landmarks,
 /// services/projector, observers.
 struct CameraFrame {
-  static constexpr std::string_view layout = "CameraFrame/1";  ///< see type_hash()
+  static constexpr std::string_view layout = "CameraFrame/2";  ///< see type_hash()
 
   Header header;                 ///< origin_ns: the middle of the exposure
   std::int64_t exposure_ns = 0;  ///< duration of the exposure
+  /// Uncertainty of header.origin_ns: half the width of the interval in which it lies. 0: unknown.
+  std::int64_t origin_error_ns = 0;
+  FrameLosses lost;  ///< between the frame before and this one
   /// Size of the image in pixels.
   /// @{
   std::uint32_t width_px = 0;

@@ -53,7 +53,8 @@ inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::co
 /// The time that one stage of one frame took.
 struct StageMark {
   Stage stage = Stage::frame;  ///< what was done
-  std::uint32_t detail = 0;    ///< `correct`: see rung.hpp; `light`: light_source.hpp; else 0
+  /// `capture`: see frame_losses.hpp; `correct`: rung.hpp; `light`: light_source.hpp; else 0.
+  std::uint32_t detail = 0;
   /// Begin and end of the stage, CLOCK_MONOTONIC.
   /// @{
   std::int64_t begin_ns = 0;

@@ -88,6 +88,14 @@ pkg_check_modules(drm QUIET IMPORTED_TARGET libdrm)
 handcast_found(found drm_FOUND)
 handcast_feature(KMS "light on a projector without a window system (libdrm-dev)" ${found})
 
+pkg_check_modules(aravis QUIET IMPORTED_TARGET aravis-0.8)
+handcast_found(found aravis_FOUND)
+handcast_feature(ARAVIS "GigE Vision and USB3 Vision cameras (libaravis-dev)" ${found})
+
+pkg_check_modules(hidapi QUIET IMPORTED_TARGET hidapi-hidraw)
+handcast_found(found hidapi_FOUND)
+handcast_feature(HIDAPI "commands to DLP projectors, handcast-dlp (libhidapi-dev)" ${found})
+
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
 handcast_feature(PROMETHEUS "metrics for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})

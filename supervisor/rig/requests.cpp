@@ -131,7 +131,8 @@ std::string Requests::why_not_reload() const {
 void Requests::tick(std::int64_t now) {
   changes_.tick();
   if (!reloading_ || !reloading_->reload.advance(now)) return;
-  auto done = *std::exchange(reloading_, {});
+  Reloading done = std::move(*reloading_);
+  reloading_.reset();
   done.reply(done.reload.finish());
 }
 

@@ -45,6 +45,8 @@ inline void change(const Setting& setting) {
                 (*value + setting.range.min) / 2 + (setting.range.max - setting.range.min) / 3e6;
           if constexpr (std::is_same_v<T, std::vector<double>>)
             value->push_back(setting.name() == "cores" ? 1 : 0.1);
+          if constexpr (std::is_same_v<T, std::vector<std::string>>)
+            value->push_back("a, \"quoted\" [text] = 1");
           if constexpr (std::is_same_v<T, std::string>)
             *value = setting.path == "name" ? "another_rig"
                                             : "/a \"quoted\" \\ path\twith a tab and a hä\x01";

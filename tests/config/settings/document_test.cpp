@@ -11,12 +11,14 @@ namespace {
 struct Lens {
   std::vector<double> coefficients{1, 2, 3};
   std::vector<double> free;
+  std::vector<std::string> features;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Lens& lens) {
   visitor.field("coefficients", lens.coefficients, between(-10, 10), "Three numbers.");
   visitor.field("free", lens.free, at_least(0, "mm"), "Any numbers.");
+  visitor.field("features", lens.features, "Any texts.");
 }
 
 std::string faults_of(const std::string& toml, Lens& lens) {
@@ -75,6 +77,27 @@ TEST(Document, AnAssignedListMayGoWithoutBrackets) {
   apply_assignment("coefficients=4,5,6", list_settings(lens), faults);
   EXPECT_TRUE(faults.empty()) << faults.to_error().what;
   EXPECT_EQ(lens.coefficients, (std::vector<double>{4, 5, 6}));
+}
+
+TEST(Document, AListOfTextsTakesOnlyTexts) {
+  Lens lens;
+  EXPECT_EQ(faults_of("features = ['Gamma=1', \"a\"]\n", lens), "");
+  EXPECT_EQ(lens.features, (std::vector<std::string>{"Gamma=1", "a"}));
+  EXPECT_EQ(faults_of("features = ['b', 1]\n", lens),
+            "lens.toml:1: features: must be a list of texts, not a whole number");
+  EXPECT_EQ(faults_of("features = 'b'\n", lens),
+            "lens.toml:1: features: must be a list of texts, not text");
+  EXPECT_EQ(lens.features.size(), 2u);
+}
+
+TEST(Document, AnAssignedTextWithoutBracketsIsTheOnlyOneOfItsList) {
+  Lens lens;
+  for (const auto* assignment : {"features=Gamma=1,2", "features=[\"Gamma=1,2\"]"}) {
+    Faults faults;
+    apply_assignment(assignment, list_settings(lens), faults);
+    EXPECT_TRUE(faults.empty()) << faults.to_error().what;
+    EXPECT_EQ(lens.features, std::vector<std::string>{"Gamma=1,2"});
+  }
 }
 
 TEST(Suggest, FindsTheNearestNameButNotAFarOne) {
