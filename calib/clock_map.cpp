@@ -37,8 +37,7 @@ void ClockMap::add(std::int64_t device_ns, std::int64_t arrival_ns) {
 
 ClockMap::HostTime ClockMap::earliest_arrival(std::int64_t device_ns) const {
   const double device_s = ns_to_seconds(device_ns - first_device_ns_);
-  return {device_ns + first_delay_ns_ + seconds_to_ns(line_at(device_s)),
-          seconds_to_ns(spread_s_)};
+  return {device_ns + first_delay_ns_ + seconds_to_ns(line_at(device_s)), seconds_to_ns(spread_s_)};
 }
 
 void ClockMap::begin(std::int64_t device_ns, std::int64_t arrival_ns) {
@@ -90,8 +89,8 @@ void ClockMap::touch_from_below() {
     hull.push_back(point);
     mean_s += point.device_s / static_cast<double>(points_.size());
   }
-  auto right = std::ranges::find_if(
-      hull, [mean_s](const Point& point) { return point.device_s > mean_s; });
+  auto right =
+      std::ranges::find_if(hull, [mean_s](const Point& point) { return point.device_s > mean_s; });
   if (right == hull.begin()) ++right;
   const Point &a = *(right - 1), &b = *right;
   slope_ = std::clamp((b.delay_s - a.delay_s) / (b.device_s - a.device_s), -kLargestDrift,

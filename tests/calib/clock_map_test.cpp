@@ -17,8 +17,8 @@ namespace {
 constexpr std::int64_t kLeastDelay_ns = 400'000;
 
 /// A camera of 525 Hz with a clock of its own, whose images arrive after 0.4 ms, a jitter of 60 us
-/// with a standard deviation of 30 us, and an exponential one of 0.1 ms; one of 200 comes several ms
-/// late. There is no sharp lower limit, so the envelope does not lie on a line by itself.
+/// with a standard deviation of 30 us, and an exponential one of 0.1 ms; one of 200 comes several
+/// ms late. There is no sharp lower limit, so the envelope does not lie on a line by itself.
 class Device {
  public:
   /// `device_of`: the device's clock, in ns, at a time of the host's clock, in s.
@@ -82,8 +82,7 @@ TEST(ClockMap, FollowsADriftOf50PartsPerMillion) {
 }
 
 TEST(ClockMap, StatesAnErrorThatHoldsFromTheFirstImageOn) {
-  const auto errors =
-      errors_of(Device([](double s) { return 3e9 + s * 1e9 * (1 + 50e-6); }), 3, 0);
+  const auto errors = errors_of(Device([](double s) { return 3e9 + s * 1e9 * (1 + 50e-6); }), 3, 0);
   EXPECT_LE(errors.p99_us, 150);
   EXPECT_GE(errors.within_stated, 0.9);
 }
