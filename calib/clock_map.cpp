@@ -70,7 +70,7 @@ void ClockMap::fit() {
   }
   std::vector<double> above_s;
   for (const auto& point : points_) above_s.push_back(point.delay_s - line_at(point.device_s));
-  const auto middle = above_s.begin() + static_cast<std::ptrdiff_t>(above_s.size() / 2);
+  const auto middle = above_s.begin() + static_cast<std::ptrdiff_t>((above_s.size() - 1) / 2);
   std::nth_element(above_s.begin(), middle, above_s.end());
   spread_s_ = 2 * std::max(*middle, 0.) + (span_s < kShortest_s ? kUsualDrift * kShortest_s : 0);
 }

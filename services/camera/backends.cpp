@@ -6,12 +6,23 @@
 
 namespace handcast::camera {
 
+#ifdef HANDCAST_WITH_ARAVIS
+Result<std::unique_ptr<Camera>> open_aravis(const config::Rig&, const calib::Calibration&,
+                                            const std::int64_t& epoch_ns);
+#endif
 Result<std::unique_ptr<Camera>> open_twin(const config::Rig&, const calib::Calibration&,
                                           const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Camera>> open_replay(const config::Rig&, const calib::Calibration&,
                                             const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
+#ifdef HANDCAST_WITH_ARAVIS
+    CameraBackend{.name = "aravis",
+                  .sentence = "A GigE Vision or USB3 Vision camera.",
+                  .open = open_aravis,
+                  .reads = {"camera.aravis", "camera.delivery_ms"},
+                  .exclusive = true},
+#endif
     CameraBackend{.name = "twin",
                   .sentence = "Draws the twin's hand as an infrared camera would see it.",
                   .open = open_twin,

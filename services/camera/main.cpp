@@ -25,15 +25,18 @@ static void run_camera(service::Context& context) {
       sleep_until_ns(now_ns() + to_ns(1ms));
       continue;
     }
+    slot->origin_error_ns = 0;
+    slot->lost = {};
     if (const auto captured = source->capture(*slot, slot.tail_bytes(), Deadline::in(50ms));
         !captured) {
       context.tolerate(captured.error());
       continue;
     }
     const msg::Header header = slot->header;
+    const msg::FrameLosses lost = slot->lost;
     frames.publish(std::move(slot));
-    context.mark(header,
-                 std::array{msg::StageMark{msg::Stage::capture, 0, header.origin_ns, now_ns()}});
+    context.mark(header, std::array{msg::StageMark{msg::Stage::capture, msg::detail_of(lost),
+                                                   header.origin_ns, now_ns()}});
   }
 }
 

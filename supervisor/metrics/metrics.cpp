@@ -224,6 +224,15 @@ std::vector<MetricFamily> families_of_light(const nlohmann::json& status) {
   return {source.family, missed.family, doubled.family, wanted.family};
 }
 
+MetricFamily losses_of(const nlohmann::json& status) {
+  auto losses = Family::counter("handcast_camera_lost_images_total",
+                                "Images of the camera that were lost, by reason.");
+  if (!status.contains("lost_images")) return losses.family;
+  for (const auto& [reason, count] : status["lost_images"].items())
+    if (count.is_number()) losses.add({{"reason", reason}}, count.template get<double>());
+  return losses.family;
+}
+
 std::vector<MetricFamily> metrics_of(const RigLook& look) {
   const auto model = compare(look, look);
   auto families = families_of_rig(model);
@@ -233,6 +242,7 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   families.push_back(stages_of(look.status));
   families.push_back(rungs_of(look.status));
   append(families, families_of_light(look.status));
+  families.push_back(losses_of(look.status));
   std::erase_if(families, [](const auto& family) { return family.metric.empty(); });
   return families;
 }

@@ -74,6 +74,7 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
     stages_[std::string(msg::kStageNames[stage])].add(mark.end_ns, mark.end_ns - mark.begin_ns);
     if (const auto note = msg::light_note_in(mark.detail); note && mark.stage == msg::Stage::light)
       light_.add(*note);
+    if (mark.stage == msg::Stage::capture) lost_images_.add(msg::losses_in(mark.detail));
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})
       if (const auto rung = msg::rung_in(mark.detail, side))

@@ -12,6 +12,7 @@
 #include "ipc/msg/stage_mark.hpp"
 #include "supervisor/record/histogram.hpp"
 #include "supervisor/record/light_count.hpp"
+#include "supervisor/record/loss_count.hpp"
 
 namespace handcast::supervisor {
 
@@ -80,12 +81,15 @@ class Ledger {
   const std::array<std::uint64_t, msg::kRungs>& rungs() const { return rungs_; }
   /// The light of the projector.
   const LightCount& light() const { return light_; }
+  /// The images that the camera lost.
+  const LossCount& lost_images() const { return lost_images_; }
 
  private:
   std::map<std::string, FrameCount, std::less<>> frames_;
   std::map<std::string, StageTimes, std::less<>> stages_;
   std::array<std::uint64_t, msg::kRungs> rungs_{};
   LightCount light_;
+  LossCount lost_images_;
 };
 
 }  // namespace handcast::supervisor

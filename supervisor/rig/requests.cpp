@@ -116,7 +116,7 @@ void Requests::reload(Result<config::Rig> wanted, bool revives, Reply reply) {
   if (!wanted) return refuse(wanted.error().what);
   auto begun = Reload::begin(rig_, std::move(*wanted), revives);
   if (!begun) return refuse(begun.error().what);
-  reloading_.emplace(Reloading{std::move(*begun), std::move(reply)});
+  reloading_ = std::make_unique<Reloading>(Reloading{std::move(*begun), std::move(reply)});
   tick(now_ns());
 }
 
@@ -131,9 +131,8 @@ std::string Requests::why_not_reload() const {
 void Requests::tick(std::int64_t now) {
   changes_.tick();
   if (!reloading_ || !reloading_->reload.advance(now)) return;
-  Reloading done = std::move(*reloading_);
-  reloading_.reset();
-  done.reply(done.reload.finish());
+  const auto done = std::move(reloading_);
+  done->reply(done->reload.finish());
 }
 
 bool Requests::on_failed(Service& service) {
@@ -143,7 +142,7 @@ bool Requests::on_failed(Service& service) {
 
 void Requests::on_stopping() {
   changes_.refuse_all("the rig is stopping");
-  if (const auto reloading = std::exchange(reloading_, {}))
+  if (const auto reloading = std::move(reloading_))
     reloading->reply(failure("the rig is stopping"));
 }
 

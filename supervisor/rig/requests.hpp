@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,7 +59,7 @@ class Requests {
   LiveRig& rig_;
   Host host_;
   Changes changes_;
-  std::optional<Reloading> reloading_;
+  std::unique_ptr<Reloading> reloading_;  ///< null if none goes on
   std::vector<ControlServer::Reply> waiting_for_stop_;
 };
 

@@ -74,6 +74,12 @@ json light_status(const LightCount& light) {
           {"doubled_frames", light.doubled}};
 }
 
+json loss_status(const LossCount& lost) {
+  json status;
+  for (const auto& [reason, count] : lost.by_reason()) status[std::string(reason)] = count;
+  return status;
+}
+
 json summary_of(const Histogram& times) {
   return {{"p50", rounded(times.percentile_ns(0.50) * 1e-3)},
           {"p99", rounded(times.percentile_ns(0.99) * 1e-3)},
@@ -105,6 +111,17 @@ std::string print_light(const json& status) {
       light["doubled_frames"].dump(), text_of(light["times_by"]));
 }
 
+/// "camera: 3 images never arrived, ...". "" if none was lost.
+std::string print_losses(const json& status) {
+  const auto lost = status.value("lost_images", json::object());
+  const auto count = [&](const char* reason) { return lost.value(reason, std::uint64_t{0}); };
+  if (count("missing") + count("incomplete") + count("underrun") + count("skipped") == 0) return "";
+  return fmt::format(
+      "\ncamera: {} images never arrived, {} were incomplete, {} found no free buffer, {} were "
+      "skipped for a newer one\n",
+      count("missing"), count("incomplete"), count("underrun"), count("skipped"));
+}
+
 /// The trouble of a service: "died 10 times within 60 s; tried again in 4.2 s". "" if it has none.
 std::string print_trouble(const json& service) {
   std::string text =
@@ -126,6 +143,7 @@ json status_of(const RigView& rig) {
       status["rings"][service->spec().stream] = ring_status(*service, rig);
   }
   status["light"] = light_status(rig.recorder.ledger().light());
+  status["lost_images"] = loss_status(rig.recorder.ledger().lost_images());
   status["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages())
     status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
@@ -160,6 +178,7 @@ std::string print_status(const json& status) {
                         text_of(ring["wanted_hz"], " Hz"), text_of(ring["held_hz"], " Hz"),
                         text_of(ring["newest_age_ms"], " ms"), text_of(ring["count"]));
   text += print_light(status);
+  text += print_losses(status);
   text +=
       fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
   for (const auto& [stage, times] : status["stage_us"].items())
@@ -188,6 +207,7 @@ json live_report(const RigView& rig) {
     report["rates"][spec.name] = {{"wanted_hz", wanted_hz(spec)}, {"held_hz", rounded(held_hz)}};
   }
   report["light"] = light_status(rig.recorder.ledger().light());
+  report["lost_images"] = loss_status(rig.recorder.ledger().lost_images());
   report["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages())
     report["stage_us"][stage] = summary_of(times.whole_run());

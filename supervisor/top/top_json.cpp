@@ -69,13 +69,16 @@ json json_of(const RingRow& ring) {
 }  // namespace
 
 json json_of(const TopModel& model) {
-  json services = json::array(), rings = json::array(), rungs = json::object();
+  json services = json::array(), rings = json::array(), rungs = json::object(),
+       lost = json::object();
   for (const auto& service : model.services) services.push_back(json_of(service));
   for (const auto& ring : model.rings) rings.push_back(json_of(ring));
   for (const auto& [rung, share] : model.rungs) rungs[rung] = share;
+  for (const auto& [reason, count] : model.lost_images) lost[reason] = count;
   return {{"rig", model.rig},         {"uptime_s", model.uptime_s},
           {"missing", model.missing}, {"services", services},
-          {"rings", rings},           {"rungs", rungs}};
+          {"rings", rings},           {"rungs", rungs},
+          {"lost_images", lost}};
 }
 
 }  // namespace handcast::supervisor

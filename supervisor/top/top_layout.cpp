@@ -214,6 +214,15 @@ Line rung_line(const TopModel& model) {
   return line;
 }
 
+Line loss_line(const TopModel& model) {
+  Line line{{"LOST IMAGES", Style::heading}};
+  for (const auto& [reason, count] : model.lost_images) {
+    line.push_back({fmt::format("  {} ", reason)});
+    line.push_back({fmt::format("{:.0f}", count), Style::warning});
+  }
+  return line;
+}
+
 std::string_view ansi_of(Style style) {
   switch (style) {
     case Style::plain:
@@ -247,6 +256,7 @@ std::vector<Line> lay_out(const TopModel& model, const Page& page) {
     lines.emplace_back();
     lines.push_back(cut_to(rung_line(model), page.columns));
   }
+  if (!model.lost_images.empty()) lines.push_back(cut_to(loss_line(model), page.columns));
   lines.emplace_back();
   append(lines, lay_out(ring_table(model, page.with_marks), page.columns));
   return lines;

@@ -163,6 +163,17 @@ std::vector<RungShare> rungs_of(const RigLook& before, const RigLook& now) {
   return rungs;
 }
 
+std::vector<ReasonCount> losses_of(const RigLook& before, const RigLook& now) {
+  if (!now.status.contains("lost_images") || !before.status.contains("lost_images")) return {};
+  std::vector<ReasonCount> losses;
+  for (const auto& [reason, count] : now.status["lost_images"].items()) {
+    const double lost = number_in(now.status["lost_images"], reason.c_str()) -
+                        number_in(before.status["lost_images"], reason.c_str());
+    if (lost > 0) losses.push_back({reason, lost});
+  }
+  return losses;
+}
+
 }  // namespace
 
 bool ReaderRow::holds_an_old_lease() const {
@@ -184,6 +195,7 @@ TopModel compare(const RigLook& before, const RigLook& now) {
       model.services.push_back(service_row(name, service, before, now));
   for (const auto& ring : now.rings) model.rings.push_back(ring_row(ring, before, now, names));
   model.rungs = rungs_of(before, now);
+  model.lost_images = losses_of(before, now);
   return model;
 }
 

@@ -74,6 +74,12 @@ struct RingRow {
   bool marks() const { return now.stream.starts_with("marks."); }
 };
 
+/// How many images were lost for one reason.
+struct ReasonCount {
+  std::string reason;
+  double count = 0;
+};
+
 /// The share of the drawn hands that got a rung of the ladder.
 struct RungShare {
   std::string rung;  ///< name of the rung
@@ -90,6 +96,9 @@ struct TopModel {
   /// The rungs of the hands that were drawn since the last look, cheapest first, without unused
   /// rungs.
   std::vector<RungShare> rungs;
+  /// The images that the camera lost since the last look, by reason, without those of which none
+  /// was lost.
+  std::vector<ReasonCount> lost_images;
 };
 
 /// Compares two looks at a rig. Rates are those between the looks; they are empty for a service,

@@ -70,6 +70,14 @@ TEST(Metrics, TheLightSaysWhoKnowsItsTimesAndWhatTheOutputMissed) {
   EXPECT_THAT(text, HasSubstr("handcast_light_wanted_hertz 60"));
 }
 
+TEST(Metrics, LostImagesAreCountedByReason) {
+  auto look = look_at(10);
+  look.status["lost_images"] = {{"missing", 3}, {"skipped", 2}};
+  const auto text = metrics_text(look);
+  EXPECT_THAT(text, HasSubstr(R"(handcast_camera_lost_images_total{reason="missing"} 3)"));
+  EXPECT_THAT(text, HasSubstr(R"(handcast_camera_lost_images_total{reason="skipped"} 2)"));
+}
+
 TEST(Metrics, StagesAreInSeconds) {
   const auto text = metrics_text(look_at(10));
   EXPECT_THAT(text, HasSubstr(R"(handcast_stage_seconds{stage="draw",quantile="0.5"} 0.0015)"));

@@ -74,6 +74,24 @@ TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
   EXPECT_EQ(ledger.light().doubled, 2u);
 }
 
+TEST(Ledger, LostImagesAreCountedByReason) {
+  Ledger ledger;
+  auto marks = frame_at(kSecond_ns);
+  marks.marks[0].stage = msg::Stage::capture;
+  for (const msg::FrameLosses& lost :
+       {msg::FrameLosses{1, 2, 3, 4}, {}, {.skipped = 10}, {.missing = 1000}}) {
+    marks.marks[0].detail = msg::detail_of(lost);
+    ledger.add("camera", marks);
+  }
+  EXPECT_EQ(ledger.lost_images().missing, 1 + 255u) << "a mark has room for 255";
+  EXPECT_EQ(ledger.lost_images().incomplete, 2u);
+  EXPECT_EQ(ledger.lost_images().underrun, 3u);
+  EXPECT_EQ(ledger.lost_images().skipped, 14u);
+  marks.marks[0].stage = msg::Stage::detect;
+  ledger.add("landmarks", marks);
+  EXPECT_EQ(ledger.lost_images().missing, 1 + 255u) << "only a camera loses images";
+}
+
 TEST(LightNote, ManyRefreshesDoNotChangeTheSource) {
   const auto note = msg::light_note_in(msg::detail_of({msg::LightSource::window, 0xffffffff}));
   ASSERT_TRUE(note);

@@ -48,6 +48,22 @@ TEST(Status, SaysWhoKnowsWhenLightComes) {
   EXPECT_THAT(print_status(status), Not(HasSubstr("light:")));
 }
 
+TEST(Status, SaysWhatTheCameraLostAndNothingIfItLostNothing) {
+  json status{{"rig", "desk"},
+              {"uptime_s", 7},
+              {"services", json::object()},
+              {"rings", json::object()},
+              {"stage_us", json::object()},
+              {"lost_images",
+               {{"missing", 3}, {"incomplete", 2}, {"underrun", 1}, {"skipped", 5000000000}}}};
+  EXPECT_THAT(
+      print_status(status),
+      HasSubstr("camera: 3 images never arrived, 2 were incomplete, 1 found no free buffer, "
+                "5000000000 were skipped for a newer one\n"));
+  status["lost_images"] = {{"missing", 0}, {"incomplete", 0}, {"underrun", 0}, {"skipped", 0}};
+  EXPECT_THAT(print_status(status), Not(HasSubstr("camera:")));
+}
+
 TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {
   const auto text = print_with(service({{"state", "degraded"},
                                         {"last_exit", "exit 111"},

@@ -44,6 +44,7 @@ inline RigLook look_at(double second) {
     "stage_us": {"draw": {"p50": 1500, "p99": 2500, "count": 100}}})json");
 
   look.status["rungs"] = {{"hold", 7}, {"landmarks", 90 * second}, {"register", 30 * second}};
+  look.status["lost_images"] = {{"missing", 0}, {"incomplete", 4}, {"skipped", 3 * second}};
 
   const auto count = static_cast<std::uint64_t>(240 * second);
   ipc::RingSnapshot frames{.stream = "camera.frames",

@@ -146,6 +146,7 @@ TEST(TopModel, AsJsonItHasEveryServiceAndReader) {
   EXPECT_EQ(json["services"][1]["trouble"],
             "died 10 times; again in 2.5 s: projector: no \x1b[31mlamp");
   EXPECT_EQ(json["rungs"]["register"], 0.25);
+  EXPECT_EQ(json["lost_images"].dump(), R"({"skipped":6.0})") << "since the last look";
   EXPECT_EQ(json["rings"][0]["readers"].size(), 3u);
   EXPECT_EQ(json["rings"][0]["readers"][0]["who"], "projector");
 }

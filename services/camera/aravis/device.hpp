@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "services/camera/aravis/glib.hpp"
+
+namespace handcast::camera::aravis {
+
+/// A camera that Aravis has found.
+struct Device {
+  std::string id;       ///< Aravis's name of it: "Basler-23456789"
+  std::string serial;   ///< its serial number
+  std::string address;  ///< GigE Vision: its IP address; USB3 Vision: its GUID
+  std::string vendor;
+  std::string model;
+  std::string protocol;  ///< "GigEVision", "USB3Vision", "Fake"
+
+  bool is_gige() const { return protocol == "GigEVision"; }
+};
+
+/// Asks the networks and the USB for cameras, which takes about a second.
+std::vector<Device> list_devices();
+
+/// The camera that `name` means: its serial number, id, address or model; empty: the only one.
+/// Errors: unavailable (no camera, none of this name), bad_config (several fit). The sentence lists
+/// those that are there.
+Result<Device> find_device(const std::string& name);
+
+/// Opens a camera. If its address is known, without looking for it. Errors: unavailable (it does
+/// not answer, or another program controls it).
+Result<Owned<ArvCamera>> open_device(const Device& device);
+
+/// Finds out quickly, without Aravis, whether an absent camera has come back.
+class Presence {
+ public:
+  explicit Presence(const Device& device) : device_(device) {}
+  /// True if the camera answers. Takes at most 20 ms (GigE Vision), or the time to list the USB.
+  bool is_there() const;
+
+ private:
+  Device device_;
+};
+
+}  // namespace handcast::camera::aravis

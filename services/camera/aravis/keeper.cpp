@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/aravis/keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+
+namespace handcast::camera::aravis {
+namespace {
+
+constexpr std::int64_t kPatience_ns = 50'000'000;
+/// For the first image of a session: a camera needs time to begin.
+constexpr std::int64_t kFirstImage_ns = 1'000'000'000;
+constexpr std::int64_t kTurn_ns = 5'000'000;
+
+/// An external trigger may pause for any time: only Aravis can tell that the camera is lost.
+std::int64_t patience_of(const config::Camera& settings) {
+  if (settings.aravis.trigger == config::Trigger::line) return seconds_to_ns(6);
+  return std::max(kPatience_ns, seconds_to_ns(3 / settings.rate_hz));
+}
+
+}  // namespace
+
+Keeper::Keeper(Device device, const config::Camera& settings, int width_px, int height_px,
+               std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox)
+    : device_(std::move(device)),
+      settings_(settings),
+      width_px_(width_px),
+      height_px_(height_px),
+      session_(std::move(session)),
+      mailbox_(std::move(mailbox)),
+      presence_(device_),
+      patience_ns_(patience_of(settings)),
+      started_ns_(now_ns()),
+      next_trigger_ns_(started_ns_),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Keeper::~Keeper() {
+  thread_.request_stop();
+  thread_.join();
+  // Taking leave of an absent camera takes seconds, which nobody has to wait for.
+  if (is_lost_) std::thread([session = std::move(session_)] {}).detach();
+}
+
+std::optional<Error> Keeper::trouble() const {
+  const std::scoped_lock lock(mutex_);
+  return trouble_;
+}
+
+void Keeper::say(std::optional<Error> trouble) {
+  const std::scoped_lock lock(mutex_);
+  trouble_ = std::move(trouble);
+}
+
+void Keeper::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    if (is_lost_)
+      look_for_it();
+    else
+      watch();
+  }
+}
+
+bool Keeper::is_silent() const {
+  const std::int64_t last_ns = mailbox_->last_arrival_ns();
+  return now_ns() > (last_ns > started_ns_ ? last_ns + patience_ns_ : started_ns_ + kFirstImage_ns);
+}
+
+void Keeper::watch() {
+  if (settings_.aravis.trigger == config::Trigger::software) {
+    // Triggers that came too late are not made up for.
+    next_trigger_ns_ = std::max(next_trigger_ns_ + seconds_to_ns(1 / settings_.rate_hz), now_ns());
+    sleep_until_ns(next_trigger_ns_);
+    (void)session_->trigger();  // if it fails, no image comes, which is seen below
+  } else {
+    sleep_until_ns(now_ns() + kTurn_ns);
+  }
+  if (!is_silent()) return;
+  is_lost_ = true;
+  lost_ns_ = now_ns();
+}
+
+void Keeper::miss_it() {
+  if (trouble()) return;
+  log::warning("camera: no image of {} for {:.0f} ms; looking for it", device_.id,
+               ns_to_ms(patience_ns_ + now_ns() - lost_ns_));
+  say(Error{Errc::timeout, fmt::format("camera 'aravis': {} sends no images; it is opened again as "
+                                       "soon as it answers",
+                                       device_.id)});
+}
+
+void Keeper::look_for_it() {
+  if (presence_.is_there()) return reopen();
+  if (mailbox_->last_arrival_ns() > lost_ns_) return found("its images came back");
+  miss_it();
+  sleep_until_ns(now_ns() + kTurn_ns);
+}
+
+void Keeper::reopen() {
+  const std::int64_t answered_ns = now_ns();
+  // After a cable was plugged in again, the images come back by themselves.
+  sleep_until_ns(answered_ns + std::max(2 * kTurn_ns, seconds_to_ns(3 / settings_.rate_hz)));
+  if (mailbox_->last_arrival_ns() > answered_ns) return found("its images came back");
+  miss_it();
+  session_.reset();
+  auto session = Session::start(device_, settings_, width_px_, height_px_, mailbox_);
+  if (!session) {
+    say(Error{session.error().code == Errc::bad_config ? Errc::bad_config : Errc::timeout,
+              fmt::format("camera 'aravis': {}", session.error().what)});
+    return sleep_until_ns(now_ns() + kTurn_ns);
+  }
+  session_ = std::move(*session);
+  found("it was opened again");
+}
+
+void Keeper::found(std::string_view how) {
+  if (trouble())
+    log::info("camera: {} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_),
+              how);
+  is_lost_ = false;
+  started_ns_ = next_trigger_ns_ = now_ns();
+  say(std::nullopt);
+}
+
+}  // namespace handcast::camera::aravis

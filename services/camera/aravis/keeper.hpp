@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <thread>
+
+#include "services/camera/aravis/session.hpp"
+
+namespace handcast::camera::aravis {
+
+/// Keeps a camera streaming: sees within about 50 ms that its images have stopped, looks for the
+/// camera, and opens it anew once it answers, on a thread of its own, because a device that is
+/// absent blocks calls for seconds. Also gives the software triggers.
+class Keeper {
+ public:
+  /// `session` streams into `mailbox`. `device`: where to look for it when it is lost.
+  Keeper(Device device, const config::Camera& settings, int width_px, int height_px,
+         std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox);
+  Keeper(const Keeper&) = delete;
+  Keeper& operator=(const Keeper&) = delete;
+  ~Keeper();
+
+  /// Why no images come now; empty if they should come. Any thread.
+  std::optional<Error> trouble() const;
+
+ private:
+  void run(const std::stop_token& stop);
+  void watch();
+  void look_for_it();
+  /// Says that the camera is lost, if it has not been said.
+  void miss_it();
+  /// Opens the camera anew, unless its images have come back by themselves.
+  void reopen();
+  void found(std::string_view how);
+  void say(std::optional<Error> trouble);
+  bool is_silent() const;
+
+  Device device_;
+  config::Camera settings_;
+  int width_px_, height_px_;
+  std::unique_ptr<Session> session_;
+  std::shared_ptr<Mailbox> mailbox_;
+  Presence presence_;
+  std::int64_t patience_ns_;      ///< how long no image is no reason to look for the camera
+  std::int64_t started_ns_;       ///< the last start of the session
+  std::int64_t next_trigger_ns_;  ///< of the software triggers
+  bool is_lost_ = false;
+  std::int64_t lost_ns_ = 0;  ///< when it was lost
+  mutable std::mutex mutex_;
+  std::optional<Error> trouble_;
+  std::jthread thread_;
+};
+
+}  // namespace handcast::camera::aravis

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/aravis/session.hpp"
+
+#include <utility>
+
+namespace handcast::camera::aravis {
+namespace {
+
+/// Enough for 30 ms of a 525 Hz camera while this process does not run.
+constexpr int kBuffers = 16;
+
+}  // namespace
+
+Session::Session(Owned<ArvCamera> camera, const config::Camera& settings,
+                 std::shared_ptr<Mailbox> mailbox)
+    : camera_(std::move(camera)), settings_(settings), mailbox_(std::move(mailbox)) {}
+
+Result<std::unique_ptr<Session>> Session::start(const Device& device,
+                                                const config::Camera& settings, int width_px,
+                                                int height_px, std::shared_ptr<Mailbox> mailbox) {
+  auto camera = open_device(device);
+  if (!camera) return tl::make_unexpected(camera.error());
+  std::unique_ptr<Session> session(new Session(std::move(*camera), settings, std::move(mailbox)));
+  const auto accepted = configure(session->camera_.get(), settings, width_px, height_px);
+  if (!accepted) return tl::make_unexpected(accepted.error());
+  session->accepted_ = *accepted;
+  if (const auto started = session->start_stream(); !started)
+    return tl::make_unexpected(started.error());
+  return session;
+}
+
+Result<void> Session::start_stream() {
+  const auto payload =
+      ask([&](GError** error) { return arv_camera_get_payload(camera_.get(), error); });
+  if (!payload) return tl::make_unexpected(payload.error());
+  receiver_ = std::make_shared<Receiver>(settings_, accepted_.exposure_ms, mailbox_);
+  auto stream = Receiver::open_stream(camera_.get(), receiver_);
+  if (!stream) return tl::make_unexpected(stream.error());
+  stream_ = std::move(*stream);
+  for (int i = 0; i < kBuffers; ++i)
+    arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(*payload));
+  return ask([&](GError** error) { arv_camera_start_acquisition(camera_.get(), error); });
+}
+
+Session::~Session() {
+  if (!stream_) return;
+  receiver_->close();
+  (void)ask([&](GError** error) { arv_camera_stop_acquisition(camera_.get(), error); });
+}
+
+Result<void> Session::trigger() {
+  return ask([&](GError** error) { arv_camera_software_trigger(camera_.get(), error); });
+}
+
+}  // namespace handcast::camera::aravis

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "ipc/base/log.hpp"
+#include "services/camera/aravis/keeper.hpp"
+#include "services/camera/aravis/pixels.hpp"
+#include "services/camera/camera.hpp"
+#include "services/camera/frame_size.hpp"
+
+namespace handcast::camera {
+namespace {
+
+/// A GigE Vision or USB3 Vision camera. The images are copied into the slots of the ring: Aravis
+/// wants the memory of an image before it begins, and which slot will be free then is not known
+/// (DECISIONS.md).
+class AravisCamera final : public Camera {
+ public:
+  AravisCamera(const aravis::Device& device, const config::Camera& settings,
+               const calib::CameraModel& model, std::unique_ptr<aravis::Session> session,
+               std::shared_ptr<aravis::Mailbox> mailbox)
+      : format_(settings.aravis.format),
+        width_px_(model.width_px),
+        height_px_(model.height_px),
+        mailbox_(mailbox),
+        keeper_(device, settings, width_px_, height_px_, std::move(session), std::move(mailbox)) {}
+
+  Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
+                       Deadline deadline) override {
+    if (auto room = check_room(width_px_, height_px_, tail_bytes); !room) return room;
+    const auto image = mailbox_->take(deadline);
+    if (image) return copy(*image, frame);
+    if (const auto trouble = keeper_.trouble()) return tl::make_unexpected(*trouble);
+    return fail(Errc::timeout, "camera 'aravis': no image before the deadline");
+  }
+
+ private:
+  Result<void> copy(const aravis::Image& image, msg::CameraFrame& frame) const {
+    const auto pixels = static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_);
+    std::size_t bytes = 0;
+    const void* data = arv_buffer_get_data(image.buffer(), &bytes);
+    if (!data || bytes < bytes_of(format_, pixels))
+      return fail(Errc::bad_data, fmt::format("camera 'aravis': an image of {} bytes instead of {}",
+                                              bytes, bytes_of(format_, pixels)));
+    frame.header.frame_id = image.number;
+    frame.header.origin_ns = image.exposed_ns;
+    frame.exposure_ns = image.exposure_ns;
+    frame.origin_error_ns = image.exposed_error_ns;
+    frame.lost = image.lost;
+    frame.width_px = static_cast<std::uint32_t>(width_px_);
+    frame.height_px = static_cast<std::uint32_t>(height_px_);
+    to_grey(format_, {static_cast<const std::uint8_t*>(data), bytes}, {frame.pixels(), pixels});
+    return {};
+  }
+
+  config::PixelFormat format_;
+  int width_px_, height_px_;
+  std::shared_ptr<aravis::Mailbox> mailbox_;
+  aravis::Keeper keeper_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Camera>> open_aravis(const config::Rig& rig,
+                                            const calib::Calibration& calibration,
+                                            const std::int64_t& /*epoch_ns*/) {
+  const auto& model = calibration.camera;
+  const auto device = aravis::find_device(rig.camera.aravis.device);
+  if (!device) return fail_in("camera 'aravis'", device.error());
+  const auto mailbox = std::make_shared<aravis::Mailbox>();
+  auto session =
+      aravis::Session::start(*device, rig.camera, model.width_px, model.height_px, mailbox);
+  if (!session) return fail_in("camera 'aravis'", session.error());
+  const auto& accepted = (*session)->accepted();
+  log::info(
+      "camera: {} {} {}, {:.1f} Hz, exposure {:.3f} ms{}", device->id, device->vendor,
+      device->model, accepted.rate_hz, accepted.exposure_ms,
+      accepted.packet_bytes > 0 ? fmt::format(", packets of {} bytes", accepted.packet_bytes) : "");
+  return std::make_unique<AravisCamera>(*device, rig.camera, model, std::move(*session), mailbox);
+}
+
+}  // namespace handcast::camera
