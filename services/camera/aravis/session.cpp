@@ -8,6 +8,9 @@ namespace {
 
 /// Enough for 30 ms of a 525 Hz camera while this process does not run.
 constexpr int kBuffers = 16;
+/// Images that the kernel keeps while the thread of the stream does not run; net.core.rmem_max
+/// limits it.
+constexpr int kSocketImages = 8;
 
 }  // namespace
 
@@ -37,6 +40,9 @@ Result<void> Session::start_stream() {
   auto stream = Receiver::open_stream(camera_.get(), receiver_);
   if (!stream) return tl::make_unexpected(stream.error());
   stream_ = std::move(*stream);
+  if (arv_camera_is_gv_device(camera_.get()))
+    g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED,
+                 "socket-buffer-size", static_cast<int>(kSocketImages * *payload), nullptr);
   for (int i = 0; i < kBuffers; ++i)
     arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(*payload));
   return ask([&](GError** error) { arv_camera_start_acquisition(camera_.get(), error); });
