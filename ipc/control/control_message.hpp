@@ -24,7 +24,8 @@
 ///                                                        and their descriptors
 ///   {"verb":"history","seconds":10}                      {"ok":true} and the descriptor of a
 ///                                                        snapshot (record/history.hpp)
-///   {"verb":"rig"}                                       {"ok":true,"rig":"..."}: the applied rig
+///   {"verb":"rig"}                                       {"ok":true,"rig":"..."}: the rig as it
+///   runs
 ///                                                        as TOML, all paths absolute
 ///
 /// Descriptors come with the first byte of the answer (SCM_RIGHTS). The answer to what cannot be

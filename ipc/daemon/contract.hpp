@@ -44,8 +44,11 @@
 ///          person must change something) are final. After all other codes, and after a signal, the
 ///          daemon is restarted.
 ///
-///   SIGTERM, SIGINT   Stop: first leave the rings that it writes, because another process may be
-///                     waiting for them, then end.
+///   SIGTERM   Stop at once: first leave the rings that it writes, because another process may be
+///             waiting for them, then end.
+///   SIGINT    Stop for good, because the rig stops: no other process takes over. A daemon may end
+///             its work before, e.g. let its light fade, in less than supervisor.stop_s. A second
+///             signal of either kind means: at once.
 namespace handcast::daemon {
 
 /// The names of the environment variables.

@@ -8,16 +8,21 @@
 namespace handcast::daemon {
 namespace {
 
-std::atomic<bool> stop_flag{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "written in a signal handler");
+std::atomic<Stop> stop{Stop::none};
+static_assert(std::atomic<Stop>::is_always_lock_free, "written in a signal handler");
 
-void raise_flag(int) { stop_flag.store(true, std::memory_order_relaxed); }
+void note(int number) {
+  auto before = Stop::none;
+  const auto wanted = number == SIGINT ? Stop::for_good : Stop::at_once;
+  if (!stop.compare_exchange_strong(before, wanted, std::memory_order_relaxed))
+    stop.store(Stop::at_once, std::memory_order_relaxed);
+}
 
 }  // namespace
 
 void install_stop_signals() {
   struct sigaction action {};
-  action.sa_handler = raise_flag;
+  action.sa_handler = note;
   sigemptyset(&action.sa_mask);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGINT, &action, nullptr);
@@ -25,6 +30,6 @@ void install_stop_signals() {
   sigaction(SIGPIPE, &action, nullptr);
 }
 
-bool stop_requested() { return stop_flag.load(std::memory_order_relaxed); }
+Stop requested_stop() { return stop.load(std::memory_order_relaxed); }
 
 }  // namespace handcast::daemon

@@ -3,10 +3,19 @@
 
 namespace handcast::daemon {
 
-/// From now on SIGTERM and SIGINT only raise a flag (blocking calls return EINTR), and SIGPIPE is
+/// What the stop signals ask for.
+enum class Stop {
+  none,      ///< no signal has arrived
+  for_good,  ///< SIGINT: no other process takes over, so the daemon may end its work first
+  at_once,   ///< SIGTERM, or a second signal
+};
+
+/// From now on SIGTERM and SIGINT are only noted (blocking calls return EINTR), and SIGPIPE is
 /// ignored.
 void install_stop_signals();
-/// Whether the flag is up. Safe from any thread.
-bool stop_requested();
+/// What the signals so far ask for. Safe from any thread.
+Stop requested_stop();
+/// Whether a stop signal has arrived. Safe from any thread.
+inline bool stop_requested() { return requested_stop() != Stop::none; }
 
 }  // namespace handcast::daemon

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/preview/series.hpp"
 
-#include "ipc/base/clock.hpp"
-
 namespace handcast::preview {
 
 void Series::add(float value) {
@@ -17,8 +15,9 @@ void RateMeter::saw(std::uint64_t sequence, std::int64_t published_ns) {
 }
 
 double RateMeter::take_hz() {
-  const auto span_ns = last_ns_ - first_ns_;
-  const auto hz = span_ns > 0 ? static_cast<double>(last_ - first_) / ns_to_seconds(span_ns) : 0.0;
+  // Any two times may have been reported: as integers, they might overflow.
+  const double span_s = 1e-9 * (static_cast<double>(last_ns_) - static_cast<double>(first_ns_));
+  const double hz = span_s > 0 ? static_cast<double>(last_ - first_) / span_s : 0.0;
   first_ = last_;
   first_ns_ = last_ns_;
   return hz;

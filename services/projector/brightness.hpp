@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "config/sections/projector.hpp"
 #include "ipc/base/clock.hpp"
@@ -9,39 +10,66 @@
 
 namespace handcast::projector {
 
-/// The brightness of the light, which rises at the start of a rig, so that it does not flash. One
-/// thread.
+/// The brightness of the light, which rises at the start of a rig, so that it does not flash, and
+/// falls at its end. One thread.
 class Brightness {
  public:
   /// `epoch_ns`: the start of the rig, see service::Context. The first light of a rig that is older
   /// than 10 s replaces that of another process and does not fade.
   Brightness(const config::Projector& settings, std::int64_t epoch_ns)
-      : settings_(settings), epoch_ns_(epoch_ns), table_(renderer::light_table(settings)) {}
+      : settings_(settings), epoch_ns_(epoch_ns), table_(renderer::light_table(settings, 0)) {}
 
   /// The table for the light at `time_ns`, which must not decrease. Valid until the next call.
   const renderer::LightTable& at(std::int64_t time_ns) {
-    if (!is_risen_) table_ = renderer::light_table(settings_, fade_at(time_ns));
+    if (fade_at(time_ns) != table_share_)
+      table_ = renderer::light_table(settings_, table_share_ = share_);
     return table_;
   }
   /// The share of the full brightness at `time_ns`, which must not decrease, 0 to 1.
   double fade_at(std::int64_t time_ns) {
+    share_ = fall_ ? fall_->at(time_ns) : risen_at(time_ns);
+    return share_;
+  }
+  /// Lets the light fall to black from `time_ns` on, evenly, in fade_s or `most_ns` if that is
+  /// shorter. Only the first call counts.
+  void fall(std::int64_t time_ns, std::int64_t most_ns) {
+    if (!fall_) fall_ = Fall{share_, time_ns, std::min(seconds_to_ns(settings_.fade_s), most_ns)};
+  }
+  /// True if the light has fallen: what at() and fade_at() returned last is black.
+  bool has_fallen() const { return fall_ && share_ == 0; }
+
+ private:
+  static constexpr std::int64_t kStart_ns = 10'000'000'000;
+
+  struct Fall {
+    double from = 0;  ///< share of the full brightness at its start
+    std::int64_t start_ns = 0, span_ns = 0;
+
+    double at(std::int64_t time_ns) const {
+      const std::int64_t left_ns = start_ns + span_ns - time_ns;
+      if (left_ns <= 0) return 0;
+      return from * std::min(1., static_cast<double>(left_ns) / static_cast<double>(span_ns));
+    }
+  };
+
+  double risen_at(std::int64_t time_ns) {
     if (first_ns_ == 0) {
       first_ns_ = time_ns;
       is_risen_ = settings_.fade_s == 0 || time_ns - epoch_ns_ > kStart_ns;
     }
     if (is_risen_) return 1;
-    const double fade = ns_to_ms(time_ns - first_ns_) / (1e3 * settings_.fade_s);
-    is_risen_ = fade >= 1;
-    return std::min(fade, 1.);
+    const double share = ns_to_ms(time_ns - first_ns_) / (1e3 * settings_.fade_s);
+    is_risen_ = share >= 1;
+    return std::min(share, 1.);
   }
-
- private:
-  static constexpr std::int64_t kStart_ns = 10'000'000'000;
 
   config::Projector settings_;
   std::int64_t epoch_ns_, first_ns_ = 0;
   bool is_risen_ = false;
-  renderer::LightTable table_;
+  std::optional<Fall> fall_;
+  double share_ = 0;  ///< what fade_at() returned last
+  double table_share_ = 0;
+  renderer::LightTable table_;  ///< for table_share_
 };
 
 }  // namespace handcast::projector

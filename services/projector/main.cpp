@@ -2,6 +2,7 @@
 #include "renderer/draw/choose/open_painter.hpp"
 #include "services/projector/brightness.hpp"
 #include "services/projector/inputs.hpp"
+#include "services/projector/last_light.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
 #include "services/projector/show_sub_frames.hpp"
@@ -35,9 +36,10 @@ static void run_projector(service::Context& context) {
         context, {*pipeline, inputs, *projector, brightness, std::move(projections)});
   projector::Pacer pacer(rig.projector.rate_hz);
   projector::Horizon horizon(rig.projector);
+  projector::LastLight last_light(context, brightness);
 
   context.ready();
-  const auto running = [&] { return context.running(); };
+  const auto running = [&] { return last_light.goes_on(); };
   std::int64_t next_ns = pacer.next_ns(now_ns());
   for (std::uint64_t frame_id = 0; projector::sleep_while(running, next_ns); ++frame_id) {
     const Deadline image_deadline =
@@ -56,6 +58,7 @@ static void run_projector(service::Context& context) {
       context.tolerate(times.error());
       continue;
     }
+    last_light.presented();
     horizon.learn(begin_ns, *times);
     projector::publish_projection(frame, frame_id, *times, projections);
     context.mark({frame_id, frame.made_from.image_ns},

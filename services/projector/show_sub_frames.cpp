@@ -8,6 +8,7 @@
 #include "calib/sub_frames.hpp"
 #include "config/settings/choice.hpp"
 #include "renderer/output/packing.hpp"
+#include "services/projector/last_light.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/sub_frame_messages.hpp"
 #include "services/projector/sub_frame_plan.hpp"
@@ -35,6 +36,7 @@ class SubFrameLoop {
   SubFrameLoop(service::Context& context, SubFrameShow show)
       : context_(context),
         show_(std::move(show)),
+        last_light_(context, show_.brightness),
         packer_(packer_for(context)),
         plan_(context.rig().projector),
         messages_(std::move(show_.projections),
@@ -91,6 +93,7 @@ class SubFrameLoop {
       context_.tolerate(times.error());
       return true;
     }
+    last_light_.presented();
     has_rhythm_ = times->next_ns != 0;
     plan_.presented(*times);
     messages_.handed_over(plan_, static_cast<std::uint64_t>(output_id * sub_frames()), *times);
@@ -99,7 +102,7 @@ class SubFrameLoop {
 
   /// Publishes the messages that are due until `time_ns`. False if the service ends.
   bool sleep_and_publish(std::int64_t time_ns) {
-    const auto running = [this] { return context_.running(); };
+    const auto running = [this] { return last_light_.goes_on(); };
     for (;;) {
       messages_.publish(now_ns());
       const std::int64_t due_ns = messages_.due_ns();
@@ -113,6 +116,7 @@ class SubFrameLoop {
 
   service::Context& context_;
   SubFrameShow show_;
+  LastLight last_light_;
   std::unique_ptr<renderer::Packer> packer_;
   SubFramePlan plan_;
   SubFrameMessages messages_;

@@ -78,12 +78,14 @@ void Context::ready() {
 
 bool Context::running() {
   if (daemon::stop_requested()) {
-    marks_.reset();  // the process that replaces this one waits for it
+    if (!may_finish()) marks_.reset();  // the process that replaces this one waits for it
     return false;
   }
   if (const auto now = now_ns(); supervision_.beat_is_due(now)) mark({.origin_ns = now}, {});
   return true;
 }
+
+bool Context::may_finish() const { return daemon::requested_stop() == daemon::Stop::for_good; }
 
 void Context::tolerate(const Error& error) {
   if (!worth_going_on(error.code)) give_up(error);

@@ -78,6 +78,9 @@ class Context {
   /// every daemon::kBeatEvery_ns. Afterwards the daemon should first destroy its writers: the
   /// process that replaces it may be waiting for them.
   bool running();
+  /// True if the daemon was asked to stop, but may end its work before (daemon::Stop::for_good):
+  /// no process replaces it.
+  bool may_finish() const;
   /// Handles an error of one turn of the main loop. Timeouts and bad data are counted and logged at
   /// most once per second; all other errors end the process, and the supervisor reacts.
   void tolerate(const Error& error);

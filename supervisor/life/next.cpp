@@ -135,7 +135,7 @@ void Transition::ask_to_stop(worker::Stopping::Then then) {
   }
   worker_ =
       worker::Stopping{.life = *life_of(worker_), .kill_ns = now_ + rules_.stop_ns, .then = then};
-  act(action::AskToStop{});
+  act(action::AskToStop{.for_good = then == worker::Stopping::Then::stay});
 }
 
 void Transition::operator()(const event::Hurry&) {

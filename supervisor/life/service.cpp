@@ -95,8 +95,8 @@ void Service::take_wanted() {
   wanted_.reset();
 }
 
-Service::MaybeEvent Service::carry_out(const action::AskToStop&) {
-  worker_->signal(SIGTERM);
+Service::MaybeEvent Service::carry_out(const action::AskToStop& ask) {
+  worker_->signal(ask.for_good ? SIGINT : SIGTERM);
   return {};
 }
 

@@ -165,7 +165,7 @@ class Service {
   MaybeEvent carry_out(const action::Spawn&);
   MaybeEvent carry_out(const action::Promote&);
   MaybeEvent carry_out(const action::HandOver&);
-  MaybeEvent carry_out(const action::AskToStop&);
+  MaybeEvent carry_out(const action::AskToStop& ask);
   MaybeEvent carry_out(const action::Kill&);
   MaybeEvent carry_out(const action::SpawnSpare&);
   MaybeEvent carry_out(const action::AskSpareToStop&);

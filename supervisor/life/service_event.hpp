@@ -108,8 +108,10 @@ struct Spawn {};
 struct Promote {};
 /// Send SIGTERM to the worker and make the spare the worker. The old worker becomes the spare.
 struct HandOver {};
-/// Send SIGTERM to the worker.
-struct AskToStop {};
+/// Ask the worker to stop.
+struct AskToStop {
+  bool for_good = false;  ///< no other process takes over: send SIGINT; otherwise SIGTERM
+};
 /// Send SIGKILL to the worker.
 struct Kill {};
 /// Start a spare.

@@ -3,6 +3,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/daemon/contract.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
 
@@ -46,6 +47,13 @@ Service::Look LiveRig::look_at(const Service& service, std::int64_t now) const {
   else if (const auto silence_ms = recorder.silence_ms(service.spec().name, now))
     look.last_sign_ns = now - ms_to_ns(*silence_ms);
   return look;
+}
+
+std::string LiveRig::text() const {
+  config::Rig runs = config;
+  for (const auto& service : services.all())
+    runs = with_backend(std::move(runs), service->spec().name, service->spec().backend);
+  return handcast::config::print_rig(runs);
 }
 
 RigView LiveRig::view() const {

@@ -54,10 +54,11 @@ void give_history(LiveRig& rig, const control::Request& request, const Reply& re
   reply(success(), {snapshot->get()});
 }
 
-/// Sends the rig as the services read it, for tools that need its calibration and settings.
+/// Sends the rig as it runs, swapped back ends included, for tools that need its calibration and
+/// settings.
 void give_rig(const LiveRig& rig, const Reply& reply) {
   auto answer = success();
-  answer["rig"] = rig.applied.toml;
+  answer["rig"] = rig.text();
   reply(answer);
 }
 
@@ -142,8 +143,8 @@ bool Requests::on_failed(Service& service) {
 
 void Requests::on_stopping() {
   changes_.refuse_all("the rig is stopping");
-  if (const auto reloading = std::move(reloading_))
-    reloading->reply(failure("the rig is stopping"));
+  if (reloading_) reloading_->reply(failure("the rig is stopping"));
+  reloading_.reset();
 }
 
 void Requests::on_done() {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/painter_scene.hpp"
 
-#include <cmath>
 #include <stdexcept>
 
 #include "renderer/draw/cpu/cpu_painter.hpp"
+#include "tests/renderer/draw/bent_grid.hpp"
 #include "tests/renderer/hand_pose.hpp"
 
 namespace handcast::bench {
@@ -39,15 +39,6 @@ Texture fine_pattern() {
   return texture;
 }
 
-WarpGrid bent_grid(const Rect& area) {
-  WarpGrid bent{21, 21, area, {}};
-  for (int row = 0; row < bent.rows; ++row)
-    for (int column = 0; column < bent.columns; ++column)
-      bent.nodes.push_back(bent.source(column, row) +
-                           glm::vec2(3 * std::sin(row + column), 2 * std::cos(row - column)));
-  return bent;
-}
-
 }  // namespace
 
 PainterScene::PainterScene(std::string its_name, int hands, const renderer::testing::Pose& pose,
@@ -60,7 +51,7 @@ PainterScene::PainterScene(std::string its_name, int hands, const renderer::test
     drawn.push_back({&hand->surface.mesh(), &picture_, hand->skinned.landings_px,
                      hand->skinned.depth_m, hand->skinned.light, hand->revision});
   make_mask(width_px, height_px);
-  grid = bent_grid({0, 0, width_px, height_px});
+  grid = renderer::test::bent_grid({0, 0, width_px, height_px});
 }
 
 void PainterScene::place_hand(Side side, const renderer::testing::Pose& pose, float aside_m,

@@ -169,7 +169,7 @@ TEST_F(Reload, ASwappedBackEndStaysUntilTheFileNamesAnother) {
   EXPECT_THAT(changed_since(before), UnorderedElementsAre("camera", "landmarks"));
 }
 
-TEST_F(Reload, ToolsGetTheRigAsTheServicesReadIt) {
+TEST_F(Reload, ToolsGetTheRigAsItRuns) {
   write_rig_with(kCalm, kNoObserver);
   const auto rig = up_with_the_file();
   const Variable scope("HANDCAST_SCOPE", scratch_.path());
@@ -186,6 +186,8 @@ TEST_F(Reload, ToolsGetTheRigAsTheServicesReadIt) {
   EXPECT_NE(applied().camera.rate_hz, 50) << "the file counts when it is applied";
   ASSERT_EQ(handcast({"reload"}).exit_code, 0);
   EXPECT_EQ(applied().camera.rate_hz, 50);
+  ASSERT_EQ(handcast({"swap", "projector", "file"}).exit_code, 0);
+  EXPECT_EQ(applied().projector.backend, "file");
 }
 
 TEST_F(Reload, SettingsWithWhichOneServiceCannotWorkChangeNothing) {

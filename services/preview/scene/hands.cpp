@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "renderer/predict/plausible_pose.hpp"
+#include "services/preview/scene/sane_time.hpp"
 
 namespace handcast::preview {
 namespace {
@@ -34,13 +35,15 @@ void Hands::push(const msg::HandPoses& poses) {
     const auto& pose = poses.hands[i];
     if (!is_side(pose.side) || !renderer::is_plausible(pose, calibration_.camera_from_tracker))
       continue;
-    tracks_[static_cast<std::size_t>(pose.side)].push(poses.header.published_ns,
-                                                      poses.header.origin_ns, pose);
+    tracks_[static_cast<std::size_t>(pose.side)].push(sane_ns(poses.header.published_ns),
+                                                      sane_ns(poses.header.origin_ns), pose);
   }
 }
 
 void Hands::push(const msg::Landmarks& landmarks) {
   detections_.push_back(landmarks);
+  auto& origin_ns = detections_.back().header.origin_ns;
+  origin_ns = sane_ns(origin_ns);
   if (detections_.size() > kDetections) detections_.pop_front();
 }
 

@@ -10,6 +10,7 @@
 
 #include "ipc/msg/largest_images.hpp"
 #include "renderer/predict/project_landmarks.hpp"
+#include "services/preview/scene/sane_time.hpp"
 
 namespace handcast::preview {
 namespace {
@@ -111,7 +112,7 @@ bool SceneMaker::fits(const msg::CameraFrame& frame) const {
 
 void SceneMaker::add_hands(const msg::CameraFrame& frame, Scene& scene) const {
   for (const auto side : kSides)
-    if (auto hand = hands_->at(side, frame.header.origin_ns))
+    if (auto hand = hands_->at(side, sane_ns(frame.header.origin_ns)))
       scene.hands.push_back(std::move(*hand));
 }
 
@@ -130,7 +131,7 @@ void SceneMaker::find_mask(const msg::CameraFrame& frame) {
   const renderer::TimedImage image{
       {frame.pixels(), static_cast<int>(frame.width_px), static_cast<int>(frame.height_px),
        static_cast<int>(frame.width_px)},
-      frame.header.origin_ns,
+      sane_ns(frame.header.origin_ns),
       frame.header.frame_id};
   std::array<renderer::Corrected, kSides.size()> corrected;
   std::vector<renderer::HandMask::Expected> expected;
@@ -219,7 +220,8 @@ Scene SceneMaker::make(const msg::CameraFrame* frame, const msg::Projection* pro
   add_hands(*frame, scene);
   find_mask(*frame);
   if (!projection) return scene;
-  const auto moves = motions(scene, frame->header.origin_ns, projection->target_ns);
+  const auto moves =
+      motions(scene, sane_ns(frame->header.origin_ns), sane_ns(projection->target_ns));
   add_light(*projection, moves, scene);
   add_drawing(*projection, moves, scene);
   return scene;

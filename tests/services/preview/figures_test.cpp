@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "services/preview/series.hpp"
@@ -38,6 +39,13 @@ TEST(RateMeter, NumbersAndTimesThatGoBackBeginAnew) {
   EXPECT_EQ(meter.take_hz(), 0);
   meter.saw(4, 10 * kMs);
   EXPECT_EQ(meter.take_hz(), 0) << "a time before the last one";
+}
+
+TEST(RateMeter, TimesAtTheEndOfTheWorldAreARateLikeAnyOther) {
+  RateMeter meter;
+  meter.saw(1, std::numeric_limits<std::int64_t>::min());
+  meter.saw(2, std::numeric_limits<std::int64_t>::max());
+  EXPECT_GT(meter.take_hz(), 0);
 }
 
 TEST(Status, StagesAreInTheOrderOfAFrame) {

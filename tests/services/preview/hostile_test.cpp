@@ -109,6 +109,10 @@ TEST(HostileMessages, TimesAtTheEndOfTheWorldAreNoTrouble) {
     auto marks = landmarks(0, {300, 200});
     marks.header.origin_ns = time;
     maker.push(marks);
+    auto pose = poses(kImage_ns, {300, 200});
+    maker.push(pose);
+    pose.header.origin_ns = pose.header.published_ns = time;
+    maker.push(pose);
     auto image = frame();
     image->header.origin_ns = time;
     auto cast = light();

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -102,6 +103,41 @@ TEST(CameraPanel, OnlyTheChosenLayersAreDrawn) {
       }
   }
   EXPECT_EQ(pixel("light", {50, 50}), 0xff0000ffu);
+}
+
+/// Grey of level 100 that is `share` of a pixel: the level contains the share.
+constexpr std::uint32_t edge_of(std::uint32_t share) { return share << 24 | 0x646464u; }
+constexpr std::uint32_t kAsLit = 0xff646464u;
+
+TEST(CameraPanel, AnEdgeIsShownAsItIsLitIfItIsAtLeastHalfOfAPixel) {
+  Scene scene;
+  scene.camera = renderer::Image<std::uint8_t>(kSide_px, kSide_px, 200);
+  scene.camera.at(0, 0) = 255;
+  scene.light_on_camera = renderer::Texture(kSide_px, kSide_px);
+  const auto with_light = [&](std::uint32_t pixel) {
+    for (auto& each : scene.light_on_camera.pixels()) each = pixel;
+    return camera_panel(scene, *parse_layers("image,light")).at(250, 250);
+  };
+  const auto image = with_light(0);
+  EXPECT_NE(image, kAsLit);
+  EXPECT_EQ(with_light(edge_of(255)), kAsLit);
+  EXPECT_EQ(with_light(edge_of(128)), kAsLit);
+  EXPECT_EQ(with_light(edge_of(127)), image);
+  EXPECT_EQ(with_light(edge_of(1)), image);
+}
+
+TEST(LightPanel, AnEdgeIsShownAsItIsLitWhateverShareOfThePixelIsHand) {
+  const auto grey_pixels = [](std::uint32_t pixel) {
+    Scene scene;
+    scene.light = renderer::Texture(kSide_px, kSide_px, pixel);
+    const auto picture = draw(scene, {}, {.width_px = 1600, .height_px = 900});
+    return std::ranges::count(picture.pixels(), kAsLit);
+  };
+  const auto whole = grey_pixels(edge_of(255));
+  EXPECT_GT(whole, 100'000) << "the panel";
+  EXPECT_EQ(grey_pixels(edge_of(128)), whole);
+  EXPECT_EQ(grey_pixels(edge_of(1)), whole);
+  EXPECT_LT(grey_pixels(0), whole / 100) << "no light";
 }
 
 TEST(Layout, AnyContentsAtAnySizeGivesAPictureOfThatSize) {

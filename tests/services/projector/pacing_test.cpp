@@ -103,5 +103,53 @@ TEST(Brightness, IsFullAtOnceInAProcessThatReplacesAnotherOne) {
   EXPECT_EQ(brightness.at(90'000 * kMs), renderer::light_table(config::Projector()));
 }
 
+/// A light that has been at full brightness for long.
+Brightness full_brightness(double fade_s) {
+  config::Projector settings;
+  settings.fade_s = fade_s;
+  Brightness brightness(settings, 1 * kMs);
+  brightness.fade_at(90'000 * kMs);
+  return brightness;
+}
+
+TEST(Brightness, FallsEvenlyToBlackAndStaysBlack) {
+  constexpr std::int64_t kFall_ns = 95'000 * kMs;
+  auto brightness = full_brightness(1);
+  brightness.fall(kFall_ns, 3'000 * kMs);
+  for (int step = 0; step <= 10; ++step)
+    EXPECT_NEAR(brightness.fade_at(kFall_ns + step * 100 * kMs), 1 - 0.1 * step, 1e-9);
+  EXPECT_TRUE(brightness.has_fallen());
+  brightness.fall(kFall_ns + 1'500 * kMs, 3'000 * kMs);
+  EXPECT_EQ(brightness.at(kFall_ns + 1'500 * kMs), renderer::light_table({}, 0)) << "asked again";
+}
+
+TEST(Brightness, FallsFasterIfThereIsLessTime) {
+  constexpr std::int64_t kFall_ns = 95'000 * kMs;
+  auto brightness = full_brightness(10);
+  brightness.fall(kFall_ns, 1'000 * kMs);
+  EXPECT_NEAR(brightness.fade_at(kFall_ns + 250 * kMs), 0.75, 1e-9);
+  EXPECT_FALSE(brightness.has_fallen());
+  EXPECT_EQ(brightness.fade_at(kFall_ns + 1'000 * kMs), 0);
+}
+
+TEST(Brightness, FallsFromWhereItIsInTheMiddleOfItsRise) {
+  config::Projector settings;
+  settings.fade_s = 1;
+  constexpr std::int64_t kFirst_ns = 2'000 * kMs, kFall_ns = kFirst_ns + 500 * kMs;
+  Brightness brightness(settings, 1'000 * kMs);
+  brightness.fade_at(kFirst_ns);
+  EXPECT_NEAR(brightness.fade_at(kFall_ns), 0.5, 1e-9);
+  brightness.fall(kFall_ns, 3'000 * kMs);
+  EXPECT_NEAR(brightness.fade_at(kFall_ns), 0.5, 1e-9);
+  EXPECT_NEAR(brightness.fade_at(kFall_ns + 500 * kMs), 0.25, 1e-9);
+}
+
+TEST(Brightness, IsBlackAtOnceWithoutAFade) {
+  auto brightness = full_brightness(0);
+  brightness.fall(95'000 * kMs, 3'000 * kMs);
+  EXPECT_EQ(brightness.fade_at(95'000 * kMs), 0);
+  EXPECT_TRUE(brightness.has_fallen());
+}
+
 }  // namespace
 }  // namespace handcast::projector

@@ -87,6 +87,23 @@ TEST_F(Run, ADaemonThatIsAskedToStopEndsWithZero) {
   EXPECT_EXIT(_exit(daemon(until_told)), ExitedWithCode(0), "stopped");
 }
 
+TEST_F(Run, OnlyADaemonThatIsStoppedForGoodMayFinishAndOnlyUntilItIsAskedAgain) {
+  const auto stopped_by = [this](std::initializer_list<int> signals, bool may_finish) {
+    const auto body = [&](Context& context) {
+      EXPECT_FALSE(context.may_finish());
+      for (const int number : signals) raise(number);
+      EXPECT_FALSE(context.running());
+      _exit(context.may_finish() == may_finish && !HasFailure() ? 5 : 6);
+    };
+    EXPECT_EXIT(daemon(body), ExitedWithCode(5), "");
+  };
+  stopped_by({SIGINT}, true);
+  stopped_by({SIGTERM}, false);
+  stopped_by({SIGINT, SIGTERM}, false);
+  stopped_by({SIGINT, SIGINT}, false);
+  stopped_by({SIGTERM, SIGINT}, false);
+}
+
 TEST_F(Run, AWriteIntoAClosedPipeDoesNotEndADaemon) {
   const auto write_to_nobody = [](Context&) {
     int ends[2];

@@ -147,7 +147,8 @@ TEST(NextReplacement, ItTakesOverFromAWorkerThatWaitsOrHasGivenUp) {
 
 TEST(NextReplacement, AStopAndASecondThoughtEndIt) {
   auto stopped = replacing_machine();
-  EXPECT_THAT(stopped.at(21, event::Stop{}), ElementsAre("ask spare to stop", "ask to stop"));
+  EXPECT_THAT(stopped.at(21, event::Stop{}),
+              ElementsAre("ask spare to stop", "ask to stop for good"));
   EXPECT_FALSE(stopped.state.replacement);
   stopped.at(21.1, event::SpareSpoke{});
   EXPECT_THAT(stopped.at(21.2, event::HandOver{}), IsEmpty());

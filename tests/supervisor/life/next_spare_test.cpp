@@ -120,7 +120,8 @@ TEST(NextSpare, OneThatCannotBeStartedIsTriedAgain) {
 
 TEST(NextSpare, AServiceHasStoppedWhenBothProcessesHave) {
   auto machine = ready_machine(kPrepared);
-  EXPECT_THAT(machine.at(20, event::Stop{}), ElementsAre("ask spare to stop", "ask to stop"));
+  EXPECT_THAT(machine.at(20, event::Stop{}),
+              ElementsAre("ask spare to stop", "ask to stop for good"));
   EXPECT_THAT(machine.at(21, event::Ended{kCrash}), ElementsAre("read last words"));
   EXPECT_EQ(machine.worker(), "awaiting its spare");
   EXPECT_THAT(machine.at(22, event::SpareEnded{kCrash}), ElementsAre("tell stopped"));

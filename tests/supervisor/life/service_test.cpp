@@ -43,7 +43,7 @@ TEST_F(ServiceTest, OneThatNeverGetsReadyIsReplaced) {
 }
 
 TEST_F(ServiceTest, OneThatDoesNotListenIsKilled) {
-  auto& pose = service("trap '' TERM; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
+  auto& pose = service("trap '' TERM INT; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
   pose.start();
   run_until([&] { return pose.state() == State::ready; });
   pose.stop();
@@ -106,7 +106,7 @@ TEST_F(ServiceTest, OneWhoseHeartStopsIsKilledAfterTwoSecondsNotEarlierAndReplac
 
 TEST_F(ServiceTest, OneThatDoesNotListenIsKilledWhenItsTimeIsOverAndNotEarlier) {
   launch_.stop_s = 3000;
-  auto& pose = service("trap '' TERM; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
+  auto& pose = service("trap '' TERM INT; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
   pose.start();
   run_until([&] { return pose.state() == State::ready; });
   const auto asked_ns = now_ns();

@@ -68,7 +68,9 @@ struct StateText {
     return fmt::format("replacement failed{}: {}", action.by_itself ? " by itself" : "",
                        action.why);
   }
-  std::string operator()(const action::AskToStop&) const { return "ask to stop"; }
+  std::string operator()(const action::AskToStop& action) const {
+    return action.for_good ? "ask to stop for good" : "ask to stop";
+  }
   std::string operator()(const action::Kill&) const { return "kill"; }
   std::string operator()(const action::SpawnSpare&) const { return "spawn spare"; }
   std::string operator()(const action::AskSpareToStop&) const { return "ask spare to stop"; }

@@ -403,7 +403,7 @@ TEST_F(BareRig, AnUpThatCannotTakeOverLeavesTheAppliedRigAsItWas) {
 
 TEST_F(BareRig, WhoAsksTwiceToStopNeedNotWaitAndNobodyIsStartedAgain) {
   write_program(programs_ / "handcast-observer",
-                "trap '' TERM; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
+                "trap '' TERM INT; echo >&$HANDCAST_READY_FD; while :; do sleep 0.05; done");
   write_rig(std::string("[supervisor]\nsilent_s = 300\nstop_s = 60\n") + kObserver);
   const auto rig = ready_rig();
   rig->signal(SIGTERM);

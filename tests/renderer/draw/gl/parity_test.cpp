@@ -10,6 +10,7 @@
 #include "renderer/draw/gl/gl_painter.hpp"
 #include "renderer/skin/hand_surface.hpp"
 #include "services/evaluation/twin/motions.hpp"
+#include "tests/renderer/draw/bent_grid.hpp"
 #include "tests/renderer/draw/gl/difference.hpp"
 #include "tests/renderer/hand_pose.hpp"
 
@@ -41,17 +42,6 @@ struct Hand {
             skinned.depth_m, skinned.light, revision};
   }
 };
-
-/// A grid that bends the image by up to 4 px and shifts it by a fraction of a pixel.
-WarpGrid bent_grid(const Rect& area) {
-  WarpGrid grid{21, 21, area, {}};
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column)
-      grid.nodes.push_back(grid.source(column, row) +
-                           glm::vec2(2.3f + 3 * std::sin(0.9f * row + column),
-                                     -1.7f + 2 * std::cos(1.1f * row - column)));
-  return grid;
-}
 
 /// The light of a drawing, moved, with shares of pixels at its edges.
 Image<std::uint8_t> moved_silhouette(View<const SurfaceId> surface, int dx, int dy) {
