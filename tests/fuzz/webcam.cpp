@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An image of a webcam: format, width - 1, height - 1, bytes of padding per row, then the bytes that
-// the driver delivered.
-// Limits: 10 s and 1 GB per input.
+// An image of a webcam: format, width - 1, height - 1, bytes of padding per row, then the bytes
+// that the driver delivered. Limits: 10 s and 1 GB per input.
 #include <vector>
 
 #include "services/camera/v4l2/convert.hpp"
