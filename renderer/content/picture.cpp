@@ -5,18 +5,13 @@
 #include <png.h>
 
 #include <algorithm>
-#include <csetjmp>
-#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
-// needs cstdio
-#include <jpeglib.h>
-// needs jpeglib.h
-#include <jerror.h>
 
 #include "config/settings/files.hpp"
 #include "ipc/base/input_file.hpp"
+#include "renderer/content/jpeg_decoder.hpp"
 #include "renderer/content/png_chunks.hpp"
 
 namespace handcast::renderer {
@@ -67,76 +62,10 @@ Result<Image<Pixel>> decode_png(std::string_view bytes, const std::filesystem::p
   return image;
 }
 
-struct JpegErrors {
-  jpeg_error_mgr base;
-  std::jmp_buf way_out;
-  const char* trouble = "is not a PNG or JPEG picture";
-};
-
-[[noreturn]] void leave(j_common_ptr jpeg) {
-  std::longjmp(reinterpret_cast<JpegErrors*>(jpeg->err)->way_out, 1);
-}
-void say_nothing(j_common_ptr) {}
-
-/// Ends decoding if the file is truncated. libjpeg itself only warns and fills the rest with grey.
-void heed_warning(j_common_ptr jpeg, int level) {
-  if (level >= 0 || jpeg->err->msg_code != JWRN_JPEG_EOF) return;
-  reinterpret_cast<JpegErrors*>(jpeg->err)->trouble = "is truncated";
-  leave(jpeg);
-}
-
-/// Ends decoding at a scan beyond the last one that a picture needs: a progressive file of a few
-/// kilobytes can hold thousands, each of which costs a pass over the whole picture.
-void limit_scans(j_common_ptr jpeg) {
-  constexpr int kMostScans = 100;
-  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMostScans) return;
-  reinterpret_cast<JpegErrors*>(jpeg->err)->trouble = "has more than 100 scans";
-  leave(jpeg);
-}
-
-/// libjpeg leaves a broken file by a longjmp to here, so no object with a destructor may be created
-/// after setjmp.
-bool decode(jpeg_decompress_struct& jpeg, JpegErrors& errors, std::string_view bytes,
-            Texture& texture) {
-  if (setjmp(errors.way_out) != 0) return false;
-  jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  jpeg_read_header(&jpeg, TRUE);
-  if (std::max(jpeg.image_width, jpeg.image_height) > kLargestSide) return true;
-  if (jpeg.jpeg_color_space != JCS_GRAYSCALE && jpeg.jpeg_color_space != JCS_YCbCr &&
-      jpeg.jpeg_color_space != JCS_RGB) {
-    errors.trouble =
-        "is a JPEG in CMYK or another unsupported colour space; grey, RGB and YCbCr are supported";
-    return false;
-  }
-  jpeg.out_color_space = JCS_EXT_RGBA;
-  jpeg_start_decompress(&jpeg);
-  texture = Texture(static_cast<int>(jpeg.output_width), static_cast<int>(jpeg.output_height));
-  while (jpeg.output_scanline < jpeg.output_height) {
-    auto* row = reinterpret_cast<JSAMPLE*>(texture.row(static_cast<int>(jpeg.output_scanline)));
-    jpeg_read_scanlines(&jpeg, &row, 1);
-  }
-  jpeg_finish_decompress(&jpeg);
-  return true;
-}
-
-Result<Texture> decode_jpeg(std::string_view bytes, const std::filesystem::path& file) {
-  jpeg_decompress_struct jpeg{};
-  JpegErrors errors{};
-  jpeg.err = jpeg_std_error(&errors.base);
-  errors.base.error_exit = leave;
-  errors.base.output_message = say_nothing;
-  errors.base.emit_message = heed_warning;
-  Texture texture;
-  jpeg_create_decompress(&jpeg);
-  jpeg_progress_mgr progress{};
-  progress.progress_monitor = limit_scans;
-  jpeg.progress = &progress;
-  const bool decoded = decode(jpeg, errors, bytes, texture);
-  const auto width = jpeg.image_width, height = jpeg.image_height;
-  jpeg_destroy_decompress(&jpeg);
-  if (decoded && std::max(width, height) > kLargestSide) return too_large(file, width, height);
-  if (!decoded)
-    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), errors.trouble));
+Result<Texture> read_jpeg(std::string_view bytes, const std::filesystem::path& file) {
+  auto texture = decode_jpeg(bytes);
+  if (!texture)
+    return fail(texture.error().code, fmt::format("'{}' {}.", file.string(), texture.error().what));
   return texture;
 }
 
@@ -152,7 +81,7 @@ Result<Texture> read_picture(const std::filesystem::path& file) {
   const auto bytes = read_input(file, kMostPicture);
   if (!bytes) return fail_in("picture", bytes.error());
   auto picture = begins_like_png(*bytes) ? decode_png<std::uint32_t>(*bytes, file, PNG_FORMAT_RGBA)
-                                         : decode_jpeg(*bytes, file);
+                                         : read_jpeg(*bytes, file);
   if (!picture) return picture;
   for (int y = 0; y < picture->height(); ++y)
     for (int x = 0; x < picture->width(); ++x) picture->at(x, y) |= kOpaque;

@@ -14,6 +14,8 @@ Result<std::unique_ptr<Camera>> open_twin(const config::Rig&, const calib::Calib
                                           const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Camera>> open_replay(const config::Rig&, const calib::Calibration&,
                                             const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Camera>> open_v4l2(const config::Rig&, const calib::Calibration&,
+                                          const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
 #ifdef HANDCAST_WITH_ARAVIS
@@ -31,6 +33,11 @@ static constexpr std::array kBackends{
                   .sentence = "Plays grey pictures from a folder, at the times they were taken.",
                   .open = open_replay,
                   .reads = {"camera.replay"}},
+    CameraBackend{.name = "v4l2",
+                  .sentence = "A webcam, by the kernel's own interface (Video4Linux).",
+                  .open = open_v4l2,
+                  .reads = {"camera.v4l2", "camera.delivery_ms"},
+                  .exclusive = true},
 };
 
 std::span<const CameraBackend> camera_backends() { return kBackends; }

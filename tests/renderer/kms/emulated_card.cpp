@@ -17,6 +17,7 @@ namespace {
 /// A card for a process that is not a test: HANDCAST_EMULATED_CARD is the model of a display with
 /// the size of the paper's projector.
 [[maybe_unused]] const std::unique_ptr<EmulatedCard> from_environment = [] {
+  hide("/dev/dri/");
   const char* model = std::getenv("HANDCAST_EMULATED_CARD");
   if (model == nullptr || *model == 0) return std::unique_ptr<EmulatedCard>();
   auto card = std::make_unique<EmulatedCard>();
@@ -25,11 +26,6 @@ namespace {
 }();
 
 }  // namespace
-
-std::shared_ptr<EmulatedCard::Kernel>& the_kernel() {
-  static std::shared_ptr<EmulatedCard::Kernel> kernel;
-  return kernel;
-}
 
 drmModeModeInfo timing(int width, int height, double rate_hz, std::uint32_t type) {
   drmModeModeInfo mode{};
@@ -43,8 +39,8 @@ drmModeModeInfo timing(int width, int height, double rate_hz, std::uint32_t type
   return mode;
 }
 
-EmulatedCard::EmulatedCard() : kernel_(std::make_shared<Kernel>()) { the_kernel() = kernel_; }
-EmulatedCard::~EmulatedCard() { the_kernel().reset(); }
+EmulatedCard::EmulatedCard() : kernel_(std::make_shared<Kernel>()) { attach(kernel_); }
+EmulatedCard::~EmulatedCard() { detach(kernel_.get()); }
 
 void EmulatedCard::set(const Faults& faults) {
   const std::lock_guard lock(kernel_->mutex_);

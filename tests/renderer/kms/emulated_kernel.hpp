@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "tests/emulation/emulated_device.hpp"
 #include "tests/renderer/kms/emulated_card.hpp"
 
 namespace handcast::test {
@@ -19,21 +20,17 @@ T* at(std::uint64_t address) {
 }
 
 /// The state of the card and the kernel's rules for it. Any thread.
-class EmulatedCard::Kernel {
+class EmulatedCard::Kernel final : public EmulatedDevice {
  public:
   Kernel();
-  ~Kernel();
+  ~Kernel() override;
 
-  /// What system calls do. They return a value as ioctl() does, or -errno.
-  /// @{
-  int open();
-  void close(int fd);
-  int ioctl(int fd, unsigned long request, void* argument);
-  bool owns(int fd) const;
-  int memory() const {
-    return memory_;
-  }  ///< the file whose parts are mapped
-     /// @}
+  bool is_at(std::string_view path) const override { return path == "/dev/dri/card0"; }
+  int open() override;
+  void close(int fd) override;
+  int ioctl(int fd, unsigned long request, void* argument) override;
+  bool owns(int fd) const override;
+  int map(int /*fd*/, std::size_t /*length*/, std::int64_t /*offset*/) override { return memory_; }
 
  private:
   friend class EmulatedCard;
@@ -131,8 +128,5 @@ class EmulatedCard::Kernel {
   std::condition_variable ends_;
   std::thread refreshes_;
 };
-
-/// The kernel's part of the card of this process; null without a card.
-std::shared_ptr<EmulatedCard::Kernel>& the_kernel();
 
 }  // namespace handcast::test

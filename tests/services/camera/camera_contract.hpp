@@ -50,6 +50,7 @@ class CameraContract : public testing::TestWithParam<CameraBackend> {
   /// could not fetch the first two frames is opened again.
   std::optional<SecondFrame> second_frame(const config::Rig& rig) {
     for (int attempt = 1; attempt <= 10; ++attempt) {
+      camera_.reset();  // a device is opened only once at a time
       auto opened = GetParam().open(rig, calibration_, now_ns() + attempt * to_ns(400ms));
       if (!opened) throw std::runtime_error(opened.error().what);
       camera_ = std::move(*opened);
@@ -94,7 +95,8 @@ TEST_P(CameraContract, AFrameHasTheCalibrationsSizeAndWasExposedInThePast) {
 
 TEST_P(CameraContract, ADeadlineInThePastIsATimeoutNotAHang) {
   ASSERT_TRUE(capture(Deadline::in(5s)));
-  const auto late = capture(Deadline::now());
+  auto late = capture(Deadline::now());
+  for (int i = 0; i < 20 && late; ++i) late = capture(Deadline::now());  // images that were there
   ASSERT_FALSE(late);
   EXPECT_EQ(late.error().code, Errc::timeout);
   EXPECT_TRUE(capture(Deadline::in(5s))) << "a timeout must not end the stream";
