@@ -129,8 +129,9 @@ void describe(Visitor& visitor, Projector& projector) {
                 "The projector turns a level 0..1 into the light level^gamma. 0: as in sRGB, the "
                 "encoding of pictures.");
   visitor.field("fade_s", projector.fade_s, between(0, 10, "s"),
-                "How long the light of a rig takes to full brightness at its start. A projector "
-                "that replaces another one does not fade.");
+                "How long the light of a rig takes to full brightness at its start, and to black "
+                "at its stop, then at most half of supervisor.stop_s. A projector that replaces "
+                "another one does not fade.");
   visitor.field(
       "packing", projector.packing,
       "The sub-frames in an output frame, for a projector that shows them one after the "

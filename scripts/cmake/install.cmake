@@ -14,7 +14,7 @@ install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
 foreach(file
-    config/REFERENCE.md config/assets/readme.png ipc/ring/README.md
+    config/REFERENCE.md config/assets/preview.png config/assets/readme.png ipc/ring/README.md
     services/landmarks/training/MODEL_CARD.md
     tests/client/CMakeLists.txt tests/client/read_projections.cpp)
   cmake_path(GET file PARENT_PATH folder)

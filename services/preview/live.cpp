@@ -18,6 +18,9 @@ namespace handcast::preview {
 namespace {
 
 constexpr std::int64_t kNote_ns = 3'000'000'000;  ///< how long a note is shown
+/// Pause after a drawing, as a multiple of its duration: drawing takes a third of a core at most,
+/// and less if the machine is busy.
+constexpr std::int64_t kRest = 2;
 
 /// Does not run destructors: there is nothing to close, and the display is gone.
 void give_up() {
@@ -56,9 +59,18 @@ class Show {
   Show(RigFeed& feed, renderer::Window& window, const Look& look)
       : feed_(feed), window_(window), look_(look) {}
 
-  /// Reads, draws and obeys once. Returns false if the user ends.
+  /// Reads once; draws and obeys if it is time. Returns false if the user ends.
   Result<bool> turn() {
     if (auto well = feed_.look(); !well) return tl::make_unexpected(well.error());
+    const auto begin_ns = now_ns();
+    if (begin_ns < next_draw_ns_) return true;
+    const bool goes_on = redraw();
+    next_draw_ns_ = now_ns() + kRest * (now_ns() - begin_ns);
+    return goes_on;
+  }
+
+ private:
+  bool redraw() {
     if (!look_.frozen) {
       scene_ = feed_.scene();
       gauges_ = feed_.gauges();
@@ -78,13 +90,12 @@ class Show {
     return !window_.is_closed();
   }
 
- private:
   RigFeed& feed_;
   renderer::Window& window_;
   Look look_;
   Scene scene_;
   Gauges gauges_;
-  std::int64_t note_until_ns_ = 0;
+  std::int64_t note_until_ns_ = 0, next_draw_ns_ = 0;
 };
 
 }  // namespace
