@@ -74,6 +74,12 @@ std::string text_of(unsigned codepoint) {
 
 }  // namespace
 
+Result<std::vector<Monitor>> list_monitors() {
+  const auto library = Library::open();
+  if (!library) return tl::make_unexpected(library.error());
+  return connected().monitors;
+}
+
 class Window::Screen {
  public:
   Screen(std::unique_ptr<Library> library, WindowSettings settings)

@@ -9,6 +9,7 @@
 
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
+#include "renderer/window/monitor.hpp"
 
 namespace handcast::renderer {
 
@@ -32,6 +33,10 @@ struct Shown {
   std::int64_t handed_ns = 0;  ///< when the window system got it
   std::int64_t shown_ns = 0;   ///< when the window system had taken it; with vsync, the refresh
 };
+
+/// The monitors of the display server, the primary one first. Not while a Window is open. Errors:
+/// unavailable (no display).
+Result<std::vector<Monitor>> list_monitors();
 
 /// A window that shows pictures (X11 and OpenGL by GLFW). It is hidden until the first show(). Only
 /// one per process, used by its main thread.

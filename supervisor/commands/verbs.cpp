@@ -64,6 +64,9 @@ constexpr std::array kVerbs{
               "  --system           a unit of the machine instead of one of this user\n"
               "  --user NAME        the user as which it runs; default: the one who calls sudo\n"
               "  --print            prints the unit and writes nothing\n"},
+    VerbEntry{"devices", "devices [--json]",
+              "Lists what is attached, and what it would be called in a rig file.", nullptr,
+              Group::set_up},
     VerbEntry{
         "config",
         "config --print [FILE] [--set path=value]... | --check FILE [--set "

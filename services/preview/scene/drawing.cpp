@@ -15,6 +15,7 @@ using Corners = std::array<glm::vec2, 3>;
 
 constexpr float kLargestTriangle_px = 256;  ///< on a side; more is no part of a hand
 constexpr float kFarthest_px = 1e5f;
+constexpr std::int64_t kLargestSide_px = 8192;  ///< of a projector
 
 const renderer::HandMesh* mesh_of(const msg::ProjectedHand& hand, const Meshes& meshes) {
   const auto side = static_cast<std::size_t>(hand.side);
@@ -90,8 +91,12 @@ bool is_sound(const msg::Projection& projection) {
     return from >= 0 && from + size <= all;
   };
   const std::int64_t width = projection.width_px, height = projection.height_px;
-  return width > 0 && height > 0 && width <= msg::kLargestProjectorWidth_px &&
-         height <= msg::kLargestProjectorHeight_px &&
+  // A slot has room for a region of this size; a calibration allows sides of kLargestSide_px.
+  constexpr std::int64_t kLargestRegion =
+      msg::kLargestProjectorWidth_px * msg::kLargestProjectorHeight_px;
+  return width > 0 && height > 0 && width <= kLargestSide_px && height <= kLargestSide_px &&
+         static_cast<std::int64_t>(projection.region_width_px) * projection.region_height_px <=
+             kLargestRegion &&
          limits(projection.region_x_px, projection.region_width_px, width) &&
          limits(projection.region_y_px, projection.region_height_px, height);
 }

@@ -70,8 +70,7 @@ class Cable : public testing::Test {
     calibration_.camera.height_px = kHeight;
     memory_.resize(msg::CameraFrame::bytes(kWidth, kHeight));
     for (const auto until = Deadline::in(10s); !camera_ && !until.passed();)
-      if (auto opened = open_camera(rig_, calibration_, now_ns()))
-        camera_ = std::move(*opened);
+      if (auto opened = open_camera(rig_, calibration_, now_ns())) camera_ = std::move(*opened);
     ASSERT_TRUE(camera_);
   }
   void TearDown() override { camera_.reset(); }
@@ -79,8 +78,8 @@ class Cable : public testing::Test {
   /// The namespace of the camera exists a moment after its process.
   bool connect() {
     const auto in_camera = fmt::format("nsenter -t {} -n ", process_.pid());
-    const auto link = fmt::format(
-        "ip link add veth-host type veth peer name veth-camera netns {}", process_.pid());
+    const auto link = fmt::format("ip link add veth-host type veth peer name veth-camera netns {}",
+                                  process_.pid());
     for (const auto until = Deadline::in(2s); !run(in_camera + "ip link show veth-camera");) {
       if (until.passed()) return false;
       std::this_thread::sleep_for(20ms);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A webcam for a camera service that is not a test: it is plugged in while the file exists that
+// A webcam for programs of handcast that are not tests: it is plugged in while the file exists that
 // HANDCAST_EMULATED_WEBCAM names. Its size is that of the paper's camera.
 #include <unistd.h>
 
@@ -23,9 +23,13 @@ void follow(EmulatedWebcam& webcam, const char* file) {
   }
 }
 
+bool is_reader(std::string_view program) {
+  return program == "handcast-camera" || program == "handcast-devices";
+}
+
 [[maybe_unused]] const bool from_environment = [] {
   const char* file = std::getenv("HANDCAST_EMULATED_WEBCAM");
-  if (file == nullptr || std::string_view(program_invocation_short_name) != "handcast-camera")
+  if (file == nullptr || !is_reader(program_invocation_short_name))
     return false;
   // It lives until the process ends.
   auto* webcam = new EmulatedWebcam(

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/devices/attached.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace handcast::devices {
+namespace {
+
+/// The lines of one device, indented.
+std::string print(const Attached& device) {
+  auto text = fmt::format("  {}\n", device.name);
+  if (!device.about.empty()) text += fmt::format("    {}\n", device.about);
+  if (!device.trouble.empty()) text += fmt::format("    cannot be used: {}\n", device.trouble);
+  for (const auto& [setting, value] : device.settings)
+    text += fmt::format("      {} = {}\n", setting, nlohmann::json(value).dump());
+  return text;
+}
+
+}  // namespace
+
+std::vector<Attached> all_attached() {
+  std::vector<Attached> all;
+  for (const auto list : {industrial_cameras, webcams, monitors, connectors}) {
+    auto some = list();
+    std::move(some.begin(), some.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+std::vector<std::string> blind_spots() {
+  std::vector<std::string> spots;
+#ifndef HANDCAST_WITH_ARAVIS
+  spots.emplace_back("GigE Vision and USB3 Vision cameras (libaravis-dev)");
+#endif
+#ifndef HANDCAST_WITH_WINDOW
+  spots.emplace_back("monitors of the window system (libglfw3-dev libopengl-dev libxrandr-dev)");
+#endif
+#ifndef HANDCAST_WITH_KMS
+  spots.emplace_back("displays without a window system (libdrm-dev)");
+#endif
+  return spots;
+}
+
+std::string print(const std::vector<Attached>& attached,
+                  const std::vector<std::string>& blind_spots) {
+  std::string text;
+  for (std::size_t kind = 0; kind < kKindNames.size(); ++kind) {
+    std::string devices;
+    for (const auto& device : attached)
+      if (static_cast<std::size_t>(device.kind) == kind) devices += print(device);
+    text += fmt::format("{}\n{}", kKindNames[kind], devices.empty() ? "  none\n" : devices);
+  }
+  for (const auto& spot : blind_spots)
+    text += fmt::format("this build cannot see {}\n", spot);
+  return text;
+}
+
+std::string to_json(const std::vector<Attached>& attached) {
+  auto list = nlohmann::json::array();
+  for (const auto& device : attached) {
+    auto settings = nlohmann::json::object();
+    for (const auto& [setting, value] : device.settings) settings[setting] = value;
+    list.push_back({{"kind", kKindNames[static_cast<std::size_t>(device.kind)]},
+                    {"name", device.name},
+                    {"about", device.about},
+                    {"settings", settings},
+                    {"trouble", device.trouble}});
+  }
+  // A device may call itself anything.
+  return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace handcast::devices

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace handcast::devices {
+
+/// What a device can be in a rig.
+enum class Kind { camera, display, controller };
+inline constexpr std::array<std::string_view, 3> kKindNames{"cameras", "displays", "controllers"};
+
+/// A device of this computer.
+struct Attached {
+  Kind kind = Kind::camera;
+  std::string name;   ///< for people: "Basler acA720-520um, serial number 23456789"
+  std::string about;  ///< what it can do: formats, sizes, rates; may be empty
+  /// The lines of a rig file that use it: a setting and its value.
+  std::vector<std::pair<std::string, std::string>> settings;
+  std::string trouble;  ///< why it cannot be opened now, with the remedy; empty if it can
+};
+
+/// The devices of one kind of driver. A driver that is not in this build has none.
+/// @{
+std::vector<Attached> industrial_cameras();  ///< takes a second
+std::vector<Attached> webcams();
+std::vector<Attached> monitors();    ///< of the window system, for the output `window`
+std::vector<Attached> connectors();  ///< of the graphics cards, for the output `kms`
+/// @}
+
+/// Whatever is attached.
+std::vector<Attached> all_attached();
+
+/// What this build cannot see, a sentence each.
+std::vector<std::string> blind_spots();
+
+/// The list for people, with what to paste into a rig file.
+std::string print(const std::vector<Attached>& attached,
+                  const std::vector<std::string>& blind_spots);
+/// The same as JSON: an array of objects with the members of Attached.
+std::string to_json(const std::vector<Attached>& attached);
+
+}  // namespace handcast::devices

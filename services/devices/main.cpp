@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast devices: what is attached, and what it would be called in a rig file.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
+#include "ipc/base/version.hpp"
+#include "services/devices/attached.hpp"
+
+static int run_verb(int argc, char** argv) {
+  using namespace handcast;
+  CLI::App app(
+      "Lists the cameras and displays of this computer, with the settings that use them, and why "
+      "one cannot be opened.",
+      "handcast devices");
+  bool as_json = false;
+  app.add_flag("--json", as_json, "The same as JSON");
+  app.set_version_flag("--version", fmt::format("handcast devices {}\n", version()));
+  CLI11_PARSE(app, argc, argv);
+  const auto attached = devices::all_attached();
+  fmt::print("{}", as_json ? devices::to_json(attached)
+                           : printable(devices::print(attached, devices::blind_spots())));
+  return kExitDone;
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast devices", argc, argv, run_verb);
+}

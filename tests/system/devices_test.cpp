@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// `handcast devices` sees an emulated camera of each kind, and an emulated graphics card.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/services/camera/aravis/fake_camera.hpp"
+#include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class Devices : public SystemTest {
+ protected:
+  void SetUp() override {
+    SystemTest::SetUp();
+#ifdef HANDCAST_WITH_SANITIZER
+    GTEST_SKIP() << "a sanitizer must be loaded before the emulated devices";
+#endif
+  }
+  static nlohmann::json device_with(const nlohmann::json& devices, const std::string& setting,
+                                    const std::string& value) {
+    for (const auto& device : devices)
+      if (device["settings"].value(setting, "") == value) return device;
+    return nullptr;
+  }
+};
+
+TEST_F(Devices, EachIsListedWithTheSettingsThatUseIt) {
+  const test::FakeCamera gige;
+  ASSERT_TRUE(gige.is_running());
+  const auto plug = scratch_.path() / "plug";
+  std::ofstream(plug) << "in";
+  const Variable preload("LD_PRELOAD", HANDCAST_EMULATED_DEVICES),
+      webcam("HANDCAST_EMULATED_WEBCAM", plug.c_str()), card("HANDCAST_EMULATED_CARD", "EPSON PJ");
+  const auto listed = handcast({"devices", "--json"});
+  ASSERT_EQ(listed.exit_code, 0) << listed.log;
+  const auto devices = nlohmann::json::parse(listed.output);
+
+  const auto camera = device_with(devices, "camera.aravis.device", "GV01");
+  ASSERT_FALSE(camera.is_null()) << listed.output;
+  EXPECT_EQ(camera["settings"]["camera.backend"], "aravis");
+  EXPECT_EQ(camera["trouble"], "");
+  const auto video = device_with(devices, "camera.v4l2.device", "/dev/video0");
+  ASSERT_FALSE(video.is_null()) << listed.output;
+  EXPECT_EQ(video["settings"]["camera.backend"], "v4l2");
+  EXPECT_THAT(video["about"].get<std::string>(), HasSubstr("720x540"));
+  const auto display = device_with(devices, "projector.kms.connector", "HDMI-A-1");
+  ASSERT_FALSE(display.is_null()) << listed.output;
+  EXPECT_THAT(display["name"].get<std::string>(), HasSubstr("EPSON PJ"));
+
+  const auto text = handcast({"devices"}).output;
+  EXPECT_THAT(text, AllOf(HasSubstr("cameras\n"), HasSubstr("camera.aravis.device = \"GV01\"\n"),
+                          HasSubstr("displays\n")));
+}
+
+TEST_F(Devices, WithoutAnyTheCommandSaysSo) {
+  const auto text = handcast({"devices"}).output;
+  EXPECT_THAT(text, HasSubstr("cameras\n  none\n"));
+}
+
+}  // namespace
+}  // namespace handcast::system_test
