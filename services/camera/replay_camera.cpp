@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "services/camera/camera.hpp"
+#include "services/camera/film_pictures.hpp"
 #include "services/camera/frame_size.hpp"
 #include "services/camera/npy_pictures.hpp"
 #include "services/camera/png_pictures.hpp"
@@ -78,6 +79,8 @@ class ReplayCamera final : public Camera {
 
 Result<PlayedPictures> open_pictures(const fs::path& from, const PlayedAs& as) {
   if (from.extension() == ".npy") return open_npy_pictures(from, as);
+  std::error_code failed;
+  if (fs::is_regular_file(from, failed)) return open_film_pictures(from, as);
   if (recording::is_recording(from)) return open_recorded_pictures(from, as);
   return open_png_pictures(from, as);
 }
