@@ -50,10 +50,10 @@ std::size_t run_at(const std::uint8_t* from, const std::uint8_t* end) {
   return length;
 }
 
-void find_tokens(std::span<const std::uint8_t> bytes, std::vector<std::uint16_t>& tokens) {
-  tokens.resize(bytes.size());
+/// Returns the number of tokens, which are written to memory for bytes.size() of them.
+std::size_t find_tokens(std::span<const std::uint8_t> bytes, std::uint16_t* const tokens) {
   const std::uint8_t *here = bytes.data(), *end = here + bytes.size();
-  auto* token = tokens.data();
+  auto* token = tokens;
   if (here != end) *token++ = *here++;
   while (end - here >= static_cast<std::ptrdiff_t>(kShortestRun)) {
     if (load<std::uint32_t>(here) != load<std::uint32_t>(here - 1)) {
@@ -65,11 +65,11 @@ void find_tokens(std::span<const std::uint8_t> bytes, std::vector<std::uint16_t>
     here += length;
   }
   while (here != end) *token++ = *here++;
-  tokens.resize(static_cast<std::size_t>(token - tokens.data()));
+  return static_cast<std::size_t>(token - tokens);
 }
 
 /// Counts in four tables, because equal tokens that follow each other would wait for one another.
-SymbolCounts count_symbols(const std::vector<std::uint16_t>& tokens) {
+SymbolCounts count_symbols(std::span<const std::uint16_t> tokens) {
   std::array<std::array<std::uint32_t, kTokens>, 4> of_token{};
   for (std::size_t i = 0; i < tokens.size(); ++i) ++of_token[i % 4][tokens[i]];
   SymbolCounts counts{};
@@ -150,7 +150,7 @@ std::array<Code, kTokens> token_codes(const std::array<Code, kSymbols>& codes) {
   return of_token;
 }
 
-std::byte* put_block(const std::vector<std::uint16_t>& tokens, std::byte* to) {
+std::byte* put_block(std::span<const std::uint16_t> tokens, std::byte* to) {
   const auto codes = huffman_code(count_symbols(tokens));
   BitWriter out(to);
   put_header(out, codes);
@@ -171,16 +171,18 @@ std::byte* put_block(const std::vector<std::uint16_t>& tokens, std::byte* to) {
 
 void Deflater::append(std::span<const std::uint8_t> bytes, Bytes& out) {
   constexpr std::size_t kFrame = 512;  // header of the block, checksum, what BitWriter needs
-  find_tokens(bytes, tokens_);
-  const auto begin = out.size();
-  out.resize(begin + 2 * bytes.size() + kFrame);  // a literal has at most 15 bits
-  auto* to = out.data() + begin;
+  // Grown, never shrunk: resize() would clear the memory.
+  if (tokens_.size() < bytes.size()) tokens_.resize(bytes.size());
+  if (stream_.size() < 2 * bytes.size() + kFrame)
+    stream_.resize(2 * bytes.size() + kFrame);  // a literal has at most 15 bits
+  const auto count = find_tokens(bytes, tokens_.data());
+  auto* to = stream_.data();
   *to++ = std::byte{0x78};  // deflate with a window of 32 KiB
   *to++ = std::byte{0x01};
-  to = put_block(tokens_, to);
+  to = put_block(std::span(tokens_).first(count), to);
   const auto sum = libdeflate_adler32(1, bytes.data(), bytes.size());
   for (int shift = 24; shift >= 0; shift -= 8) *to++ = static_cast<std::byte>(sum >> shift);
-  out.resize(static_cast<std::size_t>(to - out.data()));
+  out.insert(out.end(), stream_.data(), to);
 }
 
 void Inflater::Free::operator()(libdeflate_decompressor* decompressor) const {

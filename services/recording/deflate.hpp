@@ -22,6 +22,7 @@ class Deflater {
 
  private:
   std::vector<std::uint16_t> tokens_;
+  Bytes stream_;
 };
 
 /// Decompresses any zlib stream whose size is known. One thread.

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <functional>
-#include <ranges>
+#include <numeric>
 #include <utility>
 
 #include "services/recording/about.hpp"
@@ -70,8 +70,7 @@ Result<Schedule> Schedule::make(const std::filesystem::path& folder, const Strea
   for (const auto& row : reader.rows()) delays_ns.push_back(row.published_ns - row.origin_ns);
   auto ids = ids_of(reader);
   const auto ids_of_a_lap = std::max(whole->ids, numbers_of(ids));
-  if (!increase(ids))
-    std::ranges::copy(std::views::iota(std::uint64_t{0}, ids.size()), ids.begin());
+  if (!increase(ids)) std::iota(ids.begin(), ids.end(), 0);
   return Schedule(std::move(*loop), std::move(delays_ns), std::move(ids), ids_of_a_lap);
 }
 
