@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "ipc/base/join.hpp"
 #include "ipc/control/choose_rig.hpp"
@@ -46,6 +45,16 @@ Result<RigRing> rig_ring(const std::string& rig, std::string_view stream,
     return fail(Errc::bad_data, fmt::format("rig '{}' gave the ring of '{}' for stream '{}'",
                                             *chosen, segment->stream(), stream));
   return RigRing{*chosen, std::move(*segment)};
+}
+
+Result<std::vector<std::string>> stream_names(const std::string& rig,
+                                              std::chrono::nanoseconds patience) {
+  const auto chosen = control::choose_rig(rig);
+  if (!chosen) return tl::make_unexpected(chosen.error());
+  const auto answer =
+      control::ask_with_descriptors(*chosen, {.verb = control::Verb::rings}, patience);
+  if (!answer) return tl::make_unexpected(answer.error());
+  return names_in(answer->object);
 }
 
 }  // namespace handcast::client

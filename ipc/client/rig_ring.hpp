@@ -3,6 +3,7 @@
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ipc/base/result.hpp"
 #include "ipc/shm/segment.hpp"
@@ -22,5 +23,9 @@ struct RigRing {
 /// another version).
 Result<RigRing> rig_ring(const std::string& rig, std::string_view stream,
                          std::chrono::nanoseconds patience = std::chrono::seconds(2));
+
+/// The names of all streams of a rig. Errors: as rig_ring(), without bad_config.
+Result<std::vector<std::string>> stream_names(
+    const std::string& rig, std::chrono::nanoseconds patience = std::chrono::seconds(2));
 
 }  // namespace handcast::client

@@ -94,6 +94,25 @@ Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
   return decode_png<std::uint8_t>(*bytes, file, PNG_FORMAT_GRAY);
 }
 
+/// `pixels`: rows without padding, of one or three bytes per pixel.
+static Result<void> write_png(const std::filesystem::path& file, int width_px, int height_px,
+                              png_uint_32 format, const std::uint8_t* pixels) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(width_px);
+  png.height = static_cast<png_uint_32>(height_px);
+  png.format = format;
+  png.flags = PNG_IMAGE_FLAG_FAST;
+  // Not png_image_write_to_file(), which removes the file if it fails, even if it is a device.
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(png), '\0');
+  png_alloc_size_t size = bytes.size();
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, pixels, 0, nullptr))
+    return fail(Errc::unavailable,
+                fmt::format("The picture '{}' cannot be made: {}.", file.string(), png.message));
+  bytes.resize(size);
+  return config::write_whole(file, bytes);
+}
+
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {
   std::vector<std::uint8_t> rgb;
   rgb.reserve(static_cast<std::size_t>(picture.width) * picture.height * 3);
@@ -101,20 +120,11 @@ Result<void> write_png(const std::filesystem::path& file, View<const std::uint32
     for (int x = 0; x < picture.width; ++x)
       for (const int shift : {0, 8, 16})
         rgb.push_back(static_cast<std::uint8_t>(picture.at(x, y) >> shift));
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = static_cast<png_uint_32>(picture.width);
-  png.height = static_cast<png_uint_32>(picture.height);
-  png.format = PNG_FORMAT_RGB;
-  png.flags = PNG_IMAGE_FLAG_FAST;
-  // Not png_image_write_to_file(), which removes the file if it fails, even if it is a device.
-  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(png), '\0');
-  png_alloc_size_t size = bytes.size();
-  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, rgb.data(), 0, nullptr))
-    return fail(Errc::unavailable,
-                fmt::format("The picture '{}' cannot be made: {}.", file.string(), png.message));
-  bytes.resize(size);
-  return config::write_whole(file, bytes);
+  return write_png(file, picture.width, picture.height, PNG_FORMAT_RGB, rgb.data());
+}
+
+Result<void> write_png(const std::filesystem::path& file, const Image<std::uint8_t>& grey) {
+  return write_png(file, grey.width(), grey.height(), PNG_FORMAT_GRAY, grey.pixels().data());
 }
 
 }  // namespace handcast::renderer

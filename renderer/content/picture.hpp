@@ -22,5 +22,7 @@ Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file);
 
 /// Writes RGBA8 as a PNG file without alpha, by config::write_whole(). Errors: those of it.
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture);
+/// Writes grey values as a PNG file, in the same way.
+Result<void> write_png(const std::filesystem::path& file, const Image<std::uint8_t>& grey);
 
 }  // namespace handcast::renderer

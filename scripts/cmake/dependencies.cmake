@@ -10,6 +10,7 @@ find_package(nlohmann_json REQUIRED)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
+pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(eigen3 REQUIRED IMPORTED_TARGET eigen3)
 find_package(TinyGLTF REQUIRED)
 

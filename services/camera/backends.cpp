@@ -30,7 +30,9 @@ static constexpr std::array kBackends{
                   .open = open_twin,
                   .reads = twin::kWorldSettings + config::SettingList{"twin.image"}},
     CameraBackend{.name = "replay",
-                  .sentence = "Plays grey pictures from a folder, at the times they were taken.",
+                  .sentence =
+                      "Plays a recording of `handcast record`, PNG images, a film or a .npy "
+                      "array.",
                   .open = open_replay,
                   .reads = {"camera.replay"}},
     CameraBackend{.name = "v4l2",

@@ -2,76 +2,87 @@
 #include <algorithm>
 
 #include "services/camera/camera.hpp"
+#include "services/camera/film_pictures.hpp"
 #include "services/camera/frame_size.hpp"
-#include "services/camera/pictures.hpp"
-#include "services/evaluation/twin/recording.hpp"
-#include "services/runtime/loop.hpp"
+#include "services/camera/npy_pictures.hpp"
+#include "services/camera/png_pictures.hpp"
+#include "services/camera/read_ahead.hpp"
+#include "services/camera/recorded_pictures.hpp"
+#include "services/recording/about.hpp"
 
 namespace handcast::camera {
 namespace fs = std::filesystem;
 namespace {
 
-/// Plays the images of a folder at the times at which they were taken. They are decoded at
-/// start-up.
+/// An image that a busy machine could not fetch in time is delivered up to so late.
+constexpr std::int64_t kLate_ns = 10'000'000;
+
+/// Plays the images of a recording, at the times at which they were taken or as fast as they are
+/// fetched.
 class ReplayCamera final : public Camera {
  public:
-  ReplayCamera(std::vector<renderer::Image<std::uint8_t>> pictures, timing::Loop loop,
-               const config::Camera& settings)
-      : pictures_(std::move(pictures)),
-        loop_(std::move(loop)),
-        exposure_ns_(ms_to_ns(settings.exposure_ms)) {}
+  ReplayCamera(PlayedPictures pictures, const PlayedAs& as, config::Pace pace)
+      : schedule_(std::move(pictures.schedule)),
+        as_(as),
+        pace_(pace),
+        pictures_(std::move(pictures.source), schedule_.count(),
+                  static_cast<std::size_t>(as.width_px) * as.height_px, first()) {}
 
   Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                        Deadline deadline) override {
-    const auto& first = pictures_.front();
-    if (auto room = check_room(first.width(), first.height(), tail_bytes); !room) return room;
-    const auto item = loop_.at_or_after(std::max(now_ns(), last_ns_ + 1));
-    if (!item || item->due_ns > deadline.time_ns()) {
+    if (auto room = check_room(as_.width_px, as_.height_px, tail_bytes); !room) return room;
+    if (!item_) item_ = next();
+    if (!item_ || (pace_ == config::Pace::recorded && item_->due_ns > deadline.time_ns())) {
+      const bool is_over = !std::exchange(item_, std::nullopt);
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, item ? "camera 'replay': no frame before the deadline"
-                                      : "camera 'replay': the recording is over");
+      return fail(Errc::timeout, is_over ? "camera 'replay': the recording is over"
+                                         : "camera 'replay': no frame before the deadline");
     }
-    copy(pictures_[item->index], *item, frame);
-    sleep_until_ns(item->due_ns);
-    last_ns_ = item->due_ns;
+    const auto picture = pictures_.get(item_->number, deadline);
+    // One that has not been read yet is asked for again.
+    if (!picture && picture.error().code == Errc::timeout)
+      return fail_in("camera 'replay'", picture.error());
+    const auto item = *std::exchange(item_, std::nullopt);
+    last_ns_ = item.due_ns;
+    if (!picture) return fail_in("camera 'replay'", picture.error());
+    deliver(item, **picture, frame);
     return {};
   }
 
  private:
-  void copy(const renderer::Image<std::uint8_t>& picture, const timing::Loop::Item& item,
-            msg::CameraFrame& frame) {
-    frame.header.frame_id = item.number;
-    frame.header.origin_ns = item.due_ns;
-    frame.exposure_ns = exposure_ns_;
-    frame.width_px = static_cast<std::uint32_t>(picture.width());
-    frame.height_px = static_cast<std::uint32_t>(picture.height());
-    std::copy(picture.pixels().begin(), picture.pixels().end(), frame.pixels());
+  std::optional<recording::Schedule::Item> next() const {
+    const auto earliest_ns = last_ns_ + 1;
+    return schedule_.at_or_after(
+        pace_ == config::Pace::fastest ? earliest_ns : std::max(now_ns() - kLate_ns, earliest_ns));
+  }
+  std::uint64_t first() const {
+    const auto item = next();
+    return item ? item->number : 0;
+  }
+  void deliver(const recording::Schedule::Item& item, const ReadAhead::Picture& picture,
+               msg::CameraFrame& frame) const {
+    frame = picture.frame;
+    std::ranges::copy(picture.pixels, frame.pixels());
+    if (pace_ == config::Pace::recorded) sleep_until_ns(item.due_ns);
+    frame.header = {item.frame_id, pace_ == config::Pace::recorded ? item.origin_ns : now_ns(), 0};
+    frame.width_px = static_cast<std::uint32_t>(as_.width_px);
+    frame.height_px = static_cast<std::uint32_t>(as_.height_px);
   }
 
-  std::vector<renderer::Image<std::uint8_t>> pictures_;
-  timing::Loop loop_;
-  std::int64_t exposure_ns_;
-  std::int64_t last_ns_ = 0;
+  recording::Schedule schedule_;
+  PlayedAs as_;
+  config::Pace pace_;
+  std::int64_t last_ns_ = 0;                       ///< when the last image was due
+  std::optional<recording::Schedule::Item> item_;  ///< due, but not read yet
+  ReadAhead pictures_;
 };
 
-/// The times of the images, from camera_timestamps.npy; if there is no such file, at `rate_hz` from
-/// `first_ns` on.
-Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::size_t count,
-                                                   double rate_hz, std::int64_t first_ns) {
-  const fs::path file = folder / "camera_timestamps.npy";
-  const auto there = twin::is_there(file);
-  if (!there) return tl::make_unexpected(there.error());
-  if (!*there) {
-    std::vector<std::int64_t> times_ns;
-    for (std::size_t i = 0; i < count; ++i)
-      times_ns.push_back(first_ns + seconds_to_ns(static_cast<double>(i) / rate_hz));
-    return times_ns;
-  }
-  auto times_ns = twin::read_stamps_ns(file);
-  if (times_ns && times_ns->size() != count)
-    return fail(Errc::bad_config, fmt::format("'{}' has {} times for {} images", file.string(),
-                                              times_ns->size(), count));
-  return times_ns;
+Result<PlayedPictures> open_pictures(const fs::path& from, const PlayedAs& as) {
+  if (from.extension() == ".npy") return open_npy_pictures(from, as);
+  std::error_code failed;
+  if (fs::is_regular_file(from, failed)) return open_film_pictures(from, as);
+  if (recording::is_recording(from)) return open_recorded_pictures(from, as);
+  return open_png_pictures(from, as);
 }
 
 }  // namespace
@@ -79,25 +90,19 @@ Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::
 Result<std::unique_ptr<Camera>> open_replay(const config::Rig& rig,
                                             const calib::Calibration& calibration,
                                             const std::int64_t& epoch_ns) {
-  const fs::path folder = rig.camera.replay.directory;
-  if (folder.empty())
+  const auto& settings = rig.camera.replay;
+  if (settings.directory.empty())
     return fail(Errc::bad_config,
-                "camera 'replay': no folder is given; set camera.replay.directory");
-  const fs::path inner = folder / "camera";
-  const auto has_inner = twin::is_there(inner);
-  if (!has_inner) return fail_in("camera 'replay'", has_inner.error());
-  auto pictures = read_pictures(*has_inner ? inner : folder, calibration.camera.width_px,
-                                calibration.camera.height_px);
+                "camera 'replay': no recording is given; set camera.replay.directory");
+  const PlayedAs as{calibration.camera.width_px,
+                    calibration.camera.height_px,
+                    ms_to_ns(rig.camera.exposure_ms),
+                    rig.camera.rate_hz,
+                    epoch_ns,
+                    settings.loop};
+  auto pictures = open_pictures(settings.directory, as);
   if (!pictures) return fail_in("camera 'replay'", pictures.error());
-  const auto stamps_ns = twin::read_all_stamps_ns(folder);
-  if (!stamps_ns) return fail_in("camera 'replay'", stamps_ns.error());
-  const auto lap = timing::Lap::of(*stamps_ns);
-  auto times_ns = picture_times_ns(folder, pictures->size(), rig.camera.rate_hz, lap.first_ns);
-  if (!times_ns) return fail_in("camera 'replay'", times_ns.error());
-  auto loop = timing::Loop::make(std::move(*times_ns), lap, epoch_ns, rig.camera.replay.loop,
-                                 seconds_to_ns(1 / rig.camera.rate_hz));
-  if (!loop) return fail_in("camera 'replay': camera_timestamps.npy", loop.error());
-  return std::make_unique<ReplayCamera>(std::move(*pictures), std::move(*loop), rig.camera);
+  return std::make_unique<ReplayCamera>(std::move(*pictures), as, settings.pace);
 }
 
 }  // namespace handcast::camera

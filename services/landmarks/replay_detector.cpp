@@ -7,6 +7,8 @@
 
 #include "services/evaluation/twin/recording.hpp"
 #include "services/landmarks/detector.hpp"
+#include "services/recording/about.hpp"
+#include "services/recording/playback.hpp"
 #include "services/runtime/loop.hpp"
 
 namespace handcast::landmarks {
@@ -41,6 +43,47 @@ class ReplayDetector final : public Detector {
   std::array<Track, msg::kMaxHands> hands_;
   timing::Loop loop_;
 };
+
+/// Plays the landmarks of a recording of `handcast record`, when they were published: with the
+/// number and the origin of the image in which they were found, which was played before. One that a
+/// busy machine could not deliver in time is delivered up to 10 ms late.
+class RecordedDetector final : public Detector {
+ public:
+  RecordedDetector(recording::StreamReader reader, recording::Schedule schedule)
+      : reader_(std::move(reader)), schedule_(std::move(schedule)) {}
+
+  Result<msg::Landmarks> detect(const msg::CameraFrame&, const Hints&, Deadline deadline) override {
+    constexpr std::int64_t kLate_ns = 10'000'000;
+    const auto item = schedule_.at_or_after(std::max(now_ns() - kLate_ns, last_ns_ + 1));
+    if (!item || item->due_ns > deadline.time_ns()) {
+      sleep_until_ns(deadline.time_ns());
+      return fail(Errc::timeout, item ? "landmarks 'replay': none before the deadline"
+                                      : "landmarks 'replay': the recording is over");
+    }
+    last_ns_ = item->due_ns;
+    msg::Landmarks landmarks;
+    if (auto read = reader_.read(item->index, landmarks); !read)
+      return fail_in("landmarks 'replay'", read.error());
+    landmarks.header = {item->frame_id, item->origin_ns, 0};
+    sleep_until_ns(item->due_ns);
+    return landmarks;
+  }
+
+ private:
+  recording::StreamReader reader_;
+  recording::Schedule schedule_;
+  std::int64_t last_ns_ = 0;  ///< when the last landmarks were due
+};
+
+Result<std::unique_ptr<Detector>> open_recorded(const config::Replay& settings,
+                                                std::int64_t epoch_ns) {
+  auto reader =
+      recording::StreamReader::open<msg::Landmarks>(settings.directory, "landmarks.hands");
+  if (!reader) return tl::make_unexpected(reader.error());
+  auto schedule = recording::Schedule::make(settings.directory, *reader, epoch_ns, settings.loop);
+  if (!schedule) return tl::make_unexpected(schedule.error());
+  return std::make_unique<RecordedDetector>(std::move(*reader), std::move(*schedule));
+}
 
 /// The hand at one time stamp: x, y and, if the recording has them, sigmas. A landmark whose
 /// coordinates are not finite was not seen; a hand without a landmark is absent.
@@ -107,6 +150,7 @@ Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side
 Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int64_t epoch_ns) {
   const fs::path folder = settings.directory;
   if (folder.empty()) return fail(Errc::bad_config, "landmarks.replay.directory names no folder");
+  if (recording::is_recording(folder)) return open_recorded(settings, epoch_ns);
   auto times_ns = twin::read_stamps_ns(folder / "landmarks_timestamps.npy");
   if (!times_ns) return tl::make_unexpected(times_ns.error());
   const auto stamps_ns = twin::read_all_stamps_ns(folder);

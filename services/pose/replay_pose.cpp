@@ -3,6 +3,8 @@
 
 #include "services/evaluation/twin/recording.hpp"
 #include "services/pose/pose_source.hpp"
+#include "services/recording/about.hpp"
+#include "services/recording/playback.hpp"
 #include "services/runtime/loop.hpp"
 
 namespace handcast::pose {
@@ -38,6 +40,44 @@ class ReplayPose final : public PoseSource {
   std::int64_t last_ns_ = 0;
 };
 
+/// Plays the samples of a recording of `handcast record`, when they were published. One that a busy
+/// machine could not deliver in time is delivered up to 10 ms late.
+class RecordedPose final : public PoseSource {
+ public:
+  RecordedPose(recording::StreamReader reader, recording::Schedule schedule)
+      : reader_(std::move(reader)), schedule_(std::move(schedule)) {}
+
+  Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
+    constexpr std::int64_t kLate_ns = 10'000'000;
+    const auto item = schedule_.at_or_after(std::max(now_ns() - kLate_ns, last_ns_ + 1));
+    if (!item || item->due_ns > deadline.time_ns()) {
+      sleep_until_ns(deadline.time_ns());
+      return fail(Errc::timeout, item ? "pose 'replay': no sample before the deadline"
+                                      : "pose 'replay': the recording is over");
+    }
+    last_ns_ = item->due_ns;
+    if (auto read = reader_.read(item->index, poses); !read)
+      return fail_in("pose 'replay'", read.error());
+    poses.header = {item->frame_id, item->origin_ns, 0};
+    sleep_until_ns(item->due_ns);
+    return {};
+  }
+
+ private:
+  recording::StreamReader reader_;
+  recording::Schedule schedule_;
+  std::int64_t last_ns_ = 0;  ///< when the last sample was due
+};
+
+Result<std::unique_ptr<PoseSource>> open_recorded(const config::Replay& settings,
+                                                  std::int64_t epoch_ns) {
+  auto reader = recording::StreamReader::open<msg::HandPoses>(settings.directory, "pose.hands");
+  if (!reader) return fail_in("pose 'replay'", reader.error());
+  auto schedule = recording::Schedule::make(settings.directory, *reader, epoch_ns, settings.loop);
+  if (!schedule) return fail_in("pose 'replay'", schedule.error());
+  return std::make_unique<RecordedPose>(std::move(*reader), std::move(*schedule));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const calib::Calibration&,
@@ -45,6 +85,7 @@ Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const ca
   const auto& settings = rig.pose.replay;
   if (settings.directory.empty())
     return fail(Errc::bad_config, "pose 'replay': no folder is given; set pose.replay.directory");
+  if (recording::is_recording(settings.directory)) return open_recorded(settings, epoch_ns);
   auto recording = twin::read_recording(settings.directory);
   if (!recording) return fail_in("pose 'replay'", recording.error());
   const auto stamps_ns = twin::read_all_stamps_ns(settings.directory);

@@ -43,6 +43,9 @@ constexpr std::array kVerbs{
     VerbEntry{"preview", "preview [--rig NAME] [--shot FILE.png] [--after S] [--layers LIST]",
               "Shows what a rig sees and casts, in a window or as a picture.", nullptr,
               Group::look},
+    VerbEntry{"record", "record DIR [--rig NAME] [--seconds N] [--rings LIST] [--npy]",
+              "Writes all rings of a rig to a folder, which the back ends `replay` play.", nullptr,
+              Group::look},
     VerbEntry{
         "latency", "latency [--seconds N] [--json] [--rig NAME]",
         "Shows the time that each step took, from exposure to light.", run_latency, Group::look,

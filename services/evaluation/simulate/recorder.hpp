@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -9,7 +8,7 @@
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
 #include "services/evaluation/simulate/sensor_feed.hpp"
-#include "services/evaluation/twin/recording.hpp"
+#include "services/evaluation/twin/messages.hpp"
 
 namespace handcast::simulate {
 
@@ -42,7 +41,6 @@ class RecordingFeed : public SensorFeed {
   void keep(const msg::HandPoses& poses) { poses_.push_back(poses); }
   void keep(const msg::Landmarks& landmarks) { landmarks_.push_back(landmarks); }
   void keep_images(std::int64_t now_ns);
-  Result<void> save_landmarks() const;
 
   std::unique_ptr<SensorFeed> source_;
   std::filesystem::path folder_;

@@ -6,13 +6,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <string_view>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/output_file.hpp"
 
 namespace handcast::twin {
@@ -66,8 +69,13 @@ bool parse_shape(std::string_view text, std::vector<std::size_t>& shape) {
   return true;
 }
 
-/// Parses the prefix and the header's dictionary (NumPy enhancement proposal NEP 1).
-Result<Layout> parse_layout(const path& file, std::string_view bytes) {
+constexpr std::array<std::string_view, 4> kNumbers{"<f4", "<f8", "<i4", "<i8"};
+constexpr std::array<std::string_view, 1> kBytes{"|u1"};
+
+/// Parses the prefix and the header's dictionary (NumPy enhancement proposal NEP 1). `types`: those
+/// that the caller can read.
+Result<Layout> parse_layout(const path& file, std::string_view bytes,
+                            std::span<const std::string_view> types) {
   if (bytes.size() < 12 || bytes.substr(0, 6) != kMagic)
     return damaged(file, "not a NumPy array file");
   const auto byte = [&](std::size_t i) {
@@ -89,10 +97,9 @@ Result<Layout> parse_layout(const path& file, std::string_view bytes) {
   if (type.size() < 5 || type[0] != '\'' || type[4] != '\'')
     return damaged(file, "the header has no plain number type");
   layout.type = type.substr(1, 3);
-  if (layout.type != "<f4" && layout.type != "<f8" && layout.type != "<i4" && layout.type != "<i8")
-    return damaged(file,
-                   fmt::format("the array holds '{}'; '<f4', '<f8', '<i4' and '<i8' are supported",
-                               layout.type));
+  if (std::ranges::find(types, layout.type) == types.end())
+    return damaged(file, fmt::format("the array holds '{}'; '{}' {} supported", layout.type,
+                                     join(types, "', '"), types.size() > 1 ? "are" : "is"));
   if (!value_of(header, "fortran_order").starts_with("False"))
     return damaged(file, "the array is not in C order");
   if (!parse_shape(value_of(header, "shape"), layout.shape))
@@ -172,8 +179,9 @@ Result<std::size_t> count_of(const path& file, const Layout& layout, std::size_t
 
 }  // namespace
 
+constexpr std::size_t kLongestHeader = 1 << 16;
+
 Result<NpyFile> NpyFile::open(const path& file) {
-  constexpr std::size_t kLongestHeader = 1 << 16;
   auto fd = open_input(file, kMostArray);
   if (!fd) return tl::make_unexpected(fd.error());
   struct stat status {};
@@ -181,12 +189,32 @@ Result<NpyFile> NpyFile::open(const path& file) {
   const auto size = static_cast<std::uint64_t>(status.st_size);
   const auto begin = read_some(fd->get(), kLongestHeader, file);
   if (!begin) return tl::make_unexpected(begin.error());
-  auto layout = parse_layout(file, *begin);
+  auto layout = parse_layout(file, *begin, kNumbers);
   if (!layout) return tl::make_unexpected(layout.error());
   const auto count = count_of(file, *layout, size - std::min(size, layout->data_offset));
   if (!count) return tl::make_unexpected(count.error());
   return NpyFile(file, std::move(*fd), std::move(layout->type), std::move(layout->shape),
                  layout->data_offset, *count);
+}
+
+Result<NpyBytes> open_npy_bytes(const path& file) {
+  auto fd = open_input(file, std::numeric_limits<std::int64_t>::max());
+  if (!fd) return tl::make_unexpected(fd.error());
+  struct stat status {};
+  if (::fstat(fd->get(), &status) != 0) return damaged(file, std::strerror(errno));
+  const auto begin = read_some(fd->get(), kLongestHeader, file);
+  if (!begin) return tl::make_unexpected(begin.error());
+  auto layout = parse_layout(file, *begin, kBytes);
+  if (!layout) return tl::make_unexpected(layout.error());
+  std::uint64_t needed = 1;
+  bool fits = true;
+  for (const std::size_t extent : layout->shape)
+    fits = fits && !__builtin_mul_overflow(needed, extent, &needed);
+  const auto bytes = static_cast<std::uint64_t>(status.st_size) - layout->data_offset;
+  if (!fits || bytes != needed)
+    return damaged(
+        file, fmt::format("it has {} bytes of data, which is not what its shape requires", bytes));
+  return NpyBytes{std::move(*fd), std::move(layout->shape), layout->data_offset};
 }
 
 Result<Npy> NpyFile::read() {

@@ -48,6 +48,16 @@ class NpyFile {
   std::size_t data_offset_, count_;
 };
 
+/// An array of bytes ('|u1', C order) that is read from the disk.
+struct NpyBytes {
+  UniqueFd fd;
+  std::vector<std::size_t> shape;  ///< extent of each dimension
+  std::size_t data_offset = 0;     ///< where its first byte is in the file
+};
+/// Errors: bad_config (the file cannot be opened), bad_data (malformed content, a size other than
+/// that of the shape).
+Result<NpyBytes> open_npy_bytes(const std::filesystem::path& file);
+
 /// Reads an array of any shape. Errors: as NpyFile::open().
 Result<Npy> read_npy(const std::filesystem::path& file);
 /// Writes values in row-major order as '<f4'. Errors: unavailable (the file cannot be written),

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ipc/base/result.hpp"
+#include "services/recording/packed_image.hpp"
+#include "services/recording/stream_files.hpp"
+#include "services/recording/streams.hpp"
+
+namespace handcast::recording {
+
+/// Writes a recording: docs/recordings.md describes its files. One thread.
+class RecordingWriter {
+ public:
+  /// What a recording says about itself.
+  struct About {
+    std::string rig;       ///< name of the rig
+    std::string rig_file;  ///< its settings as TOML; kept in rig.toml
+  };
+
+  /// Creates the folder, or takes an empty one, and the files of `streams`, whose names are those
+  /// of rings. Errors: bad_config (the folder is not empty; a stream is unknown), unavailable (a
+  /// file cannot be written).
+  static Result<RecordingWriter> create(const std::filesystem::path& folder, const About& about,
+                                        const std::vector<std::string>& streams);
+
+  /// Packs a message with its image and appends it to the stream of this index. `lost`: messages
+  /// between this one and the one before that are missing. Errors: bad_data (it is no message of
+  /// this stream, or its size is wrong), unavailable (see StreamFiles::append()).
+  template <class T>
+  Result<void> append(std::size_t stream, const T& message, std::uint64_t sequence,
+                      std::uint64_t lost);
+
+  /// Writes summary.json: why the recording ended, and the totals. `lost_at_end`: per stream,
+  /// messages behind the last one that are missing. Errors: unavailable.
+  Result<void> finish(const std::string& reason, const std::vector<std::uint64_t>& lost_at_end);
+
+  /// One stream so far.
+  struct Total {
+    std::string stream;
+    std::uint64_t messages = 0, lost = 0, bytes = 0;
+  };
+  std::vector<Total> totals() const;
+
+ private:
+  struct Stream {
+    std::string name;
+    const MessageType* type;
+    StreamFiles files;
+    std::uint64_t lost = 0;
+  };
+  RecordingWriter(std::filesystem::path folder, std::vector<Stream> streams)
+      : folder_(std::move(folder)), streams_(std::move(streams)) {}
+  /// Stores head_ and an image.
+  Result<void> store(Stream& stream, IndexRow row, std::span<const std::uint8_t> pixels);
+
+  std::filesystem::path folder_;
+  std::vector<Stream> streams_;
+  ImagePacker packer_;
+  Bytes head_;    ///< the message without its image
+  Bytes stored_;  ///< the message as it is stored
+};
+
+}  // namespace handcast::recording
