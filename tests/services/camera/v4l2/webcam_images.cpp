@@ -51,19 +51,22 @@ std::int64_t EmulatedWebcam::Kernel::exposure_ns() {
 /// Takes images at the camera's rate from the start of the stream on.
 void EmulatedWebcam::Kernel::film() {
   std::unique_lock lock(mutex_);
+  int stream = 0;  // one that was stopped and started again is another one
+  const auto films = [&] { return streams_ && streams_begun_ == stream && !is_ending_; };
   const auto sleep_until = [&](std::int64_t time_ns) {
     changed_.wait_until(lock,
                         std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time_ns)),
-                        [&] { return !streams_ || is_ending_; });
+                        [&] { return !films(); });
   };
   while (!is_ending_) {
     changed_.wait(lock, [&] { return streams_ || is_ending_; });
+    stream = streams_begun_;
     const std::int64_t start_ns = (now_ns() / 1000 + 1000) * 1000;
-    for (std::int64_t number = 0; streams_ && !is_ending_; ++number) {
+    for (std::int64_t number = 0; films(); ++number) {
       const std::int64_t exposed_ns = start_ns + number * (1'000'000'000 / rate_hz_);
       const std::int64_t arrived_ns = exposed_ns + exposure_ns() + description_.transfer_ns;
       sleep_until(arrived_ns);
-      if (streams_ && !faults_.is_silent) send(exposed_ns, arrived_ns);
+      if (films() && !faults_.is_silent) send(exposed_ns, arrived_ns);
     }
   }
 }

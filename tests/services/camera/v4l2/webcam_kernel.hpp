@@ -97,6 +97,7 @@ class EmulatedWebcam::Kernel final : public EmulatedDevice {
   std::set<int> gone_;  ///< files of a camera that was unplugged
   int owner_ = -1;      ///< the file that has the buffers
   bool streams_ = false;
+  int streams_begun_ = 0;
   std::vector<Buffer> buffers_;
   std::deque<std::uint32_t> queued_, done_;
   std::uint32_t sequence_ = 0;

@@ -105,6 +105,7 @@ int EmulatedWebcam::Kernel::start(int fd, int type) {
   if (type != V4L2_BUF_TYPE_VIDEO_CAPTURE || buffers_.empty()) return refuse();
   if (is_of_another(fd)) return -EBUSY;
   if (faults_.stream_fails != 0) return -faults_.stream_fails;
+  if (!streams_) ++streams_begun_;
   streams_ = true;
   sequence_ = 0;
   changed_.notify_all();
