@@ -15,7 +15,7 @@ namespace {
 using msg::Joint;
 
 /// Two samples closer than this give a velocity that is mostly noise.
-constexpr std::int64_t kShortestBase_ns = 2'000'000;
+constexpr std::int64_t kShortestBase_ns = 6'000'000;
 /// Window over which the speed and the mean of a joint are taken.
 constexpr std::int64_t kStillWindow_ns = 50'000'000;
 /// A rotation counts as the movement of skin at this distance from the joint.

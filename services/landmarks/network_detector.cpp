@@ -15,12 +15,18 @@ namespace {
 /// A landmark model on the camera's images.
 class NetworkDetector final : public Detector {
  public:
-  /// `converts`: moves the model's points to the tracker's joints.
-  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool converts)
-      : finder_(std::move(finder)), camera_(camera), converts_(converts) {}
+  /// `converts`: moves the model's points to the tracker's joints. `has_tracker`: false if the
+  /// poses of the rig are made from these landmarks; they are no hints then.
+  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool converts,
+                  bool has_tracker)
+      : finder_(std::move(finder)),
+        camera_(camera),
+        converts_(converts),
+        has_tracker_(has_tracker) {}
 
-  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints,
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& told,
                                 Deadline) override {
+    const Hints hints = has_tracker_ ? told : Hints{};
     if (static_cast<int>(frame.width_px) != camera_.width_px ||
         static_cast<int>(frame.height_px) != camera_.height_px)
       return fail(
@@ -72,7 +78,7 @@ class NetworkDetector final : public Detector {
 
   HandFinder finder_;
   calib::CameraModel camera_;
-  bool converts_;
+  bool converts_, has_tracker_;
   std::array<JointConventionOffsets, msg::kMaxHands> offsets_;
 };
 
@@ -89,8 +95,12 @@ Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
   if (!model) return fail_in(fmt::format("landmarks '{}'", settings.backend), model.error());
   const bool converts = settings.definition == config::LandmarkDefinition::tracker &&
                         !model->landmarks->traits().finds_tracker_joints;
-  return std::make_unique<NetworkDetector>(HandFinder(std::move(*model), settings.hands),
-                                           calibration.camera, converts);
+  const bool has_tracker = rig.pose.backend != "none";
+  HandFinder finder(
+      std::move(*model), settings.hands,
+      has_tracker ? HandFinder::WithoutPalms::not_at_all : HandFinder::WithoutPalms::by_brightness);
+  return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, converts,
+                                           has_tracker);
 }
 
 }  // namespace handcast::landmarks

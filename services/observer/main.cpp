@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using service::must;
 
 static bool has_truth(const config::Rig& rig) {
-  return rig.camera.backend == "twin" && rig.pose.backend == "twin";
+  return rig.camera.backend == "twin" && (rig.pose.backend == "twin" || rig.pose.backend == "none");
 }
 
 /// Writes observer.json to the folder for kept files. Without one the scores are only logged.
@@ -48,7 +48,7 @@ static void run_observer(service::Context& context) {
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
   if (!has_truth(context.rig()))
     log::warning(
-        "nothing is scored: camera and tracker are not those of the twin, so there is no true hand "
+        "nothing is scored: camera or tracker are not those of the twin, so there is no true hand "
         "to compare with");
 
   observer::LiveScore scores;

@@ -10,6 +10,8 @@ Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig&, const calib::C
                                               const std::int64_t& epoch_ns);
 Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig&, const calib::Calibration&,
                                                 const std::int64_t& epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_none(const config::Rig&, const calib::Calibration&,
+                                              const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
     PoseBackend{.name = "twin",
@@ -20,6 +22,10 @@ static constexpr std::array kBackends{
                 .sentence = "Plays a recording of hand poses.",
                 .open = open_replay,
                 .reads = {"pose.replay"}},
+    PoseBackend{.name = "none",
+                .sentence = "No tracker: lifts the landmarks of the camera image to poses.",
+                .open = open_none,
+                .reads = {"pose.none", "hand"}},
 };
 
 std::span<const PoseBackend> pose_backends() { return kBackends; }

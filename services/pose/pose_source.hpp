@@ -9,11 +9,12 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
 #include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::pose {
 
-/// A hand tracker. One thread.
+/// A hand tracker, or what stands in for it. One thread.
 class PoseSource {
  public:
   virtual ~PoseSource() = default;
@@ -22,6 +23,11 @@ class PoseSource {
   /// deadline. Frame ids and origins increase from call to call. Errors: timeout, bad_data (this
   /// sample is lost), disconnected.
   virtual Result<void> sample(msg::HandPoses& poses, Deadline deadline) = 0;
+
+  /// True if the samples are made from landmarks: those that were passed to see() before.
+  virtual bool needs_landmarks() const { return false; }
+  /// Receives the landmarks of the newest image. Ignored if needs_landmarks() is false.
+  virtual void see(const msg::Landmarks&) {}
 };
 
 /// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,

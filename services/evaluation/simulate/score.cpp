@@ -173,7 +173,7 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
 
   DetectorTally tally(twin, calibration.camera);
   auto feed = make_twin_feed(twin, std::move(parts->detector),
-                             from(seconds_to_ns(options.warm_up_s), tally));
+                             from(seconds_to_ns(options.warm_up_s), tally), parts->lifter);
   RecordingFeed* recording = nullptr;
   if (!options.record_directory.empty()) {
     auto recorder = std::make_unique<RecordingFeed>(std::move(feed), calibration.camera,

@@ -13,6 +13,7 @@
 #include "services/evaluation/simulate/exposure.hpp"
 #include "services/evaluation/simulate/frame_detector.hpp"
 #include "services/evaluation/twin/twin.hpp"
+#include "services/pose/lift/lifter.hpp"
 
 namespace handcast::simulate {
 
@@ -39,10 +40,12 @@ class SensorFeed {
 using OnDetection = std::function<void(const Exposure&, const Detection&)>;
 
 /// Makes the feed of the twin's tracker and camera and a detector that runs back to back. `twin`
-/// must outlive it.
+/// must outlive it. `lifter`: a rig without a tracker (pose.backend "none"), whose poses are lifted
+/// from the landmarks and arrive 0.2 ms after them.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin,
                                            std::unique_ptr<FrameDetector> detector,
-                                           OnDetection on_detection = {});
+                                           OnDetection on_detection = {},
+                                           const std::optional<pose::Lifter>& lifter = {});
 /// The same with the twin's model of a detector.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin);
 

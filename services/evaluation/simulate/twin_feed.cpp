@@ -7,17 +7,23 @@
 namespace handcast::simulate {
 namespace {
 
+/// From the landmarks to their poses in the projector: the lift, and a second ring.
+constexpr std::int64_t kLift_ns = 200'000;
+
 class TwinFeed : public SensorFeed {
  public:
   TwinFeed(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector,
-           OnDetection on_detection)
-      : twin_(twin), detector_(twin, std::move(detector), std::move(on_detection)) {}
+           OnDetection on_detection, const std::optional<pose::Lifter>& lifter)
+      : twin_(twin),
+        detector_(twin, std::move(detector), std::move(on_detection)),
+        lifter_(lifter) {}
 
   std::vector<SensorEvent> until(std::int64_t now_ns) override {
     std::vector<SensorEvent> events;
-    take_tracker_samples(now_ns, events);
+    if (!lifter_) take_tracker_samples(now_ns, events);
     std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
     detector_.until(now_ns, events);
+    if (lifter_) lift(now_ns, events);
     std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
     return events;
   }
@@ -45,8 +51,22 @@ class TwinFeed : public SensorFeed {
     });
   }
 
+  /// Adds the poses of the landmarks that have been lifted by `now_ns`.
+  void lift(std::int64_t now_ns, std::vector<SensorEvent>& events) {
+    for (const auto& event : events)
+      if (const auto* landmarks = std::get_if<msg::Landmarks>(&event.message))
+        lifted_.push_back({event.arrival_ns + kLift_ns, lifter_->lift(*landmarks)});
+    std::erase_if(lifted_, [&](const SensorEvent& event) {
+      if (event.arrival_ns > now_ns) return false;
+      events.push_back(event);
+      return true;
+    });
+  }
+
   const twin::Twin& twin_;
   BackToBack detector_;
+  std::optional<pose::Lifter> lifter_;
+  std::vector<SensorEvent> lifted_;  ///< arrive after the last call
   std::vector<twin::Twin::TrackerSample> pending_;
   std::uint64_t next_sample_ = 0;
   std::uint64_t next_frame_ = 0;
@@ -56,8 +76,9 @@ class TwinFeed : public SensorFeed {
 
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin,
                                            std::unique_ptr<FrameDetector> detector,
-                                           OnDetection on_detection) {
-  return std::make_unique<TwinFeed>(twin, std::move(detector), std::move(on_detection));
+                                           OnDetection on_detection,
+                                           const std::optional<pose::Lifter>& lifter) {
+  return std::make_unique<TwinFeed>(twin, std::move(detector), std::move(on_detection), lifter);
 }
 
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin) {

@@ -19,7 +19,12 @@ Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibra
   if (!pipeline) return tl::make_unexpected(pipeline.error());
   auto detector = open_frame_detector(rig, calibration, **twin);
   if (!detector) return tl::make_unexpected(detector.error());
-  return VirtualRig{std::move(*twin), std::move(*pipeline), std::move(*detector)};
+  VirtualRig parts{std::move(*twin), std::move(*pipeline), std::move(*detector), std::nullopt};
+  if (rig.pose.backend != "none") return parts;
+  auto lifter = pose::Lifter::open(rig, calibration);
+  if (!lifter) return tl::make_unexpected(lifter.error());
+  parts.lifter = *lifter;
+  return parts;
 }
 
 Result<void> run_ticks(const Options& options, Simulation& simulation,
@@ -45,7 +50,7 @@ Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig,
   rig.twin = without_faults(rig.twin);
   auto parts = open_virtual_rig(rig, calibration);
   if (!parts) return tl::make_unexpected(parts.error());
-  const auto feed = make_twin_feed(*parts->twin, std::move(parts->detector));
+  const auto feed = make_twin_feed(*parts->twin, std::move(parts->detector), {}, parts->lifter);
   Simulation simulation(rig, calibration, *parts->pipeline, *feed, options.draw_every);
   std::vector<LightMoment> moments;
   const auto add = [&](const Tick& tick) -> Result<void> {

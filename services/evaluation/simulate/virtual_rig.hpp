@@ -14,6 +14,7 @@ struct VirtualRig {
   std::unique_ptr<twin::Twin> twin;              ///< must outlive the other two
   std::unique_ptr<renderer::Pipeline> pipeline;  ///< the cascade
   std::unique_ptr<FrameDetector> detector;       ///< must be moved into the feed
+  std::optional<pose::Lifter> lifter;            ///< the same; empty if the rig has a tracker
 };
 /// Opens the parts for a rig. Errors: those of Twin::create, Pipeline::create and
 /// open_frame_detector.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <optional>
 
 #include "ipc/msg/hand_poses.hpp"
 #include "services/landmarks/finder/confidence.hpp"
@@ -15,7 +16,9 @@ struct FoundHand {
   Region region;                                  ///< the part of the image they were estimated in
   std::array<float, msg::kLandmarks> sigma_px{};  ///< standard deviation per axis; 0: not known
   Confidences confidences{};                      ///< of the points, 0..1
-  float left_score = 0.5f;  ///< 0..1: how likely it is a left hand; averaged over images
+  std::optional<Points> before_px;  ///< its points in the last image; empty if not known
+  float left_score = 0.5f;          ///< 0..1: how likely it is a left hand; averaged over images
+  int comparisons = 0;              ///< how often its sides were compared for left_score
 };
 
 }  // namespace handcast::landmarks

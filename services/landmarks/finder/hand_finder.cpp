@@ -14,7 +14,11 @@ constexpr float kLeastRegion_px = 1;
 constexpr int kSearchEvery = 4, kSearchForMoreEvery = 60;  ///< images
 constexpr float kLeftScoreShare = 0.1f;                    ///< of a new image in the running mean
 constexpr float kSureOfSide = 0.25f;                       ///< distance of a left score from 0.5
-constexpr int kCompareSidesEvery = 8;  ///< images, with a model that does not score sides
+constexpr float kLeastDirection = 0.15f;  ///< confidence of a hand in a region that was guessed
+constexpr int kCompareSidesEvery = 8;     ///< images, with a model that does not score sides
+// Without a tracker, by time: the back of a left hand looks like the palm of a right one for a
+// while.
+constexpr std::int64_t kCompareSidesEvery_ns = 25'000'000, kSideMemory_ns = 1'500'000'000;
 
 msg::Side other(msg::Side side) {
   return side == msg::Side::left ? msg::Side::right : msg::Side::left;
@@ -42,15 +46,17 @@ float sigma_of(const FoundHand& hand) { return sum_of(hand.sigma_px) / hand.regi
 Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, const Hints& hints_px,
                                                     std::int64_t time_ns) {
   times_ = {};
+  image_ns_ = time_ns;
   const std::int64_t begin_ns = now_ns();
   found_.clear();
-  if (model_.palms || any(hints_px)) tracks_.drop_old(time_ns);
+  if (model_.palms || by_brightness_ || any(hints_px)) tracks_.drop_old(time_ns);
   const bool scores_sides = model_.landmarks->traits().scores_sides;
   for (auto& candidate : tracks_.candidates(hints_px, *model_.landmarks)) {
     if (has_most()) break;
     if (is_found(candidate.side)) candidate.side = other(candidate.side);
-    const bool either =
-        !candidate.hint_px && !candidate.is_followed && !scores_sides && found_.empty();
+    const bool is_known = by_brightness_ && candidate.left_score >= 0;
+    const bool either = !candidate.hint_px && !candidate.is_followed && !scores_sides &&
+                        found_.empty() && !is_known;
     const auto examined =
         either ? examine_either_side(image, candidate.region) : examine(image, candidate);
     if (!examined) return tl::make_unexpected(examined.error());
@@ -84,11 +90,10 @@ Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& 
   const Confidences confidences = confidences_of(*hand, region, candidate.hint_px);
   if (mean_of(confidences) < kLeastConfidence) return {};
   found_.push_back({candidate.side, hand->presence, hand->points_px, region, hand->sigma_px,
-                    confidences, hand->left_score});
-  const float before = candidate.left_score < 0 ? hand->left_score : candidate.left_score;
-  const auto now = left_score_of(image, candidate, found_.back());
-  if (!now) return tl::make_unexpected(now.error());
-  found_.back().left_score = before + kLeftScoreShare * (*now - before);
+                    confidences, candidate.before_px, hand->left_score, candidate.comparisons});
+  const auto left_score = left_score_of(image, candidate, found_.back());
+  if (!left_score) return tl::make_unexpected(left_score.error());
+  found_.back().left_score = *left_score;
   return {};
 }
 
@@ -119,28 +124,48 @@ Result<LandmarkEstimate> HandFinder::run_model(renderer::GreyView image, const R
   return estimate;
 }
 
-/// The left score of a hand in this image. A model that does not score sides is run on the mirrored
-/// hand, too, every few images: the smaller sigma decides.
+/// The mean left score of a hand, with this image. A model that does not score sides is run on the
+/// mirrored hand, too, in some of the images: the smaller sigma decides.
 Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCandidate& candidate,
-                                        const FoundHand& hand) {
+                                        FoundHand& hand) {
+  const float before = candidate.left_score < 0 ? hand.left_score : candidate.left_score;
+  if (by_brightness_ && !candidate.is_followed) return before;
   if (!candidate.is_followed || candidate.hint_px || model_.landmarks->traits().scores_sides)
-    return hand.left_score;
-  if (++since_side_ < kCompareSidesEvery) return candidate.left_score;
-  since_side_ = 0;
+    return before + kLeftScoreShare * (hand.left_score - before);
+  const float share = share_of_comparison(hand);
+  if (share == 0) return before;
   const auto mirrored = run_model(image, hand.region, other(hand.side), std::nullopt);
   if (!mirrored) return tl::make_unexpected(mirrored.error());
   const bool is_right_side = sum_of(hand.sigma_px) <= sum_of(mirrored->sigma_px);
-  return is_right_side == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
+  const float now = is_right_side == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
+  return before + share * (now - before);
 }
 
-/// Two candidates may have the same hand as their result. Keeps the one that is nearer to its hint
-/// or, without hints, has the larger presence.
+/// The weight of a comparison of sides in the mean; 0 if none is due. The first comparisons have
+/// equal weights, the start of the mean that of two.
+float HandFinder::share_of_comparison(FoundHand& hand) {
+  if (!by_brightness_) return ++since_side_ % kCompareSidesEvery == 0 ? kLeftScoreShare : 0.0f;
+  std::int64_t& compared_ns = compared_ns_[index_of(hand.side)];
+  const std::int64_t since_ns = image_ns_ - compared_ns;
+  if (since_ns < kCompareSidesEvery_ns) return 0;
+  compared_ns = image_ns_;
+  const float by_time = static_cast<float>(since_ns) / static_cast<float>(kSideMemory_ns);
+  return std::max(1 / static_cast<float>(3 + hand.comparisons++),
+                  std::min(by_time, kLeftScoreShare));
+}
+
+/// Two candidates may have the same hand as their result, for example while hands cross. Keeps the
+/// one that is nearer to its hint or, without hints, the one that has moved less since the last
+/// image or, if that is not known, has the larger presence.
 void HandFinder::drop_duplicate(const Hints& hints_px) {
   if (found_.size() < 2) return;
   if (!are_one_hand(found_[0].points_px, found_[1].points_px)) return;
   const auto& first = hints_px[index_of(found_[0].side)];
   const auto& second = hints_px[index_of(found_[1].side)];
   bool keep_first = found_[0].presence >= found_[1].presence;
+  if (found_[0].before_px && found_[1].before_px)
+    keep_first = distance_px(*found_[0].before_px, found_[0].points_px) <=
+                 distance_px(*found_[1].before_px, found_[1].points_px);
   if (is_usable(first) != is_usable(second)) keep_first = is_usable(first);
   if (is_usable(first) && is_usable(second))
     keep_first =
@@ -152,17 +177,14 @@ void HandFinder::drop_duplicate(const Hints& hints_px) {
 /// one rarely, and only without a tracker, because the tracker would report it.
 bool HandFinder::search_is_due(const Hints& hints_px) {
   ++since_search_;
-  if (!model_.palms) return false;
+  if (!model_.palms && !by_brightness_) return false;
   if (found_.empty()) return since_search_ >= kSearchEvery;
   return !any(hints_px) && !has_most() && since_search_ >= kSearchForMoreEvery;
 }
 
 Result<void> HandFinder::search(renderer::GreyView image) {
   since_search_ = 0;
-  ++times_.palm_runs;
-  const std::int64_t begin_ns = now_ns();
-  const auto regions = model_.palms->search(image);
-  times_.palm_ns = now_ns() - begin_ns;
+  const auto regions = regions_to_search(image);
   if (!regions) return tl::make_unexpected(regions.error());
   for (const auto& region : *regions) {
     if (has_most()) break;
@@ -174,6 +196,52 @@ Result<void> HandFinder::search(renderer::GreyView image) {
       found_[1].side = other(found_[0].side);
   }
   return {};
+}
+
+Result<std::vector<Region>> HandFinder::regions_to_search(renderer::GreyView image) {
+  if (!model_.palms) return search_bright(image);
+  ++times_.palm_runs;
+  const std::int64_t begin_ns = now_ns();
+  auto regions = model_.palms->search(image);
+  times_.palm_ns = now_ns() - begin_ns;
+  return regions;
+}
+
+/// The regions of the bright parts that the model takes for hands.
+Result<std::vector<Region>> HandFinder::search_bright(renderer::GreyView image) {
+  const std::int64_t begin_ns = now_ns();
+  std::vector<Points> known;
+  for (const auto& hand : found_) known.push_back(hand.points_px);
+  const auto bright = bright_hands_.search(image, known);
+  times_.palm_ns = now_ns() - begin_ns;
+  std::vector<Region> regions;
+  for (const BrightHand& hand : bright) {
+    const auto region = best_direction(image, hand);
+    if (!region) return tl::make_unexpected(region.error());
+    if (*region) regions.push_back(**region);
+  }
+  return regions;
+}
+
+/// The region around the landmarks in the direction in which the model is the surest of them, of
+/// one side or the other. Empty if it sees no hand in any direction.
+Result<std::optional<Region>> HandFinder::best_direction(renderer::GreyView image,
+                                                         const BrightHand& bright) {
+  std::optional<Region> best;
+  float most = kLeastDirection;
+  for (const Region& region : bright.regions) {
+    for (const auto side : {msg::Side::left, msg::Side::right}) {
+      const auto seen = run_model(image, region, side, std::nullopt);
+      if (!seen) return tl::make_unexpected(seen.error());
+      if (seen->presence < kLeastPresence || !is_finite(seen->points_px)) continue;
+      const float confidence = mean_of(confidences_of(*seen, region, std::nullopt));
+      if (confidence <= most) continue;
+      most = confidence;
+      best = model_.landmarks->region_around(seen->points_px);
+    }
+    if (most >= kSteadyConfidence) break;
+  }
+  return best;
 }
 
 /// Examines a region that may hold a left or a right hand. The model's score decides; if it has
@@ -196,7 +264,8 @@ Result<void> HandFinder::examine_either_side(renderer::GreyView image, const Reg
 }
 
 /// Changes the side of a hand that the tracker does not have, if its mean left score clearly
-/// contradicts it and there is no other hand of the new side.
+/// contradicts it and there is no other hand of the new side. Exchanges the sides of two hands
+/// that both contradict theirs.
 void HandFinder::settle_sides(const Hints& hints_px) {
   for (auto& hand : found_) {
     if (is_usable(hints_px[index_of(hand.side)])) continue;
@@ -207,6 +276,11 @@ void HandFinder::settle_sides(const Hints& hints_px) {
       continue;
     if (found_.size() == 1) hand.side = likely;
   }
+  if (found_.size() < 2 || any(hints_px)) return;
+  const float first = found_[0].left_score, second = found_[1].left_score;
+  const bool exchanged = found_[0].side == msg::Side::left ? second - first > 2 * kSureOfSide
+                                                           : first - second > 2 * kSureOfSide;
+  if (exchanged) std::swap(found_[0].side, found_[1].side);
 }
 
 }  // namespace handcast::landmarks

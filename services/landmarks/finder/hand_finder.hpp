@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "services/landmarks/finder/bright_hands.hpp"
 #include "services/landmarks/finder/hand_tracks.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 
@@ -11,8 +12,9 @@ namespace handcast::landmarks {
 
 /// Finds the hands in a sequence of images. It examines the place of a hand in the last image,
 /// moved on with the tracker; otherwise the place that the tracker reports; otherwise, every few
-/// images, the places that the palm network finds. Without a palm network, it examines the last
-/// place of a hand. One thread, no allocation while hands are followed.
+/// images, the places that the palm network finds or, without one, the bright parts of the image.
+/// If neither is searched, it examines the last place of a hand. One thread, no allocation while
+/// hands are followed.
 class HandFinder {
  public:
   /// A hand with a smaller presence, or a smaller mean confidence, is not reported.
@@ -20,9 +22,18 @@ class HandFinder {
   static constexpr float kLeastPresence = 0.5f, kLeastConfidence = 0.3f;
   /// @}
 
+  /// How to find hands that neither the tracker nor the last image shows, without a palm network.
+  enum class WithoutPalms {
+    not_at_all,
+    by_brightness,  ///< BrightHands: for rigs without a tracker
+  };
+
   /// `most_hands`: 1 or 2.
-  HandFinder(OpenedModel model, int most_hands)
-      : model_(std::move(model)), most_hands_(most_hands) {}
+  HandFinder(OpenedModel model, int most_hands,
+             WithoutPalms without_palms = WithoutPalms::not_at_all)
+      : model_(std::move(model)),
+        most_hands_(most_hands),
+        by_brightness_(!model_.palms && without_palms == WithoutPalms::by_brightness) {}
 
   /// The hands in the image, valid until the next call. The side of a hand is the tracker's if the
   /// tracker has a hand there, otherwise the model's. Images must come in the order of their times.
@@ -37,7 +48,7 @@ class HandFinder {
   struct Times {
     std::int64_t crop_ns = 0;     ///< EstimateTimes::crop_ns of all estimates
     std::int64_t network_ns = 0;  ///< EstimateTimes::network_ns of all estimates
-    std::int64_t palm_ns = 0;     ///< the palm network with its crop
+    std::int64_t palm_ns = 0;     ///< the palm network with its crop, or the bright parts
     std::int64_t all_ns = 0;      ///< the whole call
     int model_runs = 0;           ///< runs of the landmark network
     int palm_runs = 0;            ///< runs of the palm network
@@ -55,9 +66,13 @@ class HandFinder {
   Result<LandmarkEstimate> run_model(renderer::GreyView image, const Region& region, msg::Side side,
                                      const std::optional<Points>& hint_px);
   Result<float> left_score_of(renderer::GreyView image, const HandCandidate& candidate,
-                              const FoundHand& hand);
+                              FoundHand& hand);
+  float share_of_comparison(FoundHand& hand);
   bool search_is_due(const Hints& hints_px);
   Result<void> search(renderer::GreyView image);
+  Result<std::vector<Region>> regions_to_search(renderer::GreyView image);
+  Result<std::vector<Region>> search_bright(renderer::GreyView image);
+  Result<std::optional<Region>> best_direction(renderer::GreyView image, const BrightHand& bright);
   void drop_duplicate(const Hints& hints_px);
   void settle_sides(const Hints& hints_px);
 
@@ -65,9 +80,13 @@ class HandFinder {
 
   OpenedModel model_;
   int most_hands_;
+  bool by_brightness_;
+  BrightHands bright_hands_;
   HandTracks tracks_;
   std::vector<FoundHand> found_;
   int since_search_ = kLongAgo, since_side_ = 0;  ///< images
+  std::int64_t image_ns_ = 0;
+  std::array<std::int64_t, msg::kMaxHands> compared_ns_{};  ///< when sides were compared, by side
   Times times_;
 };
 

@@ -51,8 +51,13 @@ HandCandidate HandTracks::followed(const Track& track, msg::Side side, const Poi
   const glm::vec2 step_px =
       track.hint_px ? centre_of(hint_px) - centre_of(*track.hint_px) : glm::vec2(0);
   const Points around_px = shifted(track.around_px, step_px);
-  return {side, model.region_around(around_px), if_near(hint_px, around_px, model), true,
-          track.left_score};
+  return {side,
+          model.region_around(around_px),
+          if_near(hint_px, around_px, model),
+          true,
+          track.left_score,
+          std::nullopt,
+          track.comparisons};
 }
 
 std::span<HandCandidate> HandTracks::candidates(const Hints& hints_px, const LandmarkModel& model) {
@@ -71,7 +76,8 @@ std::span<HandCandidate> HandTracks::candidates(const Hints& hints_px, const Lan
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     if (!has_hint[i])
       candidates_.push_back({tracks_[i].side, model.region_around(tracks_[i].points_px),
-                             std::nullopt, tracks_[i].steady, tracks_[i].left_score});
+                             std::nullopt, tracks_[i].steady, tracks_[i].left_score,
+                             tracks_[i].points_px, tracks_[i].comparisons});
   std::stable_partition(candidates_.begin(), candidates_.end(), [](const HandCandidate& candidate) {
     return candidate.is_followed && candidate.hint_px;
   });
@@ -89,8 +95,8 @@ void HandTracks::remember(std::span<const FoundHand> found, const Hints& hints_p
   for (const auto& hand : found) {
     const auto hint_px = if_near(hints_px[index_of(hand.side)], hand.points_px, model);
     const bool steady = mean_of(hand.confidences) >= kSteadyConfidence;
-    Track track{hand.side,       hand.points_px, hand.points_px, hint_px,
-                hand.left_score, time_ns,        steady};
+    Track track{hand.side,       hand.points_px, hand.points_px,   hint_px,
+                hand.left_score, time_ns,        hand.comparisons, steady};
     if (hint_px) {
       for (std::size_t k = 0; k < track.around_px.size(); ++k)
         if (hand.confidences[k] < kSureConfidence) track.around_px[k] = (*hint_px)[k];

@@ -21,6 +21,8 @@ struct HandCandidate {
   std::optional<Points> hint_px;  ///< the tracker's joints of this hand
   bool is_followed = false;       ///< the last image had the hand with kSteadyConfidence
   float left_score = -1;          ///< FoundHand::left_score in the last image; negative: not known
+  std::optional<Points> before_px{};  ///< its points in the last image that had it
+  int comparisons = 0;                ///< FoundHand::comparisons
 };
 
 /// True if the tracker has the hand, at finite coordinates.
@@ -54,6 +56,7 @@ class HandTracks {
     std::optional<Points> hint_px;  ///< the tracker's joints at that time
     float left_score;
     std::int64_t found_ns;
+    int comparisons;
     bool steady;  ///< found in the last image with kSteadyConfidence
   };
 

@@ -12,7 +12,7 @@
 namespace handcast::landmarks {
 
 static constexpr config::SettingList kAlways{"landmarks.executor", "landmarks.models",
-                                             "landmarks.hands"};
+                                             "landmarks.hands", "pose.backend"};
 
 static constexpr std::array kModels{
     LandmarkModelRow{.name = "handcast",

@@ -93,7 +93,7 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
   expect_reads("camera", rig, truth_and({"camera", "twin.image"}),
                settings_in({"camera.replay", "camera.process.standby"}));
   expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
-               settings_in({"pose.replay", "pose.process.standby"}));
+               settings_in({"pose.replay", "pose.none", "pose.process.standby"}));
   expect_reads(
       "landmarks", rig,
       truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
@@ -103,18 +103,18 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
 }
 
 TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
-  expect_reads("landmarks", networks(), {"landmarks"},
+  expect_reads("landmarks", networks(), {"landmarks", "pose.backend"},
                settings_in({"landmarks.replay", "landmarks.process.standby"}));
   config::Rig handcast;
   handcast.landmarks.backend = "handcast";
   expect_reads(
-      "landmarks", handcast, {"landmarks"},
+      "landmarks", handcast, {"landmarks", "pose.backend"},
       settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
   expect_reads("camera", replay(), {"camera"}, {"camera.process.standby"});
-  expect_reads("pose", replay(), {"pose"}, {"pose.process.standby"});
+  expect_reads("pose", replay(), {"pose"}, settings_in({"pose.none", "pose.process.standby"}));
   expect_reads("landmarks", replay(), {"landmarks"},
                settings_in({"landmarks.executor", "landmarks.models", "landmarks.hands",
                             "landmarks.definition", "landmarks.process.standby"}));

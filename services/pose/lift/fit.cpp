@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/lift/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/pose/lift/normal_equations.hpp"
+
+namespace handcast::pose {
+namespace {
+
+using Equations = NormalEquations<kUnknowns>;
+
+/// What is usual and possible in one angle, in rad.
+struct Range {
+  double usual, sd, low, high;
+};
+using FingerRanges = std::array<Range, kAngles>;
+constexpr FingerRanges kThumb{
+    {{0, 0.35, -0.9, 0.9}, {0, 0.35, -0.8, 0.9}, {0.1, 0.4, -0.4, 1.1}, {0.2, 0.6, -0.5, 1.5}}};
+constexpr FingerRanges kFinger{
+    {{0, 0.15, -0.45, 0.45}, {0.2, 0.8, -0.5, 1.6}, {0.3, 0.9, -0.15, 1.9}, {0.2, 0.7, -0.2, 1.4}}};
+constexpr double kLimitSd = 0.05;  ///< how hard the limits are, rad
+/// The last joint of a finger follows the middle one.
+constexpr double kFollows = 0.6, kFollowsSd = 0.25;
+constexpr double kHuber = 3;  ///< beyond so many standard deviations, residuals count linearly
+constexpr double kUsualSizeSd = 0.25;
+constexpr double kNearest_m = 0.05;
+
+constexpr int column_of(int finger, int angle) { return kFirstAngle + finger * kAngles + angle; }
+
+/// One evaluation of the problem at a posture.
+struct Problem {
+  const Skeleton& skeleton;
+  const calib::CameraModel& camera;
+  double distance_m;
+  const SeenHand& seen;
+  const Prior& prior;
+
+  /// The cost of a posture; adds to `equations` if it is given.
+  double at(const Posture& posture, Equations* equations) const {
+    const PosedHand hand = skeleton.posed(posture, distance_m);
+    double cost = 0;
+    for (int i = 0; i < msg::kLandmarks; ++i)
+      if (seen.sigma_px[i] > 0) cost += landmark(hand, i, equations);
+    return cost + known(posture, equations) + anatomy(posture, equations);
+  }
+
+ private:
+  static double square(int column, double r, double sd, Equations* equations) {
+    const double weight = 1 / (sd * sd);
+    if (equations) equations->add(column, r, weight);
+    return 0.5 * weight * r * r;
+  }
+
+  double landmark(const PosedHand& hand, int i, Equations* equations) const {
+    const int joint = msg::kJointOfLandmark[i];
+    const glm::dvec3 at_m = hand.place_m[joint];
+    const double depth_m = std::max(at_m.z, kNearest_m);
+    const glm::dvec2 focal_px(camera.fx_px, camera.fy_px);
+    const glm::dvec2 miss_px =
+        focal_px * glm::dvec2(at_m) / depth_m + glm::dvec2(camera.cx_px, camera.cy_px) - seen.px[i];
+    const double sigmas = glm::length(miss_px) / seen.sigma_px[i];
+    const double trust = std::min(1.0, kHuber / std::max(sigmas, 1e-9));
+    if (equations)
+      derive(hand, i, miss_px, trust / (seen.sigma_px[i] * seen.sigma_px[i]), *equations);
+    return sigmas < kHuber ? 0.5 * sigmas * sigmas : kHuber * (sigmas - 0.5 * kHuber);
+  }
+
+  void derive(const PosedHand& hand, int i, glm::dvec2 miss_px, double weight,
+              Equations& equations) const {
+    const int joint = msg::kJointOfLandmark[i];
+    const glm::dvec3 at_m = hand.place_m[joint], arm_m = at_m - hand.place_m[kPalm];
+    std::array<glm::dvec3, kFirstAngle + kAngles> moves{glm::dvec3(0, -arm_m.z, arm_m.y),
+                                                        glm::dvec3(arm_m.z, 0, -arm_m.x),
+                                                        glm::dvec3(-arm_m.y, arm_m.x, 0),
+                                                        glm::dvec3(1, 0, 0),
+                                                        glm::dvec3(0, 1, 0),
+                                                        arm_m};
+    std::array<int, kFirstAngle + kAngles> columns{0, 1, 2, 3, 4, 5};
+    int count = kFirstAngle;
+    const int finger = (i - 1) / 4, along = i == 0 ? 0 : (i - 1) % 4;
+    for (int a = 0; a < kAngles && std::max(0, a - 1) < along; ++a) {
+      const glm::dvec3 pivot_m = hand.place_m[kFirstJoint[finger] + std::max(0, a - 1)];
+      columns[count] = column_of(finger, a);
+      moves[count++] = glm::cross(hand.hinge[finger][a], at_m - pivot_m);
+    }
+    const double depth_m = std::max(at_m.z, kNearest_m);
+    std::array<double, kFirstAngle + kAngles> across, down;
+    for (int c = 0; c < count; ++c) {
+      across[c] = camera.fx_px * (moves[c].x - moves[c].z * at_m.x / depth_m) / depth_m;
+      down[c] = camera.fy_px * (moves[c].y - moves[c].z * at_m.y / depth_m) / depth_m;
+    }
+    equations.add(columns.data(), across.data(), count, miss_px.x, weight);
+    equations.add(columns.data(), down.data(), count, miss_px.y, weight);
+  }
+
+  double known(const Posture& posture, Equations* equations) const {
+    double cost =
+        square(kSizeUnknown, posture.log_size - prior.usual_log_size, kUsualSizeSd, equations);
+    const Unknowns off = difference(prior.mean, posture);
+    for (int i = 0; i < kUnknowns; ++i)
+      if (prior.variance[i] > 0) cost += square(i, off[i], std::sqrt(prior.variance[i]), equations);
+    return cost;
+  }
+
+  static double anatomy(const Posture& posture, Equations* equations) {
+    double cost = 0;
+    for (int f = 0; f < kFingers; ++f) {
+      for (int a = 0; a < kAngles; ++a) {
+        const Range& range = f == 0 ? kThumb[a] : kFinger[a];
+        const double angle = posture.angle[f][a];
+        cost += square(column_of(f, a), angle - range.usual, range.sd, equations);
+        const double beyond = angle - std::clamp(angle, range.low, range.high);
+        if (beyond != 0) cost += square(column_of(f, a), beyond, kLimitSd, equations);
+      }
+      if (f > 0) cost += following(posture.angle[f], column_of(f, 2), equations);
+    }
+    return cost;
+  }
+
+  static double following(const std::array<double, kAngles>& angle, int column,
+                          Equations* equations) {
+    constexpr std::array<double, 2> kDerivative{-kFollows, 1};
+    constexpr double kWeight = 1 / (kFollowsSd * kFollowsSd);
+    const std::array<int, 2> columns{column, column + 1};
+    const double r = angle[3] - kFollows * angle[2];
+    if (equations) equations->add(columns.data(), kDerivative.data(), 2, r, kWeight);
+    return 0.5 * kWeight * r * r;
+  }
+};
+
+/// The step, shortened to what the linearisation is good for.
+Unknowns cautious(Unknowns step) {
+  for (int axis = 0; axis < 3; ++axis) step[axis] = std::clamp(step[axis], -0.8, 0.8);
+  step[kSizeUnknown] = std::clamp(step[kSizeUnknown], -0.3, 0.3);
+  for (int i = kFirstAngle; i < kUnknowns; ++i) step[i] = std::clamp(step[i], -0.6, 0.6);
+  return step;
+}
+
+}  // namespace
+
+Posture moved(Posture posture, const Unknowns& step) {
+  const glm::dvec3 by(step[0], step[1], step[2]);
+  const double angle = glm::length(by);
+  if (angle > 1e-12)
+    posture.turn = glm::normalize(glm::angleAxis(angle, by / angle) * posture.turn);
+  posture.palm_m += glm::dvec2(step[kPlaceUnknown], step[kPlaceUnknown + 1]);
+  posture.log_size += step[kSizeUnknown];
+  for (int f = 0; f < kFingers; ++f)
+    for (int a = 0; a < kAngles; ++a) posture.angle[f][a] += step[column_of(f, a)];
+  return posture;
+}
+
+Unknowns difference(const Posture& from, const Posture& to) {
+  glm::dquat turned = to.turn * glm::conjugate(from.turn);
+  if (turned.w < 0) turned = -turned;
+  const glm::dvec3 axis(turned.x, turned.y, turned.z);
+  const double sine = glm::length(axis);
+  const glm::dvec3 by = sine > 1e-12 ? axis * (2 * std::atan2(sine, turned.w) / sine) : axis;
+  const glm::dvec2 way_m = to.palm_m - from.palm_m;
+  Unknowns step{by.x, by.y, by.z, way_m.x, way_m.y, to.log_size - from.log_size};
+  for (int f = 0; f < kFingers; ++f)
+    for (int a = 0; a < kAngles; ++a) step[column_of(f, a)] = to.angle[f][a] - from.angle[f][a];
+  return step;
+}
+
+Fit fit_posture(const Skeleton& skeleton, const calib::CameraModel& camera, double distance_m,
+                const SeenHand& seen, const Prior& prior, const Posture& start, int steps) {
+  const Problem problem{skeleton, camera, distance_m, seen, prior};
+  Fit fit{start, problem.at(start, nullptr), {}};
+  double damping = 1e-3;
+  for (int i = 0; i < steps; ++i) {
+    Equations equations;
+    problem.at(fit.posture, &equations);
+    const auto step = equations.step(damping);
+    const Posture next = step ? moved(fit.posture, cautious(*step)) : fit.posture;
+    const double cost = problem.at(next, nullptr);
+    if (!step || !(cost < fit.cost)) {
+      damping = std::max(10 * damping, 1e-3);
+      continue;
+    }
+    const bool is_done = fit.cost - cost < 1e-3 * fit.cost;
+    fit.posture = next, fit.cost = cost;
+    damping *= 0.2;
+    if (is_done) break;
+  }
+  Equations equations;
+  problem.at(fit.posture, &equations);
+  fit.variance = equations.variances().value_or(Unknowns{});
+  return fit;
+}
+
+}  // namespace handcast::pose
