@@ -53,8 +53,7 @@ std::string print(const std::vector<Attached>& attached,
       if (static_cast<std::size_t>(device.kind) == kind) devices += print(device);
     text += fmt::format("{}\n{}", kKindNames[kind], devices.empty() ? "  none\n" : devices);
   }
-  for (const auto& spot : blind_spots)
-    text += fmt::format("this build cannot see {}\n", spot);
+  for (const auto& spot : blind_spots) text += fmt::format("this build cannot see {}\n", spot);
   return text;
 }
 

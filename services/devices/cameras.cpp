@@ -16,13 +16,12 @@ std::vector<Attached> industrial_cameras() {
   using namespace camera;
   std::vector<Attached> attached;
   for (const auto& device : aravis::list_devices()) {
-    Attached entry{.kind = Kind::camera,
-                   .name = fmt::format("{} {}, serial number {}", device.vendor, device.model,
-                                       device.serial),
-                   .about = fmt::format("{} at {}", device.protocol, device.address),
-                   .settings = {{"camera.backend", "aravis"},
-                                {"camera.aravis.device", device.serial}},
-                   .trouble = {}};
+    Attached entry{
+        .kind = Kind::camera,
+        .name = fmt::format("{} {}, serial number {}", device.vendor, device.model, device.serial),
+        .about = fmt::format("{} at {}", device.protocol, device.address),
+        .settings = {{"camera.backend", "aravis"}, {"camera.aravis.device", device.serial}},
+        .trouble = {}};
     if (const auto opened = aravis::open_device(device); !opened)
       entry.trouble = opened.error().what;
     attached.push_back(std::move(entry));
@@ -37,13 +36,12 @@ std::vector<Attached> webcams() {
   std::vector<Attached> attached;
   for (const auto& found : camera::v4l2::list_cameras()) {
     const auto& identity = found.identity;
-    attached.push_back({.kind = Kind::camera,
-                        .name = identity.card.empty() ? identity.path
-                                                      : camera::v4l2::describe(identity),
-                        .about = camera::v4l2::describe(found.formats),
-                        .settings = {{"camera.backend", "v4l2"},
-                                     {"camera.v4l2.device", identity.path}},
-                        .trouble = found.trouble});
+    attached.push_back(
+        {.kind = Kind::camera,
+         .name = identity.card.empty() ? identity.path : camera::v4l2::describe(identity),
+         .about = camera::v4l2::describe(found.formats),
+         .settings = {{"camera.backend", "v4l2"}, {"camera.v4l2.device", identity.path}},
+         .trouble = found.trouble});
   }
   return attached;
 }

@@ -27,13 +27,13 @@ std::vector<Attached> monitors() {
   std::vector<Attached> attached;
   for (std::size_t i = 0; i < found->size(); ++i) {
     const auto& monitor = (*found)[i];
-    attached.push_back({.kind = Kind::display,
-                        .name = renderer::describe(monitor, i),
-                        .about = monitor.is_primary ? "the primary one, probably the operator's"
-                                                    : "",
-                        .settings = {{"projector.backend", "window"},
-                                     {"projector.window.monitor", monitor.output}},
-                        .trouble = {}});
+    attached.push_back(
+        {.kind = Kind::display,
+         .name = renderer::describe(monitor, i),
+         .about = monitor.is_primary ? "the primary one, probably the operator's" : "",
+         .settings = {{"projector.backend", "window"},
+                      {"projector.window.monitor", monitor.output}},
+         .trouble = {}});
   }
   return attached;
 }
@@ -45,12 +45,12 @@ std::vector<Attached> monitors() { return {}; }
 namespace {
 
 Attached entry_of(const renderer::kms::Display& display) {
-  return {.kind = Kind::display,
-          .name = fmt::format("{} of {}", describe(display), display.card),
-          .about = "without a window system",
-          .settings = {{"projector.backend", "kms"},
-                       {"projector.kms.connector", display.connector}},
-          .trouble = {}};
+  return {
+      .kind = Kind::display,
+      .name = fmt::format("{} of {}", describe(display), display.card),
+      .about = "without a window system",
+      .settings = {{"projector.backend", "kms"}, {"projector.kms.connector", display.connector}},
+      .trouble = {}};
 }
 
 }  // namespace

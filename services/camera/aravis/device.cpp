@@ -23,6 +23,7 @@ std::string describe(const Device& device) {
 
 std::string describe(const std::vector<Device>& devices) {
   std::vector<std::string> sentences;
+  sentences.reserve(devices.size());
   for (const auto& device : devices) sentences.push_back(describe(device));
   return join(sentences, "; ");
 }

@@ -28,7 +28,7 @@ tl::unexpected<Error> refused(const std::string& name, const std::string& text,
 
 Result<void> set_integer(ArvCamera* camera, const std::string& name, const std::string& text) {
   gint64 least = 0, most = 0;
-  const auto bounds = ask([&](GError** error) {
+  auto bounds = ask([&](GError** error) {
     arv_camera_get_integer_bounds(camera, name.c_str(), &least, &most, error);
   });
   if (!bounds) return bounds;
@@ -40,7 +40,7 @@ Result<void> set_integer(ArvCamera* camera, const std::string& name, const std::
 
 Result<void> set_float(ArvCamera* camera, const std::string& name, const std::string& text) {
   double least = 0, most = 0;
-  const auto bounds = ask([&](GError** error) {
+  auto bounds = ask([&](GError** error) {
     arv_camera_get_float_bounds(camera, name.c_str(), &least, &most, error);
   });
   if (!bounds) return bounds;

@@ -31,7 +31,7 @@ Receiver::Receiver(const config::Camera& settings, double exposure_ms,
 
 /// The stream ends after its session if an image is still in use, so it owns the receiver, too.
 Result<Owned<ArvStream>> Receiver::open_stream(ArvCamera* camera,
-                                               std::shared_ptr<Receiver> receiver) {
+                                               const std::shared_ptr<Receiver>& receiver) {
   using Shared = std::shared_ptr<Receiver>;
   auto* shared = new Shared(receiver);
   const auto stream = ask([&](GError** error) {

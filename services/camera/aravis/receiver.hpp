@@ -20,7 +20,7 @@ class Receiver {
 
   /// Opens the stream of a camera for `receiver`, which has no other one. Errors: unavailable.
   static Result<Owned<ArvStream>> open_stream(ArvCamera* camera,
-                                              std::shared_ptr<Receiver> receiver);
+                                              const std::shared_ptr<Receiver>& receiver);
   /// From now on no image is taken, and none is left in the mailbox. Call it while the stream is
   /// still owned: a stream that is about to end must get no new owner. Any thread.
   void close();

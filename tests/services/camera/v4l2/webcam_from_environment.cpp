@@ -29,8 +29,7 @@ bool is_reader(std::string_view program) {
 
 [[maybe_unused]] const bool from_environment = [] {
   const char* file = std::getenv("HANDCAST_EMULATED_WEBCAM");
-  if (file == nullptr || !is_reader(program_invocation_short_name))
-    return false;
+  if (file == nullptr || !is_reader(program_invocation_short_name)) return false;
   // It lives until the process ends.
   auto* webcam = new EmulatedWebcam(
       {.formats = {{.sizes = {{720, 540, {60, 100}}}}}, .controls = webcam_controls()});
