@@ -8,6 +8,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/evaluation/simulate/png.hpp"
+#include "services/evaluation/twin/recording.hpp"
 #include "tests/services/evaluation/simulate/run_rig.hpp"
 
 namespace handcast::simulate {
