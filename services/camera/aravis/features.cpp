@@ -57,7 +57,7 @@ Result<void> set_boolean(ArvCamera* camera, const std::string& name, const std::
 }
 
 Result<void> set_words(ArvCamera* camera, const std::string& name, const std::string& text) {
-  const auto set = ask(
+  auto set = ask(
       [&](GError** error) { arv_camera_set_string(camera, name.c_str(), text.c_str(), error); });
   const auto words = words_of_feature(camera, name.c_str());
   if (!set && !words.empty()) return refused(name, text, "one of " + words);
