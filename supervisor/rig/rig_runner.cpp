@@ -15,6 +15,7 @@
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "supervisor/base/console.hpp"
+#include "supervisor/rig/safe_state.hpp"
 #include "supervisor/rig/takeover.hpp"
 #include "supervisor/succession/census.hpp"
 
@@ -318,6 +319,7 @@ void RigRunner::finish() {
   if (const int left = end_services(rig_.name, 0, now_ns()); left > 0)
     log::warning("services of rig '{}' that this supervisor did not start were killed: {}",
                  rig_.name, left);
+  for (const auto& service : rig_.services.all()) leave_safe(*service, rig_.launch);
   log::info("rig '{}' has stopped", rig_.name);
   control_->stop_accepting();
   requests_.on_done();

@@ -84,8 +84,8 @@ bool is_exclusive(const Catalogue& catalogue, const std::string& service,
 std::string print_backends(const Catalogue& catalogue) {
   std::string page =
       "\n# Back ends\n\n"
-      "The words that `camera.backend`, `pose.backend`, `landmarks.backend` and "
-      "`projector.backend` accept.\n"
+      "The words that `camera.backend`, `pose.backend`, `landmarks.backend`, "
+      "`projector.backend` and `dlp.backend` accept.\n"
       "[docs/writing-a-back-end.md](../docs/writing-a-back-end.md) says how to add one.\n";
   for (const auto& [name, service] : catalogue) {
     if (service.backends.empty()) continue;

@@ -53,6 +53,10 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
        "",
        {"camera", "pose", "landmarks"}},
   };
+  if (rig.dlp.backend != "none") {
+    services.push_back({"dlp", "", rig.dlp.backend, 0});
+    services.back().has_safe_state = true;
+  }
   if (rig.observer.enabled)
     services.push_back({"observer", "", "", rig.observer.rate_hz, "", {"projector"}});
   if (rig.supervisor.metrics_port > 0) services.push_back({"exporter", "", "", 0});

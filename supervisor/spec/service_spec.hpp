@@ -21,6 +21,8 @@ struct ServiceSpec {
   std::vector<std::string> needs{};
   config::Process process{};  ///< scheduling, memory and spare: [NAME.process]
   std::string fingerprint{};  ///< fingerprint of its settings: see fingerprint_of()
+  /// Its program has the task --safe, for a device that must not stay as a dead service left it.
+  bool has_safe_state = false;
 };
 
 /// The services of a rig, in an order in which each needs only those before it.

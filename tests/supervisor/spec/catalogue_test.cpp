@@ -108,9 +108,11 @@ TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
       {"pose", {}},
       {"landmarks", {"camera"}},
       {"projector", {"camera", "pose", "landmarks"}},
+      {"dlp", {}},
       {"observer", {"projector"}},
       {"exporter", {}}};
   config::Rig rig;
+  rig.dlp.backend = "lightcrafter";
   rig.observer.enabled = true;
   rig.supervisor.metrics_port = 9100;
   const auto catalogue = test::built_catalogue();
@@ -125,6 +127,13 @@ TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
     earlier.push_back(spec.name);
   }
   EXPECT_EQ(earlier.size(), expected.size());
+}
+
+TEST(BuiltCatalogue, ARigWithoutAProjectorToCommandHasNoServiceForIt) {
+  const auto catalogue = test::built_catalogue();
+  config::Rig rig;
+  EXPECT_TRUE(std::ranges::none_of(services_of(rig, catalogue),
+                                   [](const auto& spec) { return spec.name == "dlp"; }));
 }
 
 TEST(BuiltCatalogue, BecomesATablePerService) {

@@ -135,6 +135,19 @@ TEST(Fingerprint, TheExporterDependsOnItsPort) {
   EXPECT_THAT(read_by("exporter", {}), UnorderedElementsAreArray({"supervisor.metrics_port"}));
 }
 
+config::Rig commanded() {
+  config::Rig rig;
+  rig.dlp.backend = "lightcrafter";
+  return rig;
+}
+
+TEST(Fingerprint, ACommandedProjectorDependsOnItsSectionAndTheRateOfThePatterns) {
+  if (!built().contains("dlp")) GTEST_SKIP() << "this build has no dlp";
+  auto expected = settings_in({"dlp", "projector.packing", "projector.rate_hz", "calibration"});
+  EXPECT_THAT(read_by("dlp", commanded()),
+              UnorderedElementsAreArray(without(expected, {"dlp.process.standby"})));
+}
+
 TEST(Fingerprint, WhatOnlyTheSupervisorReadsIsInNone) {
   for (const auto& service : kServices) {
     const auto paths = read_by(service, {});
@@ -152,6 +165,7 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
     read.merge(read_by(service, replay()));
     read.merge(read_by(service, networks()));
   }
+  read.merge(read_by("dlp", commanded()));
   config::Rig rig;
   for (const auto& section : config::list_settings(rig)) {
     for (const auto& setting : section.settings) {
