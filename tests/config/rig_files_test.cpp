@@ -55,6 +55,14 @@ TEST(ShippedRigs, BaselinePredictsAndDrawsOnly) {
   EXPECT_EQ(rig.cascade.fill.method, FillMethod::none);
 }
 
+TEST(ShippedRigs, WebcamHasNoTracker) {
+  const auto rig = shipped("webcam");
+  EXPECT_EQ(rig.camera.backend, "v4l2");
+  EXPECT_EQ(rig.pose.backend, "none");
+  EXPECT_EQ(rig.landmarks.backend, "handcast");
+  EXPECT_EQ(rig.projector.backend, "window");
+}
+
 TEST(ShippedRigs, ReplayReadsOneRecordingWithAllSensors) {
   const auto rig = shipped("replay");
   for (const auto* sensor : {&rig.camera.backend, &rig.pose.backend, &rig.landmarks.backend})
