@@ -19,7 +19,7 @@ using test::Fault;
 constexpr int kCommands = 10'000;
 constexpr std::int64_t kDeadline_ns = 60'000'000;
 /// What a machine with other work to do may be late.
-constexpr double kLate_ms = 20;
+constexpr double kLate_ms = 5;
 
 /// What came of the commands that met one fault.
 struct Outcome {
