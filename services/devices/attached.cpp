@@ -23,7 +23,7 @@ std::string print(const Attached& device) {
 
 std::vector<Attached> all_attached() {
   std::vector<Attached> all;
-  for (const auto list : {industrial_cameras, webcams, monitors, connectors}) {
+  for (const auto list : {industrial_cameras, webcams, monitors, connectors, controllers}) {
     auto some = list();
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }
@@ -40,6 +40,9 @@ std::vector<std::string> blind_spots() {
 #endif
 #ifndef HANDCAST_WITH_KMS
   spots.emplace_back("displays without a window system (libdrm-dev)");
+#endif
+#ifndef HANDCAST_WITH_HIDAPI
+  spots.emplace_back("controllers of DLP projectors (libhidapi-dev)");
 #endif
   return spots;
 }

@@ -28,6 +28,7 @@ std::vector<Attached> industrial_cameras();  ///< takes a second
 std::vector<Attached> webcams();
 std::vector<Attached> monitors();    ///< of the window system, for the output `window`
 std::vector<Attached> connectors();  ///< of the graphics cards, for the output `kms`
+std::vector<Attached> controllers();  ///< of DLP projectors
 /// @}
 
 /// Whatever is attached.

@@ -13,8 +13,8 @@
 static int run_verb(int argc, char** argv) {
   using namespace handcast;
   CLI::App app(
-      "Lists the cameras and displays of this computer, with the settings that use them, and why "
-      "one cannot be opened.",
+      "Lists the cameras, displays and projector controllers of this computer, with the settings "
+      "that use them, and why one cannot be opened.",
       "handcast devices");
   bool as_json = false;
   app.add_flag("--json", as_json, "The same as JSON");
