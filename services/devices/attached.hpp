@@ -26,8 +26,8 @@ struct Attached {
 /// @{
 std::vector<Attached> industrial_cameras();  ///< takes a second
 std::vector<Attached> webcams();
-std::vector<Attached> monitors();    ///< of the window system, for the output `window`
-std::vector<Attached> connectors();  ///< of the graphics cards, for the output `kms`
+std::vector<Attached> monitors();     ///< of the window system, for the output `window`
+std::vector<Attached> connectors();   ///< of the graphics cards, for the output `kms`
 std::vector<Attached> controllers();  ///< of DLP projectors
 /// @}
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 
@@ -91,7 +92,8 @@ std::vector<std::string> truth_and(std::vector<std::string> more) {
 TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakesOfThem) {
   const config::Rig rig;
   expect_reads("camera", rig, truth_and({"camera", "twin.image"}),
-               settings_in({"camera.replay", "camera.process.standby"}));
+               settings_in({"camera.aravis", "camera.v4l2", "camera.delivery_ms", "camera.replay",
+                            "camera.process.standby"}));
   expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
                settings_in({"pose.replay", "pose.none", "pose.process.standby"}));
   expect_reads(
@@ -113,11 +115,30 @@ TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
 }
 
 TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
-  expect_reads("camera", replay(), {"camera"}, {"camera.process.standby"});
+  expect_reads("camera", replay(), {"camera"},
+               settings_in({"camera.aravis", "camera.v4l2", "camera.delivery_ms",
+                            "camera.process.standby"}));
   expect_reads("pose", replay(), {"pose"}, settings_in({"pose.none", "pose.process.standby"}));
   expect_reads("landmarks", replay(), {"landmarks"},
                settings_in({"landmarks.executor", "landmarks.models", "landmarks.hands",
                             "landmarks.definition", "landmarks.process.standby"}));
+}
+
+config::Rig with_camera(const char* backend) {
+  config::Rig rig;
+  rig.camera.backend = backend;
+  rig.pose.backend = "none";
+  return rig;
+}
+
+TEST(Fingerprint, ARealCameraDependsOnItsOwnSection) {
+  expect_reads("camera", with_camera("v4l2"), {"camera"},
+               settings_in({"camera.aravis", "camera.replay", "camera.process.standby"}));
+  if (std::ranges::none_of(built().at("camera").backends,
+                           [](const auto& backend) { return backend.name == "aravis"; }))
+    GTEST_SKIP() << "this build has no Aravis";
+  expect_reads("camera", with_camera("aravis"), {"camera"},
+               settings_in({"camera.v4l2", "camera.replay", "camera.process.standby"}));
 }
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
@@ -164,6 +185,8 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
     read.merge(read_by(service, {}));
     read.merge(read_by(service, replay()));
     read.merge(read_by(service, networks()));
+    read.merge(read_by(service, with_camera("aravis")));
+    read.merge(read_by(service, with_camera("v4l2")));
   }
   read.merge(read_by("dlp", commanded()));
   config::Rig rig;
@@ -180,7 +203,7 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
 
 TEST(Fingerprint, ABackEndThatNobodyThoughtOfDependsOnAllButTheSupervisorsSettings) {
   config::Rig rig;
-  rig.camera.backend = "aravis";
+  rig.camera.backend = "a_camera_of_tomorrow";
   const auto paths = read_by("camera", rig);
   for (const auto* path :
        {"camera.rate_hz", "camera.replay.directory", "cascade.fill.method", "twin.tracker.age_ms"})
