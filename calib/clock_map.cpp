@@ -75,28 +75,41 @@ void ClockMap::fit() {
   spread_s_ = 2 * std::max(*middle, 0.) + (span_s < kShortest_s ? kUsualDrift * kShortest_s : 0);
 }
 
-/// Of all lines below the points, the one with the least sum of distances is the edge of their
-/// lower convex hull above the mean of their times.
+/// The slope is that of the half of the points that lie lowest (least trimmed squares, in three
+/// rounds): the edge of the lower hull would follow two fast images that are close together. The
+/// line then goes down until it touches the lowest point.
 void ClockMap::touch_from_below() {
-  std::vector<Point> hull;
-  const auto is_above = [](const Point& a, const Point& b, const Point& c) {
-    return (b.delay_s - a.delay_s) * (c.device_s - a.device_s) >=
-           (c.delay_s - a.delay_s) * (b.device_s - a.device_s);
-  };
-  double mean_s = 0;
-  for (const auto& point : points_) {
-    while (hull.size() >= 2 && is_above(hull[hull.size() - 2], hull.back(), point)) hull.pop_back();
-    hull.push_back(point);
-    mean_s += point.device_s / static_cast<double>(points_.size());
+  std::vector<Point> lowest(points_.begin(), points_.end());
+  for (int round = 0; round < 3; ++round) {
+    fit_line(lowest);
+    const auto above = [this](const Point& point) {
+      return point.delay_s - line_at(point.device_s);
+    };
+    lowest.assign(points_.begin(), points_.end());
+    std::ranges::nth_element(
+        lowest, lowest.begin() + static_cast<std::ptrdiff_t>(lowest.size() / 2), {}, above);
+    lowest.resize(lowest.size() / 2 + 1);
   }
-  auto right =
-      std::ranges::find_if(hull, [mean_s](const Point& point) { return point.device_s > mean_s; });
-  if (right == hull.begin()) ++right;
-  const Point &a = *(right - 1), &b = *right;
-  slope_ = std::clamp((b.delay_s - a.delay_s) / (b.device_s - a.device_s), -kLargestDrift,
-                      kLargestDrift);
-  middle_s_ = a.device_s;
-  height_s_ = a.delay_s;
+  double under_s = 0;
+  for (const auto& point : points_)
+    under_s = std::min(under_s, point.delay_s - line_at(point.device_s));
+  height_s_ += under_s;
+}
+
+/// Least squares.
+void ClockMap::fit_line(const std::vector<Point>& points) {
+  const auto count = static_cast<double>(points.size());
+  middle_s_ = height_s_ = 0;
+  for (const auto& point : points) {
+    middle_s_ += point.device_s / count;
+    height_s_ += point.delay_s / count;
+  }
+  double product = 0, square = 0;
+  for (const auto& point : points) {
+    product += (point.device_s - middle_s_) * (point.delay_s - height_s_);
+    square += (point.device_s - middle_s_) * (point.device_s - middle_s_);
+  }
+  slope_ = square > 0 ? std::clamp(product / square, -kLargestDrift, kLargestDrift) : 0;
 }
 
 }  // namespace handcast::calib

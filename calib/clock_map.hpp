@@ -2,12 +2,13 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <vector>
 
 namespace handcast::calib {
 
 /// Maps the clock of a device to CLOCK_MONOTONIC, from the device's time stamps of items and the
 /// times at which they arrived. No item can arrive earlier than its least delay after its stamp, so
-/// all arrivals lie on or above a line; the map is the line that touches them from below (lower
+/// all arrivals lie on or above a line; the map is a line that touches them from below (lower
 /// envelope), over the last 8 s, so that it follows the drift of the clocks. The constant least
 /// delay cannot be told from an offset of the clocks and stays in the map. One thread.
 class ClockMap {
@@ -43,6 +44,7 @@ class ClockMap {
   bool keep(const Point& point);
   void fit();
   void touch_from_below();
+  void fit_line(const std::vector<Point>& points);
 
   std::deque<Point> points_;  ///< of the last 8 s, in the order of time
   std::int64_t first_device_ns_ = 0, first_delay_ns_ = 0, last_device_ns_ = 0;

@@ -199,6 +199,8 @@ void measure_returns(LoopbackCamera& camera, std::vector<Goal>& goals) {
   for (int i = 0; i < 9; ++i) {
     camera.unplug();
     std::this_thread::sleep_for(300ms);
+    while (camera.capture(1ms)) {  // the last one from before
+    }
     camera.plug_in();
     const std::int64_t back_ns = now_ns();
     while (!camera.capture(50ms)) {

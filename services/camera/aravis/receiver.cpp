@@ -14,11 +14,17 @@ namespace {
 /// The numbers of GigE Vision 1.x go from 1 to this and begin again at 1.
 constexpr std::uint64_t kLastNumberOf16Bits = 65535;
 
+/// 0 if `later` came before `earlier`: Aravis gives up an image with missing packets only after the
+/// next one is whole.
 std::uint64_t steps_between(std::uint64_t earlier, std::uint64_t later) {
-  if (later > earlier) return later - earlier;
-  if (earlier <= kLastNumberOf16Bits && later > 0) return later + kLastNumberOf16Bits - earlier;
-  return 1;  // the camera counts anew
+  if (later > earlier && later - earlier < kLastNumberOf16Bits / 2) return later - earlier;
+  const bool goes_on_at_1 = earlier > kLastNumberOf16Bits / 2 && earlier <= kLastNumberOf16Bits &&
+                            later < kLastNumberOf16Bits / 2;
+  return goes_on_at_1 ? later + kLastNumberOf16Bits - earlier : 0;
 }
+
+/// More images in a row than this are not late: the camera counts anew.
+constexpr int kMostOlder = 4;
 
 }  // namespace
 
@@ -69,6 +75,8 @@ void Receiver::on_buffer_done(std::int64_t arrived_ns) {
   Owned<ArvBuffer> buffer(arv_stream_try_pop_buffer(stream_));
   if (!buffer) return;
   const std::uint64_t steps = steps_to(arv_buffer_get_frame_id(buffer.get()));
+  if (steps == 0)  // it has been counted as missing
+    return arv_stream_push_buffer(stream_, buffer.release());
   auto lost = lost_in(steps);
   if (arv_buffer_get_status(buffer.get()) != ARV_BUFFER_STATUS_SUCCESS) {
     ++lost.incomplete;
@@ -95,8 +103,11 @@ Image Receiver::image_of(Owned<ArvBuffer> buffer, std::int64_t arrived_ns) {
 }
 
 std::uint64_t Receiver::steps_to(std::uint64_t camera_number) {
-  const auto last = std::exchange(camera_number_, camera_number);
-  return last ? steps_between(*last, camera_number) : 1;
+  std::uint64_t steps = camera_number_ ? steps_between(*camera_number_, camera_number) : 1;
+  older_in_a_row_ = steps == 0 ? older_in_a_row_ + 1 : 0;
+  if (older_in_a_row_ > kMostOlder) steps = 1;
+  if (steps > 0) camera_number_ = camera_number;
+  return steps;
 }
 
 msg::FrameLosses Receiver::lost_in(std::uint64_t steps) {

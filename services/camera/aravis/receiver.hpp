@@ -30,7 +30,8 @@ class Receiver {
   void begin_thread() const;
   void on_buffer_done(std::int64_t arrived_ns);
   Image image_of(Owned<ArvBuffer> buffer, std::int64_t arrived_ns);
-  /// Number of exposures from the last image to the one with this number of the camera.
+  /// Number of exposures from the last image to the one with this number of the camera; 0 if that
+  /// one is older.
   std::uint64_t steps_to(std::uint64_t camera_number);
   /// What was lost in this many exposures before the last one of them.
   msg::FrameLosses lost_in(std::uint64_t steps);
@@ -42,6 +43,7 @@ class Receiver {
   std::shared_ptr<Mailbox> mailbox_;
   calib::ClockMap clock_;
   std::optional<std::uint64_t> camera_number_;  ///< of the last image
+  int older_in_a_row_ = 0;                      ///< images with a number before that one
   std::uint64_t underruns_ = 0;                 ///< counted by the stream until the last image
 };
 
