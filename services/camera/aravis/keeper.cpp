@@ -114,6 +114,7 @@ void Keeper::reopen() {
     return sleep_until_ns(now_ns() + kTurn_ns);
   }
   session_ = std::move(*session);
+  started_ns_ = next_trigger_ns_ = now_ns();
   found("it was opened again");
 }
 
@@ -122,7 +123,6 @@ void Keeper::found(std::string_view how) {
     log::info("camera: {} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_),
               how);
   is_lost_ = false;
-  started_ns_ = next_trigger_ns_ = now_ns();
   say(std::nullopt);
 }
 

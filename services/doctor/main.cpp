@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast doctor: whether a rig, and the computer that runs it, are fit for a show.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iterator>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
+#include "ipc/base/version.hpp"
+#include "services/doctor/live.hpp"
+#include "services/doctor/machine.hpp"
+#include "services/doctor/rig_file.hpp"
+
+namespace handcast::doctor {
+namespace {
+
+struct Options {
+  std::string file;
+  std::vector<std::string> settings;
+  double seconds = 5;
+  bool as_json = false;
+};
+
+/// The findings about a running rig; one finding if it is not up.
+std::vector<Finding> examine_if_up(const std::string& rig, double seconds) {
+  auto findings = examine_live(rig, seconds);
+  if (findings) return std::move(*findings);
+  return {{"rig", Grade::advice,
+           "it was not watched, so nothing is known of cameras, hands and light: " +
+               findings.error().what,
+           "start it with `handcast up`, and call the doctor again"}};
+}
+
+std::vector<Finding> examine(const Options& options) {
+  const auto rig = config::load_rig(options.file, options.settings);
+  auto findings = examine_file(rig);
+  if (!rig) return findings;
+  for (auto more : {examine_machine(*rig), examine_if_up(rig->name, options.seconds)})
+    std::move(more.begin(), more.end(), std::back_inserter(findings));
+  return findings;
+}
+
+int run_verb(int argc, char** argv) {
+  CLI::App app(
+      "Checks a rig before the show: its file, this computer, and, if the rig is up, what it sees "
+      "and casts. Exit 1 if there is a fault.",
+      "handcast doctor");
+  Options options;
+  app.add_option("RIG.toml", options.file, "The rig file")->required();
+  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's");
+  app.add_option("--seconds", options.seconds, "How long a rig that is up is watched")
+      ->check(CLI::Range(0.5, 3600.))
+      ->capture_default_str();
+  app.add_flag("--json", options.as_json, "The same as JSON");
+  app.set_version_flag("--version", fmt::format("handcast doctor {}\n", version()));
+  CLI11_PARSE(app, argc, argv);
+  const auto findings = examine(options);
+  fmt::print("{}", options.as_json ? to_json(findings) : printable(print(findings)));
+  return has_fault(findings) ? kExitBadResult : kExitDone;
+}
+
+}  // namespace
+}  // namespace handcast::doctor
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast doctor", argc, argv, handcast::doctor::run_verb);
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/doctor/rig_file.hpp"
+
+#include <fmt/format.h>
+
+#include "calib/calibration.hpp"
+
+namespace handcast::doctor {
+namespace {
+
+Finding calibration_of(const config::Rig& rig) {
+  const bool is_real = rig.camera.backend != "twin" && rig.camera.backend != "replay";
+  if (rig.calibration.empty() && is_real)
+    return {"calibration", Grade::fault,
+            "a real camera with the calibration of the reference rig: the light will miss the hand",
+            "set calibration to a file of your own; config/calibrations/paper.toml shows its form"};
+  if (rig.calibration.empty())
+    return {"calibration", Grade::good, "that of the reference rig, which the twin has", ""};
+  const auto calibration = calib::load_calibration(rig.calibration);
+  if (!calibration)
+    return {"calibration", Grade::fault, calibration.error().what, "`handcast config --check`"};
+  return {"calibration", Grade::good,
+          fmt::format("camera {} x {} px, projector {} x {} px", calibration->camera.width_px,
+                      calibration->camera.height_px, calibration->projector_width_px,
+                      calibration->projector_height_px),
+          ""};
+}
+
+}  // namespace
+
+std::vector<Finding> examine_file(const Result<config::Rig>& rig) {
+  if (!rig)
+    return {{"rig file", Grade::fault, rig.error().what,
+             "`handcast config --reference` explains "
+             "all settings"}};
+  return {{"rig file", Grade::good, fmt::format("rig '{}'", rig->name), ""}, calibration_of(*rig)};
+}
+
+}  // namespace handcast::doctor

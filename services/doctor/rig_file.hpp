@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "config/rig.hpp"
+#include "services/doctor/finding.hpp"
+
+namespace handcast::doctor {
+
+/// Judges a rig file and its calibration. `rig`: the result of config::load_rig().
+std::vector<Finding> examine_file(const Result<config::Rig>& rig);
+
+}  // namespace handcast::doctor

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "services/doctor/images.hpp"
+#include "services/doctor/machine.hpp"
+#include "services/doctor/rig_file.hpp"
+#include "tests/scratch.hpp"
+
+namespace handcast::doctor {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// The finding of a check; a good one without a sentence if there is none.
+Finding finding_of(const std::vector<Finding>& findings, const std::string& check) {
+  for (const auto& finding : findings)
+    if (finding.check == check) return finding;
+  return {};
+}
+
+/// A folder that looks like the root of a computer.
+class Computer : public testing::Test {
+ protected:
+  void write(const std::string& file, const std::string& text) const {
+    std::filesystem::create_directories((scratch_.path() / file).parent_path());
+    std::ofstream(scratch_.path() / file) << text << '\n';
+  }
+  Finding finding(const std::string& check) const {
+    return finding_of(examine_machine(rig_, scratch_.path()), check);
+  }
+
+  test::Scratch scratch_;
+  config::Rig rig_;
+};
+
+TEST_F(Computer, AGovernorThatSavesPowerIsNamedWithTheCommandThatEndsIt) {
+  EXPECT_EQ(finding("cpu governor").grade, Grade::good) << "a computer without governors";
+  write("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance");
+  EXPECT_EQ(finding("cpu governor").grade, Grade::good);
+  write("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "powersave");
+  EXPECT_EQ(finding("cpu governor").grade, Grade::advice);
+  EXPECT_THAT(finding("cpu governor").sentence, HasSubstr("powersave"));
+  EXPECT_THAT(finding("cpu governor").remedy, HasSubstr("cpupower"));
+}
+
+TEST_F(Computer, TheNetworkIsExaminedOnlyForACameraThatMayUseIt) {
+  EXPECT_EQ(finding("socket buffers").sentence, "");
+  rig_.camera.backend = "aravis";
+  write("proc/sys/net/core/rmem_max", "212992");
+  write("sys/class/net/eth0/mtu", "1500");
+  write("sys/class/net/lo/mtu", "65536");
+  EXPECT_EQ(finding("socket buffers").grade, Grade::advice);
+  EXPECT_THAT(finding("packet size").remedy, HasSubstr("eth0 mtu 9000"));
+  write("proc/sys/net/core/rmem_max", "8000000");
+  write("sys/class/net/eth1/mtu", "9000");
+  EXPECT_EQ(finding("socket buffers").grade, Grade::good);
+  EXPECT_EQ(finding("packet size").grade, Grade::good);
+}
+
+TEST_F(Computer, AFileOfNonsenseIsNotANumber) {
+  rig_.camera.backend = "aravis";
+  write("proc/sys/net/core/rmem_max", "a lot");
+  EXPECT_EQ(finding("socket buffers").grade, Grade::advice);
+}
+
+TEST_F(Computer, TheRulesForUsbDevicesAreLookedForIfTheRigHasOne) {
+  EXPECT_EQ(finding("udev rules").sentence, "");
+  rig_.dlp.backend = "lightcrafter";
+  EXPECT_EQ(finding("udev rules").remedy, "scripts/setup --udev");
+  write("etc/udev/rules.d/70-handcast.rules", "");
+  EXPECT_EQ(finding("udev rules").grade, Grade::good);
+}
+
+Greys greys_of(int background, int hand, double share) {
+  std::vector<std::uint8_t> pixels(10'000, static_cast<std::uint8_t>(background));
+  const auto count = static_cast<std::size_t>(share * 10'000);
+  std::fill_n(pixels.begin(), count, static_cast<std::uint8_t>(hand));
+  Greys greys;
+  greys.add(pixels);
+  return greys;
+}
+
+TEST(Images, ThoseOfTheReferenceRigAreGood) {
+  for (const auto& finding : judge_images(greys_of(13, 70, 0.1), true))
+    EXPECT_EQ(finding.grade, Grade::good) << finding.check << ": " << finding.sentence;
+}
+
+TEST(Images, EachTroubleHasItsAdvice) {
+  const auto advice = [](const Greys& greys, bool has_hand, const char* check) {
+    return finding_of(judge_images(greys, has_hand), check).grade == Grade::advice;
+  };
+  EXPECT_TRUE(advice(greys_of(13, 255, 0.1), true, "exposure"));
+  EXPECT_TRUE(advice(greys_of(90, 200, 0.1), true, "background"));
+  EXPECT_TRUE(advice(greys_of(13, 25, 0.1), true, "infrared light"));
+  EXPECT_TRUE(advice(greys_of(30, 50, 0.1), true, "infrared light")) << "no contrast";
+  EXPECT_FALSE(advice(greys_of(13, 25, 0.1), false, "infrared light")) << "nobody is there";
+}
+
+TEST(RigFile, ARealCameraNeedsACalibrationOfItsOwn) {
+  config::Rig rig;
+  EXPECT_FALSE(has_fault(examine_file(rig)));
+  rig.camera.backend = "v4l2";
+  EXPECT_EQ(finding_of(examine_file(rig), "calibration").grade, Grade::fault);
+  rig.calibration = "/nowhere/calibration.toml";
+  EXPECT_THAT(finding_of(examine_file(rig), "calibration").sentence, HasSubstr("/nowhere"));
+}
+
+TEST(RigFile, AFaultyFileIsTheOnlyFinding) {
+  const auto findings = examine_file(fail(Errc::bad_config, "rig.toml:3: name: no"));
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].grade, Grade::fault);
+  EXPECT_THAT(findings[0].sentence, HasSubstr("rig.toml:3"));
+}
+
+TEST(Findings, ArePrintedWithTheirRemediesAndCounted) {
+  const std::vector<Finding> findings{{"disk", Grade::good, "90 GB are free here", ""},
+                                      {"light", Grade::fault, "none came", "look"}};
+  const auto text = print(findings);
+  EXPECT_THAT(text, HasSubstr("good     disk               90 GB are free here\n"));
+  EXPECT_THAT(text, HasSubstr("-> look\n"));
+  EXPECT_THAT(text, HasSubstr("faults: 1, advice: 0, good: 1\n"));
+  const auto json = nlohmann::json::parse(to_json(findings));
+  EXPECT_EQ(json[1]["grade"], "fault");
+  EXPECT_TRUE(has_fault(findings));
+  EXPECT_FALSE(has_fault({findings[0]}));
+}
+
+}  // namespace
+}  // namespace handcast::doctor
