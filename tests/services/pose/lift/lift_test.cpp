@@ -40,7 +40,8 @@ class LiftTest : public testing::Test {
     lifter_.emplace(Lifter::open(rig_, calibration_).value());
   }
   msg::Landmarks seen(std::int64_t time_ns) {
-    auto landmarks = twin_->detect(run_++, run_, time_ns).landmarks;
+    const auto run = run_++;
+    auto landmarks = twin_->detect(run, run, time_ns).landmarks;
     landmarks.header.origin_ns = time_ns;
     return landmarks;
   }
