@@ -257,7 +257,8 @@ TEST_F(LiftTest, NonsenseGivesNoPoseThatIsNotFinite) {
       landmarks.hands[0].points[k].x_px += static_cast<float>(((i * 37 + k * 101) % 997) - 498);
       landmarks.hands[0].points[k].y_px += static_cast<float>(((i * 53 + k * 71) % 991) - 495);
     }
-    for (const auto& joint : lifter_->lift(landmarks).hands[0].joints)
+    const auto poses = lifter_->lift(landmarks);
+    for (const auto& joint : poses.hands[0].joints)
       for (const float value : joint.position_m) ASSERT_TRUE(std::isfinite(value));
   }
 }
