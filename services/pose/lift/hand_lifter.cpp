@@ -37,6 +37,17 @@ std::optional<SeenHand> read(const msg::HandLandmarks& seen) {
   return count >= HandLifter::kFewestSeen && is_large ? std::optional(hand) : std::nullopt;
 }
 
+/// False after landmarks that no hand can have, which may drive the filter apart.
+bool is_finite(const msg::HandPose& pose) {
+  const auto all_finite = [](const auto& values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+  };
+  return std::ranges::all_of(pose.joints, [&](const auto& joint) {
+    return all_finite(joint.position_m) && all_finite(joint.orientation_xyzw) &&
+           std::isfinite(joint.radius_m);
+  });
+}
+
 }  // namespace
 
 HandLifter::HandLifter(const renderer::HandMesh& hand, const config::PoseNone& settings,
@@ -62,7 +73,16 @@ std::optional<msg::HandPose> HandLifter::lift(std::int64_t time_ns,
     begin(*seen);
   last_ns_ = time_ns;
   learn_size(step_s);
-  return pose_of(landmarks);
+  const auto pose = pose_of(landmarks);
+  if (is_finite(pose)) return pose;
+  forget();
+  return std::nullopt;
+}
+
+void HandLifter::forget() {
+  track_.reset();
+  log_size_.reset();
+  learned_s_ = log_nearer_ = 0;
 }
 
 void HandLifter::begin(const SeenHand& seen) {

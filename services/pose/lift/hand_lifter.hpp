@@ -24,10 +24,12 @@ class HandLifter {
 
   /// The pose in tracker space of a hand with these landmarks in the image exposed at `time_ns`.
   /// Empty if too few landmarks were seen, they lie too close together, a coordinate is not finite,
-  /// or the image is not newer than the last one.
+  /// the image is not newer than the last one, or no hand can have these landmarks.
   std::optional<msg::HandPose> lift(std::int64_t time_ns, const msg::HandLandmarks& seen);
 
  private:
+  /// Also the size that was learned.
+  void forget();
   void begin(const SeenHand& seen);
   void go_on(const SeenHand& seen, double step_s);
   void try_another(const SeenHand& seen);

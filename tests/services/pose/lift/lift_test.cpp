@@ -261,6 +261,7 @@ TEST_F(LiftTest, NonsenseGivesNoPoseThatIsNotFinite) {
     for (const auto& joint : poses.hands[0].joints)
       for (const float value : joint.position_m) ASSERT_TRUE(std::isfinite(value));
   }
+  EXPECT_EQ(lifter_->lift(seen(300 * kStep_ns)).count, 1u) << "a hand is lifted again";
 }
 
 }  // namespace
