@@ -2,12 +2,10 @@
 // handcast devices: what is attached, and what it would be called in a rig file.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/version.hpp"
+#include "ipc/base/verb_options.hpp"
 #include "services/devices/attached.hpp"
 
 static int run_verb(int argc, char** argv) {
@@ -18,8 +16,15 @@ static int run_verb(int argc, char** argv) {
       "handcast devices");
   bool as_json = false;
   app.add_flag("--json", as_json, "The same as JSON");
-  app.set_version_flag("--version", fmt::format("handcast devices {}\n", version()));
-  CLI11_PARSE(app, argc, argv);
+  const auto text = parse_options(app, argc, argv);
+  if (!text) {
+    fmt::print(stderr, "handcast devices: {}\n", text.error().what);
+    return kExitUsage;
+  }
+  if (!text->empty()) {
+    fmt::print("{}", *text);
+    return kExitDone;
+  }
   const auto attached = devices::all_attached();
   fmt::print("{}", as_json ? devices::to_json(attached)
                            : printable(devices::print(attached, devices::blind_spots())));

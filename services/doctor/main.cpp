@@ -2,14 +2,13 @@
 // handcast doctor: whether a rig, and the computer that runs it, are fit for a show.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <iterator>
 
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/version.hpp"
+#include "ipc/base/verb_options.hpp"
 #include "services/doctor/live.hpp"
 #include "services/doctor/machine.hpp"
 #include "services/doctor/rig_file.hpp"
@@ -55,8 +54,15 @@ int run_verb(int argc, char** argv) {
       ->check(CLI::Range(0.5, 3600.))
       ->capture_default_str();
   app.add_flag("--json", options.as_json, "The same as JSON");
-  app.set_version_flag("--version", fmt::format("handcast doctor {}\n", version()));
-  CLI11_PARSE(app, argc, argv);
+  const auto text = parse_options(app, argc, argv);
+  if (!text) {
+    fmt::print(stderr, "handcast doctor: {}\n", text.error().what);
+    return kExitUsage;
+  }
+  if (!text->empty()) {
+    fmt::print("{}", *text);
+    return kExitDone;
+  }
   const auto findings = examine(options);
   fmt::print("{}", options.as_json ? to_json(findings) : printable(print(findings)));
   return has_fault(findings) ? kExitBadResult : kExitDone;

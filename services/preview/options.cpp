@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "ipc/base/version.hpp"
+#include "ipc/base/verb_options.hpp"
 
 namespace handcast::preview {
 namespace {
@@ -48,16 +47,9 @@ Result<Parsed> parse(int argc, char** argv) {
                  "What is shown over one another: all, or some of image, regions, light, drawing, "
                  "joints, landmarks, separated by commas; default: all but light");
   app.add_option("--size", size, "Size in pixels; default: 1600x900");
-  app.set_version_flag("--version", fmt::format("handcast preview {}\n", version()));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    parsed.text = app.help();
-  } catch (const CLI::CallForVersion& call) {
-    parsed.text = call.what();
-  } catch (const CLI::ParseError& problem) {
-    return fail(Errc::bad_config, problem.what());
-  }
+  auto text = parse_options(app, argc, argv);
+  if (!text) return tl::make_unexpected(text.error());
+  parsed.text = std::move(*text);
   if (!std::isfinite(options.after_s)) return fail(Errc::bad_config, "--after: nan is no number");
   if (!size.empty())
     if (auto set = set_size(size, options.look); !set) return tl::make_unexpected(set.error());

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "ipc/base/join.hpp"
-#include "ipc/base/version.hpp"
+#include "ipc/base/verb_options.hpp"
 
 namespace handcast::record {
 namespace {
@@ -34,16 +33,9 @@ Result<Parsed> parse(int argc, char** argv) {
                "Afterwards also writes DIR/npy: arrays in the layout of Casper DPM and PNG images");
   app.add_flag("--convert", options.convert,
                "Records nothing: writes DIR/npy for the recording DIR");
-  app.set_version_flag("--version", fmt::format("handcast record {}\n", version()));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    parsed.text = app.help();
-  } catch (const CLI::CallForVersion& call) {
-    parsed.text = call.what();
-  } catch (const CLI::ParseError& problem) {
-    return fail(Errc::bad_config, problem.what());
-  }
+  auto text = parse_options(app, argc, argv);
+  if (!text) return tl::make_unexpected(text.error());
+  parsed.text = std::move(*text);
   if (!std::isfinite(options.seconds)) return fail(Errc::bad_config, "--seconds: nan is no number");
   if (options.rings == std::vector<std::string>{"all"}) options.rings.clear();
   return parsed;

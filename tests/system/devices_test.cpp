@@ -58,6 +58,14 @@ TEST_F(Devices, EachIsListedWithTheSettingsThatUseIt) {
                           HasSubstr("displays\n")));
 }
 
+TEST_F(Devices, AWrongWordIsAUsageError) {
+  for (const auto* verb : {"devices", "doctor"}) {
+    const auto outcome = handcast({verb, "--nonsense"});
+    EXPECT_EQ(outcome.exit_code, 2) << verb;
+    EXPECT_THAT(outcome.log, HasSubstr(std::string("handcast ") + verb + ": "));
+  }
+}
+
 TEST_F(Devices, WithoutAnyTheCommandSaysSo) {
   const auto text = handcast({"devices"}).output;
   EXPECT_THAT(text, HasSubstr("cameras\n  none\n"));
