@@ -84,14 +84,14 @@ Finding real_time(const config::Rig& rig) {
   return {
       "real time", Grade::fault,
       fmt::format("the rig wants priority {}, this user has {} at most", priority, limit.rlim_cur),
-      fmt::format("add '{} - rtprio 95' to /etc/security/limits.d/handcast.conf and log in "
-                  "again",
-                  "@plugdev")};
+      "add '@plugdev - rtprio 95' to /etc/security/limits.d/handcast.conf and log in again"};
 }
 
 Finding socket_buffers(const fs::path& root) {
   const auto bytes = number_in(root / "proc/sys/net/core/rmem_max");
-  if (!bytes) return {"socket buffers", Grade::advice, "their size cannot be read", "none known"};
+  if (!bytes)
+    return {"socket buffers", Grade::advice, "their size cannot be read",
+            "cat /proc/sys/net/core/rmem_max; 8000000 is enough"};
   if (*bytes >= kSocketBytes)
     return {"socket buffers", Grade::good, fmt::format("{} bytes", *bytes), ""};
   return {

@@ -126,6 +126,11 @@ TEST(Rig, BonesMustBeCalledShortBeforeTheyAreCalledLong) {
               ElementsAre(HasSubstr("must be less than cascade.correct.bone_long_px")));
 }
 
+TEST(Rig, NoLedGetsMoreThanTheLimit) {
+  EXPECT_THAT(faults_of("[dlp]\nlimit = 0.2\nred = 0.2\ngreen = 0.1\nblue = 0.21\n"),
+              ElementsAre(HasSubstr("dlp.blue: 0.21 is above dlp.limit, 0.2")));
+}
+
 TEST(Rig, AMissingFileIsNamed) {
   const auto rig = load_rig("/no/such/rig.toml");
   ASSERT_FALSE(rig);
