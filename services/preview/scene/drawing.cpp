@@ -94,11 +94,12 @@ bool is_sound(const msg::Projection& projection) {
   // A slot has room for a region of this size; a calibration allows sides of kLargestSide_px.
   constexpr std::int64_t kLargestRegion =
       msg::kLargestProjectorWidth_px * msg::kLargestProjectorHeight_px;
+  // The region lies within the sides before its area is taken, which cannot overflow then.
   return width > 0 && height > 0 && width <= kLargestSide_px && height <= kLargestSide_px &&
-         static_cast<std::int64_t>(projection.region_width_px) * projection.region_height_px <=
-             kLargestRegion &&
          limits(projection.region_x_px, projection.region_width_px, width) &&
-         limits(projection.region_y_px, projection.region_height_px, height);
+         limits(projection.region_y_px, projection.region_height_px, height) &&
+         static_cast<std::int64_t>(projection.region_width_px) * projection.region_height_px <=
+             kLargestRegion;
 }
 
 Image<std::uint8_t> coverage(const msg::Projection& projection, const Meshes& meshes) {

@@ -70,6 +70,7 @@ TEST(HostileMessages, LightWhoseSizeMakesNoSenseIsLeftOutAndSaysSo) {
   expect_refused([](auto& cast) { cast.region_x_px = 1000; });
   expect_refused([](auto& cast) { cast.region_y_px = std::numeric_limits<std::int32_t>::max(); });
   expect_refused([](auto& cast) { cast.region_width_px = 0xffffffffu; });
+  expect_refused([](auto& cast) { cast.region_width_px = cast.region_height_px = 0xffffffffu; });
   expect_refused([](auto& cast) {
     cast.width_px = cast.height_px = 8192;
     cast.region_x_px = cast.region_y_px = 0;
