@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <initializer_list>
 #include <string>
+#include <string_view>
 
 #include "ipc/base/result.hpp"
 
@@ -39,6 +42,14 @@ struct CameraModel {
 /// The calibration of a rig with a coaxial camera and projector. The names of transforms read from
 /// right to left.
 struct Calibration {
+  /// Tells the calibrations of files apart: a hash of all that was read, never 0. Messages carry
+  /// it, so that no service takes the pixels of one calibration for those of another.
+  std::uint32_t id = 0;
+  /// The devices that were calibrated, as `handcast devices` names them; empty: not known.
+  /// @{
+  std::string camera_device;
+  std::string projector_device;
+  /// @}
   CameraModel camera;                   ///< the infrared camera
   glm::dmat4 camera_from_tracker{1};    ///< rigid, in metres
   glm::dmat3 projector_from_camera{1};  ///< homography: undistorted camera px to projector px
@@ -64,6 +75,11 @@ Calibration reference_rig();
 /// Errors: bad_config (the file cannot be read, is no TOML, or has invalid values; one line for
 /// each fault).
 Result<Calibration> load_calibration(const std::filesystem::path& file);
+/// Errors: bad_config (the calibration was made with another device). `what`: "camera".
+/// `calibrated`: one of the devices in the calibration; `names`: by which the device is known.
+Result<void> check_device(std::string_view what, std::string_view calibrated,
+                          std::initializer_list<std::string_view> names);
+
 /// The calibration as a commented file that load_calibration() reads back.
 std::string print_calibration(const Calibration& calibration);
 

@@ -22,12 +22,17 @@ constexpr int kMostPixels = 8192;
 constexpr double kMostArea_px2 = 16e6;
 
 struct CameraSection {
+  std::string device;
   int width_px, height_px;
   std::vector<double> focal_px, centre_px, distortion;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, CameraSection& camera) {
+  visitor.field("device", camera.device,
+                "The camera that was calibrated: its serial number, or its name or bus, as "
+                "`handcast devices` lists it. With any other one, the rig does not start. Empty: "
+                "not known.");
   visitor.field("width_px", camera.width_px, between(16, kMostPixels, "px"), "Width of the image.");
   visitor.field("height_px", camera.height_px, between(16, kMostPixels, "px"),
                 "Height of the image.");
@@ -51,12 +56,16 @@ void describe(Visitor& visitor, TransformSection& rows) {
 }
 
 struct ProjectorSection {
+  std::string device;
   int width_px, height_px;
   std::vector<double> x, y, w;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, ProjectorSection& projector) {
+  visitor.field("device", projector.device,
+                "The projector that was calibrated: the name of the monitor, as `handcast devices` "
+                "lists it. With any other one, the rig does not start. Empty: not known.");
   visitor.field("width_px", projector.width_px, between(16, kMostPixels, "px"),
                 "Width of the image.");
   visitor.field("height_px", projector.height_px, between(16, kMostPixels, "px"),
@@ -102,14 +111,16 @@ File to_file(const Calibration& calibration) {
   const auto& c = calibration.camera;
   const auto& tracker = calibration.camera_from_tracker;
   const auto& homography = calibration.projector_from_camera;
-  return {{c.width_px,
+  return {{calibration.camera_device,
+           c.width_px,
            c.height_px,
            {c.fx_px, c.fy_px},
            {c.cx_px, c.cy_px},
            {c.k1, c.k2, c.p1, c.p2, c.k3}},
           {row_of(tracker, 0), row_of(tracker, 1), row_of(tracker, 2)},
-          {calibration.projector_width_px, calibration.projector_height_px, row_of(homography, 0),
-           row_of(homography, 1), row_of(homography, 2)}};
+          {calibration.projector_device, calibration.projector_width_px,
+           calibration.projector_height_px, row_of(homography, 0), row_of(homography, 1),
+           row_of(homography, 2)}};
 }
 
 CameraModel to_camera_model(const CameraSection& s) {
@@ -120,6 +131,8 @@ CameraModel to_camera_model(const CameraSection& s) {
 
 Calibration to_calibration(const File& file) {
   Calibration calibration;
+  calibration.camera_device = file.camera.device;
+  calibration.projector_device = file.projector.device;
   calibration.camera = to_camera_model(file.camera);
   const auto& tracker = file.camera_from_tracker;
   set_row(calibration.camera_from_tracker, 0, tracker.x);
@@ -236,10 +249,18 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
     faults.add(fmt::format("{}: projector: {}", file, fault));
 }
 
+Calibration with_id(Calibration calibration) {
+  std::uint32_t hash = 2166136261u;  // FNV-1a
+  for (const char c : print_calibration(calibration))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  calibration.id = std::max(hash, 1u);
+  return calibration;
+}
+
 }  // namespace
 
 Result<Calibration> load_calibration(const std::filesystem::path& path) {
-  if (path.empty()) return reference_rig();
+  if (path.empty()) return with_id(reference_rig());
   const auto text = config::read_text(path);
   if (!text) return tl::make_unexpected(text.error());
   const auto document = config::parse_document(*text, path.string());
@@ -248,11 +269,21 @@ Result<Calibration> load_calibration(const std::filesystem::path& path) {
   auto file = to_file(reference_rig());
   config::Faults faults;
   config::apply_document(*document, path.string(), config::list_settings(file), faults);
-  auto calibration = to_calibration(file);
+  auto calibration = with_id(to_calibration(file));
   if (faults.empty()) check(calibration, path.string(), faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   calibration.camera_from_tracker = orthonormalised(calibration.camera_from_tracker);
   return calibration;
+}
+
+Result<void> check_device(std::string_view what, std::string_view calibrated,
+                          std::initializer_list<std::string_view> names) {
+  if (calibrated.empty() || std::ranges::find(names, calibrated) != names.end()) return {};
+  return fail(
+      Errc::bad_config,
+      fmt::format("the calibration was made with the {0} '{1}', and this is '{2}'; name the "
+                  "calibration of this {0} in the rig file (calibration), or calibrate it",
+                  what, calibrated, *names.begin()));
 }
 
 std::string print_calibration(const Calibration& calibration) {

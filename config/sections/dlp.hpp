@@ -16,11 +16,22 @@ enum class DlpMode {
 };
 constexpr std::array<std::string_view, 2> words_of(DlpMode) { return {"video", "pattern"}; }
 
+/// The signal that a LED driver understands as its full current.
+enum class LedSignal {
+  automatic,  ///< as the controller's board has it
+  direct,     ///< the full signal
+  inverted,   ///< no signal
+};
+constexpr std::array<std::string_view, 3> words_of(LedSignal) {
+  return {"auto", "direct", "inverted"};
+}
+
 /// [dlp]
 struct Dlp {
   std::string backend = "none";
   std::string device;
   DlpMode mode = DlpMode::video;
+  LedSignal signal = LedSignal::automatic;
   double limit = 0.5;
   double red = 0.3;
   double green = 0.3;
@@ -41,6 +52,10 @@ void describe(Visitor& visitor, Dlp& dlp) {
   visitor.field("mode", dlp.mode,
                 "video: an ordinary picture. pattern: the sub-frames of projector.packing, 24x1 or "
                 "8x3, one after the other.");
+  visitor.field("signal", dlp.signal,
+                "What the LED drivers take for the full current: direct, the full signal; "
+                "inverted, none. auto: inverted with the DLPC350, as on the LightCrafter 4500, and "
+                "direct with the DLPC900. If this is wrong for your board, limit does not limit.");
   visitor.field("limit", dlp.limit, between(0, 1),
                 "The largest current of a LED that is ever commanded, as a share of the "
                 "controller's full scale. What the LEDs and the cooling allow is in their data "

@@ -15,7 +15,7 @@ namespace handcast::msg {
 /// Published by: services/camera ("camera.frames").  Read by: services/landmarks,
 /// services/projector, observers.
 struct CameraFrame {
-  static constexpr std::string_view layout = "CameraFrame/2";  ///< see type_hash()
+  static constexpr std::string_view layout = "CameraFrame/3";  ///< see type_hash()
 
   Header header;                 ///< origin_ns: the middle of the exposure
   std::int64_t exposure_ns = 0;  ///< duration of the exposure
@@ -27,6 +27,9 @@ struct CameraFrame {
   std::uint32_t width_px = 0;
   std::uint32_t height_px = 0;
   /// @}
+  /// calib::Calibration::id of the camera service; 0: unknown, for any calibration.
+  std::uint32_t calibration = 0;
+  std::uint32_t reserved = 0;  ///< padding
 
   /// Size in bytes of a message with an image of `width` x `height` pixels.
   static constexpr std::size_t bytes(std::size_t width, std::size_t height) {

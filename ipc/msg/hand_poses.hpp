@@ -31,11 +31,12 @@ struct HandPose {
 /// All hands of one tracker sample.
 /// Published by: services/pose ("pose.hands", with history).  Read by: services/projector.
 struct HandPoses {
-  static constexpr std::string_view layout = "HandPoses/1";  ///< see type_hash()
+  static constexpr std::string_view layout = "HandPoses/2";  ///< see type_hash()
 
-  Header header;                            ///< origin_ns: the sample time of the sensor
-  std::uint32_t count = 0;                  ///< number of hands
-  std::uint32_t reserved = 0;               ///< padding
+  Header header;            ///< origin_ns: the sample time of the sensor
+  std::uint32_t count = 0;  ///< number of hands
+  /// calib::Calibration::id that they were computed with; 0: they depend on none.
+  std::uint32_t calibration = 0;
   std::array<HandPose, kMaxHands> hands{};  ///< the first `count` are valid
 
   /// The hand of this side; null if the sample has none. Points into this message.

@@ -37,11 +37,12 @@ struct HandLandmarks {
 /// All hands that were detected in one camera frame.
 /// Published by: services/landmarks ("landmarks.hands").  Read by: services/projector.
 struct Landmarks {
-  static constexpr std::string_view layout = "Landmarks/2";  ///< see type_hash()
+  static constexpr std::string_view layout = "Landmarks/3";  ///< see type_hash()
 
-  Header header;                                 ///< frame_id and origin_ns of the camera frame
-  std::uint32_t count = 0;                       ///< number of hands
-  std::uint32_t reserved = 0;                    ///< padding
+  Header header;            ///< frame_id and origin_ns of the camera frame
+  std::uint32_t count = 0;  ///< number of hands
+  /// calib::Calibration::id of the camera frame; 0: unknown, for any calibration.
+  std::uint32_t calibration = 0;
   std::array<HandLandmarks, kMaxHands> hands{};  ///< the first `count` are valid
 
   /// The hand of this side; null if there is none. Points into this message.

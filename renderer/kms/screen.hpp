@@ -55,6 +55,8 @@ class Screen {
   /// back to it when it is there again), disconnected (the card is gone or hangs).
   Result<Flip> show(View<const std::uint32_t> picture, Rect region, Deadline deadline);
 
+  /// The display, as it was found last.
+  const Display& display() const { return display_; }
   /// Time from one refresh to the next.
   std::int64_t refresh_ns() const { return refresh_ns_; }
 

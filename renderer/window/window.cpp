@@ -93,6 +93,7 @@ class Window::Screen {
 
   Result<void> create();
   Result<Shown> show(View<const std::uint32_t> picture, Rect region);
+  std::optional<Monitor> monitor() const { return found_; }
   std::optional<std::int64_t> refresh_ns() const;
   std::vector<std::string> take_keys() { return std::exchange(keys_, {}); }
   bool is_closed() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
@@ -110,7 +111,7 @@ class Window::Screen {
   WindowSettings settings_;
   GLFWwindow* window_ = nullptr;
   GLFWmonitor* monitor_ = nullptr;  ///< of a full-screen window, while it is plugged in
-  std::string monitor_name_;        ///< its output, by which it is found again
+  std::optional<Monitor> found_;    ///< how it was found last
   double rate_hz_ = 0;              ///< of the monitor; 0: unknown
   std::unique_ptr<Blit> blit_;
   bool has_appeared_ = false;
@@ -125,11 +126,11 @@ Window::Screen* Window::Screen::the_screen_ = nullptr;
 /// Finds the monitor of a full-screen window: the one in the settings, or the one it was on before.
 Result<void> Window::Screen::find_monitor() {
   const auto [handles, monitors] = connected();
-  const auto chosen =
-      choose_monitor(monitors, settings_.monitor.empty() ? monitor_name_ : settings_.monitor);
+  const auto chosen = choose_monitor(
+      monitors, settings_.monitor.empty() && found_ ? found_->output : settings_.monitor);
   if (!chosen) return tl::make_unexpected(chosen.error());
   monitor_ = handles[*chosen];
-  monitor_name_ = monitors[*chosen].output;
+  found_ = monitors[*chosen];
   return {};
 }
 
@@ -166,7 +167,7 @@ Result<void> Window::Screen::create() {
   the_screen_ = this;
   glfwSetMonitorCallback([](GLFWmonitor* monitor, int event) {
     if (event != GLFW_DISCONNECTED || monitor != the_screen_->monitor_) return;
-    log::warning("monitor '{}' is unplugged", the_screen_->monitor_name_);
+    log::warning("monitor '{}' is unplugged", the_screen_->found_->output);
     the_screen_->monitor_ = nullptr;
     glfwHideWindow(the_screen_->window_);  // GLFW would leave it on the operator's screen
     the_screen_->has_appeared_ = false;
@@ -195,12 +196,12 @@ void Window::Screen::appear() {
   if (mode == nullptr) return;
   const int width = mode->width, height = mode->height;
   glfwSetWindowMonitor(window_, monitor_, 0, 0, width, height, mode->refreshRate);
-  log::info("light on monitor '{}', {}x{} at {} Hz", monitor_name_, width, height, rate_hz_);
+  log::info("light on monitor '{}', {}x{} at {} Hz", found_->output, width, height, rate_hz_);
   if (width != settings_.width_px || height != settings_.height_px)
     log::warning(
         "monitor '{0}' has {1}x{2} pixels and the calibration {3}x{4}, so the picture is scaled; "
         "`xrandr --output {0} --mode {3}x{4}` may change it",
-        monitor_name_, width, height, settings_.width_px, settings_.height_px);
+        found_->output, width, height, settings_.width_px, settings_.height_px);
 }
 
 bool Window::Screen::covers_monitor() const {
@@ -223,7 +224,7 @@ void Window::Screen::keep_in_front() {
   next_look_ns_ = now_ns() + kLookEvery_ns;
   if (covers_monitor()) return;
   log::warning("another program moved, resized or hid the window on monitor '{}'; it is put back",
-               monitor_name_);
+               found_->output);
   glfwSetWindowMonitor(window_, nullptr, 0, 0, settings_.width_px, settings_.height_px, 0);
   appear();
 }
@@ -242,8 +243,8 @@ Result<Shown> Window::Screen::show(View<const std::uint32_t> picture, Rect regio
   glfwPollEvents();
   if (settings_.full_screen && monitor_ == nullptr) {
     if (!find_monitor())
-      return fail(Errc::timeout, fmt::format("monitor '{}' is unplugged", monitor_name_));
-    log::info("monitor '{}' is there again", monitor_name_);
+      return fail(Errc::timeout, fmt::format("monitor '{}' is unplugged", found_->output));
+    log::info("monitor '{}' is there again", found_->output);
   }
   if (!has_appeared_) appear();
   keep_in_front();
@@ -275,6 +276,7 @@ Result<std::unique_ptr<Window>> Window::open(WindowSettings settings) {
 Result<Shown> Window::show(View<const std::uint32_t> picture, Rect region) {
   return screen_->show(picture, region);
 }
+std::optional<Monitor> Window::monitor() const { return screen_->monitor(); }
 std::optional<std::int64_t> Window::refresh_ns() const { return screen_->refresh_ns(); }
 std::vector<std::string> Window::take_keys() { return screen_->take_keys(); }
 bool Window::is_closed() const { return screen_->is_closed(); }

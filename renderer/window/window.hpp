@@ -54,6 +54,8 @@ class Window {
   /// unplugged; show() comes back to it when it is there again).
   Result<Shown> show(View<const std::uint32_t> picture, Rect region);
 
+  /// The monitor of a full-screen window, as it was found last; empty for other windows.
+  std::optional<Monitor> monitor() const;
   /// Time from one refresh of the monitor to the next; empty without vsync or a known rate.
   std::optional<std::int64_t> refresh_ns() const;
   /// The characters typed and "Escape", since the last call.

@@ -66,6 +66,10 @@ Result<std::unique_ptr<Camera>> open_aravis(const config::Rig& rig,
   const auto& model = calibration.camera;
   const auto device = aravis::find_device(rig.camera.aravis.device);
   if (!device) return fail_in("camera 'aravis'", device.error());
+  if (auto ours = calib::check_device("camera", calibration.camera_device,
+                                      {device->serial, device->id, device->model});
+      !ours)
+    return fail_in("camera 'aravis'", ours.error());
   const auto mailbox = std::make_shared<aravis::Mailbox>();
   auto session =
       aravis::Session::start(*device, rig.camera, model.width_px, model.height_px, mailbox);

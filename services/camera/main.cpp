@@ -32,6 +32,7 @@ static void run_camera(service::Context& context) {
       context.tolerate(captured.error());
       continue;
     }
+    slot->calibration = context.calibration().id;
     const msg::Header header = slot->header;
     const msg::FrameLosses lost = slot->lost;
     frames.publish(std::move(slot));

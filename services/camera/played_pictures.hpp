@@ -17,6 +17,7 @@ struct PlayedPictures {
 /// How a recording is to be played.
 struct PlayedAs {
   int width_px = 0, height_px = 0;  ///< of the calibration's image
+  std::uint32_t calibration = 0;    ///< its id
   std::int64_t exposure_ns = 0;     ///< if the recording does not say it
   double rate_hz = 0;               ///< likewise
   std::int64_t epoch_ns = 0;        ///< time zero of the rig

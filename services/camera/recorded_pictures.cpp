@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "calib/calibration.hpp"
+#include "ipc/base/log.hpp"
+#include "services/recording/about.hpp"
+
 namespace handcast::camera {
 namespace {
 
@@ -23,6 +27,19 @@ class RecordedPictures final : public PictureSource {
   StreamReader reader_;
 };
 
+/// The images are played all the same: people measure again what they have recorded.
+void say_if_calibrated_otherwise(const std::filesystem::path& folder, std::uint32_t ours) {
+  const auto file = folder / recording::kCalibrationFile;
+  std::error_code failed;
+  if (!std::filesystem::exists(file, failed)) return;
+  const auto recorded = calib::load_calibration(file);
+  if (recorded && recorded->id == ours) return;
+  log::warning(
+      "camera 'replay': the images were recorded with another calibration than that of the rig; "
+      "theirs is '{}' (calibration)",
+      file.string());
+}
+
 }  // namespace
 
 Result<PlayedPictures> open_recorded_pictures(const std::filesystem::path& folder,
@@ -39,6 +56,7 @@ Result<PlayedPictures> open_recorded_pictures(const std::filesystem::path& folde
                             "is for a camera of {} x {} px",
                             folder.string(), other - reader->rows().begin(), other->width_px,
                             other->height_px, as.width_px, as.height_px));
+  say_if_calibrated_otherwise(folder, as.calibration);
   auto schedule = recording::Schedule::make(folder, *reader, as.epoch_ns, as.loop);
   if (!schedule) return tl::make_unexpected(schedule.error());
   return PlayedPictures{std::make_unique<RecordedPictures>(std::move(*reader)),

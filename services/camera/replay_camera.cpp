@@ -96,6 +96,7 @@ Result<std::unique_ptr<Camera>> open_replay(const config::Rig& rig,
                 "camera 'replay': no recording is given; set camera.replay.directory");
   const PlayedAs as{calibration.camera.width_px,
                     calibration.camera.height_px,
+                    calibration.id,
                     ms_to_ns(rig.camera.exposure_ms),
                     rig.camera.rate_hz,
                     epoch_ns,

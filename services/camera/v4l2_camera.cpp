@@ -151,6 +151,11 @@ Result<std::unique_ptr<Camera>> open_v4l2(const config::Rig& rig,
   auto found = find_device(settings.v4l2.device);
   if (!found) return fail_in(kPlace, found.error());
   auto device = std::make_unique<Device>(std::move(*found));
+  const auto& identity = device->identity;
+  if (auto ours = calib::check_device("camera", calibration.camera_device,
+                                      {identity.card, identity.bus, identity.path});
+      !ours)
+    return fail_in(kPlace, ours.error());
   const auto mode =
       configure(*device, settings, {calibration.camera.width_px, calibration.camera.height_px});
   if (!mode) return fail_in(kPlace, mode.error());

@@ -55,8 +55,9 @@ class LightCrafter final : public DlpController {
   Result<std::string> light(bool signal, std::vector<std::string>& events, Deadline deadline);
   Result<void> switch_on(Deadline deadline);
   Result<void> start_sequence(Deadline deadline);
-  Bytes levels() const {
-    return protocol::encode_currents(link_.controller(), currents_, dlp_.limit);
+  Bytes levels_of(const protocol::Currents& currents) const {
+    return protocol::encode_currents(protocol::is_inverted(dlp_.signal, link_.controller()),
+                                     currents, dlp_.limit);
   }
 
   HidInfo info_;
@@ -93,8 +94,7 @@ Result<void> LightCrafter::darken(Deadline deadline) {
   if (!off && off.error().code == Errc::disconnected) return off;
   const auto stopped = link_.write(Command::pattern_display, {{protocol::kStop}}, deadline);
   if (!stopped && stopped.error().code != Errc::unavailable && off) off = stopped;
-  const auto dark = protocol::encode_currents(link_.controller(), {}, dlp_.limit);
-  if (auto without = link_.write(Command::led_currents, dark, deadline); !without && off)
+  if (auto without = link_.write(Command::led_currents, levels_of({}), deadline); !without && off)
     off = without;
   const auto enables = link_.read(Command::led_enables, 1, deadline);
   if (!enables && off) off = tl::make_unexpected(enables.error());
@@ -132,7 +132,7 @@ Result<bool> LightCrafter::keeps_settings(Deadline deadline) {
   if (!currents) return tl::make_unexpected(currents.error());
   const auto enables = link_.read(Command::led_enables, 1, deadline);
   if (!enables) return tl::make_unexpected(enables.error());
-  const auto wanted = levels();
+  const auto wanted = levels_of(currents_);
   return std::equal(wanted.begin(), wanted.end(), currents->begin()) &&
          (enables->front() & kEnableBits) == enables_;
 }
@@ -149,7 +149,8 @@ Result<std::string> LightCrafter::what_is_lost(const Status& status, bool signal
 }
 
 Result<void> LightCrafter::switch_on(Deadline deadline) {
-  if (auto set = link_.write(Command::led_currents, levels(), deadline); !set) return set;
+  if (auto set = link_.write(Command::led_currents, levels_of(currents_), deadline); !set)
+    return set;
   if (auto set = link_.write(Command::led_enables, {{enables_}}, deadline); !set) return set;
   const auto keeps = keeps_settings(deadline);
   if (!keeps) return tl::make_unexpected(keeps.error());

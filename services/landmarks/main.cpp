@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ipc/msg/same_calibration.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
 #include "services/runtime/context.hpp"
@@ -13,7 +14,8 @@ static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPo
                        landmarks::TrackerHints& tracker) {
   if (!poses) return;
   auto sample = poses->next(Deadline::now());
-  for (; sample; sample = poses->next(Deadline::now())) tracker.push(**sample);
+  for (; sample; sample = poses->next(Deadline::now()))
+    if (msg::check_calibration(**sample, context.calibration().id)) tracker.push(**sample);
   if (sample.error().code != Errc::timeout) context.tolerate(sample.error());
 }
 
@@ -37,6 +39,10 @@ static void run_landmarks(service::Context& context) {
       context.tolerate(frame.error());
       continue;
     }
+    if (auto ours = msg::check_calibration(**frame, context.calibration().id); !ours) {
+      context.tolerate(ours.error());
+      continue;
+    }
     const std::int64_t begin_ns = now_ns();
     take_poses(context, poses, tracker);
     const auto hints = tracker.at((*frame)->header.origin_ns);
@@ -47,6 +53,7 @@ static void run_landmarks(service::Context& context) {
       context.tolerate(found.error());
       continue;
     }
+    found->calibration = (*frame)->calibration;
     hands.publish(*found);
     context.mark(found->header,
                  std::array{msg::StageMark{msg::Stage::detect, 0, begin_ns, now_ns()}});

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ipc/msg/same_calibration.hpp"
 #include "services/pose/pose_source.hpp"
 #include "services/runtime/context.hpp"
 
@@ -9,10 +10,11 @@ using service::must;
 /// Passes the newest landmarks to the source; waits for them. A timeout is no fault of this
 /// service: the first landmarks come after it is ready.
 static Result<void> see_landmarks(Result<ipc::Reader<msg::Landmarks>>& landmarks,
-                                  pose::PoseSource& source) {
+                                  std::uint32_t calibration, pose::PoseSource& source) {
   if (!landmarks) return tl::make_unexpected(landmarks.error());
   const auto seen = landmarks->latest(Deadline::in(50ms));
   if (!seen) return tl::make_unexpected(seen.error());
+  if (auto ours = msg::check_calibration(**seen, calibration); !ours) return ours;
   source.see(**seen);
   return {};
 }
@@ -30,7 +32,7 @@ static void run_pose(service::Context& context) {
   context.ready();
   while (context.running()) {
     if (source->needs_landmarks())
-      if (const auto seen = see_landmarks(landmarks, *source); !seen) {
+      if (const auto seen = see_landmarks(landmarks, context.calibration().id, *source); !seen) {
         if (seen.error().code != Errc::timeout) context.tolerate(seen.error());
         continue;
       }
@@ -39,6 +41,7 @@ static void run_pose(service::Context& context) {
       context.tolerate(sampled.error());
       continue;
     }
+    poses.calibration = source->needs_landmarks() ? context.calibration().id : 0;
     hands.publish(poses);
     context.mark(poses.header, std::array{msg::StageMark{msg::Stage::sample, 0,
                                                          poses.header.origin_ns, now_ns()}});

@@ -5,9 +5,14 @@ namespace handcast::projector {
 
 Result<void> Inputs::take_image(Deadline deadline) {
   auto newest = frames_.latest(deadline);
-  if (newest) image_ = std::move(*newest);
-  if (!newest && newest.error().code != Errc::timeout) return tl::make_unexpected(newest.error());
-  return {};
+  if (!newest && newest.error().code == Errc::timeout) return {};
+  if (!newest) return tl::make_unexpected(newest.error());
+  auto ours = msg::check_calibration(**newest, calibration_);
+  if (ours)
+    image_ = std::move(*newest);
+  else
+    image_.reset();
+  return ours;
 }
 
 renderer::TimedImage Inputs::image() const {

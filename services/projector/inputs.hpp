@@ -7,6 +7,7 @@
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "ipc/msg/same_calibration.hpp"
 #include "ipc/ring/reader.hpp"
 #include "renderer/base/image.hpp"
 
@@ -15,20 +16,23 @@ namespace handcast::projector {
 /// The inputs of the cascade: all poses and detections in order, and the newest image. One thread.
 class Inputs {
  public:
-  /// Takes the readers of the three rings.
+  /// Takes the readers of the three rings. `calibration`: the id of the one in use.
   Inputs(ipc::Reader<msg::CameraFrame> frames, ipc::Reader<msg::HandPoses> poses,
-         ipc::Reader<msg::Landmarks> landmarks)
-      : frames_(std::move(frames)), poses_(std::move(poses)), landmarks_(std::move(landmarks)) {}
+         ipc::Reader<msg::Landmarks> landmarks, std::uint32_t calibration)
+      : frames_(std::move(frames)),
+        poses_(std::move(poses)),
+        landmarks_(std::move(landmarks)),
+        calibration_(calibration) {}
 
   /// Takes the newest image, and passes all poses and detections since the last call to
   /// pipeline.push() (renderer::Pipeline, or a type with the same push()). Waits only for a new
   /// image, until the deadline. It is no error if nothing arrived. Errors: those of ipc::Reader,
-  /// except timeout.
+  /// except timeout; bad_data (something of another calibration arrived, and was left out).
   template <class Pipeline>
   Result<void> deliver(Pipeline& pipeline, Deadline image_deadline) {
     auto taken = take_image(image_deadline);
-    if (auto pushed = push_all(poses_, pipeline); !pushed) return pushed;
-    if (auto pushed = push_all(landmarks_, pipeline); !pushed) return pushed;
+    for (auto pushed : {push_all(poses_, pipeline), push_all(landmarks_, pipeline)})
+      if (!pushed && taken) taken = pushed;
     return taken;
   }
 
@@ -37,12 +41,16 @@ class Inputs {
 
  private:
   template <class Message, class Pipeline>
-  static Result<void> push_all(ipc::Reader<Message>& reader, Pipeline& pipeline) {
+  Result<void> push_all(ipc::Reader<Message>& reader, Pipeline& pipeline) const {
+    Result<void> ours;
     for (;;) {
       const auto message = reader.next(Deadline::now());
-      if (!message && message.error().code == Errc::timeout) return {};
+      if (!message && message.error().code == Errc::timeout) return ours;
       if (!message) return tl::make_unexpected(message.error());
-      pipeline.push(now_ns(), **message);
+      if (auto fits = msg::check_calibration(**message, calibration_); !fits)
+        ours = fits;
+      else
+        pipeline.push(now_ns(), **message);
     }
   }
   Result<void> take_image(Deadline deadline);
@@ -50,6 +58,7 @@ class Inputs {
   ipc::Reader<msg::CameraFrame> frames_;
   ipc::Reader<msg::HandPoses> poses_;
   ipc::Reader<msg::Landmarks> landmarks_;
+  std::uint32_t calibration_;
   std::optional<ipc::Sample<msg::CameraFrame>> image_;
 };
 

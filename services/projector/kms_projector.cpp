@@ -49,6 +49,11 @@ Result<std::unique_ptr<Projector>> open_kms(const config::Rig& rig,
                                    .rate_hz = settings.rate_hz,
                                    .may_scale = settings.packing == config::Packing::none});
   if (!screen) return fail_in("projector 'kms'", screen.error());
+  const auto& display = (*screen)->display();
+  if (auto ours = calib::check_device("projector", calibration.projector_device,
+                                      {display.model, display.connector});
+      !ours)
+    return fail_in("projector 'kms'", ours.error());
   warn_if_rates_differ((*screen)->refresh_ns(), settings);
   return std::make_unique<KmsProjector>(settings, width_px, height_px, std::move(*screen));
 }

@@ -28,7 +28,7 @@ static void run_projector(service::Context& context) {
   context.stand_by();
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
-                           must(context.reader<msg::Landmarks>("landmarks.hands")));
+                           must(context.reader<msg::Landmarks>("landmarks.hands")), calibration.id);
   projector::Brightness brightness(rig.projector, context.epoch_ns());
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
   if (rig.projector.packing != config::Packing::none)

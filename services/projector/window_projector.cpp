@@ -87,6 +87,11 @@ Result<std::unique_ptr<Projector>> open_window(const config::Rig& rig,
                                         .vsync = settings.window.vsync,
                                         .when_display_is_lost = end_without_display});
   if (!window) return fail(window.error().code, "projector 'window': " + window.error().what);
+  if (const auto monitor = (*window)->monitor())
+    if (auto ours = calib::check_device("projector", calibration.projector_device,
+                                        {monitor->model, monitor->output});
+        !ours)
+      return fail_in("projector 'window'", ours.error());
   return std::make_unique<WindowProjector>(settings, width_px, height_px, std::move(*window));
 }
 

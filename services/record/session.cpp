@@ -4,13 +4,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/client/rig_ring.hpp"
 #include "ipc/control/choose_rig.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/record/npy_folder.hpp"
 #include "services/record/recorder.hpp"
+#include "services/recording/about.hpp"
 
 namespace handcast::record {
 namespace {
@@ -20,12 +24,30 @@ using namespace std::chrono_literals;
 /// Memory for messages that are not written yet, of one ring: half a second of images.
 constexpr std::size_t kMostBytes = std::size_t{128} << 20;
 
-/// The settings of the rig as a file; a comment if it does not say them.
-std::string rig_file(const std::string& rig) {
+/// The settings of the rig as it runs. Errors: those of ask_with_descriptors(), parse_rig().
+Result<config::Rig> settings_of(const std::string& rig) {
   const auto answer = control::ask_with_descriptors(rig, {.verb = control::Verb::rig}, 2s);
-  if (!answer) return "# " + answer.error().what + "\n";
+  if (!answer) return tl::make_unexpected(answer.error());
   const auto text = answer->object.find("rig");
-  return text != answer->object.end() && text->is_string() ? text->get<std::string>() : "";
+  if (text == answer->object.end() || !text->is_string())
+    return fail(Errc::bad_data, "the supervisor does not say the settings of the rig");
+  return config::parse_rig(text->get<std::string>(), "the rig that is up");
+}
+
+/// What a recording says of its rig. Without its settings, the images are recorded all the same.
+recording::RecordingWriter::About about_of(const std::string& name) {
+  auto rig = settings_of(name);
+  if (!rig) {
+    log::warning("record: the recording has no settings and no calibration: {}", rig.error().what);
+    return {name, "# " + rig.error().what + "\n", ""};
+  }
+  const auto calibration = calib::load_calibration(rig->calibration);
+  if (!calibration) {
+    log::warning("record: the recording has no calibration: {}", calibration.error().what);
+    return {name, config::print_rig(*rig), ""};
+  }
+  rig->calibration = std::string(recording::kCalibrationFile);
+  return {name, config::print_rig(*rig), calib::print_calibration(*calibration)};
 }
 
 Result<std::vector<std::unique_ptr<Feed>>> open_feeds(const std::string& rig,
@@ -82,8 +104,7 @@ Result<void> record(const Options& options) {
   if (!there) return tl::make_unexpected(there.error());
   const auto streams = choose(options.rings, *there);
   if (!streams) return tl::make_unexpected(streams.error());
-  auto writer =
-      recording::RecordingWriter::create(options.folder, {*rig, rig_file(*rig)}, *streams);
+  auto writer = recording::RecordingWriter::create(options.folder, about_of(*rig), *streams);
   if (!writer) return tl::make_unexpected(writer.error());
   auto feeds = open_feeds(*rig, *streams);
   if (!feeds) return tl::make_unexpected(feeds.error());

@@ -12,6 +12,8 @@
 namespace handcast::recording {
 
 inline constexpr std::string_view kAboutFile = "recording.json";
+/// The calibration of the rig that was recorded; its rig.toml refers to it.
+inline constexpr std::string_view kCalibrationFile = "calibration.toml";
 
 /// The file of a recording of these streams, which have a type (streams.hpp).
 std::string about_text(const std::string& rig, const std::vector<std::string>& streams);

@@ -65,6 +65,9 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& folder, const Ab
   if (auto made = make_folder(folder); !made) return tl::make_unexpected(made.error());
   if (auto kept = write_text(folder / "rig.toml", about.rig_file); !kept)
     return tl::make_unexpected(kept.error());
+  if (!about.calibration.empty())
+    if (auto kept = write_text(folder / kCalibrationFile, about.calibration); !kept)
+      return tl::make_unexpected(kept.error());
   if (auto said = write_text(folder / kAboutFile, about_text(about.rig, streams)); !said)
     return tl::make_unexpected(said.error());
   std::vector<Stream> all;

@@ -17,8 +17,9 @@ class RecordingWriter {
  public:
   /// What a recording says about itself.
   struct About {
-    std::string rig;       ///< name of the rig
-    std::string rig_file;  ///< its settings as TOML; kept in rig.toml
+    std::string rig;          ///< name of the rig
+    std::string rig_file;     ///< its settings as TOML; kept in rig.toml
+    std::string calibration;  ///< the calibration file, kept in kCalibrationFile; empty: unknown
   };
 
   /// Creates the folder, or takes an empty one, and the files of `streams`, whose names are those

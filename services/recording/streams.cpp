@@ -40,7 +40,8 @@ const MessageType& type_of<msg::CameraFrame>() {
       "[" + kHeader +
           R"(, ["exposure_ns", "<i8"], ["origin_error_ns", "<i8"], )"
           R"(["lost", [["missing", "<u4"], ["incomplete", "<u4"], ["underrun", "<u4"], )"
-          R"(["skipped", "<u4"]]], ["width_px", "<u4"], ["height_px", "<u4"]])"};
+          R"(["skipped", "<u4"]]], ["width_px", "<u4"], ["height_px", "<u4"], )"
+          R"(["calibration", "<u4"], ["reserved", "<u4"]])"};
   return kType;
 }
 
@@ -49,7 +50,7 @@ const MessageType& type_of<msg::HandPoses>() {
   static const MessageType kType{
       msg::HandPoses::layout, sizeof(msg::HandPoses), 0,
       "[" + kHeader +
-          R"(, ["count", "<u4"], ["reserved", "<u4"], ["hands", [["side", "<u4"], )"
+          R"(, ["count", "<u4"], ["calibration", "<u4"], ["hands", [["side", "<u4"], )"
           R"(["confidence", "<f4"], ["joints", [["position_m", "<f4", [3]], )"
           R"(["orientation_xyzw", "<f4", [4]], ["radius_m", "<f4"]], [26]]], [2]]])"};
   return kType;
@@ -60,7 +61,7 @@ const MessageType& type_of<msg::Landmarks>() {
   static const MessageType kType{
       msg::Landmarks::layout, sizeof(msg::Landmarks), 0,
       "[" + kHeader +
-          R"(, ["count", "<u4"], ["reserved", "<u4"], ["hands", [["side", "<u4"], )"
+          R"(, ["count", "<u4"], ["calibration", "<u4"], ["hands", [["side", "<u4"], )"
           R"(["presence", "<f4"], ["points", [["x_px", "<f4"], ["y_px", "<f4"], )"
           R"(["confidence", "<f4"], ["sigma_px", "<f4"]], [21]]], [2]]])"};
   return kType;

@@ -83,7 +83,7 @@ Service::MaybeEvent Service::carry_out(const action::HandOver&) {
   auto next = spare_->promote();
   auto before = worker_->release();
   watch_worker(std::move(next));
-  watch_spare(std::move(before), log_);
+  watch_spare(std::move(before), spare_log_);  // its last words are not those of the new one
   take_wanted();
   return {};
 }

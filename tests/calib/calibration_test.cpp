@@ -145,6 +145,34 @@ TEST(CalibrationFile, ReadsBackAsItWasPrinted) {
   EXPECT_EQ(back->projector_from_camera, rig.projector_from_camera);
 }
 
+TEST(CalibrationFile, KeepsTheNamesOfItsDevices) {
+  auto rig = reference_rig();
+  rig.camera_device = "23456789";
+  rig.projector_device = "EPSON PJ";
+  const auto back = load_calibration(file_with(print_calibration(rig)));
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_EQ(back->camera_device, "23456789");
+  EXPECT_EQ(back->projector_device, "EPSON PJ");
+}
+
+TEST(CalibrationFile, HasAnIdThatChangesWithAnyOfItsNumbers) {
+  auto rig = reference_rig();
+  const auto id = load_calibration(file_with(print_calibration(rig)))->id;
+  EXPECT_NE(id, 0u);
+  EXPECT_EQ(load_calibration("")->id, id) << "the file has the numbers of the reference rig";
+  rig.camera.k1 += 1e-6;
+  EXPECT_NE(load_calibration(file_with(print_calibration(rig)))->id, id);
+}
+
+TEST(CheckDevice, AnotherDeviceThanTheCalibratedIsRefused) {
+  EXPECT_TRUE(check_device("camera", "", {"12"}));
+  EXPECT_TRUE(check_device("camera", "cam", {"12", "cam"}));
+  const auto other = check_device("camera", "11", {"12", "cam"});
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().code, Errc::bad_config);
+  EXPECT_THAT(other.error().what, HasSubstr("the camera '11', and this is '12'"));
+}
+
 TEST(CalibrationFile, NoFileIsTheReferenceRig) {
   const auto rig = load_calibration("");
   ASSERT_TRUE(rig);

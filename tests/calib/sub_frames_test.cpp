@@ -43,6 +43,10 @@ TEST(SubFrames, TheOutputIsWhatTheCalibrationFileSays) {
   }
 }
 
+TEST(SubFrames, HaveTheIdOfTheirCalibration) {
+  EXPECT_EQ(load_calibration("", Packing::quadrants_4)->id, load_calibration("")->id);
+}
+
 TEST(SubFrames, AnOutputThatCannotBeHalvedIsRefused) {
   test::Scratch scratch;
   auto odd = reference_rig();

@@ -12,17 +12,22 @@ namespace {
 constexpr double kFullScale = 255;
 
 /// Rounded down, so that a current never exceeds its limit.
-std::uint8_t level_of(Controller controller, double current, double limit) {
+std::uint8_t level_of(bool is_inverted, double current, double limit) {
   const double share = std::clamp(std::min(current, limit), 0.0, 1.0);
   const auto level = static_cast<int>(share * kFullScale);
-  return static_cast<std::uint8_t>(controller == Controller::dlpc350 ? 255 - level : level);
+  return static_cast<std::uint8_t>(is_inverted ? 255 - level : level);
 }
 
 }  // namespace
 
-Bytes encode_currents(Controller controller, const Currents& currents, double limit) {
-  return {level_of(controller, currents.red, limit), level_of(controller, currents.green, limit),
-          level_of(controller, currents.blue, limit)};
+bool is_inverted(config::LedSignal signal, Controller controller) {
+  if (signal == config::LedSignal::automatic) return controller == Controller::dlpc350;
+  return signal == config::LedSignal::inverted;
+}
+
+Bytes encode_currents(bool is_inverted, const Currents& currents, double limit) {
+  return {level_of(is_inverted, currents.red, limit), level_of(is_inverted, currents.green, limit),
+          level_of(is_inverted, currents.blue, limit)};
 }
 
 std::uint8_t enables_of(const Currents& currents) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "config/sections/dlp.hpp"
 #include "services/dlp/protocol/message.hpp"
 
 namespace handcast::dlp::protocol {
@@ -19,10 +20,12 @@ struct Currents {
   double red = 0, green = 0, blue = 0;
 };
 
-/// The data of led_currents; no current exceeds `limit`. The LightCrafter 4500 inverts the signal
-/// (255 is no current) although its manual says otherwise; TI's own program sends 255 minus the
-/// value. The DLPC900 does not.
-Bytes encode_currents(Controller controller, const Currents& currents, double limit);
+/// True if 255 means no current. The LightCrafter 4500 inverts the signal although its manual says
+/// otherwise, and TI's own program sends 255 minus the value; the boards with a DLPC900 do not.
+bool is_inverted(config::LedSignal signal, Controller controller);
+
+/// The data of led_currents; no current exceeds `limit`.
+Bytes encode_currents(bool is_inverted, const Currents& currents, double limit);
 
 /// The enables of the LEDs that have a current, for the sequence to switch; 0 if none has one.
 std::uint8_t enables_of(const Currents& currents);

@@ -103,10 +103,10 @@ TEST(Reply, ThatIsCutOrAbsurdIsBadDataNotAHang) {
 
 TEST(Currents, NeverExceedTheLimit) {
   const Currents currents{.red = 1, .green = 0.25, .blue = 0};
-  EXPECT_THAT(encode_currents(Controller::dlpc900, currents, 0.5), ElementsAre(127, 63, 0));
+  EXPECT_THAT(encode_currents(false, currents, 0.5), ElementsAre(127, 63, 0));
   // The drivers of the LightCrafter 4500 are inverted: 255 is dark.
-  EXPECT_THAT(encode_currents(Controller::dlpc350, currents, 0.5), ElementsAre(128, 192, 255));
-  EXPECT_THAT(encode_currents(Controller::dlpc350, currents, 0), Each(255));
+  EXPECT_THAT(encode_currents(true, currents, 0.5), ElementsAre(128, 192, 255));
+  EXPECT_THAT(encode_currents(true, currents, 0), Each(255));
 }
 
 TEST(Currents, EnableOnlyTheLedsThatHaveOne) {

@@ -10,6 +10,8 @@
 namespace handcast::projector {
 namespace {
 
+constexpr std::uint32_t kCalibration = 5;
+
 /// Replaces the pipeline and records the ids of the messages that it gets.
 struct Listener {
   void push(std::int64_t, const msg::HandPoses& message) {
@@ -35,9 +37,10 @@ struct Ring {
         reader(*ipc::Reader<Message>::attach(again())) {}
   ipc::Segment again() const { return *ipc::Segment::open(UniqueFd(::dup(segment.fd()))); }
 
-  void publish(std::uint64_t id) {
+  void publish(std::uint64_t id, std::uint32_t calibration = kCalibration) {
     Message message;
     message.header.frame_id = id;
+    message.calibration = calibration;
     writer.publish(message);
   }
   ipc::Segment segment;
@@ -47,8 +50,9 @@ struct Ring {
 
 class InputsTest : public testing::Test {
  protected:
-  void publish_image(std::uint64_t id) {
+  void publish_image(std::uint64_t id, std::uint32_t calibration = kCalibration) {
     auto slot = frames_.writer.loan();
+    slot->calibration = calibration;
     slot->header.frame_id = id;
     slot->header.origin_ns = 100 + static_cast<std::int64_t>(id);
     slot->width_px = 4;
@@ -60,7 +64,8 @@ class InputsTest : public testing::Test {
   Ring<msg::CameraFrame> frames_{msg::CameraFrame::bytes(4, 2)};
   Ring<msg::HandPoses> poses_;
   Ring<msg::Landmarks> landmarks_;
-  Inputs inputs_{std::move(frames_.reader), std::move(poses_.reader), std::move(landmarks_.reader)};
+  Inputs inputs_{std::move(frames_.reader), std::move(poses_.reader), std::move(landmarks_.reader),
+                 kCalibration};
   Listener pipeline_;
 };
 
@@ -86,6 +91,32 @@ TEST_F(InputsTest, OfTheImagesTheNewestIsKeptUntilANewerComes) {
   EXPECT_EQ(image.view.width, 4);
   EXPECT_EQ(image.view.height, 2);
   EXPECT_EQ(image.view.at(3, 1), 2);
+}
+
+TEST_F(InputsTest, WhatBelongsToAnotherCalibrationIsLeftOutAndReported) {
+  poses_.publish(1, 6);
+  poses_.publish(2, 0);  // a tracker's poses depend on no calibration
+  landmarks_.publish(3, 6);
+  landmarks_.publish(4);
+  publish_image(5, 6);
+  const auto delivered = inputs_.deliver(pipeline_, Deadline::now());
+  ASSERT_FALSE(delivered);
+  EXPECT_EQ(delivered.error().code, Errc::bad_data);
+  EXPECT_THAT(delivered.error().what, testing::HasSubstr("another calibration"));
+  EXPECT_THAT(pipeline_.poses, testing::ElementsAre(2));
+  EXPECT_THAT(pipeline_.landmarks, testing::ElementsAre(4));
+  EXPECT_FALSE(inputs_.image());
+  publish_image(6);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  EXPECT_TRUE(inputs_.image());
+}
+
+TEST_F(InputsTest, AnImageOfTheOldCalibrationIsNotKeptWhenTheNewOneComes) {
+  publish_image(1);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  publish_image(2, 6);
+  ASSERT_FALSE(inputs_.deliver(pipeline_, Deadline::now()));
+  EXPECT_FALSE(inputs_.image());
 }
 
 TEST_F(InputsTest, WithoutAnySensorThereIsNoImageAndNoError) {

@@ -125,7 +125,7 @@ TEST_F(Format, AnotherVersionOfAMessageIsRefusedWithASentence) {
   test::write(folder_, 1);
   auto about = test::contents(folder_ / "recording.json");
   const auto at = about.find("CameraFrame/");
-  about.replace(at, std::strlen("CameraFrame/2"), "CameraFrame/0");
+  about.replace(at, std::strlen("CameraFrame/3"), "CameraFrame/0");
   test::replace(folder_ / "recording.json", about);
   const auto reader = StreamReader::open<msg::CameraFrame>(folder_, "camera.frames");
   ASSERT_FALSE(reader);
