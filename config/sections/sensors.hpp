@@ -50,9 +50,17 @@ void describe(Visitor& visitor, CameraReplay& replay) {
 }
 
 /// How a GenICam camera sends its pixels.
-enum class PixelFormat { mono8, mono10, mono10_packed, mono12, mono12_packed };
-constexpr std::array<std::string_view, 5> words_of(PixelFormat) {
-  return {"Mono8", "Mono10", "Mono10p", "Mono12", "Mono12p"};
+enum class PixelFormat {
+  mono8,
+  mono10,
+  mono10_p,       ///< a string of bits
+  mono10_packed,  ///< GigE Vision: two pixels in three bytes
+  mono12,
+  mono12_p,       ///< a string of bits
+  mono12_packed,  ///< GigE Vision: two pixels in three bytes
+};
+constexpr std::array<std::string_view, 7> words_of(PixelFormat) {
+  return {"Mono8", "Mono10", "Mono10p", "Mono10Packed", "Mono12", "Mono12p", "Mono12Packed"};
 }
 
 /// What starts an exposure.
@@ -93,8 +101,8 @@ void describe(Visitor& visitor, Aravis& aravis) {
   visitor.field("binning", aravis.binning, between(1, 8),
                 "So many columns and rows of the sensor become one pixel.");
   visitor.field("format", aravis.format,
-                "How the camera sends a pixel. The 8 highest bits are used. A p at the end: "
-                "packed.");
+                "How the camera sends a pixel. The 8 highest bits are used. Mono8 needs the fewest "
+                "bytes; the others are for cameras without it.");
   visitor.field("gain_db", aravis.gain_db, between(0, 60, "dB"), "Analogue gain.");
   visitor.field("trigger", aravis.trigger,
                 "What starts an exposure. free_run: the camera's clock. line: trigger_line. "

@@ -16,13 +16,13 @@ namespace {
 class AravisCamera final : public Camera {
  public:
   AravisCamera(const aravis::Device& device, const config::Camera& settings,
-               const calib::CameraModel& model, std::unique_ptr<aravis::Session> session,
+               const calib::Calibration& calibration, std::unique_ptr<aravis::Session> session,
                std::shared_ptr<aravis::Mailbox> mailbox)
       : format_(settings.aravis.format),
-        width_px_(model.width_px),
-        height_px_(model.height_px),
+        width_px_(calibration.camera.width_px),
+        height_px_(calibration.camera.height_px),
         mailbox_(mailbox),
-        keeper_(device, settings, width_px_, height_px_, std::move(session), std::move(mailbox)) {}
+        keeper_(device, settings, calibration, std::move(session), std::move(mailbox)) {}
 
   Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                        Deadline deadline) override {
@@ -63,23 +63,19 @@ class AravisCamera final : public Camera {
 Result<std::unique_ptr<Camera>> open_aravis(const config::Rig& rig,
                                             const calib::Calibration& calibration,
                                             const std::int64_t& /*epoch_ns*/) {
-  const auto& model = calibration.camera;
   const auto device = aravis::find_device(rig.camera.aravis.device);
   if (!device) return fail_in("camera 'aravis'", device.error());
-  if (auto ours = calib::check_device("camera", calibration.camera_device,
-                                      {device->serial, device->id, device->model});
-      !ours)
-    return fail_in("camera 'aravis'", ours.error());
   const auto mailbox = std::make_shared<aravis::Mailbox>();
-  auto session =
-      aravis::Session::start(*device, rig.camera, model.width_px, model.height_px, mailbox);
+  auto session = aravis::Session::start(*device, rig.camera, calibration, mailbox);
   if (!session) return fail_in("camera 'aravis'", session.error());
+  const auto& named = (*session)->device();
   const auto& accepted = (*session)->accepted();
   log::info(
-      "camera: {} {} {}, {:.1f} Hz, exposure {:.3f} ms{}", device->id, device->vendor,
-      device->model, accepted.rate_hz, accepted.exposure_ms,
+      "camera: {} {} {}, {:.1f} Hz, exposure {:.3f} ms{}", named.vendor, named.model, named.serial,
+      accepted.rate_hz, accepted.exposure_ms,
       accepted.packet_bytes > 0 ? fmt::format(", packets of {} bytes", accepted.packet_bytes) : "");
-  return std::make_unique<AravisCamera>(*device, rig.camera, model, std::move(*session), mailbox);
+  return std::make_unique<AravisCamera>(*device, rig.camera, calibration, std::move(*session),
+                                        mailbox);
 }
 
 }  // namespace handcast::camera

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "calib/calibration.hpp"
+#include "services/doctor/display.hpp"
 
 namespace handcast::doctor {
 namespace {
@@ -19,6 +22,10 @@ Finding calibration_of(const config::Rig& rig) {
   const auto calibration = calib::load_calibration(rig.calibration);
   if (!calibration)
     return {"calibration", Grade::fault, calibration.error().what, "`handcast config --check`"};
+  if (is_real && calibration->camera_device.empty())
+    return {"calibration", Grade::advice,
+            "it does not name its camera, so that another one would not be noticed",
+            "set [camera] device in it, as `handcast devices` lists the camera"};
   return {"calibration", Grade::good,
           fmt::format("camera {} x {} px, projector {} x {} px", calibration->camera.width_px,
                       calibration->camera.height_px, calibration->projector_width_px,
@@ -33,7 +40,12 @@ std::vector<Finding> examine_file(const Result<config::Rig>& rig) {
     return {{"rig file", Grade::fault, rig.error().what,
              "`handcast config --reference` explains "
              "all settings"}};
-  return {{"rig file", Grade::good, fmt::format("rig '{}'", rig->name), ""}, calibration_of(*rig)};
+  std::vector<Finding> findings{{"rig file", Grade::good, fmt::format("rig '{}'", rig->name), ""},
+                                calibration_of(*rig)};
+  if (const auto calibration = calib::load_calibration(rig->calibration))
+    for (auto& finding : examine_display(*rig, *calibration))
+      findings.push_back(std::move(finding));
+  return findings;
 }
 
 }  // namespace handcast::doctor

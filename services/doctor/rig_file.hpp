@@ -7,7 +7,8 @@
 
 namespace handcast::doctor {
 
-/// Judges a rig file and its calibration. `rig`: the result of config::load_rig().
+/// Judges a rig file, its calibration, and the display that they mean. `rig`: the result of
+/// config::load_rig().
 std::vector<Finding> examine_file(const Result<config::Rig>& rig);
 
 }  // namespace handcast::doctor

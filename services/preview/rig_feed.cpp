@@ -10,6 +10,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/control/choose_rig.hpp"
 #include "ipc/control/control_client.hpp"
+#include "ipc/msg/same_calibration.hpp"
 #include "services/preview/status_gauges.hpp"
 
 namespace handcast::preview {
@@ -38,7 +39,7 @@ Result<World> world_of(const std::string& rig) {
 
 void RigFeed::learn_world() {
   auto world = world_of(rig_);
-  if (!world) missing_.push_back("only images are shown: " + world.error().what);
+  no_world_ = world ? "" : "only images are shown: " + world.error().what;
   maker_ = std::make_unique<SceneMaker>(world ? std::optional(std::move(*world)) : std::nullopt);
 }
 
@@ -143,6 +144,9 @@ void RigFeed::take_rates() {
   };
   take(camera_), take(poses_), take(landmarks_), take(light_);
   ask_status();
+  // The rig was reloaded with another calibration.
+  if (newest_.frame && !msg::check_calibration(**newest_.frame, maker_->calibration()))
+    learn_world();
 }
 
 void RigFeed::ask_status() {
@@ -171,6 +175,7 @@ Scene RigFeed::scene() {
   auto& projection = shown_.projection ? shown_.projection : newest_.projection;
   auto& frame = shown_.frame ? shown_.frame : newest_.frame;
   auto scene = maker_->make(frame ? &**frame : nullptr, projection ? &**projection : nullptr);
+  if (!no_world_.empty()) scene.missing.insert(scene.missing.begin(), no_world_);
   scene.missing.insert(scene.missing.begin(), missing_.begin(), missing_.end());
   return scene;
 }

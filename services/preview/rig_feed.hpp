@@ -72,6 +72,7 @@ class RigFeed {
 
   std::string rig_;
   std::vector<std::string> missing_;  ///< sentences about what is not shown
+  std::string no_world_;              ///< why the rig's settings are not known; empty if they are
   std::string silent_;                ///< why the supervisor does not answer; empty if it does
   std::unique_ptr<SceneMaker> maker_;
   Input<msg::CameraFrame> camera_;

@@ -154,8 +154,8 @@ void print_formats() {
   constexpr std::size_t kPixels = 720 * 540;
   std::vector<std::uint8_t> packed(2 * kPixels, 77), grey(kPixels);
   fmt::print("to 8 bits, 720 x 540, us        p50      p99\n");
-  for (const auto format : {PixelFormat::mono8, PixelFormat::mono10, PixelFormat::mono10_packed,
-                            PixelFormat::mono12, PixelFormat::mono12_packed}) {
+  for (const auto format : {PixelFormat::mono8, PixelFormat::mono10, PixelFormat::mono10_p,
+                            PixelFormat::mono12, PixelFormat::mono12_p}) {
     std::vector<double> us;
     for (int i = 0; i < 300; ++i) {
       const std::int64_t begin_ns = now_ns();

@@ -58,6 +58,21 @@ TEST_F(Devices, EachIsListedWithTheSettingsThatUseIt) {
                           HasSubstr("displays\n")));
 }
 
+TEST_F(Devices, TheDoctorLooksAtTheDisplayOfTheRig) {
+  const Variable preload("LD_PRELOAD", HANDCAST_EMULATED_DEVICES),
+      card("HANDCAST_EMULATED_CARD", "EPSON PJ");
+  const auto display = [this](const std::string& connector) {
+    const auto outcome =
+        handcast({"doctor", "config/rigs/twin.toml", "--json", "--set", "projector.backend=kms",
+                  "--set", "projector.kms.connector=" + connector});
+    for (const auto& finding : nlohmann::json::parse(outcome.output))
+      if (finding["check"] == "display") return finding;
+    return nlohmann::json();
+  };
+  EXPECT_THAT(display("HDMI-A-1")["sentence"].get<std::string>(), HasSubstr("EPSON PJ"));
+  EXPECT_EQ(display("VGA-9")["grade"], "fault");
+}
+
 TEST_F(Devices, AWrongWordIsAUsageError) {
   for (const auto* verb : {"devices", "doctor"}) {
     const auto outcome = handcast({verb, "--nonsense"});

@@ -128,6 +128,18 @@ Result<Owned<ArvCamera>> open_device(const Device& device) {
   return Owned<ArvCamera>(*camera);
 }
 
+Device with_its_names(ArvCamera* camera, Device device) {
+  const auto learn = [&](std::string& name, auto* call) {
+    if (!name.empty()) return;
+    const auto said = ask([&](GError** error) { return text_of(call(camera, error)); });
+    if (said) name = *said;
+  };
+  learn(device.serial, arv_camera_get_device_serial_number);
+  learn(device.vendor, arv_camera_get_vendor_name);
+  learn(device.model, arv_camera_get_model_name);
+  return device;
+}
+
 bool Presence::is_there() const {
   if (device_.is_gige()) return answers(device_.address);
   return device_.protocol != "USB3Vision" || is_on_the_usb(device_);

@@ -25,12 +25,11 @@ std::int64_t patience_of(const config::Camera& settings) {
 
 }  // namespace
 
-Keeper::Keeper(Device device, const config::Camera& settings, int width_px, int height_px,
+Keeper::Keeper(Device device, const config::Camera& settings, const calib::Calibration& calibration,
                std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox)
     : device_(std::move(device)),
       settings_(settings),
-      width_px_(width_px),
-      height_px_(height_px),
+      calibration_(calibration),
       session_(std::move(session)),
       mailbox_(std::move(mailbox)),
       presence_(device_),
@@ -79,24 +78,40 @@ void Keeper::watch() {
   } else {
     sleep_until_ns(now_ns() + kTurn_ns);
   }
+  if (is_reopened_ && mailbox_->last_arrival_ns() > started_ns_) found("it was opened again");
   if (!is_silent()) return;
   is_lost_ = true;
-  lost_ns_ = now_ns();
+  if (!is_reopened_) lost_ns_ = now_ns();
 }
 
-void Keeper::miss_it() {
-  if (trouble()) return;
-  log::warning("camera: no image of {} for {:.0f} ms; looking for it", device_.id,
-               ns_to_ms(patience_ns_ + now_ns() - lost_ns_));
-  say(Error{Errc::timeout, fmt::format("camera 'aravis': {} sends no images; it is opened again as "
+Error Keeper::why_no_images(bool answers) const {
+  if (!answers || mailbox_->last_arrival_ns() > started_ns_)
+    return {Errc::timeout, fmt::format("camera 'aravis': {} sends no images; it is opened again as "
                                        "soon as it answers",
-                                       device_.id)});
+                                       device_.id)};
+  if (!device_.is_gige() || !session_)
+    return {Errc::timeout,
+            fmt::format("camera 'aravis': {} answers, but none of its images arrives", device_.id)};
+  return {Errc::timeout,
+          fmt::format("camera 'aravis': {} answers, but none of its images arrives; packets of {} "
+                      "bytes may be too large for the network (camera.aravis.packet_bytes; 1500 "
+                      "pass nearly everywhere), or a firewall stops them",
+                      device_.id, session_->accepted().packet_bytes)};
+}
+
+void Keeper::miss_it(bool answers) {
+  const auto why = why_no_images(answers);
+  // That it answers is known later than that it is silent.
+  if (const auto said = trouble(); said && (!answers || !session_ || said->what == why.what))
+    return;
+  log::warning("{}", why.what);
+  say(why);
 }
 
 void Keeper::look_for_it() {
   if (presence_.is_there()) return reopen();
   if (mailbox_->last_arrival_ns() > lost_ns_) return found("its images came back");
-  miss_it();
+  miss_it(false);
   sleep_until_ns(now_ns() + kTurn_ns);
 }
 
@@ -105,9 +120,9 @@ void Keeper::reopen() {
   // After a cable was plugged in again, the images come back by themselves.
   sleep_until_ns(answered_ns + std::max(2 * kTurn_ns, seconds_to_ns(3 / settings_.rate_hz)));
   if (mailbox_->last_arrival_ns() > answered_ns) return found("its images came back");
-  miss_it();
+  miss_it(true);
   session_.reset();
-  auto session = Session::start(device_, settings_, width_px_, height_px_, mailbox_);
+  auto session = Session::start(device_, settings_, calibration_, mailbox_);
   if (!session) {
     say(Error{session.error().code == Errc::bad_config ? Errc::bad_config : Errc::timeout,
               fmt::format("camera 'aravis': {}", session.error().what)});
@@ -115,14 +130,15 @@ void Keeper::reopen() {
   }
   session_ = std::move(*session);
   started_ns_ = next_trigger_ns_ = now_ns();
-  found("it was opened again");
+  is_lost_ = false;
+  is_reopened_ = true;
 }
 
 void Keeper::found(std::string_view how) {
   if (trouble())
     log::info("camera: {} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_),
               how);
-  is_lost_ = false;
+  is_lost_ = is_reopened_ = false;
   say(std::nullopt);
 }
 

@@ -16,7 +16,7 @@ namespace handcast::camera::aravis {
 class Keeper {
  public:
   /// `session` streams into `mailbox`. `device`: where to look for it when it is lost.
-  Keeper(Device device, const config::Camera& settings, int width_px, int height_px,
+  Keeper(Device device, const config::Camera& settings, const calib::Calibration& calibration,
          std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox);
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
@@ -29,17 +29,20 @@ class Keeper {
   void run(const std::stop_token& stop);
   void watch();
   void look_for_it();
-  /// Says that the camera is lost, if it has not been said.
-  void miss_it();
+  /// Says that the camera is lost, if it has not been said. `answers`: it is there, and only its
+  /// images are not.
+  void miss_it(bool answers);
+  Error why_no_images(bool answers) const;
   /// Opens the camera anew, unless its images have come back by themselves.
   void reopen();
+  /// Its images have come.
   void found(std::string_view how);
   void say(std::optional<Error> trouble);
   bool is_silent() const;
 
   Device device_;
   config::Camera settings_;
-  int width_px_, height_px_;
+  calib::Calibration calibration_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<Mailbox> mailbox_;
   Presence presence_;
@@ -47,6 +50,7 @@ class Keeper {
   std::int64_t started_ns_;       ///< the last start of the session
   std::int64_t next_trigger_ns_;  ///< of the software triggers
   bool is_lost_ = false;
+  bool is_reopened_ = false;  ///< and has not yet sent an image
   std::int64_t lost_ns_ = 0;  ///< when it was lost
   mutable std::mutex mutex_;
   std::optional<Error> trouble_;

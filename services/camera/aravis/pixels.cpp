@@ -12,8 +12,10 @@ std::size_t bits_of(PixelFormat format) {
   switch (format) {
     case PixelFormat::mono8:
       return 8;
-    case PixelFormat::mono10_packed:
+    case PixelFormat::mono10_p:
       return 10;
+    case PixelFormat::mono12_p:
+    case PixelFormat::mono10_packed:
     case PixelFormat::mono12_packed:
       return 12;
     case PixelFormat::mono10:
@@ -61,6 +63,11 @@ void from_12_bits(std::span<const std::uint8_t> packed, std::span<std::uint8_t> 
   for (; i < grey.size(); ++i) grey[i] = byte_at(packed, 12 * i + 4);
 }
 
+/// Two pixels are three bytes: the 8 highest bits of each, and between them the lowest of both.
+void from_pairs(std::span<const std::uint8_t> packed, std::span<std::uint8_t> grey) {
+  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = packed[i / 2 * 3 + i % 2 * 2];
+}
+
 }  // namespace
 
 std::size_t bytes_of(PixelFormat format, std::size_t pixels) {
@@ -79,11 +86,15 @@ void to_grey(PixelFormat format, std::span<const std::uint8_t> packed,
     case PixelFormat::mono12:
       from_16_bits<4>(packed, grey);
       break;
-    case PixelFormat::mono10_packed:
+    case PixelFormat::mono10_p:
       from_10_bits(packed, grey);
       break;
-    case PixelFormat::mono12_packed:
+    case PixelFormat::mono12_p:
       from_12_bits(packed, grey);
+      break;
+    case PixelFormat::mono10_packed:
+    case PixelFormat::mono12_packed:
+      from_pairs(packed, grey);
       break;
   }
 }

@@ -14,17 +14,28 @@ constexpr int kSocketImages = 8;
 
 }  // namespace
 
-Session::Session(Owned<ArvCamera> camera, const config::Camera& settings,
+Session::Session(Owned<ArvCamera> camera, Device device, const config::Camera& settings,
                  std::shared_ptr<Mailbox> mailbox)
-    : camera_(std::move(camera)), settings_(settings), mailbox_(std::move(mailbox)) {}
+    : camera_(std::move(camera)),
+      device_(std::move(device)),
+      settings_(settings),
+      mailbox_(std::move(mailbox)) {}
 
 Result<std::unique_ptr<Session>> Session::start(const Device& device,
-                                                const config::Camera& settings, int width_px,
-                                                int height_px, std::shared_ptr<Mailbox> mailbox) {
+                                                const config::Camera& settings,
+                                                const calib::Calibration& calibration,
+                                                std::shared_ptr<Mailbox> mailbox) {
   auto camera = open_device(device);
   if (!camera) return tl::make_unexpected(camera.error());
-  std::unique_ptr<Session> session(new Session(std::move(*camera), settings, std::move(mailbox)));
-  const auto accepted = configure(session->camera_.get(), settings, width_px, height_px);
+  const auto named = with_its_names(camera->get(), device);
+  if (auto ours = calib::check_device("camera", calibration.camera_device,
+                                      {named.serial, named.id, named.model});
+      !ours)
+    return tl::make_unexpected(ours.error());
+  std::unique_ptr<Session> session(
+      new Session(std::move(*camera), named, settings, std::move(mailbox)));
+  const auto accepted = configure(session->camera_.get(), settings, calibration.camera.width_px,
+                                  calibration.camera.height_px);
   if (!accepted) return tl::make_unexpected(accepted.error());
   session->accepted_ = *accepted;
   if (const auto started = session->start_stream(); !started)

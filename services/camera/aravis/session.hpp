@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "calib/calibration.hpp"
 #include "config/sections/sensors.hpp"
 #include "services/camera/aravis/configure.hpp"
 #include "services/camera/aravis/device.hpp"
@@ -14,26 +15,30 @@ namespace handcast::camera::aravis {
 /// is absent takes up to 5 s.
 class Session {
  public:
-  /// Opens a camera and starts its images, of the given size. Errors: those of open_device() and
-  /// configure().
+  /// Opens a camera and starts its images, of the size in the calibration. Errors: those of
+  /// open_device() and configure(); bad_config (the calibration was made with another camera).
   static Result<std::unique_ptr<Session>> start(const Device& device,
-                                                const config::Camera& settings, int width_px,
-                                                int height_px, std::shared_ptr<Mailbox> mailbox);
+                                                const config::Camera& settings,
+                                                const calib::Calibration& calibration,
+                                                std::shared_ptr<Mailbox> mailbox);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   ~Session();
 
+  /// The camera, with the names that it says of itself.
+  const Device& device() const { return device_; }
   /// What the camera has accepted.
   const Accepted& accepted() const { return accepted_; }
   /// Starts an exposure; only with the software trigger. Errors: unavailable.
   Result<void> trigger();
 
  private:
-  Session(Owned<ArvCamera> camera, const config::Camera& settings,
+  Session(Owned<ArvCamera> camera, Device device, const config::Camera& settings,
           std::shared_ptr<Mailbox> mailbox);
   Result<void> start_stream();
 
   Owned<ArvCamera> camera_;
+  Device device_;
   Owned<ArvStream> stream_;
   std::shared_ptr<Receiver> receiver_;
   config::Camera settings_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ipc/msg/largest_images.hpp"
+#include "ipc/msg/same_calibration.hpp"
 #include "renderer/predict/project_landmarks.hpp"
 #include "services/preview/scene/sane_time.hpp"
 
@@ -210,6 +211,10 @@ Scene SceneMaker::make(const msg::CameraFrame* frame, const msg::Projection* pro
   scene.image_id = frame->header.frame_id;
   scene.exposure_ns = frame->exposure_ns;
   if (!world_) return scene;
+  if (!msg::check_calibration(*frame, world_->calibration.id)) {
+    scene.missing.emplace_back("nothing is drawn on the image: it belongs to another calibration");
+    return scene;
+  }
   if (!fits(*frame)) {
     scene.missing.push_back(fmt::format(
         "nothing is drawn on the image: it has {}x{} px, and the calibration is for {}x{} px",

@@ -33,6 +33,9 @@ class SceneMaker {
   /// the light are known already, i.e. some 30 ms after it.
   Scene make(const msg::CameraFrame* frame, const msg::Projection* projection);
 
+  /// The id of the world's calibration; 0 without a world.
+  std::uint32_t calibration() const { return world_ ? world_->calibration.id : 0; }
+
  private:
   /// A hand that is tracked, between the exposure and the light.
   struct Motion {

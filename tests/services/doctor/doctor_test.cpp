@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "services/doctor/display.hpp"
 #include "services/doctor/images.hpp"
 #include "services/doctor/machine.hpp"
 #include "services/doctor/rig_file.hpp"
@@ -108,6 +109,43 @@ TEST(RigFile, ARealCameraNeedsACalibrationOfItsOwn) {
   EXPECT_EQ(finding_of(examine_file(rig), "calibration").grade, Grade::fault);
   rig.calibration = "/nowhere/calibration.toml";
   EXPECT_THAT(finding_of(examine_file(rig), "calibration").sentence, HasSubstr("/nowhere"));
+}
+
+TEST(RigFile, ACalibrationThatDoesNotNameItsCameraGetsAdvice) {
+  const test::Scratch scratch;
+  config::Rig rig;
+  rig.camera.backend = "v4l2";
+  rig.calibration = scratch.path() / "calibration.toml";
+  auto calibration = calib::reference_rig();
+  std::ofstream(rig.calibration) << calib::print_calibration(calibration);
+  EXPECT_EQ(finding_of(examine_file(rig), "calibration").grade, Grade::advice);
+  calibration.camera_device = "Webcam";
+  std::ofstream(rig.calibration) << calib::print_calibration(calibration);
+  EXPECT_EQ(finding_of(examine_file(rig), "calibration").grade, Grade::good);
+}
+
+TEST(Display, IsJudgedByTheCalibrationAndTheRate) {
+  const auto calibration = calib::reference_rig();
+  config::Projector projector;
+  projector.rate_hz = 60;
+  const auto grade = [&](const DisplayMode& mode, const char* check) {
+    return finding_of(judge_mode(mode, projector, calibration), check).grade;
+  };
+  EXPECT_EQ(grade({"it", 1024, 768, 59.94}, "display"), Grade::good);
+  EXPECT_EQ(grade({"it", 1024, 768, 59.94}, "display rate"), Grade::good);
+  EXPECT_EQ(grade({"it", 1024, 768, 0}, "display rate"), Grade::good) << "an unknown rate";
+  EXPECT_EQ(grade({"it", 1024, 768, 120}, "display rate"), Grade::advice);
+  EXPECT_EQ(grade({"it", 1280, 800, 60}, "display"), Grade::advice);
+  projector.packing = config::Packing::planes_24x1;
+  EXPECT_EQ(grade({"it", 1280, 800, 60}, "display"), Grade::fault) << "sub-frames cannot be scaled";
+}
+
+TEST(Display, IsNotLookedForIfTheRigHasNone) {
+  config::Rig rig;
+  for (const auto* backend : {"twin", "file"}) {
+    rig.projector.backend = backend;
+    EXPECT_TRUE(examine_display(rig, calib::reference_rig()).empty());
+  }
 }
 
 TEST(RigFile, AFaultyFileIsTheOnlyFinding) {

@@ -49,6 +49,21 @@ TEST(Scene, JointsAreThoseOfTheTimeOfTheImage) {
   EXPECT_NEAR(scene.hands[0].joints_px[12].y, 250, 0.5);
 }
 
+TEST(Scene, NothingIsDrawnOnAnImageOfAnotherCalibration) {
+  auto ours = world();
+  ours.calibration.id = 5;
+  SceneMaker maker(ours);
+  maker.push(landmarks(kImage_ns, {300, 200}, 2.5f));
+  auto image = frame();
+  image->calibration = 6;
+  const auto scene = maker.make(&*image, nullptr);
+  EXPECT_EQ(scene.camera.width(), 720) << "the image itself is shown";
+  EXPECT_THAT(scene.hands, IsEmpty());
+  EXPECT_THAT(scene.missing, SizeIs(1));
+  image->calibration = 5;
+  EXPECT_THAT(maker.make(&*image, nullptr).hands, SizeIs(1));
+}
+
 TEST(Scene, ARigWithoutHandsShowsImageAndLight) {
   SceneMaker maker(world());
   const auto scene = maker.make(&*frame(), &*light());

@@ -3,12 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <span>
 #include <thread>
 
+#include "config/settings/choice.hpp"
 #include "services/camera/aravis/device.hpp"
+#include "services/camera/aravis/pixels.hpp"
 #include "services/camera/camera.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/camera/aravis/fake_camera.hpp"
 
 namespace handcast::camera {
@@ -196,6 +201,41 @@ TEST_F(AravisCamera, AnImageOfTheCalibrationThatTheSensorDoesNotHaveIsRefused) {
                                HasSubstr("calibration")));
 }
 
+TEST_F(AravisCamera, PixelsOfEveryFormatArriveAsGrey) {
+  const std::vector<std::pair<std::string, std::uint32_t>> formats{
+      {"Mono10", 0x01100003}, {"Mono10p", 0x010a0046}, {"Mono10Packed", 0x010c0004},
+      {"Mono12", 0x01100005}, {"Mono12p", 0x010c0047}, {"Mono12Packed", 0x010c0006}};
+  const test::Scratch scratch;
+  FakeCamera::offer(formats, scratch.path() / "camera.xml");
+  for (const auto& [name, value] : formats) {
+    SCOPED_TRACE(name);
+    const auto format = *config::choice_named<config::PixelFormat>(name);
+    rig_.camera.aravis.format = format;
+    std::vector<std::uint8_t> sent(bytes_of(format, kWidth * kHeight)), grey(kWidth * kHeight);
+    for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = static_cast<std::uint8_t>(i % 251);
+    to_grey(format, sent, grey);
+    plug_in([&](std::uint8_t* pixels, std::size_t bytes) {
+      std::memcpy(pixels, sent.data(), std::min(bytes, sent.size()));
+    });
+    const auto opened = open();
+    ASSERT_TRUE(opened) << opened.error().what;
+    ASSERT_TRUE(capture());
+    EXPECT_EQ(fake_->read(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT), value);
+    EXPECT_TRUE(std::ranges::equal(grey, std::span(frame().pixels(), grey.size())));
+    camera_.reset();
+    fake_.reset();
+  }
+  FakeCamera::offer_the_usual();
+}
+
+TEST_F(AravisCamera, ACameraThatWasNotCalibratedIsRefused) {
+  plug_in();
+  calibration_.camera_device = "23456789";
+  EXPECT_THAT(refusal(), HasSubstr("made with the camera '23456789', and this is 'GV01'"));
+  calibration_.camera_device = "GV01";
+  EXPECT_TRUE(open());
+}
+
 TEST_F(AravisCamera, ALostPacketCostsItsImageAndIsCounted) {
   plug_in();
   ASSERT_TRUE(open());
@@ -212,6 +252,22 @@ TEST_F(AravisCamera, ALostPacketCostsItsImageAndIsCounted) {
   EXPECT_EQ(images, 100u);
   EXPECT_GT(by_packets, 5u);
   EXPECT_EQ(last - first, images + lost);
+}
+
+TEST_F(AravisCamera, PacketsThatAllStayOnTheWayAreSaidWithTheRemedy) {
+  plug_in();
+  fake_->lose(1);
+  ASSERT_TRUE(open());
+  std::string said;
+  for (const auto until = Deadline::in(5s);
+       !until.passed() && said.find("packet_bytes") == said.npos;) {
+    const auto captured = capture(20ms);
+    ASSERT_FALSE(captured);
+    said = captured.error().what;
+  }
+  EXPECT_THAT(said, HasSubstr("answers, but none of its images arrives; packets of 8000 bytes"));
+  fake_->lose(0);
+  capture_again(5s);
 }
 
 TEST_F(AravisCamera, ImagesThatNobodyFetchedAreCountedAsSkipped) {

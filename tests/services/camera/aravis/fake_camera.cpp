@@ -3,6 +3,7 @@
 
 #include <arv.h>
 
+#include <fstream>
 #include <utility>
 
 namespace handcast::test {
@@ -22,6 +23,23 @@ struct FakeCamera::State {
               arv_fake_camera_get_payload(self.inner()));
   }
 };
+
+void FakeCamera::offer(const std::vector<std::pair<std::string, std::uint32_t>>& formats,
+                       const std::string& file) {
+  auto* camera = arv_fake_camera_new("description");
+  std::size_t bytes = 0;
+  std::string description(arv_fake_camera_get_genicam_xml(camera, &bytes));
+  g_object_unref(camera);
+  const std::string list_end = "<pValue>PixelFormatRegister</pValue>";
+  for (const auto& [name, value] : formats)
+    description.insert(description.find(list_end),
+                       "<EnumEntry Name=\"" + name + "\" NameSpace=\"Standard\"><Value>" +
+                           std::to_string(value) + "</Value></EnumEntry>\n");
+  std::ofstream(file) << description;
+  arv_set_fake_camera_genicam_filename(file.c_str());
+}
+
+void FakeCamera::offer_the_usual() { arv_set_fake_camera_genicam_filename(nullptr); }
 
 FakeCamera::FakeCamera(Fill fill, const std::string& interface, const std::string& serial)
     : state_(std::make_unique<State>()) {

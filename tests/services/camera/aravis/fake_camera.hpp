@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace handcast::test {
 
@@ -14,6 +16,13 @@ class FakeCamera {
  public:
   /// Fills an image of `bytes` bytes. Called on the camera's thread.
   using Fill = std::function<void(std::uint8_t* pixels, std::size_t bytes)>;
+
+  /// Makes cameras that are created from now on offer these pixel formats, too: their names and
+  /// values in the GenICam convention. `file`: where their description is written.
+  static void offer(const std::vector<std::pair<std::string, std::uint32_t>>& formats,
+                    const std::string& file);
+  /// Undoes offer().
+  static void offer_the_usual();
 
   /// `interface`: an address of this machine, or the name of a network interface.
   explicit FakeCamera(Fill fill = {}, const std::string& interface = "127.0.0.1",

@@ -19,6 +19,19 @@ std::vector<std::uint8_t> pack(const std::vector<int>& pixels, std::size_t bits)
   return packed;
 }
 
+/// Two pixels in three bytes, as GigE Vision packs them: the lowest bits of both in the middle.
+std::vector<std::uint8_t> pair(const std::vector<int>& pixels, int bits) {
+  std::vector<std::uint8_t> packed;
+  for (std::size_t i = 0; i < pixels.size(); i += 2) {
+    const int second = i + 1 < pixels.size() ? pixels[i + 1] : 0, low = bits - 8;
+    const int mask = (1 << low) - 1;
+    packed.push_back(static_cast<std::uint8_t>(pixels[i] >> low));
+    packed.push_back(static_cast<std::uint8_t>((pixels[i] & mask) | (second & mask) << 4));
+    packed.push_back(static_cast<std::uint8_t>(second >> low));
+  }
+  return packed;
+}
+
 struct Format {
   PixelFormat format;
   std::size_t bits, sent_bits;
@@ -42,12 +55,28 @@ TEST_P(Pixels, TheEightHighestBitsBecomeTheGreyImage) {
   }
 }
 
+TEST(PixelPairs, TheEightHighestBitsBecomeTheGreyImage) {
+  for (const auto [format, bits] :
+       {std::pair{PixelFormat::mono10_packed, 10}, {PixelFormat::mono12_packed, 12}})
+    for (const std::size_t count : {1, 2, 5, 8}) {
+      std::vector<int> pixels;
+      for (std::size_t i = 0; i < count; ++i)
+        pixels.push_back(static_cast<int>((i * 1237 + 991) % (std::size_t{1} << bits)));
+      auto packed = pair(pixels, bits);
+      packed.resize(bytes_of(format, count));  // an odd last pixel has no third byte
+      std::vector<std::uint8_t> grey(count);
+      to_grey(format, packed, grey);
+      for (std::size_t i = 0; i < count; ++i)
+        EXPECT_EQ(grey[i], pixels[i] >> (bits - 8)) << bits << " bits, " << i << " of " << count;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, Pixels,
                          testing::Values(Format{PixelFormat::mono8, 8, 8},
                                          Format{PixelFormat::mono10, 10, 16},
                                          Format{PixelFormat::mono12, 12, 16},
-                                         Format{PixelFormat::mono10_packed, 10, 10},
-                                         Format{PixelFormat::mono12_packed, 12, 12}));
+                                         Format{PixelFormat::mono10_p, 10, 10},
+                                         Format{PixelFormat::mono12_p, 12, 12}));
 
 }  // namespace
 }  // namespace handcast::camera
