@@ -12,6 +12,7 @@
 #include "config/sections/cascade.hpp"
 #include "ipc/base/result.hpp"
 #include "ipc/msg/stage_mark.hpp"
+#include "renderer/base/device_image.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/base/mip_chain.hpp"
 #include "renderer/correct/deform.hpp"
@@ -79,6 +80,10 @@ class Painter {
   /// The image after the last pass: RGBA8, alpha 0 where it is dark, 255 inside the hand. Valid
   /// until the next pass.
   virtual View<const std::uint32_t> colour() = 0;
+  /// The image after the last pass where a GPU keeps it, complete, for an output of the share group
+  /// that the painter was opened with; it need not be read back by colour() then. Empty if there is
+  /// none. Valid until the next pass.
+  virtual std::optional<DeviceImage> device_image() { return {}; }
   /// Texture coordinates and surface ids after the last pass. Texture coordinates are undefined
   /// where the id is 0. Valid until the next pass.
   /// @{

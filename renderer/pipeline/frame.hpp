@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 
 #include "ipc/msg/made_from.hpp"
@@ -29,12 +30,14 @@ struct Frame {
   std::int64_t target_ns = 0;  ///< the time of its photons (T), CLOCK_MONOTONIC
   msg::MadeFrom made_from;     ///< the newest inputs of this frame
   Rect region;                 ///< contains all light
-  /// RGBA8 in the projector's size, alpha 0 where it is dark. Defined inside `region` only.
+  /// RGBA8 in the projector's size, alpha 0 where it is dark. Defined inside `region` only. Empty
+  /// while the image is only on a GPU.
   View<const std::uint32_t> colour;
   std::span<const FrameHand> hands;        ///< the hands of this frame
   int foldovers = 0;                       ///< triangles that the correction turned over
   FillCounts fill;                         ///< pixels of the fill; 0 without an image
   std::span<const msg::StageMark> stages;  ///< of this frame, CLOCK_MONOTONIC
+  std::optional<DeviceImage> device;       ///< the image on a GPU, see Pipeline::keep_on_device()
 };
 
 }  // namespace handcast::renderer

@@ -131,16 +131,23 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
   if (!is_masked) region = landing_bounds();
 
   FillCounts counts = paint(region, is_masked);
-  View<const std::uint32_t> colour = painter_->colour();
+  auto device = keeps_on_device_ ? painter_->device_image() : std::nullopt;
+  View<const std::uint32_t> colour;
+  if (!device) colour = painter_->colour();
   if (replace_failed_painter()) {
+    device.reset();
     counts = paint(region, is_masked);
     colour = painter_->colour();
   }
   for (const auto& [stage, took_ns] : painter_->device_passes()) stages_.add(stage, took_ns);
   stages_.finish();
-  return {target_ns, newest_,        region.empty() ? Rect{} : region,
-          colour,    frame_hands(),  foldovers,
-          counts,    stages_.marks()};
+  return {target_ns, newest_,         region.empty() ? Rect{} : region,
+          colour,    frame_hands(),   foldovers,
+          counts,    stages_.marks(), device};
+}
+
+void Pipeline::read_back(Frame& frame) {
+  if (frame.colour.data == nullptr) frame.colour = painter_->colour();
 }
 
 /// The exposure of the image that a frame for `target_ns` can be registered to. The image is

@@ -22,6 +22,7 @@ Blit::~Blit() {
 
 /// Copies the region to the texture, which gets the size of the picture.
 void Blit::upload(View<const std::uint32_t> picture, const Rect& region) {
+  glBindTexture(GL_TEXTURE_2D, texture_);
   if (picture.width != width_px_ || picture.height != height_px_) {
     width_px_ = picture.width;
     height_px_ = picture.height;

@@ -10,7 +10,9 @@
 #include "ipc/base/log.hpp"
 #include "renderer/output/edid.hpp"
 #include "renderer/window/blit.hpp"
+#include "renderer/window/levels.hpp"
 #include "renderer/window/monitor.hpp"
+#include "renderer/window/share_group.hpp"
 #include "renderer/window/x11.hpp"
 
 namespace handcast::renderer {
@@ -85,6 +87,8 @@ class Window::Screen {
   Screen(std::unique_ptr<Library> library, WindowSettings settings)
       : library_(std::move(library)), settings_(std::move(settings)) {}
   ~Screen() {
+    if (window_ != nullptr) glfwMakeContextCurrent(window_);
+    levels_.reset();
     blit_.reset();
     if (window_ != nullptr) glfwDestroyWindow(window_);
   }
@@ -92,7 +96,14 @@ class Window::Screen {
   Screen& operator=(const Screen&) = delete;
 
   Result<void> create();
-  Result<Shown> show(View<const std::uint32_t> picture, Rect region);
+  /// Shows what `draw` draws to a back buffer of the size that it gets.
+  template <class Draw>
+  Result<Shown> show(const Draw& draw);
+  Blit& blit() { return *blit_; }
+  LevelsShader& levels() { return *levels_; }
+  ShareGroup share_group() const {
+    return levels_->works() ? share_group_of(window_) : ShareGroup();
+  }
   std::optional<Monitor> monitor() const { return found_; }
   std::optional<std::int64_t> refresh_ns() const;
   std::vector<std::string> take_keys() { return std::exchange(keys_, {}); }
@@ -105,7 +116,6 @@ class Window::Screen {
   void appear();
   bool covers_monitor() const;
   void keep_in_front();
-  Shown draw(View<const std::uint32_t> picture, Rect region);
 
   std::unique_ptr<Library> library_;
   WindowSettings settings_;
@@ -114,6 +124,7 @@ class Window::Screen {
   std::optional<Monitor> found_;    ///< how it was found last
   double rate_hz_ = 0;              ///< of the monitor; 0: unknown
   std::unique_ptr<Blit> blit_;
+  std::unique_ptr<LevelsShader> levels_;
   bool has_appeared_ = false;
   std::int64_t next_look_ns_ = 0;  ///< when to look again whether the window covers the monitor
   std::vector<std::string> keys_;
@@ -144,16 +155,24 @@ Result<void> Window::Screen::create() {
   glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
   glfwWindowHint(GLFW_FOCUS_ON_SHOW, settings_.full_screen ? GLFW_FALSE : GLFW_TRUE);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
-  window_ = glfwCreateWindow(settings_.width_px, settings_.height_px, settings_.title.c_str(),
-                             nullptr, nullptr);
+  // A painter on the GPU uses EGL, and a thread cannot change between EGL and GLX.
+  for (const int api : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
+    if (window_ != nullptr) break;
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
+    window_ = glfwCreateWindow(settings_.width_px, settings_.height_px, settings_.title.c_str(),
+                               nullptr, nullptr);
+  }
   if (window_ == nullptr)
     return fail(Errc::unavailable, fmt::format("no window can be opened: {}", last_reason()));
   if (settings_.full_screen) glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(settings_.vsync ? 1 : 0);
   blit_ = std::make_unique<Blit>();
+  levels_ = std::make_unique<LevelsShader>();
   warm_up();
 
   glfwSetWindowUserPointer(window_, this);
@@ -229,18 +248,11 @@ void Window::Screen::keep_in_front() {
   appear();
 }
 
-Shown Window::Screen::draw(View<const std::uint32_t> picture, Rect region) {
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(window_, &width, &height);
-  blit_->draw(picture, region, width, height);
-  const std::int64_t handed_ns = now_ns();
-  glfwSwapBuffers(window_);
-  blit_->finish();
-  return {handed_ns, now_ns()};
-}
-
-Result<Shown> Window::Screen::show(View<const std::uint32_t> picture, Rect region) {
+/// The context is made current each time: a painter on the same thread has one of its own.
+template <class Draw>
+Result<Shown> Window::Screen::show(const Draw& draw) {
   glfwPollEvents();
+  glfwMakeContextCurrent(window_);
   if (settings_.full_screen && monitor_ == nullptr) {
     if (!find_monitor())
       return fail(Errc::timeout, fmt::format("monitor '{}' is unplugged", found_->output));
@@ -248,7 +260,12 @@ Result<Shown> Window::Screen::show(View<const std::uint32_t> picture, Rect regio
   }
   if (!has_appeared_) appear();
   keep_in_front();
-  return draw(picture, region);
+  const auto [width, height] = size_px();
+  draw(width, height);
+  const std::int64_t handed_ns = now_ns();
+  glfwSwapBuffers(window_);
+  blit_->finish();
+  return Shown{handed_ns, now_ns()};
 }
 
 std::optional<std::int64_t> Window::Screen::refresh_ns() const {
@@ -274,8 +291,14 @@ Result<std::unique_ptr<Window>> Window::open(WindowSettings settings) {
 }
 
 Result<Shown> Window::show(View<const std::uint32_t> picture, Rect region) {
-  return screen_->show(picture, region);
+  return screen_->show(
+      [&](int width, int height) { screen_->blit().draw(picture, region, width, height); });
 }
+Result<Shown> Window::show(const DeviceImage& image, Rect region, const LightTable& table) {
+  return screen_->show(
+      [&](int width, int height) { screen_->levels().draw(image, region, table, width, height); });
+}
+ShareGroup Window::share_group() const { return screen_->share_group(); }
 std::optional<Monitor> Window::monitor() const { return screen_->monitor(); }
 std::optional<std::int64_t> Window::refresh_ns() const { return screen_->refresh_ns(); }
 std::vector<std::string> Window::take_keys() { return screen_->take_keys(); }

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
+#include "renderer/base/device_image.hpp"
 #include "renderer/base/image.hpp"
+#include "renderer/output/light.hpp"
 #include "renderer/window/monitor.hpp"
 
 namespace handcast::renderer {
@@ -54,6 +56,11 @@ class Window {
   /// unplugged; show() comes back to it when it is there again).
   Result<Shown> show(View<const std::uint32_t> picture, Rect region);
 
+  /// Shows an image of a GPU, of share_group(), with these levels, as soon as the GPU has drawn it;
+  /// for the rest like the other show(). Without filtering, if the window has another size.
+  Result<Shown> show(const DeviceImage& image, Rect region, const LightTable& table);
+  /// Where show() finds images of a GPU; none if it cannot show such images.
+  ShareGroup share_group() const;
   /// The monitor of a full-screen window, as it was found last; empty for other windows.
   std::optional<Monitor> monitor() const;
   /// Time from one refresh of the monitor to the next; empty without vsync or a known rate.

@@ -31,7 +31,7 @@ class Inputs {
   template <class Pipeline>
   Result<void> deliver(Pipeline& pipeline, Deadline image_deadline) {
     auto taken = take_image(image_deadline);
-    for (auto pushed : {push_all(poses_, pipeline), push_all(landmarks_, pipeline)})
+    for (const auto& pushed : {push_all(poses_, pipeline), push_all(landmarks_, pipeline)})
       if (!pushed && taken) taken = pushed;
     return taken;
   }

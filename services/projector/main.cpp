@@ -18,14 +18,18 @@ using service::must;
 static void run_projector(service::Context& context) {
   const auto& rig = context.rig();
   const auto& calibration = context.calibration();
+  // An output that only one process may use is opened last, and has no share group.
+  std::unique_ptr<projector::Projector> projector;
+  if (!service::is_exclusive(rig.projector.backend, projector::projector_backends()))
+    projector = must(projector::open_projector(rig, calibration));
+  const auto shares = projector ? projector->share_group() : renderer::ShareGroup();
   const auto pipeline = must(renderer::Pipeline::create(
       rig.cascade, rig.content, rig.hand, calibration, {},
       renderer::open_painter(rig.projector.painter, calibration.projector_width_px,
-                             calibration.projector_height_px)));
-  if (service::is_exclusive(rig.projector.backend, projector::projector_backends()))
-    context.stand_by();
-  const auto projector = must(projector::open_projector(rig, calibration));
+                             calibration.projector_height_px, shares)));
+  pipeline->keep_on_device(static_cast<bool>(shares));
   context.stand_by();
+  if (!projector) projector = must(projector::open_projector(rig, calibration));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")), calibration.id);
@@ -48,10 +52,11 @@ static void run_projector(service::Context& context) {
       context.tolerate(delivered.error());
 
     const std::int64_t begin_ns = now_ns();
-    const auto frame = pipeline->render(begin_ns, horizon.target_ns(begin_ns), inputs.image());
+    auto frame = pipeline->render(begin_ns, horizon.target_ns(begin_ns), inputs.image());
     const std::int64_t drawn_ns = now_ns();
     const auto times =
         projector->present(frame, frame_id, brightness.at(drawn_ns), Deadline::in(50ms));
+    pipeline->read_back(frame);
     next_ns =
         times && times->next_ns != 0 ? horizon.begin_ns(times->next_ns) : pacer.next_ns(now_ns());
     if (!times) {

@@ -30,6 +30,9 @@ class Projector {
  public:
   virtual ~Projector() = default;
 
+  /// Where present() finds images of a GPU (Frame::device); none if it needs them in memory.
+  virtual renderer::ShareGroup share_group() const { return {}; }
+
   /// Hands a frame over, whose levels the table turns into those of the projector. If frames come
   /// faster than the projector takes them, waits until the deadline. The frame may be reused when
   /// the call returns. Errors: timeout (this frame is not shown), bad_data (a frame could not be

@@ -31,8 +31,7 @@ class WindowProjector final : public Projector {
                                const renderer::LightTable& light, Deadline deadline) override {
     if (!window_->refresh_ns())
       if (auto free = clock_.take(deadline); !free) return free;
-    renderer::write_light(frame.colour, frame.region, light, picture_.view());
-    const auto shown = window_->show(picture_.view(), frame.region);
+    const auto shown = show(frame, light);
     if (!shown) return fail(shown.error().code, "projector 'window': " + shown.error().what);
     if (is_packed_)
       if (auto whole = check_size(); !whole) return tl::make_unexpected(whole.error());
@@ -47,7 +46,16 @@ class WindowProjector final : public Projector {
         .next_ns = refresh_ns ? shown->shown_ns + *refresh_ns : 0};
   }
 
+  renderer::ShareGroup share_group() const override {
+    return is_packed_ ? renderer::ShareGroup() : window_->share_group();
+  }
+
  private:
+  Result<renderer::Shown> show(const renderer::Frame& frame, const renderer::LightTable& light) {
+    if (frame.device) return window_->show(*frame.device, frame.region, light);
+    renderer::write_light(frame.colour, frame.region, light, picture_.view());
+    return window_->show(picture_.view(), frame.region);
+  }
   /// Sub-frames in the bits or quarters of a frame do not survive that it is scaled.
   Result<void> check_size() const {
     const int width_px = window_->width_px(), height_px = window_->height_px();

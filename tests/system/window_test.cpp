@@ -56,6 +56,20 @@ TEST_F(LightInAWindow, ComesBackToItsMonitor) {
   EXPECT_EQ(service("projector")["pid"], projector);
 }
 
+#ifdef HANDCAST_WITH_GL
+TEST_F(LightInAWindow, IsDrawnByTheGpuOfTheWindow) {
+  const auto rig = up({"--set", "projector.backend=window", "--set", "projector.painter=gl"});
+  wait_until_light();
+  ASSERT_TRUE(eventually(is_lit));
+  EXPECT_THAT(rig->log(), HasSubstr("(EGL the window's)"));
+  server_.end();
+  ASSERT_TRUE(eventually([&] { return service("projector")["restarts"] > 0; }));
+  ASSERT_TRUE(server_.start());
+  EXPECT_TRUE(eventually(is_lit));
+  EXPECT_EQ(rig->log().find("drawing with cpu"), std::string::npos) << rig->log();
+}
+#endif
+
 /// HANDCAST_WINDOW_MINUTES=10 sets how long (without ctest, which ends it after five minutes).
 /// Every two seconds the window is resized or hidden, or its monitor unplugged; each tenth time the
 /// server dies.

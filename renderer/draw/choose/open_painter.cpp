@@ -17,9 +17,15 @@ struct OpenedGl {
   std::string gpu;
 };
 
-Result<OpenedGl> open_gl([[maybe_unused]] int width_px, [[maybe_unused]] int height_px) {
+Result<OpenedGl> open_gl([[maybe_unused]] int width_px, [[maybe_unused]] int height_px,
+                         [[maybe_unused]] const ShareGroup& shares) {
 #ifdef HANDCAST_WITH_GL
-  auto painter = open_gl_painter(width_px, height_px, {.is_timed = true});
+  auto painter = open_gl_painter(width_px, height_px, {.is_timed = true, .shares = shares});
+  if (!painter && shares) {
+    log::warning("painter gl cannot draw for the window: {}; its images are copied instead",
+                 painter.error().what);
+    painter = open_gl_painter(width_px, height_px, {.is_timed = true});
+  }
   if (!painter) return tl::make_unexpected(painter.error());
   const gl::Gpu& gpu = (*painter)->gpu();
   std::string name = fmt::format("{} (EGL {})", gpu.sentence(), gpu.platform);
@@ -49,9 +55,10 @@ std::unique_ptr<Painter> faster_of(std::unique_ptr<Painter> cpu, OpenedGl gl, in
 
 }  // namespace
 
-std::unique_ptr<Painter> open_painter(config::PainterChoice choice, int width_px, int height_px) {
+std::unique_ptr<Painter> open_painter(config::PainterChoice choice, int width_px, int height_px,
+                                      const ShareGroup& shares) {
   if (choice == config::PainterChoice::cpu) return make_cpu_painter(width_px, height_px);
-  auto gl = open_gl(width_px, height_px);
+  auto gl = open_gl(width_px, height_px, shares);
   if (!gl) {
     log::warning("painter gl cannot be opened: {}; drawing with cpu", gl.error().what);
     return make_cpu_painter(width_px, height_px);

@@ -14,16 +14,16 @@ constexpr std::array kVersion{EGL_CONTEXT_MAJOR_VERSION,       4,
                               EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
 
 /// A context that reports a reset of the GPU, or, if the driver has none, one that does not.
-EGLContext create_context(const Egl& egl, EGLDisplay display, EGLConfig config) {
+EGLContext create_context(const Egl& egl, EGLDisplay display, EGLConfig config, EGLContext shared) {
   std::array<EGLint, kVersion.size() + 3> attributes{};
   std::copy(kVersion.begin(), kVersion.end(), attributes.begin());
   attributes[kVersion.size()] = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
   attributes[kVersion.size() + 1] = EGL_LOSE_CONTEXT_ON_RESET;
   attributes.back() = EGL_NONE;
-  EGLContext context = egl.CreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  EGLContext context = egl.CreateContext(display, config, shared, attributes.data());
   if (context == EGL_NO_CONTEXT) {
     attributes[kVersion.size()] = EGL_NONE;
-    context = egl.CreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+    context = egl.CreateContext(display, config, shared, attributes.data());
   }
   return context;
 }
@@ -63,12 +63,13 @@ std::string Gpu::sentence() const {
   return fmt::format("{}, {}", renderer, is_software ? "a software renderer" : "a hardware GPU");
 }
 
-Result<std::unique_ptr<Context>> Context::open() {
+Result<std::unique_ptr<Context>> Context::open(const ShareGroup& shares) {
   const auto egl = load_egl();
   if (!egl) return tl::make_unexpected(egl.error());
+  if (shares) return open(*egl, {shares.display, "the window's"}, shares.context);
   std::string reasons;
   for (const DisplayCandidate& candidate : display_candidates(*egl)) {
-    auto context = open(*egl, candidate);
+    auto context = open(*egl, candidate, EGL_NO_CONTEXT);
     if (context) return context;
     reasons += fmt::format("; {}: {}", candidate.platform, context.error().what);
   }
@@ -77,7 +78,8 @@ Result<std::unique_ptr<Context>> Context::open() {
                           reasons.empty() ? "; EGL lists none" : reasons));
 }
 
-Result<std::unique_ptr<Context>> Context::open(const Egl& egl, const DisplayCandidate& candidate) {
+Result<std::unique_ptr<Context>> Context::open(const Egl& egl, const DisplayCandidate& candidate,
+                                               EGLContext shared) {
   const auto failed = [&](const char* what) {
     return fail(Errc::unavailable, fmt::format("{} ({})", what, error_name(egl.GetError())));
   };
@@ -88,7 +90,7 @@ Result<std::unique_ptr<Context>> Context::open(const Egl& egl, const DisplayCand
     return fail(Errc::unavailable, "it has no EGL_KHR_surfaceless_context");
   if (!egl.BindAPI(EGL_OPENGL_API)) return failed("it has no OpenGL");
   const EGLConfig config = config_of(egl, candidate.display, extensions);
-  EGLContext handle = create_context(egl, candidate.display, config);
+  EGLContext handle = create_context(egl, candidate.display, config, shared);
   if (handle == EGL_NO_CONTEXT) return failed("it has no OpenGL 4.5 core");
   std::unique_ptr<Context> context(new Context(egl, candidate.display, handle));
   if (const auto loaded = context->load(candidate.platform); !loaded)

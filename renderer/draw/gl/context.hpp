@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ipc/base/result.hpp"
+#include "renderer/base/device_image.hpp"
 #include "renderer/draw/gl/egl.hpp"
 #include "renderer/draw/gl/functions.hpp"
 
@@ -27,8 +28,9 @@ struct Gpu {
 class Context {
  public:
   /// Opens the first display of display_candidates() that has OpenGL 4.5 core. Errors
-  /// (unavailable): no EGL, or no such display; the message has the reason of each.
-  static Result<std::unique_ptr<Context>> open();
+  /// (unavailable): no EGL, or no such display; the message has the reason of each. `shares`: opens
+  /// the display of this share group instead, as one of its contexts.
+  static Result<std::unique_ptr<Context>> open(const ShareGroup& shares = {});
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -54,7 +56,8 @@ class Context {
  private:
   Context(const Egl& egl, EGLDisplay display, EGLContext context)
       : egl_(egl), display_(display), context_(context) {}
-  static Result<std::unique_ptr<Context>> open(const Egl& egl, const DisplayCandidate& candidate);
+  static Result<std::unique_ptr<Context>> open(const Egl& egl, const DisplayCandidate& candidate,
+                                               EGLContext shared);
   Result<void> load(const std::string& platform);
 
   Egl egl_;

@@ -20,7 +20,8 @@ class Painting final : public GlPainter {
            Drawer drawer, Warper warper, Filler filler)
       : context_(std::move(context)),
         size_px_(size_px),
-        reads_back_(options.reads_back),
+        reads_back_(options.reads_back && !options.shares),
+        is_shared_(options.shares),
         assets_(*context_),
         drawer_(std::move(drawer)),
         warper_(std::move(warper)),
@@ -68,6 +69,13 @@ class Painting final : public GlPainter {
   }
 
   View<const std::uint32_t> colour() override { return read_back_.colour(frame_); }
+  std::optional<DeviceImage> device_image() override {
+    if (!is_shared_ || !context_->make_current()) return {};
+    wait(*context_, context_->gl().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
+    context_->check();
+    if (context_->lost()) return {};
+    return DeviceImage{frame_.colour.name(), size_px_.x, size_px_.y};
+  }
   View<const glm::vec2> uv() override { return read_back_.uv(frame_); }
   View<const SurfaceId> surface() override { return read_back_.surface(frame_); }
 
@@ -92,7 +100,7 @@ class Painting final : public GlPainter {
  private:
   std::unique_ptr<Context> context_;  // first: the objects below are of this context
   glm::ivec2 size_px_;
-  bool reads_back_;
+  bool reads_back_, is_shared_;
   AssetCache assets_;
   Drawer drawer_;
   Warper warper_;
@@ -121,7 +129,7 @@ void set_up(const Functions& gl, glm::ivec2 size_px) {
 Result<std::unique_ptr<GlPainter>> open_gl_painter(int width_px, int height_px,
                                                    const GlOptions& options) {
   const glm::ivec2 size_px(width_px, height_px);
-  auto context = Context::open();
+  auto context = Context::open(options.shares);
   if (!context) return tl::make_unexpected(context.error());
   auto drawer = Drawer::create(**context, size_px);
   if (!drawer) return tl::make_unexpected(drawer.error());

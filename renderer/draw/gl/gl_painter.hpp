@@ -24,6 +24,9 @@ struct GlOptions {
   bool is_timed = false;  ///< measure passes, see GlPainter::pass_times()
   /// fill() also copies the image for colour(), so that both wait for the GPU only once.
   bool reads_back = true;
+  /// The share group of the output, for Painter::device_image(); fill() does not copy the image
+  /// then.
+  ShareGroup shares;
 };
 
 /// Opens a painter for images of this size. Errors (unavailable): those of Context::open(), a
