@@ -47,7 +47,7 @@ std::uint32_t number_at(const Bytes& bytes, std::size_t at, std::size_t size) {
 }  // namespace
 
 EmulatedController::EmulatedController(Controller controller, const std::string& serial)
-    : controller_(controller), serial_(serial) {
+    : controller_(controller), serial_(serial), is_inverted_(controller == Controller::dlpc350) {
   reset();
   plug();
 }
@@ -111,7 +111,12 @@ double EmulatedController::highest_current() const {
 }
 
 double EmulatedController::share_of(std::uint8_t level) const {
-  return (controller_ == Controller::dlpc350 ? 255 - level : level) / 255.0;
+  return (is_inverted_ ? 255 - level : level) / 255.0;
+}
+
+void EmulatedController::exchange_led_drivers() {
+  const std::lock_guard lock(mutex_);
+  is_inverted_ = !is_inverted_;
 }
 
 bool EmulatedController::is_lit() const {

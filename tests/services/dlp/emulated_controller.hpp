@@ -44,6 +44,8 @@ class EmulatedController {
   /// The next messages get these faults, in their order.
   void inject(const std::vector<Fault>& faults);
   void set_signal(bool there);
+  /// The LED drivers of another board than the controller's usual one.
+  void exchange_led_drivers();
   void set_hardware_status(std::uint8_t bits);
   /// As if its power had failed for a moment.
   void restart();
@@ -91,6 +93,7 @@ class EmulatedController {
   int starts_ = 0, reads_until_change_ = 0;
   std::uint8_t hardware_ = 1, error_code_ = 0;
   double highest_ = 0;
+  bool is_inverted_;
   std::unique_ptr<EmulatedHid> hid_;  ///< its thread calls take(): the last member
 };
 

@@ -95,6 +95,18 @@ TEST_P(LightCrafterTest, TheSafeStateBeginsWithTheLeds) {
   EXPECT_TRUE(received[3].is_read);
 }
 
+TEST_P(LightCrafterTest, ABoardWithOtherLedDriversGetsTheirSignal) {
+  rig_.dlp.signal = is_350() ? config::LedSignal::direct : config::LedSignal::inverted;
+  device_->exchange_led_drivers();
+  const auto controller = open();
+  bring_up(*controller);
+  EXPECT_TRUE(device_->is_lit());
+  EXPECT_NEAR(device_->highest_current(), 0.4, 0.004);
+  ASSERT_TRUE(controller->darken(Deadline::in(5s)));
+  const std::uint8_t dark = is_350() ? 0 : 255;
+  EXPECT_THAT(device_->received(), Contains(write_of(Command::led_currents, {dark, dark, dark})));
+}
+
 TEST_P(LightCrafterTest, VideoModeLightsWithTheCurrentsOfTheRig) {
   const auto controller = open();
   const auto health = bring_up(*controller);

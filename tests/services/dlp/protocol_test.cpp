@@ -109,6 +109,16 @@ TEST(Currents, NeverExceedTheLimit) {
   EXPECT_THAT(encode_currents(true, currents, 0), Each(255));
 }
 
+TEST(Currents, AreInvertedAsTheBoardOrTheUserSays) {
+  using config::LedSignal;
+  EXPECT_TRUE(is_inverted(LedSignal::automatic, Controller::dlpc350));
+  EXPECT_FALSE(is_inverted(LedSignal::automatic, Controller::dlpc900));
+  for (const auto controller : {Controller::dlpc350, Controller::dlpc900}) {
+    EXPECT_TRUE(is_inverted(LedSignal::inverted, controller));
+    EXPECT_FALSE(is_inverted(LedSignal::direct, controller));
+  }
+}
+
 TEST(Currents, EnableOnlyTheLedsThatHaveOne) {
   EXPECT_EQ(enables_of({.red = 0.1, .blue = 0.2}), kRed | kBlue | kSequencer);
   EXPECT_EQ(enables_of({}), 0);
