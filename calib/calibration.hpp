@@ -71,9 +71,9 @@ struct Calibration {
 /// coaxial projector.
 Calibration reference_rig();
 
-/// Reads a calibration file: TOML, with matrices as rows. An empty path gives the reference rig.
-/// Errors: bad_config (the file cannot be read, is no TOML, or has invalid values; one line for
-/// each fault).
+/// Reads a calibration file: TOML, with matrices as rows. An empty path gives the reference rig; a
+/// frozen file (config::freeze()) is read like the file. Errors: bad_config (the file cannot be
+/// read, is no TOML, is not whole, or has invalid values; one line for each fault).
 Result<Calibration> load_calibration(const std::filesystem::path& file);
 /// Errors: bad_config (the calibration was made with another device). `what`: "camera".
 /// `calibrated`: one of the devices in the calibration; `names`: by which the device is known.

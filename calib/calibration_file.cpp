@@ -6,9 +6,11 @@
 
 #include "calib/calibration.hpp"
 #include "calib/rigid.hpp"
-#include "config/settings/files.hpp"
+#include "config/settings/document.hpp"
+#include "config/settings/frozen_file.hpp"
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
+#include "ipc/base/join.hpp"
 
 /// The calibration file: TOML, declared, checked and printed like a rig file (config/settings).
 namespace handcast::calib {
@@ -249,6 +251,30 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
     faults.add(fmt::format("{}: projector: {}", file, fault));
 }
 
+bool has(const config::Value& document, std::string_view section, std::string_view name) {
+  const auto member_of = [](const config::Value& value, std::string_view wanted) {
+    const auto* table = std::get_if<config::Table>(&value.data);
+    if (!table) return static_cast<const config::Value*>(nullptr);
+    const auto found = std::ranges::find(*table, wanted, &config::Member::name);
+    return found == table->end() ? nullptr : &found->value;
+  };
+  const auto* inside = member_of(document, section);
+  return inside && member_of(*inside, name);
+}
+
+/// What every calibration must say, and this one does not: "camera.focal_px, projector.x are". ""
+/// if nothing is missing. A rig without a tracker has no camera_from_tracker.
+std::string missing_in(const config::Value& document) {
+  std::vector<std::string> missing;
+  const auto look_for = [&](const char* section, std::initializer_list<const char*> names) {
+    for (const auto* name : names)
+      if (!has(document, section, name)) missing.push_back(fmt::format("{}.{}", section, name));
+  };
+  look_for("camera", {"width_px", "height_px", "focal_px", "centre_px"});
+  look_for("projector", {"width_px", "height_px", "x", "y", "w"});
+  return missing.empty() ? "" : join(missing, ", ") + (missing.size() == 1 ? " is" : " are");
+}
+
 Calibration with_id(Calibration calibration) {
   std::uint32_t hash = 2166136261u;  // FNV-1a
   for (const char c : print_calibration(calibration))
@@ -261,16 +287,19 @@ Calibration with_id(Calibration calibration) {
 
 Result<Calibration> load_calibration(const std::filesystem::path& path) {
   if (path.empty()) return with_id(reference_rig());
-  const auto text = config::read_text(path);
-  if (!text) return tl::make_unexpected(text.error());
-  const auto document = config::parse_document(*text, path.string());
+  const auto source = config::read_file_or_frozen(path.string());
+  if (!source) return tl::make_unexpected(source.error());
+  const auto& name = source->path;
+  const auto document = config::parse_document(source->text, name);
   if (!document) return tl::make_unexpected(document.error());
 
   auto file = to_file(reference_rig());
   config::Faults faults;
-  config::apply_document(*document, path.string(), config::list_settings(file), faults);
+  config::apply_document(*document, name, config::list_settings(file), faults);
+  if (const auto missing = missing_in(*document); !missing.empty())
+    faults.add(fmt::format("{}: {} missing; a part of a calibration fits no rig", name, missing));
   auto calibration = with_id(to_calibration(file));
-  if (faults.empty()) check(calibration, path.string(), faults);
+  if (faults.empty()) check(calibration, name, faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   calibration.camera_from_tracker = orthonormalised(calibration.camera_from_tracker);
   return calibration;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "config/settings/files.hpp"
+#include "config/settings/frozen_file.hpp"
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
 #include "ipc/base/rig_name.hpp"
@@ -26,11 +27,11 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "content.right",
                                        "twin.motion"};
 
-/// Makes relative paths absolute; "" and "builtin:…" are not paths.
+/// Makes relative paths absolute; "", "builtin:…" and a frozen file are not paths.
 void resolve_paths(const Listing& listing, const std::filesystem::path& folder) {
   for (const auto path : kPaths) {
     auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
-    if (text.empty() || text.starts_with("builtin:")) continue;
+    if (text.empty() || text.starts_with("builtin:") || text.starts_with(kFrozen)) continue;
     text = (folder / text).lexically_normal().string();
   }
 }

@@ -44,14 +44,20 @@ Result<Seen> watch(const std::string& rig, double seconds) {
   if (!frames) return tl::make_unexpected(std::move(frames.error()));
   auto landmarks = client::open_stream<msg::Landmarks>(rig, "landmarks.hands");
   Seen seen;
+  const std::int64_t begun_ns = now_ns();
+  // A ring still has what was published before a service stopped.
+  const auto is_new = [begun_ns](const auto& message) {
+    return message.header.published_ns >= begun_ns;
+  };
   std::int64_t next_look_ns = 0;
   for (const auto end = Deadline::at_ns(now_ns() + seconds_to_ns(seconds)); !end.passed();) {
     const auto frame = frames->latest(Deadline::in(100ms));
-    if (frame) look_at(**frame, next_look_ns, seen);
+    if (frame && is_new(**frame)) look_at(**frame, next_look_ns, seen);
     if (!frame && frame.error().code == Errc::disconnected)
       return tl::make_unexpected(frame.error());
     if (!landmarks) continue;
     while (const auto found = landmarks->next(Deadline::now())) {
+      if (!is_new(**found)) continue;
       ++seen.searched;
       seen.with_hand += (*found)->count > 0;
     }
@@ -97,6 +103,8 @@ Finding rate_of(const json& status, const char* ring, const char* check, const c
 }
 
 Finding clock_of(const Seen& seen) {
+  if (seen.images == 0)
+    return {"camera clock", Grade::fault, "no image came", "`handcast status`, and its log"};
   if (seen.worst_clock_ns == 0)
     return {"camera clock", Grade::good, "images are stamped on this computer's clock", ""};
   const double worst_us = ns_to_us(seen.worst_clock_ns);

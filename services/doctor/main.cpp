@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 
 #include "ipc/base/exit_code.hpp"
@@ -51,7 +52,10 @@ int run_verb(int argc, char** argv) {
   app.add_option("RIG.toml", options.file, "The rig file")->required();
   app.add_option("--set", options.settings, "path=value: a setting that overrides the file's");
   app.add_option("--seconds", options.seconds, "How long a rig that is up is watched")
-      ->check(CLI::Range(0.5, 3600.))
+      ->check([](const std::string& text) {
+        const double seconds = std::strtod(text.c_str(), nullptr);
+        return seconds >= 0.5 && seconds <= 3600 ? "" : "must be 0.5 to 3600 seconds";
+      })
       ->capture_default_str();
   app.add_flag("--json", options.as_json, "The same as JSON");
   const auto text = parse_options(app, argc, argv);

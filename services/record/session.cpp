@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
+
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
@@ -110,6 +112,8 @@ Result<void> record(const Options& options) {
   if (!feeds) return tl::make_unexpected(feeds.error());
 
   daemon::install_stop_signals();
+  std::signal(SIGHUP, [](int) { std::raise(SIGTERM); });  // the terminal was closed
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of write()
   Recorder recorder(std::move(*feeds), std::move(*writer));
   const Progress progress;
   Recorder::Totals totals;

@@ -65,7 +65,7 @@ int run(RunOptions options) {
       (!control::has_supervisor(applied->name) || end_supervisor_without_keeper(applied->name)))
     log::info("rig '{}' continues with its applied settings; `handcast reload` reads {}",
               applied->name, options.rig_file.string());
-  const auto rig = applied ? *applied : config::load_rig(options.rig_file, options.settings);
+  const auto rig = applied ? *applied : load_rig_to_apply(options.rig_file, options.settings);
   if (!rig) return complain(rig.error());
   auto runner = RigRunner::open(*rig, std::move(options));
   if (!runner) return complain(runner.error());

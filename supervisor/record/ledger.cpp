@@ -44,7 +44,7 @@ double FrameCount::held_hz(std::int64_t now_ns) const {
 }
 
 std::optional<double> FrameCount::newest_age_ms(std::int64_t now_ns) const {
-  if (total_ == 0) return std::nullopt;
+  if (total_ == 0 || newest_origin_ns_ == 0) return std::nullopt;  // dark frames have no origin
   return ns_to_ms(now_ns - newest_origin_ns_);
 }
 

@@ -9,9 +9,20 @@
 #include <cerrno>
 #include <cstring>
 
+#include "config/settings/frozen_file.hpp"
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
+
+Result<config::Rig> load_rig_to_apply(const std::filesystem::path& rig_file,
+                                      const std::vector<std::string>& settings) {
+  auto rig = config::load_rig(rig_file, settings);
+  if (!rig) return rig;
+  auto frozen = config::freeze(rig->calibration);
+  if (!frozen) return fail_in("calibration", frozen.error());
+  rig->calibration = std::move(*frozen);
+  return rig;
+}
 
 Result<AppliedRig> make_applied(const config::Rig& rig) {
   auto toml = config::print_rig(rig);

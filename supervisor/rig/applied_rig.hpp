@@ -16,6 +16,12 @@ struct AppliedRig {
   std::string toml;  ///< the text
   UniqueFd file;     ///< the same in a file without a name (memfd), sealed
 };
+/// Reads a rig file to apply it, with its calibration frozen (config::freeze()): a service that is
+/// started again must not read another calibration than the others have. Errors: those of
+/// config::load_rig() and config::freeze().
+Result<config::Rig> load_rig_to_apply(const std::filesystem::path& rig_file,
+                                      const std::vector<std::string>& settings);
+
 /// Stores a rig for its services. Errors: unavailable.
 Result<AppliedRig> make_applied(const config::Rig& rig);
 

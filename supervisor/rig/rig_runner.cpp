@@ -40,7 +40,7 @@ RigRunner::RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop)
       rig_(rig, loop_, [this](Service& service, Notice notice) { on_notice(service, notice); }),
       requests_(
           rig_,
-          {.read_file = [this] { return config::load_rig(options_.rig_file, options_.settings); },
+          {.read_file = [this] { return load_rig_to_apply(options_.rig_file, options_.settings); },
            .stop = [this] { begin_stop(kExitDone); }}) {
   rig_.launch.program_folder = options_.program_folder;
   if (const auto address = control::address_of(rig.name)) rig_.launch.rig = address->text;

@@ -8,18 +8,41 @@
 #include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 #include <iterator>
+#include <map>
+#include <sstream>
 
 #include "config/settings/files.hpp"
+#include "config/settings/frozen_file.hpp"
 
 namespace handcast::calib {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 std::filesystem::path file_with(const std::string& text) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "handcast_calibration_test.toml";
   std::ofstream(file) << text;
   return file;
+}
+
+/// The file of the reference rig with these sections and settings ("[camera]\nwidth_px = 0\n")
+/// instead of its own.
+std::filesystem::path reference_with(const std::string& changes) {
+  std::istringstream changed(changes), reference(print_calibration(reference_rig()));
+  std::map<std::string, std::string> wanted;  // by section and name
+  std::string section, text;
+  for (std::string line; std::getline(changed, line);) {
+    if (line.starts_with('[')) section = line;
+    if (const auto equals = line.find(" ="); equals != line.npos)
+      wanted[section + line.substr(0, equals)] = line;
+  }
+  for (std::string line; std::getline(reference, line);) {
+    if (line.starts_with('[')) section = line;
+    const auto found = wanted.find(section + line.substr(0, line.find(" =")));
+    text += (found == wanted.end() ? line : found->second) + '\n';
+  }
+  return file_with(text);
 }
 
 double largest_difference(const auto& a, const auto& b) {
@@ -186,18 +209,47 @@ TEST(CalibrationFile, InTheTreeIsTheReferenceRigs) {
   EXPECT_EQ(config::read_text(file).value(), print_calibration(reference_rig()));
 }
 
+TEST(CalibrationFile, ThatIsNotWholeIsRefusedWithWhatIsMissing) {
+  const auto whole = print_calibration(reference_rig());
+  const auto empty = load_calibration(file_with(""));
+  ASSERT_FALSE(empty);
+  EXPECT_THAT(empty.error().what, HasSubstr("camera.width_px, camera.height_px, camera.focal_px"));
+  const auto cut = load_calibration(file_with(whole.substr(0, whole.find("[projector]"))));
+  ASSERT_FALSE(cut);
+  EXPECT_THAT(cut.error().what, HasSubstr("projector.x, projector.y, projector.w are missing"));
+  const auto from = whole.find("# Rigid transform"), to = whole.find("# The projector, coaxial");
+  EXPECT_TRUE(load_calibration(file_with(whole.substr(0, from) + whole.substr(to))))
+      << "a rig without a tracker";
+}
+
+TEST(CalibrationFile, ThatIsFrozenStaysAsItWas) {
+  const auto file = file_with(print_calibration(reference_rig()));
+  const auto frozen = config::freeze(file.string());
+  ASSERT_TRUE(frozen);
+  EXPECT_EQ(config::freeze(*frozen), *frozen);
+  EXPECT_EQ(config::freeze(""), "");
+  auto changed = reference_rig();
+  changed.camera.k1 = 0.01;
+  file_with(print_calibration(changed));
+  EXPECT_EQ(load_calibration(*frozen)->camera.k1, reference_rig().camera.k1);
+  EXPECT_EQ(load_calibration(file)->camera.k1, 0.01);
+  const auto broken = load_calibration(std::string(config::kFrozen) + "/a/b.toml\n[camera");
+  ASSERT_FALSE(broken);
+  EXPECT_THAT(broken.error().what, HasSubstr("/a/b.toml:1"));
+}
+
 TEST(CalibrationFile, SaysWhatIsWrongAndWhere) {
-  const auto rig = load_calibration(file_with("[camera]\nwidth_px = 0\nfocal_px = [5]\n"));
+  const auto rig = load_calibration(reference_with("[camera]\nwidth_px = 0\nfocal_px = [5]\n"));
   ASSERT_FALSE(rig);
   EXPECT_EQ(rig.error().code, Errc::bad_config);
-  EXPECT_THAT(rig.error().what, HasSubstr("toml:2: camera.width_px: 0 is outside 16..8192 px"));
+  EXPECT_THAT(rig.error().what, ContainsRegex("toml:[0-9]+: camera.width_px: 0 is outside 16"));
   EXPECT_THAT(rig.error().what,
-              HasSubstr("toml:3: camera.focal_px: must be a list of 2 numbers, not of 1"));
+              HasSubstr("camera.focal_px: must be a list of 2 numbers, not of 1"));
 }
 
 TEST(CalibrationFile, RefusesAMirroredTracker) {
-  const auto rig = load_calibration(
-      file_with("[camera_from_tracker]\nx = [1, 0, 0, 0]\ny = [0, 1, 0, 0]\nz = [0, 0, -1, 0]\n"));
+  const auto rig = load_calibration(reference_with(
+      "[camera_from_tracker]\nx = [1, 0, 0, 0]\ny = [0, 1, 0, 0]\nz = [0, 0, -1, 0]\n"));
   ASSERT_FALSE(rig);
   EXPECT_THAT(rig.error().what, HasSubstr("not a right-handed rotation"));
 }
@@ -205,7 +257,8 @@ TEST(CalibrationFile, RefusesAMirroredTracker) {
 TEST(CalibrationFile, RefusesATrackerWhoseAxesSpanNoSpace) {
   for (const char* rows : {"x = [0, 0, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 0, 0.3]\n",
                            "x = [1, 1, 0, 0]\ny = [0, 0, 0, 0]\nz = [0, 0, 1, 0]\n"}) {
-    const auto rig = load_calibration(file_with(std::string("[camera_from_tracker]\n") + rows));
+    const auto rig =
+        load_calibration(reference_with(std::string("[camera_from_tracker]\n") + rows));
     ASSERT_FALSE(rig) << rows;
     EXPECT_THAT(rig.error().what, HasSubstr("not a right-handed rotation"));
   }
@@ -214,17 +267,19 @@ TEST(CalibrationFile, RefusesATrackerWhoseAxesSpanNoSpace) {
 TEST(CalibrationFile, RefusesALensThatFoldsTheImageAndNoOther) {
   for (const char* lens :
        {"[-2, 0, 0, 0, 0]", "[-1.2, 0, 0, 0, 0]", "[0, -20, 0, 0, 0]", "[0, 0, 2, 0, 0]"}) {
-    const auto rig = load_calibration(file_with(std::string("[camera]\ndistortion = ") + lens));
+    const auto rig =
+        load_calibration(reference_with(std::string("[camera]\ndistortion = ") + lens));
     ASSERT_FALSE(rig) << lens;
     EXPECT_THAT(rig.error().what, HasSubstr("folds the image"));
   }
   for (const char* lens : {"[0, 0, 0, 0, 0]", "[-0.8, 0, 0, 0, 0]", "[1, 0, 0.01, 0.01, 0]"})
-    EXPECT_TRUE(load_calibration(file_with(std::string("[camera]\ndistortion = ") + lens))) << lens;
+    EXPECT_TRUE(load_calibration(reference_with(std::string("[camera]\ndistortion = ") + lens)))
+        << lens;
 }
 
 TEST(CalibrationFile, RefusesAHomographyWithoutAnInverse) {
-  const auto rig =
-      load_calibration(file_with("[projector]\nx = [1, 0, 0]\ny = [2, 0, 0]\nw = [0, 0, 1]\n"));
+  const auto rig = load_calibration(
+      reference_with("[projector]\nx = [1, 0, 0]\ny = [2, 0, 0]\nw = [0, 0, 1]\n"));
   ASSERT_FALSE(rig);
   EXPECT_THAT(rig.error().what, HasSubstr("homography"));
 }
@@ -239,7 +294,7 @@ TEST(CalibrationFile, RefusesAHomographyThatNoCoaxialRigHas) {
       {"x = [0.1, 0, 0]\ny = [0, 0.1, 0]", "far outside the camera image"},
   };
   for (const auto& [rows, sentence] : kFaults) {
-    const auto rig = load_calibration(file_with(std::string("[projector]\n") + rows));
+    const auto rig = load_calibration(reference_with(std::string("[projector]\n") + rows));
     ASSERT_FALSE(rig) << rows;
     EXPECT_THAT(rig.error().what, HasSubstr(sentence)) << rows;
   }
@@ -249,7 +304,7 @@ TEST(CalibrationFile, AcceptsAMirrorAndAScreenThatCoversAPart) {
   for (const char* rows : {"x = [-1.42, 0, 1023]\ny = [0, 1.42, 0]\nw = [0, 0, 1]",
                            "x = [0.7, 0, 500]\ny = [0, 0.7, 300]\nw = [0, 0, 1]",
                            "x = [4, 0, -700]\ny = [0, 4, -500]\nw = [0, 0, 1]"}) {
-    const auto rig = load_calibration(file_with(std::string("[projector]\n") + rows));
+    const auto rig = load_calibration(reference_with(std::string("[projector]\n") + rows));
     EXPECT_TRUE(rig) << rows << ": " << rig.error().what;
   }
 }
@@ -263,15 +318,15 @@ TEST(CalibrationFile, RefusesScreensAndLensesThatNoCameraHas) {
       {"[camera]\ncentre_px = [1e5, -1e5]", "camera.centre_px"},
   };
   for (const auto& [text, sentence] : kFaults) {
-    const auto rig = load_calibration(file_with(text));
+    const auto rig = load_calibration(reference_with(text));
     ASSERT_FALSE(rig) << text;
     EXPECT_THAT(rig.error().what, HasSubstr(sentence)) << text;
   }
 }
 
 TEST(CalibrationFile, RefusesATrackerFarAway) {
-  const auto rig = load_calibration(
-      file_with("[camera_from_tracker]\nx = [1, 0, 0, 350]\ny = [0, 1, 0, 0]\nz = [0, 0, 1, 0]\n"));
+  const auto rig = load_calibration(reference_with(
+      "[camera_from_tracker]\nx = [1, 0, 0, 350]\ny = [0, 1, 0, 0]\nz = [0, 0, 1, 0]\n"));
   ASSERT_FALSE(rig);
   EXPECT_THAT(rig.error().what, HasSubstr("350 m away from the camera"));
 }

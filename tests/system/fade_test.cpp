@@ -72,9 +72,16 @@ TEST_P(Fade, TheLightOfARigFallsToBlackBeforeItEnds) {
       std::ranges::find_if(light.rbegin(), light.rend(), [](double share) { return share > 0.95; });
   ASSERT_NE(fall, light.rend());
   const std::vector<double> falling(fall.base(), light.end());
-  EXPECT_GE(falling.size(), 4u) << "7 frames in 1.5 s, if the machine is not too busy";
-  for (std::size_t i = 1; i < falling.size(); ++i)
-    EXPECT_LT(falling[i], falling[i - 1] + 0.1) << testing::PrintToString(falling);
+  ASSERT_GE(falling.size(), 4u) << "7 frames in 1.5 s, if the machine is not too busy";
+  // A busy machine misses sub-frames, so that single frames are darker than the fade makes them.
+  const auto brightest = [&](std::size_t third) {
+    const auto size = static_cast<std::ptrdiff_t>(falling.size());
+    const auto from = falling.begin() + size * static_cast<std::ptrdiff_t>(third) / 3;
+    return *std::max_element(from,
+                             falling.begin() + size * static_cast<std::ptrdiff_t>(third + 1) / 3);
+  };
+  EXPECT_LT(brightest(1), brightest(0)) << testing::PrintToString(falling);
+  EXPECT_LT(brightest(2), brightest(1)) << testing::PrintToString(falling);
 }
 
 INSTANTIATE_TEST_SUITE_P(Packings, Fade, testing::Values("none", "8x3"),

@@ -147,6 +147,29 @@ TEST_F(Reload, AServiceThatAppearsIsStartedAndOneThatGoesIsStopped) {
   EXPECT_EQ(rig->wait(), 0);
 }
 
+TEST_F(Reload, ACalibrationThatWasEditedCountsOnlyAtTheNextReload) {
+  const auto calibration = scratch_.path() / "calibration.toml";
+  std::filesystem::copy_file("config/calibrations/paper.toml", calibration);
+  const auto setting = "calibration = \"" + calibration.string() + "\"\n";
+  write_rig(setting +
+            "[camera]\nrate_hz = 60\n[projector]\nrate_hz = 60\n[supervisor]\n"
+            "ready_s = 60\n" +
+            kNoObserver);
+  const auto rig = up_with_the_file();
+  std::ofstream(calibration) << "[camera]\nwidth_px = 10\n";
+  const auto before = service("camera")["pid"].get<pid_t>();
+  kill(before, SIGKILL);
+  EXPECT_TRUE(eventually([&] {
+    return service("camera")["state"] == "ready" && service("camera")["pid"] != before;
+  })) << rig->log();
+  expect_more_light();
+  EXPECT_THAT(rig->log(), testing::Not(HasSubstr("another calibration")));
+  const auto outcome = handcast({"reload"});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, HasSubstr("calibration.toml: camera.height_px"));
+  expect_more_light();
+}
+
 TEST_F(Reload, TheSupervisorsOwnSettingsRestartNobody) {
   write_rig_with(kCalm, kNoObserver);
   const auto rig = up_with_the_file();

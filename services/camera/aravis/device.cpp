@@ -130,9 +130,8 @@ Result<Owned<ArvCamera>> open_device(const Device& device) {
 
 Device with_its_names(ArvCamera* camera, Device device) {
   const auto learn = [&](std::string& name, auto* call) {
-    if (!name.empty()) return;
     const auto said = ask([&](GError** error) { return text_of(call(camera, error)); });
-    if (said) name = *said;
+    if (said && !said->empty()) name = *said;
   };
   learn(device.serial, arv_camera_get_device_serial_number);
   learn(device.vendor, arv_camera_get_vendor_name);

@@ -31,8 +31,8 @@ Result<Device> find_device(const std::string& name);
 /// not answer, or another program controls it).
 Result<Owned<ArvCamera>> open_device(const Device& device);
 
-/// The device with the names that the open camera says of itself: of one that was found by its
-/// address, they are not known before.
+/// The device with the names that the open camera says of itself. They are not known of one that
+/// was found by its address, and another camera may have taken its place since.
 Device with_its_names(ArvCamera* camera, Device device);
 
 /// Finds out quickly, without Aravis, whether an absent camera has come back.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <thread>
 
@@ -207,6 +208,7 @@ TEST_F(AravisCamera, PixelsOfEveryFormatArriveAsGrey) {
       {"Mono12", 0x01100005}, {"Mono12p", 0x010c0047}, {"Mono12Packed", 0x010c0006}};
   const test::Scratch scratch;
   FakeCamera::offer(formats, scratch.path() / "camera.xml");
+  const std::shared_ptr<void> at_the_end(nullptr, [](void*) { FakeCamera::offer_the_usual(); });
   for (const auto& [name, value] : formats) {
     SCOPED_TRACE(name);
     const auto format = *config::choice_named<config::PixelFormat>(name);
@@ -225,7 +227,6 @@ TEST_F(AravisCamera, PixelsOfEveryFormatArriveAsGrey) {
     camera_.reset();
     fake_.reset();
   }
-  FakeCamera::offer_the_usual();
 }
 
 TEST_F(AravisCamera, ACameraThatWasNotCalibratedIsRefused) {
