@@ -82,6 +82,20 @@ TEST_F(Devices, TheDoctorLooksAtTheDisplayOfTheRig) {
   EXPECT_EQ(display("VGA-9")["grade"], "fault");
 }
 
+TEST_F(Devices, InitWritesARigThatAnIndustrialCameraAccepts) {
+  const test::FakeCamera gige;
+  ASSERT_TRUE(gige.is_running());
+  const std::string file = scratch_.path() / "gige.toml";
+  const auto written = handcast({"init", file, "--camera", "GV01", "--output", "twin"});
+  ASSERT_EQ(written.exit_code, 0) << written.log;
+  EXPECT_THAT(written.output, AllOf(HasSubstr("serial number GV01, 720x540 at "),
+                                    HasSubstr("calibration  MISSING")));
+  Command rig(scratch_.path(), {"up", file});
+  EXPECT_TRUE(eventually([&] { return service("camera")["state"] == "ready"; })) << rig.log();
+  EXPECT_EQ(service("camera")["backend"], "aravis");
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+}
+
 TEST_F(Devices, AWrongWordIsAUsageError) {
   for (const auto* verb : {"devices", "doctor"}) {
     const auto outcome = handcast({verb, "--nonsense"});

@@ -139,6 +139,14 @@ TEST_F(RigText, TheDisplayHasAModeOfItsOwn) {
   EXPECT_THAT(text, HasSubstr("the picture is scaled"));
 }
 
+TEST_F(RigText, RatesThatADeviceDoesNotSayAreThoseThatAnyHas) {
+  auto display = monitor("HDMI-1", "EPSON PJ", false);
+  display.modes[0].rate_hz = 0;
+  const auto rig = rig_of({webcam("A", "/dev/video0", {mode(640, 480, 0, "YUYV")}), display});
+  EXPECT_EQ(rig.projector.rate_hz, 60);
+  EXPECT_EQ(rig.camera.rate_hz, 30);
+}
+
 TEST_F(RigText, LedsBeginWithLowCurrents) {
   const auto rig = rig_of({connector("HDMI-A-1", "EPSON PJ"), controller()});
   EXPECT_EQ(rig.dlp.device, "LCR3");
