@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace handcast::init {
 namespace {
@@ -67,14 +68,20 @@ std::string device_line(const Candidate& candidate, std::string_view setting) {
   return fmt::format("{} = {}\n", setting, toml_string(candidate.name));
 }
 
+/// The rate with two digits after the point. A rate above the highest one is refused.
+double rounded_down(double rate_hz) {
+  constexpr double kOfBinary = 1e-6;  // 29.97 is a little less
+  return std::floor(100 * rate_hz + kOfBinary) / 100;
+}
+
 std::string rate_of_camera(const Images& images) {
   if (images.rate_hz <= 0)
     return fmt::format(
         "# The camera does not say what it holds in {}; a higher rate makes the light follow "
         "better.\nrate_hz = {:g}\n",
         text_of(images.size), kUnknownRate_hz);
-  return fmt::format("# The highest rate that it has in {}.\nrate_hz = {:.4g}\n",
-                     text_of(images.size), std::clamp(images.rate_hz, 1., 2000.));
+  return fmt::format("# The highest rate that it has in {}.\nrate_hz = {}\n", text_of(images.size),
+                     std::clamp(rounded_down(images.rate_hz), 1., 2000.));
 }
 
 std::string exposure_of(const Images& images) {
@@ -190,11 +197,11 @@ std::string controller(const Plan& plan) {
       "mode = \"video\"\n"
       "# The largest current that a LED ever gets, and the currents, as shares of the full scale. "
       "These are low; read the\n"
-      "# data sheet of the LEDs before you raise them. On a board of another maker than TI, first "
-      "set "
-      "the currents to 0: if there\n"
-      "# is light then, signal is wrong for the board (docs/operating.md, \"A DLP projector with a "
-      "controller\").\n"
+      "# data sheet of the LEDs before you raise them. On a board of another maker than TI, set "
+      "the "
+      "currents to 0 first: if\n"
+      "# there is light then, signal is wrong for the board (docs/operating.md, \"A DLP projector "
+      "with a controller\").\n"
       "limit = 0.1\n"
       "red = 0.05\n"
       "green = 0.05\n"
@@ -226,8 +233,9 @@ Showing showing_of(const Plan& plan) {
   const auto& first = modes.front();
   showing.size = {first.width_px, first.height_px};
   showing.rate_hz = first.rate_hz > 0 ? first.rate_hz : showing.rate_hz;
-  if (plan.calibration) {
-    const Size wanted{plan.calibration->projector_width_px, plan.calibration->projector_height_px};
+  if (!plan.needs_calibration()) {
+    const auto calibration = plan.calibration.value_or(calib::Calibration());
+    const Size wanted{calibration.projector_width_px, calibration.projector_height_px};
     const bool can_change = plan.light.backend == "kms";
     const auto fit = can_change ? fastest(modes, wanted) : std::nullopt;
     if (fit) return {.rate_hz = fit->rate_hz, .mode = {}, .is_scaled = false, .size = wanted};

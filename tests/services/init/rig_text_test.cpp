@@ -124,8 +124,22 @@ TEST_F(RigText, TheExposureEndsWithinThePeriod) {
   EXPECT_LT(rig.camera.exposure_ms, 1000 / rig.camera.rate_hz);
 }
 
+TEST_F(RigText, ARateIsNeverAboveTheHighestOne) {
+  auto camera = industrial_camera();
+  camera.modes[0].rate_hz = 524.9987;
+  EXPECT_EQ(rig_of({camera}).camera.rate_hz, 524.99);
+  EXPECT_EQ(rig_of({webcam("A", "/dev/video0", {mode(640, 480, 29.97)})}).camera.rate_hz, 29.97);
+}
+
+TEST_F(RigText, TheTwinTakesTheModeOfTheReferenceRig) {
+  options_.flags.camera = "twin";
+  const auto rig = rig_of({connector("HDMI-A-1", "EPSON PJ")});
+  EXPECT_EQ(rig.projector.kms.mode, "");
+  EXPECT_EQ(rig.projector.rate_hz, 120) << "of 1024x768";
+}
+
 TEST_F(RigText, TheDisplayHasAModeOfItsOwn) {
-  auto rig = rig_of({connector("HDMI-A-1", "EPSON PJ")});
+  auto rig = rig_of({infrared_webcam(), connector("HDMI-A-1", "EPSON PJ")});
   EXPECT_EQ(rig.projector.kms.connector, "EPSON PJ");
   EXPECT_EQ(rig.projector.kms.mode, "1280x800@59.81");
   EXPECT_EQ(rig.projector.rate_hz, 59.81);
