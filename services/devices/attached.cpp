@@ -19,15 +19,30 @@ std::string print(const Attached& device) {
   return text;
 }
 
+nlohmann::json to_json(const Mode& mode) {
+  return {{"format", mode.format},
+          {"least_width_px", mode.least_width_px},
+          {"least_height_px", mode.least_height_px},
+          {"width_px", mode.width_px},
+          {"height_px", mode.height_px},
+          {"rate_hz", mode.rate_hz}};
+}
+
+std::vector<Attached> joined(std::vector<Attached> first, std::vector<Attached> second) {
+  std::move(second.begin(), second.end(), std::back_inserter(first));
+  return first;
+}
+
 }  // namespace
 
+std::vector<Attached> attached_of(Kind kind) {
+  if (kind == Kind::camera) return joined(industrial_cameras(), webcams());
+  return kind == Kind::display ? joined(monitors(), connectors()) : controllers();
+}
+
 std::vector<Attached> all_attached() {
-  std::vector<Attached> all;
-  for (const auto list : {industrial_cameras, webcams, monitors, connectors, controllers}) {
-    auto some = list();
-    std::move(some.begin(), some.end(), std::back_inserter(all));
-  }
-  return all;
+  return joined(joined(attached_of(Kind::camera), attached_of(Kind::display)),
+                attached_of(Kind::controller));
 }
 
 std::vector<std::string> blind_spots() {
@@ -65,11 +80,16 @@ std::string to_json(const std::vector<Attached>& attached) {
   for (const auto& device : attached) {
     auto settings = nlohmann::json::object();
     for (const auto& [setting, value] : device.settings) settings[setting] = value;
+    auto modes = nlohmann::json::array();
+    for (const auto& mode : device.modes) modes.push_back(to_json(mode));
     list.push_back({{"kind", kKindNames[static_cast<std::size_t>(device.kind)]},
                     {"name", device.name},
                     {"about", device.about},
                     {"settings", settings},
-                    {"trouble", device.trouble}});
+                    {"trouble", device.trouble},
+                    {"names", device.names},
+                    {"modes", modes},
+                    {"is_operators", device.is_operators}});
   }
   // A device may call itself anything.
   return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';

@@ -38,7 +38,9 @@ std::vector<Attached> controllers() {
                       {"dlp.device", info.serial.empty() ? info.path : info.serial}},
          .trouble = is_permitted ? ""
                                  : "this user may not open it; scripts/setup --udev installs the "
-                                   "rules that permit it"});
+                                   "rules that permit it",
+         .names =
+             info.serial.empty() ? std::vector{info.path} : std::vector{info.serial, info.path}});
   }
   return attached;
 }

@@ -15,6 +15,13 @@
 
 namespace handcast::devices {
 
+/// The model in the EDID, which not every display has, moves with the display to another connector.
+[[maybe_unused]] static std::vector<std::string> names_of(const std::string& model,
+                                                          const std::string& connector) {
+  if (model.empty()) return {connector};
+  return {model, connector};
+}
+
 #ifdef HANDCAST_WITH_WINDOW
 std::vector<Attached> monitors() {
   const auto found = renderer::list_monitors();
@@ -33,7 +40,13 @@ std::vector<Attached> monitors() {
          .about = monitor.is_primary ? "the primary one, probably the operator's" : "",
          .settings = {{"projector.backend", "window"},
                       {"projector.window.monitor", monitor.output}},
-         .trouble = {}});
+         .names = names_of(monitor.model, monitor.output),
+         .modes = {{.least_width_px = monitor.width_px,
+                    .least_height_px = monitor.height_px,
+                    .width_px = monitor.width_px,
+                    .height_px = monitor.height_px,
+                    .rate_hz = monitor.rate_hz}},
+         .is_operators = monitor.is_primary});
   }
   return attached;
 }
@@ -44,13 +57,27 @@ std::vector<Attached> monitors() { return {}; }
 #ifdef HANDCAST_WITH_KMS
 namespace {
 
+/// The panel of a laptop, by the kernel's names of its connectors.
+bool is_built_in(std::string_view connector) {
+  return connector.starts_with("eDP") || connector.starts_with("LVDS") ||
+         connector.starts_with("DSI");
+}
+
 Attached entry_of(const renderer::kms::Display& display) {
-  return {
+  Attached entry{
       .kind = Kind::display,
       .name = fmt::format("{} of {}", describe(display), display.card),
       .about = "without a window system",
       .settings = {{"projector.backend", "kms"}, {"projector.kms.connector", display.connector}},
-      .trouble = {}};
+      .names = names_of(display.model, display.connector),
+      .is_operators = is_built_in(display.connector)};
+  for (const auto& mode : display.modes)
+    entry.modes.push_back({.least_width_px = mode.width_px,
+                           .least_height_px = mode.height_px,
+                           .width_px = mode.width_px,
+                           .height_px = mode.height_px,
+                           .rate_hz = mode.rate_hz});
+  return entry;
 }
 
 }  // namespace

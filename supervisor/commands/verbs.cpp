@@ -70,6 +70,8 @@ constexpr std::array kVerbs{
     VerbEntry{"devices", "devices [--json]",
               "Lists what is attached, and what it would be called in a rig file.", nullptr,
               Group::set_up},
+    VerbEntry{"init", "init [RIG.toml] [--yes] [--force] ...",
+              "Asks what a rig is made of and writes its rig file.", nullptr, Group::set_up},
     VerbEntry{"doctor", "doctor RIG.toml [--set path=value]... [--seconds N] [--json]",
               "Checks a rig, and the computer that runs it, before the show.", nullptr,
               Group::set_up},

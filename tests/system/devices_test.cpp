@@ -45,12 +45,21 @@ TEST_F(Devices, EachIsListedWithTheSettingsThatUseIt) {
   ASSERT_FALSE(camera.is_null()) << listed.output;
   EXPECT_EQ(camera["settings"]["camera.backend"], "aravis");
   EXPECT_EQ(camera["trouble"], "");
+  EXPECT_EQ(camera["names"][0], "GV01");
+  EXPECT_GE(camera["modes"][0]["width_px"], 720);
+  EXPECT_LT(camera["modes"][0]["least_width_px"], 720) << "a region of the sensor";
+  EXPECT_GT(camera["modes"][0]["rate_hz"], 0);
   const auto video = device_with(devices, "camera.v4l2.device", "/dev/video0");
   ASSERT_FALSE(video.is_null()) << listed.output;
   EXPECT_EQ(video["settings"]["camera.backend"], "v4l2");
   EXPECT_THAT(video["about"].get<std::string>(), HasSubstr("720x540"));
+  EXPECT_EQ(video["names"][0], "Emulated Webcam");
+  EXPECT_EQ(video["modes"][0]["format"], "GREY");
+  EXPECT_EQ(video["modes"][0]["rate_hz"], 100);
   const auto display = device_with(devices, "projector.kms.connector", "HDMI-A-1");
   ASSERT_FALSE(display.is_null()) << listed.output;
+  EXPECT_EQ(display["names"], (nlohmann::json{"EPSON PJ", "HDMI-A-1"}));
+  EXPECT_EQ(display["modes"][0]["height_px"], 768);
   EXPECT_THAT(display["name"].get<std::string>(), HasSubstr("EPSON PJ"));
 
   const auto text = handcast({"devices"}).output;
@@ -71,6 +80,20 @@ TEST_F(Devices, TheDoctorLooksAtTheDisplayOfTheRig) {
   };
   EXPECT_THAT(display("HDMI-A-1")["sentence"].get<std::string>(), HasSubstr("EPSON PJ"));
   EXPECT_EQ(display("VGA-9")["grade"], "fault");
+}
+
+TEST_F(Devices, InitWritesARigThatAnIndustrialCameraAccepts) {
+  const test::FakeCamera gige;
+  ASSERT_TRUE(gige.is_running());
+  const std::string file = scratch_.path() / "gige.toml";
+  const auto written = handcast({"init", file, "--camera", "GV01", "--output", "twin"});
+  ASSERT_EQ(written.exit_code, 0) << written.log;
+  EXPECT_THAT(written.output, AllOf(HasSubstr("serial number GV01, 720x540 at "),
+                                    HasSubstr("calibration  MISSING")));
+  Command rig(scratch_.path(), {"up", file});
+  EXPECT_TRUE(eventually([&] { return service("camera")["state"] == "ready"; })) << rig.log();
+  EXPECT_EQ(service("camera")["backend"], "aravis");
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
 }
 
 TEST_F(Devices, AWrongWordIsAUsageError) {

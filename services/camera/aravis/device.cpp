@@ -139,6 +139,23 @@ Device with_its_names(ArvCamera* camera, Device device) {
   return device;
 }
 
+Result<Sensor> sensor_of(ArvCamera* camera) {
+  Sensor sensor;
+  const auto size = ask([&](GError** error) {
+    gint most = 0;  // depends on the present corner
+    arv_camera_get_width_bounds(camera, &sensor.least_width_px, &most, error);
+    if (!*error) arv_camera_get_height_bounds(camera, &sensor.least_height_px, &most, error);
+    if (!*error) arv_camera_get_sensor_size(camera, &sensor.width_px, &sensor.height_px, error);
+  });
+  if (!size) return tl::make_unexpected(size.error());
+  double least_hz = 0;
+  const auto rate = ask([&](GError** error) {
+    arv_camera_get_frame_rate_bounds(camera, &least_hz, &sensor.rate_hz, error);
+  });
+  if (!rate) sensor.rate_hz = 0;
+  return sensor;
+}
+
 bool Presence::is_there() const {
   if (device_.is_gige()) return answers(device_.address);
   return device_.protocol != "USB3Vision" || is_on_the_usb(device_);

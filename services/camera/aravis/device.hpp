@@ -35,6 +35,15 @@ Result<Owned<ArvCamera>> open_device(const Device& device);
 /// was found by its address, and another camera may have taken its place since.
 Device with_its_names(ArvCamera* camera, Device device);
 
+/// What the sensor of a camera can do, as the camera is set now.
+struct Sensor {
+  int least_width_px = 0, least_height_px = 0;  ///< of a region
+  int width_px = 0, height_px = 0;              ///< of all of it
+  double rate_hz = 0;                           ///< the highest; 0: the camera does not say
+};
+/// Changes nothing in the camera. Errors: unavailable, bad_config (it has no such features).
+Result<Sensor> sensor_of(ArvCamera* camera);
+
 /// Finds out quickly, without Aravis, whether an absent camera has come back.
 class Presence {
  public:

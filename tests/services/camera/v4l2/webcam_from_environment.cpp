@@ -24,7 +24,8 @@ void follow(EmulatedWebcam& webcam, const char* file) {
 }
 
 bool is_reader(std::string_view program) {
-  return program == "handcast-camera" || program == "handcast-devices";
+  return program == "handcast-camera" || program == "handcast-devices" ||
+         program == "handcast-init";
 }
 
 [[maybe_unused]] const bool from_environment = [] {
