@@ -51,10 +51,11 @@ int measure_misses(double rate_hz) {
   constexpr int kSubFrames = 10'000;
   const auto times = draw_sub_frames(settings(Packing::planes_24x1, rate_hz), kSubFrames);
   fmt::print(
-      "  {:.0f} sub-frames/s ({:.1f} output frames/s): {} of {} missed; begun {:.1f} ms before "
-      "handing over at p50, {:.1f} in the mean; handed over {:.0f} µs late at p99; a drawing takes "
-      "{:.0f} µs (p99 {:.0f})\n",
-      rate_hz, times.output_hz, times.missed, times.sub_frames, median(times.lead_ms),
+      "  {:.0f} sub-frames/s ({:.1f} output frames/s): {} of {} missed, {} of these with their "
+      "output frame; begun {:.1f} ms before handing over at p50, {:.1f} in the mean; handed over "
+      "{:.0f} µs late at p99; a drawing takes {:.0f} µs (p99 {:.0f})\n",
+      rate_hz, times.output_hz, times.missed, times.sub_frames, times.missed_with_frame,
+      median(times.lead_ms),
       std::accumulate(times.lead_ms.begin(), times.lead_ms.end(), 0.) /
           static_cast<double>(times.lead_ms.size()),
       percentile(times.late_us, 0.99), median(times.drawing_us),

@@ -67,8 +67,9 @@ SubFrameTimes draw_sub_frames(const config::Projector& settings, int sub_frames)
             : (handed_ns - last_ns + plan.output_period_ns() / 2) / plan.output_period_ns() - 1;
     if (first_ns == 0) first_ns = handed_ns;
     last_ns = handed_ns;
-    times.missed += late_ns < kTooLate_ns ? each - drawings : each;
-    times.missed += static_cast<int>(skipped) * each;
+    const int with_frame = (static_cast<int>(skipped) + (late_ns < kTooLate_ns ? 0 : 1)) * each;
+    times.missed += with_frame + (late_ns < kTooLate_ns ? each - drawings : 0);
+    times.missed_with_frame += with_frame;
     for (const std::int64_t begin_ns : begins_ns)
       times.lead_ms.push_back(ns_to_ms(handed_ns - begin_ns));
     times.sub_frames += each;

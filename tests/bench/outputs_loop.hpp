@@ -18,7 +18,8 @@ struct SubFrameTimes {
   /// Sub-frames without a drawing of their own, or in an output frame that was skipped or handed
   /// over 0.3 ms late or more, which a projector would not take in time.
   int missed = 0;
-  double output_hz = 0;  ///< output frames handed over per second
+  int missed_with_frame = 0;  ///< of these, in such an output frame
+  double output_hz = 0;       ///< output frames handed over per second
 };
 
 /// Draws `sub_frames` sub-frames with a hand that sways (SwayingHands, 0.73 m away).
