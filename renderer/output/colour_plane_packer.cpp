@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
 
 #include "config/sections/sub_frames.hpp"
 #include "renderer/base/clones.hpp"
 #include "renderer/output/packers.hpp"
+#include "renderer/output/parts.hpp"
 #include "renderer/output/plane_limits.hpp"
 
 namespace handcast::renderer {
@@ -13,22 +15,38 @@ namespace {
 constexpr int kPlanes = config::sub_frames_of(config::Packing::planes_8x3);
 constexpr int kBlock = PlaneLimits<std::uint8_t>::kBlock;
 
-/// Copies the pixels of a row; those with alpha 0 are black.
-HANDCAST_CLONES void take_lit(const std::uint32_t* __restrict colour, int count,
-                              std::uint32_t* __restrict lit) {
-  for (int x = 0; x < count; ++x) lit[x] = colour[x] >> 24 != 0 ? colour[x] : 0;
+/// The limits of the bytes of a row in the first of `count` planes.
+struct Limits {
+  const std::uint8_t* row;
+  std::ptrdiff_t to_next_plane;
+  int first, count;
+};
+
+/// Sets the bits of the planes in kPart pixels, the pixels from `x` on in a row of the region.
+[[gnu::always_inline]] inline void set_bits_of_part(const std::uint32_t* rgba, const Limits& limits,
+                                                    int x, std::uint32_t* out) {
+  if (is_dark(rgba)) return;
+  std::array<std::uint32_t, kPart> lit;
+  for (std::size_t i = 0; i < kPart; ++i) lit[i] = rgba[i] >> 24 != 0 ? rgba[i] : 0;
+  const auto level = std::bit_cast<std::array<std::uint8_t, 4 * kPart>>(lit);
+  auto* bytes = reinterpret_cast<std::uint8_t*>(out);
+  const std::uint8_t* limit = limits.row + 4 * (x % kBlock);
+  for (int plane = 0; plane < limits.count; ++plane, limit += limits.to_next_plane) {
+    const auto bit = static_cast<std::uint8_t>(1 << (limits.first + plane));
+    std::array<std::uint8_t, 4 * kPart> bits;
+    for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = level[i] > limit[i] ? bit : 0;
+    for (std::size_t i = 0; i < bits.size(); ++i) bytes[i] |= bits[i];
+  }
 }
 
-/// Sets `bit` in the bytes with a level above the limits, which repeat after kBlock pixels.
-HANDCAST_CLONES void set_bit(const std::uint8_t* __restrict level,
-                             const std::uint8_t* __restrict limit, int bytes, std::uint8_t bit,
-                             std::uint8_t* __restrict out) {
-  constexpr int kPeriod = 4 * kBlock;
-  for (int x = 0; x < bytes; x += kPeriod) {
-    const int part = std::min(kPeriod, bytes - x);
-    for (int i = 0; i < part; ++i)
-      out[x + i] |= static_cast<std::uint8_t>(level[x + i] > limit[i] ? bit : 0);
-  }
+/// Sets the bits of the planes in the first `pixels` pixels of a row.
+HANDCAST_CLONES void set_bits(const std::uint32_t* rgba, const Limits& limits, int pixels,
+                              std::uint32_t* out) {
+  static_assert(kBlock % kPart == 0);
+  int x = 0;
+  for (; x + kPart <= pixels; x += kPart) set_bits_of_part(rgba + x, limits, x, out + x);
+  LastPart last(rgba + x, out + x, pixels - x);
+  set_bits_of_part(last.rgba, limits, x, last.out);
 }
 
 std::array<std::uint8_t, 256> levels() {
@@ -43,19 +61,15 @@ class ColourPlanePacker final : public Packer {
   ColourPlanePacker(const config::Projector& settings, int width_px, int height_px)
       : Packer(width_px, height_px, 1),
         limits_(settings, kPlanes, levels()),
-        rgba_limits_(4 * kPlanes * static_cast<std::size_t>(limits_.to_next_plane()), 0xff),
-        row_(static_cast<std::size_t>(width_px)) {}
+        rgba_limits_(4 * kPlanes * static_cast<std::size_t>(limits_.to_next_plane()), 0xff) {}
 
   void add(View<const std::uint32_t> drawing, Rect region, int first, int count) override {
     region = region.within(drawing.width, drawing.height);
     light(0, region);
-    for (int y = region.y0; y < region.y1; ++y) {
-      take_lit(drawing.row(y) + region.x0, region.width(), row_.data());
-      for (int plane = first; plane < first + count; ++plane)
-        set_bit(reinterpret_cast<const std::uint8_t*>(row_.data()), limits_at(plane, region.x0, y),
-                4 * region.width(), static_cast<std::uint8_t>(1 << plane),
-                reinterpret_cast<std::uint8_t*>(output().row(y) + region.x0));
-    }
+    for (int y = region.y0; y < region.y1; ++y)
+      set_bits(drawing.row(y) + region.x0,
+               {limits_at(first, region.x0, y), 4 * limits_.to_next_plane(), first, count},
+               region.width(), output().row(y) + region.x0);
   }
 
  private:
@@ -80,7 +94,6 @@ class ColourPlanePacker final : public Packer {
 
   PlaneLimits<std::uint8_t> limits_;
   std::vector<std::uint8_t> rgba_limits_;
-  std::vector<std::uint32_t> row_;  ///< the lit pixels of a row
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "renderer/base/clones.hpp"
 #include "renderer/output/luminance.hpp"
 #include "renderer/output/packers.hpp"
+#include "renderer/output/parts.hpp"
 #include "renderer/output/plane_limits.hpp"
 
 namespace handcast::renderer {
@@ -20,39 +21,34 @@ constexpr std::uint32_t bit_of(int plane) {
   return 1u << (kColours[static_cast<std::size_t>(plane / 8)] + plane % 8);
 }
 
-bool is_dark(const std::uint32_t* rgba, int count) {
-  std::uint32_t any = 0;
-  for (int i = 0; i < count; ++i) any |= rgba[i];
-  return any >> 24 == 0;
-}
-
-/// A row of a drawing, the output frame, and the limits in the first of `count` planes.
-struct Row {
-  const std::uint32_t* rgba;
-  std::uint32_t* out;
-  const std::uint16_t* limits;
+/// The limits of a row in the first of `count` planes.
+struct Limits {
+  const std::uint16_t* row;
   std::ptrdiff_t to_next_plane;
   int first, count;
 };
 
-/// Sets the bits of the planes in the first `pixels` pixels of a row. Most of the pixels around a
-/// hand are dark; short parts of a row in which all of them are take little time.
-HANDCAST_CLONES void set_bits(const Row& row, int pixels) {
-  constexpr int kPart = 32;
-  static_assert(kBlock % kPart == 0);
-  std::uint16_t light[kPart];
-  for (int x = 0; x < pixels; x += kPart) {
-    const std::uint32_t* rgba = row.rgba + x;
-    std::uint32_t* out = row.out + x;
-    const int part = std::min(kPart, pixels - x);
-    if (is_dark(rgba, part)) continue;
-    for (int i = 0; i < part; ++i) light[i] = luminance(rgba[i]);
-    for (int plane = 0; plane < row.count; ++plane) {
-      const std::uint16_t* limit = row.limits + plane * row.to_next_plane + x % kBlock;
-      const std::uint32_t bit = bit_of(row.first + plane);
-      for (int i = 0; i < part; ++i) out[i] |= light[i] > limit[i] ? bit : 0;
-    }
+/// Sets the bits of the planes in kPart pixels, the pixels from `x` on in a row of the region.
+[[gnu::always_inline]] inline void set_bits_of_part(const std::uint32_t* rgba, const Limits& limits,
+                                                    int x, std::uint32_t* __restrict out) {
+  if (is_dark(rgba)) return;
+  std::uint32_t light[kPart];
+  luminances<kPart>(rgba, light);
+  const std::uint16_t* limit = limits.row + x % kBlock;
+  for (int plane = 0; plane < limits.count; ++plane, limit += limits.to_next_plane) {
+    const std::uint32_t bit = bit_of(limits.first + plane);
+    for (int i = 0; i < kPart; ++i) out[i] |= light[i] > limit[i] ? bit : 0;
   }
+}
+
+/// Sets the bits of the planes in the first `pixels` pixels of a row.
+HANDCAST_CLONES void set_bits(const std::uint32_t* rgba, const Limits& limits, int pixels,
+                              std::uint32_t* out) {
+  static_assert(kBlock % kPart == 0);
+  int x = 0;
+  for (; x + kPart <= pixels; x += kPart) set_bits_of_part(rgba + x, limits, x, out + x);
+  LastPart last(rgba + x, out + x, pixels - x);
+  set_bits_of_part(last.rgba, limits, x, last.out);
 }
 
 std::array<std::uint16_t, 256> luminances_of_grey() {
@@ -71,9 +67,9 @@ class GreyPlanePacker final : public Packer {
     region = region.within(drawing.width, drawing.height);
     light(0, region);
     for (int y = region.y0; y < region.y1; ++y)
-      set_bits({drawing.row(y) + region.x0, output().row(y) + region.x0,
-                limits_.row(first, region.x0, y), limits_.to_next_plane(), first, count},
-               region.width());
+      set_bits(drawing.row(y) + region.x0,
+               {limits_.row(first, region.x0, y), limits_.to_next_plane(), first, count},
+               region.width(), output().row(y) + region.x0);
   }
 
  private:

@@ -3,6 +3,7 @@
 #include "renderer/output/light.hpp"
 #include "renderer/output/luminance.hpp"
 #include "renderer/output/packers.hpp"
+#include "renderer/output/parts.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 constexpr int kQuadrants = 4;
 
 /// The level of the projector for a luminance, in steps of 16.
-using LevelOfLuminance = std::array<std::uint32_t, (kWhiteLuminance >> 4) + 1>;
+using LevelOfLuminance = std::array<std::uint8_t, (kWhiteLuminance >> 4) + 1>;
 
 LevelOfLuminance levels_of(const LightTable& table) {
   LevelOfLuminance levels{};
@@ -24,19 +25,30 @@ LevelOfLuminance levels_of(const LightTable& table) {
   return levels;
 }
 
-/// Sets the levels of a row in one colour.
-HANDCAST_CLONES void set_levels(const std::uint16_t* __restrict light,
-                                const std::uint32_t* __restrict levels, int count, int shift,
-                                std::uint32_t* __restrict out) {
-  for (int x = 0; x < count; ++x) out[x] |= levels[light[x] >> 4] << shift;
+/// Sets the levels of kPart pixels in one colour.
+[[gnu::always_inline]] inline void set_levels_of_part(const std::uint32_t* rgba,
+                                                      const std::uint8_t* levels, int shift,
+                                                      std::uint32_t* out) {
+  if (is_dark(rgba)) return;
+  std::uint32_t light[kPart];
+  luminances<kPart>(rgba, light);
+  for (int i = 0; i < kPart; ++i)
+    out[i] |= static_cast<std::uint32_t>(levels[light[i] >> 4]) << shift;
+}
+
+/// Sets the levels of the first `pixels` pixels of a row in one colour.
+HANDCAST_CLONES void set_levels(const std::uint32_t* rgba, const std::uint8_t* levels, int pixels,
+                                int shift, std::uint32_t* out) {
+  int x = 0;
+  for (; x + kPart <= pixels; x += kPart) set_levels_of_part(rgba + x, levels, shift, out + x);
+  LastPart last(rgba + x, out + x, pixels - x);
+  set_levels_of_part(last.rgba, levels, shift, last.out);
 }
 
 class QuadrantPacker final : public Packer {
  public:
   QuadrantPacker(const config::Projector& settings, int width_px, int height_px)
-      : Packer(width_px, height_px, kQuadrants),
-        settings_(settings),
-        row_(static_cast<std::size_t>(width_px)) {}
+      : Packer(width_px, height_px, kQuadrants), settings_(settings) {}
 
   void add(View<const std::uint32_t> drawing, Rect region, int first, int count) override {
     region = region.within(drawing.width, drawing.height);
@@ -56,10 +68,9 @@ class QuadrantPacker final : public Packer {
  private:
   void write_grey(View<const std::uint32_t> drawing, Rect region, int shift,
                   View<std::uint32_t> part) {
-    for (int y = region.y0; y < region.y1; ++y) {
-      luminances(drawing.row(y) + region.x0, region.width(), row_.data());
-      set_levels(row_.data(), levels_.data(), region.width(), shift, part.row(y) + region.x0);
-    }
+    for (int y = region.y0; y < region.y1; ++y)
+      set_levels(drawing.row(y) + region.x0, levels_.data(), region.width(), shift,
+                 part.row(y) + region.x0);
   }
   void set_fade(double fade) override {
     table_ = light_table(settings_, fade);
@@ -69,7 +80,6 @@ class QuadrantPacker final : public Packer {
   config::Projector settings_;
   LightTable table_{};
   LevelOfLuminance levels_{};
-  std::vector<std::uint16_t> row_;  ///< luminance of the pixels of a row
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "config/sections/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
+#include "services/projector/longest_runs.hpp"
 #include "services/projector/projector.hpp"
 #include "services/projector/recent_times.hpp"
 
@@ -13,9 +14,9 @@ namespace handcast::projector {
 
 /// Decides when each sub-frame of an output frame is drawn, and for which time. The output frame is
 /// handed over when the projector takes it, complete: sub-frames are drawn just before, in the
-/// order in which they are lit, as late as the time that a drawing took lately allows. If there is
-/// not enough time for all of them, a drawing is lit in several sub-frames and is made for the
-/// middle of their time; such drawings are spread over the output frame. One thread.
+/// order in which they are lit, as late as the slowest drawings of late allow (LongestRuns). If
+/// there is not enough time for all of them, a drawing is lit in several sub-frames and is made for
+/// the middle of their time; the later drawings are, because the time may yet suffice. One thread.
 class SubFramePlan {
  public:
   /// The sub-frames [first, first + count) of an output frame, and their drawing.
@@ -31,7 +32,7 @@ class SubFramePlan {
       : sub_frames_(config::sub_frames_of(settings.packing)),
         period_ns_(seconds_to_ns(1 / settings.rate_hz)),
         drawing_(std::max<std::int64_t>(ms_to_ns(settings.software_ms), 1)),
-        all_drawings_(0),
+        drawings_(sub_frames_, drawing_.median_ns()),
         light_(ms_to_ns(settings.latency_ms) + output_period_ns() / 2) {}
 
   /// Begins an output frame, which is handed over as soon as possible: one drawing must be possible
@@ -44,6 +45,7 @@ class SubFramePlan {
     if (hand_over_ns_ < soonest_ns)
       hand_over_ns_ += (soonest_ns - hand_over_ns_ + period_ns - 1) / period_ns * period_ns;
     next_sub_frame_ = 0;
+    drawings_.begin_output_frame();
   }
   /// The next drawing; empty if all sub-frames are drawn, or there is no time for another drawing.
   std::optional<Drawing> next(std::int64_t now_ns) const {
@@ -54,21 +56,16 @@ class SubFramePlan {
     if (fitting < 1 && next_sub_frame_ > 0) return std::nullopt;
     const auto drawings =
         static_cast<int>(std::clamp<std::int64_t>(fitting, 1, static_cast<std::int64_t>(left)));
-    // Early enough for slower drawings than usual, which would cost the last sub-frames: ahead by
-    // one and a half.
-    Drawing drawing{next_sub_frame_, (left + drawings / 2) / drawings,
-                    last_ns - usual_ns() - 3 * each_ns / 2};
+    Drawing drawing{next_sub_frame_, left / drawings, last_ns - drawings_.of(left)};
     drawing.target_ns = hand_over_ns_ + light_.median_ns() +
                         (2 * drawing.first + drawing.count - sub_frames_) * period_ns_ / 2;
     return drawing;
   }
   /// Notes that the drawing is done, and how long it took.
   void drawn(const Drawing& drawing, std::int64_t took_ns) {
-    if (drawing.first == 0) drawn_ns_ = 0;
-    drawn_ns_ += drawing.count * took_ns;
     next_sub_frame_ = drawing.first + drawing.count;
-    if (left_to_draw() == 0) all_drawings_.add(drawn_ns_);
     drawing_.add(std::max<std::int64_t>(took_ns, 1));
+    drawings_.add(took_ns);
   }
   /// Number of sub-frames without a drawing.
   int left_to_draw() const { return sub_frames_ - next_sub_frame_; }
@@ -94,23 +91,16 @@ class SubFramePlan {
   std::int64_t output_period_ns() const { return sub_frames_ * period_ns_; }
 
  private:
-  /// The time that the drawings of all sub-frames left usually take. The first ones take longer
-  /// than the others, because the caches are cold after the wait.
-  std::int64_t usual_ns() const {
-    const std::int64_t later_ns = left_to_draw() * drawing_.upper_quartile_ns();
-    return next_sub_frame_ == 0 ? std::max(later_ns, all_drawings_.upper_quartile_ns()) : later_ns;
-  }
-  /// For the last drawing, if it is slow, and for the projector.
+  /// For a last drawing that is slower than all of late, and for the projector.
   std::int64_t reserve_ns() const { return 300'000 + drawing_.median_ns() / 4; }
 
   int sub_frames_;
   std::int64_t period_ns_;
-  RecentTimes drawing_;       ///< time of a drawing
-  RecentTimes all_drawings_;  ///< time of all drawings of an output frame
-  RecentTimes light_;         ///< from handing over to the middle of the light
+  RecentTimes drawing_;   ///< time of a drawing
+  LongestRuns drawings_;  ///< time of several drawings
+  RecentTimes light_;     ///< from handing over to the middle of the light
   std::int64_t hand_over_ns_ = 0;
   int next_sub_frame_ = 0;
-  std::int64_t drawn_ns_ = 0;  ///< time of the drawings of this output frame so far
 };
 
 }  // namespace handcast::projector

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <set>
 
+#include "tests/bench/frame_bandwidth.hpp"
 #include "tests/bench/frame_pipeline.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/nearest_against_opencv.hpp"
@@ -62,6 +63,7 @@ void measure_hands(int frames, std::vector<Goal>& goals) {
   const auto times = time_frames(scenes, frames);
   fmt::print("hands at 0.73 m\n");
   print_stages(scenes, times);
+  print_bandwidth(times[0]);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (!times[i].error.empty()) continue;
     const bool one = scenes[i].hands == 1;

@@ -44,6 +44,7 @@ struct Run {
         timed_us([&] { frame = pipeline->render(now_ns, now_ns + 4 * kMs, image); });
     times.lit_px = frame.fill.lit;
     times.filled_px = frame.fill.filled;
+    times.region_px = frame.region.width() * frame.region.height();
     if (!counts) return;
     times.frame_us.push_back(frame_us);
     for (const msg::StageMark& mark : frame.stages)

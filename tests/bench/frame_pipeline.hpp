@@ -27,7 +27,7 @@ struct FrameScene {
 struct FrameTimes {
   std::vector<double> frame_us;                         ///< render() as its caller sees it
   std::map<std::string, std::vector<double>> stage_us;  ///< by msg::kStageNames
-  int lit_px = 0, filled_px = 0;                        ///< of the last frame
+  int lit_px = 0, filled_px = 0, region_px = 0;         ///< of the last frame
   std::string error;                                    ///< where it could not run
 };
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <random>
 
 namespace handcast::renderer {
 namespace {
@@ -33,6 +35,17 @@ TEST(Luminance, RisesWithEachGreyLevelFromBlackToWhite) {
   for (int level = 2; level < 256; ++level)
     EXPECT_GT(luminance(rgba(level, level, level)),
               luminance(rgba(level - 1, level - 1, level - 1)));
+}
+
+TEST(Luminance, OfManyPixelsIsThatOfEach) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 1000; ++i) {
+    std::array<std::uint32_t, 32> pixels, together;
+    for (auto& pixel : pixels) pixel = static_cast<std::uint32_t>(random());
+    pixels[static_cast<std::size_t>(i) % 32] &= 0x00ffffffu;
+    luminances<32>(pixels.data(), together.data());
+    for (std::size_t k = 0; k < 32; ++k) ASSERT_EQ(together[k], luminance(pixels[k])) << pixels[k];
+  }
 }
 
 TEST(Luminance, IsZeroWhereTheFrameIsDark) { EXPECT_EQ(luminance(0x00ffffffu), 0); }

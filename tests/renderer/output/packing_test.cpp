@@ -33,6 +33,13 @@ Texture flat(std::uint32_t colour, int width = kWidth, int height = kHeight) {
   return {width, height, colour};
 }
 
+Texture many_colours(int width, int height) {
+  Texture drawing(width, height);
+  for (std::size_t i = 0; i < drawing.pixels().size(); ++i)
+    drawing.pixels()[i] = static_cast<std::uint32_t>(i) * 2654435761u | kOpaque;
+  return drawing;
+}
+
 std::vector<std::uint32_t> pixels_of(const Packer& packer) {
   const auto image = packer.image();
   return {image.data, image.data + static_cast<std::ptrdiff_t>(image.width) * image.height};
@@ -210,6 +217,38 @@ TEST_P(EveryPacking, OnlyTheRegionIsLitAndThePixelsOfAlphaZeroAreDark) {
     }
 }
 
+TEST_P(EveryPacking, ARegionOfAnyWidthHasItsOwnPixelsAndNoOthers) {
+  const auto drawing = many_colours(width_, height_);
+  const auto whole = make_packer(settings(GetParam()), kWidth, kHeight);
+  const int count = config::sub_frames_of(GetParam());
+  for (const int width : {0, 1, 31, 32, 33, 63, 64, 65}) {
+    const Rect region{17, 9, 17 + width, 12};
+    auto only_region = flat(0x00ffffff, width_, height_);
+    for (int y = region.y0; y < region.y1; ++y)
+      for (int x = region.x0; x < region.x1; ++x) only_region.at(x, y) = drawing.at(x, y);
+    packer_->begin(1);
+    whole->begin(1);
+    packer_->add(drawing.view(), region, 0, count);
+    whole->add(only_region.view(), {0, 0, width_, height_}, 0, count);
+    EXPECT_EQ(pixels_of(*packer_), pixels_of(*whole)) << width;
+    EXPECT_EQ(packer_->region().empty(), width == 0);
+  }
+}
+
+TEST_P(EveryPacking, ARegionThatShrinksLeavesNoLightBehind) {
+  const auto drawing = many_colours(width_, height_);
+  const auto fresh = make_packer(settings(GetParam()), kWidth, kHeight);
+  const int count = config::sub_frames_of(GetParam());
+  packer_->begin(1);
+  packer_->add(drawing.view(), {0, 0, width_, height_}, 0, count);
+  for (auto* packer : {packer_.get(), fresh.get()}) {
+    packer->begin(1);
+    for (int k = 0; k < count; ++k)  // the last sub-frame is empty
+      packer->add(drawing.view(), {5 + k, 6, 5 + 2 * k, 6 + (count - 1 - k)}, k, 1);
+  }
+  EXPECT_EQ(pixels_of(*packer_), pixels_of(*fresh));
+}
+
 TEST_P(EveryPacking, TheNextOutputFrameBeginsInTheDark) {
   const auto drawing = flat(kWhite, width_, height_);
   packer_->begin(1);
@@ -221,9 +260,7 @@ TEST_P(EveryPacking, TheNextOutputFrameBeginsInTheDark) {
 }
 
 TEST_P(EveryPacking, ADrawingInSeveralSubFramesIsTheSameAsItOneByOne) {
-  Texture drawing(width_, height_);
-  for (std::size_t i = 0; i < drawing.pixels().size(); ++i)
-    drawing.pixels()[i] = static_cast<std::uint32_t>(i) * 2654435761u | kOpaque;
+  const auto drawing = many_colours(width_, height_);
   const int count = config::sub_frames_of(GetParam());
   const auto one_by_one = make_packer(settings(GetParam()), kWidth, kHeight);
   packer_->begin(1);

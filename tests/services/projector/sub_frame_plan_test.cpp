@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <vector>
 
 namespace handcast::projector {
@@ -28,15 +29,16 @@ class Machine {
   explicit Machine(std::int64_t drawing_ns, double settings_ms = 0.5)
       : drawing_ns_(drawing_ns), plan_(settings(settings_ms)) {}
 
-  /// Draws an output frame; drawing number `slow` takes `slow_ns`. Returns the drawings, each with
-  /// the time at which it began.
-  std::vector<SubFramePlan::Drawing> output_frame(int slow = -1, std::int64_t slow_ns = 0) {
+  /// Draws an output frame; the drawings whose numbers are in `other_ns` take other times. Returns
+  /// the drawings, each with the time at which it began.
+  std::vector<SubFramePlan::Drawing> output_frame(
+      const std::map<std::size_t, std::int64_t>& other_ns = {}) {
     std::vector<SubFramePlan::Drawing> drawings;
     plan_.start(now_ns_);
     while (auto next = plan_.next(now_ns_)) {
       next->begin_ns = now_ns_ = std::max(now_ns_, next->begin_ns);
-      const std::int64_t took_ns =
-          static_cast<int>(drawings.size()) == slow ? slow_ns : drawing_ns_;
+      const auto other = other_ns.find(drawings.size());
+      const std::int64_t took_ns = other != other_ns.end() ? other->second : drawing_ns_;
       now_ns_ += took_ns;
       plan_.drawn(*next, took_ns);
       drawings.push_back(*next);
@@ -73,7 +75,7 @@ TEST(SubFramePlan, AFastMachineDrawsEachSubFrameForItsOwnLight) {
 
 TEST(SubFramePlan, AFastMachineBeginsLateButInTime) {
   Machine machine(kMs / 5);
-  for (int i = 0; i < 10; ++i) machine.output_frame();
+  for (int i = 0; i < 32; ++i) machine.output_frame();  // software_ms is forgotten
   const auto drawings = machine.output_frame();
   const std::int64_t early_ns = machine.handed_ns() - drawings.front().begin_ns;
   EXPECT_GE(early_ns, 8 * kMs / 5);
@@ -112,17 +114,52 @@ TEST(SubFramePlan, ASlowDrawingCostsSubFramesAndNotTheRefresh) {
   Machine machine(kMs, 1);
   for (int i = 0; i < 3; ++i) machine.output_frame();
   const std::int64_t before_ns = machine.handed_ns();
-  const auto drawings = machine.output_frame(2, 4 * kMs);
+  const auto drawings = machine.output_frame({{2, 4 * kMs}});
   EXPECT_LT(drawings.size(), 8u);
   EXPECT_EQ(drawings.back().first + drawings.back().count + machine.left(), 8);
   EXPECT_EQ(machine.handed_ns() - before_ns, 10 * kMs);
   EXPECT_EQ(machine.output_frame().size(), 8u);
 }
 
+TEST(SubFramePlan, ABurstOfSlowDrawingsCostsNothingIfOneWasSeenLately) {
+  constexpr std::int64_t kSlow_ns = kMs * 3 / 2;
+  Machine machine(kMs / 2);
+  for (int i = 0; i < 3; ++i) machine.output_frame();
+  EXPECT_LT(machine.output_frame({{0, kSlow_ns}, {1, kSlow_ns}, {2, kSlow_ns}}).size(), 8u);
+  for (std::size_t first = 0; first < 6; ++first) {
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(machine.output_frame().size(), 8u);
+    const auto drawings =
+        machine.output_frame({{first, kSlow_ns}, {first + 1, kSlow_ns}, {first + 2, kSlow_ns}});
+    EXPECT_EQ(drawings.size(), 8u) << first;
+  }
+}
+
+TEST(SubFramePlan, DrawingsBeginLateAgainAfterABurst) {
+  Machine machine(kMs / 2);
+  for (int i = 0; i < 3; ++i) machine.output_frame();
+  const auto early_ns = [&] {
+    const auto drawings = machine.output_frame();
+    return machine.handed_ns() - drawings.front().begin_ns;
+  };
+  const std::int64_t before_ns = early_ns();
+  machine.output_frame({{2, 2 * kMs}});
+  EXPECT_GT(early_ns(), before_ns + kMs);
+  for (int i = 0; i < 31; ++i) machine.output_frame();
+  EXPECT_EQ(early_ns(), before_ns);
+}
+
+TEST(SubFramePlan, ATimeThatSufficesAfterAllCostsNoSubFrame) {
+  Machine machine(kMs, 1);
+  for (int i = 0; i < 3; ++i) machine.output_frame();
+  std::map<std::size_t, std::int64_t> other_ns{{0, kMs * 17 / 5}};  // 4.6 ms for seven are left
+  for (std::size_t i = 1; i < 8; ++i) other_ns[i] = kMs / 2;
+  EXPECT_EQ(machine.output_frame(other_ns).size(), 8u);
+}
+
 TEST(SubFramePlan, WithoutTimeForTheLastDrawingTheOneBeforeIsUsed) {
   Machine machine(kMs, 1);
   for (int i = 0; i < 3; ++i) machine.output_frame();
-  const auto drawings = machine.output_frame(6, 3 * kMs);
+  const auto drawings = machine.output_frame({{6, 3 * kMs}});
   EXPECT_EQ(drawings.size(), 7u);
   EXPECT_EQ(machine.left(), 1);
 }

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "tests/bench/frame_pipeline.hpp"
+
+namespace handcast::bench {
+
+/// Prints, for the passes of the painter, the bytes that they must read and write at least, the
+/// speed of a plain copy of as many bytes in this run, the time that follows from both, and the
+/// measured one.
+void print_bandwidth(const FrameTimes& times);
+
+}  // namespace handcast::bench
