@@ -19,26 +19,36 @@ class Stream:
     def __init__(self, folder, name):
         folder = pathlib.Path(folder)
         about = json.loads((folder / "recording.json").read_text())
+        if about.get("version") != 1:
+            raise ValueError(f"{folder}: version {about.get('version')} of the format is not known")
         self.message_type, self.channels = dtype(about["streams"][name]["message"]), about["streams"][name]["channels"]
         rows = (folder / f"{name}.index").read_bytes()
         row = dtype(about["index"])
         self.index = np.frombuffer(rows[: len(rows) // row.itemsize * row.itemsize], row)
         self.data = (folder / f"{name}.data").open("rb")
-        ends = self.index["offset"] + self.index["head_bytes"] + self.index["image_bytes"]
-        self.index = self.index[: np.append(ends > (folder / f"{name}.data").stat().st_size, True).argmax()]
+        there = (folder / f"{name}.data").stat().st_size
+        sizes = self.index["head_bytes"].astype(np.uint64) + self.index["image_bytes"]
+        cut = (self.index["offset"] > there) | (sizes > there - np.minimum(self.index["offset"], there))
+        self.index = self.index[~cut]
+
+    def stored(self, number):
+        """The head and the packed image of a message."""
+        row = self.index[number]
+        self.data.seek(int(row["offset"]))
+        stored = self.data.read(int(row["head_bytes"]) + int(row["image_bytes"]))
+        if zlib.crc32(stored) != row["crc"]:
+            raise ValueError(f"message {number} is damaged")
+        return stored[: row["head_bytes"]], stored[row["head_bytes"] :]
 
     def message(self, number):
         """The fields of a message: stream.message(7)["hands"][0]["joints"]["position_m"]."""
-        row = self.index[number]
-        self.data.seek(row["offset"])
-        head = self.data.read(row["head_bytes"])
+        head, _ = self.stored(number)
         return np.frombuffer(head.ljust(self.message_type.itemsize, b"\0"), self.message_type)[0]
 
     def image(self, number):
         """Its image: (rows, columns) of grey values, or (rows, columns, 4) of RGBA."""
         row = self.index[number]
-        self.data.seek(row["offset"] + row["head_bytes"])
-        steps = np.frombuffer(zlib.decompress(self.data.read(row["image_bytes"])), np.uint8)
+        steps = np.frombuffer(zlib.decompress(self.stored(number)[1]), np.uint8)
         rows = np.cumsum(steps.reshape(-1, row["width_px"]), axis=0, dtype=np.uint8)
         planes = rows.reshape(self.channels, row["height_px"], row["width_px"])
         if self.channels == 1:
@@ -48,6 +58,8 @@ class Stream:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 2 or not (pathlib.Path(sys.argv[1]) / "recording.json").exists():
+        sys.exit(__doc__)
     for index in sorted(pathlib.Path(sys.argv[1]).glob("*.index")):
         stream = Stream(sys.argv[1], index.stem)
         span_s = np.ptp(stream.index["published_ns"]) * 1e-9 if len(stream.index) else 0

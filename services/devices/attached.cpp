@@ -9,14 +9,24 @@
 namespace handcast::devices {
 namespace {
 
+/// The settings as they stand in a rig file: a section, and its lines.
+std::string print(const std::vector<std::pair<std::string, std::string>>& settings) {
+  std::string text, section;
+  for (const auto& [setting, value] : settings) {
+    const auto dot = setting.find('.');
+    if (const auto begun = setting.substr(0, dot); begun != section)
+      text += fmt::format("      [{}]\n", section = begun);
+    text += fmt::format("      {} = {}\n", setting.substr(dot + 1), nlohmann::json(value).dump());
+  }
+  return text;
+}
+
 /// The lines of one device, indented.
 std::string print(const Attached& device) {
   auto text = fmt::format("  {}\n", device.name);
   if (!device.about.empty()) text += fmt::format("    {}\n", device.about);
   if (!device.trouble.empty()) text += fmt::format("    cannot be used: {}\n", device.trouble);
-  for (const auto& [setting, value] : device.settings)
-    text += fmt::format("      {} = {}\n", setting, nlohmann::json(value).dump());
-  return text;
+  return text + print(device.settings);
 }
 
 nlohmann::json to_json(const Mode& mode) {

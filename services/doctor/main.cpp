@@ -13,6 +13,7 @@
 #include "services/doctor/live.hpp"
 #include "services/doctor/machine.hpp"
 #include "services/doctor/rig_file.hpp"
+#include "services/doctor/start_check.hpp"
 
 namespace handcast::doctor {
 namespace {
@@ -38,7 +39,8 @@ std::vector<Finding> examine(const Options& options) {
   const auto rig = config::load_rig(options.file, options.settings);
   auto findings = examine_file(rig);
   if (!rig) return findings;
-  for (auto more : {examine_machine(*rig), examine_if_up(rig->name, options.seconds)})
+  for (auto more : {examine_start(options.file, options.settings), examine_machine(*rig),
+                    examine_if_up(rig->name, options.seconds)})
     std::move(more.begin(), more.end(), std::back_inserter(findings));
   return findings;
 }

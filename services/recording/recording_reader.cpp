@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/log.hpp"
 #include "services/recording/about.hpp"
 
 namespace handcast::recording {
@@ -66,13 +67,13 @@ std::string fault_of(const std::vector<IndexRow>& rows) {
   return {};
 }
 
-/// Removes all rows from the first one on whose message is not in the data.
-void keep_whole(std::vector<IndexRow>& rows, std::uint64_t data_bytes) {
-  const auto cut = std::ranges::find_if(rows, [&](const IndexRow& row) {
+/// Removes the rows whose messages are not in the data: the last ones if the recording was cut off,
+/// others if they are damaged. Returns how many.
+std::size_t keep_whole(std::vector<IndexRow>& rows, std::uint64_t data_bytes) {
+  return std::erase_if(rows, [&](const IndexRow& row) {
     return row.offset > data_bytes ||
            std::uint64_t{row.head_bytes} + row.image_bytes > data_bytes - row.offset;
   });
-  rows.erase(cut, rows.end());
 }
 
 Result<void> check_layout(const fs::path& folder, std::string_view stream,
@@ -104,7 +105,9 @@ Result<StreamReader> StreamReader::open(const fs::path& folder, std::string_view
   if (!data) return tl::make_unexpected(data.error());
   const auto data_bytes = size_of(*data, base + ".data");
   if (!data_bytes) return tl::make_unexpected(data_bytes.error());
-  keep_whole(*rows, *data_bytes);
+  if (const auto lost = keep_whole(*rows, *data_bytes); lost > 0)
+    log::warning("{}: {} of {} messages are not whole and are left out", base, lost,
+                 lost + rows->size());
   if (const auto fault = fault_of(*rows); !fault.empty())
     return fail(Errc::bad_data, fmt::format("{}.index: {}", base, fault));
   return StreamReader(base + ".data", type, std::move(*data), std::move(*rows));

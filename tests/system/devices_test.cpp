@@ -63,8 +63,11 @@ TEST_F(Devices, EachIsListedWithTheSettingsThatUseIt) {
   EXPECT_THAT(display["name"].get<std::string>(), HasSubstr("EPSON PJ"));
 
   const auto text = handcast({"devices"}).output;
-  EXPECT_THAT(text, AllOf(HasSubstr("cameras\n"), HasSubstr("camera.aravis.device = \"GV01\"\n"),
-                          HasSubstr("displays\n")));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("cameras\n"),
+            HasSubstr("[camera]\n      backend = \"aravis\"\n      aravis.device = \"GV01\"\n"),
+            HasSubstr("displays\n")));
 }
 
 TEST_F(Devices, TheDoctorLooksAtTheDisplayOfTheRig) {

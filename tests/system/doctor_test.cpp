@@ -31,6 +31,13 @@ TEST_F(Doctor, ARigThatIsUpIsWatched) {
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
 }
 
+TEST_F(Doctor, ARigThatCannotStartHasAFaultThatSaysWhy) {
+  const auto outcome = handcast({"doctor", "config/rigs/replay.toml", "--json"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("pose 'replay'"));
+  EXPECT_EQ(finding("start")["grade"], "good");
+}
+
 TEST_F(Doctor, ARigThatIsNotUpGetsTheAdviceToStartIt) {
   const auto rig = finding("rig");
   EXPECT_EQ(rig["grade"], "advice");

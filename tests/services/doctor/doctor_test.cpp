@@ -9,6 +9,7 @@
 #include "services/doctor/images.hpp"
 #include "services/doctor/machine.hpp"
 #include "services/doctor/rig_file.hpp"
+#include "services/doctor/start_check.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::doctor {
@@ -153,6 +154,16 @@ TEST(RigFile, AFaultyFileIsTheOnlyFinding) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].grade, Grade::fault);
   EXPECT_THAT(findings[0].sentence, HasSubstr("rig.toml:3"));
+}
+
+TEST(Start, WhatUpWouldRefuseIsAFaultEach) {
+  EXPECT_FALSE(has_fault(judge_check(0, "")));
+  const auto findings =
+      judge_check(100, "handcast: rig.toml:\ncamera: no such folder\npose: none\n");
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_EQ(findings[0].sentence, "camera: no such folder");
+  EXPECT_TRUE(has_fault(findings));
+  EXPECT_TRUE(has_fault(judge_check(100, "")));
 }
 
 TEST(Findings, ArePrintedWithTheirRemediesAndCounted) {

@@ -31,7 +31,7 @@ class Hostile : public testing::Test {
     test::replace(folder_ / "camera.frames.index", bytes);
     auto reader = StreamReader::open<msg::CameraFrame>(folder_, "camera.frames");
     if (!reader) return tl::make_unexpected(reader.error());
-    if (reader->rows().size() < 2) return fail(Errc::bad_data, "the row is left out");
+    if (reader->rows().size() < 3) return fail(Errc::bad_data, "the row is left out");
     msg::CameraFrame frame;
     std::vector<std::uint8_t> pixels(test::kWidth * test::kHeight);
     return reader->read(1, frame, pixels);
@@ -56,6 +56,17 @@ TEST_F(Hostile, RowsWithImpossibleValuesAreRefused) {
   EXPECT_FALSE(read_changed([](IndexRow& row) { row.crc ^= 1; }));
   EXPECT_FALSE(read_changed([](IndexRow& row) { row.published_ns = INT64_MAX; }));
   EXPECT_FALSE(read_changed([](IndexRow& row) { row.origin_ns = INT64_MIN; }));
+}
+
+TEST_F(Hostile, ADamagedRowHidesNoOther) {
+  EXPECT_FALSE(read_changed([](IndexRow& row) { row.offset = ~0ull; }));
+  auto reader = StreamReader::open<msg::CameraFrame>(folder_, "camera.frames");
+  ASSERT_TRUE(reader);
+  ASSERT_EQ(reader->rows().size(), 2u);
+  EXPECT_EQ(reader->rows()[1].sequence, 2u) << "the last message";
+  msg::CameraFrame frame;
+  std::vector<std::uint8_t> pixels(test::kWidth * test::kHeight);
+  EXPECT_TRUE(reader->read(1, frame, pixels));
 }
 
 TEST_F(Hostile, ASmallerPlaceThanTheImageIsAnError) {
