@@ -26,6 +26,7 @@ struct Answer {
 /// Starts a program, whose errors go to `out`. -1 if it cannot be started.
 pid_t start(std::vector<std::string> words, int out) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t files;

@@ -150,6 +150,8 @@ Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side
 Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int64_t epoch_ns) {
   const fs::path folder = settings.directory;
   if (folder.empty()) return fail(Errc::bad_config, "landmarks.replay.directory names no folder");
+  if (auto there = recording::check_folder(folder); !there)
+    return tl::make_unexpected(there.error());
   if (recording::is_recording(folder)) return open_recorded(settings, epoch_ns);
   auto times_ns = twin::read_stamps_ns(folder / "landmarks_timestamps.npy");
   if (!times_ns) return tl::make_unexpected(times_ns.error());

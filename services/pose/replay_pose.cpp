@@ -85,6 +85,8 @@ Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const ca
   const auto& settings = rig.pose.replay;
   if (settings.directory.empty())
     return fail(Errc::bad_config, "pose 'replay': no folder is given; set pose.replay.directory");
+  if (auto there = recording::check_folder(settings.directory); !there)
+    return fail_in("pose 'replay'", there.error());
   if (recording::is_recording(settings.directory)) return open_recorded(settings, epoch_ns);
   auto recording = twin::read_recording(settings.directory);
   if (!recording) return fail_in("pose 'replay'", recording.error());

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace handcast::record {
@@ -25,6 +27,9 @@ class RingFeed final : public Feed {
   Result<void> read(MessageQueue& queue, Deadline deadline) override {
     for (auto until = deadline;; until = Deadline::now()) {
       auto sample = ring_.next(until);
+      if (sample && !is_of_this_rig(**sample))
+        return fail(Errc::disconnected,
+                    "the rig was given another calibration; what follows is for another recording");
       if (sample) {
         take(std::move(*sample), queue);
         continue;
@@ -38,6 +43,14 @@ class RingFeed final : public Feed {
   }
 
  private:
+  /// A recording has one calibration, which its images know.
+  bool is_of_this_rig(const T& message) {
+    if constexpr (std::is_same_v<T, msg::CameraFrame>) {
+      if (!calibration_) calibration_ = message.calibration;
+      return message.calibration == *calibration_;
+    }
+    return true;
+  }
   void take(ipc::Sample<T> sample, MessageQueue& queue) {
     const auto skipped = ring_.reader().skipped();
     lost_ += skipped - std::exchange(skipped_, skipped);
@@ -56,6 +69,7 @@ class RingFeed final : public Feed {
 
   client::Stream<T> ring_;
   std::uint64_t skipped_ = 0;
+  std::optional<std::uint32_t> calibration_;  ///< of the first image
 };
 
 template <class T>

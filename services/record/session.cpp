@@ -8,6 +8,7 @@
 
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
+#include "config/settings/frozen_file.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/client/rig_ring.hpp"
@@ -36,6 +37,14 @@ Result<config::Rig> settings_of(const std::string& rig) {
   return config::parse_rig(text->get<std::string>(), "the rig that is up");
 }
 
+/// The calibration file, as the services have read it: with the same text it has the same id.
+Result<std::string> calibration_of(const config::Rig& rig) {
+  if (rig.calibration.empty()) return calib::print_calibration(calib::reference_rig());
+  auto file = config::read_file_or_frozen(rig.calibration);
+  if (!file) return tl::make_unexpected(file.error());
+  return std::move(file->text);
+}
+
 /// What a recording says of its rig. Without its settings, the images are recorded all the same.
 recording::RecordingWriter::About about_of(const std::string& name) {
   auto rig = settings_of(name);
@@ -43,13 +52,13 @@ recording::RecordingWriter::About about_of(const std::string& name) {
     log::warning("record: the recording has no settings and no calibration: {}", rig.error().what);
     return {name, "# " + rig.error().what + "\n", ""};
   }
-  const auto calibration = calib::load_calibration(rig->calibration);
+  auto calibration = calibration_of(*rig);
   if (!calibration) {
     log::warning("record: the recording has no calibration: {}", calibration.error().what);
     return {name, config::print_rig(*rig), ""};
   }
   rig->calibration = std::string(recording::kCalibrationFile);
-  return {name, config::print_rig(*rig), calib::print_calibration(*calibration)};
+  return {name, config::print_rig(*rig), std::move(*calibration)};
 }
 
 Result<std::vector<std::unique_ptr<Feed>>> open_feeds(const std::string& rig,

@@ -70,4 +70,12 @@ bool is_recording(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / kAboutFile, failed);
 }
 
+Result<void> check_folder(const std::filesystem::path& folder) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(folder, failed)) return {};
+  return fail(
+      Errc::bad_config,
+      fmt::format("'{}' is not a folder; `handcast record` makes recordings", folder.string()));
+}
+
 }  // namespace handcast::recording

@@ -31,4 +31,7 @@ Result<About> read_about(const std::filesystem::path& folder);
 /// True if the folder is a recording of `handcast record`.
 bool is_recording(const std::filesystem::path& folder);
 
+/// Errors: bad_config (there is no such folder).
+Result<void> check_folder(const std::filesystem::path& folder);
+
 }  // namespace handcast::recording

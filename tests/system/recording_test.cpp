@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 
+#include "calib/calibration.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "tests/system/running_rig.hpp"
 
@@ -108,6 +109,31 @@ TEST_F(Recording, TheRigKnowsNothingOfARecording) {
   const auto top = handcast({"top", "--json"});
   EXPECT_THAT(top.output, HasSubstr("projection.frames"));
   EXPECT_THAT(top.output, testing::Not(HasSubstr("record"))) << "no place in a ring is taken";
+}
+
+TEST_F(Recording, EndsWhenTheRigIsGivenAnotherCalibration) {
+  const auto calibration = scratch_.path() / "calibration.toml";
+  const auto give = [&](double k1) {
+    auto rig = calib::reference_rig();
+    rig.camera.k1 = k1;
+    std::ofstream(calibration) << calib::print_calibration(rig);
+  };
+  give(-0.28);
+  const auto rig = up({"--set", "calibration=" + calibration.string()});
+  wait_until_light();
+  Command recorder(scratch_.path(), {"record", in_scratch("a"), "--seconds", "60"});
+  ASSERT_TRUE(eventually([&] {
+    return fs::exists(in_scratch("a/camera.frames.index")) &&
+           fs::file_size(in_scratch("a/camera.frames.index")) > 0;
+  }));
+  give(-0.27);
+  EXPECT_EQ(handcast({"reload"}).exit_code, 0);
+  EXPECT_EQ(recorder.wait(), 0) << recorder.log();
+  EXPECT_THAT(recorder.output(), HasSubstr("the rig was given another calibration"));
+  const auto kept = calib::load_calibration(in_scratch("a/calibration.toml"));
+  ASSERT_TRUE(kept) << kept.error().what;
+  for (const auto& [number, frame] : read<msg::CameraFrame>("a", "camera.frames"))
+    EXPECT_EQ(frame.message.calibration, kept->id) << number;
 }
 
 TEST_F(Recording, CtrlCAndTheEndOfTheRigAreCleanEnds) {
