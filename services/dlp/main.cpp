@@ -78,8 +78,13 @@ static void run_dlp(service::Context& context) {
 /// `handcast-dlp --safe`: darkens the projector after a crash that left nobody to do so.
 static int make_safe(const service::CommandLine& line) {
   const auto rig = must(config::load_rig(line.config_file, line.settings));
-  const auto controller = must(dlp::open_dlp(rig));
-  darken(*controller);
+  auto controller = must(dlp::open_dlp(rig));
+  if (auto dark = controller->darken(Deadline::in(kPatience)); !dark) {
+    log::warning("{}; once more", dark.error().what);  // nobody else will try
+    controller.reset();
+    controller = must(dlp::open_dlp(rig));
+    darken(*controller);
+  }
   log::info("{} is dark", must(controller->identify(Deadline::in(kPatience))));
   return kExitDone;
 }

@@ -16,7 +16,7 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr double kPatience_s = 1.2;
+constexpr double kPatience_s = 3;
 
 bool has_ended_by_itself(const Service& service) {
   const auto& last = service.last_exit();
