@@ -14,9 +14,10 @@ namespace handcast::devices {
 namespace {
 
 /// Names without the empty ones.
-std::vector<std::string> known(std::vector<std::string> names) {
-  std::erase(names, "");
-  return names;
+std::vector<std::string> known(const std::array<std::string, 4>& names) {
+  std::vector<std::string> those(names.begin(), names.end());
+  std::erase(those, "");
+  return those;
 }
 
 /// Opens the camera, to see whether that is possible and what it can do.
@@ -47,7 +48,7 @@ std::vector<Attached> industrial_cameras() {
         .name = fmt::format("{} {}, serial number {}", device.vendor, device.model, device.serial),
         .about = fmt::format("{} at {}", device.protocol, device.address),
         .settings = {{"camera.backend", "aravis"}, {"camera.aravis.device", device.serial}},
-        .names = known({device.serial, device.id, device.model})};
+        .names = known(aravis::names_of(device))};
     look_into(device, entry);
     attached.push_back(std::move(entry));
   }

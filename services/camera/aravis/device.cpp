@@ -156,6 +156,11 @@ Result<Sensor> sensor_of(ArvCamera* camera) {
   return sensor;
 }
 
+std::array<std::string, 4> names_of(const Device& device) {
+  return {device.serial, device.id, device.address,
+          device.model.empty() ? "" : fmt::format("{} {}", device.vendor, device.model)};
+}
+
 bool Presence::is_there() const {
   if (device_.is_gige()) return answers(device_.address);
   return device_.protocol != "USB3Vision" || is_on_the_usb(device_);

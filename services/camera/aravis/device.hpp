@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ struct Sensor {
 };
 /// Changes nothing in the camera. Errors: unavailable, bad_config (it has no such features).
 Result<Sensor> sensor_of(ArvCamera* camera);
+
+/// What a calibration may call the camera: its serial number, Aravis's name, address, and vendor
+/// with model. Parts that are not known are empty.
+std::array<std::string, 4> names_of(const Device& device);
 
 /// Finds out quickly, without Aravis, whether an absent camera has come back.
 class Presence {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/aravis/session.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 namespace handcast::camera::aravis {
@@ -30,9 +28,9 @@ Result<std::unique_ptr<Session>> Session::start(const Device& device,
   auto camera = open_device(device);
   if (!camera) return tl::make_unexpected(camera.error());
   const auto named = with_its_names(camera->get(), device);
-  if (auto ours = calib::check_device(
-          "camera", calibration.camera_device,
-          {named.serial, named.id, named.address, fmt::format("{} {}", named.vendor, named.model)});
+  const auto [serial, id, address, model] = names_of(named);
+  if (auto ours =
+          calib::check_device("camera", calibration.camera_device, {serial, id, address, model});
       !ours)
     return tl::make_unexpected(ours.error());
   std::unique_ptr<Session> session(
