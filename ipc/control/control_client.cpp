@@ -149,4 +149,13 @@ Result<Answer> ask_with_descriptors(const std::string& rig, const Request& reque
   }
 }
 
+Result<std::string> ask_for_rig(const std::string& rig) {
+  const auto answer = ask_with_descriptors(rig, {.verb = Verb::rig}, std::chrono::seconds(2));
+  if (!answer) return tl::make_unexpected(answer.error());
+  const auto text = answer->object.find("rig");
+  if (text == answer->object.end() || !text->is_string())
+    return fail(Errc::bad_data, "the supervisor does not say the settings of the rig");
+  return text->get<std::string>();
+}
+
 }  // namespace handcast::control

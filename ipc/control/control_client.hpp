@@ -16,5 +16,8 @@ Result<nlohmann::json> ask(const std::string& rig, const Request& request);
 /// that sends nothing for the time of `patience` is taken to hang.
 Result<Answer> ask_with_descriptors(const std::string& rig, const Request& request,
                                     std::chrono::nanoseconds patience = std::chrono::seconds(10));
+/// The rig file as it was applied, with the back ends that were swapped, as TOML. Waits at most 2 s
+/// for a supervisor that hangs. Errors: those of ask(); bad_data (the answer has no rig file).
+Result<std::string> ask_for_rig(const std::string& rig);
 
 }  // namespace handcast::control

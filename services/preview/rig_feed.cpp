@@ -25,12 +25,9 @@ constexpr std::int64_t kLate_ns = 100'000'000;  ///< later, the poses of the las
 constexpr std::size_t kMostAtOnce = 64;         ///< messages of one stream at one look
 
 Result<World> world_of(const std::string& rig) {
-  const auto answer = control::ask_with_descriptors(rig, {.verb = control::Verb::rig}, 2s);
-  if (!answer) return tl::make_unexpected(answer.error());
-  const auto text = answer->object.find("rig");
-  if (text == answer->object.end() || !text->is_string())
-    return fail(Errc::bad_data, "the supervisor does not say which calibration the rig has");
-  const auto config = config::parse_rig(text->get<std::string>(), "applied rig");
+  const auto text = control::ask_for_rig(rig);
+  if (!text) return tl::make_unexpected(text.error());
+  const auto config = config::parse_rig(*text, "applied rig");
   if (!config) return tl::make_unexpected(config.error());
   return load_world(*config);
 }

@@ -22,19 +22,14 @@
 namespace handcast::record {
 namespace {
 
-using namespace std::chrono_literals;
-
 /// Memory for messages that are not written yet, of one ring: half a second of images.
 constexpr std::size_t kMostBytes = std::size_t{128} << 20;
 
-/// The settings of the rig as it runs. Errors: those of ask_with_descriptors(), parse_rig().
+/// The settings of the rig as it runs. Errors: those of ask_for_rig(), parse_rig().
 Result<config::Rig> settings_of(const std::string& rig) {
-  const auto answer = control::ask_with_descriptors(rig, {.verb = control::Verb::rig}, 2s);
-  if (!answer) return tl::make_unexpected(answer.error());
-  const auto text = answer->object.find("rig");
-  if (text == answer->object.end() || !text->is_string())
-    return fail(Errc::bad_data, "the supervisor does not say the settings of the rig");
-  return config::parse_rig(text->get<std::string>(), "the rig that is up");
+  const auto text = control::ask_for_rig(rig);
+  if (!text) return tl::make_unexpected(text.error());
+  return config::parse_rig(*text, "applied rig");
 }
 
 /// The calibration file, as the services have read it: with the same text it has the same id.
