@@ -37,7 +37,7 @@ struct Frame {
   int foldovers = 0;                       ///< triangles that the correction turned over
   FillCounts fill;                         ///< pixels of the fill; 0 without an image
   std::span<const msg::StageMark> stages;  ///< of this frame, CLOCK_MONOTONIC
-  std::optional<DeviceImage> device;       ///< the image on a GPU, see Pipeline::keep_on_device()
+  std::optional<DeviceImage> device;       ///< the image on a GPU, see Painter
 };
 
 }  // namespace handcast::renderer

@@ -131,7 +131,7 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
   if (!is_masked) region = landing_bounds();
 
   FillCounts counts = paint(region, is_masked);
-  auto device = keeps_on_device_ ? painter_->device_image() : std::nullopt;
+  auto device = painter_->device_image();
   View<const std::uint32_t> colour;
   if (!device) colour = painter_->colour();
   if (replace_failed_painter()) {

@@ -69,10 +69,8 @@ class Pipeline {
   /// region empty.
   Frame render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera);
 
-  /// From now on, a painter of the output's share group leaves the image on its GPU: render() gives
-  /// Frame::device instead of Frame::colour, which read_back() adds.
-  void keep_on_device(bool keeps) { keeps_on_device_ = keeps; }
-  /// Adds what a frame of the last render() has only on the GPU. Call it after the light.
+  /// Adds Frame::colour to a frame of the last render() that has only Frame::device, because its
+  /// painter draws for the share group of an output. Call it after the light.
   void read_back(Frame& frame);
 
  private:
@@ -117,7 +115,6 @@ class Pipeline {
   HandMask mask_;
   LateRegistration late_;
   std::unique_ptr<Painter> painter_;
-  bool keeps_on_device_ = false;
   StageClock stages_;
   msg::MadeFrom newest_;                ///< the newest messages, and the image of the last frame
   std::int64_t now_ns_ = 0;             ///< of the last frame

@@ -27,7 +27,6 @@ static void run_projector(service::Context& context) {
       rig.cascade, rig.content, rig.hand, calibration, {},
       renderer::open_painter(rig.projector.painter, calibration.projector_width_px,
                              calibration.projector_height_px, shares)));
-  pipeline->keep_on_device(static_cast<bool>(shares));
   context.stand_by();
   if (!projector) projector = must(projector::open_projector(rig, calibration));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
