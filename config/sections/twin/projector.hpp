@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "config/settings/field.hpp"
+
+namespace handcast::config {
+
+/// [twin.projector]
+struct TwinProjector {
+  double work_spread = 0;
+  double stalls = 0;
+  double stall_ms = 4;
+  double rate_ppm = 0;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, TwinProjector& projector) {
+  visitor.field(
+      "work_spread", projector.work_spread, between(0, 2),
+      "Simulator: standard deviation of the logarithm of a frame's time; its median is "
+      "projector.software_ms. A frame that takes longer than a refresh misses the next one: "
+      "the light of the frame before stays on.");
+  visitor.field("stalls", projector.stalls, between(0, 1),
+                "Simulator: share of frames that take stall_ms longer.");
+  visitor.field("stall_ms", projector.stall_ms, between(0, 1000, "ms"), "See stalls.");
+  visitor.field("rate_ppm", projector.rate_ppm, between(-100000, 100000, "ppm"),
+                "Simulator: rate error of the projector's refresh clock.");
+}
+
+}  // namespace handcast::config
