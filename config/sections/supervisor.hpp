@@ -11,7 +11,7 @@ namespace handcast::config {
 struct Observer {
   bool enabled = true;
   double rate_hz = 20;
-  int step_px = 3;
+  int step_px = 4;
   Process process{.wait = ipc::Wait::futex};
 };
 
@@ -21,8 +21,9 @@ void describe(Visitor& visitor, Observer& observer) {
                 "Score the live light against the true hand of the twin.");
   visitor.field("rate_hz", observer.rate_hz, between(0.1, 1000, "Hz"),
                 "Projector frames scored per second.");
-  visitor.field("step_px", observer.step_px, between(1, 16, "px"),
-                "Distance between the surface points that are scored.");
+  visitor.field(
+      "step_px", observer.step_px, between(1, 16, "px"),
+      "Distance between the surface points that are scored; rounded up to a multiple of 4.");
   visitor.section("process", observer.process, "The process of the service.");
 }
 

@@ -109,6 +109,14 @@ bool Untangler::smooth(std::span<const glm::vec2> before, std::span<glm::vec2> a
   return true;
 }
 
+int Untangler::count(std::span<const glm::vec2> before, std::span<const glm::vec2> after,
+                     float facing_sign) const {
+  int turned_over_count = 0;
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    turned_over_count += turned_over(t, before, after, facing_sign);
+  return turned_over_count;
+}
+
 void Untangler::find_turned_over(std::span<const glm::vec2> before,
                                  std::span<const glm::vec2> after, float facing_sign) {
   waiting_.clear();

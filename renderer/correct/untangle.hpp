@@ -25,6 +25,9 @@ class Untangler {
   /// down). An area of up to 0.01 px^2 does not count as turned over. Returns the number of
   /// triangles that remain turned over, which should be 0.
   int untangle(std::span<const glm::vec2> before, std::span<glm::vec2> after, float facing_sign);
+  /// The number of triangles that are turned over in `after`, counted in the same way.
+  int count(std::span<const glm::vec2> before, std::span<const glm::vec2> after,
+            float facing_sign) const;
 
  private:
   using Triangle = std::array<std::uint16_t, 3>;

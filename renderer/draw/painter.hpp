@@ -72,7 +72,8 @@ class Painter {
 
   /// Removes light where `mask` is 0 and fills the parts of the hand that have no light. Where the
   /// mask is between 0 and 255, the share of the pixel that is hand, the pixel gets this share of
-  /// its light, and its alpha is the share. `mask` has the projector's size. Does nothing if the
+  /// its light, and its alpha is the share. The alpha of a fill that fades is its share of the
+  /// light. `mask` has the projector's size. Does nothing if the
   /// method is none. See `docs/method.md#fill`.
   virtual FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings,
                           Rect region) = 0;

@@ -16,9 +16,12 @@ namespace handcast::renderer {
 
 /// One hand of a finished frame, for scores and traces.
 struct FrameHand {
-  Side side = Side::left;               ///< which hand it is
-  LandmarkPoints tracker{};             ///< P at the target time
-  LandmarkPoints corrected{};           ///< Q̂ at the target time, or P if nothing corrects it
+  Side side = Side::left;      ///< which hand it is
+  LandmarkPoints tracker{};    ///< P at the target time
+  LandmarkPoints corrected{};  ///< Q̂ at the target time, or P if nothing corrects it
+  float presence = 1;          ///< factor of all its levels, 0..1
+  /// Index among the drawn hands, see surface_id(); -1: not drawn.
+  int drawn_as = -1;
   bool has_landmarks = false;           ///< `corrected` is Q̂, even if the rung leaves it at P
   std::span<const glm::vec2> landings;  ///< per vertex: where its light lands, projector px
   Rung rung = Rung::landmarks;          ///< the rung of this frame
@@ -33,6 +36,12 @@ struct Frame {
   /// RGBA8 in the projector's size, alpha 0 where it is dark. Defined inside `region` only. Empty
   /// while the image is only on a GPU.
   View<const std::uint32_t> colour;
+  /// What each pixel shows (Painter::uv(), Painter::surface()), in the projector's size and defined
+  /// inside `region` only. Empty unless Pipeline::show_surface() is on.
+  /// @{
+  View<const glm::vec2> uv;
+  View<const SurfaceId> surface;
+  /// @}
   std::span<const FrameHand> hands;        ///< the hands of this frame
   int foldovers = 0;                       ///< triangles that the correction turned over
   FillCounts fill;                         ///< pixels of the fill; 0 without an image

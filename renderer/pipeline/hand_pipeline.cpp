@@ -149,6 +149,11 @@ int HandPipeline::correct(HandFrame& frame) {
   return untangler_.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
 }
 
+int HandPipeline::foldovers(const HandFrame& frame) const {
+  const Skinned& skinned = *frame.skinned;
+  return untangler_.count(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
+}
+
 void HandPipeline::learn_widths(const HandFrame& frame, std::int64_t target_ns, GreyView mask) {
   if (settings_.skin.fit && settings_.skin.widths && frame.corrected.has_landmarks)
     surface_.learn_widths(target_ns, to_px(frame), mask);
@@ -161,8 +166,13 @@ DrawnHand HandPipeline::drawn(const Skinned& skinned,
 
 FrameHand HandPipeline::described(const HandFrame& frame) const {
   const Corrected& corrected = frame.corrected;
-  FrameHand hand{side_, corrected.tracker, frame.registered.landmarks, corrected.has_landmarks,
-                 {},    corrected.rung};
+  FrameHand hand;
+  hand.side = side_;
+  hand.tracker = corrected.tracker;
+  hand.corrected = frame.registered.landmarks;
+  hand.presence = frame.presence;
+  hand.has_landmarks = corrected.has_landmarks;
+  hand.rung = corrected.rung;
   if (frame.skinned) hand.landings = frame.skinned->landings_px;
   return hand;
 }

@@ -97,6 +97,8 @@ class HandPipeline {
   /// Step correct: moves the landings from P onto Q̂ by the model of the frame's rung. Returns the
   /// number of triangles that remain turned over.
   int correct(HandFrame& frame);
+  /// The number of triangles that a warp of the landings has turned over.
+  int foldovers(const HandFrame& frame) const;
   /// Learns the widths of the person's fingers. `mask`: of this hand, projector px.
   void learn_widths(const HandFrame& frame, std::int64_t target_ns, GreyView mask);
 

@@ -141,13 +141,30 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
   }
   for (const auto& [stage, took_ns] : painter_->device_passes()) stages_.add(stage, took_ns);
   stages_.finish();
-  return {target_ns, newest_,         region.empty() ? Rect{} : region,
-          colour,    frame_hands(),   foldovers,
-          counts,    stages_.marks(), device};
+  Frame frame;
+  frame.target_ns = target_ns;
+  frame.made_from = newest_;
+  if (!region.empty()) frame.region = region;
+  frame.colour = colour;
+  frame.hands = frame_hands();
+  frame.foldovers = foldovers;
+  frame.fill = counts;
+  frame.stages = stages_.marks();
+  frame.device = device;
+  if (!device) add_surface(frame);
+  return frame;
+}
+
+void Pipeline::add_surface(Frame& frame) {
+  if (!shows_surface_ || frame.region.empty()) return;
+  frame.uv = painter_->uv();
+  frame.surface = painter_->surface();
 }
 
 void Pipeline::read_back(Frame& frame) {
-  if (frame.colour.data == nullptr) frame.colour = painter_->colour();
+  if (frame.colour.data != nullptr) return;
+  frame.colour = painter_->colour();
+  add_surface(frame);
 }
 
 /// The exposure of the image that a frame for `target_ns` can be registered to. The image is
@@ -223,9 +240,12 @@ int Pipeline::correct_by_grid() {
   }
   grid_ = make_warp_grid(settings_.correct, screen_,
                          MovingLeastSquares(p, q, static_cast<float>(settings_.correct.alpha)));
-  for (auto& [hand, frame] : hands_)
+  int foldovers = 0;
+  for (auto& [hand, frame] : hands_) {
     for (glm::vec2& landing : frame.skinned->landings_px) landing = (*grid_)(landing);
-  return grid_->foldovers();
+    foldovers += hand->foldovers(frame);
+  }
+  return foldovers;
 }
 
 std::uint32_t Pipeline::rungs() const {
@@ -283,7 +303,11 @@ bool Pipeline::replace_failed_painter() {
 
 std::span<const FrameHand> Pipeline::frame_hands() {
   frame_hands_.clear();
-  for (const auto& [hand, frame] : hands_) frame_hands_.push_back(hand->described(frame));
+  int drawn = 0;
+  for (const auto& [hand, frame] : hands_) {
+    frame_hands_.push_back(hand->described(frame));
+    if (frame.presence > 0) frame_hands_.back().drawn_as = drawn++;
+  }
   return frame_hands_;
 }
 

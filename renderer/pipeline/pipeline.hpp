@@ -69,8 +69,13 @@ class Pipeline {
   /// region empty.
   Frame render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera);
 
+  /// Whether frames have Frame::uv and Frame::surface, for an observer. Off at first: a GPU needs
+  /// time to read them back.
+  void show_surface(bool on) { shows_surface_ = on; }
+
   /// Adds Frame::colour to a frame of the last render() that has only Frame::device, because its
-  /// painter draws for the share group of an output. Call it after the light.
+  /// painter draws for the share group of an output, and the surface if it is shown. Call it after
+  /// the light.
   void read_back(Frame& frame);
 
  private:
@@ -103,6 +108,7 @@ class Pipeline {
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
   Rect landing_bounds() const;
   FillCounts paint(const Rect& region, bool is_masked);
+  void add_surface(Frame& frame);
   bool replace_failed_painter();
   std::span<const FrameHand> frame_hands();
 
@@ -116,7 +122,8 @@ class Pipeline {
   LateRegistration late_;
   std::unique_ptr<Painter> painter_;
   StageClock stages_;
-  msg::MadeFrom newest_;                ///< the newest messages, and the image of the last frame
+  msg::MadeFrom newest_;  ///< the newest messages, and the image of the last frame
+  bool shows_surface_ = false;
   std::int64_t now_ns_ = 0;             ///< of the last frame
   std::optional<ImageUse> last_image_;  ///< of the last drawn frame, if it had an image
 

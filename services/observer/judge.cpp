@@ -9,7 +9,7 @@ Result<LiveJudge> LiveJudge::create(const config::Rig& rig, const calib::Calibra
                                     std::int64_t epoch_ns) {
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return fail_in("observer", twin.error());
-  auto judge = twin::Judge::create(**twin, calibration, rig.observer.step_px);
+  auto judge = twin::Judge::create(**twin, rig.observer.step_px);
   return LiveJudge(std::move(*twin), std::move(judge), epoch_ns);
 }
 

@@ -7,17 +7,23 @@ namespace handcast::observer {
 
 static constexpr std::size_t kPointsPerHand = 300;
 
-static void thin(std::vector<float>& values) {
-  if (values.size() <= kPointsPerHand) return;
-  for (std::size_t i = 0; i < kPointsPerHand; ++i)
-    values[i] = values[i * values.size() / kPointsPerHand];
-  values.resize(kPointsPerHand);
+static std::size_t points(const twin::FrameScore::Hand& hand) {
+  return hand.interior_px.size() + hand.missing_px.size();
+}
+
+/// Keeps the share of the values that leaves kPointsPerHand of `all`.
+static void thin(std::vector<float>& values, std::size_t all) {
+  if (all <= kPointsPerHand) return;
+  const std::size_t kept = values.size() * kPointsPerHand / all;
+  for (std::size_t i = 0; i < kept; ++i) values[i] = values[i * values.size() / kept];
+  values.resize(kept);
 }
 
 void LiveScore::add(twin::FrameScore score, int foldovers) {
   for (auto& hand : score.hands) {
-    thin(hand.interior_px);
-    thin(hand.interior_mm);
+    const std::size_t all = points(hand);
+    for (auto* values : {&hand.interior_px, &hand.interior_mm, &hand.missing_px})
+      thin(*values, all);
   }
   if (frames_ == 0) turn_ns_ = score.lit_ns;
   if (score.lit_ns - turn_ns_ >= window_ns_) {

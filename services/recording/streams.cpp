@@ -76,7 +76,8 @@ const MessageType& type_of<msg::Projection>() {
           R"(["height_px", "<u4"], ["region_x_px", "<i4"], ["region_y_px", "<i4"], )"
           R"(["region_width_px", "<u4"], ["region_height_px", "<u4"], ["hand_count", "<u4"], )"
           R"(["foldovers", "<u4"], ["hands", [["side", "<u4"], ["vertex_count", "<u4"], )"
-          R"(["landings", [["x_px", "<f4"], ["y_px", "<f4"]], [4096]]], [2]]])"};
+          R"(["presence", "<f4"], ["reserved", "<u4"], ["landings", [["x_px", "<f4"], )"
+          R"(["y_px", "<f4"]], [4096]]], [2]], ["has_shown", "<u4"], ["reserved", "<u4"]])"};
   return kType;
 }
 
@@ -108,6 +109,7 @@ void clear_unused(msg::CameraFrame&) {}
 void clear_unused(msg::HandPoses& poses) { clear_behind(poses.hands, poses.count); }
 void clear_unused(msg::Landmarks& landmarks) { clear_behind(landmarks.hands, landmarks.count); }
 void clear_unused(msg::Projection& projection) {
+  projection.has_shown = 0;  // recordings have only the pixels of the tail
   clear_behind(projection.hands, projection.hand_count);
   for (auto& hand : projection.hands) clear_behind(hand.landings, hand.vertex_count);
 }

@@ -6,7 +6,8 @@ namespace handcast::config {
 
 /// [twin.projector]
 struct TwinProjector {
-  double work_spread = 0;
+  double work_ms = 0;
+  double work_spread = 0.17;
   double stalls = 0;
   double stall_ms = 4;
   double rate_ppm = 0;
@@ -15,10 +16,11 @@ struct TwinProjector {
 template <class Visitor>
 void describe(Visitor& visitor, TwinProjector& projector) {
   visitor.field(
-      "work_spread", projector.work_spread, between(0, 2),
-      "Simulator: standard deviation of the logarithm of a frame's time; its median is "
-      "projector.software_ms. A frame that takes longer than a refresh misses the next one: "
-      "the light of the frame before stays on.");
+      "work_ms", projector.work_ms, between(0, 1000, "ms"),
+      "Simulator: median time of a frame. One that takes longer than projector.software_ms "
+      "misses its refresh: the light of the frame before stays on.");
+  visitor.field("work_spread", projector.work_spread, between(0, 2),
+                "Simulator: standard deviation of the logarithm of that time.");
   visitor.field("stalls", projector.stalls, between(0, 1),
                 "Simulator: share of frames that take stall_ms longer.");
   visitor.field("stall_ms", projector.stall_ms, between(0, 1000, "ms"), "See stalls.");

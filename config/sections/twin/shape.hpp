@@ -34,7 +34,7 @@ template <class Visitor>
 void describe(Visitor& visitor, TwinShape& shape) {
   visitor.field("mesh", shape.mesh,
                 "The surface of the true hands: handcast (the mesh that is drawn), webxr (the "
-                "generic hand of WebXR's input profiles, which `scripts/setup --tests` installs), "
+                "generic hand of WebXR's input profiles, which `scripts/setup --hands` installs), "
                 "or a glTF file of a left hand with WebXR's joint names.");
   visitor.field(
       "length_spread", shape.length_spread, between(0, 0.2),

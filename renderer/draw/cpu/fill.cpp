@@ -47,7 +47,7 @@ void soften_row(const std::uint8_t* mask, std::uint32_t* colour, int x0, int x1)
   static const ShareTable kTable = share_table();
   const auto soften = [&](int x) {
     if (mask[x] == 0 || mask[x] == 255 || colour[x] == 0) return;
-    colour[x] = dimmed(colour[x], kTable[mask[x]]) | std::uint32_t{mask[x]} << 24;
+    colour[x] = dimmed(colour[x], kTable[mask[x]]) | alpha_in_part(colour[x] >> 24, mask[x]) << 24;
   };
   int x = x0;
   for (; x + 8 <= x1; x += 8) {
@@ -119,7 +119,7 @@ void Filler::make_patches(const config::Fill& settings, Rect region,
     const std::uint32_t light = light_of(shade);
     patches_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), uv, &sampler,
                         place, static_cast<std::uint16_t>((light + (light >> 7)) * full >> 8),
-                        shade, surface});
+                        shade, surface, table_.alpha[seed.squared_px]});
   }
 }
 
@@ -144,7 +144,8 @@ void Filler::apply_patches(FrameBuffer& frame) const {
 
 void Filler::put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame) {
   frame.lit[patch.y] = frame.lit[patch.y].joined({patch.x, patch.x + 1});
-  frame.colour.row(patch.y)[patch.x] = dimmed(colour, patch.factor) | kOpaque;
+  frame.colour.row(patch.y)[patch.x] = dimmed(colour, patch.factor) | std::uint32_t{patch.alpha}
+                                                                          << 24;
   frame.uv.row(patch.y)[patch.x] = patch.uv;
   frame.surface.row(patch.y)[patch.x] = patch.surface;
   frame.shade.row(patch.y)[patch.x] = patch.shade;

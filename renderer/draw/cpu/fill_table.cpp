@@ -29,6 +29,7 @@ bool FillTable::set_up(const config::Fill& settings) {
                                        : 0.0;
     const auto limit_uv = static_cast<float>(seam_uv_ * std::max(1.0, length_px / 8));
     strength[square] = static_cast<std::uint16_t>(std::lround(256 * part));
+    alpha[square] = static_cast<std::uint8_t>(std::lround(1 + 254 * srgb_light(part)));
     squared_limit_uv[square] = limit_uv * limit_uv;
   }
   return true;

@@ -14,6 +14,12 @@ using ShareTable = std::array<std::uint16_t, 256>;
 /// The table of all painters.
 ShareTable share_table();
 
+/// The alpha of a pixel that is hand in part: `mask` of the alpha 1..255 that it has.
+constexpr std::uint32_t alpha_in_part(std::uint32_t alpha, std::uint32_t mask) {
+  const std::uint32_t product = alpha * mask / 255;
+  return product > 0 ? product : 1;
+}
+
 /// What the fill needs to know of a distance, by its square in px. All painters fill by this table.
 struct FillTable {
   /// Size of the tables: one more than the square of the largest reach.
@@ -23,7 +29,8 @@ struct FillTable {
   bool set_up(const config::Fill& settings);
 
   int reach_px = 0;                                ///< of the settings
-  std::array<std::uint16_t, kSquares> strength{};  ///< of the light of a fill, 0..256
+  std::array<std::uint16_t, kSquares> strength{};  ///< of the levels of a fill, 0..256
+  std::array<std::uint8_t, kSquares> alpha{};      ///< of a fill: that share of the light, 1..255
   /// The square of the longest step in texture coordinates over a reflection that does not cross a
   /// seam. The step is seam_uv up to 8 px and grows in proportion beyond, as the steps on a smooth
   /// surface do.

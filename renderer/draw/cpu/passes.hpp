@@ -83,6 +83,7 @@ class Filler {
     std::uint16_t factor;  ///< of the picture's colour, 0..256: light times strength of the fill
     std::uint16_t shade;
     SurfaceId surface;
+    std::uint8_t alpha;
   };
   FillCounts sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame);
   void make_patches(const config::Fill& settings, Rect region,

@@ -11,6 +11,7 @@ namespace {
 /// One entry of the buffer `Table` of the shader.
 struct Limit {
   std::uint32_t strength;
+  std::uint32_t alpha;
   float squared_limit_uv;
 };
 
@@ -64,7 +65,7 @@ void Filler::set_table(const config::Fill& settings) {
   if (!table_.set_up(settings)) return;
   std::array<Limit, cpu::FillTable::kSquares> limits{};
   for (std::size_t i = 0; i < limits.size(); ++i)
-    limits[i] = {table_.strength[i], table_.squared_limit_uv[i]};
+    limits[i] = {table_.strength[i], table_.alpha[i], table_.squared_limit_uv[i]};
   context_->gl().NamedBufferSubData(limits_.name(), 0, sizeof limits, limits.data());
   context_->gl().ProgramUniform1i(fill_.name(), 1, table_.reach_px);
 }

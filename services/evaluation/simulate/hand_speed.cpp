@@ -13,21 +13,23 @@ constexpr double kGap_s = 0.01;  ///< no speed is computed over a longer gap
 
 }  // namespace
 
-void HandSpeed::add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m,
-                    std::int64_t lit_ns) {
+double HandSpeed::add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m,
+                      std::int64_t lit_ns) {
   auto& trail = trails_[static_cast<std::size_t>(side)];
   const double elapsed_s = ns_to_seconds(lit_ns - trail.lit_ns);
+  double speed_m_s = 0;
   if (trail.lit_ns > 0 && elapsed_s > 0 && elapsed_s < kGap_s) {
     double path_m = 0;
     for (std::size_t i = 0; i < landmarks_m.size(); ++i)
       path_m += glm::length(landmarks_m[i] - trail.landmarks_m[i]);
-    const double speed_m_s = path_m / (elapsed_s * static_cast<double>(landmarks_m.size()));
+    speed_m_s = path_m / (elapsed_s * static_cast<double>(landmarks_m.size()));
     const auto step = static_cast<std::size_t>(speed_m_s / kStep_m_s);
     ++counts_[std::min(step, counts_.size() - 1)];
     ++count_;
     sum_m_s_ += speed_m_s;
   }
   trail = {lit_ns, landmarks_m};
+  return speed_m_s;
 }
 
 nlohmann::json HandSpeed::to_json() const {

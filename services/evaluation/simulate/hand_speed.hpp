@@ -13,9 +13,10 @@ namespace handcast::simulate {
 /// frames, whether or not the hand is lit.
 class HandSpeed {
  public:
-  /// Adds the landmarks of one hand (one space, metres) at the time of a projector frame.
-  void add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m,
-           std::int64_t lit_ns);
+  /// Adds the landmarks of one hand (one space, metres) at the time of a projector frame. Returns
+  /// the speed, m/s; 0 for the first frame of a hand.
+  double add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m,
+             std::int64_t lit_ns);
   /// {"mean", "p95"} in m/s, the latter to 0.01; null if there was no hand.
   nlohmann::json to_json() const;
 

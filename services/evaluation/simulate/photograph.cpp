@@ -5,7 +5,6 @@
 #include <array>
 
 #include "renderer/draw/cpu/cpu_painter.hpp"
-#include "renderer/skin/skinning.hpp"
 
 namespace handcast::simulate {
 namespace {
@@ -52,25 +51,25 @@ Rect bounds_of(const std::vector<glm::vec2>& points) {
 
 Photographer::Photographer(const twin::Twin& twin, const calib::Calibration& calibration)
     : twin_(twin),
-      calibration_(calibration),
       painter_(renderer::make_cpu_painter(calibration.projector_width_px,
                                           calibration.projector_height_px)),
       picture_(calibration.projector_width_px, calibration.projector_height_px) {}
 
-void Photographer::pose(const renderer::HandMesh& hand, const twin::JointFrames& joints,
+void Photographer::pose(const twin::TrueHand& hand, const twin::JointFrames& joints,
                         Surface& surface) const {
-  const auto count = hand.vertex_count();
+  const auto count = hand.mesh.vertex_count();
   surface.position_m.resize(count);
   surface.normal.resize(count);
   surface.position_px.resize(count);
   surface.depth_m.resize(count);
   surface.light.resize(count);
   auto in_camera = joints;
-  for (auto& joint : in_camera) joint = glm::mat4(calibration_.camera_from_tracker) * joint;
-  renderer::skin(hand, in_camera, surface.position_m, surface.normal);
+  for (auto& joint : in_camera)
+    joint = glm::mat4(twin_.geometry().calibration().camera_from_tracker) * joint;
+  twin::pose(hand, in_camera, surface.position_m, surface.normal);
   for (std::size_t v = 0; v < count; ++v) {
-    surface.position_px[v] = glm::vec2(
-        calibration_.to_projector(calibration_.camera.project(glm::dvec3(surface.position_m[v]))));
+    surface.position_px[v] =
+        glm::vec2(twin_.geometry().to_projector(glm::dvec3(surface.position_m[v])));
     surface.depth_m[v] = surface.position_m[v].z;
     surface.light[v] = std::clamp(
         -glm::dot(surface.normal[v], glm::normalize(surface.position_m[v])), 0.05f, 1.0f);
@@ -87,7 +86,7 @@ Rect Photographer::draw_truth(std::int64_t time_ns) {
     auto& surface = surfaces_[static_cast<std::size_t>(side)];
     pose(hand, *joints, surface);
     region = region.joined(bounds_of(surface.position_px));
-    drawn.push_back({&hand, &white_, surface.position_px, surface.depth_m, surface.light});
+    drawn.push_back({&hand.mesh, &white_, surface.position_px, surface.depth_m, surface.light});
   }
   region = region.within(picture_.width(), picture_.height());
   if (!region.empty()) painter_->draw(drawn, region);

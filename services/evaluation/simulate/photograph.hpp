@@ -15,7 +15,7 @@ namespace handcast::simulate {
 /// light on them and on the table behind them.
 class Photographer {
  public:
-  /// `twin` must outlive the object; `calibration` is copied.
+  /// `twin` must outlive the object.
   Photographer(const twin::Twin& twin, const calib::Calibration& calibration);
 
   /// Draws the scene at the time of `projection`: RGBA8, in the size of the projector. Valid until
@@ -29,11 +29,9 @@ class Photographer {
     std::vector<float> depth_m, light;
   };
   renderer::Rect draw_truth(std::int64_t time_ns);
-  void pose(const renderer::HandMesh& hand, const twin::JointFrames& joints,
-            Surface& surface) const;
+  void pose(const twin::TrueHand& hand, const twin::JointFrames& joints, Surface& surface) const;
 
   const twin::Twin& twin_;
-  calib::Calibration calibration_;
   std::unique_ptr<renderer::Painter> painter_;
   renderer::MipChain white_;
   std::array<Surface, msg::kMaxHands> surfaces_;

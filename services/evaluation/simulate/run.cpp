@@ -81,7 +81,7 @@ void print_summary(const nlohmann::json& json, const config::Rig& rig, const Opt
   if (options.draw_every == 0) {
     fmt::print("{} on {}: landmark error mean {}, p95 {}; jitter {}\n", rig.name, rig.twin.motion,
                text("/landmark_mm/mean", "{:.2f} mm"), text("/landmark_mm/p95", "{:.2f} mm"),
-               text("/jitter_px", "{:.3f} px"));
+               text("/landmark_jitter_px", "{:.3f} px"));
     return;
   }
   fmt::print(

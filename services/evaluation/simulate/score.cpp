@@ -17,6 +17,7 @@
 #include "services/evaluation/simulate/recorder.hpp"
 #include "services/evaluation/simulate/recovery.hpp"
 #include "services/evaluation/simulate/trace.hpp"
+#include "services/evaluation/twin/metrics.hpp"
 
 namespace handcast::simulate {
 namespace {
@@ -52,13 +53,18 @@ class Products {
     for (const auto& hand : tick.hands) {
       const auto truth = twin_.landmarks(hand.side, tick.lit_ns);
       if (!truth) continue;
-      jitter_.add(hand, *truth, tick.index, metrics_);
+      landmark_jitter_.add(hand.side, tick.lit_ns, landmark_points(hand, *truth),
+                           speed_m_s_[static_cast<std::size_t>(hand.side)]);
       add_landmarks(hand, tick.lit_ns);
       if (trace_) trace_->add(tick.lit_ns, hand, *truth);
     }
     if (fault_) moments_.push_back(moment_of(tick, detections, twin_, calibration_));
     if (!tick.projection) return {};
-    metrics_.add(judge_->score(*tick.projection));
+    const auto score = judge_->score(*tick.projection);
+    metrics_.add(score);
+    for (const auto& hand : score.hands)
+      light_jitter_.add(hand.side, tick.lit_ns, light_points(hand),
+                        speed_m_s_[static_cast<std::size_t>(hand.side)]);
     metrics_.add_stages(tick.frame->stages);
     metrics_.add_foldovers(tick.frame->foldovers);
     for (const auto& hand : tick.hands) metrics_.add_rung(hand.rung);
@@ -70,7 +76,10 @@ class Products {
   }
 
   /// Closes the files after the last tick.
-  Result<void> finish() { return trace_ ? trace_->close() : Result<void>(); }
+  Result<void> finish() {
+    metrics_.set_jitter(light_jitter_.rms_px(), landmark_jitter_.rms_px());
+    return trace_ ? trace_->close() : Result<void>();
+  }
 
   bool has_fault() const { return fault_.has_value(); }
 
@@ -80,6 +89,7 @@ class Products {
     if (drawn_ == 0) json["foldovers"] = nullptr;
     json["rig"] = rig.name;
     json["motion"] = rig.twin.motion;
+    json["mesh"] = twin_.hands().mesh_name();
     json["speed"] = rig.twin.speed;
     json["seed"] = rig.twin.seed;
     json["seconds"] = options_.seconds;
@@ -100,8 +110,8 @@ class Products {
         calibration_(calibration),
         twin_(twin),
         fault_(fault_time(rig.twin)),
-        judge_(options.draw_every > 0 ? twin::Judge::create(twin, calibration, rig.observer.step_px)
-                                      : nullptr) {}
+        judge_(options.draw_every > 0 ? twin::Judge::create(twin, rig.observer.step_px) : nullptr) {
+  }
 
   void add_landmarks(const renderer::FrameHand& hand, std::int64_t lit_ns) {
     const auto errors = landmark_errors(hand, lit_ns, twin_, calibration_);
@@ -117,7 +127,7 @@ class Products {
       std::array<glm::dvec3, msg::kLandmarks> places_m;
       for (std::size_t i = 0; i < places_m.size(); ++i)
         places_m[i] = (*joints)[msg::kJointOfLandmark[i]][3];
-      hand_speed_.add(side, places_m, lit_ns);
+      speed_m_s_[static_cast<std::size_t>(side)] = hand_speed_.add(side, places_m, lit_ns);
     }
   }
 
@@ -133,7 +143,8 @@ class Products {
   std::optional<FaultTime> fault_;
   std::unique_ptr<twin::Judge> judge_;  ///< null if nothing is drawn: it makes the true hands
   twin::Metrics metrics_;
-  JitterMeter jitter_;
+  JitterMeter light_jitter_, landmark_jitter_;
+  std::array<double, msg::kMaxHands> speed_m_s_{};  ///< of the true hands in this tick
   HandSpeed hand_speed_;
   std::vector<LightMoment> moments_;  ///< empty without a fault
   std::optional<Trace> trace_;

@@ -1,61 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/simulate/simulation.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "config/sections/sub_frames.hpp"
-#include "ipc/base/clock.hpp"
 #include "renderer/pipeline/projection.hpp"
 
 namespace handcast::simulate {
-namespace {
-
-/// The time from the inputs of a frame to the middle of its light. With sub-frames, the mean: they
-/// are drawn one after the other before their output frame is handed over, and lit one after the
-/// other afterwards (projector::SubFramePlan).
-std::int64_t leg_ns(const config::Projector& projector) {
-  const double sub_frames = config::sub_frames_of(projector.packing),
-               period_ms = 1e3 / projector.rate_hz;
-  const double drawing_ms =
-      sub_frames == 1 ? projector.software_ms : std::min(projector.software_ms, period_ms);
-  return ms_to_ns(drawing_ms * (sub_frames + 1) / 2 + projector.latency_ms) +
-         seconds_to_ns(0.5 * sub_frames / projector.rate_hz);
-}
-
-}  // namespace
-
 Simulation::Simulation(const config::Rig& rig, const calib::Calibration& calibration,
                        renderer::Pipeline& pipeline, SensorFeed& feed, int draw_every)
-    : rate_hz_(rig.projector.rate_hz),
-      leg_ns_(leg_ns(rig.projector)),
+    : refreshes_(rig.projector, rig.twin.projector, rig.twin.seed),
       pipeline_(pipeline),
       feed_(feed),
       draw_every_(draw_every),
       looks_(draw_every > 0 && pipeline.looks()),
       image_(calibration.camera.width_px, calibration.camera.height_px),
-      projection_(msg::Projection::bytes(calibration.projector_width_px,
-                                         calibration.projector_height_px)) {}
+      projection_(
+          msg::Projection::bytes(calibration.projector_width_px, calibration.projector_height_px)) {
+  pipeline_.show_surface(true);
+}
 
-std::int64_t Simulation::tick_time_ns(std::int64_t tick) const {
-  return static_cast<std::int64_t>(std::llround(1e9 * static_cast<double>(tick) / rate_hz_));
+/// The refreshes that show a frame, of those that are to be drawn.
+std::vector<std::int64_t> Simulation::drawn_refreshes(std::int64_t frame) const {
+  std::vector<std::int64_t> refreshes;
+  if (draw_every_ <= 0) return refreshes;
+  const std::int64_t last = frame + Refreshes::kLongestDelay;
+  for (std::int64_t next = (frame + draw_every_ - 1) / draw_every_ * draw_every_;
+       next <= last && refreshes_.shown_at(next) <= frame; next += draw_every_)
+    if (refreshes_.shown_at(next) == frame) refreshes.push_back(next);
+  return refreshes;
 }
 
 void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
-  const auto now_ns = tick_time_ns(next_tick_);
-  const auto lit_ns = now_ns + leg_ns_;
+  const auto now_ns = refreshes_.begin_ns(next_tick_);
+  const auto target_ns = refreshes_.lit_ns(next_tick_);
   deliver(now_ns);
 
-  Tick tick{next_tick_, lit_ns, {}, nullptr, nullptr};
-  if (draw_every_ > 0 && next_tick_ % draw_every_ == 0) {
-    const auto frame = draw(now_ns, lit_ns);
+  Tick tick{next_tick_, target_ns, {}, nullptr, nullptr};
+  if (const auto refreshes = drawn_refreshes(next_tick_); !refreshes.empty()) {
+    const auto frame = draw(now_ns, target_ns);
     tick.hands = frame.hands;
     tick.frame = &frame;
     tick.projection = &*projection_;
-    on_tick(tick);
+    for (const std::int64_t refresh : refreshes) {
+      tick.lit_ns = projection_->lit_ns = refreshes_.lit_ns(refresh);
+      on_tick(tick);
+    }
   } else {
     if (looks_) pipeline_.look(newest_image(now_ns));
-    tick.hands = pipeline_.track(now_ns, lit_ns);
+    tick.hands = pipeline_.track(now_ns, target_ns);
     on_tick(tick);
   }
   ++next_tick_;
@@ -76,12 +66,11 @@ renderer::TimedImage Simulation::newest_image(std::int64_t now_ns) {
                 : renderer::TimedImage{};
 }
 
-renderer::Frame Simulation::draw(std::int64_t now_ns, std::int64_t lit_ns) {
+renderer::Frame Simulation::draw(std::int64_t now_ns, std::int64_t target_ns) {
   const auto camera = newest_image(now_ns);
-  auto frame = pipeline_.render(now_ns, lit_ns, camera);
+  auto frame = pipeline_.render(now_ns, target_ns, camera);
   renderer::write_projection(frame, *projection_, projection_.tail_bytes());
   projection_->header.frame_id = static_cast<std::uint64_t>(next_tick_);
-  projection_->lit_ns = lit_ns;
   return frame;
 }
 

@@ -10,22 +10,23 @@
 #include "ipc/msg/owned.hpp"
 #include "ipc/msg/projection.hpp"
 #include "renderer/pipeline/pipeline.hpp"
+#include "services/evaluation/simulate/refreshes.hpp"
 #include "services/evaluation/simulate/sensor_feed.hpp"
 
 namespace handcast::simulate {
 
 /// One projector frame of a simulated rig. The borrowed data is valid during the callback only.
 struct Tick {
-  std::int64_t index = 0;                       ///< number of the projector frame
-  std::int64_t lit_ns = 0;                      ///< the middle of its light
+  std::int64_t index = 0;   ///< number of the projector frame
+  std::int64_t lit_ns = 0;  ///< the middle of its light, or of the later light that still shows it
   std::span<const renderer::FrameHand> hands;   ///< the tracked hands
   const renderer::Frame* frame = nullptr;       ///< null if the frame was tracked but not drawn
   const msg::Projection* projection = nullptr;  ///< null if the frame was not drawn
 };
 
 /// Runs the cascade in virtual time. Each projector frame uses the messages and images that have
-/// arrived when it begins; its light is on `software_ms` plus the projector's latency later. Every
-/// `draw_every`-th frame is drawn. The others are only tracked, which leaves the cascade in the
+/// arrived when it begins; Refreshes says when it is shown. The frames that every `draw_every`-th
+/// refresh shows are drawn. The others are only tracked, which leaves the cascade in the
 /// same state as if they had been drawn. With 0 no frame is drawn.
 class Simulation {
  public:
@@ -33,20 +34,20 @@ class Simulation {
   Simulation(const config::Rig& rig, const calib::Calibration& calibration,
              renderer::Pipeline& pipeline, SensorFeed& feed, int draw_every);
 
-  /// Runs the next projector frame and calls `on_tick` with it.
+  /// Runs the next projector frame and calls `on_tick` with it; a drawn frame, once for each drawn
+  /// refresh that shows it.
   void step(const std::function<void(const Tick&)>& on_tick);
 
   /// The time at which the next projector frame begins, since the epoch.
-  std::int64_t now_ns() const { return tick_time_ns(next_tick_); }
+  std::int64_t now_ns() const { return refreshes_.begin_ns(next_tick_); }
 
  private:
-  std::int64_t tick_time_ns(std::int64_t tick) const;
+  std::vector<std::int64_t> drawn_refreshes(std::int64_t frame) const;
   void deliver(std::int64_t now_ns);
   renderer::TimedImage newest_image(std::int64_t now_ns);
-  renderer::Frame draw(std::int64_t now_ns, std::int64_t lit_ns);
+  renderer::Frame draw(std::int64_t now_ns, std::int64_t target_ns);
 
-  double rate_hz_;
-  std::int64_t leg_ns_;  ///< from the start of a frame to the middle of its light
+  Refreshes refreshes_;
   renderer::Pipeline& pipeline_;
   SensorFeed& feed_;
   int draw_every_;

@@ -68,9 +68,10 @@ void CameraScene::make_noise(int seed) {
   }
 }
 
-void CameraScene::set_hand(Side side, const renderer::HandMesh& mesh) {
+void CameraScene::set_hand(Side side, const TrueHand& flesh) {
+  const renderer::HandMesh& mesh = flesh.mesh;
   auto& hand = hands_[static_cast<std::size_t>(side)];
-  hand = {&mesh, make_forearm(mesh, static_cast<float>(settings_.sleeve_mm * 1e-3)), {}};
+  hand = {&flesh, make_forearm(mesh, static_cast<float>(settings_.sleeve_mm * 1e-3)), {}};
   if (settings_.holes > 0)
     hand.holes = draw_holes(mesh, settings_.holes, Random(seed_, Stream::image_holes));
 }
@@ -123,18 +124,18 @@ renderer::Rect CameraScene::shoot_hands(std::int64_t time_ns, const TruthAt& tru
   renderer::Rect bounds;
   for (const Side side : {Side::left, Side::right}) {
     const Hand& hand = hands_[static_cast<std::size_t>(side)];
-    auto joints = hand.mesh ? truth(side, time_ns) : std::nullopt;
+    auto joints = hand.flesh ? truth(side, time_ns) : std::nullopt;
     if (!joints) continue;
     for (auto& frame : *joints) frame = camera_from_tracker_ * frame;
 
-    positions_.resize(hand.mesh->vertex_count());
-    normals_.resize(hand.mesh->vertex_count());
-    renderer::skin(*hand.mesh, *joints, positions_, normals_);
+    positions_.resize(hand.flesh->mesh.vertex_count());
+    normals_.resize(hand.flesh->mesh.vertex_count());
+    pose(*hand.flesh, *joints, positions_, normals_);
     Shot& skin = next_shot(count);
     shoot(skin, positions_, normals_, within_pixel);
     if (faulty_ && !hand.holes.empty())
       for (std::size_t v = 0; v < skin.grey.size(); ++v) skin.grey[v] *= hand.holes[v];
-    skin.triangles = &hand.mesh->triangles;
+    skin.triangles = &hand.flesh->mesh.triangles;
     bounds = bounds.joined(skin.screen.bounds());
 
     const Forearm& arm = hand.forearm;

@@ -13,6 +13,7 @@
 #include "services/evaluation/twin/image_faults.hpp"
 #include "services/evaluation/twin/random.hpp"
 #include "services/evaluation/twin/surface.hpp"
+#include "services/evaluation/twin/true_hand.hpp"
 
 namespace handcast::twin {
 
@@ -30,8 +31,8 @@ class CameraScene {
   /// Copies the settings and the calibration. `seed` selects the noise and the holes.
   CameraScene(const config::TwinImage& settings, int seed, const calib::Calibration& calibration);
 
-  /// Sets the mesh of one hand, which must outlive the scene. A hand without a mesh is not drawn.
-  void set_hand(Side side, const renderer::HandMesh& mesh);
+  /// Sets one hand, which must outlive the scene. A hand that was not set is not drawn.
+  void set_hand(Side side, const TrueHand& flesh);
 
   /// Draws frame `k`, exposed for `exposure_ns` around `origin_ns` (ns since the epoch). `image`
   /// must have the size of the camera's image.
@@ -40,7 +41,7 @@ class CameraScene {
 
  private:
   struct Hand {
-    const renderer::HandMesh* mesh = nullptr;
+    const TrueHand* flesh = nullptr;
     Forearm forearm;
     std::vector<float> holes;  ///< brightness of each vertex; empty without holes
   };

@@ -18,6 +18,10 @@ nlohmann::json ratio(double part, double whole) {
   return whole > 0 ? nlohmann::json(part / whole) : nlohmann::json();
 }
 
+nlohmann::json or_null(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
 }  // namespace
 
 void Metrics::Samples::add(float value) {
@@ -42,7 +46,16 @@ double Metrics::Samples::percentile(double share) const {
 void Metrics::Bin::add(const FrameScore::Hand& hand) {
   ++frames;
   for (const float error : hand.interior_px) px.add(error);
-  for (const float error : hand.interior_mm) mm.add(error);
+  for (const float error : hand.missing_px) {
+    px.add(error);
+    mm.add(FrameScore::kMissing_mm);
+  }
+  for (const float error : hand.interior_mm) {
+    mm.add(error);
+    lit_mm.add(error);
+  }
+  lit_points += static_cast<std::int64_t>(hand.interior_px.size());
+  missing_points += static_cast<std::int64_t>(hand.missing_px.size());
   hand_px += hand.hand_px;
   lit_px += hand.lit_px;
   spill_px += hand.spill_px;
@@ -50,6 +63,7 @@ void Metrics::Bin::add(const FrameScore::Hand& hand) {
   seam_px += hand.seam_px;
   lag_px_s += hand.lag_px_s;
   speed2_px_s2 += hand.speed2_px_s2;
+  error2_px2 += hand.error2_px2;
 }
 
 void Metrics::write_spread(nlohmann::json& json, const Samples& samples, bool with_mean) {
@@ -62,15 +76,25 @@ void Metrics::write_spread(nlohmann::json& json, const Samples& samples, bool wi
   json["p99"] = samples.empty() ? nlohmann::json() : nlohmann::json(samples.percentile(0.99));
 }
 
+/// RMS of the error that no delay explains: what remains of it after the one that explains most.
+nlohmann::json Metrics::Bin::residual_px() const {
+  if (lit_points == 0) return {};
+  const double explained = speed2_px_s2 > 0 ? lag_px_s * lag_px_s / speed2_px_s2 : 0;
+  return std::sqrt(std::max(error2_px2 - explained, 0.0) / static_cast<double>(lit_points));
+}
+
 void Metrics::Bin::write(nlohmann::json& json) const {
   json["frames"] = frames;
   write_spread(json["interior_px"], px, true);
   write_spread(json["interior_mm"], mm, true);
+  write_spread(json["lit_mm"], lit_mm, true);
+  json["missing"] = ratio(double(missing_points), double(lit_points + missing_points));
   json["coverage"] = ratio(double(lit_px), double(hand_px));
   json["spill"] = ratio(double(spill_px), double(hand_px));
   json["iou"] = ratio(double(lit_px), double(union_px));
   json["seam_px"] = ratio(seam_px, double(frames));
   json["equivalent_latency_ms"] = ratio(1e3 * lag_px_s, speed2_px_s2);
+  json["residual_px"] = residual_px();
 }
 
 void Metrics::add(const FrameScore& score) {
@@ -95,9 +119,9 @@ void Metrics::add_foldovers(int count) { foldovers_ += count; }
 
 void Metrics::add_rung(msg::Rung rung) { ++rungs_[static_cast<std::size_t>(rung)]; }
 
-void Metrics::add_jitter(double square_px, int samples) {
-  jitter_square_ += square_px;
-  jitter_samples_ += samples;
+void Metrics::set_jitter(std::optional<double> light_px, std::optional<double> landmarks_px) {
+  jitter_px_ = light_px;
+  landmark_jitter_px_ = landmarks_px;
 }
 
 void Metrics::add_landmark(double error_px, double error_mm) {
@@ -109,10 +133,8 @@ nlohmann::json Metrics::to_json() const {
   nlohmann::json json;
   all_.write(json);
   json["frames"] = frames_;
-  json["jitter_px"] =
-      jitter_samples_ > 0
-          ? nlohmann::json(std::sqrt(jitter_square_ / static_cast<double>(jitter_samples_)))
-          : nlohmann::json();
+  json["jitter_px"] = or_null(jitter_px_);
+  json["landmark_jitter_px"] = or_null(landmark_jitter_px_);
   json["foldovers"] = foldovers_;
   write_spread(json["landmark_px"], landmark_px_, true);
   write_spread(json["landmark_mm"], landmark_mm_, true);

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
@@ -26,8 +26,9 @@ class Metrics {
   void add_foldovers(int count);
   /// Adds the rung of one hand of one drawn frame.
   void add_rung(msg::Rung rung);
-  /// Adds the sum of `samples` squared deviations in px^2. Jitter is the root of their mean.
-  void add_jitter(double square_px, int samples);
+  /// RMS of the trembling on slow hands in 1-30 Hz: of the light (projector px) and of the
+  /// corrected landmarks (camera px).
+  void set_jitter(std::optional<double> light_px, std::optional<double> landmarks_px);
   /// Adds the distance between one corrected landmark and the true one at photon time: undistorted
   /// camera px, and mm at the landmark's distance.
   void add_landmark(double error_px, double error_mm);
@@ -35,11 +36,13 @@ class Metrics {
   /// The metrics so far. A value that was not measured is null; all bins and both hands are
   /// present.
   ///
-  ///     {"frames", "interior_mm": {mean, p95, p99}, "interior_px": {...}, "coverage", "spill",
-  ///      "iou", "seam_px", "jitter_px", "foldovers", "landmark_px": {mean, p95, p99},
-  ///      "landmark_mm": {...}, "rungs": {rung: share of the hands of drawn frames},
-  ///      "equivalent_latency_ms", "frame_us": {p50, p99}, "stage_us": {stage: {p50, p99}},
-  ///      "bins": {...}, "hands": {"left": {...}, "right": {...}}}
+  ///     {"frames", "interior_mm": {mean, p95, p99}, "interior_px": {...}, "lit_mm": {...},
+  ///     "missing",
+  ///      "coverage", "spill", "iou", "seam_px", "jitter_px",
+  ///      "landmark_jitter_px", "foldovers", "landmark_px": {mean,
+  ///      p95, p99}, "landmark_mm": {...}, "rungs": {rung: share of the hands of drawn frames},
+  ///      "equivalent_latency_ms", "residual_px", "frame_us": {p50, p99}, "stage_us": {stage: {p50,
+  ///      p99}}, "bins": {...}, "hands": {"left": {...}, "right": {...}}}
   nlohmann::json to_json() const;
 
  private:
@@ -58,12 +61,14 @@ class Metrics {
     double sum_ = 0;
   };
   struct Bin {
-    Samples px, mm;
+    Samples px, mm, lit_mm;
     std::int64_t frames = 0, hand_px = 0, lit_px = 0, spill_px = 0, union_px = 0;
-    double seam_px = 0, lag_px_s = 0, speed2_px_s2 = 0;
+    std::int64_t lit_points = 0, missing_points = 0;
+    double seam_px = 0, lag_px_s = 0, speed2_px_s2 = 0, error2_px2 = 0;
 
     void add(const FrameScore::Hand& hand);
     void write(nlohmann::json& json) const;
+    nlohmann::json residual_px() const;
   };
   static void write_spread(nlohmann::json& json, const Samples& samples, bool with_mean);
 
@@ -74,8 +79,7 @@ class Metrics {
   Samples landmark_px_, landmark_mm_;
   std::int64_t foldovers_ = 0, frames_ = 0;
   std::array<std::int64_t, msg::kRungs> rungs_{};  ///< hands of drawn frames
-  double jitter_square_ = 0;
-  std::int64_t jitter_samples_ = 0;
+  std::optional<double> jitter_px_, landmark_jitter_px_;
 };
 
 }  // namespace handcast::twin

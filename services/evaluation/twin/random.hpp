@@ -23,6 +23,9 @@ enum class Stream : std::uint64_t {
   image_noise,       ///< noise of the pixels
   detector_outlier,  ///< displaced landmarks
   image_holes,       ///< dark blobs on the hands
+  flesh,             ///< widths, thickness and roll of the true flesh
+  geometry,          ///< errors of the calibration
+  frame_time,        ///< time that a frame takes
 };
 
 /// The splitmix64 step (Steele, Lea, Flood 2014): a bijection that scrambles all 64 bits.

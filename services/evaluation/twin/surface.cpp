@@ -3,18 +3,21 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace handcast::twin {
 namespace {
 
 constexpr int kAround = 24;
-constexpr float kBegin_m = 0.05f, kElbow_m = 0.34f;  ///< ends of the forearm behind the wrist
+constexpr float kElbow_m = 0.34f;        ///< end of the forearm behind the wrist
+constexpr float kOverlap_m = 0.01f;      ///< of hand and forearm
+constexpr float kLongestStub_m = 0.06f;  ///< a hand that is longer is cut here
 constexpr float kSleeveBrightness = 1.35f;
 
 /// Half axes of a bare forearm at a distance behind the wrist. It begins inside the hand's stub and
 /// becomes thicker and rounder towards the elbow.
-glm::vec2 half_axes_at(glm::vec2 wrist, float behind_m) {
-  const float u = std::clamp((behind_m - kBegin_m) / 0.2f, 0.0f, 1.0f);
+glm::vec2 half_axes_at(glm::vec2 wrist, float begin_m, float behind_m) {
+  const float u = std::clamp((behind_m - begin_m) / 0.2f, 0.0f, 1.0f);
   const glm::vec2 elbow(wrist.x * 1.6f, wrist.y * 2.1f);
   return glm::mix(wrist * 0.96f, elbow, u * u * (3 - 2 * u));
 }
@@ -41,13 +44,13 @@ void join_rings(Forearm& arm) {
   }
 }
 
-/// Half axes of the hand's stub at kBegin_m, where the forearm begins.
-glm::vec2 half_axes_of(const renderer::HandMesh& hand) {
+/// Half axes of the hand's stub where the forearm begins.
+glm::vec2 half_axes_of(const renderer::HandMesh& hand, float begin_m) {
   const glm::mat4 wrist_from_model = glm::inverse(hand.rest[1]);
   glm::vec2 half_axes(0.01f);
   for (const glm::vec3& position : hand.positions) {
     const glm::vec3 p(wrist_from_model * glm::vec4(position, 1));
-    if (p.z > kBegin_m - 0.01f && p.z < kBegin_m + 0.01f)
+    if (p.z > begin_m - kOverlap_m && p.z < begin_m + kOverlap_m)
       half_axes = glm::max(half_axes, glm::abs(glm::vec2(p)));
   }
   return half_axes;
@@ -63,21 +66,40 @@ std::vector<float> behind_wrist_m(const renderer::HandMesh& hand) {
   return behind;
 }
 
+std::vector<int> fingers_of(const renderer::HandMesh& hand) {
+  constexpr std::array<std::pair<int, int>, 5> kPhalanges{
+      {{3, 5}, {7, 10}, {12, 15}, {17, 20}, {22, 25}}};
+  std::vector<int> fingers;
+  for (std::size_t v = 0; v < hand.vertex_count(); ++v) {
+    const auto& weights = hand.weights[v];
+    const int joint = hand.joints[v][static_cast<std::size_t>(std::ranges::max_element(weights) -
+                                                              weights.begin())];
+    const auto* finger = std::ranges::find_if(
+        kPhalanges, [&](const auto& ends) { return joint >= ends.first && joint <= ends.second; });
+    fingers.push_back(finger == kPhalanges.end() ? -1
+                                                 : static_cast<int>(finger - kPhalanges.begin()));
+  }
+  return fingers;
+}
+
 Forearm make_forearm(const renderer::HandMesh& hand, float sleeve_m) {
-  const glm::vec2 wrist_half_axes_m = half_axes_of(hand);
+  const auto behind_m = behind_wrist_m(hand);
+  const float begin_m = std::min(*std::ranges::max_element(behind_m), kLongestStub_m) - kOverlap_m;
+  const glm::vec2 wrist_half_axes_m = half_axes_of(hand, begin_m);
   Forearm arm;
   for (int ring = 0; ring <= 6; ++ring) {
-    const float behind = kBegin_m + (kElbow_m - kBegin_m) * static_cast<float>(ring) / 6;
-    add_ring(arm, behind, half_axes_at(wrist_half_axes_m, behind), 1);
+    const float behind = begin_m + (kElbow_m - begin_m) * static_cast<float>(ring) / 6;
+    add_ring(arm, behind, half_axes_at(wrist_half_axes_m, begin_m, behind), 1);
     if (ring > 0) join_rings(arm);
   }
   if (sleeve_m >= kElbow_m) return arm;
   constexpr float kCloth_m = 0.007f;
   // The first ring lies inside the arm and closes the cuff.
-  add_ring(arm, sleeve_m, half_axes_at(wrist_half_axes_m, sleeve_m) * 0.9f, kSleeveBrightness);
+  add_ring(arm, sleeve_m, half_axes_at(wrist_half_axes_m, begin_m, sleeve_m) * 0.9f,
+           kSleeveBrightness);
   for (int ring = 0; ring <= 4; ++ring) {
     const float behind = sleeve_m + (kElbow_m - sleeve_m) * static_cast<float>(ring) / 4;
-    add_ring(arm, behind, half_axes_at(wrist_half_axes_m, behind) * 1.08f + kCloth_m,
+    add_ring(arm, behind, half_axes_at(wrist_half_axes_m, begin_m, behind) * 1.08f + kCloth_m,
              kSleeveBrightness);
     join_rings(arm);
   }

@@ -29,6 +29,9 @@ inline constexpr float kBareArm_m = 1;
 /// Distance of each vertex behind the wrist in the rest pose, metres; negative in the hand.
 std::vector<float> behind_wrist_m(const renderer::HandMesh& hand);
 
+/// The finger (0 thumb .. 4 little) of each vertex by its strongest joint; -1: palm, wrist or arm.
+std::vector<int> fingers_of(const renderer::HandMesh& hand);
+
 /// Vertices on a screen.
 struct ScreenVertices {
   std::vector<float> x;              ///< px

@@ -2,12 +2,9 @@
 #include "services/evaluation/twin/twin.hpp"
 
 #include <cmath>
-#include <future>
-#include <mutex>
 #include <optional>
 
 #include "ipc/base/clock.hpp"
-#include "renderer/skin/skinning.hpp"
 #include "services/evaluation/twin/camera_scene.hpp"
 #include "services/evaluation/twin/detector.hpp"
 #include "services/evaluation/twin/tracker.hpp"
@@ -17,80 +14,21 @@ namespace {
 
 constexpr std::array<Side, 2> kSides{Side::left, Side::right};
 
-struct Parts {
-  std::unique_ptr<Motion> motion;
-  std::array<renderer::HandMesh, 2> models;
-  std::array<bool, 2> made_by_handcast{};
-};
-
-renderer::JointFrames rest_of(Side side, const renderer::HandShape& person) {
-  renderer::JointFrames rest = renderer::rest_frames(person);
-  if (side == Side::left) return rest;
-  for (auto& frame : rest)
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r)
-        if ((c == 0) != (r == 0)) frame[c][r] = -frame[c][r];
-  return rest;
-}
-
-/// The model's surface on the true person's bones. A hand made by handcast is made again for the
-/// person; any other model is posed by its own skin weights.
-renderer::HandMesh true_hand_of(const renderer::HandMesh& model, bool made_by_handcast,
-                                const renderer::HandShape& person) {
-  if (made_by_handcast) return renderer::refit_hand(model, person);
-  renderer::HandMesh hand = model;
-  const renderer::JointFrames rest = rest_of(model.side, person);
-  renderer::skin(model, rest, hand.positions, hand.normals);
-  hand.rest = rest;
-  return hand;
-}
-
-/// The surfaces of the true hands. They take a quarter of a second to make and are therefore made
-/// on first use: the camera and the judge need them, the tracker and the detector do not.
-class TrueHands {
- public:
-  TrueHands(std::array<renderer::HandMesh, 2> models, std::array<bool, 2> made_by_handcast,
-            std::array<bool, 2> seen, const renderer::HandShape& person)
-      : hands_(std::move(models)),
-        made_by_handcast_(made_by_handcast),
-        seen_(seen),
-        person_(person) {}
-
-  const renderer::HandMesh& of(Side side) const {
-    std::call_once(made_, [this] {
-      auto left = std::async(std::launch::async, [this] { make(Side::left); });
-      make(Side::right);
-    });
-    return hands_[static_cast<std::size_t>(side)];
-  }
-
- private:
-  void make(Side side) const {
-    const auto i = static_cast<std::size_t>(side);
-    if (seen_[i]) hands_[i] = true_hand_of(hands_[i], made_by_handcast_[i], person_);
-  }
-
-  mutable std::once_flag made_;
-  mutable std::array<renderer::HandMesh, 2> hands_;  ///< the models until the first use
-  std::array<bool, 2> made_by_handcast_, seen_;
-  renderer::HandShape person_;
-};
-
 class RigTwin final : public Twin {
  public:
-  RigTwin(const config::Rig& rig, const calib::Calibration& calibration, Parts parts)
-      : calibration_(calibration),
+  RigTwin(const config::Rig& rig, const TrueGeometry& geometry, std::unique_ptr<Motion> motion,
+          std::unique_ptr<TrueHands> hands)
+      : geometry_(geometry),
         camera_rate_hz_(rig.camera.rate_hz),
         exposure_ns_(ms_to_ns(rig.camera.exposure_ms)),
         delivery_ns_(ms_to_ns(rig.twin.image.delivery_ms)),
         absent_(rig.twin.hands == config::TwinHands::left    ? std::optional(Side::right)
                 : rig.twin.hands == config::TwinHands::right ? std::optional(Side::left)
                                                              : std::nullopt),
-        motion_(std::move(parts.motion)),
-        hands_(std::move(parts.models), parts.made_by_handcast,
-               {moves(Side::left), moves(Side::right)}, motion_->shape()),
-        tracker_(rig.twin.tracker, rig.twin.seed, calibration, motion_->shape()),
-        detector_(rig.twin.detector, rig.twin.seed, calibration.camera),
+        motion_(std::move(motion)),
+        hands_(std::move(hands)),
+        tracker_(rig.twin.tracker, rig.twin.seed, geometry.calibration(), motion_->shape()),
+        detector_(rig.twin.detector, rig.twin.seed, geometry.calibration().camera),
         image_(rig.twin.image),
         seed_(rig.twin.seed) {}
 
@@ -98,16 +36,20 @@ class RigTwin final : public Twin {
     return side == absent_ ? std::nullopt : motion_->at(side, ns_to_seconds(time_ns));
   }
 
-  const renderer::HandMesh& true_hand(Side side) const override { return hands_.of(side); }
+  const TrueHands& hands() const override { return *hands_; }
+  const TrueGeometry& geometry() const override { return geometry_; }
 
   std::optional<std::array<glm::vec2, msg::kLandmarks>> landmarks(
       Side side, std::int64_t time_ns) const override {
     const auto truth = joints(side, time_ns);
     if (!truth) return std::nullopt;
+    const auto& truth_camera = geometry_.calibration().camera;
+    const auto& camera_from_tracker = geometry_.calibration().camera_from_tracker;
     std::array<glm::vec2, msg::kLandmarks> points;
     for (int i = 0; i < msg::kLandmarks; ++i) {
       const glm::dvec4 place((*truth)[msg::kJointOfLandmark[i]][3]);
-      points[i] = calibration_.camera.project(glm::dvec3(calibration_.camera_from_tracker * place));
+      points[i] = geometry_.believed_px(
+          truth_camera.distort(truth_camera.project(glm::dvec3(camera_from_tracker * place))));
     }
     return points;
   }
@@ -158,21 +100,19 @@ class RigTwin final : public Twin {
   }
 
  private:
-  bool moves(Side side) const { return motion_->at(side, 0).has_value(); }
-
   CameraScene& scene() const {
     if (scene_) return *scene_;
-    scene_.emplace(image_, seed_, calibration_);
+    scene_.emplace(image_, seed_, geometry_.calibration());
     for (const Side side : kSides) scene_->set_hand(side, true_hand(side));
     return *scene_;
   }
 
-  calib::Calibration calibration_;
+  TrueGeometry geometry_;
   double camera_rate_hz_;
   std::int64_t exposure_ns_, delivery_ns_;
   std::optional<Side> absent_;  ///< the hand of the motion that is left out
   std::unique_ptr<Motion> motion_;
-  TrueHands hands_;
+  std::unique_ptr<TrueHands> hands_;
   TrackerModel tracker_;
   DetectorModel detector_;
   config::TwinImage image_;
@@ -184,17 +124,13 @@ class RigTwin final : public Twin {
 
 Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig,
                                            const calib::Calibration& calibration) {
-  auto motion = open_motion(rig.twin, calibration);
+  const TrueGeometry geometry(rig.twin.geometry, rig.twin.seed, calibration);
+  auto motion = open_motion(rig.twin, geometry.calibration());
   if (!motion) return tl::make_unexpected(motion.error());
-  Parts parts{.motion = std::move(*motion), .models = {}};
-  for (const Side side : kSides) {
-    const std::filesystem::path file = side == Side::left ? rig.hand.left : rig.hand.right;
-    auto model = renderer::load_hand_or_default(file, side);
-    if (!model) return tl::make_unexpected(model.error());
-    parts.models[static_cast<std::size_t>(side)] = std::move(*model);
-    parts.made_by_handcast[static_cast<std::size_t>(side)] = file.empty();
-  }
-  return std::make_unique<RigTwin>(rig, calibration, std::move(parts));
+  const auto moves = [&](Side side) { return (*motion)->at(side, 0).has_value(); };
+  auto hands = TrueHands::create(rig, {moves(Side::left), moves(Side::right)}, (*motion)->shape());
+  if (!hands) return tl::make_unexpected(hands.error());
+  return std::make_unique<RigTwin>(rig, geometry, std::move(*motion), std::move(*hands));
 }
 
 }  // namespace handcast::twin

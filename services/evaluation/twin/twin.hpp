@@ -15,6 +15,8 @@
 #include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/evaluation/twin/motion.hpp"
+#include "services/evaluation/twin/true_geometry.hpp"
+#include "services/evaluation/twin/true_hands.hpp"
 
 namespace handcast::twin {
 
@@ -32,10 +34,14 @@ class Twin {
 
   /// The true joints of one hand in tracker space; empty if there is no such hand at that time.
   virtual std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const = 0;
-  /// The mesh of one true hand, with the topology of the model's. The first call makes both hands,
-  /// which takes a quarter of a second. Valid as long as the twin.
-  virtual const renderer::HandMesh& true_hand(Side side) const = 0;
-  /// The true positions of the 21 landmarks, undistorted camera px; empty as joints().
+  /// The true hands and what their texture means. The first use takes up to a second.
+  virtual const TrueHands& hands() const = 0;
+  /// The flesh of one true hand: hands().of(). Valid as long as the twin.
+  const TrueHand& true_hand(Side side) const { return hands().of(side); }
+  /// The rig as it is; the calibration is what it believes.
+  virtual const TrueGeometry& geometry() const = 0;
+  /// The true positions of the 21 landmarks, camera px, undistorted as the rig believes; empty as
+  /// joints().
   virtual std::optional<std::array<glm::vec2, msg::kLandmarks>> landmarks(
       Side side, std::int64_t time_ns) const = 0;
 
@@ -69,22 +75,35 @@ class Twin {
 };
 
 /// The score of the light of one frame on the true hands (`docs/method.md#metrics`). Lengths are in
-/// projector px, or mm at the distance of the point.
+/// projector px, or in mm on the surface.
 struct FrameScore {
+  /// A point of the surface without light counts as if its light were this far away: a finger's
+  /// width.
+  static constexpr float kMissing_mm = 20;
+  /// The displacement of the light on a part of a hand.
+  struct Part {
+    glm::vec2 sum_px{0};  ///< sum over the lit points: place of the light - place it is meant for
+    int points = 0;       ///< lit points
+  };
+  static constexpr std::size_t kParts = 6;  ///< thumb to little finger, palm
+
   std::int64_t lit_ns = 0;  ///< time of the light, since the epoch
   /// The score of one hand.
   struct Hand {
-    Side side = Side::left;          ///< which hand
+    Side side = Side::left;          ///< which hand it is
     double speed_m_s = 0;            ///< mean speed of the visible points of the true surface
-    std::vector<float> interior_px;  ///< error of the light by scored surface point that is drawn
-    std::vector<float> interior_mm;  ///< the same errors in mm
+    std::vector<float> interior_px;  ///< error by lit point of the surface
+    std::vector<float> interior_mm;  ///< the same errors along the surface
+    std::vector<float> missing_px;   ///< kMissing_mm in px, by point without light of this hand
     int hand_px = 0;                 ///< pixels of the true hand
-    int lit_px = 0;                  ///< those of them with light
+    int lit_px = 0;                  ///< those of them with at least half of the intended light
     int spill_px = 0;                ///< lit pixels beside hands and arms, nearest to this hand
     int union_px = 0;                ///< hand_px + spill_px: the denominator of the IoU
     double seam_px = 0;              ///< length of the edge of the light inside the true hand
-    double lag_px_s = 0;             ///< sum of -error . velocity over the points
+    double lag_px_s = 0;             ///< sum of -error . velocity over the lit points
     double speed2_px_s2 = 0;         ///< sum of |velocity|^2; equivalent latency = lag / speed2
+    double error2_px2 = 0;           ///< sum of |error|^2
+    std::array<Part, kParts> parts;  ///< for the jitter of the light
   };
   std::vector<Hand> hands;  ///< the visible hands
 };
@@ -92,12 +111,13 @@ struct FrameScore {
 /// Scores projections against the truth. Reuses its buffers: not thread-safe.
 class Judge {
  public:
-  /// Creates a judge that scores surface points on a grid of `step_px` projector pixels. `twin`
-  /// must outlive it.
-  static std::unique_ptr<Judge> create(const Twin& twin, const calib::Calibration& calibration,
-                                       int step_px);
+  /// Creates a judge that scores surface points on a grid of about `step_px` projector pixels: the
+  /// next multiple of msg::Projection::kShownStep_px. `twin` must outlive it. The sizes are those
+  /// of the projector.
+  static std::unique_ptr<Judge> create(const Twin& twin, int step_px);
   virtual ~Judge() = default;
-  /// Scores one projection. projection.lit_ns must be in ns since the twin's epoch.
+  /// Scores one projection. projection.lit_ns must be in ns since the twin's epoch. Without shown
+  /// points all of the surface counts as missing.
   virtual FrameScore score(const msg::Projection& projection) = 0;
 };
 

@@ -21,7 +21,8 @@ layout(binding = 1, r32ui) uniform restrict writeonly uimage2D colour;
 layout(binding = 2, rg32f) uniform restrict image2D uv;
 
 struct Limit {
-  uint strength;           // of the light, 0..256
+  uint strength;           // of the levels, 0..256
+  uint alpha;              // that share of the light, 1..255
   float squared_limit_uv;  // longest step that does not cross a seam, squared
 };
 layout(binding = 0, std430) restrict readonly buffer Words { uint lit_words[]; };
@@ -112,7 +113,7 @@ bool fill(ivec2 at) {
   if (share != 255u) filled = dimmed(filled, share_factors[share]);
   imageStore(uv, at, vec4(coordinates, 0, 0));
   imageStore(tag, at, seen);
-  imageStore(colour, at, uvec4(filled | share << 24));
+  imageStore(colour, at, uvec4(filled | max(limit.alpha * share / 255u, 1u) << 24));
   return true;
 }
 

@@ -84,8 +84,8 @@ TEST(Simulation, TheCascadeSeesSensorsOnly) {
   const auto other_world = twin_of(rig_with({"twin.motion=builtin:rotate", "twin.seed=9"}));
   const auto feed = make_twin_feed(*world);
   Tape tape(feed.get());
-  const auto judge = twin::Judge::create(*world, calib::reference_rig(), 4);
-  const auto other_judge = twin::Judge::create(*other_world, calib::reference_rig(), 4);
+  const auto judge = twin::Judge::create(*world, 4);
+  const auto other_judge = twin::Judge::create(*other_world, 4);
 
   double error_px = 0, other_error_px = 0;
   const auto light = light_of(rig, tape, judge.get(), &error_px);
@@ -238,6 +238,43 @@ TEST(Simulation, ABrokenRecordingIsOneSentence) {
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::bad_config);
   EXPECT_THAT(done.error().what, testing::HasSubstr("/nowhere/at/all"));
+}
+
+TEST(Refreshes, AFrameThatIsLateLeavesTheLightOfTheOneBeforeOn) {
+  config::Projector projector;
+  projector.software_ms = 1;
+  const Refreshes never(projector, {}, 1);
+  const Refreshes seldom(projector, {.work_ms = 0.7, .work_spread = 0.17}, 1);
+  const Refreshes half(projector, {.work_ms = 1, .work_spread = 0.17}, 1);
+  int seldom_late = 0, half_late = 0;
+  for (std::int64_t k = 0; k < 2000; ++k) {
+    EXPECT_EQ(never.shown_at(k), k);
+    EXPECT_LE(half.shown_at(k), k);
+    EXPECT_GE(half.shown_at(k + 1), half.shown_at(k)) << "light does not go back in time";
+    seldom_late += seldom.shown_at(k) != k;
+    half_late += half.shown_at(k) != k;
+  }
+  EXPECT_NEAR(half_late, 1000, 100) << "half of the frames take longer than their median";
+  EXPECT_NEAR(seldom_late, 2000 * 0.018, 25);
+}
+
+TEST(Refreshes, AStallIsShownAsOneOldFrameForItsWholeLength) {
+  config::Projector projector;
+  projector.rate_hz = 1000;
+  projector.software_ms = 1;
+  const Refreshes refreshes(projector,
+                            {.work_ms = 0.1, .work_spread = 0, .stalls = 1, .stall_ms = 4.5}, 1);
+  EXPECT_EQ(refreshes.shown_at(100), 96) << "0.1 + 4.5 ms are 4 refreshes more than 1 ms";
+}
+
+TEST(Simulation, HoldingEverySecondFrameMakesTheLightWorse) {
+  const std::vector<std::string> held{"projector.rate_hz=120", "twin.projector.work_ms=20",
+                                      "twin.projector.work_spread=0.01"};
+  const std::vector<std::string> all{"projector.rate_hz=120"};
+  const auto worse = run_rig("twin", "builtin:shake", 1, held),
+             normal = run_rig("twin", "builtin:shake", 1, all);
+  EXPECT_GT(worse["interior_mm"]["mean"].get<double>(),
+            1.3 * normal["interior_mm"]["mean"].get<double>());
 }
 
 }  // namespace

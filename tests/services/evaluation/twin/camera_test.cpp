@@ -21,7 +21,7 @@ Image<std::uint8_t> picture(const Twin& twin, std::uint64_t k) {
 /// The mask of the hand's mesh alone as seen by the rig's camera, lens distortion included.
 Image<std::uint8_t> silhouette(const Twin& twin, Side side, std::int64_t time_ns) {
   const auto rig = calib::reference_rig();
-  const auto& mesh = twin.true_hand(side);
+  const auto& mesh = twin.true_hand(side).mesh;
   std::vector<glm::vec3> positions(mesh.vertex_count());
   renderer::skin(mesh, *twin.joints(side, time_ns), positions);
   ScreenVertices screen;

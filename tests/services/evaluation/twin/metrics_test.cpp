@@ -45,8 +45,7 @@ TEST(Metrics, EveryFigureComesOutUnderItsName) {
   metrics.add_stages(stages);
   metrics.add_foldovers(2);
   metrics.add_foldovers(1);
-  metrics.add_jitter(0.5, 20);
-  metrics.add_jitter(0.5, 80);
+  metrics.set_jitter(0.1, 0.3);
   const auto json = metrics.to_json();
   EXPECT_EQ(json["frames"], 1);
   EXPECT_DOUBLE_EQ(json["interior_px"]["mean"], 2);
@@ -57,6 +56,7 @@ TEST(Metrics, EveryFigureComesOutUnderItsName) {
   EXPECT_DOUBLE_EQ(json["iou"], 900.0 / 1050);
   EXPECT_DOUBLE_EQ(json["seam_px"], 12);
   EXPECT_DOUBLE_EQ(json["jitter_px"], 0.1);
+  EXPECT_DOUBLE_EQ(json["landmark_jitter_px"], 0.3);
   EXPECT_EQ(json["foldovers"], 3);
   EXPECT_DOUBLE_EQ(json["equivalent_latency_ms"], 4);
   EXPECT_DOUBLE_EQ(json["frame_us"]["p50"], 900);
@@ -107,6 +107,46 @@ TEST(Metrics, SpeedsFallIntoTheirBins) {
   EXPECT_EQ(bins["0.3-0.6"]["frames"], 1);
   EXPECT_EQ(bins["0.6-1.0"]["frames"], 2);
   EXPECT_EQ(bins[">1.0"]["frames"], 1);
+}
+
+TEST(Metrics, AFrameThatIsLeftDarkMakesTheHeadlineWorse) {
+  FrameScore lit;
+  lit.hands.resize(1);
+  lit.hands[0].interior_mm.assign(100, 1);
+  lit.hands[0].interior_px.assign(100, 2);
+  FrameScore dark;
+  dark.hands.resize(1);
+  dark.hands[0].missing_px.assign(100, 40);
+  Metrics all_lit, half_dark;
+  for (int i = 0; i < 10; ++i) {
+    all_lit.add(lit);
+    half_dark.add(i % 2 ? lit : dark);
+  }
+  const auto good = all_lit.to_json(), bad = half_dark.to_json();
+  EXPECT_DOUBLE_EQ(good["interior_mm"]["mean"], 1);
+  EXPECT_DOUBLE_EQ(good["missing"], 0);
+  EXPECT_DOUBLE_EQ(bad["interior_mm"]["mean"], (1 + FrameScore::kMissing_mm) / 2);
+  EXPECT_DOUBLE_EQ(bad["interior_mm"]["p95"], FrameScore::kMissing_mm);
+  EXPECT_DOUBLE_EQ(bad["interior_px"]["p95"], 40);
+  EXPECT_DOUBLE_EQ(bad["missing"], 0.5);
+  EXPECT_DOUBLE_EQ(bad["lit_mm"]["mean"], 1) << "beside it: the light that is there";
+}
+
+TEST(Metrics, TheResidualIsWhatNoDelayExplains) {
+  const auto residual_px = [](double lag_px_s) {
+    FrameScore score;
+    score.hands.resize(1);
+    auto& hand = score.hands[0];
+    hand.interior_px = hand.interior_mm = {3, 5};
+    hand.error2_px2 = 9 + 25;
+    hand.lag_px_s = lag_px_s;
+    hand.speed2_px_s2 = 2 * 100 * 100;
+    Metrics metrics;
+    metrics.add(score);
+    return metrics.to_json()["residual_px"].get<double>();
+  };
+  EXPECT_DOUBLE_EQ(residual_px(0), std::sqrt(34 / 2.0)) << "errors across the motion";
+  EXPECT_DOUBLE_EQ(residual_px(800), std::sqrt((34 - 32) / 2.0)) << "errors of 3 and 5 px along it";
 }
 
 }  // namespace

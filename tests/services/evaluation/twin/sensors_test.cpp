@@ -196,8 +196,8 @@ TEST(Twin, TheSeedIsTheOnlyChance) {
   EXPECT_EQ(seen.age_ns, again.age_ns);
   EXPECT_EQ(seen.landmarks.hands[0].points[8].x_px, again.landmarks.hands[0].points[8].x_px);
   EXPECT_NE(seen.age_ns, elsewhere.age_ns);
-  EXPECT_NE(one->true_hand(Side::left).positions, other->true_hand(Side::left).positions);
-  EXPECT_EQ(one->true_hand(Side::left).positions, same->true_hand(Side::left).positions);
+  EXPECT_NE(one->true_hand(Side::left).mesh.positions, other->true_hand(Side::left).mesh.positions);
+  EXPECT_EQ(one->true_hand(Side::left).mesh.positions, same->true_hand(Side::left).mesh.positions);
 }
 
 TEST(Camera, FramesComeAtTheRateAndArriveAfterExposureAndDelivery) {

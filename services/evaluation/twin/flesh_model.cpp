@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/twin/flesh_model.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+namespace handcast::twin {
+namespace {
+
+glm::vec3 mirrored(const glm::vec3& v) { return {-v.x, v.y, v.z}; }
+
+/// The mirror image in x. A joint's axes stay right-handed.
+renderer::HandMesh mirrored(renderer::HandMesh hand) {
+  hand.side = hand.side == renderer::Side::left ? renderer::Side::right : renderer::Side::left;
+  for (auto& position : hand.positions) position = mirrored(position);
+  for (auto& normal : hand.normals) normal = mirrored(normal);
+  for (auto& triangle : hand.triangles) std::swap(triangle[1], triangle[2]);
+  for (auto& frame : hand.rest)
+    for (int c = 0; c < 4; ++c)
+      for (int r = 0; r < 4; ++r)
+        if ((c == 0) != (r == 0)) frame[c][r] = -frame[c][r];
+  return hand;
+}
+
+}  // namespace
+
+std::filesystem::path webxr_hand_file() {
+  if (const char* named = std::getenv("HANDCAST_WEBXR_HAND")) return named;
+  const std::filesystem::path installed = "/usr/local/share/handcast-hands/webxr/left.glb";
+  std::error_code ignored;
+  return std::filesystem::exists(installed, ignored) ? installed : std::filesystem::path();
+}
+
+Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::HandMesh& drawn) {
+  if (mesh == "handcast") return FleshModel{drawn, true};
+  std::filesystem::path file = mesh;
+  if (mesh == "webxr") {
+    file = webxr_hand_file();
+    if (file.empty()) return FleshModel{drawn, true};
+  }
+  auto left = renderer::load_hand(file, renderer::Side::left);
+  if (!left) return tl::make_unexpected(left.error());
+  return FleshModel{
+      drawn.side == renderer::Side::left ? std::move(*left) : mirrored(std::move(*left)), false};
+}
+
+}  // namespace handcast::twin

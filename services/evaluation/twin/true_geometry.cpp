@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/twin/true_geometry.hpp"
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "services/evaluation/twin/random.hpp"
+
+namespace handcast::twin {
+namespace {
+
+constexpr double kVolume_m = 0.73;  ///< distance of the middle of the working volume
+
+glm::dvec3 direction(const Random& random, std::uint64_t draw) {
+  return glm::normalize(
+      glm::dvec3(random.normal(draw), random.normal(draw + 1), random.normal(draw + 2)));
+}
+
+/// The homography that maps each `from` to its `to`.
+glm::dmat3 homography(const std::array<glm::dvec2, 4>& from, const std::array<glm::dvec2, 4>& to) {
+  Eigen::Matrix<double, 8, 8> left = Eigen::Matrix<double, 8, 8>::Zero();
+  Eigen::Matrix<double, 8, 1> right;
+  for (int i = 0; i < 4; ++i) {
+    const auto [x, y] = std::pair(from[i].x, from[i].y);
+    const auto [u, v] = std::pair(to[i].x, to[i].y);
+    left.row(2 * i) << x, y, 1, 0, 0, 0, -u * x, -u * y;
+    left.row(2 * i + 1) << 0, 0, 0, x, y, 1, -v * x, -v * y;
+    right[2 * i] = u;
+    right[2 * i + 1] = v;
+  }
+  const Eigen::Matrix<double, 8, 1> h = left.partialPivLu().solve(right);
+  return {h[0], h[3], h[6], h[1], h[4], h[7], h[2], h[5], 1};
+}
+
+/// Moves the corners of the projector's image by `rms_px` per corner.
+glm::dmat3 corner_error(const calib::Calibration& rig, double rms_px, const Random& random) {
+  const double w = rig.projector_width_px, h = rig.projector_height_px;
+  const std::array<glm::dvec2, 4> corners{{{0, 0}, {w, 0}, {w, h}, {0, h}}};
+  auto moved = corners;
+  for (std::uint64_t i = 0; i < 4; ++i)
+    moved[i] +=
+        rms_px / std::numbers::sqrt2 * glm::dvec2(random.normal(2 * i), random.normal(2 * i + 1));
+  return homography(corners, moved);
+}
+
+/// Turns about the middle of the working volume and shifts, in camera space.
+glm::dmat4 pose_error(const config::TwinGeometry& settings, const Random& random) {
+  const glm::dvec3 middle(0, 0, kVolume_m);
+  const auto turn =
+      glm::rotate(glm::dmat4(1), glm::radians(settings.tracker_deg), direction(random, 20));
+  const auto shift = direction(random, 30) * settings.tracker_mm * 1e-3;
+  return glm::translate(glm::dmat4(1), middle + shift) * turn *
+         glm::translate(glm::dmat4(1), -middle);
+}
+
+/// A change of k1 that moves the corners of the image by `corner_px`.
+double lens_error(const calib::CameraModel& camera, double corner_px, const Random& random) {
+  const double radius = std::hypot(camera.cx_px / camera.fx_px, camera.cy_px / camera.fy_px);
+  return corner_px / camera.fx_px / std::pow(radius, 3) * (random.uniform(40) < 0.5 ? -1 : 1);
+}
+
+}  // namespace
+
+TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
+                           const calib::Calibration& believed)
+    : true_(believed), believed_(believed.camera), plane_m_(kVolume_m + settings.plane_mm * 1e-3) {
+  const Random random(seed, Stream::geometry);
+  const double angle = std::numbers::pi * random.spread(10);
+  centre_m_ = settings.projector_offset_mm * 1e-3 * glm::dvec2(std::cos(angle), std::sin(angle));
+  if (settings.homography_px > 0)
+    true_.projector_from_camera =
+        corner_error(believed, settings.homography_px, random) * believed.projector_from_camera;
+  if (settings.tracker_mm > 0 || settings.tracker_deg > 0)
+    true_.camera_from_tracker = pose_error(settings, random) * believed.camera_from_tracker;
+  if (settings.lens_px > 0)
+    true_.camera.k1 += lens_error(believed.camera, settings.lens_px, random);
+}
+
+glm::dvec2 TrueGeometry::to_projector(const glm::dvec3& camera_m) const {
+  const double shift = 1 / camera_m.z - 1 / plane_m_;
+  const glm::dvec3 seen(glm::dvec2(camera_m) / camera_m.z - centre_m_ * shift, 1);
+  const glm::dvec3 px = true_.projector_from_camera * (true_.camera.matrix() * seen);
+  return glm::dvec2(px) / px.z;
+}
+
+}  // namespace handcast::twin
