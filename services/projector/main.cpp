@@ -27,7 +27,7 @@ static void run_projector(service::Context& context) {
       rig.cascade, rig.content, rig.hand, calibration, {},
       renderer::open_painter(rig.projector.painter, calibration.projector_width_px,
                              calibration.projector_height_px, shares)));
-  pipeline->show_surface(rig.observer.enabled);
+  pipeline->show_surface(true);  // an observer may come at any time
   context.stand_by();
   if (!projector) projector = must(projector::open_projector(rig, calibration));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
                        .paced_by = "projector.rate_hz",
                        .publishes = {"projection.frames"},
                        .subscribes = {"camera.frames", "pose.hands", "landmarks.hands"},
-                       .settings = {"projector", "content", "hand", "cascade", "observer.enabled"},
+                       .settings = {"projector", "content", "hand", "cascade"},
                        .backends = service::describe_rows(projector::projector_backends())},
                       argc, argv, run_projector, check_projector);
 }

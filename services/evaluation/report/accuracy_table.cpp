@@ -24,14 +24,17 @@ struct Metric {
 
 constexpr Metric kMetrics[] = {
     {"Interior error, mean", "mm", "/interior_mm/mean", 1, 2, Better::lower,
-     "Distance between a point of the skin and the place where its light lands, over all visible "
-     "points."},
+     "Distance on the skin between a point and the point whose picture falls on it, over all "
+     "visible "
+     "points; 20 mm where there is no light."},
     {"Interior error, p95", "mm", "/interior_mm/p95", 1, 2, Better::lower,
      "95 % of the points have a smaller error."},
     {"Interior error, p99", "mm", "/interior_mm/p99", 1, 2, Better::lower,
      "99 % of the points have a smaller error. The larger ones are noticed in fast motion."},
     {"Interior error, p95", "projector px", "/interior_px/p95", 1, 2, Better::lower,
      "The 95th percentile in pixels of the projector."},
+    {"Missing", "%", "/missing", 100, 2, Better::lower,
+     "Share of the points of the skin that have no light of their hand."},
     {"Coverage", "%", "/coverage", 100, 2, Better::higher,
      "Share of the hand that is lit. Unlit parts appear as dark rims."},
     {"Spill", "%", "/spill", 100, 2, Better::lower,
@@ -42,12 +45,16 @@ constexpr Metric kMetrics[] = {
     {"Seam", "px", "/seam_px", 1, 1, Better::lower,
      "Length of the edge of the light that runs across the hand instead of around it."},
     {"Jitter", "px RMS", "/jitter_px", 1, 3, Better::lower,
-     "Trembling of the landmarks from frame to frame, relative to the true hand."},
+     "Trembling of the light on a slow hand in 1-30 Hz, where people see it. Measured if more than "
+     "60 "
+     "frames a second are scored."},
     {"Fold-overs", "", "/foldovers", 1, 0, Better::lower,
-     "Triangles or grid cells that the correction has turned over. There should be none."},
+     "Triangles of the drawn hand that the correction has turned over. There should be none."},
     {"Equivalent latency", "ms", "/equivalent_latency_ms", 1, 2, Better::nearer_zero,
      "The delay that explains the error best. It means little for a hand that hardly moves. People "
      "notice 3.1 ms without and 6.6 ms with the fill."},
+    {"Residual", "px RMS", "/residual_px", 1, 2, Better::lower,
+     "The error that no delay explains."},
     {"Frame, p50", "µs", "/frame_us/p50", 1, 0, Better::lower,
      "Median software time of one projector frame on the machine that ran the simulation."},
     {"Frame, p99", "µs", "/frame_us/p99", 1, 0, Better::lower,

@@ -30,6 +30,7 @@ constexpr std::array kPlaces{
     Place{"frames", Kind::number},       Place{"coverage", Kind::number},
     Place{"spill", Kind::number},        Place{"iou", Kind::number},
     Place{"seam_px", Kind::number},      Place{"jitter_px", Kind::number},
+    Place{"missing", Kind::number},      Place{"residual_px", Kind::number},
     Place{"foldovers", Kind::number},    Place{"equivalent_latency_ms", Kind::number},
     Place{"software_ms", Kind::number},  Place{"seconds", Kind::number},
     Place{"seed", Kind::number},         Place{"rig", Kind::text},

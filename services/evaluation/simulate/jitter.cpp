@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLowest_hz = 1, kHighest_hz = 30;
 constexpr int kFewestPoints = 20;  ///< of a part: fewer say more about their choice than the light
-constexpr int kSettling = 12;      ///< samples until a filter that starts in motion has settled
+constexpr double kSettling_s = 0.3;  ///< in which a filter that starts in motion settles
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void JitterMeter::add(msg::Side side, std::int64_t time_ns, const Points& points
       hand.lengths[i] = 0;
     }
     const glm::dvec2 out = (*filter)(*points[i]);
-    if (++hand.lengths[i] <= kSettling || speed_m_s > kSlow_m_s) continue;
+    if (++hand.lengths[i] <= kSettling_s * rate_hz || speed_m_s > kSlow_m_s) continue;
     square_px2_ += glm::dot(out, out);
     ++samples_;
   }

@@ -7,22 +7,28 @@ namespace handcast::simulate {
 namespace {
 
 /// For each motion, the paper's cascade is better than the baseline, and ours is better than the
-/// paper's. The baseline is compared by intersection over union and not by coverage: its hand is
-/// too large and its spill is up to a fifth of the hand.
+/// paper's. Percentiles are of the lit points: on a waving hand, 5 % of the surface is dark with
+/// the paper's mask, which stays where the camera saw the hand. The baseline is compared by
+/// intersection over union and not by coverage: its hand is too large and its spill is up to a
+/// fifth of the hand.
 class Accuracy : public testing::TestWithParam<std::string> {
  protected:
   static void expect_ordering(const std::string& motion) {
     const auto baseline = run_rig("baseline", motion, 2);
     const auto paper = run_rig("paper", motion, 2);
     const auto handcast = run_rig("twin", motion, 2);
-    EXPECT_GE(baseline["interior_mm"]["p95"], paper["interior_mm"]["p95"]);
-    EXPECT_GE(paper["interior_mm"]["p95"], handcast["interior_mm"]["p95"]);
-    EXPECT_LE(paper["coverage"], handcast["coverage"]);
-    EXPECT_LE(paper["iou"], handcast["iou"]);
+    for (const char* error : {"/interior_mm/mean", "/lit_mm/p95"}) {
+      EXPECT_GT(figure(baseline, error), 1.3 * figure(paper, error)) << error;
+      EXPECT_GT(figure(paper, error), 1.3 * figure(handcast, error)) << error;
+    }
+    // Where both are whole, they differ by pixels of the edge.
+    constexpr double kTie = 0.002;
+    EXPECT_LT(figure(paper, "/coverage"), figure(handcast, "/coverage") + kTie);
+    EXPECT_LT(figure(paper, "/iou"), figure(handcast, "/iou") + kTie);
     EXPECT_EQ(handcast["foldovers"], 0);
     // Shaken at 1.3 m/s, the paper's mask is as late as the baseline's hand.
-    constexpr double kTie = 0.01;
-    EXPECT_LE(baseline["iou"].get<double>(), paper["iou"].get<double>() + kTie);
+    constexpr double kLate = 0.01;
+    EXPECT_LT(figure(baseline, "/iou"), figure(paper, "/iou") + kLate);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -54,16 +55,23 @@ inline Options options_of(const std::string& rig, double seconds) {
 
 /// Runs config/rigs/RIG.toml and returns its metrics.
 inline nlohmann::json run_rig(const std::string& rig, const std::string& motion, double seconds,
-                              std::vector<std::string> settings = {}) {
+                              std::vector<std::string> settings = {}, int draw_every = 24) {
   const test::Scratch folder;
   Options options = options_of(rig, seconds);
   options.settings = std::move(settings);
   options.settings.push_back("twin.motion=" + motion);
-  options.draw_every = 24;
+  options.draw_every = draw_every;
   options.json_file = (folder.path() / "metrics.json").string();
   const auto done = run(options);
   EXPECT_TRUE(done) << done.error().what;
   return done ? nlohmann::json::parse(std::ifstream(options.json_file)) : nlohmann::json();
+}
+
+/// A figure of a run. A test failure, and not a number, if the run has not measured it.
+inline double figure(const nlohmann::json& metrics, const std::string& pointer) {
+  const auto& value = metrics.at(nlohmann::json::json_pointer(pointer));
+  EXPECT_TRUE(value.is_number()) << pointer << " was not measured";
+  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace handcast::simulate
