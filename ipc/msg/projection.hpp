@@ -79,9 +79,8 @@ struct Projection {
 
   /// Size in bytes of a message with a region of `width` x `height` pixels.
   static constexpr std::size_t bytes(std::size_t width, std::size_t height) {
-    return bytes_with_tail(bytes_with_tail(sizeof(Projection), width, height, 4),
-                           width / kShownStep_px + 1, height / kShownStep_px + 1,
-                           sizeof(ShownPoint));
+    return bytes_with_tail(bytes_with_tail(sizeof(Projection), width, height, 4), shown_in(width),
+                           shown_in(height), sizeof(ShownPoint));
   }
 
   /// The first pixel of the region. Valid only if the struct lies in a slot or buffer of at least
@@ -104,6 +103,10 @@ struct Projection {
   std::size_t used_bytes() const { return bytes(region_width_px, region_height_px); }
 
  private:
+  /// The most shown points in a row of pixels, wherever it begins.
+  static constexpr std::size_t shown_in(std::size_t pixels) {
+    return (pixels + kShownStep_px - 1) / kShownStep_px;
+  }
   std::size_t pixel_count() const { return std::size_t{region_width_px} * region_height_px; }
   static constexpr std::int32_t first_shown(std::int32_t from_px) {
     return (from_px + kShownStep_px - 1) / kShownStep_px;
@@ -111,7 +114,7 @@ struct Projection {
   std::size_t shown_index(std::int32_t x_px, std::int32_t y_px) const {
     const std::int32_t column = x_px / kShownStep_px - first_shown(region_x_px),
                        row = y_px / kShownStep_px - first_shown(region_y_px);
-    return static_cast<std::size_t>(row) * (region_width_px / kShownStep_px + 1) +
+    return static_cast<std::size_t>(row) * shown_in(region_width_px) +
            static_cast<std::size_t>(column);
   }
 };

@@ -172,7 +172,7 @@ TEST(Hostile, NoSizeOfAPictureWrapsAround) {
   expect_no_size_to_wrap(&msg::Projection::region_width_px, &msg::Projection::region_height_px);
   EXPECT_EQ(msg::Projection::bytes(1u << 31, 1u << 31), ~std::size_t{0});
   EXPECT_EQ(msg::CameraFrame::bytes(~std::size_t{0}, 2), ~std::size_t{0});
-  EXPECT_EQ(msg::Projection::bytes(3, 5), sizeof(msg::Projection) + 60 + 4 * 6)
+  EXPECT_EQ(msg::Projection::bytes(3, 5), sizeof(msg::Projection) + 60 + 2 * 6)
       << "15 pixels and room for 1 x 2 shown points";
 }
 

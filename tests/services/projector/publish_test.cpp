@@ -28,6 +28,8 @@ class WriteProjection : public testing::Test {
     return projection;
   }
 
+  /// The room that a region of 3 x 3 pixels needs.
+  static constexpr std::size_t kTail = msg::Projection::bytes(3, 3) - sizeof(msg::Projection);
   renderer::Image<std::uint32_t> pixels_{8, 6};
   std::vector<glm::vec2> landings_{{1, 2}, {3, 4}};
   renderer::FrameHand hand_;
@@ -64,17 +66,43 @@ TEST_F(WriteProjection, CarriesItsOwnNumberItsOriginsItsTimesAndItsLandings) {
 }
 
 TEST_F(WriteProjection, ARegionThatDoesNotFitIsLeftOutNotOverrun) {
-  const auto& projection = write(3 * 3 * 4 - 1);
+  const auto& projection = write(kTail - 1);
   EXPECT_EQ(projection.region_width_px, 0u);
   EXPECT_EQ(projection.used_bytes(), sizeof(msg::Projection));
 }
 
 TEST_F(WriteProjection, ARegionThatJustFitsIsWrittenAndNothingBeyondIt) {
   std::fill(memory_.begin(), memory_.end(), 0xa5a5a5a5a5a5a5a5u);
-  const auto& projection = write(3 * 3 * 4);
+  const auto& projection = write(kTail);
   ASSERT_EQ(projection.region_width_px * projection.region_height_px, 9u);
   EXPECT_EQ(projection.pixels()[8], 34u);
   EXPECT_EQ(projection.pixels()[9], 0xa5a5a5a5u);
+}
+
+TEST_F(WriteProjection, SaysWhatEveryFourthPixelShowsAndOnWhichHand) {
+  renderer::Image<glm::vec2> uv(8, 6);
+  renderer::Image<renderer::SurfaceId> surface(8, 6);
+  EXPECT_EQ(write(8 * 6 * 6).has_shown, 0u) << "nobody asked what is shown";
+  // The first hand of the frame is not drawn, so the second one is the first in the drawing.
+  std::array<renderer::FrameHand, 2> hands;
+  hands[1].drawn_as = 0;
+  frame_.hands = hands;
+  frame_.region = {3, 0, 8, 5};
+  frame_.uv = uv.view();
+  frame_.surface = surface.view();
+  uv.at(4, 0) = {0.5f, 1.0f};
+  surface.at(4, 0) = renderer::surface_id(0, 7);
+  uv.at(4, 4) = {-0.2f, 3};
+  surface.at(4, 4) = renderer::surface_id(0, 1);
+  const auto& projection = write(8 * 6 * 6);
+  ASSERT_EQ(projection.has_shown, 1u);
+  EXPECT_EQ(projection.shown(4, 0).u, 32768);
+  EXPECT_EQ(projection.shown(4, 0).v, 65535);
+  EXPECT_EQ(projection.shown(4, 0).hand, 2);
+  EXPECT_EQ(projection.shown(4, 4).u, 0);
+  EXPECT_EQ(projection.shown(4, 4).v, 65535);
+  surface.at(4, 4) = 0;
+  EXPECT_EQ(write(8 * 6 * 6).shown(4, 4).hand, 0) << "dark";
 }
 
 TEST_F(WriteProjection, LandingsAndHandsBeyondTheMessagesRoomAreLeftOut) {
