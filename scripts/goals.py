@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Merges the goals written by benchmarks and prints them as a table.
 
-usage: goals.py [--json FILE] GOALS.json...
+usage: goals.py [--json FILE] [--strict] GOALS.json...
 
 Each file is {"goals": [{"name", "value", "limit", "unit", "met"}, ...]}; "met" defaults to value <= limit.
+Exit 1 with --strict if a goal is missed.
 """
 import argparse
 import json
 import pathlib
+import sys
 
 
 def read(file):
@@ -31,6 +33,7 @@ def table(goals):
 def main():
     parser = argparse.ArgumentParser(description="Merges the goals written by benchmarks and prints them as a table.")
     parser.add_argument("--json", metavar="FILE", help="also writes the merged goals to FILE")
+    parser.add_argument("--strict", action="store_true", help="fails if a goal is missed")
     parser.add_argument("files", nargs="+", metavar="GOALS.json")
     options = parser.parse_args()
     goals = [goal for file in options.files for goal in read(file)]
@@ -39,7 +42,8 @@ def main():
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(json.dumps({"goals": goals}, indent=2) + "\n")
     print(table(goals))
+    return 1 if options.strict and not all(goal["met"] for goal in goals) else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

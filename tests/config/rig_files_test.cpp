@@ -29,6 +29,17 @@ std::vector<std::string> differences_in_hardware(const Rig& a, const Rig& b) {
   return paths;
 }
 
+/// The settings of a rig that are not the defaults, as lines of a rig file.
+std::vector<std::string> changes(Rig rig) {
+  Rig defaults;
+  const auto of_rig = every_setting(rig), of_defaults = every_setting(defaults);
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < of_rig.size(); ++i)
+    if (const auto value = print_value(of_rig[i]); value != print_value(of_defaults[i]))
+      lines.push_back(of_rig[i].path + " = " + value);
+  return lines;
+}
+
 TEST(ShippedRigs, TwinIsTheDefaults) {
   EXPECT_THAT(differences(shipped("twin"), Rig{}), UnorderedElementsAre("name"));
 }
@@ -39,12 +50,33 @@ TEST(ShippedRigs, PaperAndBaselineDifferFromTwinInSoftwareAlone) {
 }
 
 TEST(ShippedRigs, PaperIsThePapersCascade) {
-  const auto rig = shipped("paper");
-  EXPECT_EQ(rig.projector.software_ms, 3.19);
-  EXPECT_EQ(rig.cascade.filter.method, FilterMethod::paper);
-  EXPECT_EQ(rig.cascade.correct.method, CorrectMethod::grid);
-  EXPECT_EQ(rig.cascade.correct.grid_columns * rig.cascade.correct.grid_rows, 21 * 21);
-  EXPECT_EQ(rig.cascade.fill.reach_px, 10);
+  // All that differs from our cascade; what is equal (similarity, a grid of 21 x 21 nodes, the
+  // threshold, reflection) is checked below.
+  EXPECT_THAT(
+      changes(shipped("paper")),
+      UnorderedElementsAre(
+          "name = \"paper\"", "projector.software_ms = 3.19",
+          "cascade.predict.method = \"velocity\"", "cascade.predict.still_mm_s = 0",
+          "cascade.skin.fit = false", "cascade.filter.method = \"paper\"",
+          "cascade.filter.hindsight = false", "cascade.filter.blend_ms = 0",
+          "cascade.correct.method = \"grid\"", "cascade.correct.alpha = 0.5",
+          "cascade.mask.advance = false", "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
+          "cascade.register.method = \"none\"", "cascade.ladder.rung = \"landmarks\""));
+  const auto cascade = shipped("paper").cascade;
+  EXPECT_EQ(cascade.correct.grid_columns, 21);
+  EXPECT_EQ(cascade.correct.grid_rows, 21);
+  EXPECT_EQ(cascade.fill.method, FillMethod::reflect);
+}
+
+TEST(ShippedRigs, TwinIsTheCascadeThatTheDocumentsDescribe) {
+  const auto cascade = shipped("twin").cascade;
+  EXPECT_EQ(cascade.filter.method, FilterMethod::offset_kalman);
+  EXPECT_TRUE(cascade.filter.hindsight);
+  EXPECT_EQ(cascade.correct.method, CorrectMethod::vertices);
+  EXPECT_EQ(cascade.registration.method, RegisterMethod::mask);
+  EXPECT_EQ(cascade.ladder.rung, RungChoice::automatic);
+  EXPECT_TRUE(cascade.skin.fit);
+  EXPECT_TRUE(cascade.mask.advance);
 }
 
 TEST(ShippedRigs, BaselinePredictsAndDrawsOnly) {

@@ -247,10 +247,21 @@ TEST(Registration, GarbageInPlaceOfAMaskMovesNothing) {
 }
 
 TEST(Registration, AJumpBeyondTheLimitIsNotBelieved) {
-  const LandmarkPoints then = flat_hand(), now = moved(then, {0, -40});
-  const Registered result = registered(then, picture_of(now));
-  if (result.found) {
-    for (const glm::vec2& each : result.moved) EXPECT_LT(glm::length(each), kLimit_px);
+  const LandmarkPoints then = flat_hand();
+  for (const float jump_px : {0.6f * kLimit_px, 0.8f * kLimit_px}) {
+    const LandmarkPoints now = moved(then, {0, -jump_px});
+    const Registered result = registered(then, picture_of(now));
+    ASSERT_TRUE(result.found) << jump_px;
+    EXPECT_LT(furthest_off(result, then, now), 3) << jump_px;
+  }
+  // Just beyond the limit, fingers are taken for their neighbours, which moves the hand part of the
+  // way.
+  const LandmarkPoints beyond = moved(then, {0, -1.4f * kLimit_px});
+  EXPECT_LT(furthest_off(registered(then, picture_of(beyond)), then, beyond), 1.4f * kLimit_px);
+  for (const float jump_px : {2 * kLimit_px, 4 * kLimit_px}) {
+    const Registered result = registered(then, picture_of(moved(then, {0, -jump_px})));
+    EXPECT_FALSE(result.found) << jump_px;
+    for (const glm::vec2& each : result.moved) EXPECT_EQ(each, glm::vec2(0)) << jump_px;
   }
 }
 

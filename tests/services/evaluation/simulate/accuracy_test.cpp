@@ -55,6 +55,29 @@ INSTANTIATE_TEST_SUITE_P(Motions, Accuracy,
                            return name;
                          });
 
+/// What each lever of ours is worth: without it, the error of the light grows by this factor.
+struct Lever {
+  const char *name, *motion, *without;
+  double factor;
+};
+class EachLever : public testing::TestWithParam<Lever> {};
+
+TEST_P(EachLever, LowersTheError) {
+  const Lever lever = GetParam();
+  const auto with = run_rig("twin", lever.motion, 1.5),
+             without = run_rig("twin", lever.motion, 1.5, {lever.without});
+  EXPECT_GT(figure(without, "/lit_mm/mean"), lever.factor * figure(with, "/lit_mm/mean"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cascade, EachLever,
+    testing::Values(Lever{"offset_filter", "builtin:wave", "cascade.filter.method=paper", 1.05},
+                    Lever{"hindsight", "builtin:shake", "cascade.filter.hindsight=false", 1.05},
+                    Lever{"vertices", "builtin:open_close", "cascade.correct.method=grid", 1.05},
+                    Lever{"bone_fit", "builtin:open_close", "cascade.skin.fit=false", 1.1},
+                    Lever{"registration", "builtin:shake", "cascade.register.method=none", 1.05}),
+    [](const auto& test) { return std::string(test.param.name); });
+
 TEST(TwoHands, AreNoMoreThanATenthWorseThanOne) {
   const auto both = run_rig("twin", "builtin:two_hands", 2);
   for (const std::string side : {"left", "right"}) {
