@@ -11,7 +11,9 @@
 #include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/evaluation/twin/image_faults.hpp"
+#include "services/evaluation/twin/point_spread.hpp"
 #include "services/evaluation/twin/random.hpp"
+#include "services/evaluation/twin/solid.hpp"
 #include "services/evaluation/twin/surface.hpp"
 #include "services/evaluation/twin/true_hand.hpp"
 
@@ -25,7 +27,8 @@ using renderer::JointFrames;
 using TruthAt = std::function<std::optional<JointFrames>(Side side, std::int64_t time_ns)>;
 
 /// The images of the twin's infrared camera: hands, forearms and sleeves lit by a lamp beside the
-/// lens, with motion blur, vignetting, noise and faults. Reuses its buffers: not thread-safe.
+/// lens, and by the sun, over a background, with motion blur, point spread, vignetting, noise and
+/// faults. Reuses its buffers: not thread-safe.
 class CameraScene {
  public:
   /// Copies the settings and the calibration. `seed` selects the noise and the holes.
@@ -43,7 +46,8 @@ class CameraScene {
   struct Hand {
     const TrueHand* flesh = nullptr;
     Forearm forearm;
-    std::vector<float> holes;  ///< brightness of each vertex; empty without holes
+    std::vector<float> holes;    ///< brightness of each vertex; empty without holes
+    std::vector<float> pattern;  ///< see skin_pattern()
   };
   /// One lit surface, projected at one instant of the exposure.
   struct Shot {
@@ -53,17 +57,24 @@ class CameraScene {
   };
 
   Shot& next_shot(std::size_t& count);
-  void shoot(Shot& shot, std::span<const glm::vec3> positions, std::span<const glm::vec3> normals,
-             glm::vec2 within_pixel);
+  void shoot(Shot& shot, glm::vec2 within_pixel);
   /// Appends the hands at one instant to shots_[0 .. count); returns their bounds in the image.
   renderer::Rect shoot_hands(std::int64_t time_ns, const TruthAt& truth, glm::vec2 within_pixel,
                              std::size_t& count);
+  void shoot_hand(const Hand& hand, const JointFrames& joints, glm::vec2 within_pixel,
+                  std::size_t& count);
+  void shoot_solid(const Solid& solid, const glm::mat4& camera_from_solid, float brightness,
+                   glm::vec2 within_pixel, std::size_t& count);
   renderer::Rect shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count);
+  void draw_shots(std::size_t first, std::size_t last, float front, const renderer::Rect& region);
+  void copy_background(const renderer::Rect& region);
+  void finish_background();
+  void add_bystander();
+  renderer::Rect draw_mirror_image(std::int64_t time_ns, const TruthAt& truth);
   void start_sum(const renderer::Rect& region, const renderer::Rect& done, int instants);
   void expose(std::size_t shots, const renderer::Rect& region);
   void develop(std::uint64_t k, const renderer::Rect& region, int instants,
                renderer::View<std::uint8_t> image) const;
-  float vignette(float x_px, float y_px) const;
   void make_noise(int seed);
 
   config::TwinImage settings_;
@@ -72,14 +83,19 @@ class CameraScene {
   glm::mat4 camera_from_tracker_;
   Random image_noise_;
   std::array<Hand, 2> hands_;
-  Face face_;            ///< empty without a face
+  Solid face_;           ///< empty without a face
+  Solid object_;         ///< that the hands hold, in the axes of the palm joint; empty without it
   bool faulty_ = false;  ///< the frame being drawn has the image faults
 
-  renderer::Image<std::uint8_t> empty_scene_;
+  renderer::Image<float> background_;          ///< before the point spread
+  renderer::Image<std::uint8_t> empty_scene_;  ///< an image without hands; empty before the first
+  PointSpread spread_, table_spread_;
+  renderer::Rect mirrored_;         ///< where mirror_image_ is not 0
+  bool in_mirror_ = false;          ///< shoot() reflects the surface in the table
   std::vector<std::int8_t> noise_;  ///< each row of a frame reads it from a random offset
   std::vector<Shot> shots_;
-  std::vector<glm::vec3> positions_, normals_;
-  renderer::Image<float> inverse_depth_, instant_, sum_;
+  std::vector<glm::vec3> positions_, normals_;  ///< of the surface for shoot(), camera space
+  renderer::Image<float> inverse_depth_, instant_, sum_, mirror_image_;
 };
 
 }  // namespace handcast::twin

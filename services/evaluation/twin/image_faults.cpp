@@ -15,7 +15,6 @@ namespace {
 constexpr int kBlobs = 12;
 constexpr glm::vec3 kHead_m{0.078f, 0.112f, 0.095f};  ///< half the width, height and depth
 constexpr float kFarther_m = 0.22f;                   ///< distance of its centre behind the hands
-constexpr int kRings = 18, kSpokes = 24;
 
 /// Area of each vertex: a third of each adjacent triangle. Vertices behind the wrist have none.
 std::vector<double> vertex_areas_m2(const renderer::HandMesh& hand) {
@@ -67,30 +66,12 @@ std::vector<float> draw_holes(const renderer::HandMesh& hand, double share, cons
   return brightness;
 }
 
-Face make_face(const calib::CameraModel& camera) {
+Solid make_face(const calib::CameraModel& camera) {
   constexpr double kHands_m = 0.73;
   const double z = kHands_m + kFarther_m;
   const glm::vec3 middle((0.74 * camera.width_px - camera.cx_px) / camera.fx_px * z,
                          (0.36 * camera.height_px - camera.cy_px) / camera.fy_px * z, z);
-  Face face;
-  for (int ring = 0; ring <= kRings; ++ring)
-    for (int spoke = 0; spoke < kSpokes; ++spoke) {
-      const double down = std::numbers::pi * ring / kRings,
-                   around = 2 * std::numbers::pi * spoke / kSpokes;
-      const glm::vec3 ball(std::sin(down) * std::cos(around), -std::cos(down),
-                           std::sin(down) * std::sin(around));
-      face.positions.push_back(middle + ball * kHead_m);
-      face.normals.push_back(glm::normalize(ball / kHead_m));
-    }
-  const auto at = [](int ring, int spoke) {
-    return static_cast<std::uint16_t>(ring * kSpokes + spoke % kSpokes);
-  };
-  for (int ring = 0; ring < kRings; ++ring)
-    for (int spoke = 0; spoke < kSpokes; ++spoke) {
-      face.triangles.push_back({at(ring, spoke), at(ring + 1, spoke), at(ring, spoke + 1)});
-      face.triangles.push_back({at(ring, spoke + 1), at(ring + 1, spoke), at(ring + 1, spoke + 1)});
-    }
-  return face;
+  return make_ellipsoid(middle, kHead_m);
 }
 
 glm::vec3 face_sway_m(std::int64_t time_ns) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -10,6 +9,7 @@
 #include "config/sections/twin.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/evaluation/twin/random.hpp"
+#include "services/evaluation/twin/solid.hpp"
 
 /// Faults of the twin's camera images.
 namespace handcast::twin {
@@ -18,14 +18,9 @@ namespace handcast::twin {
 /// `share` of the surface in front of the wrist.
 std::vector<float> draw_holes(const renderer::HandMesh& hand, double share, const Random& random);
 
-/// A head behind the hands, in the upper right of the image. Camera axes, metres.
-struct Face {
-  std::vector<glm::vec3> positions;                     ///< by vertex
-  std::vector<glm::vec3> normals;                       ///< by vertex
-  std::vector<std::array<std::uint16_t, 3>> triangles;  ///< counter-clockwise seen from outside
-};
-/// Makes the head for hands that are 0.73 m from the camera; it is 0.22 m behind them.
-Face make_face(const calib::CameraModel& camera);
+/// Makes a head behind the hands, in the upper right of the image, for hands that are 0.73 m from
+/// the camera; it is 0.22 m behind them. Camera axes, metres.
+Solid make_face(const calib::CameraModel& camera);
 /// Displacement of the head at a time since the epoch: at most 8 mm per axis.
 glm::vec3 face_sway_m(std::int64_t time_ns);
 

@@ -26,6 +26,8 @@ enum class Stream : std::uint64_t {
   flesh,             ///< widths, thickness and roll of the true flesh
   geometry,          ///< errors of the calibration
   frame_time,        ///< time that a frame takes
+  image_texture,     ///< noise of the skin
+  image_clutter,     ///< things behind the hands
 };
 
 /// The splitmix64 step (Steele, Lea, Flood 2014): a bijection that scrambles all 64 bits.
