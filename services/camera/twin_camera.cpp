@@ -32,7 +32,8 @@ class TwinCamera final : public Camera {
     const auto arrival_ns = [&](std::uint64_t k) {
       return epoch_ns_ + twin_->camera_arrival_ns(k);
     };
-    const std::uint64_t k = timing::first_at(next_, now_ns() + drawing_ns_, arrival_ns);
+    std::uint64_t k = timing::first_at(next_, now_ns() + drawing_ns_, arrival_ns);
+    while (twin_->camera_lost(k) && arrival_ns(k) <= deadline.time_ns()) ++k;
     if (arrival_ns(k) > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
       return fail(Errc::timeout, "camera 'twin': no frame before the deadline");
@@ -57,7 +58,7 @@ class TwinCamera final : public Camera {
   void draw(std::uint64_t k, msg::CameraFrame& frame) {
     const std::int64_t begin_ns = now_ns();
     frame.header.frame_id = k;
-    frame.header.origin_ns = epoch_ns_ + twin_->camera_origin_ns(k);
+    frame.header.origin_ns = epoch_ns_ + twin_->camera_stamp_ns(k);
     frame.exposure_ns = exposure_ns_;
     frame.width_px = static_cast<std::uint32_t>(model_.width_px);
     frame.height_px = static_cast<std::uint32_t>(model_.height_px);

@@ -20,6 +20,9 @@ static constexpr DetectorBackend kTwin{
     .sentence = "Models a landmark detector that sees the twin's hand.",
     .open = open_twin,
     .reads = twin::kWorldSettings + config::SettingList{"twin.detector", "twin.image.delivery_ms",
+                                                        "twin.image.lost", "twin.image.burst",
+                                                        "twin.image.clock_drift_ppm",
+                                                        "twin.image.clock_jitter_ms",
                                                         "camera.rate_hz", "camera.exposure_ms"}};
 
 static constexpr DetectorBackend kReplay{.name = "replay",

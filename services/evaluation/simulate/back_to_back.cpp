@@ -9,7 +9,7 @@ void BackToBack::until(std::int64_t now_ns, std::vector<SensorEvent>& events) {
   waiting_.insert(waiting_.end(), events.begin(), events.end());
   while (true) {
     if (!under_way_) {
-      const auto frame = next_frame();
+      const auto frame = next_frame(now_ns);
       const auto begin_ns = std::max(free_ns_, twin_.camera_arrival_ns(frame));
       if (begin_ns > now_ns) return;
       under_way_ = begin(frame, begin_ns);
@@ -21,15 +21,18 @@ void BackToBack::until(std::int64_t now_ns, std::vector<SensorEvent>& events) {
   }
 }
 
-std::uint64_t BackToBack::next_frame() const {
-  auto frame = static_cast<std::uint64_t>(last_frame_ + 1);
-  while (twin_.camera_arrival_ns(frame + 1) <= free_ns_) ++frame;
-  return frame;
+/// The frame of the next run, or one that arrives after `now_ns`.
+std::uint64_t BackToBack::next_frame(std::int64_t now_ns) const {
+  auto next = static_cast<std::uint64_t>(last_frame_ + 1);
+  while (twin_.camera_lost(next) && twin_.camera_arrival_ns(next) <= now_ns) ++next;
+  for (auto frame = next + 1; twin_.camera_arrival_ns(frame) <= free_ns_; ++frame)
+    if (!twin_.camera_lost(frame)) next = frame;
+  return next;
 }
 
 BackToBack::Run BackToBack::begin(std::uint64_t frame, std::int64_t begin_ns) {
   tell(begin_ns);
-  const Exposure exposure{frame, twin_.camera_origin_ns(frame)};
+  const Exposure exposure{frame, twin_.camera_origin_ns(frame), twin_.camera_stamp_ns(frame)};
   const auto detection = detector_->detect(runs_++, exposure);
   if (on_detection_) on_detection_(exposure, detection);
   last_frame_ = static_cast<std::int64_t>(frame);

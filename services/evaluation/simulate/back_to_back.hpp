@@ -29,7 +29,7 @@ class BackToBack {
     std::int64_t done_ns;
     std::optional<msg::Landmarks> landmarks;
   };
-  std::uint64_t next_frame() const;
+  std::uint64_t next_frame(std::int64_t now_ns) const;
   Run begin(std::uint64_t frame, std::int64_t begin_ns);
   void tell(std::int64_t begin_ns);
 

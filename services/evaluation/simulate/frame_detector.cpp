@@ -23,7 +23,7 @@ class TwinDetector final : public FrameDetector {
   explicit TwinDetector(const twin::Twin& twin) : twin_(twin) {}
 
   Detection detect(std::uint64_t run, const Exposure& exposure) override {
-    const auto model = twin_.detect(run, exposure.frame_id, exposure.origin_ns);
+    const auto model = twin_.detect(run, exposure.frame_id, exposure.stamp_ns);
     return {model.landmarks, model.age_ns, 0};
   }
 
@@ -48,15 +48,15 @@ class RealDetector final : public FrameDetector {
   void tell(const msg::HandPoses& poses) override { tracker_.push(poses); }
 
   Detection detect(std::uint64_t run, const Exposure& exposure) override {
-    frame_->header = {exposure.frame_id, exposure.origin_ns,
+    frame_->header = {exposure.frame_id, exposure.stamp_ns,
                       twin_.camera_arrival_ns(exposure.frame_id)};
     const int width = static_cast<int>(frame_->width_px),
               height = static_cast<int>(frame_->height_px);
     twin_.camera_image(exposure.frame_id, {frame_->pixels(), width, height, width});
     const auto begin_ns = now_ns();
-    auto found = detector_->detect(*frame_, tracker_.at(exposure.origin_ns), Deadline::in(1h));
+    auto found = detector_->detect(*frame_, tracker_.at(exposure.stamp_ns), Deadline::in(1h));
     const auto work_ns = now_ns() - begin_ns;
-    const auto model = twin_.detect(run, exposure.frame_id, exposure.origin_ns);
+    const auto model = twin_.detect(run, exposure.frame_id, exposure.stamp_ns);
     if (!found) return {std::nullopt, model.age_ns, work_ns};
     found->header = model.landmarks.header;
     return {*found, model.age_ns, work_ns};

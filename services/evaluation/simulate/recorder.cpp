@@ -47,7 +47,7 @@ void RecordingFeed::keep_images(std::int64_t now_ns) {
     const auto file = numbered_png(folder_ / "camera", image_times_us_.size());
     if (auto written = write_png(file, std::as_const(image_).view()); !written && pictures_)
       pictures_ = std::move(written);
-    image_times_us_.push_back(twin::to_us(newest_->origin_ns));
+    image_times_us_.push_back(twin::to_us(newest_->stamp_ns));
   }
 }
 

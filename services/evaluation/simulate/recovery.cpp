@@ -11,18 +11,19 @@ namespace {
 
 bool spoils(const config::TwinImage& image) {
   return image.dark < 1 || image.saturated > 1 || image.holes > 0 || image.covered > 0 ||
-         image.face;
+         image.face || image.object;
 }
 
 bool lasts_for_good(const config::Fault& fault) {
   return fault.lasting_s >= config::TwinImage().fault.lasting_s;
 }
 
-std::array<config::Fault*, 7> faults_of(config::Twin& twin) {
+std::array<config::Fault*, 10> faults_of(config::Twin& twin) {
   auto& tracker = twin.tracker;
   auto& detector = twin.detector;
-  return {&tracker.frozen, &tracker.lost,          &tracker.wrong_finger, &tracker.swapped,
-          &detector.lost,  &detector.wrong_finger, &twin.image.fault};
+  return {&tracker.frozen,  &tracker.decaying, &tracker.lost,  &tracker.wrong_finger,
+          &tracker.merged,  &tracker.swapped,  &detector.lost, &detector.wrong_finger,
+          &detector.merged, &twin.image.fault};
 }
 
 /// Median error; empty if there was never light.

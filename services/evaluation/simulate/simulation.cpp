@@ -62,7 +62,7 @@ renderer::TimedImage Simulation::newest_image(std::int64_t now_ns) {
   if (newest && (!shown_ || shown_->frame_id != newest->frame_id))
     feed_.image(*newest, image_.view());
   shown_ = newest;
-  return newest ? renderer::TimedImage{image_.view(), newest->origin_ns, newest->frame_id}
+  return newest ? renderer::TimedImage{image_.view(), newest->stamp_ns, newest->frame_id}
                 : renderer::TimedImage{};
 }
 

@@ -29,9 +29,10 @@ class TwinFeed : public SensorFeed {
   }
 
   std::optional<Exposure> newest_exposure(std::int64_t now_ns) override {
-    while (twin_.camera_arrival_ns(next_frame_) <= now_ns) ++next_frame_;
-    if (next_frame_ == 0) return std::nullopt;
-    return Exposure{next_frame_ - 1, twin_.camera_origin_ns(next_frame_ - 1)};
+    for (; twin_.camera_arrival_ns(next_frame_) <= now_ns; ++next_frame_)
+      if (!twin_.camera_lost(next_frame_)) newest_ = next_frame_;
+    if (!newest_) return std::nullopt;
+    return Exposure{*newest_, twin_.camera_origin_ns(*newest_), twin_.camera_stamp_ns(*newest_)};
   }
 
   void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override {
@@ -70,6 +71,7 @@ class TwinFeed : public SensorFeed {
   std::vector<twin::Twin::TrackerSample> pending_;
   std::uint64_t next_sample_ = 0;
   std::uint64_t next_frame_ = 0;
+  std::optional<std::uint64_t> newest_;  ///< frame that has arrived
 };
 
 }  // namespace

@@ -6,13 +6,22 @@
 #include <numbers>
 
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/random.hpp"
 
 namespace handcast::twin {
 namespace {
 
 constexpr int kIndexKnuckle = 5, kMiddleKnuckle = 9;
-constexpr double kNearestOutlier_px = 40, kFarthestOutlier_px = 200;
+/// Landmarks of the fingers that merge, from the PIP to the tip.
+constexpr int kIndexPip = 6, kMiddlePip = 10, kFromPipToTip = 3;
+
+/// Both fingers where the mean of the two is.
+void merge_fingers(msg::HandLandmarks& hand) {
+  for (int i = 0; i < kFromPipToTip; ++i) {
+    auto &index = hand.points[kIndexPip + i], &middle = hand.points[kMiddlePip + i];
+    index.x_px = middle.x_px = (index.x_px + middle.x_px) / 2;
+    index.y_px = middle.y_px = (index.y_px + middle.y_px) / 2;
+  }
+}
 
 }  // namespace
 
@@ -31,17 +40,18 @@ bool DetectorModel::lost(std::uint64_t run, std::int64_t origin_ns) const {
          Random(seed_, Stream::detector_loss).uniform(run) < settings_.dropout;
 }
 
-std::int64_t DetectorModel::stamp_ns(std::int64_t origin_ns) const {
-  return origin_ns + ms_to_ns(settings_.clock_skew_ms);
+std::int64_t DetectorModel::stamp_ns(std::int64_t frame_stamp_ns) const {
+  return frame_stamp_ns + ms_to_ns(settings_.clock_skew_ms);
 }
 
 /// Displacement of one landmark: zero unless it is an outlier.
-glm::dvec2 DetectorModel::outlier_px(std::uint64_t run, std::uint64_t draw) const {
-  const Random random(seed_, Stream::detector_outlier);
-  if (settings_.outliers <= random.uniform(run, 2 * draw)) return glm::dvec2(0);
+glm::dvec2 DetectorModel::outlier_px(const Outliers& outliers, std::uint64_t run,
+                                     std::uint64_t draw) const {
+  const Random random(seed_, outliers.stream);
+  if (outliers.share <= random.uniform(run, 2 * draw)) return glm::dvec2(0);
   const double angle = std::numbers::pi * random.spread(run, 2 * draw + 1);
-  const double far_px = kNearestOutlier_px + (kFarthestOutlier_px - kNearestOutlier_px) *
-                                                 random.uniform(run, 2 * draw + 2);
+  const double far_px = outliers.nearest_px + (outliers.farthest_px - outliers.nearest_px) *
+                                                  random.uniform(run, 2 * draw + 2);
   return {far_px * std::cos(angle), far_px * std::sin(angle)};
 }
 
@@ -49,20 +59,24 @@ msg::HandLandmarks DetectorModel::report(std::uint64_t run, msg::Side side,
                                          const std::array<glm::vec2, msg::kLandmarks>& truth,
                                          std::int64_t origin_ns) const {
   const Random random(seed_, Stream::detector_noise);
+  const Outliers far{settings_.outliers, 40, 200, Stream::detector_outlier},
+      near{settings_.near_outliers, 5, 40, Stream::detector_near};
   msg::HandLandmarks hand;
   hand.side = side;
   hand.presence = 0.95f;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const std::uint64_t draw = (static_cast<std::uint64_t>(side) * msg::kLandmarks + i) * 2;
     const glm::dvec2 noise(random.normal(run, draw), random.normal(run, draw + 1));
-    const glm::dvec2 seen =
-        glm::dvec2(truth[i]) + noise * settings_.noise_px + outlier_px(run, draw);
+    const glm::dvec2 seen = glm::dvec2(truth[i]) + noise * settings_.noise_px +
+                            outlier_px(far, run, draw) + outlier_px(near, run, draw);
     const glm::dvec2 image = camera_.distort(truth[i]);
     const bool inside = image.x > -0.5 && image.y > -0.5 && image.x < camera_.width_px - 0.5 &&
                         image.y < camera_.height_px - 0.5;
     hand.points[i] = {static_cast<float>(seen.x), static_cast<float>(seen.y), inside ? 1.0f : 0.0f};
   }
-  if (settings_.wrong_finger.holds(ns_to_seconds(origin_ns)))
+  const double seconds = ns_to_seconds(origin_ns);
+  if (settings_.merged.holds(seconds)) merge_fingers(hand);
+  if (settings_.wrong_finger.holds(seconds))
     std::swap_ranges(&hand.points[kIndexKnuckle], &hand.points[kMiddleKnuckle],
                      &hand.points[kMiddleKnuckle]);
   return hand;

@@ -7,6 +7,7 @@
 #include "calib/calibration.hpp"
 #include "config/sections/twin.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "services/evaluation/twin/random.hpp"
 
 namespace handcast::twin {
 
@@ -22,8 +23,8 @@ class DetectorModel {
   std::int64_t age_ns(std::uint64_t run) const;
   /// True if run number `run`, on the frame of `origin_ns`, finds no hand.
   bool lost(std::uint64_t run, std::int64_t origin_ns) const;
-  /// The time of a frame of `origin_ns` by the detector's clock.
-  std::int64_t stamp_ns(std::int64_t origin_ns) const;
+  /// The stamp of a detection on a frame with this stamp.
+  std::int64_t stamp_ns(std::int64_t frame_stamp_ns) const;
   /// The landmarks that run number `run` reports if `truth` are the true ones at `origin_ns`
   /// (undistorted camera px). Points outside the image have confidence 0.
   msg::HandLandmarks report(std::uint64_t run, msg::Side side,
@@ -31,7 +32,13 @@ class DetectorModel {
                             std::int64_t origin_ns) const;
 
  private:
-  glm::dvec2 outlier_px(std::uint64_t run, std::uint64_t draw) const;
+  /// Outliers at a range of distances.
+  struct Outliers {
+    double share;  ///< of the landmarks
+    double nearest_px, farthest_px;
+    Stream stream;
+  };
+  glm::dvec2 outlier_px(const Outliers& outliers, std::uint64_t run, std::uint64_t draw) const;
 
   config::TwinDetector settings_;
   int seed_;

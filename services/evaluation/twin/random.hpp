@@ -28,6 +28,17 @@ enum class Stream : std::uint64_t {
   frame_time,        ///< time that a frame takes
   image_texture,     ///< noise of the skin
   image_clutter,     ///< things behind the hands
+  tracker_joints,    ///< where the tracker sees the joints of the person
+  tracker_fingers,   ///< frequencies and phases of the drift of whole fingers
+  tracker_guess,     ///< flexion of hidden fingers
+  tracker_snap,      ///< sudden wrong flexions of a finger
+  tracker_clock,     ///< errors of the tracker's stamps
+  tracker_burst,     ///< samples that arrive with the next one
+  camera_loss,       ///< lost frames
+  camera_burst,      ///< frames that arrive with the next one
+  camera_clock,      ///< errors of the camera's stamps
+  detector_near,     ///< landmarks that are displaced by a little
+  detector_bias,     ///< error of the landmarks that depends on the pose
 };
 
 /// The splitmix64 step (Steele, Lea, Flood 2014): a bijection that scrambles all 64 bits.

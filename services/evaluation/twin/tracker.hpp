@@ -2,23 +2,30 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "calib/calibration.hpp"
 #include "config/sections/twin.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "renderer/hand/maker/hand_shape.hpp"
+#include "services/evaluation/twin/finger_errors.hpp"
 #include "services/evaluation/twin/random.hpp"
+#include "services/evaluation/twin/sensor_clock.hpp"
 
 namespace handcast::twin {
 
 using msg::Side;
 using renderer::JointFrames;
 
+/// The true joints of one hand at a time since the epoch, in tracker space; empty if there is none.
+using JointsAt = std::function<std::optional<JointFrames>(std::int64_t time_ns)>;
+
 /// The twin's model of a hand tracker: times, delays and errors of its samples
-/// (`docs/method.md#twin`). The reported hand is scaled, displaced and rotated by constants; each
-/// joint drifts slowly and has white noise. Pure functions of the settings, the seed and the
-/// arguments.
+/// (`docs/method.md#twin`). The reported hand is that of an earlier time, its fingers are bent
+/// wrongly (FingerErrors), its joints are not where the person's are, and it is scaled, displaced
+/// and rotated by constants; each joint drifts slowly and has white noise. Pure functions of the
+/// settings, the seed and the arguments.
 class TrackerModel {
  public:
   /// Copies its arguments. `seed` selects the random errors; `person` is the shape of the true
@@ -28,18 +35,16 @@ class TrackerModel {
 
   /// True time of sample `k`: periodic with a jitter of 3 % of the period (standard deviation).
   std::int64_t sample_ns(std::uint64_t k) const;
-  /// Time at which sample `k` is available. Samples may overtake each other.
+  /// Time at which sample `k` is available. Samples may overtake each other, or arrive together.
   std::int64_t arrival_ns(std::uint64_t k) const;
   /// Time of sample `k` by the tracker's clock.
-  std::int64_t stamp_ns(std::uint64_t k) const;
+  std::int64_t stamp_ns(std::uint64_t k) const { return clock_.stamp_ns(k, sample_ns(k)); }
   /// True if sample `k` holds no hands.
   bool lost(std::uint64_t k) const;
-  /// The sample whose poses sample `k` reports: `k`, or an earlier one while the tracker is frozen.
-  std::uint64_t shown_sample(std::uint64_t k) const;
   /// False while the tracker reports left hands as right ones and vice versa.
   bool knows_sides(std::uint64_t k) const;
-  /// The pose that sample `k` reports for a hand whose true joints (tracker space) are `truth`.
-  msg::HandPose report(std::uint64_t k, Side side, const JointFrames& truth) const;
+  /// The pose that sample `k` reports of one hand; empty if there is no such hand.
+  std::optional<msg::HandPose> report(std::uint64_t k, Side side, const JointsAt& truth) const;
 
  private:
   /// Constant error of the pose of one hand.
@@ -53,8 +58,19 @@ class TrackerModel {
   };
   using Waves = std::array<Wave, kWaves>;
 
+  /// What drifts on its own: each joint, and then the palm and each finger as a whole.
+  static constexpr int kDrifting = msg::kJoints + kFingers + 1;
+
   Place draw_place(Side side) const;
   void draw_waves(Side side);
+  void draw_joint_offsets();
+  std::int64_t alone_ns(std::uint64_t k) const;
+  std::uint64_t shown_sample(std::uint64_t k) const;
+  double sunk_share(std::uint64_t k) const;
+  std::optional<JointFrames> lagging(std::int64_t time_ns, const JointsAt& truth) const;
+  JointFrames seen(std::uint64_t k, std::uint64_t shown, Side side, const JointFrames& truth) const;
+  msg::HandPose placed(std::uint64_t shown, Side side, const JointFrames& seen) const;
+  glm::dvec3 waves_at(Side side, int drifting, double seconds) const;
   glm::dvec3 drift_m(Side side, int joint, double seconds, double distance_m) const;
   glm::dvec3 noise_m(std::uint64_t k, Side side, int joint) const;
 
@@ -63,9 +79,14 @@ class TrackerModel {
   double fx_px_;
   glm::dmat4 camera_from_tracker_;
   std::array<float, msg::kJoints> radius_m_;
+  std::array<JointFrames, 2> rest_;  ///< the person's hands at rest, by side
+  FingerErrors fingers_;
+  SensorClock clock_;
   std::array<Place, 2> places_;
-  /// The drift by side, joint and camera axis.
-  std::array<std::array<std::array<Waves, 3>, msg::kJoints>, 2> waves_;
+  /// By joint, in the axes of its bone on a left hand, metres.
+  std::array<glm::dvec3, msg::kJoints> joint_offset_m_{};
+  /// The drift by side, what drifts, and camera axis.
+  std::array<std::array<std::array<Waves, 3>, kDrifting>, 2> waves_;
 };
 
 }  // namespace handcast::twin

@@ -6,6 +6,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/evaluation/twin/camera_scene.hpp"
+#include "services/evaluation/twin/camera_times.hpp"
 #include "services/evaluation/twin/detector.hpp"
 #include "services/evaluation/twin/tracker.hpp"
 
@@ -19,9 +20,8 @@ class RigTwin final : public Twin {
   RigTwin(const config::Rig& rig, const TrueGeometry& geometry, std::unique_ptr<Motion> motion,
           std::unique_ptr<TrueHands> hands)
       : geometry_(geometry),
-        camera_rate_hz_(rig.camera.rate_hz),
         exposure_ns_(ms_to_ns(rig.camera.exposure_ms)),
-        delivery_ns_(ms_to_ns(rig.twin.image.delivery_ms)),
+        camera_(rig),
         absent_(rig.twin.hands == config::TwinHands::left    ? std::optional(Side::right)
                 : rig.twin.hands == config::TwinHands::right ? std::optional(Side::left)
                                                              : std::nullopt),
@@ -59,11 +59,11 @@ class RigTwin final : public Twin {
     sample.arrival_ns = tracker_.arrival_ns(k);
     sample.poses.header = {k, tracker_.stamp_ns(k), sample.arrival_ns};
     if (tracker_.lost(k)) return sample;
-    const std::uint64_t shown = tracker_.shown_sample(k);
     for (const Side side : kSides)
-      if (const auto truth = joints(side, tracker_.sample_ns(shown))) {
+      if (const auto pose = tracker_.report(
+              k, side, [&](std::int64_t time_ns) { return joints(side, time_ns); })) {
         auto& hand = sample.poses.hands[sample.poses.count++];
-        hand = tracker_.report(shown, side, *truth);
+        hand = *pose;
         if (!tracker_.knows_sides(k)) hand.side = side == Side::left ? Side::right : Side::left;
       }
     return sample;
@@ -71,23 +71,21 @@ class RigTwin final : public Twin {
 
   std::int64_t tracker_time_ns(std::uint64_t k) const override { return tracker_.sample_ns(k); }
 
-  std::int64_t camera_origin_ns(std::uint64_t k) const override {
-    return seconds_to_ns(static_cast<double>(k) / camera_rate_hz_);
-  }
-
-  std::int64_t camera_arrival_ns(std::uint64_t k) const override {
-    return camera_origin_ns(k) + exposure_ns_ / 2 + delivery_ns_;
-  }
+  std::int64_t camera_origin_ns(std::uint64_t k) const override { return camera_.origin_ns(k); }
+  std::int64_t camera_stamp_ns(std::uint64_t k) const override { return camera_.stamp_ns(k); }
+  bool camera_lost(std::uint64_t k) const override { return camera_.lost(k); }
+  std::int64_t camera_arrival_ns(std::uint64_t k) const override { return camera_.arrival_ns(k); }
 
   void camera_image(std::uint64_t k, renderer::View<std::uint8_t> image) const override {
     const auto truth = [this](Side side, std::int64_t time_ns) { return joints(side, time_ns); };
     scene().draw(k, camera_origin_ns(k), exposure_ns_, truth, image);
   }
 
-  Detection detect(std::uint64_t n, std::uint64_t frame_id, std::int64_t origin_ns) const override {
+  Detection detect(std::uint64_t n, std::uint64_t frame_id, std::int64_t stamp_ns) const override {
+    const std::int64_t origin_ns = camera_.true_ns(frame_id, stamp_ns);
     Detection detection;
     detection.age_ns = detector_.age_ns(n);
-    detection.landmarks.header = {frame_id, detector_.stamp_ns(origin_ns),
+    detection.landmarks.header = {frame_id, detector_.stamp_ns(stamp_ns),
                                   origin_ns + detection.age_ns};
     if (detector_.lost(n, origin_ns)) return detection;
     for (const Side side : kSides) {
@@ -108,8 +106,8 @@ class RigTwin final : public Twin {
   }
 
   TrueGeometry geometry_;
-  double camera_rate_hz_;
-  std::int64_t exposure_ns_, delivery_ns_;
+  std::int64_t exposure_ns_;
+  CameraTimes camera_;
   std::optional<Side> absent_;  ///< the hand of the motion that is left out
   std::unique_ptr<Motion> motion_;
   std::unique_ptr<TrueHands> hands_;

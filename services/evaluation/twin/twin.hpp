@@ -59,7 +59,12 @@ class Twin {
 
   /// The middle of the exposure of camera frame `k`.
   virtual std::int64_t camera_origin_ns(std::uint64_t k) const = 0;
-  /// The time at which camera frame `k` is in memory.
+  /// That time by the camera's clock: the stamp of the frame, and all that the cascade knows.
+  virtual std::int64_t camera_stamp_ns(std::uint64_t k) const = 0;
+  /// True if camera frame `k` never arrives.
+  virtual bool camera_lost(std::uint64_t k) const = 0;
+  /// The time at which camera frame `k` is in memory. Does not decrease with k; several frames may
+  /// arrive together.
   virtual std::int64_t camera_arrival_ns(std::uint64_t k) const = 0;
   /// Draws camera frame `k`. `image` must have the size of the calibration's camera.
   virtual void camera_image(std::uint64_t k, renderer::View<std::uint8_t> image) const = 0;
@@ -67,11 +72,12 @@ class Twin {
   /// The result of one run of the detector.
   struct Detection {
     msg::Landmarks landmarks;  ///< header.origin_ns by the detector's clock; count 0 if lost
-    std::int64_t age_ns = 0;   ///< time from the frame's origin to the result
+    std::int64_t age_ns = 0;   ///< time from the frame's true origin to the result
   };
-  /// The result of run number `n` of the detector on the camera frame of this id and origin.
+  /// The result of run number `n` of the detector on the camera frame of this id and stamp. A frame
+  /// that is not of the twin's camera is taken to show the hand at its stamp.
   virtual Detection detect(std::uint64_t n, std::uint64_t frame_id,
-                           std::int64_t origin_ns) const = 0;
+                           std::int64_t stamp_ns) const = 0;
 };
 
 /// The score of the light of one frame on the true hands (`docs/method.md#metrics`). Lengths are in

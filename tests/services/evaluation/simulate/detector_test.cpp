@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <set>
 
 #include "ipc/base/clock.hpp"
 #include "services/evaluation/simulate/detector_tally.hpp"
@@ -131,6 +132,52 @@ TEST(SimulatedDetector, KnowsTheTrackersSamplesThatHaveArrivedAndNoOthers) {
   }
 }
 
+TEST(SimulatedDetector, LostFramesReachNobody) {
+  const auto world = twin_of(rig_with({"twin.image.lost=0.4", "twin.image.burst=0.2"}));
+  std::vector<Diary::Page> pages;
+  const auto feed = make_twin_feed(*world, std::make_unique<Diary>(pages));
+  std::set<std::uint64_t> shown;
+  for (std::int64_t now_ns = 0; now_ns < 500'000'000; now_ns += 500'000) {
+    feed->until(now_ns);
+    if (const auto newest = feed->newest_exposure(now_ns)) {
+      EXPECT_LE(world->camera_arrival_ns(newest->frame_id), now_ns);
+      shown.insert(newest->frame_id);
+    }
+  }
+  EXPECT_GT(pages.size(), 40u);
+  EXPECT_NEAR(static_cast<double>(shown.size()), 0.5 * 525 * 0.6 * 0.8, 20);
+  for (const auto& page : pages) shown.insert(page.exposure.frame_id);
+  for (const auto frame : shown) EXPECT_FALSE(world->camera_lost(frame)) << frame;
+}
+
+TEST(SimulatedDetector, ACameraThatLosesEveryFrameIsNoEndlessLoop) {
+  const auto world = twin_of(rig_with({"twin.image.lost=1"}));
+  const auto feed = make_twin_feed(*world);
+  for (std::int64_t now_ns = 0; now_ns < 100'000'000; now_ns += 1'000'000)
+    for (const auto& event : feed->until(now_ns))
+      EXPECT_FALSE(std::holds_alternative<msg::Landmarks>(event.message));
+  EXPECT_FALSE(feed->newest_exposure(100'000'000));
+}
+
+TEST(SimulatedDetector, ImagesAndDetectionsCarryTheCamerasStamp) {
+  const auto world =
+      twin_of(rig_with({"twin.image.clock_jitter_ms=0.3", "twin.detector.age_sd_ms=0"}));
+  const auto feed = make_twin_feed(*world);
+  std::size_t detections = 0;
+  for (std::int64_t now_ns = 0; now_ns < 300'000'000; now_ns += 1'000'000) {
+    for (const auto& event : feed->until(now_ns))
+      if (const auto* found = std::get_if<msg::Landmarks>(&event.message)) {
+        EXPECT_EQ(found->header.origin_ns, world->camera_stamp_ns(found->header.frame_id));
+        ++detections;
+      }
+    const auto newest = feed->newest_exposure(now_ns);
+    if (!newest) continue;
+    EXPECT_EQ(newest->origin_ns, world->camera_origin_ns(newest->frame_id));
+    EXPECT_EQ(newest->stamp_ns, world->camera_stamp_ns(newest->frame_id));
+  }
+  EXPECT_GT(detections, 10u);
+}
+
 TEST(SimulatedDetector, TakesTheNewestFrameWhenItIsFree) {
   const auto world = twin_of(rig_with({}));
   std::vector<Diary::Page> pages;
@@ -149,7 +196,7 @@ TEST(DetectorTally, CountsMissedAndInventedHandsAndTheErrorOfTheOthers) {
   const auto model = make_twin_detector(*world);
   DetectorTally tally(*world, calib::reference_rig().camera);
   for (std::uint64_t frame = 0; frame < 200; ++frame) {
-    const Exposure exposure{frame, world->camera_origin_ns(frame)};
+    const Exposure exposure{frame, world->camera_origin_ns(frame), world->camera_stamp_ns(frame)};
     auto detection = model->detect(frame, exposure);
     ASSERT_EQ(detection.landmarks->count, 1u);
     if (frame < 10) detection.landmarks->count = 0;

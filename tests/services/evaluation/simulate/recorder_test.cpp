@@ -25,7 +25,8 @@ class MadeUpFeed : public SensorFeed {
   std::vector<SensorEvent> until(std::int64_t) override { return std::exchange(events, {}); }
   std::optional<Exposure> newest_exposure(std::int64_t now_ns) override {
     if (now_ns < kFrame_ns) return std::nullopt;
-    return Exposure{static_cast<std::uint64_t>(now_ns / kFrame_ns), now_ns / kFrame_ns * kFrame_ns};
+    const auto origin_ns = now_ns / kFrame_ns * kFrame_ns;
+    return Exposure{static_cast<std::uint64_t>(now_ns / kFrame_ns), origin_ns, origin_ns};
   }
   void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override {
     ++rendered;

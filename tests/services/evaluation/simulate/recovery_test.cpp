@@ -77,6 +77,30 @@ TEST(Recovery, OfARigIsJudgedBesideTheSameRigWithoutTheFault) {
   EXPECT_GE(fault["recovery_detections"].get<int>(), 1);
 }
 
+TEST(Recovery, OfFaultsThatOverlapIsCountedFromTheFirstBeginToTheLastEnd) {
+  config::Twin twin;
+  twin.tracker.decaying = {1.0, 0.6};
+  twin.detector.merged = {1.2, 0.9};
+  twin.tracker.merged = {1.1, 0.2};
+  const auto time = fault_time(twin);
+  ASSERT_TRUE(time);
+  EXPECT_DOUBLE_EQ(time->begins_s, 1.0);
+  EXPECT_DOUBLE_EQ(time->ends_s, 2.1);
+  const auto clean = without_faults(twin);
+  EXPECT_EQ(clean.tracker.decaying.lasting_s, 0);
+  EXPECT_EQ(clean.tracker.merged.lasting_s, 0);
+  EXPECT_EQ(clean.detector.merged.lasting_s, 0);
+}
+
+TEST(Recovery, AnObjectInTheHandForAWhileIsAFault) {
+  config::Twin twin;
+  twin.image.object = true;
+  EXPECT_FALSE(fault_time(twin)) << "it is held for the whole run";
+  twin.image.fault = {1, 0.5};
+  ASSERT_TRUE(fault_time(twin));
+  EXPECT_DOUBLE_EQ(fault_time(twin)->ends_s, 1.5);
+}
+
 TEST(Recovery, WhatStaysBadIsNeverGoodAgain) {
   const auto bad = moments_of([](double t) { return bad_until(t, 9); });
   const auto recovery = recovery_of(bad, clean(), kFault);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "ipc/base/clock.hpp"
+#include "services/evaluation/twin/finger_pose.hpp"
 #include "tests/services/evaluation/twin/world.hpp"
 
 /// Each fault has its effect between its times, and none before and after.
@@ -99,6 +100,61 @@ TEST(TrackerFault, LostItGivesNoSamples) {
                    });
 }
 
+TEST(TrackerFault, DecayingTheWristStaysAndTheFingersSinkTowardsTheRestPose) {
+  auto rig = perfect_rig("builtin:open_close");
+  rig.twin.tracker.decaying = {.at_s = 1, .lasting_s = 0.6};
+  const auto twin = twin_of(rig);
+  const auto reported = [&](std::uint64_t k) {
+    return renderer::frames_of(*twin->tracker_sample(k).poses.find(Side::left));
+  };
+  const auto first = [&](double seconds) {
+    std::uint64_t k = 0;
+    while (ns_to_seconds(twin->tracker_time_ns(k)) < seconds) ++k;
+    return k;
+  };
+  const auto last = reported(first(1) - 1);
+  const double rest = flexion_of(rest_pose(Side::left, renderer::HandShape::mean()))[2][1];
+  const double far = flexion_of(last)[2][1] - rest;
+  ASSERT_GT(far, 0.5) << "the hand is half closed";
+  for (const double later_s : {0.2, 0.4}) {
+    const auto now = reported(first(1 + later_s));
+    EXPECT_EQ(place(now[1]), place(last[1])) << "the wrist is frozen";
+    EXPECT_NEAR((flexion_of(now)[2][1] - rest) / far, std::exp2(-later_s / 0.2), 0.06);
+    EXPECT_NEAR(glm::distance(place(now[13]), place(now[14])),
+                glm::distance(place(last[13]), place(last[14])), 1e-5);
+  }
+  const auto after = first(1.61);
+  EXPECT_LT(glm::distance(place(reported(after)[15]),
+                          place((*twin->joints(Side::left, twin->tracker_time_ns(after)))[15])),
+            1e-5);
+}
+
+TEST(TrackerFault, MergedIndexAndMiddleAreOneFingerFromThePipOn) {
+  compare_trackers({.drift_px = 0, .noise_mm = 0, .merged = kAWhile},
+                   [](const msg::HandPoses&, const msg::HandPoses& now, bool during) {
+                     for (int i = 0; i < 2; ++i) {
+                       const auto frames = renderer::frames_of(now.hands[i]);
+                       for (const int j : {8, 9, 10}) {
+                         const auto apart_m = glm::distance(place(frames[j]), place(frames[j + 5]));
+                         EXPECT_EQ(apart_m < 1e-6, during) << j;
+                       }
+                       EXPECT_GT(glm::distance(place(frames[7]), place(frames[12])), 0.01);
+                     }
+                   });
+}
+
+TEST(TrackerFault, TwoAtOnceBothHold) {
+  compare_trackers({.frozen = {.at_s = 1.05, .lasting_s = 0.1}, .wrong_finger = kAWhile},
+                   [tip = std::array<float, 3>{}](const msg::HandPoses& usual,
+                                                  const msg::HandPoses& now, bool during) mutable {
+                     const double seconds = ns_to_seconds(now.header.origin_ns);
+                     const bool frozen = seconds >= 1.05 && seconds < 1.15;
+                     const auto seen = now.hands[0].joints[during ? 15 : 10].position_m;
+                     if (!frozen) tip = usual.hands[0].joints[10].position_m;
+                     EXPECT_EQ(seen, tip) << seconds;
+                   });
+}
+
 TEST(TrackerFault, WithTheWrongFingerIndexAndMiddleAreExchanged) {
   compare_trackers({.wrong_finger = kAWhile}, [](const msg::HandPoses& usual,
                                                  const msg::HandPoses& now, bool during) {
@@ -180,6 +236,39 @@ TEST(DetectorFault, OutliersAreTheAskedShareAndFarOff) {
           }
       });
   EXPECT_NEAR(thrown / double(all), 0.1, 0.01);
+}
+
+TEST(DetectorFault, NearOutliersAreTheAskedShareAndNear) {
+  int thrown = 0, all = 0;
+  compare_detectors(
+      {.near_outliers = 0.1}, [&](const msg::Landmarks& usual, const msg::Landmarks& now, bool) {
+        for (int i = 0; i < 2; ++i)
+          for (int point = 0; point < msg::kLandmarks; ++point, ++all) {
+            const auto &a = usual.hands[i].points[point], &b = now.hands[i].points[point];
+            const float off_px = std::hypot(a.x_px - b.x_px, a.y_px - b.y_px);
+            if (off_px == 0) continue;
+            ++thrown;
+            EXPECT_GT(off_px, 4.9f);
+            EXPECT_LT(off_px, 40.1f);
+          }
+      });
+  EXPECT_NEAR(thrown / double(all), 0.1, 0.01);
+}
+
+TEST(DetectorFault, MergedIndexAndMiddleAreInOnePlace) {
+  compare_detectors({.merged = kAWhile}, [](const msg::Landmarks& usual, const msg::Landmarks& now,
+                                            bool during) {
+    for (int i = 0; i < 2; ++i)
+      for (const int point : {6, 7, 8}) {
+        const auto &index = now.hands[i].points[point], &middle = now.hands[i].points[point + 4];
+        const float mean_px =
+            (usual.hands[i].points[point].x_px + usual.hands[i].points[point + 4].x_px) / 2;
+        EXPECT_EQ(index.x_px == middle.x_px && index.y_px == middle.y_px, during) << point;
+        if (during) {
+          EXPECT_FLOAT_EQ(index.x_px, mean_px);
+        }
+      }
+  });
 }
 
 // --- images ---
