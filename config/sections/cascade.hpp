@@ -126,12 +126,21 @@ constexpr std::array<std::string_view, 3> words_of(CorrectMethod) {
   return {"none", "grid", "vertices"};
 }
 
+/// The landmarks that control the grid.
+enum class GridPoints {
+  all,       ///< all 21
+  released,  ///< the 16 of the program that the paper's authors released
+};
+constexpr std::array<std::string_view, 2> words_of(GridPoints) { return {"all", "released"}; }
+
 /// [cascade.correct]
 struct Correct {
   CorrectMethod method = CorrectMethod::vertices;
   double alpha = 1.0;
   int grid_columns = 21;
   int grid_rows = 21;
+  GridPoints grid_points = GridPoints::all;
+  int grid_hands = 2;
   double bone_short_px = 8;
   double bone_long_px = 24;
 };
@@ -149,6 +158,15 @@ void describe(Visitor& visitor, Correct& correct) {
                 "grid: number of nodes across the image.");
   visitor.field("grid_rows", correct.grid_rows, between(3, 201),
                 "grid: number of nodes down the image.");
+  visitor.field(
+      "grid_points", correct.grid_points,
+      "grid: the landmarks that control it. released: 16, as in the program that the "
+      "paper's authors released: not the thumb's root, nor the middle joints of the other "
+      "fingers.");
+  visitor.field(
+      "grid_hands", correct.grid_hands, between(1, 2),
+      "grid: the drawing is corrected while there are at most so many hands; 1 as in that "
+      "program.");
   visitor.field(
       "bone_short_px", correct.bone_short_px, between(0, 200, "px"),
       "vertices: a bone whose image is shorter than this is moved by moving least squares.");

@@ -227,16 +227,31 @@ int Pipeline::correct() {
   return foldovers;
 }
 
+/// The landmarks that control the grid.
+static std::span<const int> control_points(config::GridPoints points) {
+  static constexpr std::array<int, kLandmarks> kAll{0,  1,  2,  3,  4,  5,  6,  7,  8,  9, 10,
+                                                    11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
+  // Paired with the Leap joints 1, 5, 11, 19, 27, 35, 9, 17, 25, 33, 41, 7, 15, 23, 31 and 39
+  // there.
+  static constexpr std::array<int, 16> kReleased{0,  2,  5,  9, 13, 17, 4,  8,
+                                                 12, 16, 20, 3, 7,  11, 15, 19};
+  if (points == config::GridPoints::all) return kAll;
+  return kReleased;
+}
+
 /// One grid for all hands. A hand without landmarks adds control points that do not move.
 int Pipeline::correct_by_grid() {
-  if (std::ranges::none_of(
+  if (static_cast<int>(hands_.size()) > settings_.correct.grid_hands ||
+      std::ranges::none_of(
           hands_, [](const HandInFrame& each) { return each.frame.corrected.has_landmarks; }))
     return 0;
   std::vector<glm::vec2> p, q;
   for (const auto& [hand, frame] : hands_) {
     const LandmarkPoints from = hand->from_px(frame), to = hand->to_px(frame);
-    p.insert(p.end(), from.begin(), from.end());
-    q.insert(q.end(), to.begin(), to.end());
+    for (const int i : control_points(settings_.correct.grid_points)) {
+      p.push_back(from[i]);
+      q.push_back(to[i]);
+    }
   }
   grid_ = make_warp_grid(settings_.correct, screen_,
                          MovingLeastSquares(p, q, static_cast<float>(settings_.correct.alpha)));

@@ -108,6 +108,74 @@ TEST(Correction, AGridThatFoldsIsCounted) {
   EXPECT_GT(pipeline->render(140 * kMs, 144 * kMs, {}).foldovers, 0);
 }
 
+/// How far the light of the grid's correction is from the drawing, by hand: the mean distance of
+/// the landings from those without a correction, px. `displaced`: the landmark that the detector
+/// sees 12 px aside; -1: all.
+std::vector<float> moved_by_grid(config::Cascade settings, std::vector<Side> sides, int displaced) {
+  const auto calibration = rig_above_hand();
+  const auto landings = [&](config::CorrectMethod method) {
+    settings.correct.method = method;
+    const auto pipeline = make_pipeline(settings);
+    std::vector<msg::HandPose> hands;
+    for (const Side side : sides)
+      hands.push_back(pose_of(side, {side == Side::left ? -0.09f : 0.09f, 0, 0}));
+    feed_still(*pipeline, hands);
+    msg::Landmarks seen;
+    for (const auto& hand : hands)
+      seen.hands[seen.count++] =
+          landmarks_of(calibration, 80 * kMs, hand, displaced < 0 ? glm::vec2(12, 0) : glm::vec2(0))
+              .hands[0];
+    if (displaced >= 0) seen.hands[0].points[displaced].x_px += 12;
+    seen.header.origin_ns = 80 * kMs;
+    pipeline->push(100 * kMs, seen);
+    std::vector<std::vector<glm::vec2>> places;
+    for (const auto& hand : pipeline->render(104 * kMs, 108 * kMs, {}).hands)
+      places.emplace_back(hand.landings.begin(), hand.landings.end());
+    return places;
+  };
+  const auto drawn = landings(config::CorrectMethod::none),
+             corrected = landings(config::CorrectMethod::grid);
+  std::vector<float> moved;
+  for (std::size_t h = 0; h < drawn.size(); ++h) {
+    moved.push_back(0);
+    for (std::size_t v = 0; v < drawn[h].size(); ++v)
+      moved[h] += glm::distance(drawn[h][v], corrected[h][v]) / static_cast<float>(drawn[h].size());
+  }
+  return moved;
+}
+
+/// The paper's correction alone.
+config::Cascade paper_grid() {
+  auto settings = cascade(config::CorrectMethod::grid, config::FillMethod::none);
+  settings.filter.method = config::FilterMethod::paper;
+  settings.ladder.rung = config::RungChoice::landmarks;
+  return settings;
+}
+
+TEST(PapersGrid, TheReleasedProgramTakes16LandmarksAndLeavesOutMiddleJoints) {
+  auto settings = paper_grid();
+  constexpr int kMiddleJoint = 6, kTip = 8;
+  const auto moved_by = [&](config::GridPoints points, int displaced) {
+    settings.correct.grid_points = points;
+    return moved_by_grid(settings, {Side::left}, displaced)[0];
+  };
+  EXPECT_GT(moved_by(config::GridPoints::all, kTip), 0.05f);
+  EXPECT_GT(moved_by(config::GridPoints::all, kMiddleJoint), 0.05f);
+  EXPECT_GT(moved_by(config::GridPoints::released, kTip), 0.05f);
+  EXPECT_LT(moved_by(config::GridPoints::released, kMiddleJoint), 0.01f);
+}
+
+TEST(PapersGrid, TheReleasedProgramDoesNotCorrectTwoHands) {
+  auto settings = paper_grid();
+  settings.correct.grid_hands = 1;
+  EXPECT_GT(moved_by_grid(settings, {Side::left}, -1)[0], 1);
+  for (const float each : moved_by_grid(settings, {Side::left, Side::right}, -1))
+    EXPECT_EQ(each, 0);
+  settings.correct.grid_hands = 2;
+  for (const float each : moved_by_grid(settings, {Side::left, Side::right}, -1))
+    EXPECT_GT(each, 1);
+}
+
 /// All pixels and landings of a moving hand with noisy sensors, for a quarter of a second.
 std::vector<std::uint32_t> everything(const config::Cascade& settings) {
   const auto calibration = rig_above_hand();

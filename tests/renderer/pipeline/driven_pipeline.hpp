@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 
@@ -28,7 +27,7 @@ inline config::Cascade cascade(config::CorrectMethod correct, config::FillMethod
 }
 
 /// Adds tracker samples of still hands up to `until_ns`.
-inline void feed_still(Pipeline& pipeline, std::initializer_list<msg::HandPose> hands,
+inline void feed_still(Pipeline& pipeline, const std::vector<msg::HandPose>& hands,
                        std::int64_t until_ns = 100 * kMs) {
   for (std::int64_t t = 0; t <= until_ns; t += 9 * kMs)
     pipeline.push(t + 9 * kMs, poses_of(t, hands));

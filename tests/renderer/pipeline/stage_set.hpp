@@ -34,7 +34,7 @@ inline msg::HandPose pose_of(Side side, glm::vec3 moved_m = {}) {
   return pose_of(side, hands[static_cast<std::size_t>(side)].rest, moved_m);
 }
 
-inline msg::HandPoses poses_of(std::int64_t origin_ns, std::initializer_list<msg::HandPose> hands) {
+inline msg::HandPoses poses_of(std::int64_t origin_ns, const std::vector<msg::HandPose>& hands) {
   msg::HandPoses poses;
   poses.header.origin_ns = origin_ns;
   for (const auto& hand : hands) poses.hands[poses.count++] = hand;
