@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/twin/true_geometry.hpp"
 
-#include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -19,20 +18,17 @@ glm::dvec3 direction(const Random& random, std::uint64_t draw) {
       glm::dvec3(random.normal(draw), random.normal(draw + 1), random.normal(draw + 2)));
 }
 
+/// The map from the projective basis (three axes and their sum) to four points.
+glm::dmat3 from_basis(const std::array<glm::dvec2, 4>& points) {
+  const glm::dmat3 axes(glm::dvec3(points[0], 1), glm::dvec3(points[1], 1),
+                        glm::dvec3(points[2], 1));
+  const glm::dvec3 scale = glm::inverse(axes) * glm::dvec3(points[3], 1);
+  return {axes[0] * scale.x, axes[1] * scale.y, axes[2] * scale.z};
+}
+
 /// The homography that maps each `from` to its `to`.
 glm::dmat3 homography(const std::array<glm::dvec2, 4>& from, const std::array<glm::dvec2, 4>& to) {
-  Eigen::Matrix<double, 8, 8> left = Eigen::Matrix<double, 8, 8>::Zero();
-  Eigen::Matrix<double, 8, 1> right;
-  for (int i = 0; i < 4; ++i) {
-    const auto [x, y] = std::pair(from[i].x, from[i].y);
-    const auto [u, v] = std::pair(to[i].x, to[i].y);
-    left.row(2 * i) << x, y, 1, 0, 0, 0, -u * x, -u * y;
-    left.row(2 * i + 1) << 0, 0, 0, x, y, 1, -v * x, -v * y;
-    right[2 * i] = u;
-    right[2 * i + 1] = v;
-  }
-  const Eigen::Matrix<double, 8, 1> h = left.partialPivLu().solve(right);
-  return {h[0], h[3], h[6], h[1], h[4], h[7], h[2], h[5], 1};
+  return from_basis(to) * glm::inverse(from_basis(from));
 }
 
 /// Moves the corners of the projector's image by `rms_px` per corner.
