@@ -90,7 +90,7 @@ class RigTwin final : public Twin {
         hands_(std::move(parts.models), parts.made_by_handcast,
                {moves(Side::left), moves(Side::right)}, motion_->shape()),
         tracker_(rig.twin.tracker, rig.twin.seed, calibration, motion_->shape()),
-        detector_(rig.twin.detector, rig.twin.seed, calibration.camera),
+        detector_(rig.twin.detector, rig.twin.seed, calibration.camera, motion_->shape()),
         image_(rig.twin.image),
         seed_(rig.twin.seed) {}
 
@@ -150,12 +150,18 @@ class RigTwin final : public Twin {
       const auto truth = landmarks(side, origin_ns);
       if (truth)
         detection.landmarks.hands[detection.landmarks.count++] =
-            detector_.report(n, side, *truth, origin_ns);
+            detector_.report(n, side, *truth, in_camera(*joints(side, origin_ns)), origin_ns);
     }
     return detection;
   }
 
  private:
+  JointFrames in_camera(JointFrames frames) const {
+    for (auto& frame : frames)
+      frame = glm::mat4(calibration_.camera_from_tracker * glm::dmat4(frame));
+    return frames;
+  }
+
   bool moves(Side side) const { return motion_->at(side, 0).has_value(); }
 
   CameraScene& scene() const {
