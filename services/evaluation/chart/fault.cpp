@@ -19,13 +19,17 @@ struct Kind {
 constexpr std::array kKinds{
     Kind{"twin.tracker.lost_s", "tracker silent, {:g} ms", true, 1e3},
     Kind{"twin.tracker.frozen_s", "tracker frozen, {:g} ms", true, 1e3},
+    Kind{"twin.tracker.decaying_s", "tracker sinks to rest, {:g} ms", true, 1e3},
     Kind{"twin.tracker.wrong_finger_s", "tracker: wrong finger, {:g} ms", true, 1e3},
+    Kind{"twin.tracker.merged_s", "tracker: fingers merged, {:g} ms", true, 1e3},
     Kind{"twin.tracker.swapped_s", "tracker: hands swapped, {:g} ms", true, 1e3},
     Kind{"twin.detector.lost_s", "landmarks lost, {:g} ms", true, 1e3},
     Kind{"twin.detector.wrong_finger_s", "landmarks: wrong finger, {:g} ms", true, 1e3},
+    Kind{"twin.detector.merged_s", "landmarks: fingers merged, {:g} ms", true, 1e3},
     Kind{"twin.tracker.clock_skew_ms", "tracker clock {:+g} ms"},
     Kind{"twin.detector.clock_skew_ms", "detector clock {:+g} ms"},
     Kind{"twin.detector.outliers", "outliers, {:g} % of the landmarks", false, 100},
+    Kind{"twin.detector.near_outliers", "outliers of 5-40 px, {:g} %", false, 100},
     Kind{"twin.image.dark", "image dark: {:g} % of the light", false, 100},
     Kind{"twin.image.saturated", "image saturated: {:g} times the light"},
     Kind{"twin.image.holes", "image with holes, {:g} % of the hand", false, 100},
@@ -33,20 +37,24 @@ constexpr std::array kKinds{
     Kind{"twin.image.face", "a face behind the hands"},
 };
 
-bool is_beside(const std::string& path) { return path.ends_with("_at_s"); }
-
-/// The kind of the failure in the axes of a run; null if there is none.
-const Kind* kind_of(const Run& run) {
+/// The kinds of the failures in the axes of a run, in the order of the paths.
+std::vector<const Kind*> kinds_of(const Run& run) {
+  std::vector<const Kind*> kinds;
   for (const auto& path : run.turned())
-    if (const auto kind = std::ranges::find(kKinds, path, &Kind::setting);
-        kind != kKinds.end() && !is_beside(path))
-      return &*kind;
-  return nullptr;
+    if (const auto kind = std::ranges::find(kKinds, path, &Kind::setting); kind != kKinds.end())
+      kinds.push_back(&*kind);
+  return kinds;
 }
 
-std::string name_of(const Run& run, const Kind& kind) {
-  const double value = number_of(run.setting(std::string(kind.setting))).value_or(0) * kind.scale;
-  return fmt::format(fmt::runtime(kind.name), value);
+/// "landmarks lost, 600 ms + tracker frozen, 600 ms".
+std::string name_of(const Run& run, const std::vector<const Kind*>& kinds) {
+  std::string name;
+  for (const auto* kind : kinds) {
+    const double value =
+        number_of(run.setting(std::string(kind->setting))).value_or(0) * kind->scale;
+    name += (name.empty() ? "" : " + ") + fmt::format(fmt::runtime(kind->name), value);
+  }
+  return name;
 }
 
 std::string motion_of(const Run& run) {
@@ -92,19 +100,17 @@ std::vector<Failure> failures_of(const Results& results) {
   std::vector<Failure> failures;
   std::vector<Runs> runs_of;
   for (const auto* run : laboratory(results)) {
-    const auto* kind = kind_of(*run);
-    if (kind && kind->setting == "twin.image.holes" &&
-        number_of(run->setting("twin.image.holes")) == 0)
-      continue;
-    if (!kind && (!run->turned().empty() || !run->setting("twin.speed").empty())) continue;
-    const auto name = kind ? name_of(*run, *kind) : motion_of(*run);
+    const auto kinds = kinds_of(*run);
+    if (number_of(run->setting("twin.image.holes")) == 0) continue;
+    if (kinds.empty() && (!run->turned().empty() || !run->setting("twin.speed").empty())) continue;
+    const auto name = kinds.empty() ? motion_of(*run) : name_of(*run, kinds);
     const auto found = std::ranges::find(failures, name, &Failure::name);
     const auto at = static_cast<std::size_t>(found - failures.begin());
     if (found == failures.end()) {
       failures.push_back({name,
-                          !kind          ? FailureKind::motion
-                          : kind->passes ? FailureKind::passing
-                                         : FailureKind::lasting,
+                          kinds.empty()           ? FailureKind::motion
+                          : kinds.front()->passes ? FailureKind::passing
+                                                  : FailureKind::lasting,
                           {}});
       runs_of.emplace_back();
     }
@@ -115,6 +121,12 @@ std::vector<Failure> failures_of(const Results& results) {
       failures[i].damage[variant] = damage_of(of_variant(runs_of[i], variant));
   std::ranges::stable_sort(failures, {}, &Failure::kind);
   return failures;
+}
+
+bool recovers_faster(const Damage& damage, const Damage& than) {
+  if (damage.never_good > 0 || !damage.recovery_ms) return false;
+  if (than.never_good > 0) return true;
+  return than.recovery_ms && *damage.recovery_ms + kSameRecovery_ms < *than.recovery_ms;
 }
 
 }  // namespace handcast::chart

@@ -36,7 +36,12 @@ struct Failure {
   std::map<std::string, Damage> damage;     ///< by variant
 };
 
-/// The failures of the results, ordered by kind.
+/// Recoveries that differ by no more are the same: two refreshes of the projector.
+inline constexpr double kSameRecovery_ms = 2;
+/// True if one method recovers from a failure and another one does not, or later.
+bool recovers_faster(const Damage& damage, const Damage& than);
+
+/// The failures of the results, ordered by kind. Several faults at once are one failure.
 std::vector<Failure> failures_of(const Results& results);
 
 }  // namespace handcast::chart

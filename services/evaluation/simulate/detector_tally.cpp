@@ -2,6 +2,7 @@
 #include "services/evaluation/simulate/detector_tally.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/clock.hpp"
@@ -41,10 +42,14 @@ void DetectorTally::add_hand(msg::Side side, std::int64_t time_ns,
   ++hands_;
   missed_ += found == nullptr;
   if (!found) return;
+  ErrorMemory::Errors errors;
+  errors.fill(glm::vec2(std::numeric_limits<float>::quiet_NaN()));
   for (std::size_t i = 0; i < truth->size(); ++i)
-    if (in_image((*truth)[i]))
-      error_px_.add(
-          glm::distance(glm::vec2(found->points[i].x_px, found->points[i].y_px), (*truth)[i]));
+    if (in_image((*truth)[i])) {
+      errors[i] = glm::vec2(found->points[i].x_px, found->points[i].y_px) - (*truth)[i];
+      error_px_.add(glm::length(errors[i]));
+    }
+  memory_.add(side, time_ns, errors);
 }
 
 bool DetectorTally::in_image(glm::vec2 undistorted_px) const {
@@ -61,7 +66,8 @@ nlohmann::json DetectorTally::to_json() const {
           {"error_px",
            {{"mean", error_px_.mean()},
             {"p50", error_px_.percentile(0.5)},
-            {"p95", error_px_.percentile(0.95)}}},
+            {"p95", error_px_.percentile(0.95)},
+            {"autocorrelation", memory_.to_json()}}},
           {"ms_p50", work_ms_.percentile(0.5)}};
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
+#include "services/evaluation/simulate/error_memory.hpp"
 #include "services/evaluation/simulate/frame_detector.hpp"
 
 namespace handcast::simulate {
@@ -20,13 +21,15 @@ class DetectorTally {
   /// Adds the detection of one frame.
   void add(const Exposure& exposure, const Detection& detection);
 
-  /// {"runs", "hands", "missed", "invented", "error_px": {mean, p50, p95}, "ms_p50"}; a value that
-  /// was not measured is null.
+  /// {"runs", "hands", "missed", "invented", "error_px": {mean, p50, p95, autocorrelation},
+  /// "ms_p50"}; a value that was not measured is null.
   ///
   /// - hands: true hands with at least half of their landmarks in the image
   /// - missed: those of them that were not found
   /// - invented: hands that were found although there is no hand of that side
-  /// - error_px: error of the landmarks in the image, of the hands that were found
+  /// - error_px: error of the landmarks in the image, of the hands that were found;
+  /// autocorrelation:
+  ///   ErrorMemory
   /// - ms_p50: median time of a run on this machine
   nlohmann::json to_json() const;
 
@@ -51,6 +54,7 @@ class DetectorTally {
   calib::CameraModel camera_;
   std::int64_t runs_ = 0, hands_ = 0, missed_ = 0, invented_ = 0;
   Histogram error_px_, work_ms_;
+  ErrorMemory memory_;
 };
 
 }  // namespace handcast::simulate

@@ -26,8 +26,11 @@ void merge_fingers(msg::HandLandmarks& hand) {
 }  // namespace
 
 DetectorModel::DetectorModel(const config::TwinDetector& settings, int seed,
-                             const calib::CameraModel& camera)
-    : settings_(settings), seed_(seed), camera_(camera) {}
+                             const calib::CameraModel& camera, const renderer::HandShape& person)
+    : settings_(settings),
+      seed_(seed),
+      camera_(camera),
+      bias_(settings, seed, renderer::joint_radii_m(person)) {}
 
 std::int64_t DetectorModel::age_ns(std::uint64_t run) const {
   const double age_ms =
@@ -57,17 +60,19 @@ glm::dvec2 DetectorModel::outlier_px(const Outliers& outliers, std::uint64_t run
 
 msg::HandLandmarks DetectorModel::report(std::uint64_t run, msg::Side side,
                                          const std::array<glm::vec2, msg::kLandmarks>& truth,
+                                         const renderer::JointFrames& camera_frames,
                                          std::int64_t origin_ns) const {
   const Random random(seed_, Stream::detector_noise);
   const Outliers far{settings_.outliers, 40, 200, Stream::detector_outlier},
       near{settings_.near_outliers, 5, 40, Stream::detector_near};
+  const auto bias_px = bias_.at(side, camera_frames, truth);
   msg::HandLandmarks hand;
   hand.side = side;
   hand.presence = 0.95f;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const std::uint64_t draw = (static_cast<std::uint64_t>(side) * msg::kLandmarks + i) * 2;
     const glm::dvec2 noise(random.normal(run, draw), random.normal(run, draw + 1));
-    const glm::dvec2 seen = glm::dvec2(truth[i]) + noise * settings_.noise_px +
+    const glm::dvec2 seen = glm::dvec2(truth[i]) + bias_px[i] + noise * settings_.noise_px +
                             outlier_px(far, run, draw) + outlier_px(near, run, draw);
     const glm::dvec2 image = camera_.distort(truth[i]);
     const bool inside = image.x > -0.5 && image.y > -0.5 && image.x < camera_.width_px - 0.5 &&

@@ -7,17 +7,22 @@
 #include "calib/calibration.hpp"
 #include "config/sections/twin.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "renderer/hand/maker/hand_shape.hpp"
+#include "services/evaluation/twin/landmark_bias.hpp"
 #include "services/evaluation/twin/random.hpp"
 
 namespace handcast::twin {
 
-/// The twin's model of a landmark detector: the true landmarks with white noise and outliers, late
-/// and sometimes missing. It has no constant bias: the joint convention of a real detector is
-/// assumed to be corrected. Pure functions of the settings, the seed and the arguments.
+/// The twin's model of a landmark detector: the true landmarks with an error that depends on the
+/// pose (LandmarkBias), white noise and outliers, late and sometimes missing. The joint convention
+/// of a real detector is assumed to be corrected. Pure functions of the settings, the seed and the
+/// arguments.
 class DetectorModel {
  public:
-  /// Copies its arguments. `seed` selects the random errors.
-  DetectorModel(const config::TwinDetector& settings, int seed, const calib::CameraModel& camera);
+  /// Copies its arguments. `seed` selects the random errors; `person` is the shape of the true
+  /// hands.
+  DetectorModel(const config::TwinDetector& settings, int seed, const calib::CameraModel& camera,
+                const renderer::HandShape& person);
 
   /// Time from the middle of the exposure to the result of run number `run`.
   std::int64_t age_ns(std::uint64_t run) const;
@@ -26,9 +31,11 @@ class DetectorModel {
   /// The stamp of a detection on a frame with this stamp.
   std::int64_t stamp_ns(std::int64_t frame_stamp_ns) const;
   /// The landmarks that run number `run` reports if `truth` are the true ones at `origin_ns`
-  /// (undistorted camera px). Points outside the image have confidence 0.
+  /// (undistorted camera px), of a hand whose true joints are `camera_frames` (camera space).
+  /// Points outside the image have confidence 0.
   msg::HandLandmarks report(std::uint64_t run, msg::Side side,
                             const std::array<glm::vec2, msg::kLandmarks>& truth,
+                            const renderer::JointFrames& camera_frames,
                             std::int64_t origin_ns) const;
 
  private:
@@ -43,6 +50,7 @@ class DetectorModel {
   config::TwinDetector settings_;
   int seed_;
   calib::CameraModel camera_;
+  LandmarkBias bias_;
 };
 
 }  // namespace handcast::twin

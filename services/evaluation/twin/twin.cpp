@@ -28,7 +28,8 @@ class RigTwin final : public Twin {
         motion_(std::move(motion)),
         hands_(std::move(hands)),
         tracker_(rig.twin.tracker, rig.twin.seed, geometry.calibration(), motion_->shape()),
-        detector_(rig.twin.detector, rig.twin.seed, geometry.calibration().camera),
+        detector_(rig.twin.detector, rig.twin.seed, geometry.calibration().camera,
+                  motion_->shape()),
         image_(rig.twin.image),
         seed_(rig.twin.seed) {}
 
@@ -92,12 +93,18 @@ class RigTwin final : public Twin {
       const auto truth = landmarks(side, origin_ns);
       if (truth)
         detection.landmarks.hands[detection.landmarks.count++] =
-            detector_.report(n, side, *truth, origin_ns);
+            detector_.report(n, side, *truth, in_camera(*joints(side, origin_ns)), origin_ns);
     }
     return detection;
   }
 
  private:
+  JointFrames in_camera(JointFrames frames) const {
+    const glm::dmat4& camera_from_tracker = geometry_.calibration().camera_from_tracker;
+    for (auto& frame : frames) frame = glm::mat4(camera_from_tracker * glm::dmat4(frame));
+    return frames;
+  }
+
   CameraScene& scene() const {
     if (scene_) return *scene_;
     scene_.emplace(image_, seed_, geometry_.calibration());

@@ -152,7 +152,29 @@ TEST_F(ChartsTest, TheAtlasTellsWhatPassesFromWhatStaysAndWhoNeverRecovers) {
   ASSERT_TRUE(write_charts(order(all())));
   EXPECT_THAT(
       text_of(out() / "chart_b_faults.csv"),
-      HasSubstr("\"tracker silent, 200 ms\",for a moment,handcast,30,not within the run,10"));
+      HasSubstr("\"tracker silent, 200 ms\",for a moment,handcast,30,not within the run,yes,10"));
+}
+
+TEST_F(ChartsTest, TheAtlasSaysWhereThePapersCascadeRecoversFaster) {
+  const auto file = write_sweep(
+      scratch_.path(), "failures",
+      "twin.tracker.frozen_at_s,twin.tracker.frozen_s,twin.detector.lost_at_s,twin.detector.lost_s,"
+      "twin.motion,interior_mm_p95,coverage,spill,foldovers,fault_worst_mm,fault_dark_ms,"
+      "fault_recovery_ms",
+      {"paper,1,0.6,,,builtin:wave,4,0.9,0.1,0,60,20,73,",
+       "handcast,1,0.6,,,builtin:wave,3,0.9,0.1,0,30,10,80,",
+       "paper,1,0.2,,,builtin:wave,4,0.9,0.1,0,60,20,73,",
+       "handcast,1,0.2,,,builtin:wave,3,0.9,0.1,0,30,10,74,",
+       "paper,1,0.6,1,0.3,builtin:wave,4,0.9,0.1,0,60,20,,",
+       "handcast,1,0.6,1,0.3,builtin:wave,3,0.9,0.1,0,30,10,90,"});
+  const auto results = read_results({file});
+  ASSERT_TRUE(results) << results.error().what;
+  const auto failures = failures_of(*results);
+  ASSERT_EQ(failures.size(), 3u);
+  EXPECT_EQ(failures[2].name, "landmarks lost, 300 ms + tracker frozen, 600 ms");
+  EXPECT_THAT(chart_b_faults(*results).reading,
+              HasSubstr("recovers faster than ours in 1 of 3 failures (tracker frozen, 600 ms: 73 "
+                        "ms, ours 80 ms)."));
 }
 
 TEST_F(ChartsTest, ChartCHasTheRungsByTheirDegreesOfFreedom) {

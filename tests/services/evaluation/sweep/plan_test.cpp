@@ -226,7 +226,7 @@ TEST(Shards, AreWrittenAsIndexAndCount) {
 }
 
 TEST(ShippedPlans, AreWithoutFault) {
-  for (const char* name : {"ladder", "filters"}) {
+  for (const char* name : {"ladder", "filters", "failures"}) {
     const auto plan = load_plan(source_root() / "config/sweeps" / (std::string(name) + ".toml"));
     ASSERT_TRUE(plan) << plan.error().what;
     const auto expansion = expand(*plan);

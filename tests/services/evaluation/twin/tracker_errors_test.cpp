@@ -137,6 +137,23 @@ TEST(TrackerErrors, AFingerThatTheTrackerSeesIsNotGuessed) {
       EXPECT_LT(glm::distance(place(errors.seen(Side::left, t, truth)[j]), place(truth[j])), 2e-3);
 }
 
+TEST(TrackerErrors, AFingerThatIsHiddenInPartIsGuessedInPart) {
+  const FingerErrors errors({.hidden_deg = 10}, 3, radii_m());
+  const auto error_rad = [&](double roll_deg) {
+    const JointFrames truth = hand_before_tracker(roll_deg);
+    return flexion_of(errors.seen(Side::left, 0.7, truth))[3][0] - flexion_of(truth)[3][0];
+  };
+  const double guess_rad = error_rad(-90);  // hidden behind the index finger
+  ASSERT_GT(std::abs(guess_rad), 0.02);
+  int in_part = 0;
+  for (double roll_deg = -90; roll_deg < 0; roll_deg += 0.5) {
+    const auto hidden = hidden_fingers(hand_before_tracker(roll_deg), radii_m())[3];
+    EXPECT_NEAR(error_rad(roll_deg), hidden * guess_rad, 0.1 * std::abs(guess_rad)) << roll_deg;
+    in_part += hidden > 0.2 && hidden < 0.8;
+  }
+  EXPECT_GT(in_part, 2);
+}
+
 TEST(TrackerErrors, FingersSnapAsOftenAndAsFarAsAsked) {
   const FingerErrors errors({.snap_hz = 2, .snap_deg = 25}, 5, radii_m());
   const JointFrames truth = hand_before_tracker(0, 0.6);
