@@ -226,7 +226,8 @@ TEST(Shards, AreWrittenAsIndexAndCount) {
 }
 
 TEST(ShippedPlans, AreWithoutFault) {
-  for (const char* name : {"ladder", "filters", "failures"}) {
+  for (const char* name :
+       {"detectors", "failures", "filters", "installation", "ladder", "stress", "times"}) {
     const auto plan = load_plan(source_root() / "config/sweeps" / (std::string(name) + ".toml"));
     ASSERT_TRUE(plan) << plan.error().what;
     const auto expansion = expand(*plan);
