@@ -138,7 +138,7 @@ TEST(TrackerErrors, AFingerThatTheTrackerSeesIsNotGuessed) {
 }
 
 TEST(TrackerErrors, AFingerThatIsHiddenInPartIsGuessedInPart) {
-  const FingerErrors errors({.hidden_deg = 10}, 3, radii_m());
+  const FingerErrors errors({.hidden_deg = 5}, 3, radii_m());
   const auto error_rad = [&](double roll_deg) {
     const JointFrames truth = hand_before_tracker(roll_deg);
     return flexion_of(errors.seen(Side::left, 0.7, truth))[3][0] - flexion_of(truth)[3][0];
@@ -146,7 +146,7 @@ TEST(TrackerErrors, AFingerThatIsHiddenInPartIsGuessedInPart) {
   const double guess_rad = error_rad(-90);  // hidden behind the index finger
   ASSERT_GT(std::abs(guess_rad), 0.02);
   int in_part = 0;
-  for (double roll_deg = -90; roll_deg < 0; roll_deg += 0.5) {
+  for (double roll_deg = -90; roll_deg < 0; roll_deg += 0.25) {
     const auto hidden = hidden_fingers(hand_before_tracker(roll_deg), radii_m())[3];
     EXPECT_NEAR(error_rad(roll_deg), hidden * guess_rad, 0.1 * std::abs(guess_rad)) << roll_deg;
     in_part += hidden > 0.2 && hidden < 0.8;
