@@ -52,7 +52,7 @@ HANDCAST_CLONES void ramp(const float* centres, int cells, std::uint8_t* out) {
 }  // namespace
 
 void LocalThreshold::sample(GreyView image, int threshold) {
-  cells_.assign(static_cast<std::size_t>(columns_ * lines_), {});
+  cells_.assign(index(0, lines_), {});
   const int whole = std::min(columns_, (image.width - region_.x0) / kCell_px);
   std::vector<Sums> sums(static_cast<std::size_t>(columns_));
   for (int y = region_.y0; y < region_.y1; y += kRowStep) {

@@ -34,7 +34,8 @@ class LocalThreshold {
   void sample(GreyView image, int threshold);
   static void add_neighbours(Cell* cells, int count, int step);
   std::size_t index(int column, int line) const {
-    return static_cast<std::size_t>(line * columns_ + column);
+    return static_cast<std::size_t>(line) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
   }
   void interpolate(int y);
   float at_centre(int column, int y) const;
