@@ -52,7 +52,8 @@ class HandMask {
   /// The masks in `camera`, which must be the image of the last find(). Valid until the next
   /// find().
   Silhouette silhouette(const TimedImage& camera) const {
-    return {camera.view, camera.origin_ns, camera_mask_.view(), written_, finder_.threshold()};
+    return {camera.view, camera.origin_ns,    camera_mask_.view(),
+            written_,    finder_.threshold(), finder_.local_threshold()};
   }
 
   /// Moves the masks of the last find() to the target time, in projector pixels. `hands`: the same

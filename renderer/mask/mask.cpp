@@ -27,6 +27,10 @@ HANDCAST_CLONES void brighter_than(const std::uint8_t* image, int count, std::ui
                                    std::uint8_t* mask) {
   for (int x = 0; x < count; ++x) mask[x] = image[x] > threshold ? 255 : 0;
 }
+HANDCAST_CLONES void brighter_than(const std::uint8_t* image, int count,
+                                   const std::uint8_t* thresholds, std::uint8_t* mask) {
+  for (int x = 0; x < count; ++x) mask[x] = image[x] > thresholds[x] ? 255 : 0;
+}
 
 void clear(View<std::uint8_t> mask, int y, int x0, int x1) {
   if (x1 > x0) std::memset(mask.row(y) + x0, 0, static_cast<std::size_t>(x1 - x0));
@@ -115,13 +119,7 @@ Rect MaskFinder::find(GreyView image, std::span<const HandHint> hints, View<std:
 
   choose(image, region);
   bound(hints, region);
-  for (int y = region.y0; y < region.y1; ++y) {
-    const auto [x0, x1] = reach_.row(y);
-    clear(mask, y, region.x0, x0);
-    brighter_than(image.row(y) + x0, x1 - x0, static_cast<std::uint8_t>(threshold_),
-                  mask.row(y) + x0);
-    clear(mask, y, x1, region.x1);
-  }
+  binarise(image, region, mask);
   reach_.confine(mask);
   runs_.build(mask, region);
 
@@ -143,6 +141,22 @@ Rect MaskFinder::find(GreyView image, std::span<const HandHint> hints, View<std:
   }
   close_holes(mask);
   return region;
+}
+
+/// Sets the pixels above their threshold, inside the bounds.
+void MaskFinder::binarise(GreyView image, Rect region, View<std::uint8_t> mask) {
+  const bool chosen = settings_.threshold <= 0;
+  if (chosen) local_.measure(image, region, threshold_);
+  for (int y = region.y0; y < region.y1; ++y) {
+    const auto [x0, x1] = reach_.row(y);
+    clear(mask, y, region.x0, x0);
+    if (chosen)
+      brighter_than(image.row(y) + x0, x1 - x0, local_.row(y, x0), mask.row(y) + x0);
+    else
+      brighter_than(image.row(y) + x0, x1 - x0, static_cast<std::uint8_t>(threshold_),
+                    mask.row(y) + x0);
+    clear(mask, y, x1, region.x1);
+  }
 }
 
 /// Fills small dark parts that are inside the inner bound and surrounded by hand.

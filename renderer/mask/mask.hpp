@@ -10,6 +10,7 @@
 #include "config/sections/cascade.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/mask/hand_mask_bounds.hpp"
+#include "renderer/mask/local_threshold.hpp"
 #include "renderer/mask/run_map.hpp"
 
 namespace handcast::renderer {
@@ -32,7 +33,8 @@ struct HandHint {
 
 /// Finds the hands in a camera image: pixels above a threshold, inside the bounds of the hands, in
 /// a connected part that contains a seed, without the forearm, small holes closed. The threshold is
-/// fixed or chosen from each image (choose_threshold()), limited and smoothed. One thread.
+/// fixed or chosen from each image (choose_threshold()), limited and smoothed, and then follows the
+/// light over the hand (LocalThreshold). One thread.
 class MaskFinder {
  public:
   /// Copies the settings.
@@ -48,19 +50,25 @@ class MaskFinder {
   Rect hand_bounds(std::size_t hint) const {
     return hint < kMostHints ? hand_bounds_[hint] : Rect{};
   }
-  /// The threshold of the last image: only pixels above it may be hand.
+  /// The threshold of the last image. A chosen one is the middle of those of the pixels.
   int threshold() const { return threshold_; }
+  /// The thresholds of the pixels in the last image; null if one holds for all.
+  const LocalThreshold* local_threshold() const {
+    return settings_.threshold <= 0 ? &local_ : nullptr;
+  }
 
  private:
   static constexpr std::size_t kMostHints = 8;
 
   void choose(GreyView image, Rect region);
+  void binarise(GreyView image, Rect region, View<std::uint8_t> mask);
   void bound(std::span<const HandHint> hints, Rect region);
   void close_holes(View<std::uint8_t> mask);
 
   config::Mask settings_;
   int threshold_ = 0;
   double smooth_threshold_ = 0;  ///< 0 until one is chosen
+  LocalThreshold local_;
   HandMaskBounds reach_;
   RunMap runs_, rest_;  ///< the bright and the dark parts
   std::array<Rect, kMostHints> hand_bounds_{};

@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "renderer/base/image.hpp"
+#include "renderer/mask/local_threshold.hpp"
 
 namespace handcast::renderer {
 
@@ -13,11 +14,17 @@ namespace handcast::renderer {
 /// grey value falls below the threshold. There is no edge where the mask ends for another reason
 /// (the cut at the forearm, the border of the image).
 struct Silhouette {
-  GreyView image;              ///< the camera's image
-  std::int64_t origin_ns = 0;  ///< middle of its exposure
-  GreyView mask;               ///< of the size of the image; 255 hand, 0 not
-  Rect region;                 ///< contains all hand pixels of the mask
-  int threshold = 0;           ///< pixels above it are bright
+  GreyView image;                         ///< the camera's image
+  std::int64_t origin_ns = 0;             ///< middle of its exposure
+  GreyView mask;                          ///< of the size of the image; 255 hand, 0 not
+  Rect region;                            ///< contains all hand pixels of the mask
+  int threshold = 0;                      ///< pixels above it are bright
+  const LocalThreshold* local = nullptr;  ///< if set, its thresholds count instead of the one above
+
+  /// The grey value of the edge near a pixel of the region.
+  float edge_at(glm::ivec2 pixel) const {
+    return (local ? std::floor(local->at(pixel.x, pixel.y)) : static_cast<float>(threshold)) + 0.5f;
+  }
 
   /// True if the pixel nearest to `at` (image px) is hand. False outside the image.
   bool lit(glm::vec2 at) const {

@@ -24,7 +24,7 @@ using Histogram = std::array<std::uint32_t, 256>;
 /// Two histograms are filled alternately: equal neighbours do not wait for each other's count.
 Histogram histogram_of(GreyView image, Rect region) {
   Histogram even{}, odd{};
-  for (int y = region.y0; y < region.y1; y += 4) {
+  for (int y = region.y0; y < region.y1; y += 8) {
     const std::uint8_t* row = image.row(y);
     int x = region.x0;
     for (; x + 2 < region.x1; x += 4) {

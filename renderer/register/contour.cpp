@@ -60,7 +60,7 @@ class ContourBuilder {
   /// and the normal is within 45 degrees of the line through the pixels.
   void take(glm::ivec2 here, glm::ivec2 before, bool here_lit) {
     const glm::ivec2 in = here_lit ? here : before, out = here_lit ? before : here;
-    const auto edge = static_cast<float>(silhouette_.threshold) + 0.5f;
+    const float edge = silhouette_.edge_at(in);
     const float bright = silhouette_.image.at(in.x, in.y),
                 dark = silhouette_.image.at(out.x, out.y);
     if (!(dark < edge && bright > edge)) return;
@@ -110,7 +110,7 @@ std::optional<float> edge_along(const Silhouette& silhouette, glm::vec2 from, gl
       silhouette.lit(from + (last + 1 + kSolid_px) * direction))
     return std::nullopt;
   // The mask gives the edge to about a pixel; the grey values give it to a fraction.
-  const auto edge = static_cast<float>(silhouette.threshold) + 0.5f;
+  const float edge = silhouette.edge_at(glm::ivec2(from + last * direction + 0.5f));
   float inner = last - 1;
   float bright = silhouette.grey(from + inner * direction);
   for (int i = 0; i < 3; ++i, ++inner) {

@@ -15,7 +15,8 @@ constexpr int kThings = 14;
 /// A bar (long) or a disc of clutter.
 struct Thing {
   glm::vec2 middle_px, axis;  ///< unit axis
-  float half_length_px, half_width_px, grey;
+  float half_length_px, half_width_px;
+  float grey;  ///< above the background
 
   /// Share of a pixel that it covers.
   float covers(glm::vec2 at) const {
@@ -67,9 +68,8 @@ renderer::Image<float> make_background(const config::TwinImage& settings,
     const Thing thing = make_thing(i, settings, size, random);
     for (int y = 0; y < camera.height_px; ++y)
       for (int x = 0; x < camera.width_px; ++x)
-        image.at(x, y) =
-            std::lerp(image.at(x, y), thing.grey * vignette_at(camera, float(x), float(y)),
-                      thing.covers({x, y}));
+        image.at(x, y) +=
+            thing.covers({x, y}) * thing.grey * vignette_at(camera, float(x), float(y));
   }
   return image;
 }

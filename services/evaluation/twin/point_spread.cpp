@@ -28,7 +28,7 @@ PointSpread::PointSpread(double sigma_px) {
 
 void PointSpread::spread_rows(renderer::View<float> image, const renderer::Rect& region) {
   const int width = region.width(), reach = reach_px();
-  row_.resize(static_cast<std::size_t>(width + 2 * reach));
+  row_.resize(static_cast<std::size_t>(width) + 2 * static_cast<std::size_t>(reach));
   for (int y = region.y0; y < region.y1; ++y) {
     float* pixels = image.row(y) + region.x0;
     std::copy_n(pixels, width, row_.begin() + reach);

@@ -149,8 +149,8 @@ std::optional<Found> find_in(const RealOutline& outline, bool landmarks) {
 constexpr double kGoalIou = 0.95, kGoalP95_px = 2;
 
 /// What a capture must keep. The goal, but for capture 1, which misses it: the little finger's side
-/// of the hand is lit at a grazing angle, 20-30 grey values where the palm has 170, and a quarter
-/// of the palm's brightness is the threshold.
+/// of the hand is lit at a grazing angle, 20-30 grey values where the palm has 170, and the lens
+/// blurs over as many pixels as that side is wide.
 double p95_limit_px(int capture) { return capture == 1 ? 5 : kGoalP95_px; }
 
 /// Prints a table of the captures and requires the goals of each.

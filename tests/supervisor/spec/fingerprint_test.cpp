@@ -81,8 +81,8 @@ void expect_reads(const std::string& service, const config::Rig& rig,
       << service;
 }
 
-const std::vector<std::string> kTruth{"twin.motion", "twin.hands", "twin.speed",
-                                      "twin.seed",   "twin.shape", "hand"};
+const std::vector<std::string> kTruth{"twin.motion", "twin.hands",    "twin.speed", "twin.seed",
+                                      "twin.shape",  "twin.geometry", "hand"};
 
 std::vector<std::string> truth_and(std::vector<std::string> more) {
   more.insert(more.end(), kTruth.begin(), kTruth.end());
