@@ -98,8 +98,9 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
                settings_in({"pose.replay", "pose.none", "pose.process.standby"}));
   expect_reads(
       "landmarks", rig,
-      truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "camera.rate_hz",
-                 "camera.exposure_ms"}),
+      truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "twin.image.lost",
+                 "twin.image.burst", "twin.image.clock_drift_ppm", "twin.image.clock_jitter_ms",
+                 "camera.rate_hz", "camera.exposure_ms"}),
       settings_in({"landmarks.replay", "landmarks.executor", "landmarks.models", "landmarks.hands",
                    "landmarks.definition", "landmarks.process.standby"}));
 }
