@@ -31,10 +31,10 @@ std::vector<Metric> make_metrics() {
   add("interior_mm_p95", "/interior_mm/p95");
   add("interior_mm_p99", "/interior_mm/p99");
   add("interior_px_p95", "/interior_px/p95");
-  add("lit_mm_mean", "/lit_mm/mean");
-  add("lit_mm_p95", "/lit_mm/p95");
   add("landmark_mm_mean", "/landmark_mm/mean");
   add("landmark_mm_p95", "/landmark_mm/p95");
+  add("lit_mm_mean", "/lit_mm/mean");
+  add("lit_mm_p95", "/lit_mm/p95");
   for (const char* plain :
        {"missing", "coverage", "spill", "iou", "seam_px", "jitter_px", "landmark_jitter_px",
         "foldovers", "equivalent_latency_ms", "residual_px", "software_ms", "motion_to_photon_ms"})

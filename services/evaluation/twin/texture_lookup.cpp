@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace handcast::twin {
 namespace {
@@ -19,15 +20,19 @@ float nearest_on_edge(const glm::vec2& p, const glm::vec2& a, const glm::vec2& b
   return square > 0 ? std::clamp(glm::dot(p - a, ab) / square, 0.0f, 1.0f) : 0;
 }
 
-/// The barycentric coordinates of the nearest point of a triangle.
-glm::vec3 nearest_in(const glm::vec2& p, const Corners& corners) {
+/// The barycentric coordinates of a point in a triangle; empty if it is outside.
+std::optional<glm::vec3> inside(const glm::vec2& p, const Corners& corners) {
   const auto& [a, b, c] = corners;
   const float area = cross(b - a, c - a);
-  if (area != 0) {
-    const glm::vec3 share(cross(b - p, c - p) / area, cross(c - p, a - p) / area,
-                          cross(a - p, b - p) / area);
-    if (share.x >= 0 && share.y >= 0 && share.z >= 0) return share;
-  }
+  if (area == 0) return std::nullopt;
+  const glm::vec3 share(cross(b - p, c - p) / area, cross(c - p, a - p) / area,
+                        cross(a - p, b - p) / area);
+  if (share.x < 0 || share.y < 0 || share.z < 0) return std::nullopt;
+  return share;
+}
+
+/// The barycentric coordinates of the nearest point of the edge of a triangle.
+glm::vec3 nearest_in(const glm::vec2& p, const Corners& corners) {
   glm::vec3 best(1, 0, 0);
   float best_square = std::numeric_limits<float>::max();
   for (int k = 0; k < 3; ++k) {
@@ -70,6 +75,8 @@ void TextureLookup::enter(std::uint16_t triangle) {
 
 SurfacePoint TextureLookup::at(glm::vec2 uv) const {
   const int column = cell_of(uv.x), row = cell_of(uv.y);
+  for (const std::uint16_t t : cell(column, row))
+    if (const auto share = inside(uv, corners_[t])) return {t, *share};
   SurfacePoint best;
   float best_square = std::numeric_limits<float>::max();
   // A ring of cells that is farther away than the best point so far cannot have a nearer one.
@@ -85,7 +92,6 @@ SurfacePoint TextureLookup::at(glm::vec2 uv) const {
           if (glm::dot(d, d) >= best_square) continue;
           best_square = glm::dot(d, d);
           best = {t, share};
-          if (best_square == 0) return best;
         }
       }
   }
