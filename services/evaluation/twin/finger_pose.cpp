@@ -32,14 +32,17 @@ glm::mat4 mean_of(const glm::mat4& a, const glm::mat4& b) {
 }  // namespace
 
 /// The right hand is the mirror image in x of the left one: S m S with S = diag(-1, 1, 1, 1).
-JointFrames rest_pose(renderer::Side side, const renderer::HandShape& person) {
-  JointFrames rest = renderer::rest_frames(person);
-  if (side == renderer::Side::left) return rest;
-  for (auto& frame : rest)
+JointFrames mirrored(JointFrames frames) {
+  for (auto& frame : frames)
     for (int c = 0; c < 4; ++c)
       for (int r = 0; r < 4; ++r)
         if ((c == 0) != (r == 0)) frame[c][r] = -frame[c][r];
-  return rest;
+  return frames;
+}
+
+JointFrames rest_pose(renderer::Side side, const renderer::HandShape& person) {
+  const JointFrames rest = renderer::rest_frames(person);
+  return side == renderer::Side::left ? rest : mirrored(rest);
 }
 
 Flexion flexion_of(const JointFrames& frames) {

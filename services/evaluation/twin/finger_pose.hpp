@@ -24,10 +24,18 @@ constexpr int bends_of(int finger) { return finger == 0 ? 2 : kBends; }
 constexpr int bend_joint(int finger, int i) { return kMetacarpalJoint[finger] + 1 + i; }
 constexpr int tip_joint(int finger) { return bend_joint(finger, bends_of(finger)); }
 /// @}
+/// The finger whose phalanx or tip a joint is; -1 for the palm, the metacarpals and the wrist.
+constexpr int finger_of_joint(int joint) {
+  for (int f = 0; f < kFingers; ++f)
+    if (joint >= bend_joint(f, 0) && joint <= tip_joint(f)) return f;
+  return -1;
+}
 
 /// Angles by finger and joint, in radians; positive towards the palm.
 using Flexion = std::array<std::array<double, kBends>, kFingers>;
 
+/// The mirror image in x of a hand: the frames of the other side.
+JointFrames mirrored(JointFrames frames);
 /// The person's hand at rest, wrist at the origin, metres.
 JointFrames rest_pose(renderer::Side side, const renderer::HandShape& person);
 /// The flexion of a hand: the angle of each bone to the one before it, in the plane across their

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "services/evaluation/twin/finger_pose.hpp"
+
 namespace handcast::twin {
 namespace {
 
@@ -15,10 +17,7 @@ renderer::HandMesh mirrored(renderer::HandMesh hand) {
   for (auto& position : hand.positions) position = mirrored(position);
   for (auto& normal : hand.normals) normal = mirrored(normal);
   for (auto& triangle : hand.triangles) std::swap(triangle[1], triangle[2]);
-  for (auto& frame : hand.rest)
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r)
-        if ((c == 0) != (r == 0)) frame[c][r] = -frame[c][r];
+  hand.rest = twin::mirrored(hand.rest);
   return hand;
 }
 

@@ -4,6 +4,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "renderer/skin/skinning.hpp"
+#include "services/evaluation/twin/finger_pose.hpp"
 #include "services/evaluation/twin/random.hpp"
 #include "services/evaluation/twin/true_hand.hpp"
 
@@ -13,21 +14,15 @@ namespace {
 using renderer::HandMesh;
 
 constexpr int kWrist = 1;
-constexpr std::array<int, 5> kFirstPhalanx{3, 7, 12, 17, 22};  ///< by finger
-constexpr std::array<int, 5> kTip{5, 10, 15, 20, 25};
 
-/// The finger whose phalanx or tip a joint is; -1 for the palm.
-int finger_of(int joint) {
-  for (int f = 0; f < 5; ++f)
-    if (joint >= kFirstPhalanx[f] && joint <= kTip[f]) return f;
-  return -1;
+bool is_tip(int joint) {
+  for (int f = 0; f < kFingers; ++f)
+    if (joint == tip_joint(f)) return true;
+  return false;
 }
 
 /// The joint at the far end of a bone; -1 at a tip, in the wrist and in the palm.
-int far_end(int joint) {
-  const bool is_tip = std::ranges::find(kTip, joint) != kTip.end();
-  return joint <= kWrist || is_tip ? -1 : joint + 1;
-}
+int far_end(int joint) { return joint <= kWrist || is_tip(joint) ? -1 : joint + 1; }
 
 glm::vec3 place(const JointFrames& frames, int joint) { return glm::vec3(frames[joint][3]); }
 
@@ -83,7 +78,7 @@ class BoneMaps {
   float length_of_model(int joint, int end) const {
     const glm::vec3 from = place(model_.rest, joint), to = place(model_.rest, end);
     const float length = glm::distance(from, to);
-    if (std::ranges::find(kTip, end) == kTip.end()) return length;
+    if (!is_tip(end)) return length;
     const glm::vec3 along = (to - from) / length;
     float skin = 0;
     for (std::size_t v = 0; v < model_.vertex_count(); ++v)
@@ -103,7 +98,7 @@ class BoneMaps {
   /// Scales along the bone and across it, and turns about it.
   glm::mat3 scaled(int joint, const glm::vec3& along, float stretch) const {
     const auto j = static_cast<std::size_t>(joint);
-    const int finger = finger_of(joint);
+    const int finger = finger_of_joint(joint);
     const glm::vec3 back(rest_[j][1]);
     const glm::vec3 dorsal = glm::normalize(back - glm::dot(back, along) * along);
     const glm::mat3 axes(glm::cross(dorsal, along), dorsal, along);
@@ -130,8 +125,8 @@ void add_bulges(TrueHand& hand, float bulge) {
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     std::array<float, msg::kJoints> weight{};
     for (std::size_t k = 0; k < 4; ++k) weight[mesh.joints[v][k]] += mesh.weights[v][k];
-    for (int j = kFirstPhalanx[0]; j < msg::kJoints; ++j) {
-      if (finger_of(j) < 0 || far_end(j) < 0) continue;
+    for (int j = bend_joint(0, 0); j < msg::kJoints; ++j) {
+      if (finger_of_joint(j) < 0 || far_end(j) < 0) continue;
       const float between = 4 * weight[j] * weight[renderer::kJointParent[j]];
       const float inside = -glm::dot(mesh.normals[v], glm::vec3(mesh.rest[j][1]));
       const glm::vec3 away = mesh.positions[v] - place(mesh.rest, j);
@@ -161,13 +156,13 @@ Flesh Flesh::draw(const config::TwinShape& settings, int seed) {
   Flesh flesh = of_model();
   const float palm_thickness = factor(settings.thickness_spread, kThickness);
   flesh.thickness.fill(palm_thickness);
-  for (int f = 0; f < 5; ++f) {
+  for (int f = 0; f < kFingers; ++f) {
     const auto finger = static_cast<std::uint64_t>(f);
     const float thickness = factor(settings.thickness_spread, kThickness + 1 + finger),
                 taper = factor(settings.taper_spread, kTaper + finger);
-    for (int j = kFirstPhalanx[f]; j <= kTip[f]; ++j) {
-      const auto part =
-          static_cast<float>(j - kFirstPhalanx[f]) / static_cast<float>(kTip[f] - kFirstPhalanx[f]);
+    const int first = bend_joint(f, 0), tip = tip_joint(f);
+    for (int j = first; j <= tip; ++j) {
+      const auto part = static_cast<float>(j - first) / static_cast<float>(tip - first);
       flesh.thickness[j] = thickness;
       flesh.width[j] = factor(settings.bone_width_spread, static_cast<std::uint64_t>(j)) *
                        glm::mix(1.0f, taper, part);

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <numbers>
-#include <utility>
+
+#include "services/evaluation/twin/finger_pose.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -67,17 +68,12 @@ std::vector<float> behind_wrist_m(const renderer::HandMesh& hand) {
 }
 
 std::vector<int> fingers_of(const renderer::HandMesh& hand) {
-  constexpr std::array<std::pair<int, int>, 5> kPhalanges{
-      {{3, 5}, {7, 10}, {12, 15}, {17, 20}, {22, 25}}};
   std::vector<int> fingers;
   for (std::size_t v = 0; v < hand.vertex_count(); ++v) {
     const auto& weights = hand.weights[v];
     const int joint = hand.joints[v][static_cast<std::size_t>(std::ranges::max_element(weights) -
                                                               weights.begin())];
-    const auto* finger = std::ranges::find_if(
-        kPhalanges, [&](const auto& ends) { return joint >= ends.first && joint <= ends.second; });
-    fingers.push_back(finger == kPhalanges.end() ? -1
-                                                 : static_cast<int>(finger - kPhalanges.begin()));
+    fingers.push_back(finger_of_joint(joint));
   }
   return fingers;
 }

@@ -6,23 +6,13 @@
 #include <future>
 
 #include "ipc/base/log.hpp"
+#include "services/evaluation/twin/finger_pose.hpp"
 #include "services/evaluation/twin/flesh_model.hpp"
 
 namespace handcast::twin {
 namespace {
 
 using renderer::HandMesh;
-
-/// The joints of the person at rest.
-JointFrames rest_of(Side side, const renderer::HandShape& person) {
-  JointFrames rest = renderer::rest_frames(person);
-  if (side == Side::left) return rest;
-  for (auto& frame : rest)
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r)
-        if ((c == 0) != (r == 0)) frame[c][r] = -frame[c][r];
-  return rest;
-}
 
 float breadth_m(const JointFrames& rest) {
   constexpr int kIndexKnuckle = 7, kLittleKnuckle = 22;
@@ -88,7 +78,7 @@ class PersonsHands final : public TrueHands {
   TrueHand make(Side side) const {
     const Model& model = models_[index(side)];
     if (!model.seen) return {model.drawn, settings_.skinning, {}, {}};
-    const JointFrames rest = rest_of(side, person_);
+    const JointFrames rest = rest_pose(side, person_);
     const bool refits = model.flesh.is_drawn_mesh && model.made_by_handcast;
     if (refits)
       return flesh_on_bones(renderer::refit_hand(model.drawn, person_), rest, 1, flesh_,
