@@ -69,13 +69,12 @@ void TextureLookup::enter(std::uint16_t triangle) {
   const auto& [a, b, c] = corners_[triangle];
   const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
   for (int y = cell_of(low.y); y <= cell_of(high.y); ++y)
-    for (int x = cell_of(low.x); x <= cell_of(high.x); ++x)
-      cells_[static_cast<std::size_t>(y * kCells + x)].push_back(triangle);
+    for (int x = cell_of(low.x); x <= cell_of(high.x); ++x) cells_[index(x, y)].push_back(triangle);
 }
 
 SurfacePoint TextureLookup::at(glm::vec2 uv) const {
   const int column = cell_of(uv.x), row = cell_of(uv.y);
-  for (const std::uint16_t t : cell(column, row))
+  for (const std::uint16_t t : cells_[index(column, row)])
     if (const auto share = inside(uv, corners_[t])) return {t, *share};
   SurfacePoint best;
   float best_square = std::numeric_limits<float>::max();
@@ -86,7 +85,7 @@ SurfacePoint TextureLookup::at(glm::vec2 uv) const {
     for (int y = std::max(row - ring, 0); y <= std::min(row + ring, kCells - 1); ++y)
       for (int x = std::max(column - ring, 0); x <= std::min(column + ring, kCells - 1); ++x) {
         if (std::max(std::abs(x - column), std::abs(y - row)) != ring) continue;
-        for (const std::uint16_t t : cell(x, y)) {
+        for (const std::uint16_t t : cells_[index(x, y)]) {
           const glm::vec3 share = nearest_in(uv, corners_[t]);
           const glm::vec2 d = place(corners_[t], share) - uv;
           if (glm::dot(d, d) >= best_square) continue;

@@ -21,8 +21,8 @@ class TextureLookup {
  private:
   static constexpr int kCells = 96;  ///< per side of the texture
   static int cell_of(float share);
-  const std::vector<std::uint16_t>& cell(int x, int y) const {
-    return cells_[static_cast<std::size_t>(y * kCells + x)];
+  static constexpr std::size_t index(int x, int y) {
+    return static_cast<std::size_t>(y) * kCells + static_cast<std::size_t>(x);
   }
   void enter(std::uint16_t triangle);
 
