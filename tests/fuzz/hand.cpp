@@ -70,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto twin = twin::Twin::create(rig, calibration);
   fuzz::require(twin.has_value());
   const auto projection = draw(*mesh, **twin, calibration);
-  const auto judge = twin::Judge::create(**twin, calibration, 8);
+  const auto judge = twin::Judge::create(**twin, 8);
   for (const auto& hand : judge->score(*projection).hands)
     fuzz::require(hand.hand_px >= 0 && hand.lit_px <= hand.hand_px);
   return 0;
