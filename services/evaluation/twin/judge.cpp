@@ -263,6 +263,7 @@ class RigJudge final : public Judge {
     }
     const auto meant = texture_.at(hand.side, shown->uv);
     const glm::vec2 error = glm::vec2(pixel) - view_.to_projector(meant.seen_m);
+    if (!std::isfinite(error.x) || !std::isfinite(error.y)) return;  // flesh that is no surface
     score.interior_px.push_back(glm::length(error));
     score.interior_mm.push_back(1e3f * std::max(glm::distance(meant.seen_m, truth.seen_m),
                                                 glm::distance(meant.rest_m, truth.rest_m)));
