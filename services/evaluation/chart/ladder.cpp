@@ -35,7 +35,7 @@ Standing standing_of(const std::string& variant, double speed, const Runs& runs)
           mean_of(runs, "interior_mm_p95"),
           mean_of(runs, "coverage"),
           mean_of(runs, "spill"),
-          mean_of(runs, "jitter_px"),
+          mean_of(runs, "landmark_jitter_px"),
           mean_of(runs, "detector_age_ms"),
           mean_of(runs, "frame_us_p50")};
 }

@@ -21,7 +21,7 @@ struct Standing {
   std::optional<double> p95_mm;        ///< interior error, 95th percentile
   std::optional<double> coverage;      ///< lit share of the hand
   std::optional<double> spill;         ///< light beside the hand, as a share of the hand
-  std::optional<double> jitter_px;     ///< of the landmarks, camera px
+  std::optional<double> jitter_px;     ///< of the landmarks on slow hands, camera px
   std::optional<double> landmarks_ms;  ///< age of the landmarks
   std::optional<double> frame_us;      ///< median time of a frame on one core of this machine
 };

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "renderer/base/srgb.hpp"
-#include "services/evaluation/twin/texture_lookup.hpp"
+#include "services/evaluation/twin/judged_light.hpp"
+#include "services/evaluation/twin/placed_texture.hpp"
 #include "services/evaluation/twin/true_view.hpp"
 #include "services/evaluation/twin/twin.hpp"
 
@@ -12,103 +12,6 @@ namespace handcast::twin {
 namespace {
 
 using renderer::Rect;
-
-/// The light of one projection.
-class Light {
- public:
-  explicit Light(const msg::Projection& projection)
-      : projection_(projection),
-        region_{projection.region_x_px, projection.region_y_px,
-                projection.region_x_px + static_cast<int>(projection.region_width_px),
-                projection.region_y_px + static_cast<int>(projection.region_height_px)} {
-    for (std::uint32_t i = 0; i < count(); ++i)
-      least_alpha_[static_cast<std::size_t>(projection.hands[i].side)] =
-          least_alpha(projection.hands[i].presence);
-  }
-
-  const Rect& region() const { return region_; }
-  /// Writes the alpha of [x0 .. x1) of row y of the projector.
-  void row(int y, int x0, int x1, std::uint8_t* alpha) const {
-    std::fill(alpha + x0, alpha + x1, std::uint8_t{0});
-    if (y < region_.y0 || y >= region_.y1) return;
-    const std::uint32_t* pixels = projection_.pixels() +
-                                  static_cast<std::ptrdiff_t>(y - region_.y0) * region_.width() -
-                                  region_.x0;
-    for (int x = std::max(x0, region_.x0); x < std::min(x1, region_.x1); ++x)
-      alpha[x] = static_cast<std::uint8_t>(pixels[x] >> 24);
-  }
-  /// The least alpha with which a pixel of a hand has half of the intended light; 256: none has.
-  int least_alpha(Side side) const { return least_alpha_[static_cast<std::size_t>(side)]; }
-  /// The hand and the texture coordinates that a pixel shows; its coordinates are multiples of
-  /// kShownStep_px.
-  struct Shown {
-    Side side;
-    glm::vec2 uv;
-  };
-  std::optional<Shown> shown(int x, int y) const {
-    if (projection_.has_shown == 0 || x < region_.x0 || x >= region_.x1 || y < region_.y0 ||
-        y >= region_.y1)
-      return std::nullopt;
-    const msg::ShownPoint& point = projection_.shown(x, y);
-    if (point.hand == 0 || point.hand > count()) return std::nullopt;
-    return Shown{projection_.hands[point.hand - 1].side, glm::vec2(point.u, point.v) / 65535.0f};
-  }
-
- private:
-  static int least_alpha(float presence) {
-    const double light = renderer::srgb_light(std::clamp(presence, 0.0f, 1.0f));
-    return light >= 0.5 ? static_cast<int>(std::ceil(127.5 / light)) : 256;
-  }
-  std::uint32_t count() const {
-    return std::min<std::uint32_t>(projection_.hand_count,
-                                   static_cast<std::uint32_t>(projection_.hands.size()));
-  }
-
-  const msg::Projection& projection_;
-  Rect region_;
-  std::array<int, 2> least_alpha_{128, 128};
-};
-
-/// Where a texture is on the hands at one time.
-class PlacedTexture {
- public:
-  explicit PlacedTexture(const Twin& twin) : twin_(twin) {
-    for (const Side side : {Side::left, Side::right})
-      lookup_.emplace_back(twin.hands().drawn(side));
-  }
-
-  /// Places the vertices of the drawn mesh on the flesh as it is seen and at rest.
-  void place(const SeenHand& hand) {
-    const auto& map = twin_.hands().texture(hand.side);
-    auto& placed = placed_[static_cast<std::size_t>(hand.side)];
-    const auto& mesh = hand.flesh->mesh;
-    placed.seen_m.resize(map.size());
-    placed.rest_m.resize(map.size());
-    for (std::size_t v = 0; v < map.size(); ++v) {
-      placed.seen_m[v] = map[v].on(mesh, hand.position_m);
-      placed.rest_m[v] = map[v].on(mesh, mesh.positions);
-    }
-  }
-
-  /// A point of the texture: in camera space, and at rest.
-  struct Point {
-    glm::vec3 seen_m, rest_m;
-  };
-  Point at(Side side, glm::vec2 uv) const {
-    const auto s = static_cast<std::size_t>(side);
-    const SurfacePoint point = lookup_[s].at(uv);
-    const auto& mesh = twin_.hands().drawn(side);
-    return {point.on(mesh, placed_[s].seen_m), point.on(mesh, placed_[s].rest_m)};
-  }
-
- private:
-  struct Placed {
-    std::vector<glm::vec3> seen_m, rest_m;  ///< by vertex of the drawn mesh
-  };
-  const Twin& twin_;
-  std::vector<TextureLookup> lookup_;
-  std::array<Placed, 2> placed_;
-};
 
 class RigJudge final : public Judge {
  public:
@@ -122,7 +25,7 @@ class RigJudge final : public Judge {
   }
 
   FrameScore score(const msg::Projection& projection) override {
-    const Light light(projection);
+    const JudgedLight light(projection);
     view_.pose(projection.lit_ns);
     const Rect area = judged_area(light);
     view_.draw(area);
@@ -143,13 +46,13 @@ class RigJudge final : public Judge {
   static constexpr int kStep = msg::Projection::kShownStep_px;
   const SeenHand& seen(std::size_t h) const { return view_.hands()[h]; }
 
-  Rect judged_area(const Light& light) const {
+  Rect judged_area(const JudgedLight& light) const {
     Rect area = light.region();
     for (const auto& hand : view_.hands()) area = area.joined(hand.screen.bounds());
     return area.within(alpha_.width(), alpha_.height());
   }
 
-  void count_pixels(const Rect& area, const Light& light, FrameScore& score) const {
+  void count_pixels(const Rect& area, const JudgedLight& light, FrameScore& score) const {
     if (score.hands.empty()) return;
     for (std::size_t h = 0; h < score.hands.size(); ++h)
       count_hand(h, light.least_alpha(seen(h).side), score.hands[h]);
@@ -208,7 +111,7 @@ class RigJudge final : public Judge {
     return view_.hands().size() > 1 && distance2(seen(1)) < distance2(seen(0)) ? 1 : 0;
   }
 
-  void score_interior(const Rect& area, const Light& light, FrameScore& score) const {
+  void score_interior(const Rect& area, const JudgedLight& light, FrameScore& score) const {
     std::array<int, 2> points{};
     for (int y = (area.y0 + step_px_ - 1) / step_px_ * step_px_; y < area.y1; y += step_px_)
       for (int x = (area.x0 + step_px_ - 1) / step_px_ * step_px_; x < area.x1; x += step_px_) {
@@ -245,10 +148,15 @@ class RigJudge final : public Judge {
     return point;
   }
 
+  void score_missing(const TruePoint& truth, glm::ivec2 pixel, FrameScore::Hand& score) const {
+    const glm::vec3 away = truth.seen_m + glm::vec3(1e-3f * FrameScore::kMissing_mm, 0, 0);
+    score.missing_px.push_back(glm::distance(view_.to_projector(away), glm::vec2(pixel)));
+  }
+
   /// Scores one visible point of the true surface: the distance on the surface between it and the
   /// point whose picture falls on it. The distance is bounded from below, by the straight lines in
   /// the pose of the hand and at rest: a folded hand brings far points of its surface together.
-  void score_point(Surface surface, glm::ivec2 pixel, const Light& light,
+  void score_point(Surface surface, glm::ivec2 pixel, const JudgedLight& light,
                    FrameScore::Hand& score) const {
     const SeenHand& hand = seen(hand_of(surface));
     const TruePoint truth = true_point(surface, pixel);
@@ -256,14 +164,12 @@ class RigJudge final : public Judge {
     const auto shown = alpha_.at(pixel.x, pixel.y) >= light.least_alpha(hand.side)
                            ? light.shown(pixel.x, pixel.y)
                            : std::nullopt;
-    if (!shown || shown->side != hand.side) {
-      const glm::vec3 away = truth.seen_m + glm::vec3(1e-3f * FrameScore::kMissing_mm, 0, 0);
-      score.missing_px.push_back(glm::distance(view_.to_projector(away), glm::vec2(pixel)));
-      return;
-    }
+    if (!shown || shown->side != hand.side) return score_missing(truth, pixel, score);
     const auto meant = texture_.at(hand.side, shown->uv);
     const glm::vec2 error = glm::vec2(pixel) - view_.to_projector(meant.seen_m);
-    if (!std::isfinite(error.x) || !std::isfinite(error.y)) return;  // flesh that is no surface
+    // The flesh of a broken mesh has points that are nowhere.
+    if (!std::isfinite(error.x) || !std::isfinite(error.y))
+      return score_missing(truth, pixel, score);
     score.interior_px.push_back(glm::length(error));
     score.interior_mm.push_back(1e3f * std::max(glm::distance(meant.seen_m, truth.seen_m),
                                                 glm::distance(meant.rest_m, truth.rest_m)));

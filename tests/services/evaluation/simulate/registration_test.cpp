@@ -36,7 +36,7 @@ TEST(LateRegistration, LeavesAStillHandStill) {
 TEST(LateRegistration, GivesTheSameLightTwice) {
   auto once = with("mask", "builtin:shake", 1, 0.3), twice = with("mask", "builtin:shake", 1, 0.3);
   EXPECT_EQ(once["interior_px"], twice["interior_px"]);
-  EXPECT_EQ(once["jitter_px"], twice["jitter_px"]);
+  EXPECT_EQ(once["landmark_px"], twice["landmark_px"]);
 }
 
 }  // namespace
