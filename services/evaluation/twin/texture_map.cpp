@@ -2,47 +2,12 @@
 #include "services/evaluation/twin/texture_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <map>
-#include <tuple>
-
-#include "services/evaluation/twin/surface.hpp"
 
 namespace handcast::twin {
 namespace {
 
 using renderer::HandMesh;
-
-constexpr int kRounds = 16;
-constexpr int kSmoothest = 24;  ///< means over the neighbours in the first round; 0 in the last
-constexpr float kFarthest_m = 0.02f;  ///< a nearest point farther away is not followed
-constexpr float kCap_m = 0.01f;       ///< the end of the flesh behind the wrist, which closes it
-constexpr float kFacing = 0.2f;       ///< least cosine between normals
-
-/// Vertices at the same place as one: a texture's seam cuts the mesh, not the hand.
-struct Glued {
-  std::vector<std::size_t> of_vertex;          ///< by vertex of the mesh
-  std::vector<std::size_t> first;              ///< by glued vertex: a vertex of the mesh
-  std::vector<std::vector<std::size_t>> near;  ///< by glued vertex: its neighbours
-};
-
-Glued glue(const HandMesh& mesh) {
-  Glued glued;
-  std::map<std::tuple<float, float, float>, std::size_t> at;
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const glm::vec3& p = mesh.positions[v];
-    const auto [entry, is_new] = at.try_emplace({p.x, p.y, p.z}, glued.first.size());
-    if (is_new) glued.first.push_back(v);
-    glued.of_vertex.push_back(entry->second);
-  }
-  glued.near.resize(glued.first.size());
-  for (const auto& triangle : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k)
-      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3})
-        glued.near[glued.of_vertex[triangle[k]]].push_back(glued.of_vertex[triangle[other]]);
-  return glued;
-}
 
 /// The barycentric coordinates of the point of a triangle that is nearest to `p` (Ericson 2004,
 /// "Real-Time Collision Detection", section 5.1.5).
@@ -65,101 +30,48 @@ glm::vec3 nearest_in(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b,
   return {va / whole, vb / whole, vc / whole};
 }
 
-/// The flesh, prepared for searches.
-class Target {
- public:
-  explicit Target(const HandMesh& mesh) : mesh_(mesh) {
-    const auto fingers = fingers_of(mesh);
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const glm::vec3 middle = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0f;
-      float radius = 0;
-      for (const auto v : {a, b, c})
-        radius = std::max(radius, glm::distance(mesh.positions[v], middle));
-      const glm::vec3 normal =
-          glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
-      const float length = glm::length(normal);
-      facets_.push_back({middle, length > 0 ? normal / length : glm::vec3(0), radius, fingers[a]});
-    }
-  }
-
-  /// The nearest point to `p` that faces as `normal` and is on `finger` or the palm.
-  SurfacePoint nearest(const glm::vec3& p, const glm::vec3& normal, int finger,
-                       std::uint16_t guess) const {
-    SurfacePoint best{guess, {1, 0, 0}};
-    float best_m = std::numeric_limits<float>::max();
-    const auto look_at = [&](std::size_t t) {
-      const auto& [a, b, c] = mesh_.triangles[t];
-      const SurfacePoint at{
-          static_cast<std::uint16_t>(t),
-          nearest_in(p, mesh_.positions[a], mesh_.positions[b], mesh_.positions[c])};
-      const float far_m = glm::distance(at.on(mesh_, mesh_.positions), p);
-      if (far_m >= best_m) return;
-      best_m = far_m;
-      best = at;
-    };
-    if (fits(facets_[guess], normal, finger)) look_at(guess);
-    for (std::size_t t = 0; t < facets_.size(); ++t) {
-      const Facet& facet = facets_[t];
-      const glm::vec3 d = facet.middle - p;
-      const float reach = best_m < 1 ? best_m + facet.radius : 2;
-      if (glm::dot(d, d) < reach * reach && fits(facet, normal, finger)) look_at(t);
-    }
-    return best;
-  }
-
-  glm::vec3 place(const SurfacePoint& point) const { return point.on(mesh_, mesh_.positions); }
-
- private:
-  struct Facet {
-    glm::vec3 middle, normal;
-    float radius;
-    int finger;
-  };
-  static bool fits(const Facet& facet, const glm::vec3& normal, int finger) {
-    return glm::dot(facet.normal, normal) > kFacing &&
-           (facet.finger == finger || facet.finger < 0 || finger < 0);
-  }
-
-  const HandMesh& mesh_;
-  std::vector<Facet> facets_;
+/// A triangle of the flesh, prepared for searches: it lies in a sphere.
+struct Facet {
+  glm::vec3 middle;
+  float radius;
 };
 
-/// Replaces each value by the mean of it and its neighbours', `times` times.
-void smooth(const Glued& glued, std::vector<glm::vec3>& values, int times) {
-  for (; times > 0; --times) {
-    std::vector<glm::vec3> means = values;
-    for (std::size_t g = 0; g < values.size(); ++g) {
-      for (const std::size_t other : glued.near[g]) means[g] += values[other];
-      means[g] /= static_cast<float>(glued.near[g].size() + 1);
-    }
-    values = std::move(means);
+std::vector<Facet> facets_of(const HandMesh& mesh) {
+  std::vector<Facet> facets;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const glm::vec3 middle = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0f;
+    float radius = 0;
+    for (const auto v : {a, b, c})
+      radius = std::max(radius, glm::distance(mesh.positions[v], middle));
+    facets.push_back({middle, radius});
   }
+  return facets;
+}
+
+SurfacePoint nearest_point(const HandMesh& mesh, const std::vector<Facet>& facets,
+                           const glm::vec3& p) {
+  SurfacePoint best{0, {1, 0, 0}};
+  float best_m = std::numeric_limits<float>::max();
+  for (std::size_t t = 0; t < facets.size(); ++t) {
+    if (glm::distance(facets[t].middle, p) - facets[t].radius >= best_m) continue;
+    const auto& [a, b, c] = mesh.triangles[t];
+    const SurfacePoint at{static_cast<std::uint16_t>(t),
+                          nearest_in(p, mesh.positions[a], mesh.positions[b], mesh.positions[c])};
+    const float far_m = glm::distance(at.on(mesh, mesh.positions), p);
+    if (far_m >= best_m) continue;
+    best_m = far_m;
+    best = at;
+  }
+  return best;
 }
 
 }  // namespace
 
 std::vector<SurfacePoint> texture_map(const HandMesh& drawn, const HandMesh& flesh) {
-  const Glued glued = glue(drawn);
-  const Target target(flesh);
-  const auto fingers = fingers_of(drawn);
-  const auto behind_m = behind_wrist_m(drawn);
-  const float cap_m = std::ranges::max(behind_wrist_m(flesh)) - kCap_m;
-  const std::size_t count = glued.first.size();
-  std::vector<glm::vec3> at(count), steps(count);
-  std::vector<SurfacePoint> found(count);
-  for (std::size_t g = 0; g < count; ++g) at[g] = drawn.positions[glued.first[g]];
-  for (int round = 0; round <= kRounds; ++round) {
-    for (std::size_t g = 0; g < count; ++g) {
-      const std::size_t v = glued.first[g];
-      found[g] = target.nearest(at[g], drawn.normals[v], fingers[v], found[g].triangle);
-      steps[g] = target.place(found[g]) - at[g];
-      if (glm::length(steps[g]) > kFarthest_m || behind_m[v] > cap_m) steps[g] = glm::vec3(0);
-    }
-    smooth(glued, steps, kSmoothest * (kRounds - round) / kRounds);
-    for (std::size_t g = 0; g < count; ++g) at[g] += steps[g];
-  }
+  const auto facets = facets_of(flesh);
   std::vector<SurfacePoint> map;
-  for (const std::size_t g : glued.of_vertex) map.push_back(found[g]);
+  for (const glm::vec3& position : drawn.positions)
+    map.push_back(nearest_point(flesh, facets, position));
   return map;
 }
 

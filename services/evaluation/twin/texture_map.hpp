@@ -22,10 +22,8 @@ struct SurfacePoint {
 };
 
 /// Where each vertex of the drawn mesh is on another surface of the same hand, by vertex: the place
-/// that the texture means. Both must be at rest in the same pose (`rest` equal up to rounding). The
-/// drawn mesh is moved onto the flesh by smooth steps, each towards the nearest points of the flesh
-/// that face the same way and belong to the same finger (non-rigid iterative closest points, after
-/// Amberg et al. 2007), so that neighbours stay neighbours.
+/// that the texture means, which is the nearest point of the flesh. Both must be at rest in the
+/// same pose (`rest` equal up to rounding).
 std::vector<SurfacePoint> texture_map(const renderer::HandMesh& drawn,
                                       const renderer::HandMesh& flesh);
 
