@@ -9,6 +9,7 @@
 namespace handcast::twin {
 namespace {
 
+constexpr int kIndexKnuckle = 7, kMiddleKnuckle = 12, kLittleKnuckle = 22;
 constexpr int kWrist = 1, kIndexPip = 8, kMiddlePip = 13, kFromPipToTip = 3;
 
 glm::dmat4 rigid_inverse(const glm::dmat4& m) {
@@ -27,6 +28,20 @@ glm::mat4 mean_of(const glm::mat4& a, const glm::mat4& b) {
   glm::mat4 mean(glm::mat4_cast(glm::slerp(glm::quat_cast(a), glm::quat_cast(b), 0.5f)));
   mean[3] = 0.5f * (a[3] + b[3]);
   return mean;
+}
+
+glm::vec3 place(const JointFrames& frames, int joint) { return glm::vec3(frames[joint][3]); }
+
+float distance_in(const JointFrames& frames, int from, int to) {
+  return glm::distance(place(frames, from), place(frames, to));
+}
+
+/// Turns a frame by the smallest angle so that its -z points to `end`.
+void aim_at(const glm::vec3& end, glm::mat4& frame) {
+  const glm::vec3 from = -glm::normalize(glm::vec3(frame[2])), way = end - glm::vec3(frame[3]);
+  const glm::vec4 start = frame[3];
+  frame = glm::mat4_cast(glm::quat(from, glm::normalize(way))) * frame;
+  frame[3] = start;
 }
 
 }  // namespace
@@ -83,6 +98,34 @@ JointFrames nearer_to(const JointFrames& frames, const JointFrames& rest, double
     nearer[j] = glm::mat4(glm::dmat4(nearer[parent]) * local);
   }
   return nearer;
+}
+
+glm::mat3 palm_axes(const JointFrames& frames) {
+  const glm::vec3 length = glm::normalize(place(frames, kMiddleKnuckle) - place(frames, kWrist)),
+                  across = place(frames, kIndexKnuckle) - place(frames, kLittleKnuckle),
+                  side = glm::normalize(across - glm::dot(across, length) * length);
+  return {side, glm::cross(length, side), length};
+}
+
+JointFrames with_bones_of(const JointFrames& rest, const JointFrames& frames) {
+  JointFrames result = frames;
+  const glm::mat4 posed_from_rest = frames[kWrist] * glm::inverse(rest[kWrist]);
+  const auto put = [&](int joint, int seen_from, int from) {
+    const glm::vec3 way = place(frames, joint) - place(frames, seen_from);
+    const glm::vec3 at = place(result, from) + distance_in(rest, from, joint) * glm::normalize(way);
+    result[joint][3] = glm::vec4(at, 1);
+  };
+  for (int f = 0; f < kFingers; ++f) {
+    const int base = kMetacarpalJoint[f], knuckle = base + 1;
+    result[base][3] = posed_from_rest * rest[base][3];
+    const int fixed = f == 0 ? base : kWrist;
+    put(knuckle, fixed, fixed);
+    for (int joint = knuckle + 1; joint <= tip_joint(f); ++joint) put(joint, joint - 1, joint - 1);
+    for (int joint = base; joint < tip_joint(f); ++joint)
+      aim_at(place(result, joint + 1), result[joint]);
+  }
+  result[0][3] = posed_from_rest * rest[0][3];
+  return result;
 }
 
 JointFrames merged(const JointFrames& frames) {

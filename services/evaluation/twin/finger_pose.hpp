@@ -47,6 +47,13 @@ JointFrames bent_by(const JointFrames& frames, const Flexion& more);
 /// along the shortest rotation of each joint. The wrist and the lengths of the bones are those of
 /// `frames`. `rest`: a hand of the same side.
 JointFrames nearer_to(const JointFrames& frames, const JointFrames& rest, double share);
+/// The axes of the palm by its joints: across to the index finger, out of the back, and from the
+/// wrist to the middle knuckle.
+glm::mat3 palm_axes(const JointFrames& frames);
+/// The pose of `frames` for a hand whose bones have the lengths of `rest`, of the same side: the
+/// bases of the metacarpals are fixed to the wrist, each knuckle is in the same direction from
+/// there (the thumb's from its base), and each phalanx points in the same direction.
+JointFrames with_bones_of(const JointFrames& rest, const JointFrames& frames);
 /// The index and the middle finger become one: from the PIP to the tip, both get the mean of the
 /// two.
 JointFrames merged(const JointFrames& frames);

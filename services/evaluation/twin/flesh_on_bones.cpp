@@ -26,15 +26,6 @@ int far_end(int joint) { return joint <= kWrist || is_tip(joint) ? -1 : joint + 
 
 glm::vec3 place(const JointFrames& frames, int joint) { return glm::vec3(frames[joint][3]); }
 
-/// The rotation that moves the joints of one rest pose to those of another as well as their wrists
-/// and knuckles tell: by the palm's axes.
-glm::mat3 palm_axes(const JointFrames& rest) {
-  const glm::vec3 length = glm::normalize(place(rest, 12) - place(rest, kWrist));
-  const glm::vec3 across = place(rest, 7) - place(rest, 22);
-  const glm::vec3 side = glm::normalize(across - glm::dot(across, length) * length);
-  return {side, glm::cross(length, side), length};
-}
-
 /// The rotation by the smallest angle that turns one direction into another.
 glm::mat3 shortest_turn(const glm::vec3& from, const glm::vec3& to) {
   return glm::mat3_cast(glm::quat(glm::normalize(from), glm::normalize(to)));

@@ -61,6 +61,13 @@ float breadth_mm(const HandShape& shape) {
   return glm::distance(shape.proximal_mm[1], shape.proximal_mm[4]);
 }
 
+/// Mean distance of the fingers' MCPs from the wrist.
+float palm_mm(const HandShape& shape) {
+  float sum = 0;
+  for (int f = 1; f < 5; ++f) sum += glm::length(shape.proximal_mm[f]);
+  return sum / 4;
+}
+
 }  // namespace
 
 HandShape draw_person(const config::TwinShape& settings, int seed) {
@@ -72,18 +79,25 @@ HandShape draw_person(const config::TwinShape& settings, int seed) {
   return HandShape::mean().scaled(length, palm, width_factor(settings, seed));
 }
 
-HandShape fit_person(const Recording& recording, const config::TwinShape& settings, int seed) {
+HandShape recorded_shape(const Recording& recording) {
   const auto& poses = recording.hands[0].empty() ? recording.hands[1] : recording.hands[0];
-  const HandShape mean = HandShape::mean();
-  HandShape fitted = mean;
+  HandShape shape = HandShape::mean();
   for (int f = 0; f < 5; ++f) {
-    fitted.metacarpal_mm[f] = median_place_mm(poses, kMetacarpal[f]);
-    fitted.proximal_mm[f] = median_place_mm(poses, kMetacarpal[f] + 1);
+    shape.metacarpal_mm[f] = median_place_mm(poses, kMetacarpal[f]);
+    shape.proximal_mm[f] = median_place_mm(poses, kMetacarpal[f] + 1);
     for (int k = 0; k < (f == 0 ? 2 : 3); ++k)
-      fitted.phalanx_mm[f][k] = median_length_mm(poses, kMetacarpal[f] + 1 + k);
+      shape.phalanx_mm[f][k] = median_length_mm(poses, kMetacarpal[f] + 1 + k);
   }
-  const float width = breadth_mm(fitted) / breadth_mm(mean) * width_factor(settings, seed);
-  return fitted.scaled({1, 1, 1, 1, 1}, 1, width);
+  return shape;
+}
+
+HandShape person_of(const HandShape& recorded, const config::TwinShape& settings, int seed) {
+  const HandShape mean = HandShape::mean();
+  const float palm = palm_mm(recorded) / palm_mm(mean),
+              width = breadth_mm(recorded) / breadth_mm(mean) * width_factor(settings, seed);
+  HandShape person = mean.scaled({1, 1, 1, 1, 1}, palm, width);
+  person.phalanx_mm = recorded.phalanx_mm;
+  return person;
 }
 
 }  // namespace handcast::twin

@@ -10,10 +10,14 @@ namespace handcast::twin {
 /// differ from the mean hand by at most the spread of the settings.
 renderer::HandShape draw_person(const config::TwinShape& settings, int seed);
 
-/// Fits the hand shape of the person in a recording (the left hand if recorded): joint positions
-/// and bone lengths are medians over the samples; the widths follow the palm's breadth and the
-/// seed.
-renderer::HandShape fit_person(const Recording& recording, const config::TwinShape& settings,
-                               int seed);
+/// The hand shape that the joints of a recording have (the left hand if recorded): their medians in
+/// the wrist's axes, and the medians of the bones' lengths.
+renderer::HandShape recorded_shape(const Recording& recording);
+
+/// The person behind a recorded shape: the lengths of the phalanges are the recorded ones; the palm
+/// is the mean person's at the recorded size, because trackers guess its bones; the widths follow
+/// its breadth and the seed.
+renderer::HandShape person_of(const renderer::HandShape& recorded,
+                              const config::TwinShape& settings, int seed);
 
 }  // namespace handcast::twin

@@ -4,6 +4,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ipc/base/clock.hpp"
+#include "services/evaluation/twin/finger_pose.hpp"
 #include "services/evaluation/twin/motions.hpp"
 #include "services/evaluation/twin/person.hpp"
 #include "services/evaluation/twin/spline.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 using msg::kJoints;
 
+constexpr int kWrist = 1;
 constexpr std::size_t kJointChannels = 7;  ///< x y z, then the quaternion x y z w
 /// Time before and after an end of the recording in which the hand brakes and turns back.
 constexpr double kTurn_s = 0.15;
@@ -57,14 +59,12 @@ Spline spline_of(const std::vector<std::int64_t>& time_ns,
   return Spline(std::move(times_s), std::move(values), kChannels);
 }
 
+/// A recording is the output of a tracker: the lengths of its bones change by 2 mm (RMS) from
+/// sample to sample, and its palm is a guess. The hand that moves here has the bones of one person.
 class RecordedMotion final : public Motion {
  public:
   RecordedMotion(const Recording& recording, const config::Twin& settings)
-      : speed_(settings.speed), shape_(fit_person(recording, settings.shape, settings.seed)) {
-    for (std::size_t side = 0; side < 2; ++side)
-      if (!recording.hands[side].empty())
-        hands_[side] = spline_of(recording.time_ns, recording.hands[side]);
-  }
+      : RecordedMotion(recording, settings, recorded_shape(recording)) {}
 
   std::optional<JointFrames> at(Side side, double seconds) const override {
     const auto& hand = hands_[static_cast<std::size_t>(side)];
@@ -77,14 +77,30 @@ class RecordedMotion final : public Motion {
       frames[j] = glm::mat4(glm::mat4_cast(glm::normalize(glm::dquat(v[6], v[3], v[4], v[5]))));
       frames[j][3] = {v[0], v[1], v[2], 1};
     }
-    return frames;
+    const auto s = static_cast<std::size_t>(side);
+    frames[kWrist] = frames[kWrist] * recorded_from_person_[s];
+    return with_bones_of(rest_[s], frames);
   }
 
   const renderer::HandShape& shape() const override { return shape_; }
 
  private:
+  RecordedMotion(const Recording& recording, const config::Twin& settings,
+                 const renderer::HandShape& recorded)
+      : speed_(settings.speed), shape_(person_of(recorded, settings.shape, settings.seed)) {
+    for (const Side side : {Side::left, Side::right}) {
+      const auto s = static_cast<std::size_t>(side);
+      rest_[s] = rest_pose(side, shape_);
+      recorded_from_person_[s] =
+          glm::mat4(palm_axes(rest_pose(side, recorded)) * glm::transpose(palm_axes(rest_[s])));
+      if (!recording.hands[s].empty()) hands_[s] = spline_of(recording.time_ns, recording.hands[s]);
+    }
+  }
+
   double speed_;
   renderer::HandShape shape_;
+  std::array<JointFrames, 2> rest_{};
+  std::array<glm::mat4, 2> recorded_from_person_{};  ///< axes of the wrist
   std::array<std::optional<Spline>, 2> hands_;
 };
 
