@@ -93,8 +93,8 @@ std::vector<Answer> run_all(const std::vector<NamedModel>& models, renderer::Gre
 }
 
 Result<void> run_motion(const std::vector<NamedModel>& models, const std::string& motion, int count,
-                        std::uint64_t seed) {
-  auto trials = Trials::open(motion, seed);
+                        std::uint64_t seed, const std::string& mesh) {
+  auto trials = Trials::open(motion, seed, mesh);
   if (!trials) return tl::make_unexpected(trials.error());
   for (int i = 0; i < count; ++i) {
     const auto trial = trials->make(i, count);
@@ -169,6 +169,7 @@ int main(int argc, char** argv) try {
   std::string executor(config::word_of(options.executor));
   std::vector<std::string> names = all_models(), motions, pictures;
   int count = 200;
+  std::string mesh = config::TwinShape{}.mesh;
   CLI::App app{
       "Runs landmark models on renders of motions and on real pictures; prints JSON lines for "
       "evaluate.py."};
@@ -179,6 +180,8 @@ int main(int argc, char** argv) try {
                  "The file of handcast's network, if not the one that comes with handcast");
   app.add_option("--models", options.folder, "The folder of MediaPipe's files");
   app.add_option("--motion", motions, "Folders of recordings of a left hand, or builtin:NAME");
+  app.add_option("--mesh", mesh, "The flesh that the renders show, as twin.shape.mesh")
+      ->capture_default_str();
   app.add_option("--picture", pictures,
                  "Pictures NAME_camera.png of a left hand, with NAME_joints_2d_left.npy beside "
                  "them");
@@ -193,7 +196,7 @@ int main(int argc, char** argv) try {
   Result<void> done;
   if (!models) done = tl::make_unexpected(models.error());
   for (std::size_t i = 0; done && i < motions.size(); ++i)
-    done = run_motion(*models, motions[i], count, i + 1);
+    done = run_motion(*models, motions[i], count, i + 1, mesh);
   for (std::size_t i = 0; done && i < pictures.size(); ++i)
     done = run_picture(*models, pictures[i], drawings);
   if (!done) fmt::print(stderr, "handcast-evaluate-landmarks: {}\n", done.error().what);

@@ -64,12 +64,25 @@ static Result<double> duration_of(const std::string& motion) {
   return ns_to_seconds(recording->time_ns.back());
 }
 
-Result<Trials> Trials::open(const std::string& motion, std::uint64_t seed) {
+/// The flesh of a careful installation (docs/method.md#twin).
+static config::TwinShape flesh_of_others(const std::string& mesh) {
+  config::TwinShape shape;
+  shape.mesh = mesh;
+  shape.bone_width_spread = shape.thickness_spread = shape.taper_spread = 0.08;
+  shape.roll_deg = 7;
+  shape.skinning = config::TwinSkinning::dual_quaternion;
+  shape.bulge = 0.15;
+  return shape;
+}
+
+Result<Trials> Trials::open(const std::string& motion, std::uint64_t seed,
+                            const std::string& mesh) {
   const auto duration_s = duration_of(motion);
   if (!duration_s) return tl::make_unexpected(duration_s.error());
   config::Rig rig;
   rig.twin.motion = motion;
   rig.twin.seed = static_cast<int>(kPersonSeed + seed);
+  if (mesh != config::TwinShape{}.mesh) rig.twin.shape = flesh_of_others(mesh);
   const calib::Calibration calibration = calib::reference_rig();
   auto world = twin::Twin::create(rig, calibration);
   if (!world) return tl::make_unexpected(world.error());

@@ -27,8 +27,10 @@ struct Trial {
 /// No training image shows the motion or the person of a recording. One thread.
 class Trials {
  public:
-  /// Errors: those of Twin::create.
-  static Result<Trials> open(const std::string& motion, std::uint64_t seed);
+  /// `mesh`: whose flesh is shown, as `twin.shape.mesh`. Any but our own mesh has widths of its
+  /// own. Errors: those of Twin::create.
+  static Result<Trials> open(const std::string& motion, std::uint64_t seed,
+                             const std::string& mesh = "handcast");
   /// Picture `i` of `count`; empty if there is no hand at that time.
   std::optional<Trial> make(int i, int count);
 
