@@ -31,22 +31,27 @@ std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedP
   return sum / static_cast<float>(count);
 }
 
-bool exchanged(const msg::HandLandmarks& seen, const ExpectedPoints& expected, int a, int b) {
+/// What an exchange of two fingers leaves of their distance from the expected places, as a share.
+/// Empty if they cannot be compared, or one of them is at its place.
+std::optional<float> left_by_exchange(const msg::HandLandmarks& seen,
+                                      const ExpectedPoints& expected, int a, int b) {
   const auto a_a = distance_px(seen, expected, a, a), b_b = distance_px(seen, expected, b, b);
   const auto a_b = distance_px(seen, expected, a, b), b_a = distance_px(seen, expected, b, a);
-  return a_a && b_b && a_b && b_a && std::min(*a_a, *b_b) > kFar_px &&
-         *a_b + *b_a < kCloser * (*a_a + *b_b);
+  if (!a_a || !b_b || !a_b || !b_a || std::min(*a_a, *b_b) <= kFar_px) return std::nullopt;
+  return (*a_b + *b_a) / (*a_a + *b_b);
 }
 
 }  // namespace
 
 msg::HandLandmarks FingerOrder::mended(std::int64_t origin_ns, const msg::HandLandmarks& seen,
-                                       const ExpectedPoints& expected) {
+                                       const ExpectedPoints& expected,
+                                       const ExpectedPoints& by_tracker) {
   msg::HandLandmarks mended = seen;
-  bool wrong = false;
+  bool wrong = false, trackers_too = true;
   for (int a = 0; a < kFingers; ++a)
     for (int b = a + 1; b < kFingers; ++b) {
-      if (!exchanged(mended, expected, a, b)) continue;
+      if (left_by_exchange(mended, expected, a, b).value_or(1) >= kCloser) continue;
+      trackers_too = trackers_too && left_by_exchange(mended, by_tracker, a, b).value_or(1) < 1;
       std::swap_ranges(&mended.points[first_of(a)], &mended.points[first_of(a)] + kJointsOfFinger,
                        &mended.points[first_of(b)]);
       wrong = true;
@@ -56,7 +61,7 @@ msg::HandLandmarks FingerOrder::mended(std::int64_t origin_ns, const msg::HandLa
     return seen;
   }
   if (!wrong_since_ns_) wrong_since_ns_ = origin_ns;
-  return origin_ns - *wrong_since_ns_ < kPatience_ns ? mended : seen;
+  return trackers_too || origin_ns - *wrong_since_ns_ < kPatience_ns ? mended : seen;
 }
 
 }  // namespace handcast::renderer

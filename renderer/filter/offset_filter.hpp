@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
+
 #include "renderer/filter/filters.hpp"
 #include "renderer/filter/finger_order.hpp"
+#include "renderer/filter/finger_steps.hpp"
 #include "renderer/filter/landmarks_alone.hpp"
 #include "renderer/filter/shared_offset.hpp"
 
@@ -23,17 +26,22 @@ class OffsetFilter : public CarryFilter {
     const bool with_tracker = then && !silent_ && !jumped_;
     const auto expected =
         with_tracker ? expected_with(*then, origin_ns) : expected_alone(origin_ns);
-    const auto seen = fingers_.mended(origin_ns, reported, expected);
+    const auto common = with_tracker ? expected_in_common(*then, origin_ns) : ExpectedPoints{};
+    const auto seen = order_.mended(origin_ns, reported, expected, common);
     if (with_tracker && ++compared_ > kGuessed && contradicted(origin_ns, seen, expected)) {
       doubted_until_ns_ = origin_ns + kDoubt_ns;
       jumped_ = true;
     }
+    FingerSteps::Verdicts verdicts{};
+    if (with_tracker && !jumped_)
+      verdicts = steps_.judge(origin_ns, seen, expected, common, expected_alone(origin_ns));
     alone_.detection(origin_ns, seen);
     sigmas_.detection(seen);
     if (!then || silent_ || origin_ns < doubted_until_ns_) return;
     for (int i = 0; i < kLandmarks; ++i)
       if (was_seen(seen.points[i]))
-        update(tracks_[i], origin_ns, position_px(seen.points[i]) - (*then)[i]);
+        take(i == 0 ? FingerSteps::Verdict::usual : verdicts[(i - 1) / 4], tracks_[i], origin_ns,
+             position_px(seen.points[i]) - (*then)[i]);
   }
 
   void tracker_is(Tracker state) override { silent_ = state == Tracker::silent; }
@@ -83,6 +91,11 @@ class OffsetFilter : public CarryFilter {
   /// detection.
   static constexpr float kDisagreement_px = 10, kDrift_px_s = 100;
 
+  void take(FingerSteps::Verdict verdict, Track& track, std::int64_t time_ns, glm::vec2 offset_px) {
+    if (verdict == FingerSteps::Verdict::usual) update(track, time_ns, offset_px);
+    if (verdict == FingerSteps::Verdict::anew) begin(track, time_ns, offset_px);
+  }
+
   void forget_offsets() {
     for (Track& track : tracks_) track.forget();
   }
@@ -93,6 +106,26 @@ class OffsetFilter : public CarryFilter {
       expected.known[i] = tracks_[i].known();
       if (expected.known[i]) expected.px[i] = then[i] + offset_at(tracks_[i], origin_ns);
     }
+    return expected;
+  }
+
+  /// By the medians of the offsets, which a wrong finger does not move.
+  ExpectedPoints expected_in_common(const LandmarkPoints& then, std::int64_t origin_ns) const {
+    std::array<float, kLandmarks> x, y;
+    int count = 0;
+    for (const Track& track : tracks_) {
+      if (!track.known()) continue;
+      const glm::vec2 offset = offset_at(track, origin_ns);
+      x[count] = offset.x;
+      y[count++] = offset.y;
+    }
+    ExpectedPoints expected;
+    if (count == 0) return expected;
+    std::nth_element(x.begin(), x.begin() + count / 2, x.begin() + count);
+    std::nth_element(y.begin(), y.begin() + count / 2, y.begin() + count);
+    for (int i = 0; i < kLandmarks; ++i)
+      expected.px[i] = then[i] + glm::vec2(x[count / 2], y[count / 2]);
+    expected.known.fill(true);
     return expected;
   }
 
@@ -133,7 +166,8 @@ class OffsetFilter : public CarryFilter {
 
   config::Filter settings_;
   TrackerMemory memory_;
-  FingerOrder fingers_;
+  FingerOrder order_;
+  FingerSteps steps_;
   LandmarksAlone alone_;
   LandmarkSigmas sigmas_;
   bool silent_ = false;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "renderer/filter/filters.hpp"
+
+namespace handcast::renderer {
+
+/// Judges the offsets of a finger that step by more than a tracker's error changes from one image
+/// to the next: two fingers have become one for the detector, or are two again. One thread.
+class FingerSteps {
+ public:
+  /// What is to be done with the new offsets of a finger.
+  enum class Verdict : std::uint8_t {
+    usual,  ///< no step
+    hold,   ///< the landmarks have jumped: leave them out
+    anew,   ///< begin anew from them
+  };
+  /// By finger, thumb first.
+  using Verdicts = std::array<Verdict, 5>;
+
+  /// `seen`: the landmarks of an image. `expected`: the same by the offsets so far; `common`: by
+  /// the offset that the hand has as a whole; `alone`: by the landmarks' own motion. A step that
+  /// the landmarks' own motion explains is the tracker's, and usual. One towards the common offset
+  /// begins anew; one away from it does so after it has lasted 500 ms.
+  Verdicts judge(std::int64_t origin_ns, const msg::HandLandmarks& seen,
+                 const ExpectedPoints& expected, const ExpectedPoints& common,
+                 const ExpectedPoints& alone);
+
+ private:
+  std::array<std::optional<std::int64_t>, 5> held_since_ns_{};
+};
+
+}  // namespace handcast::renderer
