@@ -42,6 +42,7 @@ void describe(Visitor& visitor, Predict& predict) {
 struct Skin {
   bool fit = true;
   bool widths = true;
+  bool turn = true;
 };
 
 template <class Visitor>
@@ -52,6 +53,9 @@ void describe(Visitor& visitor, Skin& skin) {
   visitor.field(
       "widths", skin.widths,
       "With fit: estimate the widths of the person's fingers from the mask of the camera image.");
+  visitor.field("turn", skin.turn,
+                "Learn from the landmarks by how much the tracker's hands are turned about their "
+                "wrist, and draw them turned back.");
 }
 
 /// How landmarks Q of an older image are carried to the time of the light; P are the joints of the

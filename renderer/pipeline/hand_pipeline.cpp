@@ -8,6 +8,7 @@
 #include "ipc/msg/projection.hpp"
 #include "renderer/content/textures.hpp"
 #include "renderer/correct/deform.hpp"
+#include "renderer/predict/project_landmarks.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -41,6 +42,7 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
       landmarks_(filter_of(settings), std::move(oracle)),
       ladder_(settings),
       surface_(std::move(surface)),
+      turn_(calibration),
       mover_(surface_.mesh()),
       untangler_(surface_.mesh()),
       picture_(std::move(picture)) {}
@@ -71,6 +73,8 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
                         const msg::HandLandmarks& seen) {
   if (!landmarks_.is_alone()) ladder_.detection(track_, origin_ns, seen);
   landmarks_.detection(now_ns, origin_ns, seen, track_);
+  if (!settings_.skin.turn || landmarks_.is_alone()) return;
+  if (const auto pose = track_.recent_pose(origin_ns)) turn_.learn(origin_ns, *pose, seen);
 }
 
 std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
@@ -125,8 +129,16 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
 }
 
 void HandPipeline::skin(HandFrame& frame, float shading) {
-  frame.skinned =
-      surface_.pose(frame.corrected.pose, settings_.skin, calibration_, shading, frame.presence);
+  frame.drawn_from = frame.corrected.tracker;
+  msg::HandPose pose = frame.corrected.pose;
+  if (settings_.skin.turn) {
+    const auto turned = turn_.turned(pose);
+    if (const auto joints_px = project_landmarks(calibration_, turned)) {
+      frame.drawn_from = *joints_px;
+      pose = turned;
+    }
+  }
+  frame.skinned = surface_.pose(pose, settings_.skin, calibration_, shading, frame.presence);
 }
 
 LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px) const {

@@ -18,6 +18,7 @@
 #include "renderer/predict/presence.hpp"
 #include "renderer/register/late_registration.hpp"
 #include "renderer/skin/hand_surface.hpp"
+#include "renderer/skin/hand_turn.hpp"
 
 namespace handcast::renderer {
 
@@ -31,6 +32,7 @@ struct HandFrame {
   RegisteredHand registered;       ///< result of register
   float presence = 1;              ///< share of its light, 0..1
   std::optional<Skinned> skinned;  ///< result of skin; its landings are moved by correct
+  LandmarkPoints drawn_from{};     ///< result of skin: P of the pose that was skinned
 };
 
 /// The steps for one hand, with their states. The pipeline does a step for all hands before the
@@ -85,11 +87,9 @@ class HandPipeline {
 
   /// Step skin: poses the mesh. `shading`: see HandSurface::pose().
   void skin(HandFrame& frame, float shading);
-  /// P and Q̂ in projector px: the landmarks before and after the correction.
+  /// After skin(): P and Q̂ in projector px, the landmarks before and after the correction.
   /// @{
-  LandmarkPoints from_px(const HandFrame& frame) const {
-    return to_projector(frame.corrected.tracker);
-  }
+  LandmarkPoints from_px(const HandFrame& frame) const { return to_projector(frame.drawn_from); }
   LandmarkPoints to_px(const HandFrame& frame) const {
     return to_projector(frame.registered.landmarks);
   }
@@ -128,6 +128,7 @@ class HandPipeline {
   Sight sight_;
   bool is_shown_ = false;
   HandSurface surface_;
+  HandTurn turn_;
   RungMover mover_;
   Untangler untangler_;
   MipChain picture_;

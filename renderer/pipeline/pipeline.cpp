@@ -90,7 +90,24 @@ std::span<const FrameHand> Pipeline::track(std::int64_t now_ns, std::int64_t tar
   predict(now_ns, target_ns, expected_image_ns(target_ns));
   if (last_image_) dim(target_ns);
   register_motion(target_ns);
+  if (looked_ns_) learn(*std::exchange(looked_ns_, std::nullopt), target_ns);
   return frame_hands();
+}
+
+/// Learns from the image of find_masks() as render() does, without a drawing.
+void Pipeline::learn(std::int64_t image_ns, std::int64_t target_ns) {
+  const auto is_same = [](const HandMask::Expected& then, const HandInFrame& now) {
+    return then.side == now.hand->side();
+  };
+  if (!std::ranges::equal(expected_, hands_, is_same)) return;
+  expect(image_ns);
+  mask_.advance(expected_);
+  for (auto& [hand, frame] : hands_) {
+    hand->skin(frame, 0);
+    hand->correct(frame);
+  }
+  learn_widths(target_ns);
+  for (auto& [hand, frame] : hands_) frame.skinned.reset();
 }
 
 void Pipeline::look(const TimedImage& camera) {
@@ -98,6 +115,7 @@ void Pipeline::look(const TimedImage& camera) {
     return;
   find_masks(camera);
   register_late(camera);
+  looked_ns_ = camera.origin_ns;
 }
 
 Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera) {

@@ -57,9 +57,9 @@ class Pipeline {
   std::span<const FrameHand> track(std::int64_t now_ns, std::int64_t target_ns);
 
   /// Takes the image of a frame that is not drawn, because late registration follows the hands
-  /// through all images. Call it before track() of that frame; render() takes its own image. Not
-  /// needed if looks() is false. Ignores an image that is not new, or is more than 50 ms later than
-  /// the `now_ns` of the last frame.
+  /// through all images and the person's widths are learned from them. Call it before track() of
+  /// that frame; render() takes its own image. Not needed if looks() is false. Ignores an image
+  /// that is not new, or is more than 50 ms later than the `now_ns` of the last frame.
   void look(const TimedImage& camera);
   /// True if look() has an effect.
   bool looks() const { return late_.on(); }
@@ -103,6 +103,7 @@ class Pipeline {
   Rect advance_masks(const TimedImage& camera);
   int correct();
   int correct_by_grid();
+  void learn(std::int64_t image_ns, std::int64_t target_ns);
   void learn_widths(std::int64_t target_ns);
   std::uint32_t rungs() const;
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
@@ -126,6 +127,8 @@ class Pipeline {
   bool shows_surface_ = false;
   std::int64_t now_ns_ = 0;             ///< of the last frame
   std::optional<ImageUse> last_image_;  ///< of the last drawn frame, if it had an image
+
+  std::optional<std::int64_t> looked_ns_;  ///< exposure of the image of look(), until track()
 
   // Of one frame; members so that their memory is reused.
   std::vector<HandInFrame> hands_;            ///< the hands of the frame

@@ -84,14 +84,21 @@ glm::mat4 onto(const Span& rest, const Span& posed, const glm::mat3& turn, float
   return posed_from_rest;
 }
 
-/// The rotation of the palm that maps the direction of the learned knuckles' middle to that of the
-/// seen ones.
-glm::mat3 turn_between(const std::array<glm::vec3, 4>& learned,
-                       const std::array<glm::vec3, 4>& seen) {
-  const glm::vec3 from = learned[0] + learned[1] + learned[2] + learned[3],
-                  to = seen[0] + seen[1] + seen[2] + seen[3];
-  if (glm::length(from) < kShortest_m || glm::length(to) < kShortest_m) return glm::mat3(1);
-  return aim(glm::normalize(from), glm::normalize(to));
+/// The axes of the palm: across the knuckles, out of the back, and from the wrist to the knuckles.
+glm::mat3 palm_axes(const JointFrames& frames) {
+  glm::vec3 middle(0);
+  for (const int knuckle : kKnuckles) middle += 0.25f * origin(frames[knuckle]);
+  const glm::vec3 length = glm::normalize(middle - origin(frames[kWrist])),
+                  across = origin(frames[kKnuckles.front()]) - origin(frames[kKnuckles.back()]),
+                  side = glm::normalize(across - glm::dot(across, length) * length);
+  return {side, glm::cross(length, side), length};
+}
+
+/// The rotation of the palm from rest to pose, by its knuckles: trackers define the axes of the
+/// wrist differently. If the palm is not plausible, that of the wrist's axes.
+glm::mat3 palm_turn(const JointFrames& rest, const JointFrames& posed) {
+  const glm::mat3 turn = palm_axes(posed) * glm::transpose(palm_axes(rest));
+  return std::isfinite(turn[0].x + turn[1].x) ? turn : turn_of(rest, posed, kWrist);
 }
 
 bool is_finite(const JointFrames& frames) {
@@ -147,10 +154,8 @@ JointFrames BoneFit::operator()(const JointFrames& posed) const {
     reach(kKnuckles[finger] - 1, {base, origin(posed[kKnuckles[finger]])});
   }
   // Wrist and forearm rotate with the knuckles but are not stretched: they have no far joint.
-  const glm::mat3 turn = turn_between(person.knuckle, seen.knuckle);
+  const glm::mat3 whole = palm_turn(rest_, posed) * width;
   for (const int joint : {kPalm, kWrist}) {
-    const glm::mat3 whole =
-        glm::mat3(posed[kWrist]) * turn * glm::transpose(glm::mat3(rest_[kWrist])) * width;
     glm::mat4 posed_from_rest(whole);
     posed_from_rest[3] = glm::vec4(origin(posed[kWrist]) - whole * origin(rest_[kWrist]), 1);
     fitted[joint] = posed_from_rest * rest_[joint];

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/skin/hand_turn.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+constexpr int kWrist = 1;
+constexpr int kShared = 4;              ///< shift, scale and roll, which differ from image to image
+constexpr int kUnknowns = kShared + 2;  ///< and the turns about the image's axes
+constexpr double kLeastSigma_px = 5;    ///< of a landmark: what lasts is more than its sigma
+constexpr double kLasting_s = 0.4;      ///< errors of landmarks are independent after this
+constexpr double kMemory_s = 10;
+constexpr double kPrior_rad = 0.05;
+constexpr double kMost_rad = 0.2;
+constexpr double kNearest_m = 0.05;
+
+using Row = std::array<double, kUnknowns>;
+using Normal = std::array<Row, kUnknowns>;
+
+glm::dvec3 place(const msg::HandPose& pose, int joint) {
+  const auto& [x, y, z] = pose.joints[static_cast<std::size_t>(joint)].position_m;
+  return {x, y, z};
+}
+
+/// Gauss-Jordan elimination of the first kShared unknowns: what remains are the normal equations of
+/// the others. False if they are not determined.
+bool eliminate_shared(Normal& normal, Row& right) {
+  for (int k = 0; k < kShared; ++k) {
+    if (!(normal[k][k] > 1e-9)) return false;
+    for (int i = k + 1; i < kUnknowns; ++i) {
+      const double share = normal[i][k] / normal[k][k];
+      for (int j = k; j < kUnknowns; ++j) normal[i][j] -= share * normal[k][j];
+      right[i] -= share * right[k];
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
+                     const msg::HandLandmarks& seen) {
+  const double since_s = std::clamp(ns_to_seconds(origin_ns - last_ns_), 0.0, kLasting_s);
+  last_ns_ = origin_ns;
+  const auto in_camera = [&](int joint) {
+    return glm::dvec3(calibration_.camera_from_tracker * glm::dvec4(place(pose, joint), 1));
+  };
+  const glm::dvec3 wrist = in_camera(kWrist);
+  const auto& camera = calibration_.camera;
+  Normal normal{};
+  Row right{};
+  for (int i = 0; i < msg::kLandmarks; ++i) {
+    const glm::dvec3 joint = in_camera(msg::kJointOfLandmark[i]);
+    const auto& point = seen.points[i];
+    if (point.confidence <= 0 || !(joint.z > kNearest_m) || !(wrist.z > kNearest_m)) continue;
+    const glm::dvec2 from = camera.project(joint), way = from - camera.project(wrist),
+                     offset = glm::dvec2(point.x_px, point.y_px) - from;
+    const double sigma = std::hypot(kLeastSigma_px, point.sigma_px), weight = 1 / (sigma * sigma);
+    // The displacement in the image by a small turn: of the cross product with `arm`, and of the
+    // change of depth.
+    const glm::dvec3 arm = (joint - wrist) / joint.z;
+    const glm::dvec2 ray = from - glm::dvec2(camera.cx_px, camera.cy_px);
+    const std::array<Row, 2> rows{
+        Row{1, 0, way.x, -way.y, -ray.x * arm.y, camera.fx_px * arm.z + ray.x * arm.x},
+        Row{0, 1, way.y, way.x, -camera.fy_px * arm.z - ray.y * arm.y, ray.y * arm.x}};
+    for (int axis = 0; axis < 2; ++axis)
+      for (int a = 0; a < kUnknowns; ++a) {
+        for (int b = 0; b < kUnknowns; ++b) normal[a][b] += weight * rows[axis][a] * rows[axis][b];
+        right[a] += weight * rows[axis][a] * offset[axis];
+      }
+  }
+  if (!eliminate_shared(normal, right)) return;
+  const double keep = std::exp(-since_s / kMemory_s), share = since_s / kLasting_s;
+  information_ *= keep;
+  weighted_ *= keep;
+  for (int a = 0; a < 2; ++a) {
+    for (int b = 0; b < 2; ++b) information_[a][b] += share * normal[kShared + a][kShared + b];
+    weighted_[a] += share * right[kShared + a];
+  }
+  const glm::dmat3 prior(1 / (kPrior_rad * kPrior_rad));
+  angle_rad_ = glm::inverse(information_ + prior) * weighted_;
+  if (!(glm::length(angle_rad_) < kMost_rad)) angle_rad_ *= kMost_rad / glm::length(angle_rad_);
+}
+
+msg::HandPose HandTurn::turned(const msg::HandPose& pose) const {
+  const double angle = glm::length(angle_rad_);
+  if (!(angle > 1e-6)) return pose;
+  const glm::dmat3 tracker_from_camera =
+      glm::transpose(glm::dmat3(calibration_.camera_from_tracker));
+  const glm::dmat3 turn(
+      glm::rotate(glm::dmat4(1), angle, tracker_from_camera * (angle_rad_ / angle)));
+  const glm::quat quaternion(glm::quat_cast(turn));
+  const glm::dvec3 wrist = place(pose, kWrist);
+  msg::HandPose result = pose;
+  for (int j = 0; j < msg::kJoints; ++j) {
+    const glm::vec3 to(wrist + turn * (place(pose, j) - wrist));
+    auto& joint = result.joints[static_cast<std::size_t>(j)];
+    joint.position_m = {to.x, to.y, to.z};
+    const auto& [x, y, z, w] = joint.orientation_xyzw;
+    const glm::quat q = quaternion * glm::quat(w, x, y, z);
+    joint.orientation_xyzw = {q.x, q.y, q.z, q.w};
+  }
+  return result;
+}
+
+}  // namespace handcast::renderer
