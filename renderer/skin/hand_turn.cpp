@@ -12,6 +12,8 @@
 namespace handcast::renderer {
 namespace {
 
+/// The landmarks that detectors and trackers define alike: the outer two joints of each finger.
+constexpr std::array kDefinedAlike{3, 4, 7, 8, 11, 12, 15, 16, 19, 20};
 constexpr int kWrist = 1;
 constexpr int kShared = 4;              ///< shift, scale and roll, which differ from image to image
 constexpr int kUnknowns = kShared + 2;  ///< and the turns about the image's axes
@@ -57,7 +59,7 @@ void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   const auto& camera = calibration_.camera;
   Normal normal{};
   Row right{};
-  for (int i = 0; i < msg::kLandmarks; ++i) {
+  for (const int i : kDefinedAlike) {
     const glm::dvec3 joint = in_camera(msg::kJointOfLandmark[i]);
     const auto& point = seen.points[i];
     if (point.confidence <= 0 || !(joint.z > kNearest_m) || !(wrist.z > kNearest_m)) continue;

@@ -10,10 +10,10 @@
 namespace handcast::renderer {
 
 /// Learns by how much a tracker's hands are turned about their wrist, from the landmarks that the
-/// camera sees. In one image, joints that are nearer to the camera than others tell a turn from a
-/// shift: the landmarks' offsets grow with the joints' depth. The tracker's other errors look the
-/// same in one pose and not in the next, so a turn is believed as it is seen in many poses: an
-/// information filter over some seconds, with the prior that there is none. See
+/// camera sees. In one image, outer joints of the fingers that are nearer to the camera than others
+/// tell a turn from a shift: the landmarks' offsets grow with the joints' depth. The tracker's
+/// other errors look the same in one pose and not in the next, so a turn is believed as it is seen
+/// in many poses: an information filter over some seconds, with the prior that there is none. See
 /// `docs/method.md#skin`. One thread.
 class HandTurn {
  public:
