@@ -139,22 +139,23 @@ void BoneFit::learn(std::int64_t origin_ns, const JointFrames& posed) {
 JointFrames BoneFit::operator()(const JointFrames& posed) const {
   const Person seen = person_in(posed);
   const Person& person = learned_ > 0 ? person_ : seen;
-  const float width = person.size * width_;
+  const float finger_width = person.size * width_,
+              palm_width = person.size * (1 + 0.5f * (width_ - 1));
   JointFrames fitted = posed;
-  const auto reach = [&](int joint, const Span& to) {
+  const auto reach = [&](int joint, const Span& to, float width) {
     fitted[joint] =
         onto(span(rest_, joint, joint + 1), to, turn_of(rest_, posed, joint), width) * rest_[joint];
   };
   for (int joint = kWrist + 1; joint < kJoints; ++joint)
-    if (far_joint(joint) > 0) reach(joint, span(posed, joint, joint + 1));
+    if (far_joint(joint) > 0) reach(joint, span(posed, joint, joint + 1), finger_width);
   for (std::size_t finger = 0; finger < seen.base.size(); ++finger) {
     const glm::mat4 seen_from_person = onto({glm::vec3(0), person.knuckle[finger]},
                                             {glm::vec3(0), seen.knuckle[finger]}, glm::mat3(1), 1);
     const glm::vec3 base(posed[kWrist] * seen_from_person * glm::vec4(person.base[finger], 1));
-    reach(kKnuckles[finger] - 1, {base, origin(posed[kKnuckles[finger]])});
+    reach(kKnuckles[finger] - 1, {base, origin(posed[kKnuckles[finger]])}, palm_width);
   }
   // Wrist and forearm rotate with the knuckles but are not stretched: they have no far joint.
-  const glm::mat3 whole = palm_turn(rest_, posed) * width;
+  const glm::mat3 whole = palm_turn(rest_, posed) * palm_width;
   for (const int joint : {kPalm, kWrist}) {
     glm::mat4 posed_from_rest(whole);
     posed_from_rest[3] = glm::vec4(origin(posed[kWrist]) - whole * origin(rest_[kWrist]), 1);

@@ -27,7 +27,8 @@ class BoneFit {
   /// samples the person is learned anew.
   void learn(std::int64_t origin_ns, const JointFrames& posed);
 
-  /// Multiplies every width by `factor` from now on.
+  /// Multiplies the fingers' widths by `factor` from now on, and the palm's by half as much: its
+  /// breadth and theirs go together, but not wholly.
   void widen(float factor) { width_ = factor; }
 
   /// The frames to skin with, in the space of `posed`. Their scale is not 1 in general.

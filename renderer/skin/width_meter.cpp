@@ -22,6 +22,9 @@ constexpr float kFastest_px_s = 400;  ///< faster hands are blurred and their ma
 constexpr float kLeast = 0.75f, kMost = 1.35f;
 constexpr int kMemory = 600, kEnough = 12;  ///< measurements of one bone
 constexpr std::size_t kFewestBones = 3;
+/// Limits of the factor. What is drawn too wide is cut off by the mask; what is drawn too thin must
+/// be filled, so fingers are hardly made thinner.
+constexpr float kThinnest = 0.93f, kThickest = 1.2f;
 constexpr float kStep = 0.005f;  ///< largest change of the factor per frame, so it does not jump
 constexpr std::int64_t kForget_ns = 1'000'000'000;
 
@@ -122,17 +125,17 @@ void WidthMeter::forget() {
   }
 }
 
-/// The lower third of the bones that were measured often enough, because disturbances (a neighbour,
-/// a tilt) make a measurement larger. Empty if the bones are too few to outvote a wrong one.
+/// The median of the bones that were measured often enough, within the limits. Empty if the bones
+/// are too few to outvote a wrong one.
 std::optional<float> WidthMeter::typical() const {
   std::array<float, kBones.size()> medians;
   std::size_t count = 0;
   for (const Bone& bone : bones_)
     if (bone.count >= kEnough) medians[count++] = bone.median();
   if (count < kFewestBones) return std::nullopt;
-  const auto lower = medians.begin() + count / 3;
-  std::nth_element(medians.begin(), lower, medians.begin() + count);
-  return *lower;
+  const auto middle = medians.begin() + count / 2;
+  std::nth_element(medians.begin(), middle, medians.begin() + count);
+  return std::clamp(*middle, kThinnest, kThickest);
 }
 
 void WidthMeter::Bone::note(float factor) {

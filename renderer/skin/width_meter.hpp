@@ -14,10 +14,10 @@ namespace handcast::renderer {
 
 /// Measures how much wider a person's fingers are than the drawn ones, from the camera's mask:
 /// across the middle of each middle phalanx that is seen from the side, the mask is as wide as the
-/// finger. (The paper names the variation between users as a limitation.) The factor is the lower
-/// third of the bones' medians over the last seconds, so that neither a finger that touches another
-/// now and then nor two that touch for long disturb it. After a second without measure() it is
-/// learned anew; it is kept until enough is measured again, so the light does not jump. One thread.
+/// finger. (The paper names the variation between users as a limitation.) The factor is the median
+/// of the bones' medians over the last seconds, so that neither a finger that touches another now
+/// and then nor two that touch for long disturb it. After a second without measure() it is learned
+/// anew; it is kept until enough is measured again, so the light does not jump. One thread.
 class WidthMeter {
  public:
   /// For the fingers of `mesh`.
@@ -28,7 +28,7 @@ class WidthMeter {
   void measure(std::int64_t time_ns, std::span<const glm::vec2> landings_px,
                const LandmarkPoints& landmarks_px, GreyView mask);
 
-  /// The factor for the widths of the next frame, 0.75..1.35; 1 until enough is measured. It
+  /// The factor for the widths of the next frame, 0.93..1.2; 1 until enough is measured. It
   /// changes by at most 0.005 per frame.
   float factor() const { return factor_; }
 
