@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/filter/finger_steps.hpp"
 
+#include <algorithm>
+
 namespace handcast::renderer {
 namespace {
 
@@ -12,27 +14,32 @@ constexpr float kSigmas = 2;  ///< a step must also exceed this many sigmas of t
 /// common offset it must lead.
 constexpr float kExplained = 0.5f, kNearer = 0.7f;
 
-/// The distance that the landmarks of a finger have in common from the expected ones. Empty if
-/// there is none to compare.
-std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected,
-                                 int finger) {
-  glm::vec2 sum(0);
-  int count = 0;
-  for (int i = 1 + kJointsOfFinger * finger; count < kJointsOfFinger; ++i, ++count) {
-    if (!was_seen(seen.points[i]) || !expected.known[i]) return std::nullopt;
-    sum += position_px(seen.points[i]) - expected.px[i];
-  }
-  return glm::length(sum) / kJointsOfFinger;
+/// The distances of a finger's landmarks in two places, the second smallest of the four: a single
+/// landmark is not the finger, and the knuckle of a wrong finger may be right.
+float typical_px(std::array<float, kJointsOfFinger> distances_px) {
+  std::ranges::nth_element(distances_px, distances_px.begin() + 1);
+  return distances_px[1];
 }
 
-/// The distance between two expectations of a finger.
-float apart_px(const ExpectedPoints& a, const ExpectedPoints& b, int finger) {
-  glm::vec2 sum(0);
+/// How far the landmarks of a finger are from the expected ones. Empty if one cannot be compared.
+std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected,
+                                 int finger) {
+  std::array<float, kJointsOfFinger> distances_px;
   for (int k = 0; k < kJointsOfFinger; ++k) {
     const int i = 1 + kJointsOfFinger * finger + k;
-    sum += a.px[i] - b.px[i];
+    if (!was_seen(seen.points[i]) || !expected.known[i]) return std::nullopt;
+    distances_px[k] = glm::distance(position_px(seen.points[i]), expected.px[i]);
   }
-  return glm::length(sum) / kJointsOfFinger;
+  return typical_px(distances_px);
+}
+
+float apart_px(const ExpectedPoints& a, const ExpectedPoints& b, int finger) {
+  std::array<float, kJointsOfFinger> distances_px;
+  for (int k = 0; k < kJointsOfFinger; ++k) {
+    const int i = 1 + kJointsOfFinger * finger + k;
+    distances_px[k] = glm::distance(a.px[i], b.px[i]);
+  }
+  return typical_px(distances_px);
 }
 
 float sigma_px(const msg::HandLandmarks& seen, int finger) {

@@ -16,8 +16,9 @@ constexpr std::array<int, 5> kBones{2, 6, 10, 14, 18};
 constexpr float kFrom = 0.15f, kTo = 0.85f;
 constexpr float kLeastWeight = 0.5f;  ///< of a bone in its vertices
 constexpr std::size_t kFewestEdges = 20;
-constexpr float kThinnest_px = 4;     ///< bones smaller than this are not measured
-constexpr float kShortest = 1.3f;     ///< length / drawn width; shorter bones are seen from the end
+constexpr float kThinnest_px = 4;  ///< bones smaller than this are not measured
+constexpr float kShortest =
+    1.3f;  ///< length / width as modelled; shorter bones are seen from the end
 constexpr float kFastest_px_s = 400;  ///< faster hands are blurred and their masks lag
 constexpr float kLeast = 0.75f, kMost = 1.35f;
 constexpr int kMemory = 600, kEnough = 12;  ///< measurements of one bone
@@ -110,7 +111,7 @@ std::optional<float> WidthMeter::ratio_at(const Bone& bone, std::span<const glm:
     high = std::max(high, side);
   }
   const float drawn_px = high - low;
-  if (!(drawn_px > kThinnest_px) || length_px < kShortest * drawn_px) return std::nullopt;
+  if (!(drawn_px > kThinnest_px) || length_px * factor_ < kShortest * drawn_px) return std::nullopt;
   const auto left_px = reach_px(mask, middle, across, drawn_px),
              right_px = reach_px(mask, middle, -across, drawn_px);
   if (!left_px || !right_px) return std::nullopt;

@@ -297,7 +297,7 @@ TEST(Blending, AHandThatComesBackIsNotDraggedFromWhereItLeft) {
   EXPECT_NEAR((*filter->at(480 * kMs, 484 * kMs, elsewhere))[3].x - elsewhere[3].x, 10, 0.5);
 }
 
-TEST_P(OffsetFilter, AFingerTakenForAnotherIsPutRightButBelievedInTheEnd) {
+TEST_P(OffsetFilter, AFingerTakenForAnotherIsPutRightAsLongAsTheTrackerAgrees) {
   if (std::string(GetParam()) == "paper")
     GTEST_SKIP() << "the filter \"paper\" does not reorder fingers";
   const auto filter = make_landmark_filter(settings(GetParam()));
@@ -313,13 +313,10 @@ TEST_P(OffsetFilter, AFingerTakenForAnotherIsPutRightButBelievedInTheEnd) {
   for (int ms = 0; ms <= 320; ms += 16)
     filter->detection(ms * kMs, (ms - 16) * kMs, apart(), still.function());
   const float right = offset_at(*filter, still, 320 * kMs, 6).x;
-  for (int ms = 336; ms < 800; ms += 16) {
+  for (int ms = 336; ms < 2000; ms += 16) {
     filter->detection(ms * kMs, (ms - 16) * kMs, wrong, still.function());
     ASSERT_NEAR(offset_at(*filter, still, ms * kMs, 6).x, right, 0.5) << ms;
   }
-  for (int ms = 800; ms < 2000; ms += 16)
-    filter->detection(ms * kMs, (ms - 16) * kMs, wrong, still.function());
-  EXPECT_NEAR(offset_at(*filter, still, 2000 * kMs, 6).x, right + 72, 3);
 }
 
 TEST(OffsetKalman, WhenTheTrackerMovesItsHandUnnoticedTheNextDetectionIsBelieved) {

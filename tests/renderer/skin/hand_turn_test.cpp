@@ -37,7 +37,7 @@ class HandTurnTest : public testing::Test {
  protected:
   const calib::Calibration calibration_;
   std::mt19937 random_{7};
-  std::int64_t time_ns_ = 0;
+  std::int64_t time_ns_ = 10'000'000'000;
 
   double normal(double deviation) { return std::normal_distribution<>(0, deviation)(random_); }
 
@@ -114,8 +114,8 @@ TEST_F(HandTurnTest, ManyImagesOfOnePoseCountAsFew) {
   const glm::vec3 wrong(0.06f, 0, 0);
   HandTurn many(calibration_), few(calibration_);
   const View both = view(0, wrong);
-  for (int i = 0; i < 200; ++i) many.learn(i * 1'000'000, both.reported, both.seen);
-  few.learn(0, both.reported, both.seen);
+  for (int i = 0; i < 200; ++i) many.learn(time_ns_ + i * 1'000'000, both.reported, both.seen);
+  few.learn(time_ns_, both.reported, both.seen);
   EXPECT_LT(std::abs(many.angle_rad().x), 2 * std::abs(few.angle_rad().x));
 }
 

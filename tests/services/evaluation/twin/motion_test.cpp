@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "services/evaluation/twin/finger_pose.hpp"
 #include "services/evaluation/twin/recording.hpp"
 #include "tests/services/evaluation/twin/world.hpp"
 
@@ -336,7 +337,14 @@ TEST(Motion, AnUnknownNameListsTheKnownOnes) {
               HasSubstr("timestamps.npy"));
 }
 
-TEST(RecordedMotion, PassesThroughEverySampleOnceUnderWay) {
+/// The phalanges of a hand: each joint with another one behind it, from the knuckles on.
+template <class Visit>
+void for_each_phalanx(const Visit& visit) {
+  for (int finger = 0; finger < kFingers; ++finger)
+    for (int i = 0; i < bends_of(finger); ++i) visit(bend_joint(finger, i));
+}
+
+TEST(RecordedMotion, HasTheDirectionsOfEverySampleOnceUnderWay) {
   HANDCAST_NEEDS_RECORDINGS();
   const auto folder = outside_data() / "lmc" / "rotation";
   const auto recording = read_recording(folder);
@@ -346,10 +354,30 @@ TEST(RecordedMotion, PassesThroughEverySampleOnceUnderWay) {
     const auto expected = renderer::frames_of(recording->hands[0][i]);
     const auto found =
         *motion->at(Side::left, static_cast<double>(recording->time_ns[i]) * 1e-9 + kLag_s);
-    for (int j = 0; j < msg::kJoints; ++j) {
-      EXPECT_LT(glm::distance(place(expected[j]), place(found[j])), 2e-6);
-      EXPECT_LT(glm::distance(glm::vec3(expected[j][1]), glm::vec3(found[j][1])), 1e-4f);
-    }
+    EXPECT_LT(glm::distance(place(expected[1]), place(found[1])), 2e-6);
+    for_each_phalanx([&](int j) {
+      const auto way = [j](const auto& frames) {
+        return glm::normalize(place(frames[j + 1]) - place(frames[j]));
+      };
+      EXPECT_LT(glm::distance(way(expected), way(found)), 1e-3) << renderer::kJointNames[j];
+      EXPECT_LT(glm::distance(way(found), -glm::normalize(glm::dvec3(found[j][2]))), 1e-3);
+    });
+  }
+}
+
+TEST(RecordedMotion, HasBonesOfConstantLength) {
+  HANDCAST_NEEDS_RECORDINGS();
+  const auto motion = motion_of((outside_data() / "lmc" / "deformation").string());
+  const auto length = [](const auto& frames, int from, int to) {
+    return glm::distance(place(frames[from]), place(frames[to]));
+  };
+  const auto first = *motion->at(Side::left, 0.5);
+  for (double t = 0.6; t < 4; t += 0.1) {
+    const auto now = *motion->at(Side::left, t);
+    for_each_phalanx(
+        [&](int j) { EXPECT_NEAR(length(now, j, j + 1), length(first, j, j + 1), 1e-5); });
+    for (const int knuckle : {7, 12, 17, 22})
+      EXPECT_NEAR(length(now, 1, knuckle), length(first, 1, knuckle), 1e-5);
   }
 }
 
