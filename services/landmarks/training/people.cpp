@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/training/people.hpp"
 
-#include <limits>
-
 #include "services/evaluation/twin/surface.hpp"
 
 namespace handcast::landmarks::training {
@@ -37,63 +35,6 @@ HandShape draw_shape(Dice& dice) {
   shape.metacarpal_mm[0] += draw_shift(dice, 4);
   shape.proximal_mm[0] += draw_shift(dice, 3);
   return shape;
-}
-
-/// Moves the joints in the flesh, whose tips stay: rigs and trackers disagree by up to a
-/// centimetre, most of all along the fingers. The wrist moves by `wrist_mm`.
-HandShape with_other_joints(Dice& dice, HandShape shape, const glm::vec3& wrist_mm) {
-  const auto rest = renderer::rest_frames(shape);
-  const float along_mm = dice.normal(5.5f), breadth = 1 + dice.normal(0.05f),
-              deep_mm = dice.normal(1.5f);
-  for (int finger = 0; finger < 5; ++finger) {
-    const bool thumb = finger == 0;
-    const float knuckle_mm = (thumb ? 0.4f : 1.0f) * along_mm + dice.normal(1.5f),
-                middle_mm = 0.7f * knuckle_mm + dice.normal(1.2f),
-                last_mm = thumb ? 0 : 0.4f * knuckle_mm + dice.normal(1);
-    const glm::vec3 to_tip = -glm::vec3(rest[kFirstPhalanx[finger]][2]);
-    shape.metacarpal_mm[finger] -= wrist_mm;
-    if (thumb) shape.metacarpal_mm[finger] += draw_shift(dice, 3);
-    shape.proximal_mm[finger].x *= breadth;
-    shape.proximal_mm[finger] += knuckle_mm * to_tip - wrist_mm;
-    shape.proximal_mm[finger].y += deep_mm;
-    shape.phalanx_mm[finger][0] += middle_mm - knuckle_mm;
-    shape.phalanx_mm[finger][1] += last_mm - middle_mm;
-    if (!thumb) shape.phalanx_mm[finger][2] -= last_mm;
-  }
-  return shape;
-}
-
-/// Lets the flesh follow the joints of another hand of the same size, whose wrist is `wrist_mm`
-/// away in the axes of a left hand: each vertex as the nearest one there that faces the same way.
-void put_on_joints_of(const HandMesh& other, glm::vec3 wrist_mm, HandMesh& flesh) {
-  wrist_mm.x = -wrist_mm.x;  // a right hand
-  for (std::size_t v = 0; v < flesh.vertex_count(); ++v) {
-    flesh.positions[v] -= 1e-3f * wrist_mm;
-    std::size_t nearest = v;
-    float least = std::numeric_limits<float>::max();
-    for (std::size_t u = 0; u < other.vertex_count(); ++u) {
-      const glm::vec3 away = other.positions[u] - flesh.positions[v];
-      const float far = glm::dot(away, away);
-      if (far >= least || glm::dot(other.normals[u], flesh.normals[v]) < 0) continue;
-      least = far;
-      nearest = u;
-    }
-    flesh.joints[v] = other.joints[nearest];
-    flesh.weights[v] = other.weights[nearest];
-  }
-  flesh.rest = other.rest;
-}
-
-/// Varies the flesh on the bones, so that the network does not take one mesh for all hands.
-twin::TrueHand draw_flesh(Dice& dice, const HandMesh& mesh) {
-  config::TwinShape varied;
-  varied.bone_width_spread = varied.thickness_spread = varied.taper_spread = 0.15;
-  varied.roll_deg = 7;
-  varied.bulge = dice.between(0, 0.25f);
-  varied.skinning =
-      dice.chance(0.5f) ? config::TwinSkinning::linear : config::TwinSkinning::dual_quaternion;
-  const auto flesh = twin::Flesh::draw(varied, static_cast<int>(dice.bits() >> 40));
-  return twin::flesh_on_bones(mesh, mesh.rest, 1, flesh, varied.skinning);
 }
 
 /// A point in millimetres and its normal, in the axes of a joint at rest.
@@ -133,18 +74,15 @@ Result<std::vector<Person>> draw_people(int count, std::uint64_t seed) {
   std::vector<Person> people;
   for (int i = 0; i < count; ++i) {
     Dice dice(seed ^ 0x70656f706c65, static_cast<std::uint64_t>(i));
-    const HandShape flesh = draw_shape(dice);
-    const glm::vec3 wrist_mm = draw_shift(dice, 4);
-    const HandShape shape = with_other_joints(dice, flesh, wrist_mm);
-    Person person{draw_flesh(dice, renderer::refit_hand(*model, flesh)),
+    const HandShape shape = draw_shape(dice);
+    Person person{renderer::refit_hand(*model, shape),
                   twin::Articulation(shape),
                   renderer::joint_radii_m(shape),
                   {},
                   {}};
-    for (std::size_t v = 0; v < person.hand.mesh.vertex_count(); ++v)
-      person.skin.push_back(skin_at(person.hand.mesh, v));
-    put_on_joints_of(renderer::refit_hand(*model, shape), wrist_mm, person.hand.mesh);
-    person.behind_m = twin::behind_wrist_m(person.hand.mesh);
+    person.behind_m = twin::behind_wrist_m(person.mesh);
+    for (std::size_t v = 0; v < person.mesh.vertex_count(); ++v)
+      person.skin.push_back(skin_at(person.mesh, v));
     people.push_back(std::move(person));
   }
   return people;

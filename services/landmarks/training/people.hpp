@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "renderer/hand/hand_mesh.hpp"
 #include "services/evaluation/twin/articulation.hpp"
-#include "services/evaluation/twin/true_hand.hpp"
 #include "services/landmarks/training/dice.hpp"
 
 namespace handcast::landmarks::training {
@@ -14,16 +14,15 @@ enum class Skin : std::uint8_t { plain, nail, knuckle, crease };
 
 /// One person's right hand.
 struct Person {
-  twin::TrueHand hand;                            ///< the flesh and the joints at rest
+  renderer::HandMesh mesh;                        ///< the surface and the joints at rest
   twin::Articulation articulation;                ///< how its joints bend
   std::array<float, renderer::kJoints> radius_m;  ///< of the flesh around each joint
   std::vector<Skin> skin;                         ///< of each vertex
   std::vector<float> behind_m;                    ///< distance of each vertex behind the wrist
 };
 
-/// Draws hands that differ in the lengths of fingers and palm, in how thick each bone's flesh is
-/// and in how the flesh follows the bones. Takes a quarter of a second for each. Errors: the hand
-/// model cannot be read.
+/// Draws hands that differ in the lengths of fingers and palm and in their widths. Takes a quarter
+/// of a second for each. Errors: the hand model cannot be read.
 Result<std::vector<Person>> draw_people(int count, std::uint64_t seed);
 
 /// The joints at the root of each finger's first phalanx and at its tip, thumb first.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "renderer/skin/skinning.hpp"
+
 namespace handcast::landmarks::training {
 namespace {
 
@@ -58,10 +60,10 @@ void paint_skin(Dice& dice, const Person& person, float tone, bool gloved,
   std::array<float, 4> by_kind{1, dice.chance(0.7f) ? dice.between(0.7f, 1.4f) : 1,
                                dice.between(0.78f, 1.05f), dice.between(0.7f, 1.02f)};
   if (gloved) by_kind.fill(1);
-  albedo.resize(person.hand.mesh.vertex_count());
+  albedo.resize(person.mesh.vertex_count());
   for (std::size_t v = 0; v < albedo.size(); ++v)
     albedo[v] = tone * by_kind[static_cast<std::size_t>(person.skin[v])] *
-                grain.at(person.hand.mesh.positions[v]) *
+                grain.at(person.mesh.positions[v]) *
                 (1 + speckle * (2 * dice.uniform() - 1) * 1.7f);
 }
 
@@ -137,15 +139,15 @@ void Scene::add_hand(Dice& dice, const Person& person, const JointFrames& in_cam
 
   Shot& hand = next_shot();
   hand.is_arm = false;
-  hand.surface.positions.resize(person.hand.mesh.vertex_count());
-  hand.surface.normals.resize(person.hand.mesh.vertex_count());
-  twin::pose(person.hand, in_camera, hand.surface.positions, hand.surface.normals);
+  hand.surface.positions.resize(person.mesh.vertex_count());
+  hand.surface.normals.resize(person.mesh.vertex_count());
+  renderer::skin(person.mesh, in_camera, hand.surface.positions, hand.surface.normals);
   bend_wrist(person, in_camera[kWrist], camera_from_arm, hand.surface);
   const float fatter_m = dice.normal(0.0007f) + (gloved ? dice.between(0, 0.003f) : 0);
   for (std::size_t v = 0; v < hand.surface.positions.size(); ++v)
     hand.surface.positions[v] += fatter_m * hand.surface.normals[v];
   paint_skin(dice, person, tone, gloved, hand.surface.albedo);
-  hand.triangles = &person.hand.mesh.triangles;
+  hand.triangles = &person.mesh.triangles;
   light.shade(hand.surface, hand.grey);
   if (dice.chance(0.75f))
     occlude(hand.surface, balls_in(in_camera), dice.between(0.2f, 1.8f), hand.grey);
@@ -156,7 +158,7 @@ void Scene::add_arm(Dice& dice, const Person& person, const glm::mat4& camera_fr
                     const Light& light) {
   Shot& shot = next_shot();
   shot.is_arm = true;
-  shot.arm = twin::make_forearm(person.hand.mesh,
+  shot.arm = twin::make_forearm(person.mesh,
                                 dice.chance(0.5f) ? dice.between(0.06f, 0.2f) : twin::kBareArm_m);
   const float skin = tone * dice.between(0.85f, 1.15f), cloth = tone * dice.between(0.05f, 1.9f),
               hair = dice.between(0, 0.12f);
