@@ -79,7 +79,9 @@ void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
         right[a] += weight * rows[axis][a] * offset[axis];
       }
   }
-  if (!eliminate_shared(normal, right)) return;
+  // A landmark that is not a number would stay in the sums for ever.
+  if (!eliminate_shared(normal, right) || !std::isfinite(right[kShared] + right[kShared + 1]))
+    return;
   const double keep = std::exp(-since_s / kMemory_s), share = since_s / kLasting_s;
   information_ *= keep;
   weighted_ *= keep;

@@ -17,8 +17,8 @@ constexpr float kFrom = 0.15f, kTo = 0.85f;
 constexpr float kLeastWeight = 0.5f;  ///< of a bone in its vertices
 constexpr std::size_t kFewestEdges = 20;
 constexpr float kThinnest_px = 4;  ///< bones smaller than this are not measured
-constexpr float kShortest =
-    1.3f;  ///< length / width as modelled; shorter bones are seen from the end
+/// Length / width as modelled; shorter bones are seen from the end.
+constexpr float kShortest = 1.3f;
 constexpr float kFastest_px_s = 400;  ///< faster hands are blurred and their masks lag
 constexpr float kLeast = 0.75f, kMost = 1.35f;
 constexpr int kMemory = 600, kEnough = 12;  ///< measurements of one bone

@@ -119,6 +119,16 @@ TEST_F(HandTurnTest, ManyImagesOfOnePoseCountAsFew) {
   EXPECT_LT(std::abs(many.angle_rad().x), 2 * std::abs(few.angle_rad().x));
 }
 
+TEST_F(HandTurnTest, ALandmarkThatIsNotANumberTeachesNothing) {
+  HandTurn turn(calibration_);
+  View both = view(0.3, {0.06f, 0, 0});
+  both.seen.points[8].x_px = NAN;
+  turn.learn(time_ns_, both.reported, both.seen);
+  EXPECT_EQ(glm::length(turn.angle_rad()), 0);
+  turn.learn(time_ns_ += kBetween_ns, both.reported, view(0.3, {0, 0.06f, 0}).seen);
+  EXPECT_TRUE(std::isfinite(glm::length(turn.angle_rad())));
+}
+
 TEST_F(HandTurnTest, NeverTurnsFarAndIgnoresWhatIsNotSeen) {
   HandTurn turn(calibration_);
   for (int i = 0; i < kViews; ++i, time_ns_ += kBetween_ns) {
