@@ -85,6 +85,7 @@ struct Filter {
   double blend_px = 8;
   bool hindsight = true;
   double lost_ms = 300;
+  bool definitions = true;
 };
 
 template <class Visitor>
@@ -118,6 +119,9 @@ void describe(Visitor& visitor, Filter& filter) {
                 "have arrived since. false: P as it was predicted at that time.");
   visitor.field("lost_ms", filter.lost_ms, between(1, 10000, "ms"),
                 "Landmarks older than this fade out; then the tracker is used alone.");
+  visitor.field("definitions", filter.definitions,
+                "Learn where the detector sees each joint in comparison with the tracker, and move "
+                "its landmarks to the joints as the tracker defines them.");
 }
 
 /// How the drawing is moved onto the landmarks (docs/method.md#correct).

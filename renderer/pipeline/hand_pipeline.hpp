@@ -10,6 +10,7 @@
 #include "renderer/correct/rung_mover.hpp"
 #include "renderer/correct/untangle.hpp"
 #include "renderer/draw/painter.hpp"
+#include "renderer/filter/joint_definitions.hpp"
 #include "renderer/filter/landmark_track.hpp"
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
@@ -111,6 +112,7 @@ class HandPipeline {
   FrameHand described(const HandFrame& frame) const;
 
  private:
+  void push_defined(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandLandmarks& seen);
   HandPipeline(Side side, const config::Cascade& settings, const calib::Calibration& calibration,
                HandSurface surface, MipChain picture, LandmarkOracle oracle);
 
@@ -129,6 +131,7 @@ class HandPipeline {
   bool is_shown_ = false;
   HandSurface surface_;
   HandTurn turn_;
+  JointDefinitions definitions_;
   RungMover mover_;
   Untangler untangler_;
   MipChain picture_;

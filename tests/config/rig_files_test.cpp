@@ -52,16 +52,17 @@ TEST(ShippedRigs, PaperAndBaselineDifferFromTwinInSoftwareAlone) {
 TEST(ShippedRigs, PaperIsThePapersCascade) {
   // All that differs from our cascade; what is equal (similarity, a grid of 21 x 21 nodes, the
   // threshold, reflection) is checked below.
-  EXPECT_THAT(changes(shipped("paper")),
-              UnorderedElementsAre(
-                  "name = \"paper\"", "projector.software_ms = 3.19",
-                  "cascade.predict.method = \"velocity\"", "cascade.predict.still_mm_s = 0",
-                  "cascade.skin.fit = false", "cascade.skin.turn = false",
-                  "cascade.filter.method = \"paper\"", "cascade.filter.hindsight = false",
-                  "cascade.filter.blend_ms = 0", "cascade.correct.method = \"grid\"",
-                  "cascade.correct.alpha = 0.5", "cascade.mask.advance = false",
-                  "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
-                  "cascade.register.method = \"none\"", "cascade.ladder.rung = \"landmarks\""));
+  EXPECT_THAT(
+      changes(shipped("paper")),
+      UnorderedElementsAre(
+          "name = \"paper\"", "projector.software_ms = 3.19",
+          "cascade.predict.method = \"velocity\"", "cascade.predict.still_mm_s = 0",
+          "cascade.skin.fit = false", "cascade.skin.turn = false",
+          "cascade.filter.method = \"paper\"", "cascade.filter.hindsight = false",
+          "cascade.filter.blend_ms = 0", "cascade.filter.definitions = false",
+          "cascade.correct.method = \"grid\"", "cascade.correct.alpha = 0.5",
+          "cascade.mask.advance = false", "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
+          "cascade.register.method = \"none\"", "cascade.ladder.rung = \"landmarks\""));
   const auto cascade = shipped("paper").cascade;
   EXPECT_EQ(cascade.correct.grid_columns, 21);
   EXPECT_EQ(cascade.correct.grid_rows, 21);

@@ -68,20 +68,14 @@ TEST_P(Fade, TheLightOfARigFallsToBlackBeforeItEnds) {
   const auto light = brightness_of(files(), is_packed);
   ASSERT_GT(light.size(), 8u);
   EXPECT_EQ(light.back(), 0) << "the last frame is black";
-  const auto fall =
-      std::ranges::find_if(light.rbegin(), light.rend(), [](double share) { return share > 0.95; });
-  ASSERT_NE(fall, light.rend());
-  const std::vector<double> falling(fall.base(), light.end());
-  ASSERT_GE(falling.size(), 4u) << "7 frames in 1.5 s, if the machine is not too busy";
-  // A busy machine misses sub-frames, so that single frames are darker than the fade makes them.
-  const auto brightest = [&](std::size_t third) {
-    const auto size = static_cast<std::ptrdiff_t>(falling.size());
-    const auto from = falling.begin() + size * static_cast<std::ptrdiff_t>(third) / 3;
-    return *std::max_element(from,
-                             falling.begin() + size * static_cast<std::ptrdiff_t>(third + 1) / 3);
-  };
-  EXPECT_LT(brightest(1), brightest(0)) << testing::PrintToString(falling);
-  EXPECT_LT(brightest(2), brightest(1)) << testing::PrintToString(falling);
+  // A busy machine misses frames, so the fall is judged by its end: darker from the third frame
+  // before the last one on, but not black at once.
+  for (std::size_t back = 2; back <= 4; ++back) {
+    const auto share = light[light.size() - back];
+    EXPECT_LT(share, 0.7) << testing::PrintToString(light);
+    EXPECT_GT(share, 0) << testing::PrintToString(light);
+  }
+  EXPECT_LT(light[light.size() - 2], light[light.size() - 4]) << testing::PrintToString(light);
 }
 
 INSTANTIATE_TEST_SUITE_P(Packings, Fade, testing::Values("none", "8x3"),

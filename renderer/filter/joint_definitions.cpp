@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/filter/joint_definitions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::renderer {
+namespace {
+
+constexpr double kPrior_m = 0.004;
+constexpr double kLeastSigma_px = 5;  ///< of a landmark: what lasts is more than its sigma
+constexpr double kFar_px = 8;         ///< offsets farther than this from the learned one count less
+constexpr double kLasting_s = 0.4;    ///< errors of landmarks are independent after this
+constexpr double kMemory_s = 20;
+constexpr double kMost_m = 0.025;
+constexpr double kNearest_m = 0.05;
+
+/// One joint as the camera sees it.
+struct SeenJoint {
+  bool is_seen = false;
+  glm::dvec2 at_px{0};
+  glm::dmat3x2 moves_px{0};  ///< displacement in the image by one in the frame of the joint, px/m
+};
+
+SeenJoint see(const calib::Calibration& calibration, const msg::Joint& joint) {
+  const auto& [x, y, z] = joint.position_m;
+  const glm::dvec3 at(calibration.camera_from_tracker * glm::dvec4(x, y, z, 1));
+  if (!(at.z > kNearest_m)) return {};
+  const auto& [qx, qy, qz, qw] = joint.orientation_xyzw;
+  const glm::dmat3 camera_from_joint =
+      glm::dmat3(calibration.camera_from_tracker) * glm::mat3_cast(glm::dquat(qw, qx, qy, qz));
+  const auto& camera = calibration.camera;
+  const double fx = camera.fx_px / at.z, fy = camera.fy_px / at.z;
+  const glm::dmat3x2 project(glm::dvec2(fx, 0), glm::dvec2(0, fy),
+                             glm::dvec2(-fx * at.x / at.z, -fy * at.y / at.z));
+  return {true, camera.project(at), project * camera_from_joint};
+}
+
+/// What is left of the offset of a landmark, and its weight.
+struct Offset {
+  glm::dvec2 at_px{0}, left_px{0};
+  double weight = 0;  ///< 1/px^2; 0: not seen
+};
+using Offsets = std::array<Offset, msg::kLandmarks>;
+
+/// The shift, turn and scale in the image that all offsets share.
+struct Shared {
+  glm::dvec2 centre_px{0}, shift_px{0};
+  double scale = 0, turn = 0;
+
+  glm::dvec2 at(glm::dvec2 at_px) const {
+    const glm::dvec2 way = at_px - centre_px;
+    return shift_px + glm::dvec2(scale * way.x - turn * way.y, turn * way.x + scale * way.y);
+  }
+};
+
+/// Less weight for offsets far from what all share.
+double weight_of(const Offset& offset, const Shared& shared) {
+  const double far = glm::length(offset.left_px - shared.at(offset.at_px)) / kFar_px;
+  return offset.weight / (1 + far * far);
+}
+
+Shared shared_by(const Offsets& offsets, const Shared& guess) {
+  Shared shared;
+  double sum = 0, spread = 1e-9;
+  for (const Offset& offset : offsets) {
+    const double weight = weight_of(offset, guess);
+    sum += weight;
+    shared.centre_px += weight * offset.at_px;
+    shared.shift_px += weight * offset.left_px;
+  }
+  if (!(sum > 0)) return {};
+  shared.centre_px /= sum;
+  shared.shift_px /= sum;
+  for (const Offset& offset : offsets) {
+    const glm::dvec2 way = offset.at_px - shared.centre_px, by = offset.left_px - shared.shift_px;
+    const double weight = weight_of(offset, guess);
+    shared.scale += weight * glm::dot(way, by);
+    shared.turn += weight * (way.x * by.y - way.y * by.x);
+    spread += weight * glm::dot(way, way);
+  }
+  shared.scale /= spread;
+  shared.turn /= spread;
+  return shared;
+}
+
+/// The median of the offsets, along each axis.
+Shared median_of(const Offsets& offsets) {
+  Shared median;
+  for (int axis = 0; axis < 2; ++axis) {
+    std::array<double, msg::kLandmarks> values{};
+    auto* end = values.begin();
+    for (const Offset& offset : offsets)
+      if (offset.weight > 0) *end++ = offset.left_px[axis];
+    if (end == values.begin()) return median;
+    auto* const middle = values.begin() + (end - values.begin()) / 2;
+    std::nth_element(values.begin(), middle, end);
+    median.shift_px[axis] = *middle;
+  }
+  return median;
+}
+
+}  // namespace
+
+void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
+                             const msg::HandLandmarks& seen) {
+  const double since_s = std::clamp(ns_to_seconds(origin_ns - last_ns_), 0.0, kLasting_s);
+  last_ns_ = origin_ns;
+  std::array<SeenJoint, msg::kLandmarks> joints;
+  Offsets offsets;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    joints[i] = see(calibration_, pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[i])]);
+    const auto& point = seen.points[i];
+    const double sigma_px = std::hypot(kLeastSigma_px, point.sigma_px);
+    if (!joints[i].is_seen || !(point.confidence > 0) ||
+        !std::isfinite(point.x_px + point.y_px + sigma_px))
+      continue;
+    const glm::dvec2 left_px = glm::dvec2(point.x_px, point.y_px) - joints[i].at_px -
+                               joints[i].moves_px * learned_[i].displacement_m;
+    offsets[i] = {joints[i].at_px, left_px, 1 / (sigma_px * sigma_px)};
+  }
+  // What all landmarks of this image share is not of the joints.
+  const Shared shared = shared_by(offsets, shared_by(offsets, median_of(offsets)));
+  const double keep = std::exp(-since_s / kMemory_s), share = since_s / kLasting_s;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    Learned& learned = learned_[i];
+    learned.information *= keep;
+    learned.weighted *= keep;
+    const double weight = share * weight_of(offsets[i], shared);
+    if (!(weight > 0)) continue;
+    const glm::dmat3x2& moves_px = joints[i].moves_px;
+    const glm::dmat2x3 transposed = glm::transpose(moves_px);
+    const glm::dvec2 own_px =
+        offsets[i].left_px - shared.at(offsets[i].at_px) + moves_px * learned.displacement_m;
+    learned.information += weight * (transposed * moves_px);
+    learned.weighted += weight * (transposed * own_px);
+    const glm::dmat3 prior(1 / (kPrior_m * kPrior_m));
+    learned.displacement_m = glm::inverse(learned.information + prior) * learned.weighted;
+    if (const double length = glm::length(learned.displacement_m); length > kMost_m)
+      learned.displacement_m *= kMost_m / length;
+  }
+}
+
+msg::HandLandmarks JointDefinitions::as_tracked(const msg::HandPose& pose,
+                                                const msg::HandLandmarks& seen) const {
+  msg::HandLandmarks result = seen;
+  for (std::size_t i = 0; i < learned_.size(); ++i) {
+    const auto joint =
+        see(calibration_, pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[i])]);
+    if (!joint.is_seen) continue;
+    const glm::dvec2 by_px = joint.moves_px * learned_[i].displacement_m;
+    result.points[i].x_px -= static_cast<float>(by_px.x);
+    result.points[i].y_px -= static_cast<float>(by_px.y);
+  }
+  return result;
+}
+
+}  // namespace handcast::renderer

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "calib/calibration.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+
+namespace handcast::renderer {
+
+/// Learns where a detector sees each joint in comparison with the tracker's joint of the same name.
+/// The two do not mean the same points: one may lie nearer to the web, the other in the middle of
+/// the knuckle, and this difference turns with the bone, unlike errors of the calibration or of the
+/// place of the hand. One displacement per landmark is learned in the frame of its joint: an
+/// information filter over some seconds, with the prior that there is none. See
+/// `docs/method.md#filter`. One thread.
+class JointDefinitions {
+ public:
+  /// Copies the calibration.
+  explicit JointDefinitions(const calib::Calibration& calibration) : calibration_(calibration) {}
+
+  /// Adds the landmarks of an image (undistorted px) and the tracker's hand at the same time.
+  void learn(std::int64_t origin_ns, const msg::HandPose& pose, const msg::HandLandmarks& seen);
+
+  /// `seen`, moved to the joints as the tracker defines them. `pose`: the hand at the same time.
+  msg::HandLandmarks as_tracked(const msg::HandPose& pose, const msg::HandLandmarks& seen) const;
+
+  /// How far the landmark lies from the tracker's joint, m, in the frame of the joint.
+  const glm::dvec3& displacement_m(int landmark) const {
+    return learned_[static_cast<std::size_t>(landmark)].displacement_m;
+  }
+
+ private:
+  struct Learned {
+    glm::dmat3 information{0};  ///< 1/m^2
+    glm::dvec3 weighted{0};     ///< information times displacement
+    glm::dvec3 displacement_m{0};
+  };
+
+  calib::Calibration calibration_;
+  std::array<Learned, msg::kLandmarks> learned_;
+  std::int64_t last_ns_ = 0;
+};
+
+}  // namespace handcast::renderer

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/filter/joint_definitions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <random>
+
+#include "renderer/hand/maker/hand_shape.hpp"
+#include "renderer/predict/project_landmarks.hpp"
+
+/// @file
+/// Hands at rest in many views, 0.6 m from the camera, whose detector sees some joints elsewhere
+/// than the tracker.
+
+namespace handcast::renderer {
+namespace {
+
+constexpr int kViews = 100;
+constexpr std::int64_t kBetween_ns = 100'000'000;
+constexpr int kIndexKnuckle = 5;
+
+msg::HandPose posed(const glm::mat4& camera_from_wrist) {
+  msg::HandPose pose;
+  const auto rest = rest_frames(HandShape::mean());
+  for (std::size_t j = 0; j < rest.size(); ++j) {
+    const glm::mat4 frame = camera_from_wrist * rest[j];
+    const glm::quat turn = glm::quat_cast(glm::mat3(frame));
+    pose.joints[j].position_m = {frame[3].x, frame[3].y, frame[3].z};
+    pose.joints[j].orientation_xyzw = {turn.x, turn.y, turn.z, turn.w};
+  }
+  return pose;
+}
+
+class JointDefinitionsTest : public testing::Test {
+ protected:
+  const calib::Calibration calibration_;
+  JointDefinitions definitions_{calibration_};
+  std::mt19937 random_{7};
+  std::int64_t time_ns_ = 10'000'000'000;
+
+  double normal(double deviation) { return std::normal_distribution<>(0, deviation)(random_); }
+
+  msg::HandPose any_view() {
+    const glm::mat4 back_to_camera(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+    const glm::mat4 tilt =
+        glm::rotate(glm::rotate(glm::rotate(glm::mat4(1), float(normal(0.5)), {1, 0, 0}),
+                                float(normal(0.5)), {0, 1, 0}),
+                    float(normal(1)), {0, 0, 1});
+    return posed(glm::translate(glm::mat4(1), {0, 0.05f, 0.6f}) * tilt * back_to_camera);
+  }
+
+  /// The landmarks of `pose`, with that of the index finger's knuckle displaced in its own frame.
+  msg::HandLandmarks seen(const msg::HandPose& pose, glm::vec3 knuckle_m, double noise_px = 0) {
+    msg::HandPose displaced = pose;
+    auto& joint = displaced.joints[static_cast<std::size_t>(msg::kJointOfLandmark[kIndexKnuckle])];
+    const auto& [x, y, z, w] = joint.orientation_xyzw;
+    const glm::vec3 by = glm::quat(w, x, y, z) * knuckle_m;
+    for (int axis = 0; axis < 3; ++axis)
+      joint.position_m[static_cast<std::size_t>(axis)] += by[axis];
+    const auto points = project_landmarks(calibration_, displaced).value();
+    msg::HandLandmarks result;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      result.points[i] = {float(points[i].x + normal(noise_px)),
+                          float(points[i].y + normal(noise_px)), 1, 0};
+    return result;
+  }
+
+  /// The distance in px of the landmark of the index finger's knuckle from its joint.
+  double distance_px(const msg::HandPose& pose, const msg::HandLandmarks& seen) const {
+    const auto joint = project_landmarks(calibration_, pose).value()[kIndexKnuckle];
+    const auto& point = seen.points[kIndexKnuckle];
+    return std::hypot(point.x_px - joint.x, point.y_px - joint.y);
+  }
+};
+
+TEST_F(JointDefinitionsTest, AJointSeenElsewhereOnTheHandIsLearnedInTheFrameOfItsBone) {
+  const glm::vec3 elsewhere_m(0.004f, 0, -0.006f);
+  for (int i = 0; i < kViews; ++i) {
+    const auto pose = any_view();
+    definitions_.learn(time_ns_ += kBetween_ns, pose, seen(pose, elsewhere_m, 1));
+  }
+  EXPECT_LT(glm::length(definitions_.displacement_m(kIndexKnuckle) - glm::dvec3(elsewhere_m)),
+            0.0015);
+  const auto pose = any_view();
+  const auto landmarks = seen(pose, elsewhere_m);
+  EXPECT_LT(distance_px(pose, definitions_.as_tracked(pose, landmarks)),
+            0.5 * distance_px(pose, landmarks));
+}
+
+TEST_F(JointDefinitionsTest, AHandThatIsElsewhereIsNotADefinition) {
+  for (int i = 0; i < kViews; ++i) {
+    const auto pose = any_view();
+    auto landmarks = seen(pose, {});
+    for (auto& point : landmarks.points) point.x_px += 20;
+    definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+  }
+  for (int i = 0; i < msg::kLandmarks; ++i)
+    EXPECT_LT(glm::length(definitions_.displacement_m(i)), 0.0003) << "landmark " << i;
+}
+
+TEST_F(JointDefinitionsTest, OneImageTeachesLittle) {
+  const auto pose = any_view();
+  for (int i = 0; i < 3; ++i)
+    definitions_.learn(time_ns_ += 1'000'000, pose, seen(pose, {0, 0, -0.01f}));
+  EXPECT_LT(glm::length(definitions_.displacement_m(kIndexKnuckle)), 0.005);
+}
+
+TEST_F(JointDefinitionsTest, ALandmarkFarAwayDoesNotTeachMoreThanANearOne) {
+  for (int i = 0; i < kViews; ++i) {
+    const auto pose = any_view();
+    auto landmarks = seen(pose, {});
+    if (i % 4 == 0) landmarks.points[kIndexKnuckle].x_px += 200;
+    definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+  }
+  EXPECT_LT(glm::length(definitions_.displacement_m(kIndexKnuckle)), 0.002);
+}
+
+TEST_F(JointDefinitionsTest, LandmarksThatAreMissingOrNoNumbersAreIgnored) {
+  const float not_a_number = std::numeric_limits<float>::quiet_NaN();
+  for (int i = 0; i < kViews; ++i) {
+    const auto pose = any_view();
+    auto landmarks = seen(pose, {0, 0, -0.006f});
+    landmarks.points[8].x_px = not_a_number;
+    landmarks.points[12].sigma_px = not_a_number;
+    landmarks.points[16] = {5000, 5000, 0, 1};
+    definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+  }
+  EXPECT_GT(glm::length(definitions_.displacement_m(kIndexKnuckle)), 0.003);
+  for (const int missing : {8, 12, 16})
+    EXPECT_EQ(definitions_.displacement_m(missing), glm::dvec3(0)) << missing;
+}
+
+}  // namespace
+}  // namespace handcast::renderer
