@@ -129,9 +129,11 @@ void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
     Learned& learned = learned_[i];
     learned.information *= keep;
     learned.weighted *= keep;
+    if (!joints[i].is_seen) continue;
+    const glm::dmat3x2& moves_px = joints[i].moves_px;
+    learned.moves_px = moves_px * learned.displacement_m;
     const double weight = share * weight_of(offsets[i], shared);
     if (!(weight > 0)) continue;
-    const glm::dmat3x2& moves_px = joints[i].moves_px;
     const glm::dmat2x3 transposed = glm::transpose(moves_px);
     const glm::dvec2 own_px =
         offsets[i].left_px - shared.at(offsets[i].at_px) + moves_px * learned.displacement_m;
@@ -141,19 +143,15 @@ void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
     learned.displacement_m = glm::inverse(learned.information + prior) * learned.weighted;
     if (const double length = glm::length(learned.displacement_m); length > kMost_m)
       learned.displacement_m *= kMost_m / length;
+    learned.moves_px = moves_px * learned.displacement_m;
   }
 }
 
-msg::HandLandmarks JointDefinitions::as_tracked(const msg::HandPose& pose,
-                                                const msg::HandLandmarks& seen) const {
+msg::HandLandmarks JointDefinitions::as_tracked(const msg::HandLandmarks& seen) const {
   msg::HandLandmarks result = seen;
   for (std::size_t i = 0; i < learned_.size(); ++i) {
-    const auto joint =
-        see(calibration_, pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[i])]);
-    if (!joint.is_seen) continue;
-    const glm::dvec2 by_px = joint.moves_px * learned_[i].displacement_m;
-    result.points[i].x_px -= static_cast<float>(by_px.x);
-    result.points[i].y_px -= static_cast<float>(by_px.y);
+    result.points[i].x_px -= static_cast<float>(learned_[i].moves_px.x);
+    result.points[i].y_px -= static_cast<float>(learned_[i].moves_px.y);
   }
   return result;
 }

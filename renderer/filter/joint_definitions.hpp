@@ -24,8 +24,9 @@ class JointDefinitions {
   /// Adds the landmarks of an image (undistorted px) and the tracker's hand at the same time.
   void learn(std::int64_t origin_ns, const msg::HandPose& pose, const msg::HandLandmarks& seen);
 
-  /// `seen`, moved to the joints as the tracker defines them. `pose`: the hand at the same time.
-  msg::HandLandmarks as_tracked(const msg::HandPose& pose, const msg::HandLandmarks& seen) const;
+  /// `seen`, moved to the joints as the tracker defines them, by what the last learn() knew of the
+  /// hand. While the tracker is silent, this keeps the landmarks where they were.
+  msg::HandLandmarks as_tracked(const msg::HandLandmarks& seen) const;
 
   /// How far the landmark lies from the tracker's joint, m, in the frame of the joint.
   const glm::dvec3& displacement_m(int landmark) const {
@@ -37,6 +38,7 @@ class JointDefinitions {
     glm::dmat3 information{0};  ///< 1/m^2
     glm::dvec3 weighted{0};     ///< information times displacement
     glm::dvec3 displacement_m{0};
+    glm::dvec2 moves_px{0};  ///< the displacement in the last image
   };
 
   calib::Calibration calibration_;

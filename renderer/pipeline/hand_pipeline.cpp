@@ -73,21 +73,13 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
                         const msg::HandLandmarks& seen) {
   const auto pose = track_.recent_pose(origin_ns);
-  const bool learns = pose && !landmarks_.is_alone();
-  if (learns && settings_.skin.turn) turn_.learn(origin_ns, *pose, seen);
-  if (!learns || !settings_.filter.definitions) {
-    push_defined(now_ns, origin_ns, seen);
-    return;
+  if (pose && !landmarks_.is_alone()) {
+    if (settings_.skin.turn) turn_.learn(origin_ns, *pose, seen);
+    if (settings_.filter.definitions) definitions_.learn(origin_ns, turn_.turned(*pose), seen);
   }
-  const auto turned = turn_.turned(*pose);
-  definitions_.learn(origin_ns, turned, seen);
-  push_defined(now_ns, origin_ns, definitions_.as_tracked(turned, seen));
-}
-
-void HandPipeline::push_defined(std::int64_t now_ns, std::int64_t origin_ns,
-                                const msg::HandLandmarks& seen) {
-  if (!landmarks_.is_alone()) ladder_.detection(track_, origin_ns, seen);
-  landmarks_.detection(now_ns, origin_ns, seen, track_);
+  const auto as_tracked = definitions_.as_tracked(seen);
+  if (!landmarks_.is_alone()) ladder_.detection(track_, origin_ns, as_tracked);
+  landmarks_.detection(now_ns, origin_ns, as_tracked, track_);
 }
 
 std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,

@@ -112,7 +112,6 @@ class HandPipeline {
   FrameHand described(const HandFrame& frame) const;
 
  private:
-  void push_defined(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandLandmarks& seen);
   HandPipeline(Side side, const config::Cascade& settings, const calib::Calibration& calibration,
                HandSurface surface, MipChain picture, LandmarkOracle oracle);
 

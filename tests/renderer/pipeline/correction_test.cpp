@@ -148,6 +148,7 @@ std::vector<float> moved_by_grid(config::Cascade settings, std::vector<Side> sid
 config::Cascade paper_grid() {
   auto settings = cascade(config::CorrectMethod::grid, config::FillMethod::none);
   settings.filter.method = config::FilterMethod::paper;
+  settings.filter.definitions = false;
   settings.ladder.rung = config::RungChoice::landmarks;
   return settings;
 }
