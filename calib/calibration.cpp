@@ -55,6 +55,23 @@ glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px) const {
   return apply(projector_from_camera, camera_px);
 }
 
+glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px, double depth_m) const {
+  const auto mapped =
+      projector_from_camera * glm::dvec3(camera_px, 1) + parallax * (1 / depth_m - 1 / plane_m);
+  return glm::dvec2(mapped) / mapped.z;
+}
+
+glm::dmat3 Calibration::homography_at(double depth_m) const {
+  auto homography = projector_from_camera;
+  homography[2] += parallax * (1 / depth_m - 1 / plane_m);
+  return homography;
+}
+
+glm::dmat4x3 Calibration::projection() const {
+  const auto from_ray = projector_from_camera * camera.matrix();
+  return {from_ray[0], from_ray[1], from_ray[2] - parallax / plane_m, parallax};
+}
+
 glm::dvec2 Calibration::to_camera(const glm::dvec2& projector_px) const {
   return apply(glm::inverse(projector_from_camera), projector_px);
 }

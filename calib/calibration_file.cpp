@@ -61,6 +61,8 @@ struct ProjectorSection {
   std::string device;
   int width_px, height_px;
   std::vector<double> x, y, w;
+  double plane_m;
+  std::vector<double> parallax;
 };
 
 template <class Visitor>
@@ -76,12 +78,25 @@ void describe(Visitor& visitor, ProjectorSection& projector) {
                 "First row of the homography from undistorted camera pixels to projector pixels.");
   visitor.field("y", projector.y, Range{}, "Second row.");
   visitor.field("w", projector.w, Range{}, "Third row: the divisor of both.");
+  visitor.field("plane_m", projector.plane_m, between(0.05, 100, "m"),
+                "Distance from the camera, along its axis, at which the homography holds.");
+  visitor.field("parallax", projector.parallax, between(-1e6, 1e6),
+                "Change of the homography's last column for each 1/m that a point is nearer. Zeros: "
+                "camera and projector are coaxial, and the homography holds everywhere.");
+}
+
+template <class Visitor>
+void describe(Visitor& visitor, Made& made) {
+  visitor.field("lens", made.lens, "The camera's lens.");
+  visitor.field("screen", made.screen, "The projector.");
+  visitor.field("tracker", made.tracker, "The tracker's place.");
 }
 
 struct File {
   CameraSection camera;
   TransformSection camera_from_tracker;
   ProjectorSection projector;
+  Made made;
 };
 
 template <class Visitor>
@@ -89,7 +104,9 @@ void describe(Visitor& visitor, File& file) {
   visitor.section("camera", file.camera, "The infrared camera.");
   visitor.section("camera_from_tracker", file.camera_from_tracker,
                   "Rigid transform, in rows; the last column is in metres.");
-  visitor.section("projector", file.projector, "The projector, coaxial with the camera.");
+  visitor.section("projector", file.projector, "The projector.");
+  visitor.section("made", file.made,
+                  "When and how well the parts were measured; written by `handcast calibrate`.");
 }
 
 namespace {
@@ -113,6 +130,7 @@ File to_file(const Calibration& calibration) {
   const auto& c = calibration.camera;
   const auto& tracker = calibration.camera_from_tracker;
   const auto& homography = calibration.projector_from_camera;
+  const auto& e = calibration.parallax;
   return {{calibration.camera_device,
            c.width_px,
            c.height_px,
@@ -122,7 +140,8 @@ File to_file(const Calibration& calibration) {
           {row_of(tracker, 0), row_of(tracker, 1), row_of(tracker, 2)},
           {calibration.projector_device, calibration.projector_width_px,
            calibration.projector_height_px, row_of(homography, 0), row_of(homography, 1),
-           row_of(homography, 2)}};
+           row_of(homography, 2), calibration.plane_m, {e.x, e.y, e.z}},
+          calibration.made};
 }
 
 CameraModel to_camera_model(const CameraSection& s) {
@@ -146,6 +165,9 @@ Calibration to_calibration(const File& file) {
   set_row(calibration.projector_from_camera, 0, projector.x);
   set_row(calibration.projector_from_camera, 1, projector.y);
   set_row(calibration.projector_from_camera, 2, projector.w);
+  calibration.parallax = {projector.parallax[0], projector.parallax[1], projector.parallax[2]};
+  calibration.plane_m = projector.plane_m;
+  calibration.made = file.made;
   return calibration;
 }
 
@@ -277,7 +299,9 @@ std::string missing_in(const config::Value& document) {
 
 Calibration with_id(Calibration calibration) {
   std::uint32_t hash = 2166136261u;  // FNV-1a
-  for (const char c : print_calibration(calibration))
+  Calibration measured = calibration;
+  measured.made = {};
+  for (const char c : print_calibration(measured))
     hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
   calibration.id = std::max(hash, 1u);
   return calibration;

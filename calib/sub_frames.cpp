@@ -20,6 +20,7 @@ Calibration with_scaled_projector(const Calibration& calibration, double factor)
   const double shift_px = (factor - 1) / 2;
   const glm::dmat3 scale(factor, 0, 0, 0, factor, 0, shift_px, shift_px, 1);
   scaled.projector_from_camera = scale * calibration.projector_from_camera;
+  scaled.parallax = scale * calibration.parallax;
   return scaled;
 }
 

@@ -17,5 +17,10 @@ inline constexpr int kLargestCameraHeight_px = 1024;
 inline constexpr int kLargestProjectorWidth_px = 1024;
 inline constexpr int kLargestProjectorHeight_px = 768;
 /// @}
+/// Of a test picture: one byte per pixel.
+/// @{
+inline constexpr int kLargestTestPictureWidth_px = 3840;
+inline constexpr int kLargestTestPictureHeight_px = 2400;
+/// @}
 
 }  // namespace handcast::msg

@@ -49,7 +49,7 @@ struct ShownPoint {
 /// per kShownStep_px pixels in both directions. Published by: services/projector
 /// ("projection.frames"). Read by: services/observer, previews.
 struct Projection {
-  static constexpr std::string_view layout = "Projection/3";  ///< see type_hash()
+  static constexpr std::string_view layout = "Projection/4";  ///< see type_hash()
 
   Header header;       ///< frame_id: counted by the projector; origin_ns: made_from.image_ns
   MadeFrom made_from;  ///< the inputs of the frame
@@ -72,6 +72,8 @@ struct Projection {
   std::array<ProjectedHand, kMaxHands> hands{};  ///< the first `hand_count` are valid
   std::uint32_t has_shown = 0;  ///< 1: the shown points are valid; they are for an observer
   std::uint32_t reserved = 0;
+  /// TestPicture::header.frame_id of the picture that was shown in place of hands; 0: none.
+  std::uint64_t test_picture = 0;
 
   /// Distance of the shown points, px: they are the pixels of the region whose coordinates in the
   /// projector image are both multiples of it.

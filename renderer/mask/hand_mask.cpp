@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "renderer/base/similarity.hpp"
 #include "renderer/predict/project_landmarks.hpp"
@@ -128,6 +129,20 @@ Similarity HandMask::since_seen(const Expected& hand) const {
              : Similarity{};
 }
 
+/// The image position of the hand's middle, relative to that of the point on the calibration's plane
+/// that the same projector pixel lights. It is taken for the whole hand: the lookup knows that plane
+/// only.
+glm::vec2 HandMask::parallax_px(const Corrected& hand) const {
+  if (calibration_.parallax == glm::dvec3(0)) return {};
+  const auto depths_m = landmark_depths_m(calibration_, hand.pose);
+  const double depth_m = std::accumulate(depths_m.begin(), depths_m.end(), 0.0) / kLandmarks;
+  const glm::dvec2 middle_px(
+      std::accumulate(hand.landmarks.begin(), hand.landmarks.end(), glm::vec2(0)) /
+      static_cast<float>(kLandmarks));
+  const auto on_plane_px = calibration_.to_camera(calibration_.to_projector(middle_px, depth_m));
+  return calibration_.camera.distort(middle_px) - calibration_.camera.distort(on_plane_px);
+}
+
 Rect HandMask::advance(std::span<const Expected> hands) {
   const Rect screen{0, 0, projector_mask_.width(), projector_mask_.height()};
   Rect all;
@@ -135,6 +150,7 @@ Rect HandMask::advance(std::span<const Expected> hands) {
   std::vector<Similarity> moves;
   for (std::size_t h = 0; h < hands.size(); ++h) {
     moves.push_back(shown_[h] ? since_exposure(hands[h]) : since_seen(hands[h]));
+    moves.back().shift = moves.back()(parallax_px(*hands[h].hand));
     const Rect found = shown_[h] ? found_[h] : memory_of(hands[h].side).found;
     const bool dark = found.empty() || hands[h].presence <= 0;
     const Rect moved = dark ? Rect{} : moved_back(found, moves.back()).grown(kMargin_px);

@@ -75,6 +75,7 @@ class HandMask {
   LandmarkPoints in_image(LandmarkPoints undistorted_px) const;
   Similarity since_exposure(const Expected& hand) const;
   Similarity since_seen(const Expected& hand) const;
+  glm::vec2 parallax_px(const Corrected& hand) const;
   void clear_camera_mask(int width, int height);
   bool is_shown(const Rect& found, const Rect& before, std::span<const glm::vec2> seeds_px) const;
   void remember(const Expected& hand, const Rect& found);

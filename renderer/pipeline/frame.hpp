@@ -43,6 +43,8 @@ struct Frame {
   View<const SurfaceId> surface;
   /// @}
   std::span<const FrameHand> hands;        ///< the hands of this frame
+  /// Number of the test picture that it shows in place of hands (msg::TestPicture); 0: none.
+  std::uint64_t test_picture = 0;
   int foldovers = 0;                       ///< triangles that the correction turned over
   FillCounts fill;                         ///< pixels of the fill; 0 without an image
   std::span<const msg::StageMark> stages;  ///< of this frame, CLOCK_MONOTONIC

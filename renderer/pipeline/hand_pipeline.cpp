@@ -143,12 +143,15 @@ void HandPipeline::skin(HandFrame& frame, float shading) {
       pose = turned;
     }
   }
+  frame.depths_m = landmark_depths_m(calibration_, pose);
   frame.skinned = surface_.pose(pose, settings_.skin, calibration_, shading, frame.presence);
 }
 
-LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px) const {
+LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px,
+                                          const std::array<float, kLandmarks>& depths_m) const {
   LandmarkPoints points;
-  for (int i = 0; i < kLandmarks; ++i) points[i] = calibration_.to_projector(camera_px[i]);
+  for (int i = 0; i < kLandmarks; ++i)
+    points[i] = calibration_.to_projector(camera_px[i], depths_m[i]);
   return points;
 }
 

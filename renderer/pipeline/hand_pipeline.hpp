@@ -34,6 +34,7 @@ struct HandFrame {
   float presence = 1;              ///< share of its light, 0..1
   std::optional<Skinned> skinned;  ///< result of skin; its landings are moved by correct
   LandmarkPoints drawn_from{};     ///< result of skin: P of the pose that was skinned
+  std::array<float, kLandmarks> depths_m{};  ///< result of skin: of its landmarks
 };
 
 /// The steps for one hand, with their states. The pipeline does a step for all hands before the
@@ -90,9 +91,11 @@ class HandPipeline {
   void skin(HandFrame& frame, float shading);
   /// After skin(): P and Q̂ in projector px, the landmarks before and after the correction.
   /// @{
-  LandmarkPoints from_px(const HandFrame& frame) const { return to_projector(frame.drawn_from); }
+  LandmarkPoints from_px(const HandFrame& frame) const {
+    return to_projector(frame.drawn_from, frame.depths_m);
+  }
   LandmarkPoints to_px(const HandFrame& frame) const {
-    return to_projector(frame.registered.landmarks);
+    return to_projector(frame.registered.landmarks, frame.depths_m);
   }
   /// @}
   /// Step correct: moves the landings from P onto Q̂ by the model of the frame's rung. Returns the
@@ -115,7 +118,8 @@ class HandPipeline {
   HandPipeline(Side side, const config::Cascade& settings, const calib::Calibration& calibration,
                HandSurface surface, MipChain picture, LandmarkOracle oracle);
 
-  LandmarkPoints to_projector(const LandmarkPoints& camera_px) const;
+  LandmarkPoints to_projector(const LandmarkPoints& camera_px,
+                              const std::array<float, kLandmarks>& depths_m) const;
   LateRegistration::Hand late_hand(const HandFrame& frame) const;
 
   Side side_;

@@ -67,6 +67,7 @@ void write_projection(const Frame& frame, msg::Projection& projection, std::size
   projection.target_ns = frame.target_ns;
   projection.width_px = static_cast<std::uint32_t>(frame.colour.width);
   projection.height_px = static_cast<std::uint32_t>(frame.colour.height);
+  projection.test_picture = frame.test_picture;
   projection.foldovers = static_cast<std::uint32_t>(std::max(frame.foldovers, 0));
   projection.hand_count = static_cast<std::uint32_t>(
       std::min<std::size_t>(frame.hands.size(), projection.hands.size()));

@@ -42,16 +42,16 @@ std::vector<std::uint16_t> vertices_of(const HandMesh& mesh) {
   return vertices;
 }
 
-/// `position`: xyz xyz ...; `m`: column-major 3x3 from camera space to homogeneous projector px;
+/// `position`: xyz xyz ...; `m`: column-major, 3 rows and 4 columns, from camera space to homogeneous projector px;
 /// `px`: xy xy ...
 HANDCAST_CLONES void project_all(const float* position, int count, const float* m, float nearest,
                                  float* px, float* depth) {
   for (int v = 0; v < count; ++v) {
     const float x = position[3 * v], y = position[3 * v + 1],
                 z = position[3 * v + 2] < nearest ? nearest : position[3 * v + 2];
-    const float scale = 1.0f / (m[2] * x + m[5] * y + m[8] * z);
-    px[2 * v] = (m[0] * x + m[3] * y + m[6] * z) * scale;
-    px[2 * v + 1] = (m[1] * x + m[4] * y + m[7] * z) * scale;
+    const float scale = 1.0f / (m[2] * x + m[5] * y + m[8] * z + m[11]);
+    px[2 * v] = (m[0] * x + m[3] * y + m[6] * z + m[9]) * scale;
+    px[2 * v + 1] = (m[1] * x + m[4] * y + m[7] * z + m[10]) * scale;
     depth[v] = z;
   }
 }
@@ -89,8 +89,7 @@ Skinned HandSurface::pose(const msg::HandPose& pose, const config::Skin& setting
   const bool lit_fully = !shaded && presence >= 1;
   skin(mesh_, frames, positions_m_, shaded ? std::span(normals_) : std::span<glm::vec3>());
 
-  const glm::mat3 projector_from_space(calibration.projector_from_camera *
-                                       calibration.camera.matrix());
+  const glm::mat4x3 projector_from_space(calibration.projection());
   const int count = static_cast<int>(mesh_.vertex_count());
   project_all(&positions_m_[0].x, count, &projector_from_space[0][0], kNearest_m, &seen_px_[0].x,
               depth_m_.data());
@@ -98,7 +97,7 @@ Skinned HandSurface::pose(const msg::HandPose& pose, const config::Skin& setting
   if (!shaded) std::fill(light_.begin(), light_.end(), presence);
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());
   return {seen_px_, landings_px_, depth_m_, lit_fully ? std::span<const float>() : light_,
-          glm::determinant(projector_from_space) > 0 ? -1.0f : 1.0f};
+          glm::determinant(calibration.projector_from_camera * calibration.camera.matrix()) > 0 ? -1.0f : 1.0f};
 }
 
 void HandSurface::learn_widths(std::int64_t time_ns, const LandmarkPoints& landmarks_px,

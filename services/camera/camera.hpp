@@ -9,6 +9,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/projection.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::camera {
@@ -24,6 +25,12 @@ class Camera {
   /// bad_config (the image does not fit the tail).
   virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                                Deadline deadline) = 0;
+
+  /// True for a camera of the twin in front of which the rig's own light falls: its service passes
+  /// all projections to light(), in order.
+  virtual bool sees_light() const { return false; }
+  /// The light of the rig's projector from projection.lit_ns on.
+  virtual void light(const msg::Projection& /*projection*/) {}
 };
 
 /// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,

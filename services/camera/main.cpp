@@ -17,8 +17,16 @@ static void run_camera(service::Context& context) {
   context.stand_by();
   auto frames = must(context.writer<msg::CameraFrame>("camera.frames"));
 
+  std::optional<ipc::Reader<msg::Projection>> light;
+  if (source->sees_light()) light = must(context.reader<msg::Projection>("projection.frames"));
+
   context.ready();
   while (context.running()) {
+    while (light)
+      if (const auto projection = light->next(Deadline::now()))
+        source->light(**projection);
+      else
+        break;
     auto slot = frames.loan();
     if (!slot) {
       context.tolerate({Errc::timeout, "camera: all slots of camera.frames are held by readers"});
@@ -54,6 +62,7 @@ int main(int argc, char** argv) {
                        .summary = "Delivers the frames of the infrared camera.",
                        .paced_by = "its device",
                        .publishes = {"camera.frames"},
+                       .subscribes = {"projection.frames"},
                        .settings = {"camera.rate_hz", "camera.exposure_ms"},
                        .backends = service::describe_rows(camera::camera_backends())},
                       argc, argv, run_camera, check_camera);

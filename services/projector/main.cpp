@@ -6,6 +6,7 @@
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
 #include "services/projector/show_sub_frames.hpp"
+#include "services/projector/test_pictures.hpp"
 #include "services/projector/time_sheet.hpp"
 #include "services/runtime/context.hpp"
 
@@ -33,11 +34,14 @@ static void run_projector(service::Context& context) {
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")), calibration.id);
+  projector::TestPictures test_pictures(
+      must(context.reader<msg::TestPicture>(msg::kTestPictures)), calibration.projector_width_px,
+      calibration.projector_height_px);
   projector::Brightness brightness(rig.projector, context.epoch_ns());
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
   if (rig.projector.packing != config::Packing::none)
     return projector::show_sub_frames(
-        context, {*pipeline, inputs, *projector, brightness, std::move(projections)});
+        context, {*pipeline, inputs, test_pictures, *projector, brightness, std::move(projections)});
   projector::Pacer pacer(rig.projector.rate_hz);
   projector::Horizon horizon(rig.projector);
   projector::LastLight last_light(context, brightness);
@@ -52,7 +56,9 @@ static void run_projector(service::Context& context) {
       context.tolerate(delivered.error());
 
     const std::int64_t begin_ns = now_ns();
-    auto frame = pipeline->render(begin_ns, horizon.target_ns(begin_ns), inputs.image());
+    const std::int64_t target_ns = horizon.target_ns(begin_ns);
+    const auto* picture = test_pictures.at(begin_ns, target_ns);
+    auto frame = picture ? *picture : pipeline->render(begin_ns, target_ns, inputs.image());
     const std::int64_t drawn_ns = now_ns();
     const auto times =
         projector->present(frame, frame_id, brightness.at(drawn_ns), Deadline::in(50ms));
@@ -82,7 +88,8 @@ int main(int argc, char** argv) {
                        .summary = "Projects light onto the hands that the sensors see.",
                        .paced_by = "projector.rate_hz",
                        .publishes = {"projection.frames"},
-                       .subscribes = {"camera.frames", "pose.hands", "landmarks.hands"},
+                       .subscribes = {"camera.frames", "pose.hands", "landmarks.hands",
+                                      std::string(msg::kTestPictures)},
                        .settings = {"projector", "content", "hand", "cascade"},
                        .backends = service::describe_rows(projector::projector_backends())},
                       argc, argv, run_projector, check_projector);

@@ -72,7 +72,10 @@ class SubFrameLoop {
     if (const auto delivered = show_.inputs.deliver(show_.pipeline, Deadline::now()); !delivered)
       context_.tolerate(delivered.error());
     const std::int64_t begin_ns = now_ns();
-    const auto frame = show_.pipeline.render(begin_ns, drawing.target_ns, show_.inputs.image());
+    const auto* picture = show_.test_pictures.at(begin_ns, drawing.target_ns);
+    const auto frame =
+        picture ? *picture
+                : show_.pipeline.render(begin_ns, drawing.target_ns, show_.inputs.image());
     const std::int64_t drawn_ns = now_ns();
     packer_->add(frame.colour, frame.region, drawing.first, drawing.count);
     messages_.keep(frame, drawing.count, begin_ns, drawn_ns);

@@ -6,6 +6,7 @@
 #include "services/projector/brightness.hpp"
 #include "services/projector/inputs.hpp"
 #include "services/projector/projector.hpp"
+#include "services/projector/test_pictures.hpp"
 #include "services/runtime/context.hpp"
 
 namespace handcast::projector {
@@ -14,6 +15,7 @@ namespace handcast::projector {
 struct SubFrameShow {
   renderer::Pipeline& pipeline;
   Inputs& inputs;
+  TestPictures& test_pictures;
   Projector& projector;
   Brightness& brightness;
   ipc::Writer<msg::Projection> projections;

@@ -12,6 +12,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/msg/test_picture.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -28,14 +29,16 @@ void give_status(LiveRig& rig, const Reply& reply) {
   reply(answer);
 }
 
-/// Sends read-only descriptors, so that a tool cannot change the rings by accident.
+/// Only the ring that no service writes to may be changed by a tool; the others not even by accident.
+int access_to(std::string_view stream) { return stream == msg::kTestPictures ? O_RDWR : O_RDONLY; }
+
 void give_rings(const LiveRig& rig, const Reply& reply) {
   auto answer = success();
   answer["rings"] = nlohmann::json::array();
   std::vector<UniqueFd> owned;
   std::vector<int> descriptors;
   for (const auto& [stream, fd] : rig.launch.rings) {
-    owned.emplace_back(::open(fmt::format("/proc/self/fd/{}", fd).c_str(), O_RDONLY | O_CLOEXEC));
+    owned.emplace_back(::open(fmt::format("/proc/self/fd/{}", fd).c_str(), access_to(stream) | O_CLOEXEC));
     if (!owned.back())
       return reply(failure(
           fmt::format("ring '{}' cannot be opened again: {}", stream, std::strerror(errno))));

@@ -8,6 +8,7 @@
 #include "ipc/msg/largest_images.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/stage_mark.hpp"
+#include "ipc/msg/test_picture.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
@@ -17,6 +18,8 @@ namespace {
 constexpr int kMarkSlots = 254;
 /// Three readers with two leases each, and two for the writer: a loan never fails.
 constexpr int kImageSlots = 8;
+/// One reader with two leases, and two for the writer.
+constexpr int kPictureSlots = 4;
 
 constexpr bool kNewestOnly = false, kWithHistory = true;
 
@@ -31,6 +34,9 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::Projection>(
           "projection.frames", kImageSlots, kNewestOnly,
           msg::Projection::bytes(msg::kLargestProjectorWidth_px, msg::kLargestProjectorHeight_px)),
+      RingSpec::of<msg::TestPicture>(
+          std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
+          msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px, msg::kLargestTestPictureHeight_px)),
   };
 }
 

@@ -147,6 +147,38 @@ TEST(Calibration, ToCameraIsTheInverseOfToProjector) {
       EXPECT_LT(glm::distance(rig.to_projector(rig.to_camera({x, y})), {x, y}), 1e-9);
 }
 
+Calibration rig_with_projector_beside() {
+  auto rig = reference_rig();
+  rig.plane_m = 0.7;
+  rig.parallax = -(rig.projector_from_camera * (rig.camera.matrix() * glm::dvec3(0.15, 0.02, 0)));
+  return rig;
+}
+
+TEST(Calibration, ACoaxialProjectorLightsAPixelAtEveryDepth) {
+  const auto rig = reference_rig();
+  EXPECT_EQ(rig.to_projector({200, 300}, 0.4), rig.to_projector({200, 300}));
+}
+
+TEST(Calibration, AProjectorBesideTheCameraHasTheParallaxOfItsPlace) {
+  const auto rig = rig_with_projector_beside();
+  const glm::dvec2 px(200, 300);
+  EXPECT_LT(glm::distance(rig.to_projector(px, rig.plane_m), rig.to_projector(px)), 1e-9);
+  // Seen from 0.15 m further to the right, a point that is nearer than the plane lies to the left:
+  // by 0.15 m times the focal length times the difference of the inverse depths.
+  const double shift_px = 0.15 * rig.camera.fx_px * (1 / 0.5 - 1 / 0.7);
+  EXPECT_NEAR(rig.to_camera(rig.to_projector(px, 0.5)).x, px.x - shift_px, 0.5);
+}
+
+TEST(Calibration, ItsProjectionAndHomographiesAgree) {
+  const auto rig = rig_with_projector_beside();
+  const glm::dvec3 point_m(0.05, -0.08, 0.55);
+  const auto expected = rig.to_projector(rig.camera.project(point_m), point_m.z);
+  const auto projected = rig.projection() * glm::dvec4(point_m, 1);
+  EXPECT_LT(glm::distance(glm::dvec2(projected) / projected.z, expected), 1e-9);
+  const auto mapped = rig.homography_at(point_m.z) * glm::dvec3(rig.camera.project(point_m), 1);
+  EXPECT_LT(glm::distance(glm::dvec2(mapped) / mapped.z, expected), 1e-9);
+}
+
 TEST(Calibration, MillimetresPerPixelGrowWithTheDistance) {
   const auto rig = reference_rig();
   EXPECT_NEAR(rig.mm_per_projector_px(0.5), 500 / 1162.2776 * 720 / 1024, 1e-6);
@@ -176,6 +208,23 @@ TEST(CalibrationFile, KeepsTheNamesOfItsDevices) {
   ASSERT_TRUE(back) << back.error().what;
   EXPECT_EQ(back->camera_device, "23456789");
   EXPECT_EQ(back->projector_device, "EPSON PJ");
+}
+
+TEST(CalibrationFile, KeepsTheProjectorsPlace) {
+  const auto rig = rig_with_projector_beside();
+  const auto back = load_calibration(file_with(print_calibration(rig)));
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_EQ(back->parallax, rig.parallax);
+  EXPECT_EQ(back->plane_m, rig.plane_m);
+}
+
+TEST(CalibrationFile, SaysHowItWasMadeWithoutBecomingAnotherCalibration) {
+  auto rig = reference_rig();
+  rig.made.lens = "2026-11-24: 20 images";
+  const auto back = load_calibration(file_with(print_calibration(rig)));
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_EQ(back->made.lens, rig.made.lens);
+  EXPECT_EQ(back->id, load_calibration("")->id);
 }
 
 TEST(CalibrationFile, HasAnIdThatChangesWithAnyOfItsNumbers) {
@@ -217,7 +266,7 @@ TEST(CalibrationFile, ThatIsNotWholeIsRefusedWithWhatIsMissing) {
   const auto cut = load_calibration(file_with(whole.substr(0, whole.find("[projector]"))));
   ASSERT_FALSE(cut);
   EXPECT_THAT(cut.error().what, HasSubstr("projector.x, projector.y, projector.w are missing"));
-  const auto from = whole.find("# Rigid transform"), to = whole.find("# The projector, coaxial");
+  const auto from = whole.find("# Rigid transform"), to = whole.find("# The projector.");
   EXPECT_TRUE(load_calibration(file_with(whole.substr(0, from) + whole.substr(to))))
       << "a rig without a tracker";
 }

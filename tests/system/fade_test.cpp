@@ -75,8 +75,9 @@ TEST_P(Fade, TheLightOfARigFallsToBlackBeforeItEnds) {
     EXPECT_LT(share, 0.7) << testing::PrintToString(light);
     EXPECT_GT(share, 0) << testing::PrintToString(light);
   }
-  if (!is_packed)
+  if (!is_packed) {
     EXPECT_LT(light[light.size() - 2], light[light.size() - 4]) << testing::PrintToString(light);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Packings, Fade, testing::Values("none", "8x3"),

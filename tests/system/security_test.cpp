@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
+#include "ipc/msg/test_picture.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {
@@ -27,13 +28,17 @@ class Security : public SystemTest {
     processes.insert(processes.end(), {rig.pid(), rig.supervisor()});
     return processes;
   }
-  /// The descriptors of all rings that a tool gets.
+  /// The descriptors of all rings that a tool gets, without the one that it may write to.
   std::vector<UniqueFd> rings() const {
     setenv("HANDCAST_SCOPE", scratch_.path().c_str(), 1);
     auto answer = control::ask_with_descriptors("twin", {.verb = control::Verb::rings});
     unsetenv("HANDCAST_SCOPE");
     EXPECT_TRUE(answer);
-    return answer ? std::move(answer->descriptors) : std::vector<UniqueFd>();
+    std::vector<UniqueFd> given;
+    for (std::size_t i = 0; answer && i < answer->descriptors.size(); ++i)
+      if (answer->object["rings"][i] != msg::kTestPictures)
+        given.push_back(std::move(answer->descriptors[i]));
+    return given;
   }
 };
 

@@ -62,13 +62,16 @@ double lens_error(const calib::CameraModel& camera, double corner_px, const Rand
 
 TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
                            const calib::Calibration& believed)
-    : true_(believed), believed_(believed.camera), plane_m_(kVolume_m + settings.plane_mm * 1e-3) {
+    : true_(believed), believed_(believed.camera) {
   const Random random(seed, Stream::geometry);
   const double angle = std::numbers::pi * random.spread(10);
-  centre_m_ = settings.projector_offset_mm * 1e-3 * glm::dvec2(std::cos(angle), std::sin(angle));
+  const auto centre_m =
+      settings.projector_offset_mm * 1e-3 * glm::dvec3(std::cos(angle), std::sin(angle), 0);
+  true_.plane_m += settings.plane_mm * 1e-3;
   if (settings.homography_px > 0)
     true_.projector_from_camera =
         corner_error(believed, settings.homography_px, random) * believed.projector_from_camera;
+  true_.parallax -= true_.projector_from_camera * (true_.camera.matrix() * centre_m);
   if (settings.tracker_mm > 0 || settings.tracker_deg > 0)
     true_.camera_from_tracker = pose_error(settings, random) * believed.camera_from_tracker;
   if (settings.lens_px > 0)
@@ -76,10 +79,7 @@ TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
 }
 
 glm::dvec2 TrueGeometry::to_projector(const glm::dvec3& camera_m) const {
-  const double shift = 1 / camera_m.z - 1 / plane_m_;
-  const glm::dvec3 seen(glm::dvec2(camera_m) / camera_m.z - centre_m_ * shift, 1);
-  const glm::dvec3 px = true_.projector_from_camera * (true_.camera.matrix() * seen);
-  return glm::dvec2(px) / px.z;
+  return true_.to_projector(true_.camera.project(camera_m), camera_m.z);
 }
 
 }  // namespace handcast::twin

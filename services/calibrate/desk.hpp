@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "ipc/base/clock.hpp"
+#include "services/calibrate/keys.hpp"
+#include "services/calibrate/options.hpp"
+#include "services/calibrate/own_rig.hpp"
+#include "services/calibrate/session.hpp"
+#include "services/calibrate/test_screen.hpp"
+
+namespace handcast::calibrate {
+
+/// What a step works with: the rig that runs, and the person at the terminal and in the light.
+struct Desk {
+  const Options& options;
+  const config::Rig& rig;
+  const calib::Calibration& used;  ///< what the services of the rig work with
+  calib::Calibration& draft;       ///< what is being measured
+  OwnRig& own_rig;
+  TestScreen& screen;
+  Keys& keys;
+};
+
+/// Tells a person how a measurement goes: a line in the terminal that is written over, and text on
+/// the projector.
+class Progress {
+ public:
+  /// Begins with an instruction. Both must outlive the object.
+  Progress(Desk& desk, std::string title);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();  ///< Ends the line in the terminal.
+
+  /// Shows how far it is (0..1) and what to do next; on the projector too unless `is_dark`.
+  void show(double share, const std::string& advice, bool is_dark = false);
+  /// False if the step must end: Enter was pressed or its time is over. Looks after the rig.
+  Result<bool> goes_on();
+
+ private:
+  Desk& desk_;
+  std::string title_;
+  Deadline end_;
+  std::int64_t printed_ns_ = 0;
+  bool is_terminal_;
+};
+
+}  // namespace handcast::calibrate

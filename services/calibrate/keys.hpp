@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <termios.h>
+
+#include <optional>
+
+namespace handcast::calibrate {
+
+/// A key of the terminal.
+struct Key {
+  enum class Arrow { none, up, down, left, right };
+  char character = 0;  ///< "\n" for Enter; 0 for an arrow
+  Arrow arrow = Arrow::none;
+};
+
+/// The keys that a person presses in the terminal, without waiting for Enter. Ctrl-C still ends the
+/// program. Without a terminal there are none. One object at a time.
+class Keys {
+ public:
+  Keys();
+  Keys(const Keys&) = delete;
+  Keys& operator=(const Keys&) = delete;
+  ~Keys();  ///< Restores the terminal.
+
+  /// True if there is a person to press keys.
+  bool has_person() const { return before_.has_value(); }
+  /// The next key that was pressed; empty if none was. Does not wait.
+  std::optional<Key> pressed();
+
+ private:
+  std::optional<char> next_byte();
+
+  std::optional<termios> before_;  ///< the terminal's state; empty without a terminal
+};
+
+}  // namespace handcast::calibrate

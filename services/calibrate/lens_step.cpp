@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/lens_step.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calib/board/board_finder.hpp"
+#include "calib/lens/auto_capture.hpp"
+#include "calib/lens/coverage.hpp"
+#include "calib/lens/fit_lens.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "services/calibrate/pieces.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kEnoughViews = 15;
+
+calib::GreyView view_of(const msg::CameraFrame& frame) {
+  const auto width = static_cast<int>(frame.width_px);
+  return {frame.pixels(), width, static_cast<int>(frame.height_px), width};
+}
+
+/// The views of a board that a person has shown.
+Result<std::vector<calib::BoardView>> take_views(Desk& desk) {
+  auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, "camera.frames");
+  if (!frames) return tl::make_unexpected(frames.error());
+  const auto& camera = desk.used.camera;
+  const calib::BoardFinder finder(desk.options.board);
+  calib::Coverage coverage(camera.width_px, camera.height_px);
+  calib::AutoCapture capture;
+  std::vector<calib::BoardView> views;
+  Progress progress(desk, "lens");
+  while (coverage.share() < 1 || views.size() < kEnoughViews) {
+    if (const auto on = progress.goes_on(); !on || !*on) {
+      if (!on) return tl::make_unexpected(on.error());
+      break;
+    }
+    const double views_share = static_cast<double>(views.size()) / kEnoughViews;
+    progress.show(std::min({0.99, coverage.share(), views_share}),
+                  views.empty() ? "Hold the board still in front of the camera"
+                                : coverage.advice());
+    const auto frame = frames->latest(Deadline::in(200ms));
+    if (!frame && frame.error().code != Errc::timeout)
+      return tl::make_unexpected(frame.error());
+    if (!frame) continue;
+    auto seen = finder.find(view_of(**frame));
+    if (!seen || !capture.take((*frame)->header.origin_ns, *seen)) continue;
+    coverage.add(*seen);
+    views.push_back(std::move(*seen));
+  }
+  return views;
+}
+
+std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
+  std::vector<Dot> dots;
+  for (const auto& view : views)
+    for (const auto& px : view.image_px) dots.push_back({px});
+  return dots_svg(fit.camera.width_px, fit.camera.height_px, dots, 1,
+                  fmt::format("Where the board was seen: {} corners in {} images.", dots.size(),
+                              views.size()));
+}
+
+Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
+  Outcome outcome;
+  outcome.made = fmt::format("{} images, {:.2f} px held out, focal length {:.1f} px +- {:.2f} %",
+                             views.size() - fit.rejected.size(), fit.held_out_rms_px,
+                             fit.camera.fx_px, 100 * fit.fx.half_width() / fit.camera.fx_px);
+  outcome.findings = fit.findings;
+  outcome.is_good = fit.findings.empty();
+  outcome.pictures = pictures_of(fit, views);
+  return outcome;
+}
+
+}  // namespace
+
+Result<Outcome> measure_lens(Desk& desk) {
+  const auto views = take_views(desk);
+  if (!views) return tl::make_unexpected(views.error());
+  const auto& camera = desk.used.camera;
+  const auto fit = calib::fit_lens(*views, camera.width_px, camera.height_px);
+  if (!fit) return tl::make_unexpected(fit.error());
+  desk.draft.camera = fit->camera;
+  return outcome_of(*fit, *views);
+}
+
+}  // namespace handcast::calibrate

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <tuple>
+
+#include "config/settings/choice.hpp"
+#include "ipc/base/verb_options.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+constexpr const char* kSummary =
+    "Measures the camera's lens, the projector and the tracker's place of a rig, and writes its "
+    "calibration file. It starts the rig itself, says what to hold where, and can be left at any "
+    "time and called again: it goes on where it was left. The old calibration is kept.\n\n"
+    "Print the board first: handcast calibrate --print-board board.pdf";
+
+/// "1024x768".
+Result<Size> parse_size(const std::string& flag, const std::string& text) {
+  Size size;
+  const char *begin = text.data(), *end = begin + text.size();
+  const auto width = std::from_chars(begin, end, size.width_px);
+  const bool has_cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  if (has_cross) {
+    const auto height = std::from_chars(width.ptr + 1, end, size.height_px);
+    if (height.ec == std::errc() && height.ptr == end && size.width_px >= 16 &&
+        size.height_px >= 16)
+      return size;
+  }
+  return fail(Errc::bad_config,
+              fmt::format("{}: '{}' is not a size like 1024x768", flag, text));
+}
+
+/// What the program needs to run.
+Result<void> check(const Options& options) {
+  if (!options.board_pdf.empty()) return {};
+  if (options.rig_file.empty())
+    return fail(Errc::bad_config, "name the rig file: handcast calibrate RIG.toml");
+  if (options.check && !options.steps.empty())
+    return fail(Errc::bad_config, "--check measures no single steps; leave them out");
+  return {};
+}
+
+}  // namespace
+
+Result<Options> parse(int argc, char** argv) {
+  CLI::App app(kSummary, "handcast calibrate");
+  Options options;
+  std::vector<std::string> steps;
+  std::string board = calib::print_board_name(calib::Board{}), camera, projector;
+  app.add_option("RIG.toml", options.rig_file, "The rig file");
+  app.add_option("STEP", steps, "lens, screen, tracker; default: all that are left");
+  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's");
+  app.add_option("--board", board, "The board: KIND:COLUMNSxROWS:MM, the size of a square in mm")
+      ->capture_default_str();
+  app.add_option("--print-board", options.board_pdf, "Writes the board as a PDF, and ends");
+  app.add_option("--camera", camera, "Size of the camera's images, for a rig without a calibration");
+  app.add_option("--projector", projector,
+                 "Size of the projector's image, for a rig without a calibration");
+  app.add_option("--folder", options.folder,
+                 "Where pictures, results and the report go; default: RIG.calibration");
+  app.add_option("--most-s", options.most_s, "How long a step may take")
+      ->check(CLI::Range(5, 3600))
+      ->capture_default_str();
+  app.add_flag("--yes", options.yes, "Starts each step without waiting for a key");
+  app.add_flag("--restart", options.restart, "Forgets what was measured before");
+  app.add_flag("--check", options.check,
+               "Measures today's error of the calibration in 30 s, and changes nothing");
+  auto text = parse_options(app, argc, argv);
+  if (!text) return tl::make_unexpected(text.error());
+  if (!(options.text = std::move(*text)).empty()) return options;
+
+  for (const auto& word : steps) {
+    const auto step = config::choice_named<Step>(word);
+    if (!step)
+      return fail(Errc::bad_config,
+                  fmt::format("there is no step '{}'; there are lens, screen, tracker", word));
+    options.steps.push_back(*step);
+  }
+  auto parsed = calib::parse_board(board);
+  if (!parsed) return fail_in("--board", parsed.error());
+  options.board = *parsed;
+  for (const auto& [flag, given, size] : {std::tuple{"--camera", &camera, &options.camera},
+                                          std::tuple{"--projector", &projector,
+                                                     &options.projector}}) {
+    if (given->empty()) continue;
+    const auto read = parse_size(flag, *given);
+    if (!read) return tl::make_unexpected(read.error());
+    *size = *read;
+  }
+  if (options.folder.empty() && !options.rig_file.empty())
+    options.folder = std::filesystem::path(options.rig_file).replace_extension(".calibration");
+  return check(options).map([&] { return options; });
+}
+
+}  // namespace handcast::calibrate

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/board/board.hpp"
+#include "ipc/base/result.hpp"
+
+namespace handcast::calibrate {
+
+/// What is measured, in this order: each step needs those before it.
+enum class Step { lens, screen, tracker };
+constexpr std::array<std::string_view, 3> words_of(Step) { return {"lens", "screen", "tracker"}; }
+
+/// The size of an image in pixels; 0 x 0: not said.
+struct Size {
+  int width_px = 0, height_px = 0;
+};
+
+/// The command line of `handcast calibrate`.
+struct Options {
+  std::filesystem::path rig_file;
+  std::vector<Step> steps;            ///< empty: all that are left
+  std::vector<std::string> settings;  ///< of --set
+  calib::Board board;
+  Size camera, projector;           ///< of a rig without a calibration
+  std::filesystem::path folder;     ///< of the session; default: next to the rig file
+  std::filesystem::path board_pdf;  ///< where the board is to be written, and nothing else is done
+  double most_s = 180;              ///< how long a step may take
+  bool yes = false;                 ///< starts each step without a key
+  bool restart = false;             ///< forgets what was measured before
+  bool check = false;               ///< measures today's error and changes nothing
+  std::string text{};  ///< that --help or --version asks for; "" if the program shall run
+};
+
+/// Errors: bad_config.
+Result<Options> parse(int argc, char** argv);
+
+}  // namespace handcast::calibrate

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/session.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <ctime>
+
+#include "config/settings/choice.hpp"
+#include "config/settings/files.hpp"
+#include "services/calibrate/pieces.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kSteps{Step::lens, Step::screen, Step::tracker};
+
+std::string& made_of(calib::Made& made, Step step) {
+  switch (step) {
+    case Step::lens: return made.lens;
+    case Step::screen: return made.screen;
+    case Step::tracker: return made.tracker;
+  }
+  return made.lens;
+}
+
+std::tm local_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return local;
+}
+
+/// The rig's own file; a new one next to the rig file if it has none.
+fs::path target_of(const Options& options, const config::Rig& rig) {
+  if (!rig.calibration.empty()) return rig.calibration;
+  return fs::absolute(options.rig_file).replace_extension("").string() + "_calibration.toml";
+}
+
+/// The name under which the file is kept when another one takes its place.
+fs::path old_name_of(const fs::path& file) {
+  const auto stem = fmt::format("{}.{:%Y-%m-%dT%H%M%S}", file.stem().string(), local_time());
+  return file.parent_path() / (stem + file.extension().string());
+}
+
+}  // namespace
+
+Result<Session> Session::open(const Options& options, const config::Rig& rig,
+                              const calib::Calibration& used) {
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error)
+    return fail(Errc::bad_config, fmt::format("the folder '{}' cannot be made: {}",
+                                              options.folder.string(), error.message()));
+  Session session(fs::absolute(options.folder), target_of(options, rig), used);
+  session.rig_name_ = rig.name;
+  session.rig_file_ = options.rig_file.string();
+  session.draft_.made = {};
+  const auto file = session.file("draft.toml");
+  if (options.restart || !fs::exists(file)) return session;
+  auto draft = calib::load_calibration(file);
+  if (!draft) return tl::make_unexpected(draft.error());
+  if (draft->camera.width_px != used.camera.width_px ||
+      draft->camera.height_px != used.camera.height_px)
+    return fail(Errc::bad_config,
+                fmt::format("what was measured before, in {}, has images of {}x{} px, and the rig "
+                            "has {}x{}; --restart forgets it",
+                            session.folder_.string(), draft->camera.width_px,
+                            draft->camera.height_px, used.camera.width_px,
+                            used.camera.height_px));
+  session.draft_ = *draft;
+  return session;
+}
+
+bool Session::is_done(Step step) const {
+  auto made = draft_.made;
+  return !made_of(made, step).empty();
+}
+
+fs::path Session::piece_of(Step step) const {
+  return file(fmt::format("{}.html", config::word_of(step)));
+}
+
+void Session::forget(Step step) {
+  std::error_code absent;
+  made_of(draft_.made, step).clear();
+  fs::remove(piece_of(step), absent);
+}
+
+Result<void> Session::keep(Step step, const Outcome& outcome) {
+  if (step == Step::lens)
+    for (const Step later : {Step::screen, Step::tracker}) forget(later);
+  made_of(draft_.made, step) = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
+  auto kept = config::write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
+  if (kept) kept = config::write_whole(file("draft.toml"), calib::print_calibration(draft_));
+  return kept ? write_report() : kept;
+}
+
+Result<void> Session::write_report() const {
+  std::string pieces;
+  for (const Step step : kSteps)
+    if (const auto piece = config::read_text(piece_of(step))) pieces += *piece;
+  return config::write_whole(report(), report_html(rig_name_, draft_, pieces));
+}
+
+Result<std::string> Session::finish() const {
+  // A file that the services would refuse must not take the place of a good one.
+  if (const auto usable = calib::load_calibration(file("draft.toml")); !usable)
+    return tl::make_unexpected(usable.error());
+  std::string sentence = fmt::format("the calibration is in {}", target_.string());
+  std::error_code error;
+  if (fs::exists(target_)) {
+    const auto old = old_name_of(target_);
+    fs::copy_file(target_, old, fs::copy_options::overwrite_existing, error);
+    if (error)
+      return fail(Errc::unavailable, fmt::format("the old calibration cannot be copied to {}: {}",
+                                                 old.string(), error.message()));
+    sentence += fmt::format("; the one before it is kept as {}", old.filename().string());
+  }
+  return config::write_whole(target_, calib::print_calibration(draft_)).map([&] {
+    return sentence;
+  });
+}
+
+}  // namespace handcast::calibrate

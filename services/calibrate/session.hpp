@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "services/calibrate/options.hpp"
+
+namespace handcast::calibrate {
+
+/// What a step has found out.
+struct Outcome {
+  std::string made;                   ///< one sentence for the calibration file: how good it is
+  bool is_good = true;                ///< false: it can be used, but should be measured again
+  std::vector<std::string> findings;  ///< what a person should know or do, most important first
+  std::string pictures{};             ///< HTML for the report
+};
+
+/// One calibration of a rig, which may take several calls of the program: the folder with what was
+/// measured so far (draft.toml, a piece of the report for each step), and the calibration file that
+/// it becomes. One thread.
+class Session {
+ public:
+  /// Opens the session in options.folder, or begins one. `used`: the calibration that the rig's
+  /// services have meanwhile. Errors: bad_config (the folder cannot be made, or a draft of other
+  /// images), those of calib::load_calibration() for a draft.
+  static Result<Session> open(const Options& options, const config::Rig& rig,
+                              const calib::Calibration& used);
+
+  /// The calibration as far as it was measured; the rest is that of the rig.
+  calib::Calibration& draft() { return draft_; }
+  /// The file that the calibration becomes: the rig's own, or a new one next to the rig file.
+  const std::filesystem::path& target() const { return target_; }
+  /// The page with what was measured.
+  std::filesystem::path report() const { return folder_ / "report.html"; }
+  /// A file of the session.
+  std::filesystem::path file(std::string_view name) const { return folder_ / name; }
+
+  /// True if the draft has this part.
+  bool is_done(Step step) const;
+  /// Keeps the draft and the outcome of a step, and writes the report anew. What was measured with
+  /// an older lens is forgotten. Errors: unavailable (a file cannot be written).
+  Result<void> keep(Step step, const Outcome& outcome);
+  /// Writes the draft to target(); the file before it is kept with the time in its name. Returns a
+  /// sentence about where they are. Errors: unavailable, bad_config.
+  Result<std::string> finish() const;
+
+ private:
+  Session(std::filesystem::path folder, std::filesystem::path target, calib::Calibration draft)
+      : folder_(std::move(folder)), target_(std::move(target)), draft_(std::move(draft)) {}
+  void forget(Step step);
+  Result<void> write_report() const;
+  std::filesystem::path piece_of(Step step) const;
+
+  std::filesystem::path folder_, target_;
+  std::string rig_name_, rig_file_;
+  calib::Calibration draft_;
+};
+
+}  // namespace handcast::calibrate

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/test_screen.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "renderer/content/lettering.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kRepeatEvery_ns = 250'000'000;
+constexpr int kLinesOnScreen = 12;  ///< height of the screen in lines of text
+
+/// Copies a line of text into a picture, its middle at `x`, its top at `y`; what does not fit is
+/// cut off.
+void put_line(const renderer::Image<std::uint8_t>& line, int x, int y,
+              renderer::Image<std::uint8_t>& picture) {
+  const int left = x - line.width() / 2;
+  for (int row = 0; row < line.height(); ++row)
+    for (int column = 0; column < line.width(); ++column)
+      if (const int px = left + column, py = y + row;
+          px >= 0 && px < picture.width() && py >= 0 && py < picture.height())
+        picture.at(px, py) = line.at(column, row);
+}
+
+}  // namespace
+
+Result<TestScreen> TestScreen::open(const std::string& rig, int width_px, int height_px) {
+  auto writer = client::open_writer<msg::TestPicture>(rig, msg::kTestPictures);
+  if (!writer) return fail_in("test pictures", writer.error());
+  auto projections = client::open_stream<msg::Projection>(rig, "projection.frames");
+  if (!projections) return tl::make_unexpected(projections.error());
+  TestScreen screen(std::move(*writer), std::move(*projections), width_px, height_px);
+  // Numbers must not repeat those of an earlier program that wrote to this ring.
+  screen.number_ = static_cast<std::uint64_t>(now_ns());
+  return screen;
+}
+
+void TestScreen::show(const std::function<void(std::uint8_t* levels)>& draw) {
+  draw(picture_.pixels().data());
+  text_.clear();
+  ++number_;
+  publish();
+}
+
+void TestScreen::show_text(const std::vector<std::string>& lines) {
+  if (lines == text_) return keep();
+  const int height = this->height_px() / kLinesOnScreen;
+  std::ranges::fill(picture_.pixels(), std::uint8_t{0});
+  int y = (height_px() - static_cast<int>(lines.size() + 1) * height) / 2;
+  for (const auto& line : lines) {
+    const bool is_first = &line == &lines.front();
+    put_line(renderer::lettering(line, is_first ? height : height * 2 / 3), width_px() / 2, y,
+             picture_);
+    y += is_first ? height * 3 / 2 : height;
+  }
+  text_ = lines;
+  ++number_;
+  publish();
+}
+
+void TestScreen::keep() {
+  if (now_ns() - published_ns_ > kRepeatEvery_ns) publish();
+}
+
+void TestScreen::publish() {
+  published_ns_ = now_ns();
+  auto slot = writer_.loan();
+  if (!slot) return;
+  slot->header.frame_id = number_;
+  slot->width_px = static_cast<std::uint32_t>(picture_.width());
+  slot->height_px = static_cast<std::uint32_t>(picture_.height());
+  std::memcpy(slot->levels(), picture_.pixels().data(), picture_.pixels().size());
+  writer_.publish(std::move(slot));
+}
+
+Result<std::int64_t> TestScreen::lit_ns(Deadline deadline) {
+  for (;;) {
+    const auto shown = projections_.next(deadline);
+    if (!shown) return tl::make_unexpected(shown.error());
+    if ((*shown)->test_picture == number_) return (*shown)->lit_ns;
+    keep();
+  }
+}
+
+}  // namespace handcast::calibrate

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/tracker_step.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "calib/tracker/fit_tracker.hpp"
+#include "calib/tracker/volume_coverage.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "services/calibrate/pieces.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kSigmaIfUnknown_px = 3;
+constexpr float kLeastConfidence = 0.3f;
+
+/// What tracker and camera have seen of one hand.
+struct Seen {
+  std::vector<calib::TrackerSample> samples;
+  std::vector<calib::Sighting> sightings;
+};
+using SeenBySide = std::array<Seen, msg::kMaxHands>;
+
+glm::dvec3 place_of(const msg::Joint& joint) {
+  return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};
+}
+
+calib::TrackerSample sample_of(std::int64_t time_ns, const msg::HandPose& hand) {
+  calib::TrackerSample sample{time_ns, {}};
+  for (const int joint : msg::kJointOfLandmark)
+    sample.points_m.push_back(place_of(hand.joints[static_cast<std::size_t>(joint)]));
+  return sample;
+}
+
+/// The landmarks were undistorted with the lens in use; here they are with the draft's.
+void add_sightings(const Desk& desk, std::int64_t time_ns, const msg::HandLandmarks& hand,
+                   Seen& seen) {
+  for (int i = 0; i < msg::kLandmarks; ++i) {
+    const auto& point = hand.points[static_cast<std::size_t>(i)];
+    if (point.confidence < kLeastConfidence) continue;
+    const auto image_px = desk.used.camera.distort({point.x_px, point.y_px});
+    seen.sightings.push_back({time_ns, i, desk.draft.camera.undistort(image_px),
+                              point.sigma_px > 0 ? point.sigma_px : kSigmaIfUnknown_px});
+  }
+}
+
+/// Watches a hand until it was everywhere in the volume, Enter is pressed, or the time is over.
+Result<SeenBySide> watch(Desk& desk) {
+  auto poses = client::open_stream<msg::HandPoses>(desk.rig.name, "pose.hands");
+  if (!poses) return tl::make_unexpected(poses.error());
+  auto landmarks = client::open_stream<msg::Landmarks>(desk.rig.name, "landmarks.hands");
+  if (!landmarks) return tl::make_unexpected(landmarks.error());
+  calib::VolumeCoverage coverage(desk.draft.camera);
+  SeenBySide seen;
+  Progress progress(desk, "tracker");
+  while (coverage.share() < 1) {
+    if (const auto on = progress.goes_on(); !on || !*on) {
+      if (!on) return tl::make_unexpected(on.error());
+      break;
+    }
+    progress.show(coverage.share(), coverage.advice());
+    const auto found = landmarks->next(Deadline::in(200ms));
+    if (found)
+      for (std::uint32_t h = 0; h < std::min((*found)->count, std::uint32_t{msg::kMaxHands}); ++h) {
+        const auto& hand = (*found)->hands[h];
+        add_sightings(desk, (*found)->header.origin_ns, hand,
+                      seen[static_cast<std::size_t>(hand.side)]);
+      }
+    while (const auto sample = poses->next(Deadline::now()))
+      for (std::uint32_t h = 0; h < std::min((*sample)->count, std::uint32_t{msg::kMaxHands});
+           ++h) {
+        const auto& hand = (*sample)->hands[h];
+        auto& of_side = seen[static_cast<std::size_t>(hand.side)];
+        of_side.samples.push_back(sample_of((*sample)->header.origin_ns, hand));
+        if (!of_side.sightings.empty())
+          coverage.add(of_side.sightings.back().undistorted_px,
+                       glm::length(of_side.samples.back().points_m[9]));
+      }
+  }
+  return seen;
+}
+
+/// The hand that was seen more often.
+const Seen& most_seen(const SeenBySide& seen) {
+  return seen[0].sightings.size() >= seen[1].sightings.size() ? seen[0] : seen[1];
+}
+
+Result<calib::TrackerFit> fit(Desk& desk) {
+  const auto seen = watch(desk);
+  if (!seen) return tl::make_unexpected(seen.error());
+  const auto& hand = most_seen(*seen);
+  if (hand.samples.empty())
+    return fail(Errc::bad_data, "the tracker has seen no hand; `handcast status` shows whether it "
+                                "runs, and the hand must be in its view too");
+  return calib::fit_tracker(hand.samples, hand.sightings, desk.draft.camera);
+}
+
+std::string made_of(const calib::TrackerFit& fit) {
+  return fmt::format("{:.1f} px held out, {:.0f} % of the points fit, light within {:.1f} mm, clock "
+                     "{:+.1f} ms",
+                     fit.held_out_px, 100 * fit.inlier_share, fit.middle_error_mm,
+                     1e-6 * static_cast<double>(fit.clock_offset_ns));
+}
+
+}  // namespace
+
+Result<Outcome> measure_tracker(Desk& desk) {
+  const auto found = fit(desk);
+  if (!found) return tl::make_unexpected(found.error());
+  desk.draft.camera_from_tracker = found->camera_from_tracker;
+  return Outcome{made_of(*found), found->quality != calib::Quality::poor, found->findings};
+}
+
+Result<Outcome> check_tracker(Desk& desk) {
+  const auto found = fit(desk);
+  if (!found) return tl::make_unexpected(found.error());
+  const glm::dvec4 middle(found->middle_m, 1);
+  const auto off_m = glm::dvec3(desk.used.camera_from_tracker * middle -
+                                found->camera_from_tracker * middle);
+  Outcome outcome{fmt::format("in the middle of the volume the tracker's place is off by {:.1f} mm "
+                              "across and {:.1f} mm along the camera's axis",
+                              1e3 * std::hypot(off_m.x, off_m.y), 1e3 * std::abs(off_m.z)),
+                  true, found->findings};
+  return outcome;
+}
+
+}  // namespace handcast::calibrate

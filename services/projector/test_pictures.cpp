@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/projector/test_pictures.hpp"
+
+#include <cstddef>
+
+namespace handcast::projector {
+
+const renderer::Frame* TestPictures::at(std::int64_t time_ns, std::int64_t target_ns) {
+  if (!take_newest() && time_ns >= until_ns_) return nullptr;
+  frame_.target_ns = target_ns;
+  return &frame_;
+}
+
+/// True if there is a picture that was not seen before. One that is only repeated is not copied.
+bool TestPictures::take_newest() {
+  const auto newest = pictures_.latest(Deadline::now());
+  if (!newest) return false;
+  const msg::TestPicture& picture = **newest;
+  if (picture.header.frame_id == 0 || static_cast<int>(picture.width_px) != image_.width() ||
+      static_cast<int>(picture.height_px) != image_.height())
+    return false;
+  until_ns_ = picture.header.published_ns + msg::TestPicture::kLasting_ns;
+  if (frame_.test_picture == picture.header.frame_id) return true;
+  auto& pixels = image_.pixels();
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    pixels[i] = 0xff000000u | picture.levels()[i] * 0x010101u;
+  frame_.colour = image_.view();
+  frame_.region = {0, 0, image_.width(), image_.height()};
+  frame_.test_picture = picture.header.frame_id;
+  return true;
+}
+
+}  // namespace handcast::projector

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/latency/light_delay.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace handcast::calib {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kHold_ms = 170, kPeriod_ms = 16.7, kExposure_ms = 4, kDark = 20, kBright = 80;
+
+std::int64_t ns(double ms) { return static_cast<std::int64_t>(ms * 1e6); }
+
+/// A light that toggles, and a camera that watches it.
+struct Scene {
+  explicit Scene(double delay_ms, int seed = 1, int toggle_count = 20, double bright = kBright) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::normal_distribution<double> noise(0, 0.3);
+    std::uniform_real_distribution<double> some(0, 30);
+    double time_ms = 1000;
+    for (int i = 0; i < toggle_count; ++i, time_ms += kHold_ms + some(random))
+      toggles.push_back({ns(time_ms), i % 2 == 0});
+    for (double at_ms = 500; at_ms < time_ms + 300; at_ms += kPeriod_ms) {
+      double share = 0;
+      for (const auto& toggle : toggles) {
+        const double begin_ms = 1e-6 * static_cast<double>(toggle.begin_ns) + delay_ms;
+        const double after =
+            std::clamp((at_ms + kExposure_ms / 2 - begin_ms) / kExposure_ms, 0.0, 1.0);
+        share += toggle.is_bright ? after : -after;
+      }
+      images.push_back(
+          {ns(at_ms), ns(kExposure_ms), kDark + (bright - kDark) * share + noise(random)});
+    }
+  }
+  std::vector<Toggle> toggles;
+  std::vector<Brightness> images;
+};
+
+TEST(LightDelay, IsFoundToAMillisecondWithACameraOf60Hz) {
+  for (const double delay_ms : {-12.0, 0.0, 3.3, 25.0, 60.0}) {
+    const Scene scene(delay_ms);
+    const auto found = fit_light_delay(scene.toggles, scene.images);
+    ASSERT_TRUE(found) << found.error().what;
+    EXPECT_NEAR(found->delay_ms, delay_ms, 1);
+    EXPECT_NEAR(found->contrast, kBright - kDark, 2);
+  }
+}
+
+TEST(LightDelay, ItsIntervalHoldsTheTruthInNineOfTenRuns) {
+  int held = 0, narrow = 0;
+  constexpr int kRuns = 100;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    const Scene scene(7.7, seed);
+    const auto found = fit_light_delay(scene.toggles, scene.images);
+    ASSERT_TRUE(found) << found.error().what;
+    held += found->low_ms <= 7.7 && found->high_ms >= 7.7;
+    narrow += found->high_ms - found->low_ms < 6;
+  }
+  EXPECT_GE(held, 90);
+  EXPECT_GE(narrow, 90) << "an interval that says nothing";
+}
+
+TEST(LightDelay, ACameraBehindAnInfraredFilterIsTold) {
+  const Scene scene(5, 1, 20, kDark + 1);
+  const auto found = fit_light_delay(scene.toggles, scene.images);
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().what, HasSubstr("does not see the projector's light"));
+}
+
+TEST(LightDelay, TooFewTogglesOrImagesAreAnError) {
+  EXPECT_FALSE(fit_light_delay({}, {}));
+  const Scene few(5, 1, 4), scene(5);
+  EXPECT_FALSE(fit_light_delay(few.toggles, few.images));
+  EXPECT_FALSE(fit_light_delay(scene.toggles, std::span(scene.images).first(40)));
+}
+
+}  // namespace
+}  // namespace handcast::calib

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/projector/test_pictures.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "ipc/ring/writer.hpp"
+
+namespace handcast::projector {
+namespace {
+
+constexpr int kWidth_px = 8, kHeight_px = 4;
+constexpr std::int64_t kTarget_ns = 77;
+
+class TestPicturesTest : public testing::Test {
+ protected:
+  void publish(std::uint64_t number, std::uint8_t level, std::uint32_t width_px = kWidth_px) {
+    auto slot = writer_.loan();
+    slot->header.frame_id = number;
+    slot->width_px = width_px;
+    slot->height_px = kHeight_px;
+    std::fill_n(slot->levels(), width_px * kHeight_px, level);
+    writer_.publish(std::move(slot));
+  }
+  ipc::Segment again() const { return *ipc::Segment::open(UniqueFd(::dup(segment_.fd()))); }
+
+  ipc::Segment segment_ = *ipc::Segment::create(ipc::RingSpec::of<msg::TestPicture>(
+      std::string(msg::kTestPictures), 4, false, msg::TestPicture::bytes(16, 16)));
+  ipc::Writer<msg::TestPicture> writer_ = *ipc::Writer<msg::TestPicture>::attach(again());
+  TestPictures pictures_{*ipc::Reader<msg::TestPicture>::attach(again()), kWidth_px, kHeight_px};
+};
+
+TEST_F(TestPicturesTest, WithoutAPictureHandsAreDrawn) {
+  EXPECT_EQ(pictures_.at(now_ns(), kTarget_ns), nullptr);
+}
+
+TEST_F(TestPicturesTest, APictureFillsTheScreenWithItsLevels) {
+  publish(5, 0x40);
+  const auto* frame = pictures_.at(now_ns(), kTarget_ns);
+  ASSERT_NE(frame, nullptr);
+  EXPECT_EQ(frame->test_picture, 5u);
+  EXPECT_EQ(frame->target_ns, kTarget_ns);
+  EXPECT_EQ(frame->region.width(), kWidth_px);
+  EXPECT_EQ(frame->region.height(), kHeight_px);
+  EXPECT_EQ(frame->colour.at(kWidth_px - 1, kHeight_px - 1), 0xff404040u);
+  EXPECT_TRUE(frame->hands.empty());
+}
+
+TEST_F(TestPicturesTest, APictureStaysUntilItsTimeIsOverAndThenHandsAreDrawn) {
+  publish(5, 0x40);
+  const auto published_ns = now_ns();
+  ASSERT_NE(pictures_.at(published_ns, kTarget_ns), nullptr);
+  EXPECT_NE(pictures_.at(published_ns + msg::TestPicture::kLasting_ns / 2, kTarget_ns), nullptr);
+  EXPECT_EQ(pictures_.at(published_ns + msg::TestPicture::kLasting_ns + 1, kTarget_ns), nullptr);
+}
+
+TEST_F(TestPicturesTest, TheNewestPictureIsShown) {
+  publish(5, 0x40);
+  publish(6, 0x80);
+  EXPECT_EQ(pictures_.at(now_ns(), kTarget_ns)->colour.at(0, 0), 0xff808080u);
+}
+
+TEST_F(TestPicturesTest, APictureOfAnotherSizeIsLeftOut) {
+  publish(5, 0x40, kWidth_px + 1);
+  EXPECT_EQ(pictures_.at(now_ns(), kTarget_ns), nullptr);
+}
+
+}  // namespace
+}  // namespace handcast::projector
