@@ -12,7 +12,7 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kStep = 8;  ///< projector px between two entries, and the side of a block
+constexpr int kStep = CameraLookup::kStep;  ///< the side of a block
 constexpr int kUnitBits = 6;
 constexpr int kUnits = 1 << kUnitBits;  ///< per camera px, in corners
 constexpr int kFineBits = 12;           ///< 64 * 8 * 8 units per camera px, between the corners
@@ -104,45 +104,65 @@ Rect bounds_of(Rect region, double limit, Map map) {
   return {low(x0), low(y0), high(x1), high(y1)};
 }
 
+/// How the image position of what a projector pixel lights changes with its nearness n, 1/m.
+/// `on_plane`: its undistorted position for n = 0. With b = H^-1 e, the position for n is exactly
+/// on_plane + n (b.z on_plane - b); the lens's distortion is linearised.
+glm::vec2 slope_at(const calib::Calibration& calibration, const glm::dvec2& on_plane) {
+  constexpr double kSmall = 0.01;  // 1/m
+  const auto b = glm::inverse(calibration.projector_from_camera) * calibration.parallax;
+  const auto moved = on_plane + kSmall * (b.z * on_plane - glm::dvec2(b));
+  const auto slope =
+      (calibration.camera.distort(moved) - calibration.camera.distort(on_plane)) / kSmall;
+  return glm::vec2(glm::clamp(slope, glm::dvec2(-kFar_px), glm::dvec2(kFar_px)));
+}
+
 }  // namespace
 
 CameraLookup::CameraLookup(const calib::Calibration& calibration, bool smooth)
     : width_(calibration.projector_width_px),
       height_(calibration.projector_height_px),
       columns_((width_ + kStep - 1) / kStep + 1),
+      rows_((height_ + kStep - 1) / kStep + 1),
       smooth_(smooth),
       calibration_(calibration) {
-  const int rows = (height_ + kStep - 1) / kStep + 1;
-  table_.reserve(static_cast<std::size_t>(columns_) * rows);
-  for (int row = 0; row < rows; ++row)
+  const bool is_coaxial = calibration.parallax == glm::dvec3(0);
+  table_.reserve(static_cast<std::size_t>(columns_) * rows_);
+  for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
-      const glm::dvec2 camera =
-          calibration.camera.distort(calibration.to_camera({kStep * column, kStep * row}));
+      const auto on_plane = calibration.to_camera({kStep * column, kStep * row});
+      const auto camera = calibration.camera.distort(on_plane);
       table_.push_back(glm::vec2(glm::clamp(camera, glm::dvec2(-kFar_px), glm::dvec2(kFar_px))));
+      if (!is_coaxial) slopes_.push_back(slope_at(calibration, on_plane));
     }
 }
 
 /// Image positions, at the exposure, of the block corners in row `row` of the table, from column
 /// `first` on.
 void CameraLookup::find_corners(int row, int first, std::vector<glm::ivec2>& corners,
-                                const Similarity& then_from_now) const {
-  const glm::vec2* place_px = &table_[static_cast<std::size_t>(row) * columns_ + first];
+                                const Similarity& then_from_now,
+                                std::span<const float> nearness) const {
+  std::size_t entry = static_cast<std::size_t>(row) * columns_ + first;
   for (glm::ivec2& corner : corners) {
-    const glm::vec2 moved_px = glm::clamp(then_from_now(*place_px++), -kFar_px, kFar_px);
+    glm::vec2 place_px = table_[entry];
+    if (!nearness.empty()) place_px += nearness[entry] * slopes_[entry];
+    ++entry;
+    const glm::vec2 moved_px = glm::clamp(then_from_now(place_px), -kFar_px, kFar_px);
     corner = glm::ivec2(glm::floor(moved_px * static_cast<float>(kUnits) + 0.5f));
   }
 }
 
 void CameraLookup::resample(View<const std::uint8_t> mask, Rect region, View<std::uint8_t> out,
-                            const Similarity& then_from_now) const {
+                            const Similarity& then_from_now,
+                            std::span<const float> nearness) const {
+  if (slopes_.empty()) nearness = {};
   region = region.within(width_, height_);
   if (region.empty()) return;
   const int first = region.x0 / kStep, last = (region.x1 - 1) / kStep;
   std::vector<glm::ivec2> upper(static_cast<std::size_t>(last - first) + 2), lower(upper.size());
-  find_corners(region.y0 / kStep, first, lower, then_from_now);
+  find_corners(region.y0 / kStep, first, lower, then_from_now, nearness);
   for (int y = region.y0 / kStep * kStep; y < region.y1; y += kStep) {
     upper.swap(lower);
-    find_corners(y / kStep + 1, first, lower, then_from_now);
+    find_corners(y / kStep + 1, first, lower, then_from_now, nearness);
     for (int column = first; column <= last; ++column) {
       const std::size_t i = static_cast<std::size_t>(column - first);
       const Block block{column * kStep, y, upper[i], upper[i + 1], lower[i], lower[i + 1]};
@@ -206,10 +226,11 @@ void CameraLookup::resample_block(View<const std::uint8_t> mask, const Block& bl
   }
 }
 
-Rect CameraLookup::to_projector(Rect camera_region) const {
+Rect CameraLookup::to_projector(Rect camera_region, float nearness) const {
   if (camera_region.empty()) return {};
+  const double depth_m = 1 / (1 / calibration_.plane_m + nearness);
   return bounds_of(camera_region, 1e5, [&](glm::dvec2 image_px) {
-    return calibration_.to_projector(calibration_.camera.undistort(image_px));
+    return calibration_.to_projector(calibration_.camera.undistort(image_px), depth_m);
   });
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 
 #include "renderer/base/similarity.hpp"
 #include "renderer/predict/project_landmarks.hpp"
@@ -45,6 +44,8 @@ HandMask::HandMask(const config::Mask& settings, const calib::Calibration& calib
       calibration_(calibration),
       finder_(settings),
       lookup_(calibration, smooth),
+      nearness_{NearnessGrid(lookup_.columns(), lookup_.rows(), CameraLookup::kStep),
+                NearnessGrid(lookup_.columns(), lookup_.rows(), CameraLookup::kStep)},
       projector_mask_(calibration.projector_width_px, calibration.projector_height_px) {}
 
 void HandMask::clear_camera_mask(int width, int height) {
@@ -129,32 +130,29 @@ Similarity HandMask::since_seen(const Expected& hand) const {
              : Similarity{};
 }
 
-/// The image position of the hand's middle, relative to that of the point on the calibration's plane
-/// that the same projector pixel lights. It is taken for the whole hand: the lookup knows that plane
-/// only.
-glm::vec2 HandMask::parallax_px(const Corrected& hand) const {
-  if (calibration_.parallax == glm::dvec3(0)) return {};
-  const auto depths_m = landmark_depths_m(calibration_, hand.pose);
-  const double depth_m = std::accumulate(depths_m.begin(), depths_m.end(), 0.0) / kLandmarks;
-  const glm::dvec2 middle_px(
-      std::accumulate(hand.landmarks.begin(), hand.landmarks.end(), glm::vec2(0)) /
-      static_cast<float>(kLandmarks));
-  const auto on_plane_px = calibration_.to_camera(calibration_.to_projector(middle_px, depth_m));
-  return calibration_.camera.distort(middle_px) - calibration_.camera.distort(on_plane_px);
+/// Where hand `h`, which fills `image_region` at the target time, falls in the projector. Sets its
+/// nearness if the projector is not coaxial.
+Rect HandMask::region_of(std::size_t h, const Expected& hand, const Rect& image_region) {
+  const Rect screen{0, 0, projector_mask_.width(), projector_mask_.height()};
+  if (calibration_.parallax == glm::dvec3(0))
+    return lookup_.to_projector(image_region).within(screen.x1, screen.y1);
+  auto& nearness = nearness_[h];
+  nearness.set(hand.landings_px, hand.depths_m, calibration_.plane_m);
+  return lookup_.to_projector(image_region, nearness.least())
+      .joined(lookup_.to_projector(image_region, nearness.most()))
+      .within(screen.x1, screen.y1);
 }
 
 Rect HandMask::advance(std::span<const Expected> hands) {
-  const Rect screen{0, 0, projector_mask_.width(), projector_mask_.height()};
   Rect all;
   std::vector<Rect> regions;
   std::vector<Similarity> moves;
   for (std::size_t h = 0; h < hands.size(); ++h) {
     moves.push_back(shown_[h] ? since_exposure(hands[h]) : since_seen(hands[h]));
-    moves.back().shift = moves.back()(parallax_px(*hands[h].hand));
     const Rect found = shown_[h] ? found_[h] : memory_of(hands[h].side).found;
     const bool dark = found.empty() || hands[h].presence <= 0;
     const Rect moved = dark ? Rect{} : moved_back(found, moves.back()).grown(kMargin_px);
-    regions.push_back(lookup_.to_projector(moved).within(screen.x1, screen.y1));
+    regions.push_back(region_of(h, hands[h], moved));
     all = all.joined(regions.back());
   }
   if (regions.size() > 1) fill_rect(projector_mask_, all, 0);
@@ -162,7 +160,8 @@ Rect HandMask::advance(std::span<const Expected> hands) {
     for (std::size_t h = 0; h < regions.size(); ++h) {
       if (shown_[h] != shown) continue;
       const GreyView mask = shown ? camera_mask_.view() : memory_of(hands[h].side).mask.view();
-      lookup_.resample(mask, regions[h], projector_mask_.view(), moves[h]);
+      lookup_.resample(mask, regions[h], projector_mask_.view(), moves[h],
+                       nearness_[h].points());
     }
   return all;
 }

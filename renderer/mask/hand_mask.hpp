@@ -13,6 +13,7 @@
 #include "renderer/mask/camera_lookup.hpp"
 #include "renderer/mask/hint.hpp"
 #include "renderer/mask/mask.hpp"
+#include "renderer/mask/nearness_grid.hpp"
 #include "renderer/mask/silhouette.hpp"
 
 namespace handcast::renderer {
@@ -34,6 +35,12 @@ class HandMask {
     /// Displacement of its landmarks by late registration, at the exposure and at the target time.
     /// @{
     LandmarkPoints moved_then{}, moved_now{};
+    /// @}
+    /// Its drawn vertices at the target time, projector px, and their depths: needed by advance() if
+    /// camera and projector are not coaxial.
+    /// @{
+    std::span<const glm::vec2> landings_px{};
+    std::span<const float> depths_m{};
     /// @}
   };
 
@@ -75,7 +82,7 @@ class HandMask {
   LandmarkPoints in_image(LandmarkPoints undistorted_px) const;
   Similarity since_exposure(const Expected& hand) const;
   Similarity since_seen(const Expected& hand) const;
-  glm::vec2 parallax_px(const Corrected& hand) const;
+  Rect region_of(std::size_t h, const Expected& hand, const Rect& image_region);
   void clear_camera_mask(int width, int height);
   bool is_shown(const Rect& found, const Rect& before, std::span<const glm::vec2> seeds_px) const;
   void remember(const Expected& hand, const Rect& found);
@@ -86,6 +93,7 @@ class HandMask {
   calib::Calibration calibration_;
   MaskFinder finder_;
   CameraLookup lookup_;
+  std::array<NearnessGrid, msg::kMaxHands> nearness_;  ///< by hand of advance()
   Image<std::uint8_t> camera_mask_, projector_mask_;
   Rect written_;  ///< part of camera_mask_ that is not 0
   std::vector<OwnedHint> owned_hints_;

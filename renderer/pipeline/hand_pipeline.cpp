@@ -103,8 +103,13 @@ std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t
 }
 
 HandMask::Expected HandPipeline::expected(const HandFrame& frame, std::int64_t image_ns) const {
-  return {side_,          track_.pose_at(image_ns),    &frame.corrected,
-          frame.presence, frame.registered.moved_then, frame.registered.moved_now};
+  HandMask::Expected hand{side_,          track_.pose_at(image_ns),    &frame.corrected,
+                          frame.presence, frame.registered.moved_then, frame.registered.moved_now};
+  if (frame.skinned) {
+    hand.landings_px = frame.skinned->landings_px;
+    hand.depths_m = frame.skinned->depth_m;
+  }
+  return hand;
 }
 
 void HandPipeline::dim(HandFrame& frame, std::int64_t target_ns) {

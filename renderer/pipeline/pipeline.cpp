@@ -100,12 +100,12 @@ void Pipeline::learn(std::int64_t image_ns, std::int64_t target_ns) {
     return then.side == now.hand->side();
   };
   if (!std::ranges::equal(expected_, hands_, is_same)) return;
-  expect(image_ns);
-  mask_.advance(expected_);
   for (auto& [hand, frame] : hands_) {
     hand->skin(frame, 0);
     hand->correct(frame);
   }
+  expect(image_ns);
+  mask_.advance(expected_);
   learn_widths(target_ns);
   for (auto& [hand, frame] : hands_) frame.skinned.reset();
 }
@@ -136,17 +136,18 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
   }
   register_motion(target_ns);
   if (late_.on()) stages_.mark(Stage::registration);
-  Rect region;
-  if (is_masked) {
-    region = advance_masks(camera);
-    stages_.mark(Stage::advance);
-  }
   for (auto& [hand, frame] : hands_) hand->skin(frame, shading_);
   stages_.mark(Stage::skin);
   const int foldovers = correct();
   stages_.mark(Stage::correct, rungs());
-  if (is_masked) learn_widths(target_ns);
-  if (!is_masked) region = landing_bounds();
+  Rect region;
+  if (is_masked) {
+    region = advance_masks(camera);
+    learn_widths(target_ns);
+    stages_.mark(Stage::advance);
+  } else {
+    region = landing_bounds();
+  }
 
   FillCounts counts = paint(region, is_masked);
   auto device = painter_->device_image();

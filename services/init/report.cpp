@@ -48,10 +48,9 @@ std::vector<std::string> steps(const Plan& plan, const std::string& file) {
   std::vector<std::string> steps;
   if (plan.needs_calibration())
     steps.push_back(fmt::format(
-        "Write the calibration file, for {} (its form: config/calibrations/paper.toml),\n"
-        "     and name it in {}. Until then the light misses the hand, and `handcast doctor` "
-        "reports it.",
-        calibrated_sizes(plan), file));
+        "{}\n     and name its file in {}. Until then the light misses the hand, and `handcast "
+        "doctor` reports it.",
+        calibrate_command(plan, file), file));
   if (plan.controller)
     steps.push_back(
         "Read \"A DLP projector with a controller\" in docs/operating.md before the "

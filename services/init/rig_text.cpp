@@ -56,11 +56,11 @@ std::string calibration(const Plan& plan, const std::filesystem::path& file) {
   if (!plan.needs_calibration()) return {};
   return fmt::format(
       "\n# THIS IS MISSING. Without a calibration of camera and projector the light misses the "
-      "hand. It is made at the distance\n"
-      "# at which the hand will be, for {}; config/calibrations/paper.toml shows the form of the "
-      "file.\n"
+      "hand. Make it with\n"
+      "#   {}\n"
       "# calibration = {}\n",
-      calibrated_sizes(plan), toml_string(plan.name + "_calibration.toml"));
+      calibrate_command(plan, file.filename()),
+      toml_string(file.stem().string() + "_calibration.toml"));
 }
 
 /// The line that names a device.
@@ -219,11 +219,11 @@ std::string observer(const Plan& plan) {
 
 }  // namespace
 
-std::string calibrated_sizes(const Plan& plan) {
-  auto text = "images of " + text_of(images_of(plan)->size);
+std::string calibrate_command(const Plan& plan, const std::filesystem::path& file) {
+  constexpr Size kUnknown{1024, 768};
   const auto size = showing_of(plan).size;
-  if (size.width_px > 0) text += " and a projector of " + text_of(size);
-  return text;
+  return fmt::format("handcast calibrate {} --camera {} --projector {}", file.string(),
+                     text_of(images_of(plan)->size), text_of(size.width_px > 0 ? size : kUnknown));
 }
 
 Showing showing_of(const Plan& plan) {

@@ -16,9 +16,9 @@ struct Showing {
 };
 Showing showing_of(const Plan& plan);
 
-/// What a calibration of the plan's devices is for: "images of 640x480 and a projector of
-/// 1280x800".
-std::string calibrated_sizes(const Plan& plan);
+/// The command that makes the calibration of the plan's devices: "handcast calibrate rig.toml
+/// --camera 640x480 --projector 1280x800".
+std::string calibrate_command(const Plan& plan, const std::filesystem::path& file);
 
 /// The commented rig file of a plan. `file`: where it will be; a calibration in its folder or below
 /// is named relative to it.

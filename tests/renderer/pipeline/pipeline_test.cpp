@@ -254,8 +254,8 @@ TEST(Pipeline, EveryStageIsMarkedInOrder) {
     stages.push_back(mark.stage);
     EXPECT_LE(mark.begin_ns, mark.end_ns);
   }
-  EXPECT_THAT(stages, ElementsAre(Stage::predict, Stage::mask, Stage::registration, Stage::advance,
-                                  Stage::skin, Stage::correct, Stage::draw, Stage::warp,
+  EXPECT_THAT(stages, ElementsAre(Stage::predict, Stage::mask, Stage::registration, Stage::skin,
+                                  Stage::correct, Stage::advance, Stage::draw, Stage::warp,
                                   Stage::fill, Stage::frame));
   EXPECT_EQ(frame.stages.back().begin_ns, frame.stages.front().begin_ns);
 }

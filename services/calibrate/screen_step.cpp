@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/screen_step.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "calib/board/board_finder.hpp"
+#include "calib/board/board_pose.hpp"
+#include "calib/lens/auto_capture.hpp"
+#include "calib/screen/gray_code.hpp"
+#include "calib/screen/screen_fit.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "services/calibrate/by_hand.hpp"
+#include "services/calibrate/pattern_images.hpp"
+#include "services/calibrate/pieces.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kWantedViews = 5;
+constexpr double kMoved_px = 1;   ///< by which the board may have moved during the patterns
+constexpr double kMargin_m = 0.002;  ///< inside the board's edge
+
+/// The board at one place.
+struct Place {
+  calib::BoardView board;
+  glm::dmat4 camera_from_board{1};
+};
+
+/// One measurement of the projector.
+class ScreenMeasurement {
+ public:
+  ScreenMeasurement(Desk& desk, client::Stream<msg::CameraFrame> frames, PatternImages patterns)
+      : desk_(desk),
+        frames_(std::move(frames)),
+        patterns_(std::move(patterns)),
+        finder_(desk.options.board),
+        code_(desk.screen.width_px(), desk.screen.height_px()) {}
+
+  Result<std::vector<calib::DepthView>> take_views() {
+    std::vector<calib::DepthView> views;
+    Progress progress(desk_, "screen");
+    std::string advice = "Hold the board still in the light";
+    while (static_cast<int>(views.size()) < kWantedViews) {
+      if (const auto on = progress.goes_on(); !on || !*on) {
+        if (!on) return tl::make_unexpected(on.error());
+        break;
+      }
+      show_light(progress, static_cast<double>(views.size()) / kWantedViews, advice);
+      const auto place = find_place(/*must_be_new=*/true);
+      if (!place) return tl::make_unexpected(place.error());
+      if (!*place) continue;
+      auto view = measure(**place);
+      if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
+      advice = view ? "Now hold it nearer or farther, and tilted" : view.error().what;
+      if (view) views.push_back(std::move(*view));
+    }
+    return views;
+  }
+
+ private:
+  /// Even light, so that the board is seen and the text can be read beside it.
+  void show_light(Progress& progress, double share, const std::string& advice) {
+    progress.show(share, advice);
+  }
+
+  /// The board, if it is in the next image and still; with `must_be_new` also at a new place.
+  Result<std::optional<Place>> find_place(bool must_be_new) {
+    const auto frame = frames_.latest(Deadline::in(200ms));
+    if (!frame && frame.error().code == Errc::timeout) return std::nullopt;
+    if (!frame) return tl::make_unexpected(frame.error());
+    const auto width = static_cast<int>((*frame)->width_px);
+    const auto board =
+        finder_.find({(*frame)->pixels(), width, static_cast<int>((*frame)->height_px), width});
+    if (!board || (must_be_new && !capture_.take((*frame)->header.origin_ns, *board)))
+      return std::nullopt;
+    const auto pose = calib::board_pose(desk_.draft.camera, *board);
+    if (!pose) return std::nullopt;
+    return Place{*board, *pose};
+  }
+
+  /// Shows all patterns on the board. Error bad_data: it moved, or the light was not seen.
+  Result<calib::DepthView> measure(const Place& place) {
+    std::vector<PatternImages::Image> images;
+    for (int i = 0; i < code_.patterns(); ++i) {
+      auto image = patterns_.image([&](std::uint8_t* levels) { code_.draw(i, levels); });
+      if (!image) return tl::make_unexpected(image.error());
+      images.push_back(std::move(*image));
+    }
+    if (!is_still(place, images.front()))
+      return fail(Errc::bad_data, "The board moved: hold it still");
+    std::vector<calib::GreyView> views;
+    const auto& camera = desk_.draft.camera;
+    for (const auto& image : images)
+      views.push_back({image.data(), camera.width_px, camera.height_px, camera.width_px});
+    const auto decoded = code_.decode(views);
+    if (!decoded) return tl::make_unexpected(decoded.error());
+    return on_board(place, decoded->points);
+  }
+
+  /// Compares the board in the first pattern, which is white, with where it is after the last one.
+  bool is_still(const Place& place, const PatternImages::Image&) {
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      desk_.screen.show([&](std::uint8_t* levels) { code_.draw(0, levels); });
+      const auto now = find_place(/*must_be_new=*/false);
+      if (!now || !*now) continue;
+      return largest_move_px(place.board, (*now)->board) < kMoved_px;
+    }
+    return false;
+  }
+
+  static double largest_move_px(const calib::BoardView& a, const calib::BoardView& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.ids.size(); ++i)
+      for (std::size_t j = 0; j < b.ids.size(); ++j)
+        if (a.ids[i] == b.ids[j])
+          largest = std::max(largest, glm::distance(a.image_px[i], b.image_px[j]));
+    return largest;
+  }
+
+  /// The points that lie on the board, with its plane.
+  calib::DepthView on_board(const Place& place,
+                            std::span<const calib::Correspondence> points) const {
+    const auto& board = desk_.options.board;
+    const glm::dvec2 size_m(1e-3 * board.square_mm * board.columns,
+                            1e-3 * board.square_mm * board.rows);
+    const auto board_from_camera = glm::inverse(place.camera_from_board);
+    const glm::dvec3 normal(place.camera_from_board[2]), origin(place.camera_from_board[3]);
+    const auto& camera = desk_.draft.camera;
+    calib::DepthView view{{}, glm::dvec4(normal, -glm::dot(normal, origin))};
+    for (const auto& point : points) {
+      const auto px = camera.undistort(point.camera_px);
+      const glm::dvec3 ray((px.x - camera.cx_px) / camera.fx_px,
+                           (px.y - camera.cy_px) / camera.fy_px, 1);
+      const auto hit_m = ray * (glm::dot(normal, origin) / glm::dot(normal, ray));
+      const glm::dvec2 at_m(board_from_camera * glm::dvec4(hit_m, 1));
+      if (glm::all(glm::greaterThan(at_m, glm::dvec2(kMargin_m))) &&
+          glm::all(glm::lessThan(at_m, size_m - kMargin_m)))
+        view.points.push_back(point);
+    }
+    return view;
+  }
+
+  Desk& desk_;
+  client::Stream<msg::CameraFrame> frames_;
+  PatternImages patterns_;
+  calib::BoardFinder finder_;
+  calib::GrayCode code_;
+  calib::AutoCapture capture_;
+};
+
+double mean_depth_m(std::span<const calib::DepthView> views) {
+  double sum = 0;
+  for (const auto& view : views) sum += -view.plane.w / view.plane.z;  // on the camera's axis
+  return sum / static_cast<double>(views.size());
+}
+
+std::string delay_finding(const Desk& desk, const calib::LightDelay& delay) {
+  const double latency_ms = desk.rig.projector.latency_ms + delay.delay_ms;
+  return fmt::format(
+      "the light comes {:.1f} ms ({:.1f} to {:.1f}) later than the projector reports: set "
+      "projector.latency_ms = {:.1f}",
+      delay.delay_ms, delay.low_ms, delay.high_ms, latency_ms);
+}
+
+}  // namespace
+
+Result<Outcome> measure_screen(Desk& desk) {
+  auto patterns = PatternImages::open(desk);
+  if (!patterns) return tl::make_unexpected(patterns.error());
+  fmt::print(stderr, "  measuring the delay of the light\n");
+  const auto delay = patterns->measure_delay();
+  if (!delay && delay.error().code == Errc::bad_data) {
+    fmt::print(stderr, "  {}\n", delay.error().what);
+    return align_by_hand(desk);
+  }
+  if (!delay) return tl::make_unexpected(delay.error());
+  auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, "camera.frames");
+  if (!frames) return tl::make_unexpected(frames.error());
+  ScreenMeasurement measurement(desk, std::move(*frames), std::move(*patterns));
+  const auto views = measurement.take_views();
+  if (!views) return tl::make_unexpected(views.error());
+  if (views->empty())
+    return fail(Errc::bad_data, "the board was never still in the projector's light");
+  const auto fit = calib::fit_screen(*views, desk.draft.camera, mean_depth_m(*views));
+  if (!fit) return tl::make_unexpected(fit.error());
+  desk.draft.projector_from_camera = fit->model.projector_from_camera;
+  desk.draft.parallax = fit->model.parallax;
+  desk.draft.plane_m = fit->model.plane_m;
+  Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
+                              fit->held_out_px,
+                              fit->is_coaxial ? "coaxial" : "projector beside the camera"),
+                  fit->findings.empty(), fit->findings};
+  if (delay->low_ms > 1 || delay->high_ms < -1)
+    outcome.findings.push_back(delay_finding(desk, *delay));
+  return outcome;
+}
+
+}  // namespace handcast::calibrate
