@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+#include "calib/screen/gray_code.hpp"
+#include "calib/screen/statistics.hpp"
+
+namespace handcast::calib {
+namespace {
+
+constexpr int kPatch_px = 8;
+constexpr int kLeastEdges = 12;    ///< points on edges of columns, and on edges of rows, in a patch
+constexpr int kLeastContrast = 8;  ///< grey levels
+constexpr double kLeastContrastInNoise = 4;   ///< standard deviations
+constexpr double kSureShare = 0.12;           ///< of the contrast, for a bit that is sure
+constexpr double kSureInNoise = 4;            ///< standard deviations
+constexpr double kLeastLitShare = 0.005;      ///< of the camera's pixels
+constexpr double kMostTornShare = 0.02;       ///< of the pairs of neighbours
+constexpr double kMostEdgeResidual_px = 0.3;  ///< 0.1 in a steady picture with noise of 5 %
+constexpr int kDark = -1;                     ///< a cell that was not read
+
+/// The cell of the code that lights a pixel.
+struct Cell {
+  int column = kDark, row = kDark;
+};
+
+/// Least squares: a coordinate of the projector as an affine function of the camera pixel.
+struct AffineSums {
+  glm::dmat3 normal{0};
+  glm::dvec3 right{0};
+  double square = 0;
+  int count = 0;
+
+  void add(const glm::dvec2& px, double value) {
+    const glm::dvec3 row(px, 1);
+    normal += glm::outerProduct(row, row);
+    right += row * value;
+    square += value * value;
+    ++count;
+  }
+};
+
+/// The edges in a patch; pixels are relative to its first one.
+struct Patch {
+  AffineSums column, row;
+};
+
+/// A patch that was read.
+struct Reading {
+  Correspondence point;
+  double rms_px;  ///< residual of the edges, projector px
+  double scale;   ///< projector px per camera px
+  int edges;      ///< of the coordinate that has fewer
+};
+
+}  // namespace
+
+/// Reads the images of one run of the patterns.
+class GrayDecoder {
+ public:
+  GrayDecoder(const GrayCode& code, std::span<const GreyView> images)
+      : code_(code),
+        images_(images),
+        width_px_(images[0].width_px),
+        height_px_(images[0].height_px) {}
+
+  Result<GrayDecoding> run();
+
+ private:
+  int grey(std::size_t image, int x, int y) const {
+    return images_[image].pixels[y * images_[image].stride + x];
+  }
+  int contrast(int x, int y) const { return grey(0, x, y) - grey(1, x, y); }
+  /// A pattern minus its inverse.
+  int difference(std::size_t bit, int x, int y) const {
+    return grey(2 + 2 * bit, x, y) - grey(3 + 2 * bit, x, y);
+  }
+  const Cell& cell(int x, int y) const {
+    return cells_[static_cast<std::size_t>(y * width_px_ + x)];
+  }
+  double cell_px() const { return 1 << code_.lowest_bit_; }
+
+  void measure_light();
+  Cell read_cell(int x, int y) const;
+  void read_cells();
+  void add_edge(int x, int y, int dx, int dy);
+  void find_edges();
+  std::vector<Reading> read_patches() const;
+
+  const GrayCode& code_;
+  std::span<const GreyView> images_;
+  int width_px_, height_px_;
+  GrayDecoding result_;
+  int least_contrast_ = kLeastContrast;
+  std::vector<Cell> cells_;
+  std::vector<Patch> patches_;
+  int patches_across_ = 0;
+  long neighbours_ = 0, torn_ = 0;  ///< pairs; those whose cells are not neighbours
+};
+
+/// A pattern and its inverse add up to white and black; what is missing is the noise of four
+/// pixels.
+void GrayDecoder::measure_light() {
+  std::vector<double> contrasts, noises;
+  long saturated = 0;
+  for (int y = 0; y < height_px_; ++y)
+    for (int x = 0; x < width_px_; ++x) {
+      if (contrast(x, y) < kLeastContrast) continue;
+      contrasts.push_back(contrast(x, y));
+      saturated += grey(0, x, y) == 255;
+      const auto bit = static_cast<std::size_t>(x + y) % code_.bits_.size();
+      noises.push_back(std::abs(grey(2 + 2 * bit, x, y) + grey(3 + 2 * bit, x, y) - grey(0, x, y) -
+                                grey(1, x, y)) /
+                       2.);
+    }
+  if (contrasts.empty()) return;
+  result_.saturated_share = static_cast<double>(saturated) / static_cast<double>(contrasts.size());
+  result_.contrast = median(contrasts);
+  result_.noise = kSigmaPerMad * median(noises);
+  least_contrast_ =
+      std::max(kLeastContrast, static_cast<int>(kLeastContrastInNoise * result_.noise));
+}
+
+/// At most one bit of each coordinate may be unsure: on an edge, either side is right.
+Cell GrayDecoder::read_cell(int x, int y) const {
+  const int light = contrast(x, y);
+  if (light < least_contrast_) return {};
+  const double sure = std::max(kSureShare * light, kSureInNoise * result_.noise);
+  int values[2] = {0, 0}, unsure[2] = {0, 0}, last[2] = {0, 0};
+  for (std::size_t bit = 0; bit < code_.bits_.size(); ++bit) {
+    const int axis = code_.bits_[bit].of_row;
+    const int now = difference(bit, x, y);
+    unsure[axis] += std::abs(now) < sure;
+    last[axis] ^= now > 0;  // a binary digit is the exclusive or of all Gray digits above it
+    values[axis] = 2 * values[axis] + last[axis];
+  }
+  if (unsure[0] > 1 || unsure[1] > 1) return {};
+  return {values[0], values[1]};
+}
+
+void GrayDecoder::read_cells() {
+  cells_.resize(static_cast<std::size_t>(width_px_ * height_px_));
+  long lit = 0;
+  for (int y = 0; y < height_px_; ++y)
+    for (int x = 0; x < width_px_; ++x) {
+      const auto read = read_cell(x, y);
+      cells_[static_cast<std::size_t>(y * width_px_ + x)] = read;
+      lit += read.column != kDark;
+    }
+  result_.lit_share = static_cast<double>(lit) / (width_px_ * height_px_);
+}
+
+/// Looks at a pixel and its neighbour: between cells c and c + 1 the bit changes that is the lowest
+/// set bit of c + 1, and the edge is where it is as bright as its inverse (linear interpolation).
+void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
+  const auto here = cell(x, y), there = cell(x + dx, y + dy);
+  if (here.column == kDark || there.column == kDark) return;
+  const int columns = std::abs(there.column - here.column), rows = std::abs(there.row - here.row);
+  ++neighbours_;
+  torn_ += columns > 1 || rows > 1;
+  if (columns + rows != 1) return;
+  const bool of_row = rows == 1;
+  const int upper = of_row ? std::max(here.row, there.row) : std::max(here.column, there.column);
+  const int number = std::countr_zero(static_cast<unsigned>(upper)) + code_.lowest_bit_;
+  const auto bit = std::ranges::find_if(code_.bits_, [&](const auto& candidate) {
+    return candidate.of_row == of_row && candidate.number == number;
+  });
+  const auto index = static_cast<std::size_t>(bit - code_.bits_.begin());
+  const double from = difference(index, x, y), to = difference(index, x + dx, y + dy);
+  const double share = from / (from - to);
+  auto& patch = patches_[static_cast<std::size_t>(y / kPatch_px * patches_across_ + x / kPatch_px)];
+  const glm::dvec2 px(x % kPatch_px + share * dx, y % kPatch_px + share * dy);
+  (of_row ? patch.row : patch.column).add(px, upper * cell_px() - 0.5);
+}
+
+void GrayDecoder::find_edges() {
+  patches_across_ = (width_px_ + kPatch_px - 1) / kPatch_px;
+  const int down = (height_px_ + kPatch_px - 1) / kPatch_px;
+  patches_.resize(static_cast<std::size_t>(patches_across_ * down));
+  for (int y = 0; y < height_px_; ++y)
+    for (int x = 0; x < width_px_; ++x) {
+      if (x + 1 < width_px_) add_edge(x, y, 1, 0);
+      if (y + 1 < height_px_) add_edge(x, y, 0, 1);
+    }
+}
+
+std::vector<Reading> GrayDecoder::read_patches() const {
+  std::vector<Reading> readings;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    const auto& [column, row] = patches_[i];
+    const int edges = std::min(column.count, row.count);
+    if (edges < kLeastEdges) continue;
+    const auto across = glm::inverse(column.normal) * column.right;
+    const auto down = glm::inverse(row.normal) * row.right;
+    const auto sum = column.normal[2] + row.normal[2];  // of x, of y, of 1
+    const auto centre = sum / sum.z;
+    const double squares =
+        column.square - glm::dot(across, column.right) + row.square - glm::dot(down, row.right);
+    const double rms_px = std::sqrt(std::max(squares, 0.) / (column.count + row.count - 6));
+    const double area = across.x * down.y - across.y * down.x;
+    if (!(std::isfinite(rms_px) && std::abs(area) > 0)) continue;
+    const glm::dvec2 first(i % static_cast<std::size_t>(patches_across_),
+                           i / static_cast<std::size_t>(patches_across_));
+    readings.push_back({{first * static_cast<double>(kPatch_px) + glm::dvec2(centre),
+                         {glm::dot(across, centre), glm::dot(down, centre)}},
+                        rms_px,
+                        std::sqrt(std::abs(area)),
+                        edges});
+  }
+  return readings;
+}
+
+Result<GrayDecoding> GrayDecoder::run() {
+  measure_light();
+  read_cells();
+  if (result_.lit_share < kLeastLitShare)
+    return fail(
+        Errc::bad_data,
+        fmt::format(
+            "only {:.1f} % of the camera's image is lit by the patterns well enough to be read: "
+            "is the room too bright, the exposure too short, or the board outside the picture?",
+            100 * result_.lit_share));
+  find_edges();
+  const auto readings = read_patches();
+  std::vector<double> residuals_px, rms_px;
+  for (const auto& reading : readings) {
+    rms_px.push_back(reading.rms_px);
+    residuals_px.push_back(reading.rms_px / reading.scale);
+  }
+  const double usual_px = median(rms_px);
+  result_.edge_residual_px = median(residuals_px);
+  if (static_cast<double>(torn_) > kMostTornShare * static_cast<double>(neighbours_) ||
+      result_.edge_residual_px > kMostEdgeResidual_px)
+    return fail(Errc::bad_data,
+                "the images of the patterns do not fit together: did the camera or the "
+                "board move while the patterns were shown, or is an image missing?");
+  if (readings.empty())
+    return fail(Errc::bad_data,
+                "the camera does not see the finest stripes: make them wider, or "
+                "focus the camera and the projector");
+  for (const auto& reading : readings) {
+    if (reading.rms_px > 3 * usual_px) continue;
+    result_.points.push_back(reading.point);
+    result_.points.back().sigma_px = usual_px / std::sqrt(reading.edges);
+  }
+  return std::move(result_);
+}
+
+Result<GrayDecoding> GrayCode::decode(std::span<const GreyView> images) const {
+  if (static_cast<int>(images.size()) != patterns())
+    return fail(Errc::bad_data, fmt::format("{} images were given, but there are {} patterns",
+                                            images.size(), patterns()));
+  for (const auto& image : images)
+    if (!image.pixels || image.width_px != images[0].width_px ||
+        image.height_px != images[0].height_px || image.width_px < 1 || image.height_px < 1)
+      return fail(Errc::bad_data, "the images of the patterns are empty or differ in size");
+  return GrayDecoder(*this, images).run();
+}
+
+}  // namespace handcast::calib

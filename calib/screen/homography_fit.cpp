@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calib/screen/homography_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "calib/screen/resampling.hpp"
+
+namespace handcast::calib {
+namespace {
+
+constexpr double kFewInliers = 0.9;
+constexpr double kLittleCovered = 0.3;
+constexpr double kWideInterval_px = 0.5;
+/// A fit that predicts other parts of the image so much worse is none of a plane.
+constexpr double kMuchWorse = 1.5;
+
+double covered_share(std::span<const Observation> observations) {
+  std::set<int> blocks;
+  for (const auto& observation : observations) blocks.insert(observation.block);
+  return static_cast<double>(blocks.size()) / kImageBlocks;
+}
+
+double widest_px(const HomographyFit& fit) {
+  double widest = 0;
+  for (const auto& interval : fit.corner_interval_px)
+    widest = std::max({widest, interval.x, interval.y});
+  return widest;
+}
+
+std::vector<std::string> findings_of(const HomographyFit& fit) {
+  std::vector<std::string> findings;
+  if (fit.inlier_share < kFewInliers)
+    findings.push_back(fmt::format(
+        "{:.0f} % of the points do not agree with the others and were left out: is the board flat?",
+        100 * (1 - fit.inlier_share)));
+  if (fit.covered_share < kLittleCovered)
+    findings.push_back(fmt::format(
+        "The points cover only {:.0f} % of the camera's image; the fit holds there and not beyond.",
+        100 * fit.covered_share));
+  if (widest_px(fit) > kWideInterval_px)
+    findings.push_back(fmt::format(
+        "The corners of the projector's picture are known only to {:.1f} px of the camera.",
+        widest_px(fit)));
+  if (fit.held_out.p95 > kMuchWorse * fit.residual.p95 + 0.01)
+    findings.push_back(fmt::format(
+        "Parts of the image that were left out of the fit are predicted to {:.2f} px (95 % of the "
+        "points), those in it to {:.2f} px: is the board flat, and the lens calibrated?",
+        fit.held_out.p95, fit.residual.p95));
+  if (fit.mirrored)
+    findings.push_back(
+        "The camera sees the projector's picture mirrored: this is right if one of them looks into "
+        "a mirror, else "
+        "turn mirroring off in the projector or the camera.");
+  return findings;
+}
+
+}  // namespace
+
+Result<HomographyFit> fit_homography(std::span<const Correspondence> points,
+                                     const CameraModel& camera, const glm::ivec2& projector_px) {
+  const auto found = plane_consensus(points, camera, 1);
+  if (!found) return tl::make_unexpected(found.error());
+  const Replicas replicas(found->model, found->inliers, Unknowns::homography, kImageBlocks);
+  HomographyFit fit;
+  fit.projector_from_camera = found->model.projector_from_camera;
+  fit.inlier_share = found->share;
+  fit.residual = errors_of(found->model, found->inliers);
+  fit.held_out = errors_of(held_out_by_blocks(replicas, found->inliers, 1));
+  fit.corners_px = corners_in_camera(found->model, projector_px);
+  fit.corner_interval_px = corner_intervals(bootstrap(replicas, found->inliers, 1), projector_px);
+  fit.covered_share = covered_share(found->inliers);
+  const auto corners = fit.corners_px;
+  const auto right = corners[1] - corners[0], down = corners[3] - corners[0];
+  fit.mirrored = right.x * down.y < right.y * down.x;
+  fit.findings = findings_of(fit);
+  return fit;
+}
+
+}  // namespace handcast::calib
