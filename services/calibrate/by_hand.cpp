@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "calib/screen/homography_fit.hpp"
+#include "calib/screen/plane_consensus.hpp"
 #include "ipc/msg/camera_frame.hpp"
 
 namespace handcast::calibrate {

@@ -8,7 +8,7 @@
 #include "calib/board/board_finder.hpp"
 #include "calib/lens/auto_capture.hpp"
 #include "calib/lens/coverage.hpp"
-#include "calib/lens/fit_lens.hpp"
+#include "calib/lens/lens_fit.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "services/calibrate/pieces.hpp"
 
@@ -18,6 +18,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kEnoughViews = 15;
+/// What a good fit stays below: the error of what it has not seen, and that of the focal length.
+/// @{
+constexpr double kGood_px = 0.6;
+constexpr double kGoodFocal = 0.005;
+/// @}
 
 calib::GreyView view_of(const msg::CameraFrame& frame) {
   const auto width = static_cast<int>(frame.width_px);
@@ -31,7 +36,7 @@ Result<std::vector<calib::BoardView>> take_views(Desk& desk) {
   const auto& camera = desk.used.camera;
   const calib::BoardFinder finder(desk.options.board);
   calib::Coverage coverage(camera.width_px, camera.height_px);
-  calib::AutoCapture capture;
+  calib::AutoCapture capture(camera.width_px);
   std::vector<calib::BoardView> views;
   Progress progress(desk, "lens");
   while (coverage.share() < 1 || views.size() < kEnoughViews) {
@@ -66,11 +71,19 @@ std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardV
 
 Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
   Outcome outcome;
+  const auto& focal = fit.spreads[0];
+  const double focal_error = (focal.high - focal.low) / 2 / fit.camera.fx_px;
   outcome.made = fmt::format("{} images, {:.2f} px held out, focal length {:.1f} px +- {:.2f} %",
-                             views.size() - fit.rejected.size(), fit.held_out_rms_px,
-                             fit.camera.fx_px, 100 * fit.fx.half_width() / fit.camera.fx_px);
-  outcome.findings = fit.findings;
-  outcome.is_good = fit.findings.empty();
+                             views.size(), fit.held_out_px, fit.camera.fx_px, 100 * focal_error);
+  for (std::size_t i = 0; i < fit.views.size(); ++i)
+    if (!fit.views[i].rejected.empty())
+      outcome.findings.push_back(
+          fmt::format("image {} was left out: {}", i + 1, fit.views[i].rejected));
+  outcome.is_good = fit.held_out_px <= kGood_px && focal_error <= kGoodFocal;
+  if (!outcome.is_good)
+    outcome.findings.insert(outcome.findings.begin(),
+                            "this lens is not well known yet: is the board flat, and was it held "
+                            "near and far, in all corners, and tilted?");
   outcome.pictures = pictures_of(fit, views);
   return outcome;
 }

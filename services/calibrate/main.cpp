@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "calib/board/board_pdf.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
 #include "ipc/base/exit_code.hpp"

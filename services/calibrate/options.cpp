@@ -6,6 +6,7 @@
 #include <charconv>
 #include <tuple>
 
+#include "calib/board/board_name.hpp"
 #include "config/settings/choice.hpp"
 #include "ipc/base/verb_options.hpp"
 

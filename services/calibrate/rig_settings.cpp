@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "calib/board/board_name.hpp"
 #include "config/settings/files.hpp"
 
 namespace handcast::calibrate {

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "calib/board/board_finder.hpp"
-#include "calib/board/board_pose.hpp"
 #include "calib/lens/auto_capture.hpp"
+#include "calib/lens/board_pose.hpp"
 #include "calib/screen/gray_code.hpp"
 #include "calib/screen/screen_fit.hpp"
 #include "ipc/msg/camera_frame.hpp"
@@ -39,7 +39,8 @@ class ScreenMeasurement {
         frames_(std::move(frames)),
         patterns_(std::move(patterns)),
         finder_(desk.options.board),
-        code_(desk.screen.width_px(), desk.screen.height_px()) {}
+        code_(desk.screen.width_px(), desk.screen.height_px()),
+        capture_(desk.used.camera.width_px) {}
 
   Result<std::vector<calib::DepthView>> take_views() {
     std::vector<calib::DepthView> views;
@@ -50,7 +51,7 @@ class ScreenMeasurement {
         if (!on) return tl::make_unexpected(on.error());
         break;
       }
-      show_light(progress, static_cast<double>(views.size()) / kWantedViews, advice);
+      progress.show(static_cast<double>(views.size()) / kWantedViews, advice);
       const auto place = find_place(/*must_be_new=*/true);
       if (!place) return tl::make_unexpected(place.error());
       if (!*place) continue;
@@ -63,11 +64,6 @@ class ScreenMeasurement {
   }
 
  private:
-  /// Even light, so that the board is seen and the text can be read beside it.
-  void show_light(Progress& progress, double share, const std::string& advice) {
-    progress.show(share, advice);
-  }
-
   /// The board, if it is in the next image and still; with `must_be_new` also at a new place.
   Result<std::optional<Place>> find_place(bool must_be_new) {
     const auto frame = frames_.latest(Deadline::in(200ms));
@@ -91,7 +87,7 @@ class ScreenMeasurement {
       if (!image) return tl::make_unexpected(image.error());
       images.push_back(std::move(*image));
     }
-    if (!is_still(place, images.front()))
+    if (!is_where(place))
       return fail(Errc::bad_data, "The board moved: hold it still");
     std::vector<calib::GreyView> views;
     const auto& camera = desk_.draft.camera;
@@ -102,8 +98,8 @@ class ScreenMeasurement {
     return on_board(place, decoded->points);
   }
 
-  /// Compares the board in the first pattern, which is white, with where it is after the last one.
-  bool is_still(const Place& place, const PatternImages::Image&) {
+  /// True if the board is still where it was.
+  bool is_where(const Place& place) {
     for (int attempt = 0; attempt < 5; ++attempt) {
       desk_.screen.show([&](std::uint8_t* levels) { code_.draw(0, levels); });
       const auto now = find_place(/*must_be_new=*/false);
@@ -159,6 +155,13 @@ double mean_depth_m(std::span<const calib::DepthView> views) {
   return sum / static_cast<double>(views.size());
 }
 
+std::string place_of(const calib::ScreenFit& fit) {
+  if (fit.coaxial) return "coaxial";
+  if (!fit.baseline) return "not coaxial";
+  return fmt::format("the projector is {:.0f} mm from the camera, +- {:.0f}", fit.baseline->length_mm,
+                     fit.baseline->interval_mm);
+}
+
 std::string delay_finding(const Desk& desk, const calib::LightDelay& delay) {
   const double latency_ms = desk.rig.projector.latency_ms + delay.delay_ms;
   return fmt::format(
@@ -186,14 +189,16 @@ Result<Outcome> measure_screen(Desk& desk) {
   if (!views) return tl::make_unexpected(views.error());
   if (views->empty())
     return fail(Errc::bad_data, "the board was never still in the projector's light");
-  const auto fit = calib::fit_screen(*views, desk.draft.camera, mean_depth_m(*views));
+  const auto fit = calib::fit_screen(*views, desk.draft.camera, mean_depth_m(*views),
+                                     {desk.screen.width_px(), desk.screen.height_px()});
   if (!fit) return tl::make_unexpected(fit.error());
   desk.draft.projector_from_camera = fit->model.projector_from_camera;
   desk.draft.parallax = fit->model.parallax;
   desk.draft.plane_m = fit->model.plane_m;
   Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
-                              fit->held_out_px,
-                              fit->is_coaxial ? "coaxial" : "projector beside the camera"),
+                              fit->coaxial ? fit->held_out_coaxial.median
+                                           : fit->held_out_full.median,
+                              place_of(*fit)),
                   fit->findings.empty(), fit->findings};
   if (delay->low_ms > 1 || delay->high_ms < -1)
     outcome.findings.push_back(delay_finding(desk, *delay));
