@@ -19,6 +19,10 @@ using namespace std::chrono_literals;
 
 constexpr double kSigmaIfUnknown_px = 3;
 constexpr float kLeastConfidence = 0.3f;
+/// Distances from the camera between which a hand should move.
+/// @{
+constexpr double kNear_m = 0.55, kFar_m = 0.9;
+/// @}
 
 /// What tracker and camera have seen of one hand.
 struct Seen {
@@ -50,13 +54,24 @@ void add_sightings(const Desk& desk, std::int64_t time_ns, const msg::HandLandma
   }
 }
 
+/// Adds the newest sample with the newest image: the advice may be some ms old.
+void cover(const Seen& seen, calib::VolumeCoverage& coverage) {
+  for (std::size_t i = seen.sightings.size(); i-- > 0;) {
+    const auto& sighting = seen.sightings[i];
+    if (sighting.time_ns != seen.sightings.back().time_ns) return;
+    coverage.add(sighting.undistorted_px,
+                 seen.samples.back().points_m[static_cast<std::size_t>(sighting.point)]);
+  }
+}
+
 /// Watches a hand until it was everywhere in the volume, Enter is pressed, or the time is over.
 Result<SeenBySide> watch(Desk& desk) {
   auto poses = client::open_stream<msg::HandPoses>(desk.rig.name, "pose.hands");
   if (!poses) return tl::make_unexpected(poses.error());
   auto landmarks = client::open_stream<msg::Landmarks>(desk.rig.name, "landmarks.hands");
   if (!landmarks) return tl::make_unexpected(landmarks.error());
-  calib::VolumeCoverage coverage(desk.draft.camera);
+  calib::VolumeCoverage coverage(desk.draft.camera, desk.used.camera_from_tracker, kNear_m,
+                                 kFar_m);
   SeenBySide seen;
   Progress progress(desk, "tracker");
   while (coverage.share() < 1) {
@@ -78,9 +93,7 @@ Result<SeenBySide> watch(Desk& desk) {
         const auto& hand = (*sample)->hands[h];
         auto& of_side = seen[static_cast<std::size_t>(hand.side)];
         of_side.samples.push_back(sample_of((*sample)->header.origin_ns, hand));
-        if (!of_side.sightings.empty())
-          coverage.add(of_side.sightings.back().undistorted_px,
-                       glm::length(of_side.samples.back().points_m[9]));
+        cover(of_side, coverage);
       }
   }
   return seen;
@@ -98,13 +111,14 @@ Result<calib::TrackerFit> fit(Desk& desk) {
   if (hand.samples.empty())
     return fail(Errc::bad_data, "the tracker has seen no hand; `handcast status` shows whether it "
                                 "runs, and the hand must be in its view too");
-  return calib::fit_tracker(hand.samples, hand.sightings, desk.draft.camera);
+  return calib::fit_tracker(desk.draft.camera, hand.samples, hand.sightings);
 }
 
 std::string made_of(const calib::TrackerFit& fit) {
   return fmt::format("{:.1f} px held out, {:.0f} % of the points fit, light within {:.1f} mm, clock "
                      "{:+.1f} ms",
-                     fit.held_out_px, 100 * fit.inlier_share, fit.middle_error_mm,
+                     fit.held_out.median_px, 100 * fit.inlier_share,
+                     2 * fit.place_errors.front().light_mm,
                      1e-6 * static_cast<double>(fit.clock_offset_ns));
 }
 
@@ -120,7 +134,8 @@ Result<Outcome> measure_tracker(Desk& desk) {
 Result<Outcome> check_tracker(Desk& desk) {
   const auto found = fit(desk);
   if (!found) return tl::make_unexpected(found.error());
-  const glm::dvec4 middle(found->middle_m, 1);
+  const glm::dvec4 middle = glm::inverse(found->camera_from_tracker) *
+                            glm::dvec4(found->place_errors.front().place_m, 1);
   const auto off_m = glm::dvec3(desk.used.camera_from_tracker * middle -
                                 found->camera_from_tracker * middle);
   Outcome outcome{fmt::format("in the middle of the volume the tracker's place is off by {:.1f} mm "
