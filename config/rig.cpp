@@ -25,7 +25,8 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "hand.right",
                                        "content.left",
                                        "content.right",
-                                       "twin.motion"};
+                                       "twin.motion",
+                                       "twin.geometry.calibration"};
 
 /// Makes relative paths absolute; "", "builtin:…" and a frozen file are not paths.
 void resolve_paths(const Listing& listing, const std::filesystem::path& folder) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "calib/board/board_name.hpp"
+#include "calib/board/draw_board.hpp"
 #include "services/camera/camera.hpp"
 #include "services/camera/frame_size.hpp"
+#include "services/camera/seen_light.hpp"
 #include "services/evaluation/twin/twin.hpp"
 #include "services/runtime/first_at.hpp"
 
@@ -13,6 +16,21 @@ namespace {
 /// make all later ones seem too late to be drawn.
 constexpr std::int64_t kLongestDrawing_ns = 20'000'000;
 
+/// The picture on a board, as it is printed.
+Result<twin::FlatPicture> picture_of(const std::string& board_name) {
+  constexpr int kSquare_px = 40;
+  const auto board = calib::parse_board(board_name);
+  if (!board) return tl::make_unexpected(board.error());
+  auto drawn = calib::draw_board(*board, kSquare_px);
+  twin::FlatPicture picture;
+  picture.width_px = drawn.width_px;
+  picture.height_px = drawn.height_px;
+  picture.pixels = std::move(drawn.pixels);
+  picture.metres_per_px = 1e-3 * board->square_mm / kSquare_px;
+  picture.origin_px = glm::dvec2(kSquare_px / 2.0 - 0.5);
+  return picture;
+}
+
 /// The twin's camera in real time. An image depends only on its number, so it is drawn before its
 /// arrival and delivered on time. A slow machine delivers fewer images, not late ones.
 class TwinCamera final : public Camera {
@@ -22,8 +40,16 @@ class TwinCamera final : public Camera {
       : twin_(std::move(twin)),
         model_(model),
         exposure_ns_(ms_to_ns(settings.exposure_ms)),
-        epoch_ns_(epoch_ns) {
-    warm_up();
+        epoch_ns_(epoch_ns) {}
+
+  bool sees_light() const override { return light_.has_value(); }
+  void light(const msg::Projection& projection) override { light_->add(projection); }
+  /// Shows a board in place of hands.
+  Result<void> show_board(const config::Twin& settings) {
+    auto picture = picture_of(settings.prop.board);
+    if (!picture) return tl::make_unexpected(picture.error());
+    light_.emplace(ms_to_ns(settings.projector.late_ms));
+    return twin_->show_board(*picture);
   }
 
   Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
@@ -44,7 +70,6 @@ class TwinCamera final : public Camera {
     return {};
   }
 
- private:
   /// Draws two images. The first one creates the surfaces of the true hands; the second one gives
   /// the drawing time.
   void warm_up() {
@@ -55,6 +80,7 @@ class TwinCamera final : public Camera {
     drawing_ns_ = std::min(now_ns() - begin_ns, kLongestDrawing_ns);
   }
 
+ private:
   void draw(std::uint64_t k, msg::CameraFrame& frame) {
     const std::int64_t begin_ns = now_ns();
     frame.header.frame_id = k;
@@ -62,7 +88,13 @@ class TwinCamera final : public Camera {
     frame.exposure_ns = exposure_ns_;
     frame.width_px = static_cast<std::uint32_t>(model_.width_px);
     frame.height_px = static_cast<std::uint32_t>(model_.height_px);
-    twin_->camera_image(k, {frame.pixels(), model_.width_px, model_.height_px, model_.width_px});
+    const renderer::View<std::uint8_t> image{frame.pixels(), model_.width_px, model_.height_px,
+                                             model_.width_px};
+    if (const auto light = light_ ? light_->at(epoch_ns_ + twin_->camera_origin_ns(k))
+                                  : std::nullopt)
+      twin_->camera_image(k, *light, image);
+    else
+      twin_->camera_image(k, image);
     drawing_ns_ += (std::min(now_ns() - begin_ns, kLongestDrawing_ns) - drawing_ns_) / 8;
   }
 
@@ -71,6 +103,7 @@ class TwinCamera final : public Camera {
   std::int64_t exposure_ns_, epoch_ns_;
   std::int64_t drawing_ns_ = 0;  ///< smoothed time to draw an image
   std::uint64_t next_ = 0;
+  std::optional<SeenLight> light_;  ///< empty without a board
 };
 
 }  // namespace
@@ -80,7 +113,13 @@ Result<std::unique_ptr<Camera>> open_twin(const config::Rig& rig,
                                           const std::int64_t& epoch_ns) {
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return fail_in("camera 'twin'", twin.error());
-  return std::make_unique<TwinCamera>(std::move(*twin), rig.camera, calibration.camera, epoch_ns);
+  auto camera =
+      std::make_unique<TwinCamera>(std::move(*twin), rig.camera, calibration.camera, epoch_ns);
+  if (rig.twin.prop.kind == config::TwinPropKind::board)
+    if (auto shown = camera->show_board(rig.twin); !shown)
+      return fail_in("camera 'twin': twin.prop.board", shown.error());
+  camera->warm_up();
+  return camera;
 }
 
 }  // namespace handcast::camera

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
+
 #include "config/settings/field.hpp"
 
 namespace handcast::config {
@@ -12,6 +14,7 @@ struct TwinGeometry {
   double tracker_mm = 0;
   double tracker_deg = 0;
   double lens_px = 0;
+  std::string calibration;
 };
 
 template <class Visitor>
@@ -33,6 +36,9 @@ void describe(Visitor& visitor, TwinGeometry& geometry) {
                 "working volume, drawn from the seed.");
   visitor.field("lens_px", geometry.lens_px, between(0, 20, "px"),
                 "Error of the lens's model in the corners of the image.");
+  visitor.field("calibration", geometry.calibration,
+                "Calibration file of the true rig, before these errors: for a rig whose own "
+                "calibration was measured on the twin. Empty: the rig's own.");
 }
 
 }  // namespace handcast::config

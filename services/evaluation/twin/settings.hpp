@@ -7,6 +7,7 @@ namespace handcast::twin {
 /// The settings that Twin::create reads: the true person and its motion. Every back end on the twin
 /// depends on them.
 inline constexpr config::SettingList kWorldSettings{
-    "twin.motion", "twin.hands", "twin.speed", "twin.seed", "twin.shape", "twin.geometry", "hand"};
+    "twin.motion", "twin.hands", "twin.speed", "twin.seed", "twin.shape", "twin.geometry",
+    "twin.prop",   "hand"};
 
 }  // namespace handcast::twin

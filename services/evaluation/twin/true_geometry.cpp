@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "services/evaluation/twin/homography.hpp"
 #include "services/evaluation/twin/random.hpp"
 
 namespace handcast::twin {
@@ -16,19 +17,6 @@ constexpr double kVolume_m = 0.73;  ///< distance of the middle of the working v
 glm::dvec3 direction(const Random& random, std::uint64_t draw) {
   return glm::normalize(
       glm::dvec3(random.normal(draw), random.normal(draw + 1), random.normal(draw + 2)));
-}
-
-/// The map from the projective basis (three axes and their sum) to four points.
-glm::dmat3 from_basis(const std::array<glm::dvec2, 4>& points) {
-  const glm::dmat3 axes(glm::dvec3(points[0], 1), glm::dvec3(points[1], 1),
-                        glm::dvec3(points[2], 1));
-  const glm::dvec3 scale = glm::inverse(axes) * glm::dvec3(points[3], 1);
-  return {axes[0] * scale.x, axes[1] * scale.y, axes[2] * scale.z};
-}
-
-/// The homography that maps each `from` to its `to`.
-glm::dmat3 homography(const std::array<glm::dvec2, 4>& from, const std::array<glm::dvec2, 4>& to) {
-  return from_basis(to) * glm::inverse(from_basis(from));
 }
 
 /// Moves the corners of the projector's image by `rms_px` per corner.
@@ -61,8 +49,8 @@ double lens_error(const calib::CameraModel& camera, double corner_px, const Rand
 }  // namespace
 
 TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
-                           const calib::Calibration& believed)
-    : true_(believed), believed_(believed.camera) {
+                           const calib::Calibration& base, const calib::CameraModel& believed)
+    : true_(base), believed_(believed) {
   const Random random(seed, Stream::geometry);
   const double angle = std::numbers::pi * random.spread(10);
   const auto centre_m =
@@ -70,12 +58,12 @@ TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
   true_.plane_m += settings.plane_mm * 1e-3;
   if (settings.homography_px > 0)
     true_.projector_from_camera =
-        corner_error(believed, settings.homography_px, random) * believed.projector_from_camera;
+        corner_error(base, settings.homography_px, random) * base.projector_from_camera;
   true_.parallax -= true_.projector_from_camera * (true_.camera.matrix() * centre_m);
   if (settings.tracker_mm > 0 || settings.tracker_deg > 0)
-    true_.camera_from_tracker = pose_error(settings, random) * believed.camera_from_tracker;
+    true_.camera_from_tracker = pose_error(settings, random) * base.camera_from_tracker;
   if (settings.lens_px > 0)
-    true_.camera.k1 += lens_error(believed.camera, settings.lens_px, random);
+    true_.camera.k1 += lens_error(base.camera, settings.lens_px, random);
 }
 
 glm::dvec2 TrueGeometry::to_projector(const glm::dvec3& camera_m) const {

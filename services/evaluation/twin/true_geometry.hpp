@@ -10,8 +10,13 @@ namespace handcast::twin {
 /// The rig as it is, where the calibration is only what the rig believes.
 class TrueGeometry {
  public:
-  /// Draws the errors of `believed` from the seed.
-  TrueGeometry(const config::TwinGeometry& settings, int seed, const calib::Calibration& believed);
+  /// Draws the differences of the true rig from `base` by the seed. `believed`: the camera by the
+  /// rig's calibration.
+  TrueGeometry(const config::TwinGeometry& settings, int seed, const calib::Calibration& base,
+               const calib::CameraModel& believed);
+  /// The same for a rig whose calibration is the base.
+  TrueGeometry(const config::TwinGeometry& settings, int seed, const calib::Calibration& believed)
+      : TrueGeometry(settings, seed, believed, believed.camera) {}
 
   /// The true camera, projector and tracker.
   const calib::Calibration& calibration() const { return true_; }

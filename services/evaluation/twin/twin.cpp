@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/twin/twin.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 
+#include "calib/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
+#include "services/evaluation/twin/board_scene.hpp"
 #include "services/evaluation/twin/camera_scene.hpp"
 #include "services/evaluation/twin/camera_times.hpp"
 #include "services/evaluation/twin/detector.hpp"
@@ -30,11 +34,11 @@ class RigTwin final : public Twin {
         tracker_(rig.twin.tracker, rig.twin.seed, geometry.calibration(), motion_->shape()),
         detector_(rig.twin.detector, rig.twin.seed, geometry.calibration().camera,
                   motion_->shape()),
-        image_(rig.twin.image),
-        seed_(rig.twin.seed) {}
+        settings_(rig.twin) {}
 
   std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const override {
-    return side == absent_ ? std::nullopt : motion_->at(side, ns_to_seconds(time_ns));
+    if (side == absent_ || settings_.prop.kind != config::TwinPropKind::none) return std::nullopt;
+    return motion_->at(side, ns_to_seconds(time_ns));
   }
 
   const TrueHands& hands() const override { return *hands_; }
@@ -78,8 +82,28 @@ class RigTwin final : public Twin {
   std::int64_t camera_arrival_ns(std::uint64_t k) const override { return camera_.arrival_ns(k); }
 
   void camera_image(std::uint64_t k, renderer::View<std::uint8_t> image) const override {
+    if (board_) return board_->draw(k, camera_origin_ns(k), exposure_ns_, nullptr, image);
     const auto truth = [this](Side side, std::int64_t time_ns) { return joints(side, time_ns); };
     scene().draw(k, camera_origin_ns(k), exposure_ns_, truth, image);
+  }
+
+  void camera_image(std::uint64_t k, const Light& light,
+                    renderer::View<std::uint8_t> image) const override {
+    if (!board_) return camera_image(k, image);
+    board_->draw(k, camera_origin_ns(k), exposure_ns_, &light, image);
+  }
+
+  Result<void> show_board(const FlatPicture& picture) override {
+    if (settings_.prop.kind != config::TwinPropKind::board)
+      return fail(Errc::bad_config, "twin: no board is held, because twin.prop.kind is not board");
+    if (auto usable = BoardScene::check(picture); !usable) return usable;
+    board_.emplace(settings_, geometry_, picture);
+    return {};
+  }
+
+  std::optional<glm::dmat4> board_pose(std::int64_t time_ns) const override {
+    if (!board_) return std::nullopt;
+    return board_->camera_from_board(time_ns);
   }
 
   Detection detect(std::uint64_t n, std::uint64_t frame_id, std::int64_t stamp_ns) const override {
@@ -107,7 +131,7 @@ class RigTwin final : public Twin {
 
   CameraScene& scene() const {
     if (scene_) return *scene_;
-    scene_.emplace(image_, seed_, geometry_.calibration());
+    scene_.emplace(settings_.image, settings_.seed, geometry_.calibration());
     for (const Side side : kSides) scene_->set_hand(side, true_hand(side));
     return *scene_;
   }
@@ -120,16 +144,34 @@ class RigTwin final : public Twin {
   std::unique_ptr<TrueHands> hands_;
   TrackerModel tracker_;
   DetectorModel detector_;
-  config::TwinImage image_;
-  int seed_;
+  config::Twin settings_;
   mutable std::optional<CameraScene> scene_;  ///< made for the first image
+  mutable std::optional<BoardScene> board_;   ///< empty without the picture of a board
 };
 
 }  // namespace
 
+/// The calibration from which the true rig differs by twin.geometry.
+static Result<calib::Calibration> true_base(const config::Rig& rig,
+                                            const calib::Calibration& believed) {
+  const auto& file = rig.twin.geometry.calibration;
+  if (file.empty()) return believed;
+  auto base = calib::load_calibration(file, rig.projector.packing);
+  if (base && (base->camera.width_px != believed.camera.width_px ||
+               base->camera.height_px != believed.camera.height_px ||
+               base->projector_width_px != believed.projector_width_px ||
+               base->projector_height_px != believed.projector_height_px))
+    return fail(Errc::bad_config, fmt::format("twin.geometry.calibration: {} has images of other "
+                                              "sizes than the calibration of the rig",
+                                              file));
+  return base;
+}
+
 Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig,
                                            const calib::Calibration& calibration) {
-  const TrueGeometry geometry(rig.twin.geometry, rig.twin.seed, calibration);
+  const auto base = true_base(rig, calibration);
+  if (!base) return tl::make_unexpected(base.error());
+  const TrueGeometry geometry(rig.twin.geometry, rig.twin.seed, *base, calibration.camera);
   auto motion = open_motion(rig.twin, geometry.calibration());
   if (!motion) return tl::make_unexpected(motion.error());
   const auto moves = [&](Side side) { return (*motion)->at(side, 0).has_value(); };
