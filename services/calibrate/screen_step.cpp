@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iterator>
+#include <limits>
 
 #include "calib/board/board_finder.hpp"
 #include "calib/lens/auto_capture.hpp"
@@ -24,12 +24,6 @@ using namespace std::chrono_literals;
 constexpr int kWantedViews = 5;
 constexpr double kMoved_px = 1;   ///< by which the board may have moved during the patterns
 constexpr double kMargin_m = 0.002;  ///< inside the board's edge
-
-/// The board at one place.
-struct Place {
-  calib::BoardView board;
-  glm::dmat4 camera_from_board{1};
-};
 
 /// One measurement of the projector.
 class ScreenMeasurement {
@@ -52,10 +46,10 @@ class ScreenMeasurement {
         break;
       }
       progress.show(static_cast<double>(views.size()) / kWantedViews, advice);
-      const auto place = find_place(/*must_be_new=*/true);
-      if (!place) return tl::make_unexpected(place.error());
-      if (!*place) continue;
-      auto view = measure(**place);
+      const auto ready = is_ready();
+      if (!ready) return tl::make_unexpected(ready.error());
+      if (!*ready) continue;
+      auto view = measure();
       if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
       advice = view ? "Now hold it nearer or farther, and tilted" : view.error().what;
       if (view) views.push_back(std::move(*view));
@@ -64,68 +58,61 @@ class ScreenMeasurement {
   }
 
  private:
-  /// The board, if it is in the next image and still; with `must_be_new` also at a new place.
-  Result<std::optional<Place>> find_place(bool must_be_new) {
+  /// True if the next image has the board, still and at a new place.
+  Result<bool> is_ready() {
     const auto frame = frames_.latest(Deadline::in(200ms));
-    if (!frame && frame.error().code == Errc::timeout) return std::nullopt;
+    if (!frame && frame.error().code == Errc::timeout) return false;
     if (!frame) return tl::make_unexpected(frame.error());
     const auto width = static_cast<int>((*frame)->width_px);
     const auto board =
         finder_.find({(*frame)->pixels(), width, static_cast<int>((*frame)->height_px), width});
-    if (!board || (must_be_new && !capture_.take((*frame)->header.origin_ns, *board)))
-      return std::nullopt;
-    const auto pose = calib::board_pose(desk_.draft.camera, *board);
-    if (!pose) return std::nullopt;
-    return Place{*board, *pose};
+    return board && capture_.take((*frame)->header.origin_ns, *board);
   }
 
-  /// Shows all patterns on the board. Error bad_data: it moved, or the light was not seen.
-  Result<calib::DepthView> measure(const Place& place) {
+  /// Shows all patterns on the board, between two white ones in which it must be at the same place.
+  /// Error bad_data: it is not, or the patterns could not be read.
+  Result<calib::DepthView> measure() {
     std::vector<PatternImages::Image> images;
-    for (int i = 0; i < code_.patterns(); ++i) {
-      auto image = patterns_.image([&](std::uint8_t* levels) { code_.draw(i, levels); });
+    for (int i = 0; i <= code_.patterns(); ++i) {
+      const int pattern = i % code_.patterns();  // 0 is white
+      auto image = patterns_.image([&](std::uint8_t* levels) { code_.draw(pattern, levels); });
       if (!image) return tl::make_unexpected(image.error());
       images.push_back(std::move(*image));
     }
-    if (!is_where(place))
-      return fail(Errc::bad_data, "The board moved: hold it still");
     std::vector<calib::GreyView> views;
     const auto& camera = desk_.draft.camera;
     for (const auto& image : images)
       views.push_back({image.data(), camera.width_px, camera.height_px, camera.width_px});
+    const auto before = finder_.find(views.front()), after = finder_.find(views.back());
+    if (!before || !after) return fail(Errc::bad_data, "The whole board must be in the light");
+    if (!(largest_move_px(*before, *after) < kMoved_px))
+      return fail(Errc::bad_data, "The board moved: hold it still");
+    const auto pose = calib::board_pose(camera, *before);
+    if (!pose) return fail(Errc::bad_data, "The board is not flat, or the lens is wrong");
+    views.pop_back();
     const auto decoded = code_.decode(views);
     if (!decoded) return tl::make_unexpected(decoded.error());
-    return on_board(place, decoded->points);
+    return on_board(*pose, decoded->points);
   }
 
-  /// True if the board is still where it was.
-  bool is_where(const Place& place) {
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      desk_.screen.show([&](std::uint8_t* levels) { code_.draw(0, levels); });
-      const auto now = find_place(/*must_be_new=*/false);
-      if (!now || !*now) continue;
-      return largest_move_px(place.board, (*now)->board) < kMoved_px;
-    }
-    return false;
-  }
-
+  /// The largest move of a point that both views have; infinite if they share none.
   static double largest_move_px(const calib::BoardView& a, const calib::BoardView& b) {
-    double largest = 0;
+    double largest = -1;
     for (std::size_t i = 0; i < a.ids.size(); ++i)
       for (std::size_t j = 0; j < b.ids.size(); ++j)
         if (a.ids[i] == b.ids[j])
           largest = std::max(largest, glm::distance(a.image_px[i], b.image_px[j]));
-    return largest;
+    return largest < 0 ? std::numeric_limits<double>::infinity() : largest;
   }
 
   /// The points that lie on the board, with its plane.
-  calib::DepthView on_board(const Place& place,
+  calib::DepthView on_board(const glm::dmat4& camera_from_board,
                             std::span<const calib::Correspondence> points) const {
     const auto& board = desk_.options.board;
     const glm::dvec2 size_m(1e-3 * board.square_mm * board.columns,
                             1e-3 * board.square_mm * board.rows);
-    const auto board_from_camera = glm::inverse(place.camera_from_board);
-    const glm::dvec3 normal(place.camera_from_board[2]), origin(place.camera_from_board[3]);
+    const auto board_from_camera = glm::inverse(camera_from_board);
+    const glm::dvec3 normal(camera_from_board[2]), origin(camera_from_board[3]);
     const auto& camera = desk_.draft.camera;
     calib::DepthView view{{}, glm::dvec4(normal, -glm::dot(normal, origin))};
     for (const auto& point : points) {

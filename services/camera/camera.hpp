@@ -10,6 +10,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/projection.hpp"
+#include "ipc/ring/reader.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::camera {
@@ -26,11 +27,11 @@ class Camera {
   virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                                Deadline deadline) = 0;
 
-  /// True for a camera of the twin in front of which the rig's own light falls: its service passes
-  /// all projections to light(), in order.
+  /// True for a camera of the twin in front of which the rig's own light falls. Its service gives it
+  /// the projections before the first capture().
   virtual bool sees_light() const { return false; }
-  /// The light of the rig's projector from projection.lit_ns on.
-  virtual void light(const msg::Projection& /*projection*/) {}
+  /// Takes the reader of projection.frames.
+  virtual void watch_light(ipc::Reader<msg::Projection> /*projections*/) {}
 };
 
 /// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,

@@ -17,16 +17,11 @@ static void run_camera(service::Context& context) {
   context.stand_by();
   auto frames = must(context.writer<msg::CameraFrame>("camera.frames"));
 
-  std::optional<ipc::Reader<msg::Projection>> light;
-  if (source->sees_light()) light = must(context.reader<msg::Projection>("projection.frames"));
+  if (source->sees_light())
+    source->watch_light(must(context.reader<msg::Projection>("projection.frames")));
 
   context.ready();
   while (context.running()) {
-    while (light)
-      if (const auto projection = light->next(Deadline::now()))
-        source->light(**projection);
-      else
-        break;
     auto slot = frames.loan();
     if (!slot) {
       context.tolerate({Errc::timeout, "camera: all slots of camera.frames are held by readers"});

@@ -43,7 +43,9 @@ class TwinCamera final : public Camera {
         epoch_ns_(epoch_ns) {}
 
   bool sees_light() const override { return light_.has_value(); }
-  void light(const msg::Projection& projection) override { light_->add(projection); }
+  void watch_light(ipc::Reader<msg::Projection> projections) override {
+    projections_ = std::move(projections);
+  }
   /// Shows a board in place of hands.
   Result<void> show_board(const config::Twin& settings) {
     auto picture = picture_of(settings.prop.board);
@@ -64,6 +66,7 @@ class TwinCamera final : public Camera {
       sleep_until_ns(deadline.time_ns());
       return fail(Errc::timeout, "camera 'twin': no frame before the deadline");
     }
+    if (projections_) take_light(arrival_ns(k));
     draw(k, frame);
     sleep_until_ns(arrival_ns(k));
     next_ = k + 1;
@@ -81,6 +84,13 @@ class TwinCamera final : public Camera {
   }
 
  private:
+  /// Takes the light that was published until the last moment at which the image of this arrival can
+  /// be drawn.
+  void take_light(std::int64_t arrival_ns) {
+    sleep_until_ns(arrival_ns - drawing_ns_ * 3 / 2);
+    while (const auto projection = projections_->next(Deadline::now())) light_->add(**projection);
+  }
+
   void draw(std::uint64_t k, msg::CameraFrame& frame) {
     const std::int64_t begin_ns = now_ns();
     frame.header.frame_id = k;
@@ -104,6 +114,7 @@ class TwinCamera final : public Camera {
   std::int64_t drawing_ns_ = 0;  ///< smoothed time to draw an image
   std::uint64_t next_ = 0;
   std::optional<SeenLight> light_;  ///< empty without a board
+  std::optional<ipc::Reader<msg::Projection>> projections_;
 };
 
 }  // namespace
