@@ -15,12 +15,14 @@ namespace {
 constexpr int kPatch_px = 8;
 constexpr int kLeastEdges = 12;    ///< points on edges of columns, and on edges of rows, in a patch
 constexpr int kLeastContrast = 8;  ///< grey levels
-constexpr double kLeastContrastInNoise = 4;   ///< standard deviations
-constexpr double kSureShare = 0.12;           ///< of the contrast, for a bit that is sure
-constexpr double kSureInNoise = 4;            ///< standard deviations
-constexpr double kLeastLitShare = 0.005;      ///< of the camera's pixels
-constexpr double kMostTornShare = 0.02;       ///< of the pairs of neighbours
-constexpr double kMostEdgeResidual_px = 0.3;  ///< 0.1 in a steady picture with noise of 5 %
+constexpr double kLeastContrastInNoise = 4;  ///< standard deviations
+constexpr double kSureShare = 0.12;          ///< of the contrast, for a bit that is sure
+constexpr double kSureInNoise = 4;           ///< standard deviations
+constexpr double kLeastLitShare = 0.005;     ///< of the camera's pixels
+constexpr double kMostTornShare = 0.08;  ///< of the pairs of neighbours; noise of 5 % makes 0.02
+constexpr double kUnusual = 2;  ///< residual of a patch in medians; noise makes no such patch
+constexpr double kMostUnusualShare = 0.005;   ///< of the patches
+constexpr double kMostEdgeResidual_px = 0.3;  ///< camera px; 0.15 in a steady picture
 constexpr int kDark = -1;                     ///< a cell that was not read
 
 /// The cell of the code that lights a pixel.
@@ -90,6 +92,7 @@ class GrayDecoder {
   void add_edge(int x, int y, int dx, int dy);
   void find_edges();
   std::vector<Reading> read_patches() const;
+  Result<void> check_steadiness(const std::vector<Reading>& readings) const;
 
   const GrayCode& code_;
   std::span<const GreyView> images_;
@@ -99,6 +102,7 @@ class GrayDecoder {
   std::vector<Cell> cells_;
   std::vector<Patch> patches_;
   int patches_across_ = 0;
+  double usual_rms_px_ = 0;         ///< of the edges in a patch
   long neighbours_ = 0, torn_ = 0;  ///< pairs; those whose cells are not neighbours
 };
 
@@ -170,7 +174,10 @@ void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
     return candidate.of_row == of_row && candidate.number == number;
   });
   const auto index = static_cast<std::size_t>(bit - code_.bits_.begin());
-  const double from = difference(index, x, y), to = difference(index, x + dx, y + dy);
+  // In shares of the light, so that the board's print does not move the edge.
+  const double from = difference(index, x, y) / static_cast<double>(contrast(x, y));
+  const double to =
+      difference(index, x + dx, y + dy) / static_cast<double>(contrast(x + dx, y + dy));
   const double share = from / (from - to);
   auto& patch = patches_[static_cast<std::size_t>(y / kPatch_px * patches_across_ + x / kPatch_px)];
   const glm::dvec2 px(x % kPatch_px + share * dx, y % kPatch_px + share * dy);
@@ -214,27 +221,14 @@ std::vector<Reading> GrayDecoder::read_patches() const {
   return readings;
 }
 
-Result<GrayDecoding> GrayDecoder::run() {
-  measure_light();
-  read_cells();
-  if (result_.lit_share < kLeastLitShare)
-    return fail(
-        Errc::bad_data,
-        fmt::format(
-            "only {:.1f} % of the camera's image is lit by the patterns well enough to be read: "
-            "is the room too bright, the exposure too short, or the board outside the picture?",
-            100 * result_.lit_share));
-  find_edges();
-  const auto readings = read_patches();
-  std::vector<double> residuals_px, rms_px;
-  for (const auto& reading : readings) {
-    rms_px.push_back(reading.rms_px);
-    residuals_px.push_back(reading.rms_px / reading.scale);
-  }
-  const double usual_px = median(rms_px);
-  result_.edge_residual_px = median(residuals_px);
-  if (static_cast<double>(torn_) > kMostTornShare * static_cast<double>(neighbours_) ||
-      result_.edge_residual_px > kMostEdgeResidual_px)
+/// Edges of stripes that were shown before a move do not lie where later ones put them: all over
+/// the image, or, of the wide stripes, in a few patches.
+Result<void> GrayDecoder::check_steadiness(const std::vector<Reading>& readings) const {
+  const auto unusual = std::ranges::count_if(
+      readings, [&](const auto& reading) { return reading.rms_px > kUnusual * usual_rms_px_; });
+  const bool torn = static_cast<double>(torn_) > kMostTornShare * static_cast<double>(neighbours_);
+  if (torn || result_.edge_residual_px > kMostEdgeResidual_px ||
+      static_cast<double>(unusual) > kMostUnusualShare * static_cast<double>(readings.size()))
     return fail(Errc::bad_data,
                 "the images of the patterns do not fit together: did the camera or the "
                 "board move while the patterns were shown, or is an image missing?");
@@ -242,10 +236,33 @@ Result<GrayDecoding> GrayDecoder::run() {
     return fail(Errc::bad_data,
                 "the camera does not see the finest stripes: make them wider, or "
                 "focus the camera and the projector");
+  return {};
+}
+
+Result<GrayDecoding> GrayDecoder::run() {
+  measure_light();
+  read_cells();
+  if (result_.lit_share < kLeastLitShare)
+    return fail(Errc::bad_data,
+                fmt::format("only {:.1f} % of the camera's image is lit by the patterns well "
+                            "enough to be read: is the room too bright, the exposure too short, "
+                            "or the board outside the picture?",
+                            100 * result_.lit_share));
+  find_edges();
+  const auto readings = read_patches();
+  std::vector<double> residuals_px, rms_px;
   for (const auto& reading : readings) {
-    if (reading.rms_px > 3 * usual_px) continue;
+    rms_px.push_back(reading.rms_px);
+    residuals_px.push_back(reading.rms_px / reading.scale);
+  }
+  usual_rms_px_ = median(rms_px);
+  result_.edge_residual_px = median(residuals_px);
+  if (const auto steady = check_steadiness(readings); !steady)
+    return tl::make_unexpected(steady.error());
+  for (const auto& reading : readings) {
+    if (reading.rms_px > kUnusual * usual_rms_px_) continue;
     result_.points.push_back(reading.point);
-    result_.points.back().sigma_px = usual_px / std::sqrt(reading.edges);
+    result_.points.back().sigma_px = usual_rms_px_ / std::sqrt(reading.edges);
   }
   return std::move(result_);
 }
