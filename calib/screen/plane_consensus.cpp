@@ -19,7 +19,7 @@ constexpr std::size_t kScoredPoints = 500;  ///< on which a sample is judged
 constexpr double kAgree_px = 4;             ///< projector px
 constexpr int kRounds = 4;                  ///< of fitting and choosing the inliers
 constexpr double kInlierSigmas = 4;
-constexpr double kLeastSpread_px = 8;  ///< camera px, of the points' distances from a line
+constexpr double kLeastSpread_px = 8;  ///< camera px, see spread_px()
 
 /// Maps the corners of the projective frame (the three axes and their sum) to four points.
 glm::dmat3 frame_of(const std::array<glm::dvec2, 4>& points) {
@@ -92,19 +92,24 @@ std::vector<Observation> inliers_of(const ScreenModel& model, std::span<const Ob
   return inliers;
 }
 
-/// Standard deviation of the points across the line that they lie nearest to.
+/// The distance from the line that the points lie nearest to, which a tenth of them exceeds: a few
+/// points beside a line do not determine a homography.
 double spread_px(std::span<const Observation> points) {
-  const auto count = static_cast<double>(points.size());
   glm::dvec2 mean(0);
-  for (const auto& point : points) mean += point.camera_px / count;
+  for (const auto& point : points) mean += point.camera_px / static_cast<double>(points.size());
   double xx = 0, xy = 0, yy = 0;
   for (const auto& point : points) {
     const auto away = point.camera_px - mean;
-    xx += away.x * away.x / count;
-    xy += away.x * away.y / count;
-    yy += away.y * away.y / count;
+    xx += away.x * away.x;
+    xy += away.x * away.y;
+    yy += away.y * away.y;
   }
-  return std::sqrt(std::max((xx + yy) / 2 - std::hypot((xx - yy) / 2, xy), 0.));
+  const double direction = std::atan2(2 * xy, xx - yy) / 2;
+  const glm::dvec2 across(-std::sin(direction), std::cos(direction));
+  std::vector<double> distances_px;
+  for (const auto& point : points)
+    distances_px.push_back(std::abs(glm::dot(across, point.camera_px - mean)));
+  return quantile(distances_px, 0.9);
 }
 
 }  // namespace
