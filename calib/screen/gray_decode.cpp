@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
+#include <optional>
 
 #include "calib/screen/gray_code.hpp"
 #include "calib/screen/statistics.hpp"
@@ -15,12 +17,13 @@ namespace {
 constexpr int kPatch_px = 8;
 constexpr int kLeastEdges = 12;    ///< points on edges of columns, and on edges of rows, in a patch
 constexpr int kLeastContrast = 8;  ///< grey levels
-constexpr double kLeastContrastInNoise = 4;  ///< standard deviations
+constexpr double kLeastContrastInNoise = 6;  ///< standard deviations
 constexpr double kSureShare = 0.12;          ///< of the contrast, for a bit that is sure
 constexpr double kSureInNoise = 4;           ///< standard deviations
 constexpr double kLeastLitShare = 0.005;     ///< of the camera's pixels
 constexpr double kMostTornShare = 0.08;  ///< of the pairs of neighbours; noise of 5 % makes 0.02
-constexpr double kUnusual = 2;  ///< residual of a patch in medians; noise makes no such patch
+constexpr double kEdgeSigma_px = 0.1;    ///< camera px; of an edge without noise
+constexpr double kUnusual = 2;  ///< misfit of a patch in medians; noise makes no such patch
 constexpr double kMostUnusualShare = 0.005;   ///< of the patches
 constexpr double kMostEdgeResidual_px = 0.3;  ///< camera px; 0.15 in a steady picture
 constexpr int kDark = -1;                     ///< a cell that was not read
@@ -37,11 +40,11 @@ struct AffineSums {
   double square = 0;
   int count = 0;
 
-  void add(const glm::dvec2& px, double value) {
+  void add(const glm::dvec2& px, double value, double weight) {
     const glm::dvec3 row(px, 1);
-    normal += glm::outerProduct(row, row);
-    right += row * value;
-    square += value * value;
+    normal += weight * glm::outerProduct(row, row);
+    right += weight * value * row;
+    square += weight * value * value;
     ++count;
   }
 };
@@ -51,13 +54,40 @@ struct Patch {
   AffineSums column, row;
 };
 
-/// A patch that was read.
+/// A patch that was read; its point's sigma_px holds if `misfit` is 1.
 struct Reading {
   Correspondence point;
-  double rms_px;  ///< residual of the edges, projector px
-  double scale;   ///< projector px per camera px
-  int edges;      ///< of the coordinate that has fewer
+  double misfit = 0;  ///< root mean square of the edges' residuals in standard deviations
+  double rms_px = 0;  ///< of the residuals, in camera px
 };
+
+/// Where an edge lies between a pixel and its neighbour.
+struct Crossing {
+  double share;   ///< of the way
+  double weight;  ///< 1 / variance, 1/px^2
+};
+
+std::optional<Reading> read_patch(const Patch& patch, const glm::dvec2& first_px) {
+  const auto& [column, row] = patch;
+  if (std::min(column.count, row.count) < kLeastEdges) return {};
+  const auto across = glm::inverse(column.normal) * column.right;
+  const auto down = glm::inverse(row.normal) * row.right;
+  const auto sums = column.normal[2] + row.normal[2];  // of the weights times x, y, 1
+  const auto centre = sums / sums.z;
+  // Projector pixels per camera pixel.
+  const double scale = std::sqrt(std::abs(across.x * down.y - across.y * down.x));
+  const double squares =
+      column.square - glm::dot(across, column.right) + row.square - glm::dot(down, row.right);
+  const int edges = column.count + row.count;
+  Reading reading;
+  reading.misfit = std::sqrt(std::max(squares, 0.) / (edges - 6)) / scale;
+  reading.rms_px = reading.misfit * std::sqrt(edges / sums.z);
+  if (!std::isfinite(reading.misfit)) return {};
+  reading.point = {first_px + glm::dvec2(centre),
+                   {glm::dot(across, centre), glm::dot(down, centre)},
+                   scale / std::sqrt(std::min(column.normal[2].z, row.normal[2].z))};
+  return reading;
+}
 
 }  // namespace
 
@@ -89,6 +119,7 @@ class GrayDecoder {
   void measure_light();
   Cell read_cell(int x, int y) const;
   void read_cells();
+  Crossing crossing(std::size_t bit, int x, int y, int dx, int dy) const;
   void add_edge(int x, int y, int dx, int dy);
   void find_edges();
   std::vector<Reading> read_patches() const;
@@ -102,7 +133,7 @@ class GrayDecoder {
   std::vector<Cell> cells_;
   std::vector<Patch> patches_;
   int patches_across_ = 0;
-  double usual_rms_px_ = 0;         ///< of the edges in a patch
+  double usual_misfit_ = 0;
   long neighbours_ = 0, torn_ = 0;  ///< pairs; those whose cells are not neighbours
 };
 
@@ -158,8 +189,20 @@ void GrayDecoder::read_cells() {
   result_.lit_share = static_cast<double>(lit) / (width_px_ * height_px_);
 }
 
+/// The edge of a bit is where it is as bright as its inverse (linear interpolation). Both count in
+/// shares of the pixel's light, so that the board's print does not move the edge.
+Crossing GrayDecoder::crossing(std::size_t bit, int x, int y, int dx, int dy) const {
+  const double light = contrast(x, y), next_light = contrast(x + dx, y + dy);
+  const double from = difference(bit, x, y) / light;
+  const double to = difference(bit, x + dx, y + dy) / next_light;
+  const double rise = from - to;
+  const double noise = std::numbers::sqrt2 * result_.noise *
+                       std::hypot(to / light, from / next_light) / (rise * rise);
+  return {from / rise, 1 / (kEdgeSigma_px * kEdgeSigma_px + noise * noise)};
+}
+
 /// Looks at a pixel and its neighbour: between cells c and c + 1 the bit changes that is the lowest
-/// set bit of c + 1, and the edge is where it is as bright as its inverse (linear interpolation).
+/// set bit of c + 1.
 void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
   const auto here = cell(x, y), there = cell(x + dx, y + dy);
   if (here.column == kDark || there.column == kDark) return;
@@ -173,15 +216,10 @@ void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
   const auto bit = std::ranges::find_if(code_.bits_, [&](const auto& candidate) {
     return candidate.of_row == of_row && candidate.number == number;
   });
-  const auto index = static_cast<std::size_t>(bit - code_.bits_.begin());
-  // In shares of the light, so that the board's print does not move the edge.
-  const double from = difference(index, x, y) / static_cast<double>(contrast(x, y));
-  const double to =
-      difference(index, x + dx, y + dy) / static_cast<double>(contrast(x + dx, y + dy));
-  const double share = from / (from - to);
+  const auto edge = crossing(static_cast<std::size_t>(bit - code_.bits_.begin()), x, y, dx, dy);
   auto& patch = patches_[static_cast<std::size_t>(y / kPatch_px * patches_across_ + x / kPatch_px)];
-  const glm::dvec2 px(x % kPatch_px + share * dx, y % kPatch_px + share * dy);
-  (of_row ? patch.row : patch.column).add(px, upper * cell_px() - 0.5);
+  const glm::dvec2 px(x % kPatch_px + edge.share * dx, y % kPatch_px + edge.share * dy);
+  (of_row ? patch.row : patch.column).add(px, upper * cell_px() - 0.5, edge.weight);
 }
 
 void GrayDecoder::find_edges() {
@@ -198,25 +236,9 @@ void GrayDecoder::find_edges() {
 std::vector<Reading> GrayDecoder::read_patches() const {
   std::vector<Reading> readings;
   for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const auto& [column, row] = patches_[i];
-    const int edges = std::min(column.count, row.count);
-    if (edges < kLeastEdges) continue;
-    const auto across = glm::inverse(column.normal) * column.right;
-    const auto down = glm::inverse(row.normal) * row.right;
-    const auto sum = column.normal[2] + row.normal[2];  // of x, of y, of 1
-    const auto centre = sum / sum.z;
-    const double squares =
-        column.square - glm::dot(across, column.right) + row.square - glm::dot(down, row.right);
-    const double rms_px = std::sqrt(std::max(squares, 0.) / (column.count + row.count - 6));
-    const double area = across.x * down.y - across.y * down.x;
-    if (!(std::isfinite(rms_px) && std::abs(area) > 0)) continue;
-    const glm::dvec2 first(i % static_cast<std::size_t>(patches_across_),
-                           i / static_cast<std::size_t>(patches_across_));
-    readings.push_back({{first * static_cast<double>(kPatch_px) + glm::dvec2(centre),
-                         {glm::dot(across, centre), glm::dot(down, centre)}},
-                        rms_px,
-                        std::sqrt(std::abs(area)),
-                        edges});
+    const auto across = static_cast<std::size_t>(patches_across_);
+    const glm::dvec2 first_px(i % across * kPatch_px, i / across * kPatch_px);
+    if (const auto reading = read_patch(patches_[i], first_px)) readings.push_back(*reading);
   }
   return readings;
 }
@@ -225,7 +247,7 @@ std::vector<Reading> GrayDecoder::read_patches() const {
 /// the image, or, of the wide stripes, in a few patches.
 Result<void> GrayDecoder::check_steadiness(const std::vector<Reading>& readings) const {
   const auto unusual = std::ranges::count_if(
-      readings, [&](const auto& reading) { return reading.rms_px > kUnusual * usual_rms_px_; });
+      readings, [&](const auto& reading) { return reading.misfit > kUnusual * usual_misfit_; });
   const bool torn = static_cast<double>(torn_) > kMostTornShare * static_cast<double>(neighbours_);
   if (torn || result_.edge_residual_px > kMostEdgeResidual_px ||
       static_cast<double>(unusual) > kMostUnusualShare * static_cast<double>(readings.size()))
@@ -250,19 +272,19 @@ Result<GrayDecoding> GrayDecoder::run() {
                             100 * result_.lit_share));
   find_edges();
   const auto readings = read_patches();
-  std::vector<double> residuals_px, rms_px;
+  std::vector<double> misfits, rms_px;
   for (const auto& reading : readings) {
+    misfits.push_back(reading.misfit);
     rms_px.push_back(reading.rms_px);
-    residuals_px.push_back(reading.rms_px / reading.scale);
   }
-  usual_rms_px_ = median(rms_px);
-  result_.edge_residual_px = median(residuals_px);
+  usual_misfit_ = median(misfits);
+  result_.edge_residual_px = median(rms_px);
   if (const auto steady = check_steadiness(readings); !steady)
     return tl::make_unexpected(steady.error());
   for (const auto& reading : readings) {
-    if (reading.rms_px > kUnusual * usual_rms_px_) continue;
+    if (reading.misfit > kUnusual * usual_misfit_) continue;
     result_.points.push_back(reading.point);
-    result_.points.back().sigma_px = usual_rms_px_ / std::sqrt(reading.edges);
+    result_.points.back().sigma_px *= usual_misfit_;
   }
   return std::move(result_);
 }

@@ -112,6 +112,12 @@ double spread_px(std::span<const Observation> points) {
   return quantile(distances_px, 0.9);
 }
 
+tl::unexpected<Error> on_a_line() {
+  return fail(Errc::bad_data,
+              "the points lie on a line or in one spot of the camera's image: the "
+              "board must fill much more of it");
+}
+
 }  // namespace
 
 glm::dmat3 homography_of_corners(const std::array<glm::dvec2, 4>& camera_px,
@@ -128,10 +134,7 @@ Result<PlaneConsensus> plane_consensus(std::span<const Correspondence> points,
                 fmt::format("only {} points of the board were found, but {} are "
                             "needed: do the patterns fall on it, in the camera's view?",
                             all.size(), kLeastPoints));
-  if (spread_px(all) < kLeastSpread_px)
-    return fail(Errc::bad_data,
-                "the points lie on a line or in one spot of the camera's image: the "
-                "board must fill much more of it");
+  if (spread_px(all) < kLeastSpread_px) return on_a_line();
   PlaneConsensus found{best_sample(all, plane_m), {}, 0};
   for (int round = 0; round < kRounds; ++round) {
     found.inliers = inliers_of(found.model, all);
@@ -141,13 +144,10 @@ Result<PlaneConsensus> plane_consensus(std::span<const Correspondence> points,
                   fmt::format("only {:.0f} % of the points agree with each other: is the board "
                               "flat, and did the camera or the board move?",
                               100 * found.share));
-    if (spread_px(found.inliers) < kLeastSpread_px) break;
+    if (spread_px(found.inliers) < kLeastSpread_px) return on_a_line();
     found.model = refined(found.model, found.inliers, Unknowns::homography);
   }
-  if (!is_finite(found.model.projector_from_camera))
-    return fail(Errc::bad_data,
-                "the points lie on a line or in one spot of the camera's image: the "
-                "board must fill much more of it");
+  if (!is_finite(found.model.projector_from_camera)) return on_a_line();
   return found;
 }
 

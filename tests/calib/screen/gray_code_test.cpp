@@ -22,8 +22,8 @@ const GrayCode& code() {
   return code;
 }
 
-RenderedBoard board(const Scene& scene = {}, double depth_m = test::kPlane_m) {
-  return {test::bent_camera(), test::coaxial_screen(), test::tilted_board(depth_m), scene};
+RenderedBoard board(const Scene& scene = {}) {
+  return {test::coaxial_screen(), test::tilted_board(test::kPlane_m), scene};
 }
 
 /// What the camera sees of a white board.
@@ -178,7 +178,7 @@ TEST(GrayCode, SaysThatTheCameraMovedBetweenThePatterns) {
   auto turned = test::coaxial_screen();
   turned.projector_from_camera =
       turned.projector_from_camera * glm::dmat3(1, 0, 0, 0, 1, 0, 1.5, -1.5, 1);
-  RenderedBoard moved(test::bent_camera(), turned, test::tilted_board(test::kPlane_m));
+  RenderedBoard moved(turned, test::tilted_board(test::kPlane_m));
   const auto after = shoot(code(), moved);
   for (int first = 6; first < code().patterns(); first += 10) {
     auto views = after.views();

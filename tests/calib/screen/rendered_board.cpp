@@ -31,24 +31,39 @@ void blur(std::vector<float>& image, double sigma_px, int stride) {
   }
 }
 
-/// Averaged over the parts of a pixel.
-double albedo(const CameraModel& camera, const glm::dvec4& plane, const glm::dvec2& image_px,
-              const Scene& scene) {
+/// The undistorted pixels of the parts of all pixels.
+const std::vector<glm::dvec2>& undistorted_parts() {
+  static const auto parts = [] {
+    const auto camera = bent_camera();
+    std::vector<glm::dvec2> px;
+    for (int y = 0; y < camera.height_px; ++y)
+      for (int x = 0; x < camera.width_px; ++x)
+        for (int part = 0; part < kParts * kParts; ++part)
+          px.push_back(camera.undistort(glm::dvec2(x, y) +
+                                        (glm::dvec2(part % kParts, part / kParts) + 0.5) /
+                                            static_cast<double>(kParts) -
+                                        0.5));
+    return px;
+  }();
+  return parts;
+}
+
+/// Share of the light that the board reflects at a place seen by the camera.
+double albedo(const Scene& scene, double x_m, double y_m) {
   constexpr double kBlack = 0.07;
-  double sum = 0;
-  for (int part = 0; part < 4; ++part) {
-    const auto px = camera.undistort(image_px + glm::dvec2(part % 2, part / 2) / 2. - 0.25);
-    const double depth_m = depth_of(plane, camera, px);
-    const double x_m = (px.x - camera.cx_px) / camera.fx_px * depth_m;
-    const double y_m = (px.y - camera.cy_px) / camera.fy_px * depth_m;
-    if (x_m >= scene.board_right_m) continue;
-    const bool black =
-        scene.squares_m > 0 &&
-        (static_cast<int>(std::floor(x_m / scene.squares_m) + std::floor(y_m / scene.squares_m)) &
-         1);
-    sum += black ? kBlack : 1;
-  }
-  return sum / 4;
+  if (x_m >= scene.board_right_m) return 0;
+  if (scene.squares_m == 0) return 1;
+  const int square =
+      static_cast<int>(std::floor(x_m / scene.squares_m) + std::floor(y_m / scene.squares_m));
+  return square & 1 ? kBlack : 1;
+}
+
+/// The pixel of the projector's picture that lights a place, or -1.
+std::int32_t lit_pixel(const glm::dvec2& projector_px) {
+  const auto lit = glm::floor(projector_px + 0.5);
+  const bool inside =
+      lit.x >= 0 && lit.y >= 0 && lit.x < kProjectorWidth_px && lit.y < kProjectorHeight_px;
+  return inside ? static_cast<int>(lit.y) * kProjectorWidth_px + static_cast<int>(lit.x) : -1;
 }
 
 }  // namespace
@@ -86,26 +101,23 @@ double depth_of(const glm::dvec4& plane, const CameraModel& camera, const glm::d
   return -plane.w / glm::dot(glm::dvec3(plane), ray);
 }
 
-RenderedBoard::RenderedBoard(const CameraModel& camera, const ScreenModel& screen,
-                             const glm::dvec4& plane, const Scene& scene)
-    : camera_(camera), scene_(scene), random_(scene.seed) {
+RenderedBoard::RenderedBoard(const ScreenModel& screen, const glm::dvec4& plane, const Scene& scene)
+    : scene_(scene), random_(scene.seed) {
+  const auto camera = bent_camera();
   const glm::dvec2 middle(camera.cx_px, camera.cy_px);
-  for (int y = 0; y < camera.height_px; ++y)
-    for (int x = 0; x < camera.width_px; ++x) {
-      for (int part = 0; part < kParts * kParts; ++part) {
-        const glm::dvec2 offset((part % kParts + 0.5) / kParts - 0.5,
-                                (part / kParts + 0.5) / kParts - 0.5);
-        const auto px = camera.undistort(glm::dvec2(x, y) + offset);
-        const auto lit = glm::floor(screen.to_projector(px, depth_of(plane, camera, px)) + 0.5);
-        const bool inside =
-            lit.x >= 0 && lit.y >= 0 && lit.x < kProjectorWidth_px && lit.y < kProjectorHeight_px;
-        lit_by_.push_back(
-            inside ? static_cast<int>(lit.y) * kProjectorWidth_px + static_cast<int>(lit.x) : -1);
-      }
-      const glm::dvec2 away = (glm::dvec2(x, y) - middle) / glm::length(middle);
-      const double vignetting = 1 - scene.vignetting * glm::dot(away, away);
-      board_.push_back(static_cast<float>(vignetting * albedo(camera, plane, {x, y}, scene)));
+  for (int i = 0; i < camera.width_px * camera.height_px; ++i) {
+    double reflected = 0;
+    for (int part = 0; part < kParts * kParts; ++part) {
+      const auto px = undistorted_parts()[lit_by_.size()];
+      const double depth_m = depth_of(plane, camera, px);
+      const auto place_m = (px - middle) / camera.fx_px * depth_m;
+      lit_by_.push_back(lit_pixel(screen.to_projector(px, depth_m)));
+      reflected += albedo(scene, place_m.x, place_m.y) / (kParts * kParts);
     }
+    const auto away =
+        (glm::dvec2(i % camera.width_px, i / camera.width_px) - middle) / glm::length(middle);
+    board_.push_back(static_cast<float>(reflected * (1 - scene.vignetting * glm::dot(away, away))));
+  }
   std::normal_distribution<float> normal(0, static_cast<float>(scene.noise));
   for (int i = 0; i < 1 << 19; ++i) noise_.push_back(normal(random_));
 }
@@ -122,7 +134,7 @@ std::vector<std::uint8_t> RenderedBoard::image_of(const std::vector<std::uint8_t
     light[i] = board_[i] * (static_cast<float>(scene_.ambient) + gain * static_cast<float>(sum));
   }
   blur(light, scene_.blur_px, 1);
-  blur(light, scene_.blur_px, camera_.width_px);
+  blur(light, scene_.blur_px, bent_camera().width_px);
   std::vector<std::uint8_t> image(count);
   auto at = random_();
   for (std::size_t i = 0; i < count; ++i) {

@@ -35,16 +35,14 @@ struct Scene {
   unsigned seed = 1;
 };
 
-/// The camera's images of a plane board under the patterns of a projector.
+/// The images of bent_camera() of a plane board under the patterns of a projector.
 class RenderedBoard {
  public:
-  RenderedBoard(const CameraModel& camera, const ScreenModel& screen, const glm::dvec4& plane,
-                const Scene& scene = {});
+  RenderedBoard(const ScreenModel& screen, const glm::dvec4& plane, const Scene& scene = {});
   /// The image of a picture of the projector's size.
   std::vector<std::uint8_t> image_of(const std::vector<std::uint8_t>& picture);
 
  private:
-  CameraModel camera_;
   Scene scene_;
   std::vector<std::int32_t>
       lit_by_;                ///< the projector's pixel of each quarter of a pixel; -1: none
