@@ -17,10 +17,11 @@ constexpr double kWideInterval_px = 0.5;
 /// A fit that predicts other parts of the image so much worse is none of a plane.
 constexpr double kMuchWorse = 1.5;
 
-double covered_share(std::span<const Observation> observations) {
-  std::set<int> blocks;
-  for (const auto& observation : observations) blocks.insert(observation.block);
-  return static_cast<double>(blocks.size()) / kImageBlocks;
+double covered_share(std::span<const Observation> observations, const CameraModel& camera) {
+  std::set<int> parts;
+  for (const auto& observation : observations)
+    parts.insert(block_of(observation.camera_px, {0, 0}, {camera.width_px, camera.height_px}));
+  return static_cast<double>(parts.size()) / kImageBlocks;
 }
 
 double widest_px(const HomographyFit& fit) {
@@ -70,8 +71,9 @@ Result<HomographyFit> fit_homography(std::span<const Correspondence> points,
   fit.residual = errors_of(found->model, found->inliers);
   fit.held_out = errors_of(held_out_by_blocks(replicas, found->inliers, 1));
   fit.corners_px = corners_in_camera(found->model, projector_px);
-  fit.corner_interval_px = corner_intervals(bootstrap(replicas, found->inliers, 1), projector_px);
-  fit.covered_share = covered_share(found->inliers);
+  fit.corner_interval_px =
+      Bootstrap(replicas, found->inliers, 1, Unknowns::homography).corner_intervals(projector_px);
+  fit.covered_share = covered_share(found->inliers, camera);
   const auto corners = fit.corners_px;
   const auto right = corners[1] - corners[0], down = corners[3] - corners[0];
   fit.mirrored = right.x * down.y < right.y * down.x;

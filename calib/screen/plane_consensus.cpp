@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "calib/screen/statistics.hpp"
@@ -34,20 +35,21 @@ bool is_finite(const glm::dmat3& m) {
   return std::isfinite(glm::dot(m[0] + m[1] + m[2], glm::dvec3(1)));
 }
 
+/// The blocks divide the part of the image that the points fill.
 std::vector<Observation> observations_of(std::span<const Correspondence> points,
                                          const CameraModel& camera, double plane_m) {
   std::vector<Observation> observations;
+  glm::dvec2 first(std::numeric_limits<double>::max()), last = -first;
   for (const auto& point : points) {
     if (!is_finite(point.camera_px) || !is_finite(point.projector_px) || !(point.sigma_px > 0))
       continue;
-    const auto part = [](double px, int size_px, int parts) {
-      return std::clamp(static_cast<int>(px / size_px * parts), 0, parts - 1);
-    };
-    const int block = part(point.camera_px.y, camera.height_px, kBlocksDown) * kBlocksAcross +
-                      part(point.camera_px.x, camera.width_px, kBlocksAcross);
-    observations.push_back({camera.undistort(point.camera_px), 1 / plane_m, point.projector_px,
-                            point.sigma_px, block});
+    const auto px = camera.undistort(point.camera_px);
+    observations.push_back({px, 1 / plane_m, point.projector_px, point.sigma_px, 0});
+    first = glm::min(first, px);
+    last = glm::max(last, px);
   }
+  for (auto& observation : observations)
+    observation.block = block_of(observation.camera_px, first, last);
   return observations;
 }
 
@@ -119,6 +121,13 @@ tl::unexpected<Error> on_a_line() {
 }
 
 }  // namespace
+
+int block_of(const glm::dvec2& px, const glm::dvec2& first_px, const glm::dvec2& last_px) {
+  const auto part =
+      glm::floor((px - first_px) / (last_px - first_px) * glm::dvec2(kBlocksAcross, kBlocksDown));
+  return std::clamp(static_cast<int>(part.y), 0, kBlocksDown - 1) * kBlocksAcross +
+         std::clamp(static_cast<int>(part.x), 0, kBlocksAcross - 1);
+}
 
 glm::dmat3 homography_of_corners(const std::array<glm::dvec2, 4>& camera_px,
                                  const std::array<glm::dvec2, 4>& projector_px) {
