@@ -6,21 +6,21 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
-#include <optional>
 
 #include "calib/screen/gray_code.hpp"
+#include "calib/screen/gray_patch.hpp"
 #include "calib/screen/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
 
 constexpr int kPatch_px = 8;
-constexpr int kLeastEdges = 12;    ///< points on edges of columns, and on edges of rows, in a patch
-constexpr int kLeastContrast = 8;  ///< grey levels
-constexpr double kLeastContrastInNoise = 6;  ///< standard deviations
-constexpr double kSureShare = 0.12;          ///< of the contrast, for a bit that is sure
-constexpr double kSureInNoise = 4;           ///< standard deviations
-constexpr double kLeastLitShare = 0.005;     ///< of the camera's pixels
+constexpr int kLeastContrast = 8;              ///< grey levels
+constexpr double kLeastContrastInNoise = 6;    ///< standard deviations
+constexpr double kSureShare = 0.12;            ///< of the contrast, for a bit that is sure
+constexpr double kSureInNoise = 4;             ///< standard deviations
+constexpr double kLeastLitShare = 0.005;       ///< of the camera's pixels
+constexpr double kLeastStripeContrast = 0.25;  ///< noise of 5 % alone gives 0.05
 constexpr double kMostTornShare = 0.08;  ///< of the pairs of neighbours; noise of 5 % makes 0.02
 constexpr double kEdgeSigma_px = 0.1;    ///< camera px; of an edge without noise
 constexpr double kUnusual = 2;  ///< misfit of a patch in medians; noise makes no such patch
@@ -33,61 +33,11 @@ struct Cell {
   int column = kDark, row = kDark;
 };
 
-/// Least squares: a coordinate of the projector as an affine function of the camera pixel.
-struct AffineSums {
-  glm::dmat3 normal{0};
-  glm::dvec3 right{0};
-  double square = 0;
-  int count = 0;
-
-  void add(const glm::dvec2& px, double value, double weight) {
-    const glm::dvec3 row(px, 1);
-    normal += weight * glm::outerProduct(row, row);
-    right += weight * value * row;
-    square += weight * value * value;
-    ++count;
-  }
-};
-
-/// The edges in a patch; pixels are relative to its first one.
-struct Patch {
-  AffineSums column, row;
-};
-
-/// A patch that was read; its point's sigma_px holds if `misfit` is 1.
-struct Reading {
-  Correspondence point;
-  double misfit = 0;  ///< root mean square of the edges' residuals in standard deviations
-  double rms_px = 0;  ///< of the residuals, in camera px
-};
-
 /// Where an edge lies between a pixel and its neighbour.
 struct Crossing {
   double share;   ///< of the way
   double weight;  ///< 1 / variance, 1/px^2
 };
-
-std::optional<Reading> read_patch(const Patch& patch, const glm::dvec2& first_px) {
-  const auto& [column, row] = patch;
-  if (std::min(column.count, row.count) < kLeastEdges) return {};
-  const auto across = glm::inverse(column.normal) * column.right;
-  const auto down = glm::inverse(row.normal) * row.right;
-  const auto sums = column.normal[2] + row.normal[2];  // of the weights times x, y, 1
-  const auto centre = sums / sums.z;
-  // Projector pixels per camera pixel.
-  const double scale = std::sqrt(std::abs(across.x * down.y - across.y * down.x));
-  const double squares =
-      column.square - glm::dot(across, column.right) + row.square - glm::dot(down, row.right);
-  const int edges = column.count + row.count;
-  Reading reading;
-  reading.misfit = std::sqrt(std::max(squares, 0.) / (edges - 6)) / scale;
-  reading.rms_px = reading.misfit * std::sqrt(edges / sums.z);
-  if (!std::isfinite(reading.misfit)) return {};
-  reading.point = {first_px + glm::dvec2(centre),
-                   {glm::dot(across, centre), glm::dot(down, centre)},
-                   scale / std::sqrt(std::min(column.normal[2].z, row.normal[2].z))};
-  return reading;
-}
 
 }  // namespace
 
@@ -122,8 +72,8 @@ class GrayDecoder {
   Crossing crossing(std::size_t bit, int x, int y, int dx, int dy) const;
   void add_edge(int x, int y, int dx, int dy);
   void find_edges();
-  std::vector<Reading> read_patches() const;
-  Result<void> check_steadiness(const std::vector<Reading>& readings) const;
+  std::vector<PatchReading> read_patches() const;
+  Result<void> check(const std::vector<PatchReading>& readings) const;
 
   const GrayCode& code_;
   std::span<const GreyView> images_;
@@ -140,13 +90,16 @@ class GrayDecoder {
 /// A pattern and its inverse add up to white and black; what is missing is the noise of four
 /// pixels.
 void GrayDecoder::measure_light() {
-  std::vector<double> contrasts, noises;
+  std::vector<double> contrasts, noises, stripes;
+  const auto finest = code_.bits_.size() - 2;  // of columns, then of rows
   long saturated = 0;
   for (int y = 0; y < height_px_; ++y)
     for (int x = 0; x < width_px_; ++x) {
       if (contrast(x, y) < kLeastContrast) continue;
       contrasts.push_back(contrast(x, y));
       saturated += grey(0, x, y) == 255;
+      for (const auto bit : {finest, finest + 1})
+        stripes.push_back(std::abs(difference(bit, x, y)) / static_cast<double>(contrast(x, y)));
       const auto bit = static_cast<std::size_t>(x + y) % code_.bits_.size();
       noises.push_back(std::abs(grey(2 + 2 * bit, x, y) + grey(3 + 2 * bit, x, y) - grey(0, x, y) -
                                 grey(1, x, y)) /
@@ -155,6 +108,7 @@ void GrayDecoder::measure_light() {
   if (contrasts.empty()) return;
   result_.saturated_share = static_cast<double>(saturated) / static_cast<double>(contrasts.size());
   result_.contrast = median(contrasts);
+  result_.stripe_contrast = median(stripes);
   result_.noise = kSigmaPerMad * median(noises);
   least_contrast_ =
       std::max(kLeastContrast, static_cast<int>(kLeastContrastInNoise * result_.noise));
@@ -233,8 +187,8 @@ void GrayDecoder::find_edges() {
     }
 }
 
-std::vector<Reading> GrayDecoder::read_patches() const {
-  std::vector<Reading> readings;
+std::vector<PatchReading> GrayDecoder::read_patches() const {
+  std::vector<PatchReading> readings;
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     const auto across = static_cast<std::size_t>(patches_across_);
     const glm::dvec2 first_px(i % across * kPatch_px, i / across * kPatch_px);
@@ -243,21 +197,21 @@ std::vector<Reading> GrayDecoder::read_patches() const {
   return readings;
 }
 
-/// Edges of stripes that were shown before a move do not lie where later ones put them: all over
-/// the image, or, of the wide stripes, in a few patches.
-Result<void> GrayDecoder::check_steadiness(const std::vector<Reading>& readings) const {
+/// Errors: blurred stripes; a move. Edges of stripes that were shown before a move do not lie where
+/// later ones put them: all over the image, or, of the wide stripes, in a few patches.
+Result<void> GrayDecoder::check(const std::vector<PatchReading>& readings) const {
+  if (result_.stripe_contrast < kLeastStripeContrast)
+    return fail(Errc::bad_data,
+                "the camera does not see the finest stripes: make them wider, or "
+                "focus the camera and the projector");
   const auto unusual = std::ranges::count_if(
       readings, [&](const auto& reading) { return reading.misfit > kUnusual * usual_misfit_; });
   const bool torn = static_cast<double>(torn_) > kMostTornShare * static_cast<double>(neighbours_);
-  if (torn || result_.edge_residual_px > kMostEdgeResidual_px ||
+  if (torn || result_.edge_residual_px > kMostEdgeResidual_px || readings.empty() ||
       static_cast<double>(unusual) > kMostUnusualShare * static_cast<double>(readings.size()))
     return fail(Errc::bad_data,
                 "the images of the patterns do not fit together: did the camera or the "
                 "board move while the patterns were shown, or is an image missing?");
-  if (readings.empty())
-    return fail(Errc::bad_data,
-                "the camera does not see the finest stripes: make them wider, or "
-                "focus the camera and the projector");
   return {};
 }
 
@@ -279,8 +233,7 @@ Result<GrayDecoding> GrayDecoder::run() {
   }
   usual_misfit_ = median(misfits);
   result_.edge_residual_px = median(rms_px);
-  if (const auto steady = check_steadiness(readings); !steady)
-    return tl::make_unexpected(steady.error());
+  if (const auto steady = check(readings); !steady) return tl::make_unexpected(steady.error());
   for (const auto& reading : readings) {
     if (reading.misfit > kUnusual * usual_misfit_) continue;
     result_.points.push_back(reading.point);

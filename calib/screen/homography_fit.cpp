@@ -14,8 +14,7 @@ namespace {
 constexpr double kFewInliers = 0.9;
 constexpr double kLittleCovered = 0.3;
 constexpr double kWideInterval_px = 0.5;
-/// A fit that predicts other parts of the image so much worse is none of a plane.
-constexpr double kMuchWorse = 1.5;
+constexpr double kLargeError_px = 1;
 
 double covered_share(std::span<const Observation> observations, const CameraModel& camera) {
   std::set<int> parts;
@@ -45,11 +44,12 @@ std::vector<std::string> findings_of(const HomographyFit& fit) {
     findings.push_back(fmt::format(
         "The corners of the projector's picture are known only to {:.1f} px of the camera.",
         widest_px(fit)));
-  if (fit.held_out.p95 > kMuchWorse * fit.residual.p95 + 0.01)
-    findings.push_back(fmt::format(
-        "Parts of the image that were left out of the fit are predicted to {:.2f} px (95 % of the "
-        "points), those in it to {:.2f} px: is the board flat, and the lens calibrated?",
-        fit.held_out.p95, fit.residual.p95));
+  if (fit.held_out.median > kLargeError_px)
+    findings.push_back(
+        fmt::format("The points are off by {:.1f} px of the projector where they were left out of "
+                    "the fit: is the "
+                    "board flat, and the lens calibrated?",
+                    fit.held_out.median));
   if (fit.mirrored)
     findings.push_back(
         "The camera sees the projector's picture mirrored: this is right if one of them looks into "

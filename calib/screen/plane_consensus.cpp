@@ -123,8 +123,8 @@ tl::unexpected<Error> on_a_line() {
 }  // namespace
 
 int block_of(const glm::dvec2& px, const glm::dvec2& first_px, const glm::dvec2& last_px) {
-  const auto part =
-      glm::floor((px - first_px) / (last_px - first_px) * glm::dvec2(kBlocksAcross, kBlocksDown));
+  const auto size_px = glm::max(last_px - first_px, 1.);
+  const auto part = glm::floor((px - first_px) / size_px * glm::dvec2(kBlocksAcross, kBlocksDown));
   return std::clamp(static_cast<int>(part.y), 0, kBlocksDown - 1) * kBlocksAcross +
          std::clamp(static_cast<int>(part.x), 0, kBlocksAcross - 1);
 }

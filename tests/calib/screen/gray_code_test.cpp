@@ -101,9 +101,10 @@ TEST(GrayCode, FindsTheProjectorToAFractionOfAPixel) {
   ASSERT_TRUE(decoded) << decoded.error().what;
   const auto errors = errors_px(*decoded);
   std::printf(
-      "  %zu points, error p50 %.3f px, p95 %.3f px, worst %.2f px; edges %.3f px, noise %.2f\n",
+      "  %zu points, error p50 %.3f px, p95 %.3f px, worst %.2f px; edges %.3f px, noise %.2f, "
+      "stripes %.2f\n",
       errors.size(), median(errors), quantile(errors, 0.95), quantile(errors, 1),
-      decoded->edge_residual_px, decoded->noise);
+      decoded->edge_residual_px, decoded->noise, decoded->stripe_contrast);
   EXPECT_GT(errors.size(), 5000u);
   EXPECT_LT(median(errors), 0.06);
   EXPECT_LT(quantile(errors, 0.95), 0.2);
@@ -160,6 +161,13 @@ TEST(GrayCode, SaysThatItIsTooDark) {
   ASSERT_FALSE(decoded);
   EXPECT_THAT(decoded.error().what, HasSubstr("well enough to be read"));
   EXPECT_EQ(decoded.error().code, Errc::bad_data);
+}
+
+TEST(GrayCode, SaysThatTheStripesAreTooFineForTheFocus) {
+  auto seen = board({.blur_px = 4});
+  const auto decoded = code().decode(shoot(code(), seen).views());
+  ASSERT_FALSE(decoded);
+  EXPECT_THAT(decoded.error().what, HasSubstr("does not see the finest stripes"));
 }
 
 TEST(GrayCode, ReadsWeakLight) {
