@@ -21,6 +21,8 @@ struct GrayDecoding {
   double contrast = 0;
   double noise = 0;
   /// @}
+  /// The same for the finest stripes, as a share of white minus black: 0 if blur hides them.
+  double stripe_contrast = 0;
   /// How far the edges of stripes lie from where their neighbours put them: median over the patches
   /// of the root mean square, in camera pixels.
   double edge_residual_px = 0;
@@ -47,8 +49,8 @@ class GrayCode {
   /// Finds the edges in the camera's images of all patterns, in their order. In each patch of 8 x 8
   /// camera pixels it puts a plane through the projector coordinates of the edges and reads it at
   /// their centre. Pixels with too little contrast or two unsure bits are left out.
-  /// Errors: bad_data (wrong number or sizes of images, too dark, or the camera or the board
-  /// moved).
+  /// Errors: bad_data (wrong number or sizes of images; too dark; the finest stripes are not seen;
+  /// the camera or the board moved).
   Result<GrayDecoding> decode(std::span<const GreyView> images) const;
 
  private:

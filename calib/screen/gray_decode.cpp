@@ -5,22 +5,27 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include "calib/screen/gray_code.hpp"
+#include "calib/screen/gray_patch.hpp"
 #include "calib/screen/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
 
 constexpr int kPatch_px = 8;
-constexpr int kLeastEdges = 12;    ///< points on edges of columns, and on edges of rows, in a patch
-constexpr int kLeastContrast = 8;  ///< grey levels
-constexpr double kLeastContrastInNoise = 4;   ///< standard deviations
-constexpr double kSureShare = 0.12;           ///< of the contrast, for a bit that is sure
-constexpr double kSureInNoise = 4;            ///< standard deviations
-constexpr double kLeastLitShare = 0.005;      ///< of the camera's pixels
-constexpr double kMostTornShare = 0.02;       ///< of the pairs of neighbours
-constexpr double kMostEdgeResidual_px = 0.3;  ///< 0.1 in a steady picture with noise of 5 %
+constexpr int kLeastContrast = 8;              ///< grey levels
+constexpr double kLeastContrastInNoise = 6;    ///< standard deviations
+constexpr double kSureShare = 0.12;            ///< of the contrast, for a bit that is sure
+constexpr double kSureInNoise = 4;             ///< standard deviations
+constexpr double kLeastLitShare = 0.005;       ///< of the camera's pixels
+constexpr double kLeastStripeContrast = 0.25;  ///< noise of 5 % alone gives 0.05
+constexpr double kMostTornShare = 0.08;  ///< of the pairs of neighbours; noise of 5 % makes 0.02
+constexpr double kEdgeSigma_px = 0.1;    ///< camera px; of an edge without noise
+constexpr double kUnusual = 2;  ///< misfit of a patch in medians; noise makes no such patch
+constexpr double kMostUnusualShare = 0.005;   ///< of the patches
+constexpr double kMostEdgeResidual_px = 0.3;  ///< camera px; 0.15 in a steady picture
 constexpr int kDark = -1;                     ///< a cell that was not read
 
 /// The cell of the code that lights a pixel.
@@ -28,33 +33,10 @@ struct Cell {
   int column = kDark, row = kDark;
 };
 
-/// Least squares: a coordinate of the projector as an affine function of the camera pixel.
-struct AffineSums {
-  glm::dmat3 normal{0};
-  glm::dvec3 right{0};
-  double square = 0;
-  int count = 0;
-
-  void add(const glm::dvec2& px, double value) {
-    const glm::dvec3 row(px, 1);
-    normal += glm::outerProduct(row, row);
-    right += row * value;
-    square += value * value;
-    ++count;
-  }
-};
-
-/// The edges in a patch; pixels are relative to its first one.
-struct Patch {
-  AffineSums column, row;
-};
-
-/// A patch that was read.
-struct Reading {
-  Correspondence point;
-  double rms_px;  ///< residual of the edges, projector px
-  double scale;   ///< projector px per camera px
-  int edges;      ///< of the coordinate that has fewer
+/// Where an edge lies between a pixel and its neighbour.
+struct Crossing {
+  double share;   ///< of the way
+  double weight;  ///< 1 / variance, 1/px^2
 };
 
 }  // namespace
@@ -87,9 +69,11 @@ class GrayDecoder {
   void measure_light();
   Cell read_cell(int x, int y) const;
   void read_cells();
+  Crossing crossing(std::size_t bit, int x, int y, int dx, int dy) const;
   void add_edge(int x, int y, int dx, int dy);
   void find_edges();
-  std::vector<Reading> read_patches() const;
+  std::vector<PatchReading> read_patches() const;
+  Result<void> check(const std::vector<PatchReading>& readings) const;
 
   const GrayCode& code_;
   std::span<const GreyView> images_;
@@ -99,19 +83,23 @@ class GrayDecoder {
   std::vector<Cell> cells_;
   std::vector<Patch> patches_;
   int patches_across_ = 0;
+  double usual_misfit_ = 0;
   long neighbours_ = 0, torn_ = 0;  ///< pairs; those whose cells are not neighbours
 };
 
 /// A pattern and its inverse add up to white and black; what is missing is the noise of four
 /// pixels.
 void GrayDecoder::measure_light() {
-  std::vector<double> contrasts, noises;
+  std::vector<double> contrasts, noises, stripes;
+  const auto finest = code_.bits_.size() - 2;  // of columns, then of rows
   long saturated = 0;
   for (int y = 0; y < height_px_; ++y)
     for (int x = 0; x < width_px_; ++x) {
       if (contrast(x, y) < kLeastContrast) continue;
       contrasts.push_back(contrast(x, y));
       saturated += grey(0, x, y) == 255;
+      for (const auto bit : {finest, finest + 1})
+        stripes.push_back(std::abs(difference(bit, x, y)) / static_cast<double>(contrast(x, y)));
       const auto bit = static_cast<std::size_t>(x + y) % code_.bits_.size();
       noises.push_back(std::abs(grey(2 + 2 * bit, x, y) + grey(3 + 2 * bit, x, y) - grey(0, x, y) -
                                 grey(1, x, y)) /
@@ -120,6 +108,7 @@ void GrayDecoder::measure_light() {
   if (contrasts.empty()) return;
   result_.saturated_share = static_cast<double>(saturated) / static_cast<double>(contrasts.size());
   result_.contrast = median(contrasts);
+  result_.stripe_contrast = median(stripes);
   result_.noise = kSigmaPerMad * median(noises);
   least_contrast_ =
       std::max(kLeastContrast, static_cast<int>(kLeastContrastInNoise * result_.noise));
@@ -154,8 +143,20 @@ void GrayDecoder::read_cells() {
   result_.lit_share = static_cast<double>(lit) / (width_px_ * height_px_);
 }
 
+/// The edge of a bit is where it is as bright as its inverse (linear interpolation). Both count in
+/// shares of the pixel's light, so that the board's print does not move the edge.
+Crossing GrayDecoder::crossing(std::size_t bit, int x, int y, int dx, int dy) const {
+  const double light = contrast(x, y), next_light = contrast(x + dx, y + dy);
+  const double from = difference(bit, x, y) / light;
+  const double to = difference(bit, x + dx, y + dy) / next_light;
+  const double rise = from - to;
+  const double noise = std::numbers::sqrt2 * result_.noise *
+                       std::hypot(to / light, from / next_light) / (rise * rise);
+  return {from / rise, 1 / (kEdgeSigma_px * kEdgeSigma_px + noise * noise)};
+}
+
 /// Looks at a pixel and its neighbour: between cells c and c + 1 the bit changes that is the lowest
-/// set bit of c + 1, and the edge is where it is as bright as its inverse (linear interpolation).
+/// set bit of c + 1.
 void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
   const auto here = cell(x, y), there = cell(x + dx, y + dy);
   if (here.column == kDark || there.column == kDark) return;
@@ -169,12 +170,10 @@ void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
   const auto bit = std::ranges::find_if(code_.bits_, [&](const auto& candidate) {
     return candidate.of_row == of_row && candidate.number == number;
   });
-  const auto index = static_cast<std::size_t>(bit - code_.bits_.begin());
-  const double from = difference(index, x, y), to = difference(index, x + dx, y + dy);
-  const double share = from / (from - to);
+  const auto edge = crossing(static_cast<std::size_t>(bit - code_.bits_.begin()), x, y, dx, dy);
   auto& patch = patches_[static_cast<std::size_t>(y / kPatch_px * patches_across_ + x / kPatch_px)];
-  const glm::dvec2 px(x % kPatch_px + share * dx, y % kPatch_px + share * dy);
-  (of_row ? patch.row : patch.column).add(px, upper * cell_px() - 0.5);
+  const glm::dvec2 px(x % kPatch_px + edge.share * dx, y % kPatch_px + edge.share * dy);
+  (of_row ? patch.row : patch.column).add(px, upper * cell_px() - 0.5, edge.weight);
 }
 
 void GrayDecoder::find_edges() {
@@ -188,64 +187,57 @@ void GrayDecoder::find_edges() {
     }
 }
 
-std::vector<Reading> GrayDecoder::read_patches() const {
-  std::vector<Reading> readings;
+std::vector<PatchReading> GrayDecoder::read_patches() const {
+  std::vector<PatchReading> readings;
   for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const auto& [column, row] = patches_[i];
-    const int edges = std::min(column.count, row.count);
-    if (edges < kLeastEdges) continue;
-    const auto across = glm::inverse(column.normal) * column.right;
-    const auto down = glm::inverse(row.normal) * row.right;
-    const auto sum = column.normal[2] + row.normal[2];  // of x, of y, of 1
-    const auto centre = sum / sum.z;
-    const double squares =
-        column.square - glm::dot(across, column.right) + row.square - glm::dot(down, row.right);
-    const double rms_px = std::sqrt(std::max(squares, 0.) / (column.count + row.count - 6));
-    const double area = across.x * down.y - across.y * down.x;
-    if (!(std::isfinite(rms_px) && std::abs(area) > 0)) continue;
-    const glm::dvec2 first(i % static_cast<std::size_t>(patches_across_),
-                           i / static_cast<std::size_t>(patches_across_));
-    readings.push_back({{first * static_cast<double>(kPatch_px) + glm::dvec2(centre),
-                         {glm::dot(across, centre), glm::dot(down, centre)}},
-                        rms_px,
-                        std::sqrt(std::abs(area)),
-                        edges});
+    const auto across = static_cast<std::size_t>(patches_across_);
+    const glm::dvec2 first_px(i % across * kPatch_px, i / across * kPatch_px);
+    if (const auto reading = read_patch(patches_[i], first_px)) readings.push_back(*reading);
   }
   return readings;
+}
+
+/// Errors: blurred stripes; a move. Edges of stripes that were shown before a move do not lie where
+/// later ones put them: all over the image, or, of the wide stripes, in a few patches.
+Result<void> GrayDecoder::check(const std::vector<PatchReading>& readings) const {
+  if (result_.stripe_contrast < kLeastStripeContrast)
+    return fail(Errc::bad_data,
+                "the camera does not see the finest stripes: make them wider, or "
+                "focus the camera and the projector");
+  const auto unusual = std::ranges::count_if(
+      readings, [&](const auto& reading) { return reading.misfit > kUnusual * usual_misfit_; });
+  const bool torn = static_cast<double>(torn_) > kMostTornShare * static_cast<double>(neighbours_);
+  if (torn || result_.edge_residual_px > kMostEdgeResidual_px || readings.empty() ||
+      static_cast<double>(unusual) > kMostUnusualShare * static_cast<double>(readings.size()))
+    return fail(Errc::bad_data,
+                "the images of the patterns do not fit together: did the camera or the "
+                "board move while the patterns were shown, or is an image missing?");
+  return {};
 }
 
 Result<GrayDecoding> GrayDecoder::run() {
   measure_light();
   read_cells();
   if (result_.lit_share < kLeastLitShare)
-    return fail(
-        Errc::bad_data,
-        fmt::format(
-            "only {:.1f} % of the camera's image is lit by the patterns well enough to be read: "
-            "is the room too bright, the exposure too short, or the board outside the picture?",
-            100 * result_.lit_share));
+    return fail(Errc::bad_data,
+                fmt::format("only {:.1f} % of the camera's image is lit by the patterns well "
+                            "enough to be read: is the room too bright, the exposure too short, "
+                            "or the board outside the picture?",
+                            100 * result_.lit_share));
   find_edges();
   const auto readings = read_patches();
-  std::vector<double> residuals_px, rms_px;
+  std::vector<double> misfits, rms_px;
   for (const auto& reading : readings) {
+    misfits.push_back(reading.misfit);
     rms_px.push_back(reading.rms_px);
-    residuals_px.push_back(reading.rms_px / reading.scale);
   }
-  const double usual_px = median(rms_px);
-  result_.edge_residual_px = median(residuals_px);
-  if (static_cast<double>(torn_) > kMostTornShare * static_cast<double>(neighbours_) ||
-      result_.edge_residual_px > kMostEdgeResidual_px)
-    return fail(Errc::bad_data,
-                "the images of the patterns do not fit together: did the camera or the "
-                "board move while the patterns were shown, or is an image missing?");
-  if (readings.empty())
-    return fail(Errc::bad_data,
-                "the camera does not see the finest stripes: make them wider, or "
-                "focus the camera and the projector");
+  usual_misfit_ = median(misfits);
+  result_.edge_residual_px = median(rms_px);
+  if (const auto steady = check(readings); !steady) return tl::make_unexpected(steady.error());
   for (const auto& reading : readings) {
-    if (reading.rms_px > 3 * usual_px) continue;
+    if (reading.misfit > kUnusual * usual_misfit_) continue;
     result_.points.push_back(reading.point);
-    result_.points.back().sigma_px = usual_px / std::sqrt(reading.edges);
+    result_.points.back().sigma_px *= usual_misfit_;
   }
   return std::move(result_);
 }

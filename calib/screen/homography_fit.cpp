@@ -14,13 +14,13 @@ namespace {
 constexpr double kFewInliers = 0.9;
 constexpr double kLittleCovered = 0.3;
 constexpr double kWideInterval_px = 0.5;
-/// A fit that predicts other parts of the image so much worse is none of a plane.
-constexpr double kMuchWorse = 1.5;
+constexpr double kLargeError_px = 1;
 
-double covered_share(std::span<const Observation> observations) {
-  std::set<int> blocks;
-  for (const auto& observation : observations) blocks.insert(observation.block);
-  return static_cast<double>(blocks.size()) / kImageBlocks;
+double covered_share(std::span<const Observation> observations, const CameraModel& camera) {
+  std::set<int> parts;
+  for (const auto& observation : observations)
+    parts.insert(block_of(observation.camera_px, {0, 0}, {camera.width_px, camera.height_px}));
+  return static_cast<double>(parts.size()) / kImageBlocks;
 }
 
 double widest_px(const HomographyFit& fit) {
@@ -44,11 +44,12 @@ std::vector<std::string> findings_of(const HomographyFit& fit) {
     findings.push_back(fmt::format(
         "The corners of the projector's picture are known only to {:.1f} px of the camera.",
         widest_px(fit)));
-  if (fit.held_out.p95 > kMuchWorse * fit.residual.p95 + 0.01)
-    findings.push_back(fmt::format(
-        "Parts of the image that were left out of the fit are predicted to {:.2f} px (95 % of the "
-        "points), those in it to {:.2f} px: is the board flat, and the lens calibrated?",
-        fit.held_out.p95, fit.residual.p95));
+  if (fit.held_out.median > kLargeError_px)
+    findings.push_back(
+        fmt::format("The points are off by {:.1f} px of the projector where they were left out of "
+                    "the fit: is the "
+                    "board flat, and the lens calibrated?",
+                    fit.held_out.median));
   if (fit.mirrored)
     findings.push_back(
         "The camera sees the projector's picture mirrored: this is right if one of them looks into "
@@ -70,8 +71,9 @@ Result<HomographyFit> fit_homography(std::span<const Correspondence> points,
   fit.residual = errors_of(found->model, found->inliers);
   fit.held_out = errors_of(held_out_by_blocks(replicas, found->inliers, 1));
   fit.corners_px = corners_in_camera(found->model, projector_px);
-  fit.corner_interval_px = corner_intervals(bootstrap(replicas, found->inliers, 1), projector_px);
-  fit.covered_share = covered_share(found->inliers);
+  fit.corner_interval_px =
+      Bootstrap(replicas, found->inliers, 1, Unknowns::homography).corner_intervals(projector_px);
+  fit.covered_share = covered_share(found->inliers, camera);
   const auto corners = fit.corners_px;
   const auto right = corners[1] - corners[0], down = corners[3] - corners[0];
   fit.mirrored = right.x * down.y < right.y * down.x;

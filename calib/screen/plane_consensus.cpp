@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "calib/screen/statistics.hpp"
@@ -19,7 +20,7 @@ constexpr std::size_t kScoredPoints = 500;  ///< on which a sample is judged
 constexpr double kAgree_px = 4;             ///< projector px
 constexpr int kRounds = 4;                  ///< of fitting and choosing the inliers
 constexpr double kInlierSigmas = 4;
-constexpr double kLeastSpread_px = 8;  ///< camera px, of the points' distances from a line
+constexpr double kLeastSpread_px = 8;  ///< camera px, see spread_px()
 
 /// Maps the corners of the projective frame (the three axes and their sum) to four points.
 glm::dmat3 frame_of(const std::array<glm::dvec2, 4>& points) {
@@ -34,20 +35,21 @@ bool is_finite(const glm::dmat3& m) {
   return std::isfinite(glm::dot(m[0] + m[1] + m[2], glm::dvec3(1)));
 }
 
+/// The blocks divide the part of the image that the points fill.
 std::vector<Observation> observations_of(std::span<const Correspondence> points,
                                          const CameraModel& camera, double plane_m) {
   std::vector<Observation> observations;
+  glm::dvec2 first(std::numeric_limits<double>::max()), last = -first;
   for (const auto& point : points) {
     if (!is_finite(point.camera_px) || !is_finite(point.projector_px) || !(point.sigma_px > 0))
       continue;
-    const auto part = [](double px, int size_px, int parts) {
-      return std::clamp(static_cast<int>(px / size_px * parts), 0, parts - 1);
-    };
-    const int block = part(point.camera_px.y, camera.height_px, kBlocksDown) * kBlocksAcross +
-                      part(point.camera_px.x, camera.width_px, kBlocksAcross);
-    observations.push_back({camera.undistort(point.camera_px), 1 / plane_m, point.projector_px,
-                            point.sigma_px, block});
+    const auto px = camera.undistort(point.camera_px);
+    observations.push_back({px, 1 / plane_m, point.projector_px, point.sigma_px, 0});
+    first = glm::min(first, px);
+    last = glm::max(last, px);
   }
+  for (auto& observation : observations)
+    observation.block = block_of(observation.camera_px, first, last);
   return observations;
 }
 
@@ -92,22 +94,40 @@ std::vector<Observation> inliers_of(const ScreenModel& model, std::span<const Ob
   return inliers;
 }
 
-/// Standard deviation of the points across the line that they lie nearest to.
+/// The distance from the line that the points lie nearest to, which a tenth of them exceeds: a few
+/// points beside a line do not determine a homography.
 double spread_px(std::span<const Observation> points) {
-  const auto count = static_cast<double>(points.size());
   glm::dvec2 mean(0);
-  for (const auto& point : points) mean += point.camera_px / count;
+  for (const auto& point : points) mean += point.camera_px / static_cast<double>(points.size());
   double xx = 0, xy = 0, yy = 0;
   for (const auto& point : points) {
     const auto away = point.camera_px - mean;
-    xx += away.x * away.x / count;
-    xy += away.x * away.y / count;
-    yy += away.y * away.y / count;
+    xx += away.x * away.x;
+    xy += away.x * away.y;
+    yy += away.y * away.y;
   }
-  return std::sqrt(std::max((xx + yy) / 2 - std::hypot((xx - yy) / 2, xy), 0.));
+  const double direction = std::atan2(2 * xy, xx - yy) / 2;
+  const glm::dvec2 across(-std::sin(direction), std::cos(direction));
+  std::vector<double> distances_px;
+  for (const auto& point : points)
+    distances_px.push_back(std::abs(glm::dot(across, point.camera_px - mean)));
+  return quantile(distances_px, 0.9);
+}
+
+tl::unexpected<Error> on_a_line() {
+  return fail(Errc::bad_data,
+              "the points lie on a line or in one spot of the camera's image: the "
+              "board must fill much more of it");
 }
 
 }  // namespace
+
+int block_of(const glm::dvec2& px, const glm::dvec2& first_px, const glm::dvec2& last_px) {
+  const auto size_px = glm::max(last_px - first_px, 1.);
+  const auto part = glm::floor((px - first_px) / size_px * glm::dvec2(kBlocksAcross, kBlocksDown));
+  return std::clamp(static_cast<int>(part.y), 0, kBlocksDown - 1) * kBlocksAcross +
+         std::clamp(static_cast<int>(part.x), 0, kBlocksAcross - 1);
+}
 
 glm::dmat3 homography_of_corners(const std::array<glm::dvec2, 4>& camera_px,
                                  const std::array<glm::dvec2, 4>& projector_px) {
@@ -123,10 +143,7 @@ Result<PlaneConsensus> plane_consensus(std::span<const Correspondence> points,
                 fmt::format("only {} points of the board were found, but {} are "
                             "needed: do the patterns fall on it, in the camera's view?",
                             all.size(), kLeastPoints));
-  if (spread_px(all) < kLeastSpread_px)
-    return fail(Errc::bad_data,
-                "the points lie on a line or in one spot of the camera's image: the "
-                "board must fill much more of it");
+  if (spread_px(all) < kLeastSpread_px) return on_a_line();
   PlaneConsensus found{best_sample(all, plane_m), {}, 0};
   for (int round = 0; round < kRounds; ++round) {
     found.inliers = inliers_of(found.model, all);
@@ -136,13 +153,10 @@ Result<PlaneConsensus> plane_consensus(std::span<const Correspondence> points,
                   fmt::format("only {:.0f} % of the points agree with each other: is the board "
                               "flat, and did the camera or the board move?",
                               100 * found.share));
-    if (spread_px(found.inliers) < kLeastSpread_px) break;
+    if (spread_px(found.inliers) < kLeastSpread_px) return on_a_line();
     found.model = refined(found.model, found.inliers, Unknowns::homography);
   }
-  if (!is_finite(found.model.projector_from_camera))
-    return fail(Errc::bad_data,
-                "the points lie on a line or in one spot of the camera's image: the "
-                "board must fill much more of it");
+  if (!is_finite(found.model.projector_from_camera)) return on_a_line();
   return found;
 }
 

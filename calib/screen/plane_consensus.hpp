@@ -15,15 +15,17 @@ namespace handcast::calib {
 glm::dmat3 homography_of_corners(const std::array<glm::dvec2, 4>& camera_px,
                                  const std::array<glm::dvec2, 4>& projector_px);
 
+/// Parts into which an area of the image is divided for held-out errors and the bootstrap.
+constexpr int kBlocksAcross = 8, kBlocksDown = 6, kImageBlocks = kBlocksAcross * kBlocksDown;
+/// The part that holds a pixel; pixels outside the area belong to the parts at its border.
+int block_of(const glm::dvec2& px, const glm::dvec2& first_px, const glm::dvec2& last_px);
+
 /// The points of one plane that agree with each other.
 struct PlaneConsensus {
   ScreenModel model;                 ///< a homography, fitted to the inliers
-  std::vector<Observation> inliers;  ///< blocks: kImageBlocks over the camera's image
+  std::vector<Observation> inliers;  ///< blocks: of the area that the points fill
   double share = 0;                  ///< of all points
 };
-
-/// Parts into which the camera's image is divided for held-out errors and the bootstrap.
-constexpr int kBlocksAcross = 8, kBlocksDown = 6, kImageBlocks = kBlocksAcross * kBlocksDown;
 
 /// Finds the homography that most points agree with (RANSAC, Fischler and Bolles 1981), then the
 /// points within 4 standard deviations of it, which come from the median residual; points that are

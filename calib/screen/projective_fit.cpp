@@ -151,7 +151,7 @@ ScreenModel refined(const ScreenModel& start, std::span<const Observation> obser
     for (const auto& observation : observations)
       add(normal, right, linearised(best, scaling, start.plane_m, observation));
     if (!solved(normal, right, count)) return undetermined(start.plane_m);
-    double before = cost;
+    const double before = cost;
     for (; damping < kMostDamping; damping *= 10) {
       Normal damped = normal;
       damped.diagonal() *= 1 + damping;

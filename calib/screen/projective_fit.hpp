@@ -29,15 +29,15 @@ enum class Unknowns {
 /// Projector px by which the model misses an observation.
 double residual_px(const ScreenModel& model, const Observation& observation);
 
-/// Levenberg-Marquardt on the residuals in standard deviations. `start` may be far off, but must be
-/// a homography of the right orientation. The result is not finite if the observations do not
-/// determine the homography; `start.parallax` is kept where they do not determine the parallax.
+/// Levenberg-Marquardt on the residuals in standard deviations. `start` may be far off, but its
+/// homography must be finite and of the right orientation. The result is not finite if the
+/// observations do not determine the unknowns.
 ScreenModel refined(const ScreenModel& start, std::span<const Observation> observations,
                     Unknowns unknowns);
 
 /// The fits that other weights of the blocks would give: one Gauss-Newton step from the fit to all
 /// of them. A step is exact up to the curvature of the model, which is small next to the noise, and
-/// costs a thousandth of a fit.
+/// costs a small part of a fit.
 class Replicas {
  public:
   /// `blocks`: one more than the highest block of the observations.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <random>
 
 #include "calib/screen/statistics.hpp"
@@ -67,42 +69,40 @@ std::array<glm::dvec2, 4> corners_in_camera(const ScreenModel& model,
           mapped(back, {0, last.y})};
 }
 
-std::vector<ScreenModel> bootstrap(const Replicas& replicas,
-                                   std::span<const Observation> observations, int views) {
+Bootstrap::Bootstrap(const Replicas& replicas, std::span<const Observation> observations, int views,
+                     Unknowns unknowns) {
   const auto filled = filled_blocks(observations, views);
+  int blocks = 0;
+  for (const auto& of_view : filled) blocks += static_cast<int>(of_view.size());
+  widening_ = std::sqrt(blocks / std::max(1., blocks - static_cast<double>(unknowns)));
   std::mt19937 random(1);
-  std::vector<ScreenModel> models;
   for (int sample = 0; sample < kSamples; ++sample) {
     std::vector<double> weights(static_cast<std::size_t>(views * kImageBlocks));
     for (std::size_t i = 0; i < filled.size(); ++i) {
-      const auto& blocks = views >= kLeastViews ? filled[random() % filled.size()] : filled[i];
-      for (std::size_t j = 0; j < blocks.size(); ++j)
-        weights[static_cast<std::size_t>(blocks[random() % blocks.size()])] += 1;
+      const auto& of_view = views >= kLeastViews ? filled[random() % filled.size()] : filled[i];
+      for (std::size_t j = 0; j < of_view.size(); ++j)
+        weights[static_cast<std::size_t>(of_view[random() % of_view.size()])] += 1;
     }
-    if (const auto model = replicas.with_weights(weights)) models.push_back(*model);
+    if (const auto model = replicas.with_weights(weights)) models_.push_back(*model);
   }
-  return models;
 }
 
-double interval(std::span<const ScreenModel> models,
-                const std::function<double(const ScreenModel&)>& value) {
-  if (models.size() < 2) return 0;
+double Bootstrap::interval(const std::function<double(const ScreenModel&)>& value) const {
+  const auto count = static_cast<double>(models_.size());
+  if (count < 2) return std::numeric_limits<double>::infinity();
   std::vector<double> values;
-  double mean = 0, square = 0;
-  for (const auto& model : models) {
-    values.push_back(value(model));
-    mean += values.back() / static_cast<double>(models.size());
-  }
+  for (const auto& model : models_) values.push_back(value(model));
+  const double mean = std::accumulate(values.begin(), values.end(), 0.) / count;
+  double square = 0;
   for (const double one : values) square += (one - mean) * (one - mean);
-  return kNormal95 * std::sqrt(square / static_cast<double>(models.size() - 1));
+  return kNormal95 * widening_ * std::sqrt(square / (count - 1));
 }
 
-std::array<glm::dvec2, 4> corner_intervals(std::span<const ScreenModel> models,
-                                           const glm::ivec2& projector_px) {
+std::array<glm::dvec2, 4> Bootstrap::corner_intervals(const glm::ivec2& projector_px) const {
   std::array<glm::dvec2, 4> intervals;
   for (std::size_t corner = 0; corner < 4; ++corner)
     for (int axis = 0; axis < 2; ++axis)
-      intervals[corner][axis] = interval(models, [&](const ScreenModel& model) {
+      intervals[corner][axis] = interval([&](const ScreenModel& model) {
         return corners_in_camera(model, projector_px)[corner][axis];
       });
   return intervals;

@@ -28,15 +28,20 @@ std::array<glm::dvec2, 4> corners_in_camera(const ScreenModel& model,
 
 /// Models of 200 bootstrap samples of the blocks that hold observations, and, from five views on,
 /// of the views first. Samples that do not determine the model are left out.
-std::vector<ScreenModel> bootstrap(const Replicas& replicas,
-                                   std::span<const Observation> observations, int views);
+class Bootstrap {
+ public:
+  Bootstrap(const Replicas& replicas, std::span<const Observation> observations, int views,
+            Unknowns unknowns);
+  /// Half the width of the 95 % interval of a function of the model: 1.96 standard deviations of
+  /// its replicates. They are widened by the square root of blocks / (blocks - unknowns), since the
+  /// fit follows the errors of its own blocks.
+  double interval(const std::function<double(const ScreenModel&)>& value) const;
+  /// interval() of each coordinate of the four corners_in_camera().
+  std::array<glm::dvec2, 4> corner_intervals(const glm::ivec2& projector_px) const;
 
-/// Half the width of the 95 % interval of a value: 1.96 standard deviations of its replicates.
-/// `value`: of a model. 0 if there are less than two.
-double interval(std::span<const ScreenModel> models,
-                const std::function<double(const ScreenModel&)>& value);
-/// interval() of each coordinate of the four corners_in_camera().
-std::array<glm::dvec2, 4> corner_intervals(std::span<const ScreenModel> models,
-                                           const glm::ivec2& projector_px);
+ private:
+  std::vector<ScreenModel> models_;
+  double widening_ = 1;
+};
 
 }  // namespace handcast::calib

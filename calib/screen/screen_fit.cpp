@@ -153,17 +153,17 @@ void Choice::choose(ScreenFit& fit) const {
 
 void Choice::add_intervals(ScreenFit& fit, const glm::ivec2& projector_px) const {
   const auto& all = inliers_.observations;
-  const Replicas replicas(fit.model, all, fit.coaxial ? Unknowns::homography : Unknowns::everything,
-                          views_ * kImageBlocks);
-  const auto models = bootstrap(replicas, all, views_);
+  const auto unknowns = fit.coaxial ? Unknowns::homography : Unknowns::everything;
+  const Replicas replicas(fit.model, all, unknowns, views_ * kImageBlocks);
+  const Bootstrap samples(replicas, all, views_, unknowns);
   fit.corners_px = corners_in_camera(fit.model, projector_px);
-  fit.corner_interval_px = corner_intervals(models, projector_px);
+  fit.corner_interval_px = samples.corner_intervals(projector_px);
   if (fit.coaxial) return;
   const auto length_mm = [this](const ScreenModel& model) {
     return 1000 * glm::length(model.projector_centre_m(camera_));
   };
   const Baseline baseline{1000. * fit.model.projector_centre_m(camera_), length_mm(fit.model),
-                          interval(models, length_mm)};
+                          samples.interval(length_mm)};
   if (baseline.interval_mm < baseline.length_mm) fit.baseline = baseline;
 }
 

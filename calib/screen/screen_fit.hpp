@@ -45,13 +45,13 @@ struct ScreenFit {
 };
 
 /// Fits a ScreenModel: the depth of each point is that of its board, the inliers are those of
-/// plane_consensus() in each view. The model is coaxial (8 unknowns) unless the full one (11)
-/// predicts what was held out better by 10 %. Two boards determine it unless they are almost in the
-/// same plane; one board, also a tilted one, does not. Intervals come from 200 bootstrap samples of
-/// the parts of the image, and of the views if there are at least 5; with fewer views they do not
-/// include the errors of the boards' poses.
-/// Errors: those of plane_consensus() with the number of the view (from 1); bad_data (no view, or a
-/// board that is not in front of the camera where its points are).
+/// plane_consensus() in each view. `plane_m`: greater than 0. The model is coaxial (8 unknowns)
+/// unless the full one (11) predicts what was held out better by 10 %. Two boards determine it
+/// unless they are almost in the same plane; one board, also a tilted one, does not. Intervals come
+/// from 200 bootstrap samples of the parts of the image, and of the views if there are at least 5;
+/// with fewer views they do not include the errors of the boards' poses. Errors: those of
+/// plane_consensus() with the number of the view (from 1); bad_data (no view, or a board that is
+/// not in front of the camera where its points are).
 Result<ScreenFit> fit_screen(std::span<const DepthView> views, const CameraModel& camera,
                              double plane_m, const glm::ivec2& projector_px = {1024, 768});
 
