@@ -19,6 +19,7 @@ constexpr std::int64_t kLongestDrawing_ns = 20'000'000;
 /// The picture on a board, as it is printed.
 Result<twin::FlatPicture> picture_of(const std::string& board_name) {
   constexpr int kSquare_px = 40;
+  constexpr std::uint8_t kBlackInk = 20;  // of 255: its reflectance
   const auto board = calib::parse_board(board_name);
   if (!board) return tl::make_unexpected(board.error());
   auto drawn = calib::draw_board(*board, kSquare_px);
@@ -26,6 +27,7 @@ Result<twin::FlatPicture> picture_of(const std::string& board_name) {
   picture.width_px = drawn.width_px;
   picture.height_px = drawn.height_px;
   picture.pixels = std::move(drawn.pixels);
+  for (auto& pixel : picture.pixels) pixel = std::max(pixel, kBlackInk);
   picture.metres_per_px = 1e-3 * board->square_mm / kSquare_px;
   picture.origin_px = glm::dvec2(kSquare_px / 2.0 - 0.5);
   return picture;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/twin/board_scene.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,8 +15,8 @@
 namespace handcast::twin {
 namespace {
 
-/// Brightness of white paper relative to skin. Chosen: with the default gain it does not saturate at
-/// the nearest place.
+/// Brightness of white paper relative to skin. Chosen: with the default gain it does not saturate
+/// at the nearest place.
 constexpr float kWhite = 0.75f;
 constexpr double kTable_m = 1;
 constexpr int kGrid_px = 8;  ///< spacing of the rays that look for the board
@@ -44,11 +42,27 @@ BoardOutline outline_of(const FlatPicture& picture) {
           picture.on_board_m({picture.width_px - 0.5, picture.height_px - 0.5})};
 }
 
+/// Sets the lamp's light along a row of rays on the plane at the distance `offset` whose normal
+/// points away from the camera.
 HANDCAST_CLONES
-void add_sample(const float* grey, const float* inside, const float* shine, const float* lamp,
-                float leak, float sun, float* reflected, float* covered, int count) {
+void lamp_on_row(const float* ray_x, const float* ray_y, glm::vec3 normal, float offset,
+                 float* lamp, int count) {
   for (int i = 0; i < count; ++i) {
-    reflected[i] += grey[i] * (sun + lamp[i] * (1 + leak * shine[i]));
+    const glm::vec3 ray(ray_x[i], ray_y[i], 1);
+    lamp[i] = lamp_on(ray * (offset / glm::dot(normal, ray)), -normal, 0);
+  }
+}
+
+HANDCAST_CLONES
+void add_projector(const float* shine, float leak, float* lamp, int count) {
+  for (int i = 0; i < count; ++i) lamp[i] *= 1 + leak * shine[i];
+}
+
+HANDCAST_CLONES
+void add_sample(const float* grey, const float* inside, const float* lamp, float sun,
+                float* reflected, float* covered, int count) {
+  for (int i = 0; i < count; ++i) {
+    reflected[i] += grey[i] * (lamp[i] + sun);
     covered[i] += inside[i];
   }
 }
@@ -66,22 +80,6 @@ void light_table(const float* table, const float* shine, float leak, float* out,
 }
 
 }  // namespace
-
-Result<void> BoardScene::check(const FlatPicture& picture) {
-  if (picture.width_px < 1 || picture.height_px < 1 ||
-      picture.pixels.size() != static_cast<std::size_t>(picture.width_px) *
-                                   static_cast<std::size_t>(picture.height_px))
-    return fail(Errc::bad_data,
-                fmt::format("twin: the picture of the board is {} x {} pixels, but has {} of them",
-                            picture.width_px, picture.height_px, picture.pixels.size()));
-  if (!(picture.metres_per_px > 0) || !std::isfinite(picture.metres_per_px) ||
-      !std::isfinite(picture.origin_px.x) || !std::isfinite(picture.origin_px.y))
-    return fail(Errc::bad_data,
-                fmt::format("twin: the picture of the board has {} m per pixel and its origin at "
-                            "({}, {})",
-                            picture.metres_per_px, picture.origin_px.x, picture.origin_px.y));
-  return {};
-}
 
 BoardScene::BoardScene(const config::Twin& settings, const TrueGeometry& geometry,
                        const FlatPicture& picture)
@@ -138,12 +136,13 @@ glm::dmat3 BoardScene::light_from_ray(const glm::dmat4& camera_from_plane) const
   return homography(rays, lights);
 }
 
-/// Chooses the level whose pixels are a quarter to half as large as those of the image.
+/// Chooses the level whose pixels are half to just as large as those of the image.
 void BoardScene::take_samples(std::int64_t origin_ns, std::int64_t exposure_ns) {
   const calib::CameraModel& camera = geometry_.calibration().camera;
   camera_from_board_ = camera_from_board(origin_ns);
+  light_on_board_ = light_from_ray(camera_from_board_);
   const auto metres_per_image_px = camera_from_board_[3].z / camera.fx_px;
-  level_ = std::clamp(static_cast<int>(std::log2(metres_per_image_px / 2 / metres_per_px_)), 0,
+  level_ = std::clamp(static_cast<int>(std::log2(metres_per_image_px / metres_per_px_)), 0,
                       static_cast<int>(levels_.size()) - 1);
   const auto level_from_board = shift({-0.5, -0.5}) * scale(std::ldexp(1, -level_)) *
                                 shift(origin_px_ + 0.5) * scale(1 / metres_per_px_);
@@ -156,29 +155,43 @@ void BoardScene::take_samples(std::int64_t origin_ns, std::int64_t exposure_ns) 
     const auto picture_from_ray = level_from_board * board_from_ray(pose);
     const auto within_px = kWithinPixel[static_cast<std::size_t>(i % 2)];
     for (const double sign : {-1.0, 1.0}) {
-      const auto ray = shift(sign * within_px / glm::dvec2(camera.fx_px, camera.fy_px));
-      samples_.push_back({picture_from_ray * ray, light_from_ray(pose) * ray});
+      const auto to_sample = sign * within_px / glm::dvec2(camera.fx_px, camera.fy_px);
+      samples_.emplace_back(picture_from_ray * shift(to_sample));
     }
   }
 }
 
-/// A rectangle of the image that contains the board in all samples, and little more.
-renderer::Rect BoardScene::bounds_of_board() {
+/// Columns that contain the board in all samples near row `y` of the image.
+renderer::Rect BoardScene::board_near(int y) const {
   const auto& level = levels_[static_cast<std::size_t>(level_)];
-  const glm::dvec2 size(level.width(), level.height());
   // Two steps of the grid on the board, so that no corner is between the rays.
   const double margin = 2 * kGrid_px * camera_from_board_[3].z /
                         geometry_.calibration().camera.fx_px / metres_per_px_ /
                         std::ldexp(1, level_);
-  renderer::Rect bounds;
-  for (int y = 0; y < sum_.height(); y += kGrid_px)
-    for (int x = 0; x < sum_.width(); x += kGrid_px)
-      for (const Sample* sample : {&samples_.front(), &samples_.back()}) {
-        const auto px = apply(sample->picture_from_ray, {ray_x_.at(x, y), ray_y_.at(x, y)});
-        if (px.x > -margin && px.y > -margin && px.x < size.x + margin && px.y < size.y + margin)
-          bounds = bounds.joined(renderer::Rect{x, y, x + 1, y + 1}.grown(kGrid_px));
-      }
-  return bounds.within(sum_.width(), sum_.height());
+  renderer::Rect near;
+  for (int x = 0; x < sum_.width(); x += kGrid_px)
+    for (const auto& picture_from_ray : {samples_.front(), samples_.back()}) {
+      const auto px = apply(picture_from_ray, {ray_x_.at(x, y), ray_y_.at(x, y)});
+      if (px.x > -margin && px.y > -margin && px.x < level.width() + margin &&
+          px.y < level.height() + margin)
+        near = near.joined({x - kGrid_px, y, x + kGrid_px, y + 1});
+    }
+  return near;
+}
+
+/// Sets bands_; returns a rectangle that contains them.
+renderer::Rect BoardScene::find_board() {
+  renderer::Rect all, above = board_near(0);
+  bands_.clear();
+  for (int y = 0; y < sum_.height(); y += kGrid_px) {
+    const auto below = board_near(std::min(y + kGrid_px, sum_.height() - 1));
+    auto band = above.joined(below);
+    if (!band.empty()) band = {band.x0, y, band.x1, y + kGrid_px};
+    bands_.push_back(band.within(sum_.width(), sum_.height()));
+    all = all.joined(bands_.back());
+    above = below;
+  }
+  return all;
 }
 
 /// Draws row `y` of what is behind the board.
@@ -192,32 +205,24 @@ void BoardScene::draw_table(int y, const renderer::Rect& region, bool lit) {
               sum_.row(y) + x0, width);
 }
 
-/// Sets lamp_ for a row of the board.
-void BoardScene::light_board(int y, const renderer::Rect& board) {
-  const glm::vec3 into_board(camera_from_board_[2]);
-  const float offset = glm::dot(into_board, glm::vec3(camera_from_board_[3]));
-  for (int i = 0; i < board.width(); ++i) {
-    const glm::vec3 ray(ray_x_.at(board.x0 + i, y), ray_y_.at(board.x0 + i, y), 1);
-    lamp_[static_cast<std::size_t>(i)] =
-        lamp_on(ray * (offset / glm::dot(into_board, ray)), -into_board, 0);
-  }
-}
-
-/// Draws row `y` of the board over the table.
+/// Draws row `y` of the board over the table, in the columns of `board`.
 void BoardScene::draw_board(int y, const renderer::Rect& board, bool lit) {
   const int x0 = board.x0, width = board.width();
   const float *ray_x = ray_x_.row(y) + x0, *ray_y = ray_y_.row(y) + x0;
-  const auto sun = static_cast<float>(settings_.sunlight) *
-                   facing(-glm::dot(glm::vec3(camera_from_board_[2]), to_sun()), 0);
-  light_board(y, board);
-  for (auto* row : {&shine_, &reflected_, &covered_}) std::fill_n(row->begin(), width, 0.0f);
-  for (const Sample& sample : samples_) {
-    if (lit)
-      light_.sample(sample.light_from_ray, ray_x, ray_y, width, shine_.data(), inside_.data());
-    levels_[static_cast<std::size_t>(level_)].sample(sample.picture_from_ray, ray_x, ray_y, width,
+  const glm::vec3 normal(camera_from_board_[2]);
+  const float sun = static_cast<float>(settings_.sunlight) * facing(-glm::dot(normal, to_sun()), 0);
+  lamp_on_row(ray_x, ray_y, normal, glm::dot(normal, glm::vec3(camera_from_board_[3])),
+              lamp_.data(), width);
+  if (lit) {
+    light_.sample(light_on_board_, ray_x, ray_y, width, shine_.data(), inside_.data());
+    add_projector(shine_.data(), static_cast<float>(settings_.leak), lamp_.data(), width);
+  }
+  for (auto* sum : {&reflected_, &covered_}) std::fill_n(sum->begin(), width, 0.0f);
+  for (const glm::mat3& picture_from_ray : samples_) {
+    levels_[static_cast<std::size_t>(level_)].sample(picture_from_ray, ray_x, ray_y, width,
                                                      grey_.data(), inside_.data());
-    add_sample(grey_.data(), inside_.data(), shine_.data(), lamp_.data(),
-               static_cast<float>(settings_.leak), sun, reflected_.data(), covered_.data(), width);
+    add_sample(grey_.data(), inside_.data(), lamp_.data(), sun, reflected_.data(), covered_.data(),
+               width);
   }
   cover_table(reflected_.data(), covered_.data(), white_.row(y) + x0,
               1 / static_cast<float>(samples_.size()), sum_.row(y) + x0, width);
@@ -228,12 +233,13 @@ void BoardScene::draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t expo
   const bool lit = light && settings_.leak > 0;
   if (lit) light_.assign({light->grey, light->width_px, light->height_px, light->width_px});
   take_samples(origin_ns, exposure_ns);
-  const auto board = bounds_of_board();
+  const auto board = find_board();
   const renderer::Rect all{0, 0, sum_.width(), sum_.height()};
   const auto region = lit ? all : board.grown(sensor_.reach_px()).overlap(all);
   for (int y = region.y0; y < region.y1; ++y) {
     draw_table(y, region, lit);
-    if (y >= board.y0 && y < board.y1) draw_board(y, board, lit);
+    const auto& band = bands_[static_cast<std::size_t>(y / kGrid_px)];
+    if (!band.empty()) draw_board(y, band, lit);
   }
   sensor_.develop(k, sum_.view(), region, 1, settings_.fault.holds(ns_to_seconds(origin_ns)),
                   image);

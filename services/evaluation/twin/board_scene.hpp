@@ -6,7 +6,6 @@
 
 #include "calib/calibration.hpp"
 #include "config/sections/twin.hpp"
-#include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
 #include "services/evaluation/twin/flat_picture.hpp"
 #include "services/evaluation/twin/held_board.hpp"
@@ -25,12 +24,9 @@ namespace handcast::twin {
 /// from the same side. Reuses its buffers: not thread-safe.
 class BoardScene {
  public:
-  /// Errors: bad_data (the picture has no pixels, another number of them than its size says, or no
-  /// scale).
-  static Result<void> check(const FlatPicture& picture);
-
   /// Copies what it needs. `picture` must pass check().
-  BoardScene(const config::Twin& settings, const TrueGeometry& geometry, const FlatPicture& picture);
+  BoardScene(const config::Twin& settings, const TrueGeometry& geometry,
+             const FlatPicture& picture);
 
   /// The true pose of the board's axes (FlatPicture) at a time since the epoch.
   glm::dmat4 camera_from_board(std::int64_t time_ns) const;
@@ -42,19 +38,13 @@ class BoardScene {
             renderer::View<std::uint8_t> image);
 
  private:
-  /// The board at one instant of the exposure, for one position within the pixels.
-  struct Sample {
-    glm::mat3 picture_from_ray;  ///< to pixels of levels_[level_]
-    glm::mat3 light_from_ray;    ///< to projector pixels
-  };
-
   void look_through_lens(const calib::CameraModel& camera);
   glm::dmat3 light_from_ray(const glm::dmat4& camera_from_plane) const;
   void take_samples(std::int64_t origin_ns, std::int64_t exposure_ns);
-  renderer::Rect bounds_of_board();
+  renderer::Rect board_near(int y) const;
+  renderer::Rect find_board();
   void draw_table(int y, const renderer::Rect& region, bool lit);
   void draw_board(int y, const renderer::Rect& board, bool lit);
-  void light_board(int y, const renderer::Rect& board);
 
   config::TwinImage settings_;
   TrueGeometry geometry_;
@@ -70,12 +60,16 @@ class BoardScene {
   ImageSensor sensor_;
 
   glm::dmat4 camera_from_board_{1};  ///< in the middle of the exposure
+  glm::mat3 light_on_board_{1};      ///< from rays to projector pixels, at that time
   int level_ = 0;
-  std::vector<Sample> samples_;
+  /// From rays to pixels of levels_[level_], at the instants of the exposure and for several
+  /// positions within a pixel.
+  std::vector<glm::mat3> samples_;
+  std::vector<renderer::Rect> bands_;  ///< of a few rows each, that contain the board
   QuadImage light_;
   renderer::Image<float> sum_;
-  /// By pixel of a row: one sample of the picture and of the light; the lamp on the board; the sums
-  /// over the samples.
+  /// By pixel of a row: one sample of the picture; the projector's light; the light on the board;
+  /// the sums over the samples.
   std::vector<float> grey_, inside_, shine_, lamp_, reflected_, covered_;
 };
 

@@ -4,6 +4,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "ipc/base/result.hpp"
+
 namespace handcast::twin {
 
 /// The picture on a flat board, row by row from the top; its edge is the edge of the board. The
@@ -23,9 +25,12 @@ struct FlatPicture {
   glm::dvec2 on_board_m(const glm::dvec2& px) const { return (px - origin_px) * metres_per_px; }
 };
 
+/// Errors: bad_data (no pixels, another number of them than the size says, no scale, or no origin).
+Result<void> check(const FlatPicture& picture);
+
 /// What the projector shows: grey, row by row from the top, without padding. Borrowed.
 struct Light {
-  const std::uint8_t* grey = nullptr;  ///< share of the full light, linear: 0 dark to 255
+  const std::uint8_t* grey = nullptr;  ///< share of the full light, linear: 0 dark to 255; not null
   /// Size in pixels: that of the projector's image.
   /// @{
   int width_px = 0;

@@ -9,12 +9,15 @@ namespace handcast::twin {
 namespace {
 
 constexpr double kNearest_m = 0.55, kFarthest_m = 0.95;
-constexpr double kBeyond = 0.12;  ///< share of the half board that may be outside the image
+constexpr double kInside = 0.9;    ///< share of the board that is in the image
+constexpr double kFlat_deg = 2;    ///< largest tilt of a board that is held to face the camera
+constexpr double kLeast_deg = 12;  ///< smallest tilt of any other
 constexpr double kRoll_deg = 25;
-constexpr int kCells = 9;  ///< of the image, three by three
+constexpr double kScatter = 0.15;  ///< of the direction from the middle of the image
+constexpr int kCells = 9;          ///< of the image, three by three
 
 /// Numbers of the stream by place.
-enum Draw : std::uint64_t { distance, direction, tilt, roll, shift_x, shift_y };
+enum Draw : std::uint64_t { distance, direction, tilt, roll, right, down };
 
 /// From 0 to 1 with speed and acceleration 0 at both ends.
 double smooth(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
@@ -25,17 +28,28 @@ double fitting_m(const calib::CameraModel& camera, const glm::dvec2& half_m) {
                       half_m.y * camera.fy_px / camera.height_px);
 }
 
-/// Half the size of the board's picture, px, if its centre is at this distance on the optical axis.
-glm::dvec2 half_extent_px(const calib::CameraModel& camera, const glm::dquat& turn,
-                          const glm::dvec2& half_m, double distance_m) {
-  glm::dvec2 most(0);
-  for (const double x : {-1.0, 1.0})
-    for (const double y : {-1.0, 1.0}) {
-      const auto corner = turn * glm::dvec3(x * half_m.x, y * half_m.y, 0);
-      const auto px = camera.project(corner + glm::dvec3(0, 0, distance_m));
-      most = glm::max(most, glm::abs(px - glm::dvec2(camera.cx_px, camera.cy_px)));
-    }
-  return most;
+/// The share of a board around `centre_m` that is in the image.
+double share_inside(const calib::CameraModel& camera, const glm::dvec3& centre_m,
+                    const glm::dquat& turn, const glm::dvec2& half_m) {
+  constexpr int kSteps = 10;
+  int inside = 0;
+  for (int i = 0; i < kSteps * kSteps; ++i) {
+    const auto at = (glm::dvec2(i % kSteps, i / kSteps) + 0.5) * (2.0 / kSteps) - 1.0;
+    const auto px = camera.distort(camera.project(centre_m + turn * glm::dvec3(at * half_m, 0)));
+    inside +=
+        px.x > -0.5 && px.y > -0.5 && px.x < camera.width_px - 0.5 && px.y < camera.height_px - 0.5;
+  }
+  return static_cast<double>(inside) / (kSteps * kSteps);
+}
+
+/// The point at this distance that is seen in the image at `towards`: (0, 0) in its middle to
+/// (1, 1) in its lower right corner.
+glm::dvec3 seen_at_m(const calib::CameraModel& camera, const glm::dvec2& towards,
+                     double distance_m) {
+  const glm::dvec2 half_px(camera.width_px / 2.0, camera.height_px / 2.0);
+  const auto px = camera.undistort(half_px - 0.5 + towards * half_px);
+  return distance_m *
+         glm::dvec3((px.x - camera.cx_px) / camera.fx_px, (px.y - camera.cy_px) / camera.fy_px, 1);
 }
 
 }  // namespace
@@ -46,37 +60,40 @@ HeldBoard::HeldBoard(const calib::CameraModel& camera, const BoardOutline& board
       hold_s_(hold_s),
       centre_m_((board.from_m + board.to_m) / 2.0),
       half_m_(glm::abs(board.to_m - board.from_m) / 2.0) {
-  for (int i = 0; i < kPlaces; ++i) places_.push_back(make_place(i, camera));
+  for (std::uint64_t i = 0; i < kPlaces; ++i) places_.push_back(make_place(i, camera));
 }
 
-/// The cells of the image are visited in an order that is not that of the distances and tilts.
-HeldBoard::Place HeldBoard::make_place(int i, const calib::CameraModel& camera) const {
-  const auto index = static_cast<std::uint64_t>(i);
+glm::dquat HeldBoard::turn_at(std::uint64_t i) const {
+  const bool flat = i % 5 == 0;
+  const double share = random_.uniform(i, tilt);
+  const double tilt_deg = flat ? kFlat_deg * share : glm::mix(kLeast_deg, kMost_deg, share);
+  const double around =
+      2 * std::numbers::pi * (static_cast<double>(i * 7 % 12) + random_.uniform(i, direction)) / 12;
+  const glm::dvec3 axis(std::cos(around), std::sin(around), 0);
+  return glm::angleAxis(glm::radians(tilt_deg), axis) *
+         glm::angleAxis(glm::radians(kRoll_deg * random_.spread(i, roll)), glm::dvec3(0, 0, 1));
+}
+
+/// Puts the board as far into one cell of the image as it may leave the image. The orders in which
+/// cells, distances and tilts take turns are independent.
+HeldBoard::Place HeldBoard::make_place(std::uint64_t i, const calib::CameraModel& camera) const {
   const double nearest_m = std::max(kNearest_m, fitting_m(camera, half_m_));
   const double farthest_m = std::max(kFarthest_m, 1.3 * nearest_m);
-  const double level = (i * 11 % kPlaces + random_.uniform(index, distance)) / kPlaces;
-  const double distance_m = nearest_m + (farthest_m - nearest_m) * level;
+  const double level =
+      (static_cast<double>(i * 11 % kPlaces) + random_.uniform(i, distance)) / kPlaces;
+  const double distance_m = glm::mix(nearest_m, farthest_m, level);
+  const auto turn = turn_at(i);
 
-  const bool flat = i % 5 == 0;
-  const double around = 2 * std::numbers::pi * (i * 7 % 12 + random_.uniform(index, direction)) / 12;
-  const double by_deg = flat ? 2 * random_.uniform(index, tilt)
-                             : 12 + (kMost_deg - 12) * random_.uniform(index, tilt);
-  const glm::dquat turn =
-      glm::angleAxis(glm::radians(by_deg), glm::dvec3(std::cos(around), std::sin(around), 0)) *
-      glm::angleAxis(glm::radians(kRoll_deg * random_.spread(index, roll)), glm::dvec3(0, 0, 1));
-
-  const int cell = i * 4 % kCells;
-  const glm::dvec2 towards =
-      glm::dvec2(cell % 3 - 1, cell / 3 - 1) +
-      0.25 * glm::dvec2(random_.spread(index, shift_x), random_.spread(index, shift_y));
-  const glm::dvec2 half_image(camera.width_px / 2.0, camera.height_px / 2.0);
-  const auto half_board = half_extent_px(camera, turn, half_m_, distance_m);
-  const auto room = glm::max(half_image - half_board, 0.0) + kBeyond * half_board;
-  const auto px = half_image - 0.5 + glm::clamp(towards, -1.0, 1.0) * room;
-  const auto undistorted = camera.undistort(px);
-  return {distance_m * glm::dvec3((undistorted.x - camera.cx_px) / camera.fx_px,
-                                  (undistorted.y - camera.cy_px) / camera.fy_px, 1),
-          turn};
+  const auto cell = static_cast<int>(i * 4 % kCells);
+  const auto towards = glm::dvec2(cell % 3 - 1, cell / 3 - 1) +
+                       kScatter * glm::dvec2(random_.spread(i, right), random_.spread(i, down));
+  double inside = 0, outside = 1;
+  for (int step = 0; step < 12; ++step) {
+    const double middle = (inside + outside) / 2;
+    const auto centre_m = seen_at_m(camera, middle * towards, distance_m);
+    (share_inside(camera, centre_m, turn, half_m_) >= kInside ? inside : outside) = middle;
+  }
+  return {seen_at_m(camera, inside * towards, distance_m), turn};
 }
 
 glm::dvec3 HeldBoard::tremor_m(double seconds) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
@@ -38,7 +39,8 @@ class HeldBoard {
     glm::dvec3 centre_m;  ///< of the board, in camera space
     glm::dquat turn;
   };
-  Place make_place(int i, const calib::CameraModel& camera) const;
+  glm::dquat turn_at(std::uint64_t i) const;
+  Place make_place(std::uint64_t i, const calib::CameraModel& camera) const;
   glm::dvec3 tremor_m(double seconds) const;
 
   Random random_;

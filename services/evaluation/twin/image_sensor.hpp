@@ -35,7 +35,7 @@ class ImageSensor {
   Random random_;
   PointSpread spread_;
   renderer::Image<std::uint8_t> empty_scene_;  ///< empty at first
-  std::vector<std::int8_t> noise_;             ///< each row of a frame reads it from a random offset
+  std::vector<std::int8_t> noise_;  ///< each row of a frame reads it from a random offset
   std::vector<std::uint8_t> row_;
 };
 

@@ -58,8 +58,8 @@ renderer::Image<std::uint8_t> halved(renderer::GreyView picture) {
     const std::uint8_t* below = picture.row(std::min(2 * y + 1, picture.height - 1));
     for (int x = 0; x < half.width(); ++x) {
       const int left = 2 * x, right = std::min(2 * x + 1, picture.width - 1);
-      half.at(x, y) = static_cast<std::uint8_t>(
-          (row[left] + row[right] + below[left] + below[right] + 2) / 4);
+      half.at(x, y) =
+          static_cast<std::uint8_t>((row[left] + row[right] + below[left] + below[right] + 2) / 4);
     }
   }
   return half;

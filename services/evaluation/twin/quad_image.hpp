@@ -9,7 +9,8 @@
 namespace handcast::twin {
 
 /// A grey picture for fast bilinear samples: each element holds a pixel and its neighbours to the
-/// right, below and below right, from the lowest byte up. At the edges a pixel is its own neighbour.
+/// right, below and below right, from the lowest byte up. At the edges a pixel is its own
+/// neighbour.
 class QuadImage {
  public:
   /// Takes over a picture of at least one pixel.

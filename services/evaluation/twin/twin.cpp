@@ -96,7 +96,7 @@ class RigTwin final : public Twin {
   Result<void> show_board(const FlatPicture& picture) override {
     if (settings_.prop.kind != config::TwinPropKind::board)
       return fail(Errc::bad_config, "twin: no board is held, because twin.prop.kind is not board");
-    if (auto usable = BoardScene::check(picture); !usable) return usable;
+    if (auto usable = check(picture); !usable) return usable;
     board_.emplace(settings_, geometry_, picture);
     return {};
   }

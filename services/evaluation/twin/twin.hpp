@@ -76,8 +76,8 @@ class Twin {
                             renderer::View<std::uint8_t> image) const = 0;
 
   /// Sets what is on the board that is held if `twin.prop.kind` is board; before the first image.
-  /// Without it the scene is empty. Errors: bad_data (BoardScene::check()), bad_config (the twin has
-  /// hands).
+  /// Without it the scene is empty. Errors: bad_data (check()), bad_config (the twin
+  /// has hands).
   virtual Result<void> show_board(const FlatPicture& picture) = 0;
   /// The true pose camera_from_board of the board's axes (FlatPicture); empty without a board.
   virtual std::optional<glm::dmat4> board_pose(std::int64_t time_ns) const = 0;

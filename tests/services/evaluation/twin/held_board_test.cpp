@@ -20,19 +20,21 @@ double middle_s(int place) { return place * kPeriod_s + kHold_s / 2; }
 /// Grid points of the board in the image as the lens forms it, at one time.
 std::vector<glm::dvec2> in_image(const HeldBoard& held, const BoardOutline& board,
                                  const calib::CameraModel& camera, double seconds) {
-  constexpr int kSteps = 12;
+  constexpr int kSteps = 17;
   const auto pose = held.camera_from_board(seconds);
   std::vector<glm::dvec2> points;
-  for (int i = 0; i <= kSteps; ++i)
-    for (int j = 0; j <= kSteps; ++j) {
-      const auto place = glm::mix(board.from_m, board.to_m, glm::dvec2(i, j) / double(kSteps));
-      points.push_back(camera.project(glm::dvec3(pose * glm::dvec4(place, 0, 1))));
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const auto place =
+          glm::mix(board.from_m, board.to_m, (glm::dvec2(i, j) + 0.5) / double(kSteps));
+      points.push_back(camera.distort(camera.project(glm::dvec3(pose * glm::dvec4(place, 0, 1)))));
     }
   return points;
 }
 
 bool inside(const glm::dvec2& px, const calib::CameraModel& camera) {
-  return px.x > -0.5 && px.y > -0.5 && px.x < camera.width_px - 0.5 && px.y < camera.height_px - 0.5;
+  return px.x > -0.5 && px.y > -0.5 && px.x < camera.width_px - 0.5 &&
+         px.y < camera.height_px - 0.5;
 }
 
 /// The share of the board in the image: of the worst place, and the mean over all.
@@ -53,9 +55,7 @@ Shares shares_inside(const calib::CameraModel& camera, const BoardOutline& board
   return shares;
 }
 
-HeldBoard usual(int seed = 1) {
-  return {calib::reference_rig().camera, kBoard, seed, kHold_s};
-}
+HeldBoard usual(int seed = 1) { return {calib::reference_rig().camera, kBoard, seed, kHold_s}; }
 
 TEST(HeldBoard, ReachesAllNineCellsOfTheImageAndItsCorners) {
   const auto camera = calib::reference_rig().camera;
@@ -90,8 +90,7 @@ TEST(HeldBoard, TiltsInAllDirectionsAndFacesTheCameraInSomePlaces) {
     EXPECT_NEAR(glm::determinant(glm::dmat3(pose)), 1, 1e-9);
     flat += tilt_deg < 2.5;
     steep += tilt_deg > 30;
-    if (tilt_deg > 10)
-      eighths.insert(int(std::floor((std::atan2(into.y, into.x) / M_PI + 1) * 4)));
+    if (tilt_deg > 10) eighths.insert(int(std::floor((std::atan2(into.y, into.x) / M_PI + 1) * 4)));
     const double z_m = (pose * glm::dvec4((kBoard.from_m + kBoard.to_m) / 2.0, 0, 1)).z;
     nearest_m = std::min(nearest_m, z_m);
     farthest_m = std::max(farthest_m, z_m);
@@ -147,8 +146,8 @@ TEST(HeldBoard, IsMostlyInsideTheImageOfAnyCameraWhateverTheSizeOfTheBoard) {
     for (const auto& board : {kBoard, large, small})
       for (int seed = 0; seed < 3; ++seed) {
         const auto shares = shares_inside(camera, board, seed);
-        EXPECT_GT(shares.least, 0.75) << camera.fx_px << " px, " << board.to_m.x << " m";
-        EXPECT_GT(shares.mean, 0.92) << camera.fx_px << " px, " << board.to_m.x << " m";
+        EXPECT_GT(shares.least, 0.8) << camera.fx_px << " px, " << board.to_m.x << " m";
+        EXPECT_GT(shares.mean, 0.88) << camera.fx_px << " px, " << board.to_m.x << " m";
       }
 }
 
