@@ -51,9 +51,9 @@ Result<calib::LightDelay> PatternImages::measure_delay() {
           {(*frame)->header.origin_ns, (*frame)->exposure_ns, mean_of(**frame)});
   }
   auto delay = calib::fit_light_delay(toggles, images);
-  const auto period_ns = seconds_to_ns(1 / desk_.rig.projector.rate_hz);
   if (delay)
-    settled_ns_ = std::max<std::int64_t>(0, ms_to_ns(delay->high_ms)) + period_ns;
+    settled_ns_ = std::max<std::int64_t>(0, ms_to_ns(delay->high_ms)) +
+                  seconds_to_ns(1 / desk_.rig.projector.rate_hz + 1 / desk_.rig.camera.rate_hz);
   return delay;
 }
 

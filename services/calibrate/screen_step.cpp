@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "calib/board/board_finder.hpp"
@@ -23,7 +25,6 @@ using namespace std::chrono_literals;
 
 constexpr int kWantedViews = 5;
 constexpr double kMoved_px = 1;   ///< by which the board may have moved during the patterns
-constexpr double kMargin_m = 0.002;  ///< inside the board's edge
 
 /// One measurement of the projector.
 class ScreenMeasurement {
@@ -50,6 +51,7 @@ class ScreenMeasurement {
       if (!ready) return tl::make_unexpected(ready.error());
       if (!*ready) continue;
       auto view = measure();
+      if (!view && view.error().code == Errc::bad_data) view = measure();
       if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
       advice = view ? "Now hold it nearer or farther, and tilted" : view.error().what;
       if (view) views.push_back(std::move(*view));
@@ -79,20 +81,26 @@ class ScreenMeasurement {
       if (!image) return tl::make_unexpected(image.error());
       images.push_back(std::move(*image));
     }
-    std::vector<calib::GreyView> views;
     const auto& camera = desk_.draft.camera;
-    for (const auto& image : images)
-      views.push_back({image.data(), camera.width_px, camera.height_px, camera.width_px});
-    const auto before = finder_.find(views.front()), after = finder_.find(views.back());
+    const auto view_of = [&](const PatternImages::Image& image) {
+      return calib::GreyView{image.data(), camera.width_px, camera.height_px, camera.width_px};
+    };
+    const auto before = finder_.find(view_of(images.front())),
+               after = finder_.find(view_of(images.back()));
     if (!before || !after) return fail(Errc::bad_data, "The whole board must be in the light");
     if (!(largest_move_px(*before, *after) < kMoved_px))
       return fail(Errc::bad_data, "The board moved: hold it still");
     const auto pose = calib::board_pose(camera, *before);
     if (!pose) return fail(Errc::bad_data, "The board is not flat, or the lens is wrong");
-    views.pop_back();
-    const auto decoded = code_.decode(views);
+    images.pop_back();
+    darken_beside(*pose, images);
+    std::vector<calib::GreyView> views;
+    std::ranges::transform(images, std::back_inserter(views), view_of);
+    auto decoded = code_.decode(views);
     if (!decoded) return tl::make_unexpected(decoded.error());
-    return on_board(*pose, decoded->points);
+    const glm::dvec3 normal((*pose)[2]), origin((*pose)[3]);
+    return calib::DepthView{std::move(decoded->points),
+                            glm::dvec4(normal, -glm::dot(normal, origin))};
   }
 
   /// The largest move of a point that both views have; infinite if they share none.
@@ -105,27 +113,29 @@ class ScreenMeasurement {
     return largest < 0 ? std::numeric_limits<double>::infinity() : largest;
   }
 
-  /// The points that lie on the board, with its plane.
-  calib::DepthView on_board(const glm::dmat4& camera_from_board,
-                            std::span<const calib::Correspondence> points) const {
+  /// Sets the pixels beside the board to 0 in all images: what is behind it is lit, too.
+  void darken_beside(const glm::dmat4& camera_from_board,
+                     std::vector<PatternImages::Image>& images) const {
+    const auto& camera = desk_.draft.camera;
     const auto& board = desk_.options.board;
     const glm::dvec2 size_m(1e-3 * board.square_mm * board.columns,
                             1e-3 * board.square_mm * board.rows);
-    const auto board_from_camera = glm::inverse(camera_from_board);
-    const glm::dvec3 normal(camera_from_board[2]), origin(camera_from_board[3]);
-    const auto& camera = desk_.draft.camera;
-    calib::DepthView view{{}, glm::dvec4(normal, -glm::dot(normal, origin))};
-    for (const auto& point : points) {
-      const auto px = camera.undistort(point.camera_px);
-      const glm::dvec3 ray((px.x - camera.cx_px) / camera.fx_px,
-                           (px.y - camera.cy_px) / camera.fy_px, 1);
-      const auto hit_m = ray * (glm::dot(normal, origin) / glm::dot(normal, ray));
-      const glm::dvec2 at_m(board_from_camera * glm::dvec4(hit_m, 1));
-      if (glm::all(glm::greaterThan(at_m, glm::dvec2(kMargin_m))) &&
-          glm::all(glm::lessThan(at_m, size_m - kMargin_m)))
-        view.points.push_back(point);
-    }
-    return view;
+    // The homography from undistorted camera pixels to the board's plane, metres.
+    const auto board_from_camera = glm::inverse(
+        camera.matrix() * glm::dmat3(glm::dvec3(camera_from_board[0]),
+                                     glm::dvec3(camera_from_board[1]),
+                                     glm::dvec3(camera_from_board[3])));
+    for (int y = 0; y < camera.height_px; ++y)
+      for (int x = 0; x < camera.width_px; ++x) {
+        const auto at = board_from_camera * glm::dvec3(camera.undistort({x, y}), 1);
+        const glm::dvec2 at_m = glm::dvec2(at) / at.z;
+        if (glm::all(glm::greaterThan(at_m, glm::dvec2(0))) &&
+            glm::all(glm::lessThan(at_m, size_m)))
+          continue;
+        const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
+                       static_cast<std::size_t>(x);
+        for (auto& image : images) image[i] = 0;
+      }
   }
 
   Desk& desk_;

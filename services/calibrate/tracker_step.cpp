@@ -115,7 +115,7 @@ Result<calib::TrackerFit> fit(Desk& desk) {
 }
 
 std::string made_of(const calib::TrackerFit& fit) {
-  return fmt::format("{:.1f} px held out, {:.0f} % of the points fit, light within {:.1f} mm, clock "
+  return fmt::format("{:.1f} px held out, {:.0f} % of the points fit, light repeatable within {:.1f} mm, clock "
                      "{:+.1f} ms",
                      fit.held_out.median_px, 100 * fit.inlier_share,
                      2 * fit.place_errors.front().light_mm,

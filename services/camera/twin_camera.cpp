@@ -86,11 +86,13 @@ class TwinCamera final : public Camera {
   }
 
  private:
-  /// Takes the light that was published until the last moment at which the image of this arrival can
+  /// Takes the light as it is published, until the last moment at which the image of this arrival can
   /// be drawn.
   void take_light(std::int64_t arrival_ns) {
-    sleep_until_ns(arrival_ns - drawing_ns_ * 3 / 2);
-    while (const auto projection = projections_->next(Deadline::now())) light_->add(**projection);
+    const auto until = Deadline::at_ns(arrival_ns - drawing_ns_ * 3 / 2);
+    do {
+      if (const auto projection = projections_->next(until)) light_->add(**projection);
+    } while (!until.passed());
   }
 
   void draw(std::uint64_t k, msg::CameraFrame& frame) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/options.hpp"
+
+#include <gmock/gmock.h>
+
+#include <vector>
+
+namespace handcast::calibrate {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Result<Options> parsed(std::vector<std::string> words) {
+  words.insert(words.begin(), "handcast calibrate");
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  return parse(static_cast<int>(arguments.size()), arguments.data());
+}
+std::string refusal(std::vector<std::string> words) {
+  const auto options = parsed(std::move(words));
+  return options ? "" : options.error().what;
+}
+
+TEST(CalibrateOptions, ARigFileIsEnough) {
+  const auto options = parsed({"show/rig.toml"});
+  ASSERT_TRUE(options) << options.error().what;
+  EXPECT_TRUE(options->steps.empty());
+  EXPECT_EQ(options->folder, "show/rig.calibration");
+  EXPECT_EQ(options->board.columns, 11);
+}
+
+TEST(CalibrateOptions, StepsBoardAndSizesAreRead) {
+  const auto options = parsed({"rig.toml", "screen", "tracker", "--board", "checkerboard:9x6:24.5",
+                               "--camera", "1280x1024", "--projector", "1920x1080"});
+  ASSERT_TRUE(options) << options.error().what;
+  EXPECT_THAT(options->steps, ElementsAre(Step::screen, Step::tracker));
+  EXPECT_EQ(options->board.kind, calib::BoardKind::checkerboard);
+  EXPECT_EQ(options->board.square_mm, 24.5);
+  EXPECT_EQ(options->camera.height_px, 1024);
+  EXPECT_EQ(options->projector.width_px, 1920);
+}
+
+TEST(CalibrateOptions, WhatIsWrongIsSaidInASentence) {
+  EXPECT_THAT(refusal({}), HasSubstr("name the rig file"));
+  EXPECT_THAT(refusal({"rig.toml", "lense"}), HasSubstr("there are lens, screen, tracker"));
+  EXPECT_THAT(refusal({"rig.toml", "--camera", "1280"}), HasSubstr("--camera: '1280'"));
+  EXPECT_THAT(refusal({"rig.toml", "--camera", "1280x1024x3"}), HasSubstr("--camera"));
+  EXPECT_THAT(refusal({"rig.toml", "--board", "chess:9x6:24"}), HasSubstr("--board: 'chess:9x6:24'"));
+  EXPECT_THAT(refusal({"rig.toml", "--board", "charuco:9x6"}), HasSubstr("--board"));
+  EXPECT_THAT(refusal({"rig.toml", "lens", "--check"}), HasSubstr("--check"));
+  EXPECT_THAT(refusal({"rig.toml", "--most-s", "0"}), HasSubstr("--most-s"));
+}
+
+TEST(CalibrateOptions, TheBoardIsPrintedWithoutARig) {
+  const auto options = parsed({"--print-board", "board.pdf"});
+  ASSERT_TRUE(options) << options.error().what;
+  EXPECT_EQ(options->board_pdf, "board.pdf");
+}
+
+}  // namespace
+}  // namespace handcast::calibrate

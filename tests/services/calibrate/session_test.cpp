@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/session.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "config/settings/files.hpp"
+#include "tests/scratch.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+class CalibrateSession : public testing::Test {
+ protected:
+  CalibrateSession() {
+    options_.rig_file = scratch_.path() / "rig.toml";
+    options_.folder = scratch_.path() / "rig.calibration";
+  }
+  Session open() { return *Session::open(options_, rig_, used_); }
+  std::string text_of(const fs::path& file) const { return *config::read_text(file); }
+
+  test::Scratch scratch_;
+  Options options_;
+  config::Rig rig_;
+  calib::Calibration used_ = calib::reference_rig();
+};
+
+TEST_F(CalibrateSession, GoesOnWhereItWasLeft) {
+  {
+    auto session = open();
+    session.draft().camera.fx_px = 1200;
+    ASSERT_TRUE(session.keep(Step::lens, {"20 images"}));
+  }
+  auto session = open();
+  EXPECT_TRUE(session.is_done(Step::lens));
+  EXPECT_FALSE(session.is_done(Step::screen));
+  EXPECT_EQ(session.draft().camera.fx_px, 1200);
+  options_.restart = true;
+  EXPECT_FALSE(open().is_done(Step::lens));
+}
+
+TEST_F(CalibrateSession, ANewLensForgetsWhatWasMeasuredWithTheOld) {
+  auto session = open();
+  ASSERT_TRUE(session.keep(Step::lens, {"one"}));
+  ASSERT_TRUE(session.keep(Step::screen, {"two"}));
+  EXPECT_TRUE(session.is_done(Step::screen));
+  ASSERT_TRUE(session.keep(Step::lens, {"three"}));
+  EXPECT_FALSE(session.is_done(Step::screen));
+  EXPECT_THAT(text_of(session.report()), Not(HasSubstr("two")));
+}
+
+TEST_F(CalibrateSession, TheReportHasTheFindingsOfEachStep) {
+  auto session = open();
+  ASSERT_TRUE(session.keep(Step::lens, {"20 images", true, {"tilt <more>"}, "<svg></svg>"}));
+  const auto page = text_of(session.report());
+  EXPECT_THAT(page, HasSubstr("tilt &lt;more&gt;"));
+  EXPECT_THAT(page, HasSubstr("<svg></svg>"));
+  EXPECT_THAT(page, HasSubstr("not measured yet"));
+}
+
+TEST_F(CalibrateSession, TheOldCalibrationIsKept) {
+  const fs::path own = scratch_.path() / "own.toml";
+  std::ofstream(own) << calib::print_calibration(used_);
+  rig_.calibration = own;
+  auto session = open();
+  session.draft().camera.fx_px = 1200;
+  ASSERT_TRUE(session.keep(Step::lens, {"20 images"}));
+  const auto finished = session.finish();
+  ASSERT_TRUE(finished) << finished.error().what;
+  EXPECT_EQ(calib::load_calibration(own)->camera.fx_px, 1200);
+  const fs::directory_iterator folder(scratch_.path());
+  const auto kept = std::find_if(begin(folder), end(folder), [](const auto& entry) {
+    return entry.path().filename().string().starts_with("own.2");
+  });
+  ASSERT_NE(kept, end(folder));
+  EXPECT_EQ(calib::load_calibration(kept->path())->camera.fx_px, used_.camera.fx_px);
+  EXPECT_THAT(*finished, HasSubstr(kept->path().filename().string()));
+}
+
+TEST_F(CalibrateSession, ADraftThatServicesWouldRefuseDoesNotTakeThePlaceOfAGoodOne) {
+  const fs::path own = scratch_.path() / "own.toml";
+  std::ofstream(own) << calib::print_calibration(used_);
+  rig_.calibration = own;
+  auto session = open();
+  session.draft().projector_from_camera = glm::dmat3(0);
+  ASSERT_TRUE(session.keep(Step::screen, {"nonsense"}));
+  const auto finished = session.finish();
+  ASSERT_FALSE(finished);
+  EXPECT_THAT(finished.error().what, HasSubstr("homography"));
+  EXPECT_TRUE(calib::load_calibration(own));
+}
+
+TEST_F(CalibrateSession, ADraftOfAnotherCameraIsRefused) {
+  ASSERT_TRUE(open().keep(Step::lens, {"20 images"}));
+  used_.camera.width_px = 640;
+  const auto session = Session::open(options_, rig_, used_);
+  ASSERT_FALSE(session);
+  EXPECT_THAT(session.error().what, HasSubstr("--restart"));
+}
+
+}  // namespace
+}  // namespace handcast::calibrate

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// `handcast calibrate` measures the twin, whose truth is known.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "calib/calibration.hpp"
+#include "tests/system/running_rig.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Calibrate : public SystemTest {
+ protected:
+  /// Copies the rig file of the twin, so that what is measured stays in the folder of the test.
+  std::string rig_file() const {
+    const fs::path file = scratch_.path() / "twin.toml";
+    fs::copy_file("config/rigs/twin.toml", file, fs::copy_options::skip_existing);
+    return file;
+  }
+  Outcome calibrate(Arguments more) const {
+    Arguments arguments{"calibrate", rig_file(), "--yes", "--set", "observer.enabled=false", "--set",
+                        "projector.rate_hz=60", "--set", "camera.rate_hz=30"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return handcast(arguments);
+  }
+};
+
+TEST_F(Calibrate, TheTwinsLensIsFoundAndWrittenAsACalibration) {
+  const auto outcome = calibrate({"lens", "--most-s", "30"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
+  EXPECT_THAT(outcome.output, HasSubstr("report.html"));
+  EXPECT_TRUE(fs::exists(scratch_.path() / "twin.calibration" / "report.html"));
+  const auto found = calib::load_calibration(scratch_.path() / "twin_calibration.toml");
+  ASSERT_TRUE(found) << found.error().what;
+  const auto truth = calib::reference_rig().camera;
+  EXPECT_NEAR(found->camera.fx_px / truth.fx_px, 1, 0.01);
+  const glm::dvec2 corner(40, 40);
+  EXPECT_LT(glm::distance(found->camera.distort(corner), truth.distort(corner)), 1);
+  EXPECT_THAT(found->made.lens, HasSubstr("images"));
+}
+
+TEST_F(Calibrate, ARigThatCannotStartIsToldInASentence) {
+  const auto outcome = calibrate({"lens", "--set", "camera.backend=none_such"});
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.log, HasSubstr("none_such"));
+  EXPECT_FALSE(fs::exists(scratch_.path() / "twin_calibration.toml"));
+}
+
+TEST_F(Calibrate, TheBoardIsPrinted) {
+  const auto pdf = (scratch_.path() / "board.pdf").string();
+  EXPECT_EQ(handcast({"calibrate", "--print-board", pdf}).exit_code, 0);
+  EXPECT_GT(fs::file_size(pdf), 1000u);
+}
+
+}  // namespace
+}  // namespace handcast::system_test
