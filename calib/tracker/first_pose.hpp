@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "calib/tracker/observations.hpp"
+
+namespace handcast::calib {
+
+/// The clock offset is searched in +- this.
+constexpr double kSearch_s = 0.1;
+/// Sightings that are farther from the projected point count as outliers in the search.
+constexpr double kNear_px = 10;
+
+/// A pose from three sightings, and how well it fits the others.
+struct Hypothesis {
+  Pose pose;
+  double cost_px2 = 0;  ///< mean of the squared distances, each at most kNear_px^2
+};
+
+/// P3P on random triples of sightings for each of a grid of clock offsets (Fischler and Bolles
+/// 1981, with truncated squares as Torr and Zisserman 2000). Returns the best hypotheses of all
+/// offsets, the best first; empty if no triple has a solution. The result is the same each time.
+std::vector<Hypothesis> first_poses(const Observations& observations);
+
+}  // namespace handcast::calib
