@@ -16,7 +16,7 @@ namespace {
 struct Limits {
   double light_mm, inlier_share, held_out_px, image_share, depth_m;
 };
-constexpr Limits kGood{1, 0.6, 3, 0.15, 0.10}, kPoor{3, 0.4, 6, 0.05, 0.03};
+constexpr Limits kGood{1, 0.6, 3, 0.15, 0.10}, kPoor{3, 0.4, 6, 0.08, 0.05};
 constexpr double kGoodOffset_ms = 2, kPoorPlace_mm = 10;
 /// @}
 /// At the edge of the search for the clock offset.
@@ -51,13 +51,15 @@ void say_impossible(const Evidence& evidence, const TrackerFit& fit,
                     std::vector<std::string>& findings) {
   if (evidence.mirrored) findings.push_back(*evidence.mirrored);
   if (evidence.second_pose_rad)
-    findings.push_back(fmt::format("A second pose, {:.0f} degrees away, fits nearly as well; move "
-                                   "the hand through more of the volume, nearer and farther.",
-                                   glm::degrees(*evidence.second_pose_rad)));
+    findings.push_back(
+        fmt::format("A second pose, {:.0f} degrees away, fits nearly as well; move "
+                    "the hand through more of the volume, nearer and farther.",
+                    glm::degrees(*evidence.second_pose_rad)));
   if (at_the_edge(fit))
-    findings.push_back(fmt::format("The offset of the clocks, {:.0f} ms, is at the edge of the "
-                                   "search; compare the clocks of camera and tracker.",
-                                   static_cast<double>(fit.clock_offset_ns) * 1e-6));
+    findings.push_back(
+        fmt::format("The offset of the clocks, {:.0f} ms, is at the edge of the "
+                    "search; compare the clocks of camera and tracker.",
+                    static_cast<double>(fit.clock_offset_ns) * 1e-6));
   if (evidence.other_finger) findings.push_back(*evidence.other_finger);
 }
 
@@ -72,21 +74,20 @@ void say_spread(const Evidence& evidence, const TrackerFit& fit,
         100 * cover.image_share, 100 * cover.depth_m, place[2].high,
         cover.depth_m < kGood.depth_m ? "nearer and farther" : "to the corners of the image"));
   if (largest_place_sd_mm(fit) > kPoorPlace_mm / 3)
-    findings.push_back(fmt::format("The camera's place is known only to +-{:.0f} mm to the right, "
-                                   "+-{:.0f} mm down and +-{:.0f} mm forward (95 %).",
-                                   place[0].high, place[1].high, place[2].high));
+    findings.push_back(
+        fmt::format("The camera's place is known only to +-{:.0f} mm to the right, "
+                    "+-{:.0f} mm down and +-{:.0f} mm forward (95 %).",
+                    place[0].high, place[1].high, place[2].high));
   if (evidence.limit_shift_mm > kPoorPlace_mm / 3)
-    findings.push_back(fmt::format("The camera's place moves by {:.0f} mm if outliers are judged "
-                                   "more or less strictly: the errors are not random.",
-                                   evidence.limit_shift_mm));
+    findings.push_back(
+        fmt::format("The camera's place moves by {:.0f} mm if outliers are judged "
+                    "more or less strictly: the errors are not random.",
+                    evidence.limit_shift_mm));
   if (evidence.plane_m < kFlat_m)
-    findings.push_back(fmt::format("The points lie in a plane, to within {:.1f} mm; move the hand "
-                                   "in all directions.",
-                                   1000 * evidence.plane_m));
-  if (fit.clock_offset_ms.high > kGoodOffset_ms)
-    findings.push_back(fmt::format("The offset of the clocks is known only to +-{:.1f} ms; move "
-                                   "the hand faster and change its direction more often.",
-                                   fit.clock_offset_ms.high));
+    findings.push_back(
+        fmt::format("The points lie in a plane, to within {:.1f} mm; move the hand "
+                    "in all directions.",
+                    1000 * evidence.plane_m));
 }
 
 void say_misfits(const Evidence& evidence, const TrackerFit& fit,
@@ -105,21 +106,29 @@ void say_misfits(const Evidence& evidence, const TrackerFit& fit,
             ? "reflections or false detections in the image, or a tracker that loses the hand"
             : "the hand was out of the tracker's reach for a while"));
   if (fit.held_out.median_px > kGood.held_out_px)
-    findings.push_back(fmt::format("Sightings that took no part in the fit are off by {:.1f} px "
-                                   "(median): camera and tracker do not see the same points, or "
-                                   "the lens is not calibrated well.",
-                                   fit.held_out.median_px));
+    findings.push_back(
+        fmt::format("Sightings that took no part in the fit are off by {:.1f} px "
+                    "(median): camera and tracker do not see the same points, or "
+                    "the lens is not calibrated well.",
+                    fit.held_out.median_px));
+  if (fit.clock_offset_ms.high > kGoodOffset_ms)
+    findings.push_back(
+        fmt::format("The offset of the clocks is known only to +-{:.1f} ms; move "
+                    "the hand faster and change its direction more often.",
+                    fit.clock_offset_ms.high));
 }
 
 void say_left_out(const Evidence& evidence, std::vector<std::string>& findings) {
   if (evidence.unusable_sightings > 0)
-    findings.push_back(fmt::format("{} sightings had numbers that were not finite or not positive: "
-                                   "they were left out.",
-                                   evidence.unusable_sightings));
+    findings.push_back(
+        fmt::format("{} sightings had numbers that were not finite or not positive: "
+                    "they were left out.",
+                    evidence.unusable_sightings));
   if (evidence.unusable_samples > 0)
-    findings.push_back(fmt::format("{} samples of the tracker had numbers that were not finite or a "
-                                   "repeated time: they were left out.",
-                                   evidence.unusable_samples));
+    findings.push_back(
+        fmt::format("{} samples of the tracker had numbers that were not finite or a "
+                    "repeated time: they were left out.",
+                    evidence.unusable_samples));
 }
 
 }  // namespace
@@ -136,7 +145,8 @@ Cover cover_of(const Observations& o, const Pose& pose, const std::vector<bool>&
     if (s.px.x >= 0 && s.px.x < o.camera.width_px && s.px.y >= 0 && s.px.y < o.camera.height_px)
       ++squares[{static_cast<int>(s.px.x) / kSquare_px, static_cast<int>(s.px.y) / kSquare_px}];
   }
-  const auto full = std::ranges::count_if(squares, [](const auto& s) { return s.second >= kLeast; });
+  const auto full =
+      std::ranges::count_if(squares, [](const auto& s) { return s.second >= kLeast; });
   const double area_px2 = static_cast<double>(o.camera.width_px) * o.camera.height_px;
   return {static_cast<double>(full) * kSquare_px * kSquare_px / area_px2,
           percentile_of(depths_m, 0.98) - percentile_of(depths_m, 0.02)};
@@ -174,6 +184,9 @@ std::optional<MisfitRun> misfit_run(const Observations& o, const std::vector<boo
       best_to = b + 1;
     }
   }
+  // What fits by chance at the start or the end goes with the run.
+  if (4 * best_from < best_to - best_from) best_from = 0;
+  if (4 * (bins.size() - best_to) < best_to - best_from) best_to = bins.size();
   const auto length = static_cast<double>(best_to - best_from);
   const bool few = best > (0.5 - kFewer) * usual * length;
   if (length * kBin_s < kLeast_s || !few) return std::nullopt;
@@ -209,10 +222,10 @@ std::optional<std::string> other_finger(const Observations& o, const Refined& re
                 distances[i] >= kTukey * refined.scale * s.sigma_px;
   }
   if (2 * times_s.size() < outliers) return std::nullopt;
-  return fmt::format("Between {:.1f} and {:.1f} s, {} sightings of point {} fit point {}: another "
-                     "finger was seen.",
-                     from_s - begin_s, to_s - begin_s, times_s.size(), points.first,
-                     points.second);
+  return fmt::format(
+      "Between {:.1f} and {:.1f} s, {} sightings of point {} fit point {}: another "
+      "finger was seen.",
+      from_s - begin_s, to_s - begin_s, times_s.size(), points.first, points.second);
 }
 
 std::optional<std::string> mirrored_fit(const Observations& o, double cost_px2) {

@@ -28,12 +28,12 @@ std::optional<MisfitRun> misfit_run(const Observations& observations,
 /// What was found out about a fit besides its figures.
 struct Evidence {
   Cover cover;
-  std::vector<MisfitRun> runs;               ///< left out
-  std::optional<double> second_pose_rad;     ///< how far another pose is that fits nearly as well
-  std::optional<std::string> other_finger;   ///< a sentence
-  std::optional<std::string> mirrored;       ///< a sentence
-  double plane_m = 0;                        ///< standard deviation across the points' plane
-  double limit_shift_mm = 0;                 ///< see Uncertainty
+  std::vector<MisfitRun> runs;              ///< left out
+  std::optional<double> second_pose_rad;    ///< how far another pose is that fits nearly as well
+  std::optional<std::string> other_finger;  ///< a sentence
+  std::optional<std::string> mirrored;      ///< a sentence
+  double plane_m = 0;                       ///< standard deviation across the points' plane
+  double limit_shift_mm = 0;                ///< see Uncertainty
   int unusable_sightings = 0, unusable_samples = 0;
 };
 
@@ -41,7 +41,8 @@ struct Evidence {
 /// were not left out for other reasons should be given.
 std::optional<std::string> other_finger(const Observations& observations, const Refined& refined);
 
-/// If points mirrored in the image, or a mirrored hand, fit much better than `cost_px2`: a sentence.
+/// If points mirrored in the image, or a mirrored hand, fit much better than `cost_px2`: a
+/// sentence.
 std::optional<std::string> mirrored_fit(const Observations& observations, double cost_px2);
 
 /// Sets the quality and the findings.

@@ -99,6 +99,7 @@ std::vector<MisfitRun> leave_out_misfits(Observations& o, Refined& refined) {
     runs.push_back(*run);
     if (const auto again = refine(o, refined.pose)) refined = *again;
   }
+  std::ranges::sort(runs, {}, &MisfitRun::begin_s);
   return runs;
 }
 
@@ -154,9 +155,9 @@ void set_uncertainty(const Uncertainty& uncertainty, const std::array<glm::dvec3
 /// The share of the sightings for which the tracker has a position.
 double share_of(const std::vector<bool>& inliers, const std::vector<double>& distances_px) {
   const auto seen = std::ranges::count_if(distances_px, [](double d) { return !std::isnan(d); });
-  return seen > 0 ? static_cast<double>(std::ranges::count(inliers, true)) /
-                        static_cast<double>(seen)
-                  : 0;
+  return seen > 0
+             ? static_cast<double>(std::ranges::count(inliers, true)) / static_cast<double>(seen)
+             : 0;
 }
 
 }  // namespace
@@ -175,17 +176,18 @@ Result<TrackerFit> fit_tracker(const CameraModel& camera, std::span<const Tracke
   if (share < kMirrorSuspected)
     evidence.mirrored = mirrored_fit(*observed, best ? best->cost_px2 : kNear_px * kNear_px);
   if (share < kLeastInliers)
-    return fail(Errc::bad_data,
-                evidence.mirrored.value_or(
-                    fmt::format("No pose of the tracker explains more than {:.0f} % of the "
-                                "sightings: camera and tracker did not see the same points.",
-                                100 * share)));
+    return fail(Errc::bad_data, evidence.mirrored.value_or(fmt::format(
+                                    "No pose of the tracker explains more than {:.0f} % of the "
+                                    "sightings: camera and tracker did not see the same points.",
+                                    100 * share)));
   evidence.second_pose_rad = second_pose_rad(*observed, hypotheses, *best);
-  evidence.other_finger = other_finger(*observed, best->refined);
+  if (!evidence.mirrored) evidence.other_finger = other_finger(*observed, best->refined);
 
   auto kept = *observed;
   auto& refined = best->refined;
   evidence.runs = leave_out_misfits(kept, refined);
+  if (const auto checked = check_amount(kept); !checked)
+    return tl::make_unexpected(checked.error());
   const auto inliers = inliers_of(kept, refined);
   const auto uncertainty = uncertainty_of(kept, refined);
   evidence.cover = cover_of(kept, refined.pose, inliers);

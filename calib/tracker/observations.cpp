@@ -8,14 +8,16 @@
 #include <cmath>
 #include <limits>
 
-#include "ipc/base/clock.hpp"
-
 namespace handcast::calib {
 namespace {
 
 constexpr int kLeastSightings = 60;
 constexpr double kLeastTime_s = 2;
-constexpr double kLargestOffset_s = 0.1;
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  // The difference of the integers may overflow.
+  return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
+}
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -55,7 +57,7 @@ Result<std::vector<Observation>> usable_sightings(std::span<const Sighting> sigh
     if (std::isfinite(s.undistorted_px.x) && std::isfinite(s.undistorted_px.y) &&
         std::isfinite(s.sigma_px) && s.sigma_px > 0)
       usable.push_back(
-          {ns_to_seconds(s.time_ns - begin_ns), s.point, s.undistorted_px, s.sigma_px});
+          {seconds_between(begin_ns, s.time_ns), s.point, s.undistorted_px, s.sigma_px});
   }
   std::ranges::stable_sort(usable, {}, &Observation::time_s);
   return usable;
@@ -85,12 +87,8 @@ struct Moments {
   }
 };
 
-/// That enough was seen by both at the same time.
 Result<void> check_common_time(const Observations& o) {
-  if (o.sightings.size() < kLeastSightings)
-    return fail(Errc::bad_data,
-                fmt::format("The camera has {} usable sightings; at least {} are needed.",
-                            o.sightings.size(), kLeastSightings));
+  if (o.sightings.size() < kLeastSightings) return check_amount(o);
   const double first_s = o.sightings.front().time_s, last_s = o.sightings.back().time_s;
   if (last_s <= first_s) return fail(Errc::bad_data, "The camera's clock stands still.");
   if (first_s > o.track.end_s() || last_s < o.track.begin_s())
@@ -98,11 +96,6 @@ Result<void> check_common_time(const Observations& o) {
                 fmt::format("Camera and tracker have no common time: the tracker's samples last "
                             "from 0 to {:.3f} s, the camera's sightings from {:.3f} to {:.3f} s.",
                             o.track.end_s(), first_s, last_s));
-  const double common_s = std::min(last_s, o.track.end_s()) - std::max(first_s, 0.);
-  if (common_s < kLeastTime_s)
-    return fail(Errc::bad_data, fmt::format("Camera and tracker have {:.1f} s in common; at least "
-                                            "{:.0f} s are needed.",
-                                            common_s, kLeastTime_s));
   return {};
 }
 
@@ -124,6 +117,19 @@ Result<void> check_extent(const Observations& o) {
 
 }  // namespace
 
+Result<void> check_amount(const Observations& o) {
+  if (o.sightings.size() < kLeastSightings)
+    return fail(Errc::bad_data, fmt::format("Camera and tracker have {} usable sightings in "
+                                            "common; at least {} are needed.",
+                                            o.sightings.size(), kLeastSightings));
+  const double common_s = o.sightings.back().time_s - o.sightings.front().time_s;
+  if (common_s < kLeastTime_s)
+    return fail(Errc::bad_data, fmt::format("Camera and tracker have {:.1f} s in common; at least "
+                                            "{:.0f} s are needed.",
+                                            common_s, kLeastTime_s));
+  return {};
+}
+
 double angle_between_rad(const Pose& a, const Pose& b) {
   const auto turn = glm::transpose(a.rotation) * b.rotation;
   return std::acos(std::clamp((turn[0][0] + turn[1][1] + turn[2][2] - 1) / 2, -1., 1.));
@@ -135,7 +141,7 @@ std::vector<double> Observations::distances_px(const Pose& pose) const {
   for (const auto& s : sightings) {
     const auto moving = track.at(s.point, s.time_s + pose.offset_s);
     const auto at = moving ? pose.apply(moving->at_m) : glm::dvec3(0);
-    distances.push_back(!moving  ? std::numeric_limits<double>::quiet_NaN()
+    distances.push_back(!moving    ? std::numeric_limits<double>::quiet_NaN()
                         : at.z > 0 ? glm::distance(camera.project(at), s.px)
                                    : std::numeric_limits<double>::infinity());
   }
@@ -154,21 +160,23 @@ Result<Observations> observe(const CameraModel& camera, std::span<const TrackerS
   std::vector<double> times_s;
   std::vector<std::vector<glm::dvec3>> points_m;
   for (const auto* sample : usable) {
-    times_s.push_back(ns_to_seconds(sample->time_ns - begin_ns));
+    times_s.push_back(seconds_between(begin_ns, sample->time_ns));
     points_m.push_back(sample->points_m);
   }
-  auto seen = usable_sightings(
-      sightings, static_cast<int>(samples.front().points_m.size()), begin_ns);
+  auto seen =
+      usable_sightings(sightings, static_cast<int>(samples.front().points_m.size()), begin_ns);
   if (!seen) return tl::make_unexpected(seen.error());
   Observations o{camera, Track(std::move(times_s), points_m), std::move(*seen)};
   o.unusable_sightings = static_cast<int>(sightings.size() - o.sightings.size());
   o.unusable_samples = static_cast<int>(samples.size() - usable.size());
   if (const auto checked = check_common_time(o); !checked)
     return tl::make_unexpected(checked.error());
-  // What cannot have a position of the tracker at any offset takes no part.
+  // What is seen while the tracker is silent takes no part.
   std::erase_if(o.sightings, [&](const Observation& s) {
-    return s.time_s < -kLargestOffset_s || s.time_s > o.track.end_s() + kLargestOffset_s;
+    return !o.track.at(s.point, s.time_s) && !o.track.at(s.point, s.time_s - kSearch_s) &&
+           !o.track.at(s.point, s.time_s + kSearch_s);
   });
+  if (const auto checked = check_amount(o); !checked) return tl::make_unexpected(checked.error());
   if (const auto checked = check_extent(o); !checked) return tl::make_unexpected(checked.error());
   return o;
 }

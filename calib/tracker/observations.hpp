@@ -17,6 +17,9 @@ struct Observation {
   double sigma_px = 1;
 };
 
+/// The clock offset is searched in +- this.
+constexpr double kSearch_s = 0.1;
+
 /// What is to be found: camera space = rotation * tracker space + translation, and the tracker's
 /// clock minus the camera's.
 struct Pose {
@@ -48,6 +51,9 @@ struct Observations {
 /// Errors: bad_data (see fit_tracker()).
 Result<Observations> observe(const CameraModel& camera, std::span<const TrackerSample> samples,
                              std::span<const Sighting> sightings);
+
+/// Errors: bad_data (too few sightings, or in less than 2 s).
+Result<void> check_amount(const Observations& observations);
 
 /// Where the points were while the camera saw them, in metres.
 struct Extent {

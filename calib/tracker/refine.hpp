@@ -30,7 +30,8 @@ struct Refined {
 };
 
 /// Tukey's M-estimator by Gauss-Newton steps with reweighting, from a pose near the solution.
-/// `scale`: the scale; if absent, it is estimated, which starts from sightings within 3 kNear_px.
+/// `scale`: the scale; if absent, it is estimated, at most as for
+/// sightings within 3 kNear_px.
 /// Nothing if the equations are singular.
 std::optional<Refined> refine(const Observations& observations, const Pose& start,
                               std::optional<double> scale = {});

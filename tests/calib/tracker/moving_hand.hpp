@@ -19,17 +19,18 @@ struct World {
   unsigned seed = 1;
   double seconds = 15;
   double camera_hz = 60, tracker_hz = 90.3;
-  double sighting_px = 1;    ///< noise of each coordinate, standard deviation
-  double tracker_mm = 0.5;   ///< likewise, of each point by itself
-  double bias_mm = 1;        ///< root mean square length of the tracker's common error
-  double bias_time_s = 2;    ///< after which it is forgotten to 1/e
-  double outliers = 0.2;     ///< sightings that are anywhere in the image
-  double offset_s = 0.005;   ///< the tracker's clock minus the camera's
+  double sighting_px = 1;   ///< noise of each coordinate, standard deviation
+  double tracker_mm = 0.5;  ///< likewise, of each point by itself
+  double bias_mm = 1;       ///< root mean square length of the tracker's common error
+  double bias_time_s = 2;   ///< after which it is forgotten to 1/e
+  double outliers = 0.2;    ///< sightings that are anywhere in the image
+  double offset_s = 0.005;  ///< the tracker's clock minus the camera's
   /// How far the hand moves to each side, and how much it rotates.
   /// @{
   glm::dvec3 reach_m{0.08, 0.08, 0.11};
   double turn_rad = 0.5;
   /// @}
+  bool fingers_bend = true;
   bool only_index_tip = false;
 };
 
@@ -117,7 +118,7 @@ class MovingHand {
   glm::dvec3 joint(int i, double s) const {
     if (i == 0) return {0, 0.08, 0};
     const int finger = (i - 1) / 4, bone = (i - 1) % 4;
-    const double bend = 0.3 * (1 + std::sin(2.5 * s + finger)) * bone;
+    const double bend = world_.fingers_bend ? 0.3 * (1 + std::sin(2.5 * s + finger)) * bone : 0;
     const double across = finger == 0 ? -0.045 - 0.008 * bone : 0.02 * (finger - 2.5);
     const double along = finger == 0 ? 0.05 - 0.025 * bone : -0.028 * bone * std::cos(bend / 2);
     return {across, along, -0.028 * bone * std::sin(bend / 2) + (finger == 0 ? -0.01 : 0)};
@@ -149,8 +150,8 @@ class MovingHand {
         if (uniform(0, 1) < world_.outliers)
           px = {uniform(0, camera.width_px), uniform(0, camera.height_px)};
         if (px.x < 0 || px.y < 0 || px.x >= camera.width_px || px.y >= camera.height_px) continue;
-        recording.sightings.push_back(
-            {kBegin_ns + seconds_to_ns(s), static_cast<int>(p), px, std::max(world_.sighting_px, 0.1)});
+        recording.sightings.push_back({kBegin_ns + seconds_to_ns(s), static_cast<int>(p), px,
+                                       std::max(world_.sighting_px, 0.1)});
       }
     }
   }
