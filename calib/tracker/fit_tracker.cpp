@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "calib/tracker/findings.hpp"
+#include "calib/tracker/first_pose.hpp"
+#include "calib/tracker/uncertainty.hpp"
 #include "ipc/base/clock.hpp"
 
 namespace handcast::calib {
@@ -77,7 +79,7 @@ std::vector<bool> inliers_of(const Observations& o, const Refined& refined) {
   const auto distances = o.distances_px(refined.pose);
   std::vector<bool> inliers;
   for (std::size_t i = 0; i < distances.size(); ++i)
-    inliers.push_back(distances[i] < kInlier * refined.scale * o.sightings[i].sigma_px);
+    inliers.push_back(distances[i] < kInlier * refined.scale * o.sightings[i].sigma);
   return inliers;
 }
 
@@ -86,7 +88,7 @@ std::vector<MisfitRun> leave_out_misfits(Observations& o, Refined& refined) {
   constexpr int kMostRuns = 3;
   const double begin_s = o.sightings.front().time_s;
   std::vector<MisfitRun> runs;
-  for (int i = 0; i < kMostRuns; ++i) {
+  for (int i = 0; i < kMostRuns && !o.sightings.empty(); ++i) {
     auto run = misfit_run(o, inliers_of(o, refined));
     if (!run) break;
     const double shift_s = o.sightings.front().time_s - begin_s;
@@ -95,7 +97,10 @@ std::vector<MisfitRun> leave_out_misfits(Observations& o, Refined& refined) {
       const double at_s = s.time_s - begin_s;
       return at_s >= run->begin_s && at_s < run->end_s;
     });
-    if (run->begin_s == shift_s) run->begin_s = 0;
+    if (run->begin_s == shift_s) {
+      run->begin_s = 0;
+      std::erase_if(runs, [](const MisfitRun& r) { return r.begin_s == 0; });  // now in this one
+    }
     runs.push_back(*run);
     if (const auto again = refine(o, refined.pose)) refined = *again;
   }

@@ -24,7 +24,9 @@ struct Sighting {
   std::int64_t time_ns = 0;      ///< by the camera's clock: the middle of the exposure
   int point = 0;                 ///< index in TrackerSample::points_m
   glm::dvec2 undistorted_px{0};  ///< as CameraModel::undistort() returns it
-  double sigma_px = 1;           ///< standard deviation of each coordinate; greater than 0
+  /// Standard deviation of each coordinate, greater than 0. Only the ratios between sightings
+  /// matter; the common factor is estimated.
+  double sigma_px = 1;
 };
 
 /// How well a value is known. `low` and `high` are relative to the estimate: the truth lies between

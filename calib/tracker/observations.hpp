@@ -14,7 +14,7 @@ struct Observation {
   double time_s = 0;
   int point = 0;
   glm::dvec2 px{0};
-  double sigma_px = 1;
+  double sigma = 1;  ///< standard deviation relative to the median one
 };
 
 /// The clock offset is searched in +- this.

@@ -13,7 +13,8 @@ namespace {
 
 using Row = Eigen::Matrix<double, 2, 7>;
 
-/// Measured minus projected position in sigma_px, and the derivative of the projected one.
+/// Measured minus projected position in standard deviations, and the derivative of the projected
+/// one.
 struct Residual {
   Eigen::Vector2d off;
   Row slope;
@@ -24,11 +25,11 @@ std::optional<Residual> residual_of(const Observations& o, const Observation& s,
   if (!moving) return std::nullopt;
   const auto x = pose.apply(moving->at_m), v = pose.rotation * moving->velocity_m_s;
   if (!(x.z > 0)) return std::nullopt;
-  const auto off = (s.px - o.camera.project(x)) / s.sigma_px;
+  const auto off = (s.px - o.camera.project(x)) / s.sigma;
   Eigen::Matrix<double, 2, 3> projection;
   projection << o.camera.fx_px, 0, -o.camera.fx_px * x.x / x.z,  //
       0, o.camera.fy_px, -o.camera.fy_px * x.y / x.z;
-  projection /= x.z * s.sigma_px;
+  projection /= x.z * s.sigma;
   Eigen::Matrix<double, 3, 7> motion;    // of the point, by rotation, shift and time
   motion << 0, x.z, -x.y, 1, 0, 0, v.x,  //
       -x.z, 0, x.x, 0, 1, 0, v.y,        //

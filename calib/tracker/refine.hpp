@@ -24,8 +24,8 @@ Change change_between(const Pose& a, const Pose& b);
 /// A pose that minimises the robust cost.
 struct Refined {
   Pose pose;
-  /// Standard deviation of one coordinate of a sighting that fits, in its sigma_px. From the median
-  /// distance of those within kTukey scales.
+  /// Standard deviation of one coordinate of a sighting that fits and has the median sigma, in px.
+  /// From the median distance of those within kTukey scales.
   double scale = 1;
 };
 

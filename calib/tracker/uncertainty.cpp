@@ -116,7 +116,7 @@ Residuals held_out(const Observations& o, const Refined& refined) {
     for (std::size_t i = 0; i < distances.size(); ++i) {
       const auto& s = o.sightings[i];
       if (static_cast<std::size_t>((s.time_s - begin_s) / fold_s) == f &&
-          distances[i] < kTukey * refined.scale * s.sigma_px)
+          distances[i] < kTukey * refined.scale * s.sigma)
         held_px.push_back(distances[i]);
     }
   }

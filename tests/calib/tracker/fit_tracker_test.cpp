@@ -91,6 +91,27 @@ TEST(FitTracker, TheOrderOfTheInputDoesNotMatter) {
   EXPECT_NEAR(static_cast<double>(in_order->clock_offset_ns - shuffled->clock_offset_ns), 0, 1e5);
 }
 
+TEST(FitTracker, OnlyTheRatiosOfTheSigmasMatter) {
+  auto truth = testing::record({.seconds = 6});
+  const auto found = fit(truth);
+  for (auto& s : truth.sightings) s.sigma_px = 0.05;
+  const auto scaled = fit(truth);
+  ASSERT_TRUE(found && scaled);
+  EXPECT_EQ(found->clock_offset_ns, scaled->clock_offset_ns);
+  EXPECT_EQ(found->inlier_share, scaled->inlier_share);
+}
+
+TEST(FitTracker, SightingsWithALargeSigmaCountLess) {
+  auto truth = testing::record({.seconds = 8, .bias_mm = 0, .outliers = 0});
+  for (std::size_t i = 0; i < truth.sightings.size(); i += 3) {
+    truth.sightings[i].undistorted_px += glm::dvec2(8, 0);
+    truth.sightings[i].sigma_px = 20;
+  }
+  const auto found = fit(truth);
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 0.3);
+}
+
 TEST(FitTracker, HalfOutliersAreTolerated) {
   const auto truth = testing::record({.outliers = 0.5});
   const auto found = fit(truth);
