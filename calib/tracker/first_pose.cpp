@@ -42,8 +42,7 @@ std::vector<Pair> pairs_at(const Observations& o, double offset_s) {
 }
 
 double area_m2(const Triple& triple) {
-  return glm::length(
-             glm::cross(triple[1].at_m - triple[0].at_m, triple[2].at_m - triple[0].at_m)) /
+  return glm::length(glm::cross(triple[1].at_m - triple[0].at_m, triple[2].at_m - triple[0].at_m)) /
          2;
 }
 

@@ -6,8 +6,6 @@
 
 namespace handcast::calib {
 
-/// The clock offset is searched in +- this.
-constexpr double kSearch_s = 0.1;
 /// Sightings that are farther from the projected point count as outliers in the search.
 constexpr double kNear_px = 10;
 

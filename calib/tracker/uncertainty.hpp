@@ -17,8 +17,9 @@ struct Uncertainty {
   PlaceError place_error(const glm::dvec3& place_m) const;
 };
 
-/// Moving blocks with ends that wrap (Politis and Romano 1992); each resample is one Newton step
-/// from the estimate. The change by stricter and looser limits for outliers is added as variance.
+/// Moving blocks with ends that wrap (Politis and Romano 1992) of an eighth of the time, at most
+/// 2.5 s; each resample is one Newton step from the estimate. The change by stricter and looser
+/// limits for outliers is added as variance.
 Uncertainty uncertainty_of(const Observations& observations, const Refined& refined);
 
 /// Distances of the sightings within kTukey scales to poses that were fitted (by one Newton step)

@@ -19,7 +19,8 @@ void VolumeCoverage::add(const glm::dvec2& px, const glm::dvec3& tracker_m) {
                y = kSide * (px.y + 0.5) / camera_.height_px,
                z = kDepths * (depth_m - near_m_) / (far_m_ - near_m_);
   if (!(x >= 0 && x < kSide && y >= 0 && y < kSide && z >= 0 && z < kDepths)) return;
-  const int cell = (static_cast<int>(z) * kSide + static_cast<int>(y)) * kSide + static_cast<int>(x);
+  const int cell =
+      (static_cast<int>(z) * kSide + static_cast<int>(y)) * kSide + static_cast<int>(x);
   ++counts_[static_cast<std::size_t>(cell)];
 }
 
@@ -45,8 +46,9 @@ std::string VolumeCoverage::advice() const {
     }
   }
   if (most == 0) return "The volume is covered.";
-  const std::string where = fmt::format("{} ({:.1f} m)", kDistances[static_cast<std::size_t>(emptiest)],
-                                        near_m_ + (emptiest + 0.5) * (far_m_ - near_m_) / kDepths);
+  const std::string where =
+      fmt::format("{} ({:.1f} m)", kDistances[static_cast<std::size_t>(emptiest)],
+                  near_m_ + (emptiest + 0.5) * (far_m_ - near_m_) / kDepths);
   if (most == kSide * kSide) return fmt::format("Move the hand {}.", where);
   int cell = 0;
   while (covered(emptiest, cell / kSide, cell % kSide)) ++cell;
