@@ -99,12 +99,11 @@ void add_foot(Page& page, const Board& board) {
   add_line(page, right_mm - tick_mm, right_mm + tick_mm);
   add_text(page, left_mm + glm::dvec2(2, 4), "100 mm: measure it before use");
   const auto kind = words_of(board.kind)[static_cast<std::size_t>(board.kind)];
-  const bool circles = board.kind == BoardKind::circles;
+  const auto size = board.kind == BoardKind::circles
+                        ? fmt::format(", {:g} mm apart", board.square_mm)
+                        : fmt::format(" squares of {:g} mm", board.square_mm);
   add_text(page, left_mm + glm::dvec2(2, 9),
-           fmt::format("{}{}, {:g} mm {}", circles ? "" : fmt::format("{} of ", kind),
-                       fmt::format("{} x {} {}", board.columns, board.rows,
-                                   circles ? "circles" : "squares"),
-                       board.square_mm, circles ? "from centre to centre" : "each"));
+           fmt::format("{}, {} x {}{}", kind, board.columns, board.rows, size));
 }
 
 /// The file of these objects, numbered from 1; the first is the catalogue.

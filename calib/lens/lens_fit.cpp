@@ -114,7 +114,8 @@ Result<Solution> solve_robustly(Selection& selection, Size size) {
   const auto before = selection.views.size();
   for (;;) {
     if (selection.views.size() < kFewestViews) return too_few(selection.views.size());
-    auto solution = solve(selection.views, Distortion::k3, size.width_px, size.height_px);
+    const auto guess = first_guess(selection.views, size.width_px, size.height_px);
+    const auto solution = guess ? solve(selection.views, Distortion::k3, *guess) : std::nullopt;
     if (!solution) return not_tilted("since the views do not differ enough");
     const double limit = limit_px(solution->rms_px);
     const auto worst = std::ranges::max_element(solution->rms_px);
@@ -153,14 +154,19 @@ Result<void> check_tilts(const Solution& solution) {
 
 /// The squared errors of the views, each predicted by a fit of those of the other parts; empty if
 /// a part has no fit.
-std::vector<double> held_out(std::span<const Points> views, Distortion distortion, Size size,
-                             const CameraModel& start) {
+std::vector<double> held_out(std::span<const Points> views, Distortion distortion,
+                             const Solution& start) {
   std::vector<double> squares(views.size());
   for (int part = 0; part < kParts; ++part) {
     std::vector<Points> others;
+    Solution near{start.camera, {}, {}};
     for (std::size_t i = 0; i < views.size(); ++i)
-      if (static_cast<int>(i) % kParts != part) others.push_back(views[i]);
-    const auto fit = solve(others, distortion, size.width_px, size.height_px, &start);
+      if (static_cast<int>(i) % kParts != part) {
+        others.push_back(views[i]);
+        near.poses.push_back(start.poses[i]);
+        near.rms_px.push_back(start.rms_px[i]);
+      }
+    const auto fit = solve(others, distortion, near);
     if (!fit) return {};
     for (auto i = static_cast<std::size_t>(part); i < views.size(); i += kParts) {
       const auto placed = place(views[i], fit->camera);
@@ -188,13 +194,16 @@ bool as_good(const std::vector<double>& squares, const std::vector<double>& best
 }
 
 /// Fits each model and takes the simplest that is as good as the best.
-std::optional<Solution> choose(std::span<const Points> views, Size size, const CameraModel& start,
+std::optional<Solution> choose(std::span<const Points> views, const Solution& start,
                                LensFit& fit) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::array<std::optional<Solution>, 5> solutions;
   std::array<std::vector<double>, 5> squares;
   std::array<double, 5> means;
-  for (std::size_t i = 0; i < squares.size(); ++i) {
-    squares[i] = held_out(views, static_cast<Distortion>(i), size, start);
-    means[i] = squares[i].empty() ? std::numeric_limits<double>::infinity() : mean(squares[i]);
+  for (std::size_t i = 0; i < solutions.size(); ++i) {
+    solutions[i] = solve(views, static_cast<Distortion>(i), start);
+    if (solutions[i]) squares[i] = held_out(views, static_cast<Distortion>(i), *solutions[i]);
+    means[i] = squares[i].empty() ? kNone : mean(squares[i]);
     fit.held_out_of_px[i] = std::sqrt(means[i]);
   }
   const auto best = static_cast<std::size_t>(std::ranges::min_element(means) - means.begin());
@@ -203,7 +212,7 @@ std::optional<Solution> choose(std::span<const Points> views, Size size, const C
     ++chosen;
   fit.distortion = static_cast<Distortion>(chosen);
   fit.held_out_px = fit.held_out_of_px[chosen];
-  return solve(views, fit.distortion, size.width_px, size.height_px, &start);
+  return solutions[chosen];
 }
 
 /// Where the fit has each board, those of rejected views as well.
@@ -240,7 +249,7 @@ Result<LensFit> fit_lens(std::span<const BoardView> views, int width_px, int hei
   if (auto checked = check_tilts(*first); !checked) return tl::make_unexpected(checked.error());
 
   LensFit fit;
-  const auto solution = choose(selection.views, size, first->camera, fit);
+  const auto solution = choose(selection.views, *first, fit);
   if (!solution) return not_tilted("since the views do not differ enough");
   fit.camera = solution->camera;
   fit.spreads = spreads_of(selection.views, *solution, fit.distortion);

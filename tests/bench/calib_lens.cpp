@@ -39,6 +39,10 @@ std::array<double, 9> values_of(const CameraModel& c) {
   return {c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.k1, c.k2, c.p1, c.p2, c.k3};
 }
 
+/// Of a model that lacks coefficients of the lens, the other coefficients make up for them: their
+/// intervals are for what they then are, not for the truth.
+constexpr std::size_t kFirstCoefficient = 4;
+
 struct Tally {
   int fits = 0, failures = 0;
   std::array<int, 5> chosen{};
@@ -57,9 +61,12 @@ void add(Tally& tally, const LensFit& fit, const CameraModel& truth) {
   ++tally.fits;
   ++tally.chosen[static_cast<std::size_t>(fit.distortion)];
   const auto true_values = values_of(truth);
+  bool complete = true;  // the model has all coefficients of the lens
+  for (std::size_t i = 0; i < true_values.size(); ++i)
+    complete = complete && (fit.spreads[i].deviation > 0 || true_values[i] == 0);
   for (std::size_t i = 0; i < true_values.size(); ++i) {
     const auto& spread = fit.spreads[i];
-    if (spread.deviation == 0) continue;
+    if (spread.deviation == 0 || (i >= kFirstCoefficient && !complete)) continue;
     ++tally.stated[i];
     tally.inside[i] += true_values[i] >= spread.low && true_values[i] <= spread.high;
   }
