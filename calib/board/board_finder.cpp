@@ -17,8 +17,8 @@ constexpr int kSmallestImage_px = 32;
 
 /// The grey value that this share of the pixels is below.
 float quantile(std::vector<float>& values, double share) {
-  const auto at = values.begin() +
-                  static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * share);
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * share);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -52,9 +52,12 @@ cv::Mat1f logarithm(const cv::Mat1f& image) {
 
 std::vector<Found> search(const Board& board, const cv::Mat1b& image) {
   switch (board.kind) {
-    case BoardKind::checkerboard: return find_checkerboard(board, image);
-    case BoardKind::circles: return find_circles(board, image);
-    case BoardKind::charuco: return find_charuco(board, image);
+    case BoardKind::checkerboard:
+      return find_checkerboard(board, image);
+    case BoardKind::circles:
+      return find_circles(board, image);
+    case BoardKind::charuco:
+      return find_charuco(board, image);
   }
   return {};
 }

@@ -26,7 +26,8 @@ double contrast_of(const cv::Size& size, const std::vector<cv::Point2f>& corners
   for (int row = 0; row + 1 < size.height; ++row)
     for (int column = 0; column + 1 < size.width; ++column) {
       const auto first = corners.begin() + row * size.width + column;
-      const cv::Point middle = (first[0] + first[1] + first[size.width] + first[size.width + 1]) / 4;
+      const cv::Point middle =
+          (first[0] + first[1] + first[size.width] + first[size.width + 1]) / 4;
       sum += image(middle) * ((row + column) % 2 == 0 ? -1. : 1.);
     }
   return sum;

@@ -40,8 +40,7 @@ Solution stepped(const Solution& from, std::vector<Normal> normals, double dampi
   }
   const LensVector step = sum.matrix.solve(sum.slope, cv::DECOMP_CHOLESKY);
   Solution to = from;
-  to.camera =
-      camera_of(values_of(from.camera) + step, from.camera.width_px, from.camera.height_px);
+  to.camera = camera_of(values_of(from.camera) + step, from.camera.width_px, from.camera.height_px);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const auto moved = pose_step(normals[i], step);
     to.poses[i].turn += cv::Vec3d(moved[0], moved[1], moved[2]);
@@ -151,8 +150,8 @@ std::optional<Placed> place(const Points& view, const CameraModel& camera) {
   } catch (const cv::Exception&) {  // of points that have no pose
     return {};
   }
-  placed.rms_px = cv::norm(expected_px, view.image_px) /
-                  std::sqrt(static_cast<double>(expected_px.size()));
+  placed.rms_px =
+      cv::norm(expected_px, view.image_px) / std::sqrt(static_cast<double>(expected_px.size()));
   return placed;
 }
 

@@ -29,18 +29,6 @@ LensVector equalise(std::vector<Statement>& statements) {
   return scale;
 }
 
-/// Replaces each slope by that which the fit without this view would have seen.
-void unfollow(std::vector<Statement>& statements) {
-  const auto total = total_of(statements);
-  LensVector mean;
-  for (auto& statement : statements) {
-    const LensMatrix others = total - statement.matrix;
-    statement.slope = total * others.solve(statement.slope, cv::DECOMP_SVD);
-    mean += statement.slope / static_cast<double>(statements.size());
-  }
-  for (auto& statement : statements) statement.slope -= mean;
-}
-
 /// The change of the parameters in each resample.
 std::vector<LensVector> resample(const std::vector<Statement>& statements) {
   std::mt19937 random(1);
@@ -79,7 +67,6 @@ std::array<Spread, 9> spreads_of(std::span<const Points> views, const Solution& 
     statements.push_back(
         statement_of(normal_of(views[i], solution.poses[i], solution.camera, distortion)));
   const auto scale = equalise(statements);
-  unfollow(statements);
   const auto changes = resample(statements);
   const auto values = values_of(solution.camera);
   const double t = students_t(static_cast<double>(views.size()) - 1);

@@ -41,8 +41,8 @@ Shot shot_of(const Board& board, glm::dvec3 centre_m, glm::dvec2 tilt_rad, doubl
 class EveryBoard : public testing::TestWithParam<Board> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryBoard, testing::Values(kCheckerboard, kCircles, kCharuco),
                          [](const auto& test) {
-                           return std::string(
-                               words_of(test.param.kind)[static_cast<std::size_t>(test.param.kind)]);
+                           return std::string(words_of(
+                               test.param.kind)[static_cast<std::size_t>(test.param.kind)]);
                          });
 
 TEST_P(EveryBoard, IsFoundWithinATwentiethOfAPixelFromManySides) {

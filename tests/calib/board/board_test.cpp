@@ -60,7 +60,9 @@ TEST(DrawBoard, TheMarginIsWhiteAndTheFirstSquareBlack) {
   const auto picture = draw_board({BoardKind::checkerboard, 10, 7, 20}, 10);
   ASSERT_EQ(picture.width_px, 110);
   ASSERT_EQ(picture.height_px, 80);
-  const auto at = [&](int x, int y) { return picture.pixels[static_cast<std::size_t>(y * 110 + x)]; };
+  const auto at = [&](int x, int y) {
+    return picture.pixels[static_cast<std::size_t>(y * 110 + x)];
+  };
   EXPECT_EQ(at(4, 4), 255);
   EXPECT_EQ(at(5, 5), 0);
   EXPECT_EQ(at(14, 14), 0);

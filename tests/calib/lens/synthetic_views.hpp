@@ -44,8 +44,8 @@ inline std::vector<BoardView> show(const Person& person, const CameraModel& came
   constexpr std::size_t kFewest = 15;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> share(-1, 1);
-  const double fills_m = camera.fx_px / camera.width_px * person.board.columns *
-                         person.board.square_mm * 1e-3;
+  const double fills_m =
+      camera.fx_px / camera.width_px * person.board.columns * person.board.square_mm * 1e-3;
   std::vector<BoardView> views;
   while (views.size() < static_cast<std::size_t>(person.views)) {
     const double away_m = fills_m * (1.15 + 0.35 * share(random));
@@ -54,10 +54,10 @@ inline std::vector<BoardView> show(const Person& person, const CameraModel& came
                               down * person.reach * camera.height_px / camera.fy_px * away_m,
                               away_m);
     const double pitch = share(random), yaw = share(random);
-    auto view = view_of(person.board, camera,
-                        held(person.board, centre_m, glm::dvec2(pitch, yaw) * person.tilt_rad,
-                             share(random) * 0.3),
-                        person.noise_px, random);
+    auto view = view_of(
+        person.board, camera,
+        held(person.board, centre_m, glm::dvec2(pitch, yaw) * person.tilt_rad, share(random) * 0.3),
+        person.noise_px, random);
     if (view.ids.size() >= kFewest) views.push_back(std::move(view));
   }
   return views;
