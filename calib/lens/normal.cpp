@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPose = 6, kLens = 9;
 
-cv::Mat1d residuals_of(const Points& view, const std::vector<cv::Point2f>& expected_px) {
+cv::Mat1d residuals_of(const Points& view, const std::vector<cv::Point2d>& expected_px) {
   cv::Mat1d residuals(2 * static_cast<int>(expected_px.size()), 1);
   auto value = residuals.begin();
   for (std::size_t i = 0; i < expected_px.size(); ++i) {
@@ -28,7 +28,7 @@ int free_parameters(Distortion distortion) {
 
 Normal normal_of(const Points& view, const Pose& pose, const CameraModel& camera,
                  Distortion distortion) {
-  std::vector<cv::Point2f> expected_px;
+  std::vector<cv::Point2d> expected_px;
   cv::Mat slopes;
   cv::projectPoints(view.board_m, pose.turn, pose.move, matrix_of(camera), lens_of(camera),
                     expected_px, slopes);

@@ -60,11 +60,8 @@ CameraModel within(const CameraModel& camera, Distortion distortion) {
 
 Points points_of(const BoardView& view) {
   Points points;
-  for (const auto& m : view.board_m)
-    points.board_m.emplace_back(static_cast<float>(m.x), static_cast<float>(m.y),
-                                static_cast<float>(m.z));
-  for (const auto& px : view.image_px)
-    points.image_px.emplace_back(static_cast<float>(px.x), static_cast<float>(px.y));
+  for (const auto& m : view.board_m) points.board_m.emplace_back(m.x, m.y, m.z);
+  for (const auto& px : view.image_px) points.image_px.emplace_back(px.x, px.y);
   return points;
 }
 
@@ -91,8 +88,8 @@ std::optional<Solution> first_guess(std::span<const Points> views, int width_px,
   std::vector<std::vector<cv::Point3f>> board_m;
   std::vector<std::vector<cv::Point2f>> image_px;
   for (const auto& view : views) {
-    board_m.push_back(view.board_m);
-    image_px.push_back(view.image_px);
+    board_m.emplace_back(view.board_m.begin(), view.board_m.end());
+    image_px.emplace_back(view.image_px.begin(), view.image_px.end());
   }
   Solution guess;
   try {
@@ -125,10 +122,11 @@ std::optional<Solution> solve(std::span<const Points> views, Distortion distorti
     auto next_normals = normals_of(views, distortion, next);
     const double before = squares_of(normals), after = squares_of(next_normals);
     damping *= after < before ? 0.1 : 10;  // NaN is no progress either
-    if (!(after < before)) continue;
-    best = std::move(next);
-    normals = std::move(next_normals);
-    if (before - after < kDone * before) break;
+    if (after < before) {
+      best = std::move(next);
+      normals = std::move(next_normals);
+    }
+    if (std::abs(before - after) <= kDone * before) break;
   }
   if (!(best.camera.fx_px > 0 && best.camera.fy_px > 0 && std::isfinite(squares_of(normals))))
     return {};
@@ -141,7 +139,7 @@ std::optional<Placed> place(const Points& view, const CameraModel& camera) {
   Placed placed;
   const auto matrix = matrix_of(camera);
   const auto lens = lens_of(camera);
-  std::vector<cv::Point2f> expected_px;
+  std::vector<cv::Point2d> expected_px;
   try {
     if (!cv::solvePnP(view.board_m, view.image_px, matrix, lens, placed.pose.turn,
                       placed.pose.move))

@@ -12,8 +12,8 @@ namespace handcast::calib {
 
 /// The points of a view as OpenCV takes them.
 struct Points {
-  std::vector<cv::Point3f> board_m;
-  std::vector<cv::Point2f> image_px;
+  std::vector<cv::Point3d> board_m;
+  std::vector<cv::Point2d> image_px;
 };
 Points points_of(const BoardView& view);
 
