@@ -2,8 +2,6 @@
 #include "calib/board/board_finder.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "calib/board/find.hpp"
@@ -62,16 +60,24 @@ std::vector<Found> search(const Board& board, const cv::Mat1b& image) {
   return {};
 }
 
-/// Different looks at the image, the one that finds most boards first.
+/// Searches in different versions of the image until all points are found; the version in which
+/// most boards are found comes first. `fine` is for the search, `smooth` to refine.
 std::vector<Found> search_all(const Board& board, GreyView view) {
-  constexpr double kLittle_px = 1, kMedium_px = 1.5, kMuch_px = 2;
-  const auto sharp = smoothed(view, kLittle_px), medium = smoothed(view, kMedium_px);
-  if (auto found = consistent(board, search(board, stretched(sharp))); !found.empty())
-    return refined(board, stretched(medium), found);
-  if (auto found = consistent(board, search(board, stretched(logarithm(sharp)))); !found.empty())
-    return refined(board, stretched(logarithm(medium)), found);
-  const auto soft = stretched(smoothed(view, kMuch_px));
-  return refined(board, soft, consistent(board, search(board, soft)));
+  constexpr double kFine_px = 1, kSmooth_px = 1.5, kVerySmooth_px = 2;
+  const auto whole = points_of(board).size();
+  std::vector<Found> best;
+  const auto attempt = [&](const cv::Mat1f& fine, const cv::Mat1f& smooth) {
+    if (best.size() == whole) return;
+    auto found = consistent(board, search(board, stretched(fine)));
+    found = refined(board, stretched(smooth), std::move(found));
+    if (found.size() > best.size()) best = std::move(found);
+  };
+  const auto fine = smoothed(view, kFine_px), smooth = smoothed(view, kSmooth_px);
+  attempt(fine, smooth);
+  attempt(logarithm(fine), logarithm(smooth));
+  const auto very_smooth = smoothed(view, kVerySmooth_px);
+  attempt(very_smooth, very_smooth);
+  return best;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ std::vector<cv::Point2f> blobs(const cv::Mat1b& image) {
   wanted.minArea = kSmallest_px2;
   wanted.maxArea = kLargestShare * static_cast<float>(image.total());
   wanted.minDistBetweenBlobs = 4;
+  wanted.minThreshold = wanted.thresholdStep = 5;  // for boards of little contrast
   std::vector<cv::KeyPoint> found;
   cv::SimpleBlobDetector::create(wanted)->detect(image, found);
   std::vector<cv::Point2f> middles;

@@ -150,6 +150,7 @@ std::optional<Placed> place(const Points& view, const CameraModel& camera) {
   }
   placed.rms_px =
       cv::norm(expected_px, view.image_px) / std::sqrt(static_cast<double>(expected_px.size()));
+  if (!std::isfinite(placed.rms_px)) return {};
   return placed;
 }
 

@@ -29,7 +29,7 @@ LensVector equalise(std::vector<Statement>& statements) {
   return scale;
 }
 
-/// The change of the parameters in each resample.
+/// The change of the parameters in each resample whose views determine them.
 std::vector<LensVector> resample(const std::vector<Statement>& statements) {
   std::mt19937 random(1);
   std::vector<LensVector> changes;
@@ -40,7 +40,9 @@ std::vector<LensVector> resample(const std::vector<Statement>& statements) {
       sum.matrix += drawn.matrix;
       sum.slope += drawn.slope;
     }
-    changes.push_back(sum.matrix.solve(sum.slope, cv::DECOMP_CHOLESKY));
+    bool determined = false;
+    const LensMatrix inverse = sum.matrix.inv(cv::DECOMP_CHOLESKY, &determined);
+    if (determined) changes.push_back(inverse * sum.slope);
   }
   return changes;
 }

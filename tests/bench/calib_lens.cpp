@@ -44,7 +44,7 @@ std::array<double, 9> values_of(const CameraModel& c) {
 constexpr std::size_t kFirstCoefficient = 4;
 
 struct Tally {
-  int fits = 0, failures = 0;
+  int failures = 0;
   std::array<int, 5> chosen{};
   std::array<int, 9> inside{}, stated{};
   std::vector<double> fx_percent, reprojection_px, held_out_px;
@@ -58,7 +58,6 @@ struct Tally {
 };
 
 void add(Tally& tally, const LensFit& fit, const CameraModel& truth) {
-  ++tally.fits;
   ++tally.chosen[static_cast<std::size_t>(fit.distortion)];
   const auto true_values = values_of(truth);
   bool complete = true;  // the model has all coefficients of the lens
@@ -100,8 +99,7 @@ double quantile(std::vector<double> values, double share) {
 void print(const Lens& lens, int views, const Tally& tally) {
   fmt::print(
       "{:<12} {:>2} views: fx off by {:.3f} % (95th {:.3f}); to the truth {:.3f} px (95th {:.3f}); "
-      "held out {:.3f} px; 95 % "
-      "intervals hold {:.1f} %; {:.0f} ms; {} failed\n",
+      "held out {:.3f} px; 95 % intervals hold {:.1f} %; {:.0f} ms; {} failed\n",
       lens.name, views, quantile(tally.fx_percent, 0.5), quantile(tally.fx_percent, 0.95),
       quantile(tally.reprojection_px, 0.5), quantile(tally.reprojection_px, 0.95),
       quantile(tally.held_out_px, 0.5), tally.coverage_percent(), tally.ms, tally.failures);
