@@ -54,9 +54,12 @@ Result<void> check_board(const Board& board) {
                             "and {} mm.",
                             board.square_mm, kSmallest_mm, kLargest_mm));
   switch (board.kind) {
-    case BoardKind::checkerboard: return check_checkerboard(board);
-    case BoardKind::circles: return check_circles(board);
-    case BoardKind::charuco: return check_charuco(board);
+    case BoardKind::checkerboard:
+      return check_checkerboard(board);
+    case BoardKind::circles:
+      return check_circles(board);
+    case BoardKind::charuco:
+      return check_charuco(board);
   }
   return {};
 }

@@ -2,8 +2,6 @@
 #include "calib/board/board_finder.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "calib/board/find.hpp"
@@ -17,8 +15,8 @@ constexpr int kSmallestImage_px = 32;
 
 /// The grey value that this share of the pixels is below.
 float quantile(std::vector<float>& values, double share) {
-  const auto at = values.begin() +
-                  static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * share);
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * share);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -52,23 +50,34 @@ cv::Mat1f logarithm(const cv::Mat1f& image) {
 
 std::vector<Found> search(const Board& board, const cv::Mat1b& image) {
   switch (board.kind) {
-    case BoardKind::checkerboard: return find_checkerboard(board, image);
-    case BoardKind::circles: return find_circles(board, image);
-    case BoardKind::charuco: return find_charuco(board, image);
+    case BoardKind::checkerboard:
+      return find_checkerboard(board, image);
+    case BoardKind::circles:
+      return find_circles(board, image);
+    case BoardKind::charuco:
+      return find_charuco(board, image);
   }
   return {};
 }
 
-/// Different looks at the image, the one that finds most boards first.
+/// Searches in different versions of the image until all points are found; the version in which
+/// most boards are found comes first. `fine` is for the search, `smooth` to refine.
 std::vector<Found> search_all(const Board& board, GreyView view) {
-  constexpr double kLittle_px = 1, kMedium_px = 1.5, kMuch_px = 2;
-  const auto sharp = smoothed(view, kLittle_px), medium = smoothed(view, kMedium_px);
-  if (auto found = consistent(board, search(board, stretched(sharp))); !found.empty())
-    return refined(board, stretched(medium), found);
-  if (auto found = consistent(board, search(board, stretched(logarithm(sharp)))); !found.empty())
-    return refined(board, stretched(logarithm(medium)), found);
-  const auto soft = stretched(smoothed(view, kMuch_px));
-  return refined(board, soft, consistent(board, search(board, soft)));
+  constexpr double kFine_px = 1, kSmooth_px = 1.5, kVerySmooth_px = 2;
+  const auto whole = points_of(board).size();
+  std::vector<Found> best;
+  const auto attempt = [&](const cv::Mat1f& fine, const cv::Mat1f& smooth) {
+    if (best.size() == whole) return;
+    auto found = consistent(board, search(board, stretched(fine)));
+    found = refined(board, stretched(smooth), std::move(found));
+    if (found.size() > best.size()) best = std::move(found);
+  };
+  const auto fine = smoothed(view, kFine_px), smooth = smoothed(view, kSmooth_px);
+  attempt(fine, smooth);
+  attempt(logarithm(fine), logarithm(smooth));
+  const auto very_smooth = smoothed(view, kVerySmooth_px);
+  attempt(very_smooth, very_smooth);
+  return best;
 }
 
 }  // namespace

@@ -27,9 +27,7 @@ struct Page {
   glm::dvec2 corner_mm{0};  ///< the pattern's top left corner, from the page's, y down
   std::string content;
 
-  glm::dvec2 to_pt(glm::dvec2 mm) const {
-    return glm::dvec2(mm.x, size_mm.y - mm.y) * kPt_per_mm;
-  }
+  glm::dvec2 to_pt(glm::dvec2 mm) const { return glm::dvec2(mm.x, size_mm.y - mm.y) * kPt_per_mm; }
   template <class... T>
   void add(fmt::format_string<T...> format, T&&... values) {
     fmt::format_to(std::back_inserter(content), format, std::forward<T>(values)...);
@@ -37,8 +35,7 @@ struct Page {
 };
 
 glm::dvec2 page_for(glm::dvec2 needed_mm) {
-  constexpr std::array<glm::dvec2, 4> kSheets_mm{
-      {{210, 297}, {297, 210}, {297, 420}, {420, 297}}};
+  constexpr std::array<glm::dvec2, 4> kSheets_mm{{{210, 297}, {297, 210}, {297, 420}, {420, 297}}};
   for (const auto& sheet_mm : kSheets_mm)
     if (needed_mm.x <= sheet_mm.x && needed_mm.y <= sheet_mm.y) return sheet_mm;
   return needed_mm;
@@ -74,8 +71,8 @@ void add_pattern(Page& page, const Board& board) {
     if (shape.round)
       add_disc(page, centre, half.x);
     else
-      page.add("{:.4f} {:.4f} {:.4f} {:.4f} re\n", centre.x - half.x, centre.y - half.y,
-               2 * half.x, 2 * half.y);
+      page.add("{:.4f} {:.4f} {:.4f} {:.4f} re\n", centre.x - half.x, centre.y - half.y, 2 * half.x,
+               2 * half.y);
   }
   page.add("f\n");
 }
@@ -99,12 +96,11 @@ void add_foot(Page& page, const Board& board) {
   add_line(page, right_mm - tick_mm, right_mm + tick_mm);
   add_text(page, left_mm + glm::dvec2(2, 4), "100 mm: measure it before use");
   const auto kind = words_of(board.kind)[static_cast<std::size_t>(board.kind)];
-  const bool circles = board.kind == BoardKind::circles;
+  const auto size = board.kind == BoardKind::circles
+                        ? fmt::format(", {:g} mm apart", board.square_mm)
+                        : fmt::format(" squares of {:g} mm", board.square_mm);
   add_text(page, left_mm + glm::dvec2(2, 9),
-           fmt::format("{}{}, {:g} mm {}", circles ? "" : fmt::format("{} of ", kind),
-                       fmt::format("{} x {} {}", board.columns, board.rows,
-                                   circles ? "circles" : "squares"),
-                       board.square_mm, circles ? "from centre to centre" : "each"));
+           fmt::format("{}, {} x {}{}", kind, board.columns, board.rows, size));
 }
 
 /// The file of these objects, numbered from 1; the first is the catalogue.
@@ -116,9 +112,9 @@ std::string file_of(const std::vector<std::string>& objects) {
   }
   const auto table_at = file.size();
   const auto count = objects.size() + 1;
-  return file + fmt::format(
-                    "xref\n0 {}\n{}trailer\n<< /Size {} /Root 1 0 R >>\nstartxref\n{}\n%%EOF\n",
-                    count, table, count, table_at);
+  return file +
+         fmt::format("xref\n0 {}\n{}trailer\n<< /Size {} /Root 1 0 R >>\nstartxref\n{}\n%%EOF\n",
+                     count, table, count, table_at);
 }
 
 }  // namespace

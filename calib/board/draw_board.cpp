@@ -24,8 +24,7 @@ void paint(const Shape& shape, int width_px, std::vector<double>& black) {
   const glm::ivec2 end(glm::ceil(shape.centre + shape.half_size + 0.5));
   for (int y = begin.y; y < end.y; ++y)
     for (int x = begin.x; x < end.x; ++x)
-      black[static_cast<std::size_t>(y * width_px + x)] +=
-          covered(shape, glm::dvec2(x, y) + 0.5);
+      black[static_cast<std::size_t>(y * width_px + x)] += covered(shape, glm::dvec2(x, y) + 0.5);
 }
 
 }  // namespace
@@ -34,8 +33,8 @@ GreyPicture draw_board(const Board& board, int px_per_square) {
   GreyPicture picture;
   picture.width_px = (board.columns + 1) * px_per_square;
   picture.height_px = (board.rows + 1) * px_per_square;
-  std::vector<double> black(
-      static_cast<std::size_t>(picture.width_px) * static_cast<std::size_t>(picture.height_px));
+  std::vector<double> black(static_cast<std::size_t>(picture.width_px) *
+                            static_cast<std::size_t>(picture.height_px));
   for (auto shape : pattern_of(board)) {
     shape.centre = (shape.centre + kMargin) * static_cast<double>(px_per_square);
     shape.half_size *= px_per_square;

@@ -27,7 +27,7 @@ std::vector<Found> find_charuco(const Board& board, const cv::Mat1b& image);
 std::vector<Found> consistent(const Board& board, std::vector<Found> found);
 
 /// Moves the corners of squares to the saddle points of the image, and leaves out those that are
-/// then not in line with their neighbours.
+/// then not in line with their neighbours, or covered.
 std::vector<Found> refined(const Board& board, const cv::Mat1b& image, std::vector<Found> found);
 
 }  // namespace handcast::calib

@@ -19,6 +19,7 @@ std::vector<cv::Point2f> blobs(const cv::Mat1b& image) {
   wanted.minArea = kSmallest_px2;
   wanted.maxArea = kLargestShare * static_cast<float>(image.total());
   wanted.minDistBetweenBlobs = 4;
+  wanted.minThreshold = wanted.thresholdStep = 5;  // for boards of little contrast
   std::vector<cv::KeyPoint> found;
   cv::SimpleBlobDetector::create(wanted)->detect(image, found);
   std::vector<cv::Point2f> middles;
@@ -47,8 +48,7 @@ cv::Point2f shift_of(const cv::Matx33d& image, cv::Point2f circle) {
   const cv::Matx33d move(1, 0, circle.x, 0, 1, circle.y, 0, 0, 1);
   const auto centre = image * move * cv::Vec3d(0, 0, 1);
   const auto map = image * move;
-  const auto middle =
-      map * cv::Matx33d::diag({r2, r2, -1}) * map.t() * cv::Vec3d(0, 0, 1);
+  const auto middle = map * cv::Matx33d::diag({r2, r2, -1}) * map.t() * cv::Vec3d(0, 0, 1);
   return {static_cast<float>(middle[0] / middle[2] - centre[0] / centre[2]),
           static_cast<float>(middle[1] / middle[2] - centre[1] / centre[2])};
 }

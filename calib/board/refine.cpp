@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -24,6 +25,12 @@ constexpr std::size_t kFewest = 6;
 constexpr double kMistake = 0.5;
 /// How far a corner may be from where its neighbours place it, as a share of the distance to them.
 constexpr double kOutOfLine = 0.1;
+/// How far from a corner the four squares are looked at, in squares: before a marker begins. A
+/// corner of which less than this share of the usual contrast is seen is covered by something.
+/// @{
+constexpr float kLook = 0.08F;
+constexpr double kLeastContrast = 0.3;
+/// @}
 /// Standard deviation of the points across the line that fits them best, in squares: 0 for one
 /// line, 0.5 for two. One point beside a line is not enough for a homography.
 constexpr double kLeastWidth = 0.4;
@@ -92,6 +99,43 @@ bool is_in_line(const Grid& grid, const Found& point) {
   return alone;
 }
 
+/// By how much the darker one of the two white squares at a corner is brighter than the brighter
+/// black one. `map`: homography from squares to pixels.
+double contrast_at(const cv::Mat1b& image, const cv::Mat& map, const Found& corner,
+                   cv::Point2f square) {
+  std::vector<cv::Point2f> around{square};
+  for (const cv::Point2f side : {cv::Point2f(1, 1), {-1, -1}, {1, -1}, {-1, 1}})
+    around.push_back(square + side * kLook);
+  cv::perspectiveTransform(around, around, map);
+  std::array<double, 4> grey{};
+  for (std::size_t i = 0; i < grey.size(); ++i) {
+    const cv::Point px = corner.image_px + around[i + 1] - around[0];
+    if (!cv::Rect({}, image.size()).contains(px)) return 0;
+    grey[i] = image(px);
+  }
+  const bool begins_black = static_cast<int>(square.x + square.y) % 2 == 0;
+  if (!begins_black) std::swap_ranges(grey.begin(), grey.begin() + 2, grey.begin() + 2);
+  return std::min(grey[2], grey[3]) - std::max(grey[0], grey[1]);
+}
+
+/// Leaves out the corners at which there are no four squares.
+void erase_covered(const Board& board, const cv::Mat1b& image, std::vector<Found>& found) {
+  const auto squares = in_squares(board, found);
+  std::vector<cv::Point2f> image_px;
+  for (const auto& point : found) image_px.push_back(point.image_px);
+  const auto map = cv::findHomography(squares, image_px);
+  std::vector<double> contrasts;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    contrasts.push_back(contrast_at(image, map, found[i], squares[i]));
+  auto sorted = contrasts;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::ranges::nth_element(sorted, middle);
+  std::vector<Found> kept;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (contrasts[i] > kLeastContrast * std::max(*middle, 0.)) kept.push_back(found[i]);
+  found = std::move(kept);
+}
+
 bool enough(const Board& board, const std::vector<Found>& found) {
   const bool whole = board.kind != BoardKind::charuco;
   if (found.size() < (whole ? points_of(board).size() : kFewest)) return false;
@@ -127,6 +171,7 @@ std::vector<Found> refined(const Board& board, const cv::Mat1b& image, std::vect
   }
   const Grid grid(columns_of(board), found);
   std::erase_if(found, [&grid](const Found& corner) { return !is_in_line(grid, corner); });
+  if (enough(board, found)) erase_covered(board, image, found);
   return enough(board, found) ? found : std::vector<Found>{};
 }
 

@@ -23,18 +23,24 @@ Tilt tilt_bin(glm::dvec2 tilt) {
 
 std::string_view tilt_advice(Tilt tilt) {
   switch (tilt) {
-    case Tilt::flat: return "Hold the board flat towards the camera.";
-    case Tilt::left: return "Tilt the board to the left, its left side away from the camera.";
-    case Tilt::right: return "Tilt the board to the right, its right side away from the camera.";
-    case Tilt::up: return "Tilt the board up, its upper side away from the camera.";
-    case Tilt::down: return "Tilt the board down, its lower side away from the camera.";
+    case Tilt::flat:
+      return "Hold the board flat towards the camera.";
+    case Tilt::left:
+      return "Tilt the board to the left, its left side away from the camera.";
+    case Tilt::right:
+      return "Tilt the board to the right, its right side away from the camera.";
+    case Tilt::up:
+      return "Tilt the board up, its upper side away from the camera.";
+    case Tilt::down:
+      return "Tilt the board down, its lower side away from the camera.";
   }
   return {};
 }
 
 /// The names of the thirds of the image.
 std::string place_name(int column, int row) {
-  constexpr std::array<std::string_view, 3> kAcross{"left", "", "right"}, kDown{"top", "", "bottom"};
+  constexpr std::array<std::string_view, 3> kAcross{"left", "", "right"},
+      kDown{"top", "", "bottom"};
   const auto across = kAcross[static_cast<std::size_t>(column)];
   const auto down = kDown[static_cast<std::size_t>(row)];
   if (across.empty() && down.empty()) return "in the middle";
@@ -57,8 +63,8 @@ void Coverage::add(const BoardView& view) {
 }
 
 double Coverage::area() const {
-  return 1 - static_cast<double>(std::ranges::count(cells_, 0)) /
-                 static_cast<double>(cells_.size());
+  return 1 -
+         static_cast<double>(std::ranges::count(cells_, 0)) / static_cast<double>(cells_.size());
 }
 
 int Coverage::tilts_seen() const {

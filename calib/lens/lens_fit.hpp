@@ -30,7 +30,7 @@ struct Spread {
   double low = 0, high = 0;  ///< the 95 % interval
 };
 
-/// One of the given views.
+/// One of the given views. If it was rejected and has no pose at all, the error is 0.
 struct FittedView {
   double rms_px = 0;                ///< distance of the corners from where the fit has them
   glm::dmat4 camera_from_board{1};  ///< rigid, in metres
@@ -41,18 +41,18 @@ struct FittedView {
 struct LensFit {
   CameraModel camera;
   Distortion distortion = Distortion::none;
-  double rms_px = 0;                        ///< over the views that were not rejected
-  double held_out_px = 0;                   ///< the same for views that the fit has not seen
-  std::array<double, 5> held_out_of_px{};   ///< held_out_px of each Distortion
-  std::array<Spread, 9> spreads;            ///< of kLensParameters; those not fitted have 0, 0, 0
-  std::vector<FittedView> views;            ///< one for each of the given views
+  double rms_px = 0;                       ///< over the views that were not rejected
+  double held_out_px = 0;                  ///< the same for views that the fit has not seen
+  std::array<double, 5> held_out_of_px{};  ///< held_out_px of each Distortion
+  std::array<Spread, 9> spreads;           ///< of kLensParameters; those not fitted have 0, 0, 0
+  std::vector<FittedView> views;           ///< one for each of the given views
 };
 
-/// The lens of a camera from views of a board. The fit is OpenCV's calibrateCamera, by Zhang ("A
-/// Flexible New Technique for Camera Calibration"). Views that contradict the others are left out.
-/// Of the models of distortion, it takes the simplest that predicts views not seen by the fit (5
-/// parts, each predicted from the others) as well as the best one does. The spreads are a bootstrap
-/// over the views, see spread.hpp. Does not depend on the order of the views.
+/// The lens of a camera from views of a board. The fit has the minimum of OpenCV's
+/// calibrateCamera (Zhang, "A Flexible New Technique for Camera Calibration"). Views that
+/// contradict the others are left out. Of the models of distortion, it takes the simplest that
+/// predicts views not seen by the fit (5 parts, each predicted from the others) as well as the best
+/// one does. The spreads are a bootstrap over the views, see spread.hpp.
 ///
 /// Errors: bad_data, with a sentence that says what to do: too few views, views that contradict
 /// each other, a focal length that cannot be told from the distance since the board was not tilted,

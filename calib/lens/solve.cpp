@@ -4,57 +4,64 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "calib/lens/normal.hpp"
+
 namespace handcast::calib {
 namespace {
 
-/// The flags that keep the coefficients at 0 which a model lacks.
-int flags_of(Distortion distortion) {
-  int flags = 0;
-  if (distortion < Distortion::k1) flags |= cv::CALIB_FIX_K1;
-  if (distortion < Distortion::k2) flags |= cv::CALIB_FIX_K2;
-  if (distortion < Distortion::tangential) flags |= cv::CALIB_ZERO_TANGENT_DIST;
-  if (distortion < Distortion::k3) flags |= cv::CALIB_FIX_K3;
-  return flags;
+std::vector<Normal> normals_of(std::span<const Points> views, Distortion distortion,
+                               const Solution& at) {
+  std::vector<Normal> normals;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    normals.push_back(normal_of(views[i], at.poses[i], at.camera, distortion));
+  return normals;
 }
 
-/// `start` with the coefficients at 0 that the model lacks.
-cv::Vec<double, 5> lens_within(const CameraModel& start, Distortion distortion) {
-  auto lens = lens_of(start);
-  if (distortion < Distortion::k1) lens[0] = 0;
-  if (distortion < Distortion::k2) lens[1] = 0;
-  if (distortion < Distortion::tangential) lens[2] = lens[3] = 0;
-  if (distortion < Distortion::k3) lens[4] = 0;
-  return lens;
+double squares_of(const std::vector<Normal>& normals) {
+  double sum = 0;
+  for (const auto& normal : normals) sum += normal.squares;
+  return sum;
 }
 
-CameraModel camera_of(const cv::Matx33d& k, const cv::Vec<double, 5>& lens, cv::Size size) {
-  return {.width_px = size.width,
-          .height_px = size.height,
-          .fx_px = k(0, 0),
-          .fy_px = k(1, 1),
-          .cx_px = k(0, 2),
-          .cy_px = k(1, 2),
-          .k1 = lens[0],
-          .k2 = lens[1],
-          .p1 = lens[2],
-          .p2 = lens[3],
-          .k3 = lens[4]};
+template <int n>
+void damp(cv::Matx<double, n, n>& matrix, double by) {
+  for (int i = 0; i < n; ++i) matrix(i, i) *= 1 + by;
 }
 
-bool is_sound(const CameraModel& camera) {
-  return std::isfinite(camera.k1 + camera.k2 + camera.k3 + camera.p1 + camera.p2) &&
-         std::isfinite(camera.cx_px + camera.cy_px) && camera.fx_px > 0 && camera.fy_px > 0;
+/// One step of Levenberg and Marquardt.
+Solution stepped(const Solution& from, std::vector<Normal> normals, double damping) {
+  Statement sum{};
+  for (auto& normal : normals) {
+    damp(normal.pose, damping);
+    damp(normal.lens, damping);
+    const auto statement = statement_of(normal);
+    sum.matrix += statement.matrix;
+    sum.slope += statement.slope;
+  }
+  const LensVector step = sum.matrix.solve(sum.slope, cv::DECOMP_CHOLESKY);
+  Solution to = from;
+  to.camera = camera_of(values_of(from.camera) + step, from.camera.width_px, from.camera.height_px);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const auto moved = pose_step(normals[i], step);
+    to.poses[i].turn += cv::Vec3d(moved[0], moved[1], moved[2]);
+    to.poses[i].move += cv::Vec3d(moved[3], moved[4], moved[5]);
+  }
+  return to;
+}
+
+/// `camera` with the coefficients at 0 that the model lacks.
+CameraModel within(const CameraModel& camera, Distortion distortion) {
+  auto values = values_of(camera);
+  for (int i = free_parameters(distortion); i < values.rows; ++i) values[i] = 0;
+  return camera_of(values, camera.width_px, camera.height_px);
 }
 
 }  // namespace
 
 Points points_of(const BoardView& view) {
   Points points;
-  for (const auto& m : view.board_m)
-    points.board_m.emplace_back(static_cast<float>(m.x), static_cast<float>(m.y),
-                                static_cast<float>(m.z));
-  for (const auto& px : view.image_px)
-    points.image_px.emplace_back(static_cast<float>(px.x), static_cast<float>(px.y));
+  for (const auto& m : view.board_m) points.board_m.emplace_back(m.x, m.y, m.z);
+  for (const auto& px : view.image_px) points.image_px.emplace_back(px.x, px.y);
   return points;
 }
 
@@ -77,45 +84,62 @@ cv::Vec<double, 5> lens_of(const CameraModel& camera) {
   return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
 }
 
-std::optional<Solution> solve(std::span<const Points> views, Distortion distortion, int width_px,
-                              int height_px, const CameraModel* start) {
+std::optional<Solution> first_guess(std::span<const Points> views, int width_px, int height_px) {
   std::vector<std::vector<cv::Point3f>> board_m;
   std::vector<std::vector<cv::Point2f>> image_px;
   for (const auto& view : views) {
-    board_m.push_back(view.board_m);
-    image_px.push_back(view.image_px);
+    board_m.emplace_back(view.board_m.begin(), view.board_m.end());
+    image_px.emplace_back(view.image_px.begin(), view.image_px.end());
   }
-  cv::Mat matrix = cv::Mat::eye(3, 3, CV_64F), lens = cv::Mat::zeros(1, 5, CV_64F);
-  int flags = flags_of(distortion);
-  if (start) {
-    cv::Mat(matrix_of(*start)).copyTo(matrix);
-    cv::Mat(lens_within(*start, distortion).t()).copyTo(lens);
-    flags |= cv::CALIB_USE_INTRINSIC_GUESS;
-  }
-  std::vector<cv::Vec3d> turns, moves;
-  cv::Mat rms;
-  constexpr int kRounds = 60;
+  Solution guess;
   try {
-    cv::calibrateCamera(board_m, image_px, {width_px, height_px}, matrix, lens, turns, moves,
-                        cv::noArray(), cv::noArray(), rms, flags,
-                        {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kRounds, 1e-9});
+    const cv::Matx33d k = cv::initCameraMatrix2D(board_m, image_px, {width_px, height_px}, 0);
+    guess.camera =
+        camera_of({k(0, 0), k(1, 1), k(0, 2), k(1, 2), 0, 0, 0, 0, 0}, width_px, height_px);
   } catch (const cv::Exception&) {  // of views that have no solution
     return {};
   }
-  Solution solution{camera_of(matrix, lens, {width_px, height_px}), {}, {}};
-  if (!is_sound(solution.camera)) return {};
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    solution.poses.push_back({turns[i], moves[i]});
-    solution.rms_px.push_back(rms.at<double>(static_cast<int>(i)));
+  if (!std::isfinite(guess.camera.fx_px + guess.camera.fy_px)) return {};
+  for (const auto& view : views) {
+    const auto placed = place(view, guess.camera);
+    if (!placed) return {};
+    guess.poses.push_back(placed->pose);
+    guess.rms_px.push_back(placed->rms_px);
   }
-  return solution;
+  return guess;
+}
+
+std::optional<Solution> solve(std::span<const Points> views, Distortion distortion,
+                              const Solution& start) {
+  constexpr int kRounds = 100;
+  constexpr double kDone = 1e-7, kLargestDamping = 1e9;
+  Solution best = start;
+  best.camera = within(start.camera, distortion);
+  auto normals = normals_of(views, distortion, best);
+  double damping = 1e-3;
+  for (int round = 0; round < kRounds && damping < kLargestDamping; ++round) {
+    auto next = stepped(best, normals, damping);
+    auto next_normals = normals_of(views, distortion, next);
+    const double before = squares_of(normals), after = squares_of(next_normals);
+    damping *= after < before ? 0.1 : 10;  // NaN is no progress either
+    if (after < before) {
+      best = std::move(next);
+      normals = std::move(next_normals);
+    }
+    if (std::abs(before - after) <= kDone * before) break;
+  }
+  if (!(best.camera.fx_px > 0 && best.camera.fy_px > 0 && std::isfinite(squares_of(normals))))
+    return {};
+  for (std::size_t i = 0; i < views.size(); ++i)
+    best.rms_px[i] = std::sqrt(normals[i].squares / static_cast<double>(views[i].image_px.size()));
+  return best;
 }
 
 std::optional<Placed> place(const Points& view, const CameraModel& camera) {
   Placed placed;
   const auto matrix = matrix_of(camera);
   const auto lens = lens_of(camera);
-  std::vector<cv::Point2f> expected_px;
+  std::vector<cv::Point2d> expected_px;
   try {
     if (!cv::solvePnP(view.board_m, view.image_px, matrix, lens, placed.pose.turn,
                       placed.pose.move))
@@ -124,8 +148,9 @@ std::optional<Placed> place(const Points& view, const CameraModel& camera) {
   } catch (const cv::Exception&) {  // of points that have no pose
     return {};
   }
-  placed.rms_px = cv::norm(expected_px, view.image_px) /
-                  std::sqrt(static_cast<double>(expected_px.size()));
+  placed.rms_px =
+      cv::norm(expected_px, view.image_px) / std::sqrt(static_cast<double>(expected_px.size()));
+  if (!std::isfinite(placed.rms_px)) return {};
   return placed;
 }
 

@@ -8,13 +8,12 @@
 
 #include "calib/lens/lens_fit.hpp"
 
-/// OpenCV's solvers in our units.
 namespace handcast::calib {
 
 /// The points of a view as OpenCV takes them.
 struct Points {
-  std::vector<cv::Point3f> board_m;
-  std::vector<cv::Point2f> image_px;
+  std::vector<cv::Point3d> board_m;
+  std::vector<cv::Point2d> image_px;
 };
 Points points_of(const BoardView& view);
 
@@ -31,10 +30,16 @@ struct Solution {
   std::vector<double> rms_px;  ///< of each view
 };
 
-/// The camera and the poses that fit best, in the sense of least squares; nothing if the views do
-/// not determine them. `start`: a camera that is nearly right.
-std::optional<Solution> solve(std::span<const Points> views, Distortion distortion, int width_px,
-                              int height_px, const CameraModel* start = nullptr);
+/// A camera without distortion, by Zhang's closed form, and the poses of the boards as it sees
+/// them; nothing if the views do not determine them.
+std::optional<Solution> first_guess(std::span<const Points> views, int width_px, int height_px);
+
+/// The camera and the poses that fit best, in the sense of least squares: the minimum that OpenCV's
+/// calibrateCamera finds. By Levenberg and Marquardt, with the poses eliminated from the normal
+/// equations, so that the time grows with the number of views and not with its cube. `start`:
+/// nearly right. Nothing if the views do not determine the camera.
+std::optional<Solution> solve(std::span<const Points> views, Distortion distortion,
+                              const Solution& start);
 
 /// The pose of one board, and how far its corners then are from where they were seen.
 struct Placed {

@@ -11,12 +11,11 @@ namespace handcast::calib {
 constexpr int kResamples = 1000;
 
 /// How well the parameters are known, by a bootstrap over the views: it draws as many views as
-/// there are, with repetition, and takes one Gauss-Newton step from the full solution. That is a
-/// solution of the drawn views in all but the second order, since they differ little from all
-/// views, and takes microseconds instead of a tenth of a second. The scores are those of the
-/// jackknife (CR3: Bell and McCaffrey, "Bias Reduction in Standard Errors for Linear Regression
-/// with Multi-Stage Samples", 2002), for a fit follows its own views too well; the interval is
-/// widened by Student's t for the number of views.
+/// there are, with repetition, and takes one Gauss-Newton step from the full solution. That is the
+/// solution of the drawn views but for terms of second order, and takes microseconds. Views are
+/// drawn and not corners, since the errors of a view's corners may depend on each other: a bent
+/// board, motion. The interval is that of Student's t with one degree of freedom less than there
+/// are views; tests/bench/calib_lens.cpp measures how often it holds the truth.
 std::array<Spread, 9> spreads_of(std::span<const Points> views, const Solution& solution,
                                  Distortion distortion);
 

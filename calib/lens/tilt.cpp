@@ -16,7 +16,7 @@ cv::Mat map_of(const BoardView& view) {
   constexpr std::size_t kFewest = 4;
   if (view.ids.size() < kFewest) return {};
   const auto points = points_of(view);
-  std::vector<cv::Point2f> board_m;
+  std::vector<cv::Point2d> board_m;
   for (const auto& point : points.board_m) board_m.emplace_back(point.x, point.y);
   try {
     return cv::findHomography(board_m, points.image_px);
@@ -53,7 +53,7 @@ double mistake_of(const BoardView& view) {
   const cv::Mat map = map_of(view);
   if (map.empty()) return std::numeric_limits<double>::infinity();
   const auto points = points_of(view);
-  std::vector<cv::Point2f> board_m, expected_px;
+  std::vector<cv::Point2d> board_m, expected_px;
   for (const auto& point : points.board_m) board_m.emplace_back(point.x, point.y);
   cv::perspectiveTransform(board_m, expected_px, map);
   double worst = 0;

@@ -15,8 +15,8 @@ std::optional<glm::dvec2> tilt_of(const BoardView& view, double scale_px);
 /// A focal length for tilt_of(), when nothing is known of the lens.
 inline double usual_focal_length_px(int width_px) { return 1.3 * width_px; }
 
-/// The distance of the corners that are not where one homography of the board has them, as a share
-/// of the distance between neighbours; infinite if there is none.
+/// The largest distance of a corner from where the homography that fits the board best has it, as a
+/// share of the distance between neighbours; infinite if there is no homography.
 double mistake_of(const BoardView& view);
 
 }  // namespace handcast::calib

@@ -44,8 +44,8 @@ inline std::vector<BoardView> show(const Person& person, const CameraModel& came
   constexpr std::size_t kFewest = 15;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> share(-1, 1);
-  const double fills_m = camera.fx_px / camera.width_px * person.board.columns *
-                         person.board.square_mm * 1e-3;
+  const double fills_m =
+      camera.fx_px / camera.width_px * person.board.columns * person.board.square_mm * 1e-3;
   std::vector<BoardView> views;
   while (views.size() < static_cast<std::size_t>(person.views)) {
     const double away_m = fills_m * (1.15 + 0.35 * share(random));
@@ -54,31 +54,52 @@ inline std::vector<BoardView> show(const Person& person, const CameraModel& came
                               down * person.reach * camera.height_px / camera.fy_px * away_m,
                               away_m);
     const double pitch = share(random), yaw = share(random);
-    auto view = view_of(person.board, camera,
-                        held(person.board, centre_m, glm::dvec2(pitch, yaw) * person.tilt_rad,
-                             share(random) * 0.3),
-                        person.noise_px, random);
+    auto view = view_of(
+        person.board, camera,
+        held(person.board, centre_m, glm::dvec2(pitch, yaw) * person.tilt_rad, share(random) * 0.3),
+        person.noise_px, random);
     if (view.ids.size() >= kFewest) views.push_back(std::move(view));
   }
   return views;
 }
 
-/// The distance between where two cameras see the same rays, over the image of the first.
-/// `true_camera` may be turned a little: a turn is not a fault of the lens but is taken up by the
-/// poses.
-inline double reprojection_px(const CameraModel& fitted, const CameraModel& true_camera) {
-  double squares = 0;
-  int count = 0;
-  for (int y = 0; y < true_camera.height_px; y += 20)
-    for (int x = 0; x < true_camera.width_px; x += 20) {
-      const auto ray = true_camera.undistort({x, y});
-      const glm::dvec3 point((ray.x - true_camera.cx_px) / true_camera.fx_px,
-                             (ray.y - true_camera.cy_px) / true_camera.fy_px, 1);
-      const auto px = fitted.distort(fitted.project(point));
-      squares += glm::dot(px - glm::dvec2(x, y), px - glm::dvec2(x, y));
-      ++count;
-    }
-  return std::sqrt(squares / count);
+/// How far apart two cameras see the same rays, over the image of the true one, in the sense of
+/// least squares. The fitted one may be turned: a camera that is turned a little and has its
+/// principal point elsewhere sees nearly the same, and the poses of the boards take up the turn.
+inline double reprojection_px(const CameraModel& fitted, const CameraModel& truth) {
+  const auto fitted_px = [&fitted](const glm::dvec3& ray) {
+    return fitted.distort(fitted.project(ray));
+  };
+  constexpr double kStep_rad = 1e-5;
+  glm::dvec3 turn(0);
+  double rms_px = 0;
+  for (int round = 0; round < 3; ++round) {
+    glm::dmat3 normal(0);
+    glm::dvec3 slope(0);
+    double squares = 0;
+    int count = 0;
+    for (int y = 0; y < truth.height_px; y += 20)
+      for (int x = 0; x < truth.width_px; x += 20) {
+        const auto px = truth.undistort({x, y});
+        const glm::dvec3 straight((px.x - truth.cx_px) / truth.fx_px,
+                                  (px.y - truth.cy_px) / truth.fy_px, 1);
+        const auto ray = straight + glm::cross(turn, straight);
+        const auto off_px = glm::dvec2(x, y) - fitted_px(ray);
+        glm::dmat3x2 by_turn;
+        for (int axis = 0; axis < 3; ++axis) {
+          glm::dvec3 step(0);
+          step[axis] = kStep_rad;
+          by_turn[axis] = (fitted_px(ray + glm::cross(step, ray)) - fitted_px(ray)) / kStep_rad;
+        }
+        normal += glm::transpose(by_turn) * by_turn;
+        slope += glm::transpose(by_turn) * off_px;
+        squares += glm::dot(off_px, off_px);
+        ++count;
+      }
+    turn += glm::inverse(normal) * slope;
+    rms_px = std::sqrt(squares / count);
+  }
+  return rms_px;
 }
 
 }  // namespace handcast::calib
