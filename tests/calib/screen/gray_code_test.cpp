@@ -147,6 +147,20 @@ TEST(GrayCode, ReadsTheWhiteSquaresOfAPrintedBoard) {
   EXPECT_LT(quantile(errors, 0.95), 0.3);
 }
 
+TEST(GrayCode, LeavesOutPixelsWithTwoUnsureBits) {
+  // Two patterns of columns and their inverses are hidden in the middle of the image.
+  auto images = shots().images;
+  for (const std::size_t hidden : {10, 11, 14, 15})
+    for (int y = 200; y < 300; ++y)
+      std::fill_n(images[hidden].begin() + y * 720 + 300, 100, std::uint8_t{60});
+  const test::Shots partly{images, 720, 540};
+  const auto decoded = code().decode(partly.views());
+  ASSERT_TRUE(decoded) << decoded.error().what;
+  EXPECT_GT(decoded->points.size(), 5000u);
+  for (const auto& [px, projector_px, sigma_px] : decoded->points)
+    EXPECT_FALSE(px.x > 300 && px.x < 399 && px.y > 200 && px.y < 299) << px.x << " " << px.y;
+}
+
 TEST(GrayCode, ReadsAnOverexposedBoardAndSaysSo) {
   auto seen = board({.contrast = 300, .ambient = 60});
   const auto decoded = code().decode(shoot(code(), seen).views());

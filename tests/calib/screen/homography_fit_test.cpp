@@ -171,6 +171,7 @@ TEST(FitHomography, WeighsPointsByTheirAccuracy) {
   }
   const auto fit = fit_homography(mixed, bent_camera());
   ASSERT_TRUE(fit) << fit.error().what;
+  EXPECT_GT(fit->inlier_share, 0.95);
   EXPECT_LT(worst_px(*fit), 0.08);
 }
 

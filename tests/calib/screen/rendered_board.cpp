@@ -78,12 +78,14 @@ ScreenModel coaxial_screen() {
   return {reference_rig().projector_from_camera, glm::dvec3(0), kPlane_m};
 }
 
-ScreenModel screen_beside(double baseline_m) {
-  const double focal_px = 1653, angle = std::atan2(baseline_m, kPlane_m);
+ScreenModel screen_beside(double baseline_m) { return screen_from({baseline_m, 0, 0}); }
+
+ScreenModel screen_from(const glm::dvec3& centre_m) {
+  const double focal_px = 1653, angle = std::atan2(centre_m.x, kPlane_m);
   const glm::dmat3 lens(focal_px, 0, 0, 0, focal_px, 0, 511.5, 383.5, 1);
   const glm::dmat3 turn(glm::rotate(glm::dmat4(1), angle, glm::dvec3(0, 1, 0)));
   const auto infinite = lens * turn;
-  const auto parallax = -infinite * glm::dvec3(baseline_m, 0, 0);
+  const auto parallax = -infinite * centre_m;
   auto homography = infinite * glm::inverse(bent_camera().matrix());
   homography[2] += parallax / kPlane_m;
   return ScreenModel{homography, parallax, kPlane_m}.normalised();

@@ -18,7 +18,10 @@ inline constexpr double kPlane_m = 0.73;
 CameraModel bent_camera();
 /// The homography of the reference rig, at every depth.
 ScreenModel coaxial_screen();
-/// A projector to the right of the camera that looks at the point in front of it at kPlane_m.
+/// A projector with its centre there in camera space, turned to the right or left to look at the
+/// point in front of the camera at kPlane_m (exactly if the centre is on the x axis).
+ScreenModel screen_from(const glm::dvec3& centre_m);
+/// screen_from() on the x axis, to the right of the camera.
 ScreenModel screen_beside(double baseline_m);
 /// A board whose middle is at this depth, turned about the axis (1, 0.5, 0).
 glm::dvec4 tilted_board(double depth_m, double tilt_rad = 0.2);
