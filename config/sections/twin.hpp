@@ -8,6 +8,7 @@
 #include "config/sections/twin/geometry.hpp"
 #include "config/sections/twin/image.hpp"
 #include "config/sections/twin/projector.hpp"
+#include "config/sections/twin/prop.hpp"
 #include "config/sections/twin/shape.hpp"
 #include "config/sections/twin/tracker.hpp"
 #include "config/settings/field.hpp"
@@ -36,6 +37,7 @@ struct Twin {
   TwinDetector detector;
   TwinImage image;
   TwinProjector projector;
+  TwinProp prop;
 };
 
 template <class Visitor>
@@ -54,6 +56,7 @@ void describe(Visitor& visitor, Twin& twin) {
   visitor.section("detector", twin.detector, "The errors of the landmark detector.");
   visitor.section("image", twin.image, "The camera images.");
   visitor.section("projector", twin.projector, "The times of the projector's frames.");
+  visitor.section("prop", twin.prop, "What is in front of the camera in place of hands.");
 }
 
 }  // namespace handcast::config

@@ -3,43 +3,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "ipc/base/clock.hpp"
 #include "renderer/base/clones.hpp"
 #include "services/evaluation/twin/background.hpp"
 #include "services/evaluation/twin/bystander.hpp"
+#include "services/evaluation/twin/lamp.hpp"
 #include "services/evaluation/twin/skin_pattern.hpp"
 #include "services/evaluation/twin/table_mirror.hpp"
 
 namespace handcast::twin {
 namespace {
 
-constexpr std::size_t kNoiseSize = 1 << 18;
-constexpr float kNominal_m = 0.73f;  ///< distance to which settings.gain applies
-constexpr float kScattered = 0.4f;   ///< share of the light that is independent of the normal
 /// Signs of the area of visible triangles on a screen whose y points down.
 constexpr float kFront = -1, kFrontInMirror = 1;
 
 HANDCAST_CLONES
-void add_noise(const std::uint8_t* scene, const std::int8_t* noise, std::uint8_t* out, int count) {
-  for (int x = 0; x < count; ++x) {
-    const int value = scene[x] + noise[x];
-    out[x] = static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
-  }
-}
-
-HANDCAST_CLONES
 void add_row(const float* from, float* to, int count) {
   for (int x = 0; x < count; ++x) to[x] += from[x];
-}
-
-HANDCAST_CLONES
-void round_row(const float* sum, float scale, std::uint8_t* out, int count) {
-  for (int x = 0; x < count; ++x) {
-    const float value = sum[x] * scale + 0.5f;
-    out[x] = static_cast<std::uint8_t>(static_cast<int>(value > 255.0f ? 255.0f : value));
-  }
 }
 
 }  // namespace
@@ -50,27 +31,16 @@ CameraScene::CameraScene(const config::TwinImage& settings, int seed,
       seed_(seed),
       camera_(calibration.camera),
       camera_from_tracker_(calibration.camera_from_tracker),
-      image_noise_(seed, Stream::image_noise),
       background_(make_background(settings, camera_, Random(seed, Stream::image_clutter))),
-      spread_(settings.spread_px),
+      sensor_(settings, seed, camera_.width_px),
       table_spread_(settings.table > 0 ? kTableBlur_px : 0),
       inverse_depth_(camera_.width_px, camera_.height_px),
       instant_(camera_.width_px, camera_.height_px),
       sum_(camera_.width_px, camera_.height_px) {
-  make_noise(seed);
   if (settings_.face) face_ = make_face(camera_);
   if (settings_.object) object_ = make_held_object();
   if (settings_.table > 0)
     mirror_image_ = renderer::Image<float>(camera_.width_px, camera_.height_px);
-}
-
-void CameraScene::make_noise(int seed) {
-  const Random random(seed, Stream::image_noise);
-  noise_.resize(kNoiseSize + static_cast<std::size_t>(camera_.width_px));
-  for (std::size_t i = 0; i < noise_.size(); ++i) {
-    const double value = std::clamp(settings_.noise * random.normal(i, 1), -127.0, 127.0);
-    noise_[i] = static_cast<std::int8_t>(std::lround(value));
-  }
 }
 
 void CameraScene::set_hand(Side side, const TrueHand& flesh) {
@@ -89,26 +59,21 @@ void CameraScene::set_hand(Side side, const TrueHand& flesh) {
     hand.holes = draw_holes(mesh, settings_.holes, Random(seed_, Stream::image_holes));
 }
 
-/// Projects positions_ and computes their grey values. The lamp is at the lens; its
-/// light falls with 1/r^2. The sun's does not.
+/// Projects positions_ and computes their grey values.
 void CameraScene::shoot(Shot& shot, glm::vec2 within_pixel) {
   if (in_mirror_) mirror_in_table(positions_, normals_);
   shot.screen.resize(positions_.size());
   shot.grey.resize(positions_.size());
   const float wrap = wrap_of(settings_.subsurface_mm);
   const auto sun = static_cast<float>(settings_.sunlight);
-  const auto lit = [wrap](float cosine) { return std::max(0.0f, (cosine + wrap) / (1 + wrap)); };
   for (std::size_t v = 0; v < positions_.size(); ++v) {
     const glm::vec3 p = positions_[v];
     const glm::vec2 px = glm::vec2(camera_.distort(camera_.project(p))) + within_pixel;
     shot.screen.x[v] = px.x;
     shot.screen.y[v] = px.y;
     shot.screen.inverse_depth[v] = 1 / p.z;
-    const float distance = glm::length(p);
-    const float facing = lit(-glm::dot(normals_[v], p) / distance);
-    const float fall = kNominal_m * kNominal_m / (distance * distance);
-    float light = (kScattered + (1 - kScattered) * facing) * fall;
-    if (sun > 0) light += sun * lit(glm::dot(normals_[v], to_sun()));
+    float light = lamp_on(p, normals_[v], wrap);
+    if (sun > 0) light += sun * facing(glm::dot(normals_[v], to_sun()), wrap);
     light *= vignette_at(camera_, px.x, px.y);
     shot.grey[v] = static_cast<float>(settings_.gain) * light;
   }
@@ -269,27 +234,7 @@ void CameraScene::add_bystander() {
 void CameraScene::finish_background() {
   if (settings_.second_person) add_bystander();
   for (float& grey : background_.pixels()) grey = std::round(std::clamp(grey, 0.0f, 255.0f));
-  renderer::Image<float> seen = background_;
-  spread_.spread(seen.view(), {0, 0, camera_.width_px, camera_.height_px});
-  empty_scene_ = renderer::Image<std::uint8_t>(camera_.width_px, camera_.height_px);
-  for (int y = 0; y < camera_.height_px; ++y)
-    round_row(seen.row(y), 1, empty_scene_.row(y), camera_.width_px);
-}
-
-void CameraScene::develop(std::uint64_t k, const renderer::Rect& region, int instants,
-                          renderer::View<std::uint8_t> image) const {
-  const int width = std::min(image.width, camera_.width_px);
-  std::vector<std::uint8_t> row(static_cast<std::size_t>(camera_.width_px));
-  for (int y = 0; y < std::min(image.height, camera_.height_px); ++y) {
-    const std::int8_t* noise =
-        &noise_[image_noise_.bits(k, 2 + static_cast<std::uint64_t>(y)) % kNoiseSize];
-    std::memcpy(row.data(), empty_scene_.row(y), row.size());
-    if (y >= region.y0 && y < region.y1)
-      round_row(sum_.row(y) + region.x0, 1 / static_cast<float>(instants), row.data() + region.x0,
-                region.width());
-    if (faulty_) spoil_row(settings_, row);
-    add_noise(row.data(), noise, image.row(y), width);
-  }
+  sensor_.set_empty_scene(background_);
 }
 
 /// Initialises the part of `region` outside `done`: it was empty scene in all `instants` so far.
@@ -309,7 +254,7 @@ void CameraScene::start_sum(const renderer::Rect& region, const renderer::Rect& 
 void CameraScene::draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exposure_ns,
                        const TruthAt& truth, renderer::View<std::uint8_t> image) {
   faulty_ = settings_.fault.holds(ns_to_seconds(origin_ns));
-  if (empty_scene_.pixels().empty()) finish_background();
+  if (!sensor_.has_empty_scene()) finish_background();
   const int instants = settings_.blur_samples;
   renderer::Rect done, region = draw_mirror_image(origin_ns, truth);
   for (int i = 0; i < instants; ++i) {
@@ -320,14 +265,13 @@ void CameraScene::draw(std::uint64_t k, std::int64_t origin_ns, std::int64_t exp
         origin_ns + static_cast<std::int64_t>(at * static_cast<double>(exposure_ns));
     const auto hands = shoot_hands(time_ns, truth, {at, -at}, shots);
     const auto bounds = shoot_face(time_ns, {at, -at}, shots).joined(hands);
-    if (!bounds.empty()) region = bounds.grown(spread_.reach_px()).joined(region);
+    if (!bounds.empty()) region = bounds.grown(sensor_.reach_px()).joined(region);
     region = region.within(camera_.width_px, camera_.height_px);
     start_sum(region, done, i);
     done = region;
     expose(shots, region);
   }
-  spread_.spread(sum_.view(), region);
-  develop(k, region, instants, image);
+  sensor_.develop(k, sum_.view(), region, instants, faulty_, image);
 }
 
 }  // namespace handcast::twin

@@ -11,8 +11,8 @@
 #include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/evaluation/twin/image_faults.hpp"
+#include "services/evaluation/twin/image_sensor.hpp"
 #include "services/evaluation/twin/point_spread.hpp"
-#include "services/evaluation/twin/random.hpp"
 #include "services/evaluation/twin/solid.hpp"
 #include "services/evaluation/twin/surface.hpp"
 #include "services/evaluation/twin/true_hand.hpp"
@@ -73,26 +73,21 @@ class CameraScene {
   renderer::Rect draw_mirror_image(std::int64_t time_ns, const TruthAt& truth);
   void start_sum(const renderer::Rect& region, const renderer::Rect& done, int instants);
   void expose(std::size_t shots, const renderer::Rect& region);
-  void develop(std::uint64_t k, const renderer::Rect& region, int instants,
-               renderer::View<std::uint8_t> image) const;
-  void make_noise(int seed);
 
   config::TwinImage settings_;
   int seed_;
   calib::CameraModel camera_;
   glm::mat4 camera_from_tracker_;
-  Random image_noise_;
   std::array<Hand, 2> hands_;
   Solid face_;           ///< empty without a face
   Solid object_;         ///< that the hands hold, in the axes of the palm joint; empty without it
   bool faulty_ = false;  ///< the frame being drawn has the image faults
 
-  renderer::Image<float> background_;          ///< before the point spread
-  renderer::Image<std::uint8_t> empty_scene_;  ///< an image without hands; empty before the first
-  PointSpread spread_, table_spread_;
-  renderer::Rect mirrored_;         ///< where mirror_image_ is not 0
-  bool in_mirror_ = false;          ///< shoot() reflects the surface in the table
-  std::vector<std::int8_t> noise_;  ///< each row of a frame reads it from a random offset
+  renderer::Image<float> background_;  ///< before the point spread
+  ImageSensor sensor_;                 ///< has no empty scene before the first frame
+  PointSpread table_spread_;
+  renderer::Rect mirrored_;  ///< where mirror_image_ is not 0
+  bool in_mirror_ = false;   ///< shoot() reflects the surface in the table
   std::vector<Shot> shots_;
   std::vector<glm::vec3> positions_, normals_;  ///< of the surface for shoot(), camera space
   renderer::Image<float> inverse_depth_, instant_, sum_, mirror_image_;

@@ -39,6 +39,7 @@ enum class Stream : std::uint64_t {
   camera_clock,      ///< errors of the camera's stamps
   detector_near,     ///< landmarks that are displaced by a little
   detector_bias,     ///< error of the landmarks that depends on the pose
+  board,             ///< where the calibration board is held
 };
 
 /// The splitmix64 step (Steele, Lea, Flood 2014): a bijection that scrambles all 64 bits.

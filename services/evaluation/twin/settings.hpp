@@ -4,9 +4,10 @@
 
 namespace handcast::twin {
 
-/// The settings that Twin::create reads: the true person and its motion. Every back end on the twin
-/// depends on them.
-inline constexpr config::SettingList kWorldSettings{
-    "twin.motion", "twin.hands", "twin.speed", "twin.seed", "twin.shape", "twin.geometry", "hand"};
+/// The settings that Twin::create reads: the true person, its motion and what replaces it. Every
+/// back end on the twin depends on them.
+inline constexpr config::SettingList kWorldSettings{"twin.motion", "twin.hands", "twin.speed",
+                                                    "twin.seed",   "twin.shape", "twin.geometry",
+                                                    "twin.prop",   "hand"};
 
 }  // namespace handcast::twin

@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "services/evaluation/twin/homography.hpp"
 #include "services/evaluation/twin/random.hpp"
 
 namespace handcast::twin {
@@ -16,19 +17,6 @@ constexpr double kVolume_m = 0.73;  ///< distance of the middle of the working v
 glm::dvec3 direction(const Random& random, std::uint64_t draw) {
   return glm::normalize(
       glm::dvec3(random.normal(draw), random.normal(draw + 1), random.normal(draw + 2)));
-}
-
-/// The map from the projective basis (three axes and their sum) to four points.
-glm::dmat3 from_basis(const std::array<glm::dvec2, 4>& points) {
-  const glm::dmat3 axes(glm::dvec3(points[0], 1), glm::dvec3(points[1], 1),
-                        glm::dvec3(points[2], 1));
-  const glm::dvec3 scale = glm::inverse(axes) * glm::dvec3(points[3], 1);
-  return {axes[0] * scale.x, axes[1] * scale.y, axes[2] * scale.z};
-}
-
-/// The homography that maps each `from` to its `to`.
-glm::dmat3 homography(const std::array<glm::dvec2, 4>& from, const std::array<glm::dvec2, 4>& to) {
-  return from_basis(to) * glm::inverse(from_basis(from));
 }
 
 /// Moves the corners of the projector's image by `rms_px` per corner.

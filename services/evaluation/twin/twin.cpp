@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ipc/base/clock.hpp"
+#include "services/evaluation/twin/board_scene.hpp"
 #include "services/evaluation/twin/camera_scene.hpp"
 #include "services/evaluation/twin/camera_times.hpp"
 #include "services/evaluation/twin/detector.hpp"
@@ -30,11 +31,11 @@ class RigTwin final : public Twin {
         tracker_(rig.twin.tracker, rig.twin.seed, geometry.calibration(), motion_->shape()),
         detector_(rig.twin.detector, rig.twin.seed, geometry.calibration().camera,
                   motion_->shape()),
-        image_(rig.twin.image),
-        seed_(rig.twin.seed) {}
+        settings_(rig.twin) {}
 
   std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const override {
-    return side == absent_ ? std::nullopt : motion_->at(side, ns_to_seconds(time_ns));
+    if (side == absent_ || settings_.prop.kind != config::TwinPropKind::none) return std::nullopt;
+    return motion_->at(side, ns_to_seconds(time_ns));
   }
 
   const TrueHands& hands() const override { return *hands_; }
@@ -78,8 +79,28 @@ class RigTwin final : public Twin {
   std::int64_t camera_arrival_ns(std::uint64_t k) const override { return camera_.arrival_ns(k); }
 
   void camera_image(std::uint64_t k, renderer::View<std::uint8_t> image) const override {
+    if (board_) return board_->draw(k, camera_origin_ns(k), exposure_ns_, nullptr, image);
     const auto truth = [this](Side side, std::int64_t time_ns) { return joints(side, time_ns); };
     scene().draw(k, camera_origin_ns(k), exposure_ns_, truth, image);
+  }
+
+  void camera_image(std::uint64_t k, const Light& light,
+                    renderer::View<std::uint8_t> image) const override {
+    if (!board_) return camera_image(k, image);
+    board_->draw(k, camera_origin_ns(k), exposure_ns_, &light, image);
+  }
+
+  Result<void> show_board(const FlatPicture& picture) override {
+    if (settings_.prop.kind != config::TwinPropKind::board)
+      return fail(Errc::bad_config, "twin: no board is held, because twin.prop.kind is not board");
+    if (auto usable = check(picture); !usable) return usable;
+    board_.emplace(settings_, geometry_, picture);
+    return {};
+  }
+
+  std::optional<glm::dmat4> board_pose(std::int64_t time_ns) const override {
+    if (!board_) return std::nullopt;
+    return board_->camera_from_board(time_ns);
   }
 
   Detection detect(std::uint64_t n, std::uint64_t frame_id, std::int64_t stamp_ns) const override {
@@ -107,7 +128,7 @@ class RigTwin final : public Twin {
 
   CameraScene& scene() const {
     if (scene_) return *scene_;
-    scene_.emplace(image_, seed_, geometry_.calibration());
+    scene_.emplace(settings_.image, settings_.seed, geometry_.calibration());
     for (const Side side : kSides) scene_->set_hand(side, true_hand(side));
     return *scene_;
   }
@@ -120,9 +141,9 @@ class RigTwin final : public Twin {
   std::unique_ptr<TrueHands> hands_;
   TrackerModel tracker_;
   DetectorModel detector_;
-  config::TwinImage image_;
-  int seed_;
+  config::Twin settings_;
   mutable std::optional<CameraScene> scene_;  ///< made for the first image
+  mutable std::optional<BoardScene> board_;   ///< empty without the picture of a board
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "ipc/msg/projection.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
+#include "services/evaluation/twin/flat_picture.hpp"
 #include "services/evaluation/twin/motion.hpp"
 #include "services/evaluation/twin/true_geometry.hpp"
 #include "services/evaluation/twin/true_hands.hpp"
@@ -32,7 +33,8 @@ class Twin {
                                               const calib::Calibration& calibration);
   virtual ~Twin() = default;
 
-  /// The true joints of one hand in tracker space; empty if there is no such hand at that time.
+  /// The true joints of one hand in tracker space; empty if there is no such hand at that time, and
+  /// always if `twin.prop` replaces the hands.
   virtual std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const = 0;
   /// The true hands and what their texture means. The first use takes up to a second.
   virtual const TrueHands& hands() const = 0;
@@ -68,6 +70,17 @@ class Twin {
   virtual std::int64_t camera_arrival_ns(std::uint64_t k) const = 0;
   /// Draws camera frame `k`. `image` must have the size of the calibration's camera.
   virtual void camera_image(std::uint64_t k, renderer::View<std::uint8_t> image) const = 0;
+  /// The same while the projector shows `light`, which reaches a board and the table behind it
+  /// (`twin.image.leak` of it). Hands show a pattern of their own instead.
+  virtual void camera_image(std::uint64_t k, const Light& light,
+                            renderer::View<std::uint8_t> image) const = 0;
+
+  /// Sets what is on the board that is held if `twin.prop.kind` is board; before the first image.
+  /// Without it the scene is empty. Errors: bad_data (check()), bad_config (the twin
+  /// has hands).
+  virtual Result<void> show_board(const FlatPicture& picture) = 0;
+  /// The true pose camera_from_board of the board's axes (FlatPicture); empty without a board.
+  virtual std::optional<glm::dmat4> board_pose(std::int64_t time_ns) const = 0;
 
   /// The result of one run of the detector.
   struct Detection {

@@ -82,7 +82,7 @@ void expect_reads(const std::string& service, const config::Rig& rig,
 }
 
 const std::vector<std::string> kTruth{"twin.motion", "twin.hands",    "twin.speed", "twin.seed",
-                                      "twin.shape",  "twin.geometry", "hand"};
+                                      "twin.shape",  "twin.geometry", "twin.prop",  "hand"};
 
 std::vector<std::string> truth_and(std::vector<std::string> more) {
   more.insert(more.end(), kTruth.begin(), kTruth.end());

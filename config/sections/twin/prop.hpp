@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "config/settings/field.hpp"
+
+namespace handcast::config {
+
+/// What is in front of the twin's camera in place of hands.
+enum class TwinPropKind {
+  none,   ///< nothing: hands are
+  board,  ///< a calibration board that a person holds
+};
+constexpr std::array<std::string_view, 2> words_of(TwinPropKind) { return {"none", "board"}; }
+
+/// [twin.prop]
+struct TwinProp {
+  TwinPropKind kind = TwinPropKind::none;
+  double hold_s = 2;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, TwinProp& prop) {
+  visitor.field("kind", prop.kind,
+                "What is in front of the camera in place of hands. board: a calibration board "
+                "that a person moves through the image.");
+  visitor.field("hold_s", prop.hold_s, between(0.2, 60, "s"),
+                "How long the board is held still at each place.");
+}
+
+}  // namespace handcast::config
