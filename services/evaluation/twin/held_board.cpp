@@ -74,8 +74,8 @@ glm::dquat HeldBoard::turn_at(std::uint64_t i) const {
          glm::angleAxis(glm::radians(kRoll_deg * random_.spread(i, roll)), glm::dvec3(0, 0, 1));
 }
 
-/// Puts the board as far into one cell of the image as it may leave the image. The orders in which
-/// cells, distances and tilts take turns are independent.
+/// Moves the board from the middle of the image towards one cell, as far as kInside permits. Cells,
+/// distances and tilts take turns in independent orders.
 HeldBoard::Place HeldBoard::make_place(std::uint64_t i, const calib::CameraModel& camera) const {
   const double nearest_m = std::max(kNearest_m, fitting_m(camera, half_m_));
   const double farthest_m = std::max(kFarthest_m, 1.3 * nearest_m);

@@ -36,7 +36,9 @@ void sample_row(const Quads quads, const float* map, const float* ray_x, const f
     const float u = (m0 * ray_x[i] + m3 * ray_y[i] + m6) * scale,
                 v = (m1 * ray_x[i] + m4 * ray_y[i] + m7) * scale;
     const bool in = (u >= -0.5f) & (v >= -0.5f) & (u < right + 0.5f) & (v < bottom + 0.5f);
-    const float cu = u < 0 ? 0 : u > right ? right : u, cv = v < 0 ? 0 : v > bottom ? bottom : v;
+    // A place that is no number counts as the first pixel.
+    const float cu = u > 0 ? (u < right ? u : right) : 0,
+                cv = v > 0 ? (v < bottom ? v : bottom) : 0;
     const int left = static_cast<int>(cu), top = static_cast<int>(cv);
     const std::uint32_t quad = quads.data[top * quads.width + left];
     const float fu = cu - static_cast<float>(left), fv = cv - static_cast<float>(top);

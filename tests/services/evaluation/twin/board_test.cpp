@@ -1,129 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "services/evaluation/twin/held_board.hpp"
-#include "tests/services/evaluation/twin/world.hpp"
+#include "tests/services/evaluation/twin/board_world.hpp"
 
-/// The camera's images of a board that is held, and of the projector's light on it.
+/// The camera's images of a board that is held.
 namespace handcast::twin {
 namespace {
-
-using renderer::Image;
-
-constexpr int kColumns = 10, kRows = 7;
-constexpr double kSquare_m = 0.025;
-
-/// A checkerboard with a margin of half a square. Its origin is the corner of the first four
-/// squares.
-FlatPicture checkerboard(int px_per_square) {
-  FlatPicture picture;
-  picture.width_px = (kColumns + 1) * px_per_square;
-  picture.height_px = (kRows + 1) * px_per_square;
-  picture.metres_per_px = kSquare_m / px_per_square;
-  picture.origin_px = glm::dvec2(1.5 * px_per_square - 0.5);
-  for (int y = 0; y < picture.height_px; ++y)
-    for (int x = 0; x < picture.width_px; ++x) {
-      const int column = (2 * x / px_per_square + 1) / 2 - 1,
-                row = (2 * y / px_per_square + 1) / 2 - 1;
-      const bool margin = column < 0 || row < 0 || column >= kColumns || row >= kRows;
-      picture.pixels.push_back(!margin && (column + row) % 2 == 0 ? 15 : 240);
-    }
-  return picture;
-}
-
-/// White paper of the same size and place.
-FlatPicture blank() {
-  auto picture = checkerboard(10);
-  std::fill(picture.pixels.begin(), picture.pixels.end(), std::uint8_t{255});
-  return picture;
-}
-
-config::Rig board_rig(double leak = 0) {
-  auto rig = rig_with("builtin:open_close");
-  rig.twin.prop.kind = config::TwinPropKind::board;
-  rig.twin.image.noise = 0;
-  rig.twin.image.leak = leak;
-  return rig;
-}
-
-std::unique_ptr<Twin> twin_with(const config::Rig& rig, const FlatPicture& picture) {
-  auto twin = twin_of(rig);
-  const auto shown = twin->show_board(picture);
-  EXPECT_TRUE(shown) << shown.error().what;
-  return twin;
-}
-
-/// The camera frame in the middle of the hold at a place.
-std::uint64_t frame_at(const config::Rig& rig, int place) {
-  const double seconds =
-      place * (rig.twin.prop.hold_s + HeldBoard::kMove_s) + rig.twin.prop.hold_s / 2;
-  return static_cast<std::uint64_t>(seconds * rig.camera.rate_hz);
-}
-
-Image<std::uint8_t> shot(const Twin& twin, std::uint64_t k) {
-  Image<std::uint8_t> image(720, 540);
-  twin.camera_image(k, image.view());
-  return image;
-}
-
-/// The grey levels of a projector image.
-struct Picture {
-  std::vector<std::uint8_t> grey = std::vector<std::uint8_t>(1024 * 768);
-  Light light() const { return {grey.data(), 1024, 768}; }
-};
-
-/// A bright square around a projector pixel.
-Picture spot(int x_px, int y_px, int reach_px) {
-  Picture picture;
-  for (int y = y_px - reach_px; y <= y_px + reach_px; ++y)
-    for (int x = x_px - reach_px; x <= x_px + reach_px; ++x) picture.grey[y * 1024 + x] = 255;
-  return picture;
-}
-
-Image<std::uint8_t> lit_shot(const Twin& twin, std::uint64_t k, const Picture& picture) {
-  Image<std::uint8_t> image(720, 540);
-  twin.camera_image(k, picture.light(), image.view());
-  return image;
-}
-
-glm::dvec3 ray_of(const Twin& twin, const glm::dvec2& image_px) {
-  const auto& camera = twin.geometry().calibration().camera;
-  return glm::inverse(camera.matrix()) * glm::dvec3(camera.undistort(image_px), 1);
-}
-
-/// The point of the board that a pixel of the true camera sees, camera space.
-glm::dvec3 on_board_m(const Twin& twin, const glm::dmat4& pose, const glm::dvec2& image_px) {
-  const auto ray = ray_of(twin, image_px);
-  return ray *
-         (glm::dot(glm::dvec3(pose[2]), glm::dvec3(pose[3])) / glm::dot(glm::dvec3(pose[2]), ray));
-}
-
-/// Where a place on the board is in the image.
-glm::dvec2 in_image_px(const Twin& twin, std::uint64_t k, const glm::dvec2& board_m) {
-  const auto& camera = twin.geometry().calibration().camera;
-  const auto pose = *twin.board_pose(twin.camera_origin_ns(k));
-  return camera.distort(camera.project(glm::dvec3(pose * glm::dvec4(board_m, 0, 1))));
-}
-
-/// The mean position of what light adds to an image; NaN if it adds nothing.
-glm::dvec2 centre_of_light(const Image<std::uint8_t>& lit, const Image<std::uint8_t>& dark) {
-  glm::dvec2 sum(0);
-  double weight = 0;
-  for (int y = 0; y < lit.height(); ++y)
-    for (int x = 0; x < lit.width(); ++x) {
-      const double more = lit.at(x, y) - dark.at(x, y);
-      sum += more * glm::dvec2(x, y);
-      weight += more;
-    }
-  return sum / weight;
-}
 
 /// Distances between the true inner corners of the checkerboard and those that are found in the
 /// image, as far as they are inside.
@@ -220,82 +108,6 @@ TEST(Board, BesideItTheSceneIsEmpty) {
   EXPECT_EQ(different, 0);
 }
 
-TEST(Board, ASpotOfLightIsWhereTheProjectorSendsIt) {
-  auto rig = board_rig(0.3);
-  rig.twin.geometry.projector_offset_mm = 60;
-  rig.twin.geometry.homography_px = 5;
-  const auto twin = twin_with(rig, blank());
-  double most_px = 0;
-  for (int place = 0; place < HeldBoard::kPlaces; place += 3) {
-    const auto k = frame_at(rig, place);
-    const auto pose = *twin->board_pose(twin->camera_origin_ns(k));
-    const glm::dvec3 middle(pose * glm::dvec4(0.1, 0.07, 0, 1));
-    const glm::ivec2 lamp_px(glm::round(twin->geometry().to_projector(middle)));
-    const auto seen_px =
-        centre_of_light(lit_shot(*twin, k, spot(lamp_px.x, lamp_px.y, 4)), shot(*twin, k));
-    const auto from_px = twin->geometry().to_projector(on_board_m(*twin, pose, seen_px));
-    most_px = std::max(most_px, glm::distance(from_px, glm::dvec2(lamp_px)));
-  }
-  std::printf("spots: largest error %.3f projector px\n", most_px);
-  EXPECT_LT(most_px, 0.3);
-}
-
-TEST(Board, LightBesideItIsOnTheTableOneMetreAway) {
-  auto rig = board_rig(1);
-  rig.twin.geometry.projector_offset_mm = 60;
-  rig.twin.image.background = 60;
-  auto small = blank();
-  small.metres_per_px /= 20;
-  const auto twin = twin_with(rig, small);
-  const auto dark = shot(*twin, 0);
-  int spots = 0;
-  for (const glm::dvec2 px : {glm::dvec2(100, 100), {620, 100}, {100, 440}, {620, 440}}) {
-    if (glm::distance(px, in_image_px(*twin, 0, {0, 0})) < 60) continue;
-    const glm::ivec2 lamp_px(glm::round(twin->geometry().to_projector(ray_of(*twin, px))));
-    const auto seen_px = centre_of_light(lit_shot(*twin, 0, spot(lamp_px.x, lamp_px.y, 6)), dark);
-    const auto from_px = twin->geometry().to_projector(ray_of(*twin, seen_px));
-    EXPECT_LT(glm::distance(from_px, glm::dvec2(lamp_px)), 0.3);
-    EXPECT_NEAR(lit_shot(*twin, 0, spot(lamp_px.x, lamp_px.y, 6)).at(int(px.x), int(px.y)),
-                2 * dark.at(int(px.x), int(px.y)), 2)
-        << "as bright as the lamp's light";
-    ++spots;
-  }
-  EXPECT_GE(spots, 3);
-}
-
-TEST(Board, AFilterThatLeaksNothingHidesTheProjector) {
-  const auto rig = board_rig(0);
-  const auto twin = twin_with(rig, blank());
-  const auto k = frame_at(rig, 0);
-  EXPECT_EQ(lit_shot(*twin, k, spot(512, 384, 200)).pixels(), shot(*twin, k).pixels());
-}
-
-TEST(Board, ADarkProjectorIsNoProjector) {
-  auto rig = board_rig(0.5);
-  rig.twin.image.spread_px = 1.5;
-  rig.twin.image.sunlight = 0.1;
-  const auto twin = twin_with(rig, checkerboard(40));
-  for (const int place : {0, 4, 8}) {
-    const auto k = frame_at(rig, place);
-    const auto lit = lit_shot(*twin, k, Picture()), dark = shot(*twin, k);
-    for (std::size_t i = 0; i < lit.pixels().size(); ++i)
-      ASSERT_NEAR(lit.pixels()[i], dark.pixels()[i], 1) << "place " << place << ", pixel " << i;
-  }
-}
-
-TEST(Board, LightThatIsHalfAsStrongAddsHalfAsMuch) {
-  const auto rig = board_rig(0.4);
-  const auto twin = twin_with(rig, blank());
-  const auto k = frame_at(rig, 5);
-  const auto px = glm::ivec2(glm::round(in_image_px(*twin, k, {0.1, 0.07})));
-  Picture full, half;
-  std::fill(full.grey.begin(), full.grey.end(), std::uint8_t{255});
-  std::fill(half.grey.begin(), half.grey.end(), std::uint8_t{128});
-  const double dark = shot(*twin, k).at(px.x, px.y);
-  EXPECT_NEAR(lit_shot(*twin, k, full).at(px.x, px.y), 1.4 * dark, 2);
-  EXPECT_NEAR(lit_shot(*twin, k, half).at(px.x, px.y), 1.2 * dark, 2);
-}
-
 TEST(Board, TheExposureBlursItWhileItMoves) {
   auto rig = board_rig();
   rig.camera.exposure_ms = 20;
@@ -365,13 +177,6 @@ TEST(Board, AnUnusablePictureIsRefusedWithASentence) {
   ASSERT_FALSE(with_hands);
   EXPECT_EQ(with_hands.error().code, Errc::bad_config);
   EXPECT_THAT(with_hands.error().what, HasSubstr("twin.prop.kind"));
-}
-
-TEST(Board, HandsTakeNoNoticeOfTheProjectorsLight) {
-  const auto rig = rig_with("builtin:still");
-  const auto twin = twin_of(rig);
-  EXPECT_EQ(lit_shot(*twin, 3, spot(512, 384, 200)).pixels(), shot(*twin, 3).pixels());
-  EXPECT_FALSE(twin->board_pose(0));
 }
 
 TEST(Board, DrawingTime) {
