@@ -69,7 +69,7 @@ Curvature bootstrap(const std::vector<Normal>& normals) {
 
 }  // namespace
 
-Spread Uncertainty::spread(int unknown, double factor) const {
+Uncertainty Uncertainty::spread(int unknown, double factor) const {
   const double sd = factor * std::sqrt(covariance(unknown, unknown));
   return {sd, -width * sd, width * sd};
 }

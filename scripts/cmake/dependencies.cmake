@@ -15,8 +15,8 @@ pkg_check_modules(eigen3 REQUIRED IMPORTED_TARGET eigen3)
 find_package(TinyGLTF REQUIRED)
 
 # Debian's targets of OpenCV lack the path of their headers.
-find_package(OpenCV REQUIRED COMPONENTS core calib3d imgproc imgcodecs videoio)
-foreach(part core calib3d imgproc imgcodecs videoio)
+find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs videoio aruco calib3d features2d)
+foreach(part core imgproc imgcodecs videoio aruco calib3d features2d)
   target_include_directories(opencv_${part} SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 endforeach()
 

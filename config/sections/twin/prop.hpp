@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <string>
 #include <string_view>
 
 #include "config/settings/field.hpp"
@@ -18,6 +19,7 @@ constexpr std::array<std::string_view, 2> words_of(TwinPropKind) { return {"none
 struct TwinProp {
   TwinPropKind kind = TwinPropKind::none;
   double hold_s = 2;
+  std::string board = "charuco:11x8:20";
 };
 
 template <class Visitor>
@@ -27,6 +29,9 @@ void describe(Visitor& visitor, TwinProp& prop) {
                 "that a person moves through the image.");
   visitor.field("hold_s", prop.hold_s, between(0.2, 60, "s"),
                 "How long the board is held still at each place.");
+  visitor.field("board", prop.board,
+                "The board: KIND:COLUMNSxROWS:MM with the kinds charuco, checkerboard and circles, "
+                "as for `handcast calibrate --board`.");
 }
 
 }  // namespace handcast::config
