@@ -48,9 +48,10 @@ struct Made {
 /// The calibration of a rig: camera, tracker and projector. The names of transforms read from right
 /// to left.
 ///
-/// The projector is a pinhole ("plane and parallax", Hartley & Zisserman 2004, section 13.3): with p
-/// the undistorted camera pixel of a point, z its depth in camera space, H the homography that holds
-/// on the plane z = d, and e the image of the camera's centre in the projector, on the scale of H,
+/// The projector is a pinhole ("plane and parallax", Hartley & Zisserman 2004, section 13.3): with
+/// p the undistorted camera pixel of a point, z its depth in camera space, H the homography that
+/// holds on the plane z = d, and e the image of the camera's centre in the projector, on the scale
+/// of H,
 ///
 ///     projector px ~ H p + e (1 / z - 1 / d)
 ///

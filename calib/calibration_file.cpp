@@ -80,9 +80,10 @@ void describe(Visitor& visitor, ProjectorSection& projector) {
   visitor.field("w", projector.w, Range{}, "Third row: the divisor of both.");
   visitor.field("plane_m", projector.plane_m, between(0.05, 100, "m"),
                 "Distance from the camera, along its axis, at which the homography holds.");
-  visitor.field("parallax", projector.parallax, between(-1e6, 1e6),
-                "Change of the homography's last column for each 1/m that a point is nearer. Zeros: "
-                "camera and projector are coaxial, and the homography holds everywhere.");
+  visitor.field(
+      "parallax", projector.parallax, between(-1e6, 1e6),
+      "Change of the homography's last column for each 1/m that a point is nearer. Zeros: "
+      "camera and projector are coaxial, and the homography holds everywhere.");
 }
 
 template <class Visitor>
@@ -138,9 +139,14 @@ File to_file(const Calibration& calibration) {
            {c.cx_px, c.cy_px},
            {c.k1, c.k2, c.p1, c.p2, c.k3}},
           {row_of(tracker, 0), row_of(tracker, 1), row_of(tracker, 2)},
-          {calibration.projector_device, calibration.projector_width_px,
-           calibration.projector_height_px, row_of(homography, 0), row_of(homography, 1),
-           row_of(homography, 2), calibration.plane_m, {e.x, e.y, e.z}},
+          {calibration.projector_device,
+           calibration.projector_width_px,
+           calibration.projector_height_px,
+           row_of(homography, 0),
+           row_of(homography, 1),
+           row_of(homography, 2),
+           calibration.plane_m,
+           {e.x, e.y, e.z}},
           calibration.made};
 }
 

@@ -43,8 +43,7 @@ std::span<const Brightness> around(std::span<const Toggle> toggles, std::size_t 
     return toggles[a].begin_ns + (toggles[b].begin_ns - toggles[a].begin_ns) / 2;
   };
   const auto from_ns = i == 0 ? toggles[0].begin_ns - kLongest_ns : middle(i - 1, i);
-  const auto to_ns =
-      i + 1 == toggles.size() ? toggles[i].begin_ns + kLongest_ns : middle(i, i + 1);
+  const auto to_ns = i + 1 == toggles.size() ? toggles[i].begin_ns + kLongest_ns : middle(i, i + 1);
   const auto time = [](const Brightness& image) { return image.origin_ns; };
   const auto first = std::ranges::lower_bound(images, from_ns, {}, time),
              last = std::ranges::lower_bound(images, to_ns, {}, time);

@@ -211,13 +211,14 @@ Result<void> GrayDecoder::check(const std::vector<PatchReading>& readings) const
       static_cast<double>(unusual) > kMostUnusualShare * static_cast<double>(readings.size()))
     return fail(
         Errc::bad_data,
-        fmt::format("the images of the patterns do not fit together (edges off by {:.2f} px, {:.1f} "
-                    "% of the pixels torn, {:.1f} % of the patches unusual): did the camera or the "
-                    "board move while the patterns were shown, or is an image missing?",
-                    result_.edge_residual_px,
-                    100.0 * static_cast<double>(torn_) / std::max(1.0, static_cast<double>(neighbours_)),
-                    100.0 * static_cast<double>(unusual) /
-                        std::max<double>(1, static_cast<double>(readings.size()))));
+        fmt::format(
+            "the images of the patterns do not fit together (edges off by {:.2f} px, {:.1f} "
+            "% of the pixels torn, {:.1f} % of the patches unusual): did the camera or the "
+            "board move while the patterns were shown, or is an image missing?",
+            result_.edge_residual_px,
+            100.0 * static_cast<double>(torn_) / std::max(1.0, static_cast<double>(neighbours_)),
+            100.0 * static_cast<double>(unusual) /
+                std::max<double>(1, static_cast<double>(readings.size()))));
   return {};
 }
 

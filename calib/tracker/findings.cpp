@@ -33,7 +33,7 @@ bool at_the_edge(const TrackerFit& fit) {
 }
 
 double largest_place_sd_mm(const TrackerFit& fit) {
-  return std::ranges::max(fit.camera_place_mm, {}, &Uncertainty::sd).sd;
+  return std::ranges::max(fit.camera_place_mm, {}, &Interval::sd).sd;
 }
 
 Quality quality_of(const Evidence& evidence, const TrackerFit& fit) {

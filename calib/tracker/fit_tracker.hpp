@@ -31,7 +31,7 @@ struct Sighting {
 
 /// How well a value is known. `low` and `high` are relative to the estimate: the truth lies between
 /// estimate + low and estimate + high with 95 % probability.
-struct Uncertainty {
+struct Interval {
   double sd = 0, low = 0, high = 0;
 };
 
@@ -70,9 +70,9 @@ struct TrackerFit {
   /// Uncertainties by a bootstrap over blocks of time, to which the change is added that a stricter
   /// and a looser limit for outliers cause. Axes: right, down, forward of the camera.
   /// @{
-  std::array<Uncertainty, 3> camera_place_mm;  ///< of the camera's centre in the tracker's space
-  std::array<Uncertainty, 3> rotation_deg;     ///< about the axes through the camera's centre
-  Uncertainty clock_offset_ms;
+  std::array<Interval, 3> camera_place_mm;  ///< of the camera's centre in the tracker's space
+  std::array<Interval, 3> rotation_deg;     ///< about the axes through the camera's centre
+  Interval clock_offset_ms;
   /// @}
   /// At the middle of the observed volume, then at the 8 corners of its box in camera space.
   std::array<PlaceError, 9> place_errors;

@@ -104,7 +104,7 @@ Result<void> check_common_time(const Observations& o) {
 }
 
 Result<void> check_extent(const Observations& o) {
-  constexpr double kLeastMotion_m = 0.010, kLeastWidth_m = 0.005;
+  constexpr double kLeastMotion_m = 0.010;
   const auto extent = extent_of(o);
   if (extent.motion_m < kLeastMotion_m)
     return fail(Errc::bad_data,

@@ -69,7 +69,7 @@ Curvature bootstrap(const std::vector<Normal>& normals) {
 
 }  // namespace
 
-Uncertainty Uncertainty::spread(int unknown, double factor) const {
+Interval Uncertainty::spread(int unknown, double factor) const {
   const double sd = factor * std::sqrt(covariance(unknown, unknown));
   return {sd, -width * sd, width * sd};
 }

@@ -12,7 +12,7 @@ struct Uncertainty {
   /// The largest change of the camera's place by a stricter or looser limit for outliers.
   double limit_shift_mm = 0;
 
-  Uncertainty spread(int unknown, double factor) const;
+  Interval spread(int unknown, double factor) const;
   /// For a place in camera space.
   PlaceError place_error(const glm::dvec3& place_m) const;
 };

@@ -33,8 +33,7 @@ class CameraLookup {
   /// `nearness`: of the lit surface, by entry of the table (NearnessGrid::points()); empty: it lies
   /// on the calibration's plane.
   void resample(View<const std::uint8_t> mask, Rect region, View<std::uint8_t> out,
-                const Similarity& then_from_now = {},
-                std::span<const float> nearness = {}) const;
+                const Similarity& then_from_now = {}, std::span<const float> nearness = {}) const;
   /// Bounds of `camera_region` (image px) in projector px, not clipped to the screen, for a surface
   /// of this nearness.
   Rect to_projector(Rect camera_region, float nearness = 0) const;

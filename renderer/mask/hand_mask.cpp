@@ -160,8 +160,7 @@ Rect HandMask::advance(std::span<const Expected> hands) {
     for (std::size_t h = 0; h < regions.size(); ++h) {
       if (shown_[h] != shown) continue;
       const GreyView mask = shown ? camera_mask_.view() : memory_of(hands[h].side).mask.view();
-      lookup_.resample(mask, regions[h], projector_mask_.view(), moves[h],
-                       nearness_[h].points());
+      lookup_.resample(mask, regions[h], projector_mask_.view(), moves[h], nearness_[h].points());
     }
   return all;
 }

@@ -36,8 +36,8 @@ class HandMask {
     /// @{
     LandmarkPoints moved_then{}, moved_now{};
     /// @}
-    /// Its drawn vertices at the target time, projector px, and their depths: needed by advance() if
-    /// camera and projector are not coaxial.
+    /// Its drawn vertices at the target time, projector px, and their depths: needed by advance()
+    /// if camera and projector are not coaxial.
     /// @{
     std::span<const glm::vec2> landings_px{};
     std::span<const float> depths_m{};

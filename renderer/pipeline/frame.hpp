@@ -42,7 +42,7 @@ struct Frame {
   View<const glm::vec2> uv;
   View<const SurfaceId> surface;
   /// @}
-  std::span<const FrameHand> hands;        ///< the hands of this frame
+  std::span<const FrameHand> hands;  ///< the hands of this frame
   /// Number of the test picture that it shows in place of hands (msg::TestPicture); 0: none.
   std::uint64_t test_picture = 0;
   int foldovers = 0;                       ///< triangles that the correction turned over

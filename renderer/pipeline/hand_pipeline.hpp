@@ -29,11 +29,11 @@ config::Registration registration_of(const config::Cascade& settings);
 
 /// One hand in one frame: the results of the steps so far.
 struct HandFrame {
-  Corrected corrected;             ///< result of predict, filter and ladder
-  RegisteredHand registered;       ///< result of register
-  float presence = 1;              ///< share of its light, 0..1
-  std::optional<Skinned> skinned;  ///< result of skin; its landings are moved by correct
-  LandmarkPoints drawn_from{};     ///< result of skin: P of the pose that was skinned
+  Corrected corrected;                       ///< result of predict, filter and ladder
+  RegisteredHand registered;                 ///< result of register
+  float presence = 1;                        ///< share of its light, 0..1
+  std::optional<Skinned> skinned;            ///< result of skin; its landings are moved by correct
+  LandmarkPoints drawn_from{};               ///< result of skin: P of the pose that was skinned
   std::array<float, kLandmarks> depths_m{};  ///< result of skin: of its landmarks
 };
 

@@ -42,8 +42,8 @@ std::vector<std::uint16_t> vertices_of(const HandMesh& mesh) {
   return vertices;
 }
 
-/// `position`: xyz xyz ...; `m`: column-major, 3 rows and 4 columns, from camera space to homogeneous projector px;
-/// `px`: xy xy ...
+/// `position`: xyz xyz ...; `m`: column-major, 3 rows and 4 columns, from camera space to
+/// homogeneous projector px; `px`: xy xy ...
 HANDCAST_CLONES void project_all(const float* position, int count, const float* m, float nearest,
                                  float* px, float* depth) {
   for (int v = 0; v < count; ++v) {
@@ -97,7 +97,9 @@ Skinned HandSurface::pose(const msg::HandPose& pose, const config::Skin& setting
   if (!shaded) std::fill(light_.begin(), light_.end(), presence);
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());
   return {seen_px_, landings_px_, depth_m_, lit_fully ? std::span<const float>() : light_,
-          glm::determinant(calibration.projector_from_camera * calibration.camera.matrix()) > 0 ? -1.0f : 1.0f};
+          glm::determinant(calibration.projector_from_camera * calibration.camera.matrix()) > 0
+              ? -1.0f
+              : 1.0f};
 }
 
 void HandSurface::learn_widths(std::int64_t time_ns, const LandmarkPoints& landmarks_px,

@@ -44,18 +44,28 @@ void draw(const msg::CameraFrame& frame, const calib::CameraModel& camera,
 DraggedCorners::DraggedCorners(const calib::Calibration& draft) {
   const double w = draft.camera.width_px - 1, h = draft.camera.height_px - 1;
   const double near = kInset, far = 1 - kInset;
-  camera_px_ = {{{near * w, near * h}, {far * w, near * h}, {far * w, far * h}, {near * w, far * h}}};
+  camera_px_ = {
+      {{near * w, near * h}, {far * w, near * h}, {far * w, far * h}, {near * w, far * h}}};
   for (std::size_t i = 0; i < 4; ++i) projector_px_[i] = draft.to_projector(camera_px_[i]);
 }
 
 bool DraggedCorners::press(const Key& key) {
   auto& corner = projector_px_[chosen_];
   switch (key.arrow) {
-    case Key::Arrow::up: corner.y -= step_px_; return true;
-    case Key::Arrow::down: corner.y += step_px_; return true;
-    case Key::Arrow::left: corner.x -= step_px_; return true;
-    case Key::Arrow::right: corner.x += step_px_; return true;
-    case Key::Arrow::none: break;
+    case Key::Arrow::up:
+      corner.y -= step_px_;
+      return true;
+    case Key::Arrow::down:
+      corner.y += step_px_;
+      return true;
+    case Key::Arrow::left:
+      corner.x -= step_px_;
+      return true;
+    case Key::Arrow::right:
+      corner.x += step_px_;
+      return true;
+    case Key::Arrow::none:
+      break;
   }
   if (key.character >= '1' && key.character <= '4')
     chosen_ = static_cast<std::size_t>(key.character - '1');

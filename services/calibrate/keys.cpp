@@ -11,11 +11,16 @@ constexpr char kEscape = '\x1b';
 
 Key::Arrow arrow_of(char code) {
   switch (code) {
-    case 'A': return Key::Arrow::up;
-    case 'B': return Key::Arrow::down;
-    case 'C': return Key::Arrow::right;
-    case 'D': return Key::Arrow::left;
-    default: return Key::Arrow::none;
+    case 'A':
+      return Key::Arrow::up;
+    case 'B':
+      return Key::Arrow::down;
+    case 'C':
+      return Key::Arrow::right;
+    case 'D':
+      return Key::Arrow::left;
+    default:
+      return Key::Arrow::none;
   }
 }
 

@@ -45,12 +45,11 @@ Result<std::vector<calib::BoardView>> take_views(Desk& desk) {
       break;
     }
     const double views_share = static_cast<double>(views.size()) / kEnoughViews;
-    progress.show(std::min({0.99, coverage.share(), views_share}),
-                  views.empty() ? "Hold the board still in front of the camera"
-                                : coverage.advice());
+    progress.show(
+        std::min({0.99, coverage.share(), views_share}),
+        views.empty() ? "Hold the board still in front of the camera" : coverage.advice());
     const auto frame = frames->latest(Deadline::in(200ms));
-    if (!frame && frame.error().code != Errc::timeout)
-      return tl::make_unexpected(frame.error());
+    if (!frame && frame.error().code != Errc::timeout) return tl::make_unexpected(frame.error());
     if (!frame) continue;
     auto seen = finder.find(view_of(**frame));
     if (!seen || !capture.take((*frame)->header.origin_ns, *seen)) continue;
@@ -64,9 +63,9 @@ std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardV
   std::vector<Dot> dots;
   for (const auto& view : views)
     for (const auto& px : view.image_px) dots.push_back({px});
-  return dots_svg(fit.camera.width_px, fit.camera.height_px, dots, 1,
-                  fmt::format("Where the board was seen: {} corners in {} images.", dots.size(),
-                              views.size()));
+  return dots_svg(
+      fit.camera.width_px, fit.camera.height_px, dots, 1,
+      fmt::format("Where the board was seen: {} corners in {} images.", dots.size(), views.size()));
 }
 
 Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {

@@ -42,9 +42,7 @@ constexpr std::array kSteps{
               "show takes place, nearer and farther, too."},
 };
 
-const StepEntry& entry_of(Step step) {
-  return *std::ranges::find(kSteps, step, &StepEntry::step);
-}
+const StepEntry& entry_of(Step step) { return *std::ranges::find(kSteps, step, &StepEntry::step); }
 
 /// The steps to do now.
 std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const Session& session) {
@@ -88,8 +86,7 @@ Result<Outcome> with_rig(const Options& options, const config::Rig& rig, const R
   auto screen = TestScreen::open(rig.name, running.calibration.projector_width_px,
                                  running.calibration.projector_height_px);
   if (!screen) return tl::make_unexpected(screen.error());
-  Desk desk{options, rig,      running.calibration, session.draft(), *own_rig,
-            *screen, keys};
+  Desk desk{options, rig, running.calibration, session.draft(), *own_rig, *screen, keys};
   return measure(desk);
 }
 

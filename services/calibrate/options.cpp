@@ -31,8 +31,7 @@ Result<Size> parse_size(const std::string& flag, const std::string& text) {
         size.height_px >= 16)
       return size;
   }
-  return fail(Errc::bad_config,
-              fmt::format("{}: '{}' is not a size like 1024x768", flag, text));
+  return fail(Errc::bad_config, fmt::format("{}: '{}' is not a size like 1024x768", flag, text));
 }
 
 /// What the program needs to run.
@@ -58,7 +57,8 @@ Result<Options> parse(int argc, char** argv) {
   app.add_option("--board", board, "The board: KIND:COLUMNSxROWS:MM, the size of a square in mm")
       ->capture_default_str();
   app.add_option("--print-board", options.board_pdf, "Writes the board as a PDF, and ends");
-  app.add_option("--camera", camera, "Size of the camera's images, for a rig without a calibration");
+  app.add_option("--camera", camera,
+                 "Size of the camera's images, for a rig without a calibration");
   app.add_option("--projector", projector,
                  "Size of the projector's image, for a rig without a calibration");
   app.add_option("--folder", options.folder,
@@ -84,9 +84,9 @@ Result<Options> parse(int argc, char** argv) {
   auto parsed = calib::parse_board(board);
   if (!parsed) return fail_in("--board", parsed.error());
   options.board = *parsed;
-  for (const auto& [flag, given, size] : {std::tuple{"--camera", &camera, &options.camera},
-                                          std::tuple{"--projector", &projector,
-                                                     &options.projector}}) {
+  for (const auto& [flag, given, size] :
+       {std::tuple{"--camera", &camera, &options.camera},
+        std::tuple{"--projector", &projector, &options.projector}}) {
     if (given->empty()) continue;
     const auto read = parse_size(flag, *given);
     if (!read) return tl::make_unexpected(read.error());

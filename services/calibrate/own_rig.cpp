@@ -30,8 +30,8 @@ pid_t spawn(std::vector<std::string> words, const std::filesystem::path& log) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0644);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -56,8 +56,9 @@ Result<OwnRig> OwnRig::start(const std::filesystem::path& rig_file, const std::s
   for (const auto& setting : settings) words.insert(words.end(), {"--set", setting});
   OwnRig rig(spawn(std::move(words), log), log);
   if (rig.child_ < 0)
-    return fail(Errc::unavailable, "`handcast up` cannot be started; is `handcast` in the folder "
-                                   "of its other programs?");
+    return fail(Errc::unavailable,
+                "`handcast up` cannot be started; is `handcast` in the folder "
+                "of its other programs?");
   if (auto seen = rig.wait_for_images(name); !seen) return tl::make_unexpected(seen.error());
   return rig;
 }

@@ -14,8 +14,8 @@ namespace handcast::calibrate {
 class OwnRig {
  public:
   /// Starts the rig of a file with settings of --set, and waits until its camera has sent an image.
-  /// What it prints goes to `log`. Errors: unavailable (it cannot be started, or ended; the sentence
-  /// has its last words), timeout (no image came in 30 s).
+  /// What it prints goes to `log`. Errors: unavailable (it cannot be started, or ended; the
+  /// sentence has its last words), timeout (no image came in 30 s).
   static Result<OwnRig> start(const std::filesystem::path& rig_file, const std::string& name,
                               const std::vector<std::string>& settings,
                               const std::filesystem::path& log);

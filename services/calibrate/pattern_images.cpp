@@ -47,8 +47,7 @@ Result<calib::LightDelay> PatternImages::measure_delay() {
     const auto half_ns = seconds_to_ns(0.5 / desk_.rig.projector.rate_hz);
     toggles.push_back({*lit_ns - half_ns, is_bright});
     while (const auto frame = frames_.next(until))
-      images.push_back(
-          {(*frame)->header.origin_ns, (*frame)->exposure_ns, mean_of(**frame)});
+      images.push_back({(*frame)->header.origin_ns, (*frame)->exposure_ns, mean_of(**frame)});
   }
   auto delay = calib::fit_light_delay(toggles, images);
   if (delay)

@@ -16,8 +16,8 @@ constexpr const char* kStyle =
 }  // namespace
 
 std::string piece_html(std::string_view step, const Outcome& outcome) {
-  auto html = fmt::format("<section><h2>{}</h2><p>{}</p>", page::escape(step),
-                          page::escape(outcome.made));
+  auto html =
+      fmt::format("<section><h2>{}</h2><p>{}</p>", page::escape(step), page::escape(outcome.made));
   if (!outcome.findings.empty()) {
     html += "<ul>";
     for (const auto& finding : outcome.findings)
@@ -43,8 +43,8 @@ std::string report_html(const std::string& rig, const calib::Calibration& draft,
 
 std::string dots_svg(int width_px, int height_px, std::span<const Dot> dots, double scale,
                      std::string_view caption) {
-  auto svg = fmt::format("<figure><svg width='{0}' viewBox='-0.5 -0.5 {0} {1}'>", width_px,
-                         height_px);
+  auto svg =
+      fmt::format("<figure><svg width='{0}' viewBox='-0.5 -0.5 {0} {1}'>", width_px, height_px);
   for (const auto& dot : dots) {
     const glm::dvec2 end = dot.at_px + scale * dot.error_px;
     svg += fmt::format("<circle cx='{0:.1f}' cy='{1:.1f}' r='1.5'/>", dot.at_px.x, dot.at_px.y);

@@ -24,8 +24,8 @@ calib::Calibration from_sizes(Size camera, Size projector) {
   rough.projector_height_px = projector.height_px;
   const double scale_x = static_cast<double>(projector.width_px) / camera.width_px,
                scale_y = static_cast<double>(projector.height_px) / camera.height_px;
-  rough.projector_from_camera = {scale_x, 0, 0, 0, scale_y, 0, (scale_x - 1) / 2, (scale_y - 1) / 2,
-                                 1};
+  rough.projector_from_camera = {scale_x,           0, 0, 0, scale_y, 0, (scale_x - 1) / 2,
+                                 (scale_y - 1) / 2, 1};
   return rough;
 }
 

@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kWantedViews = 5;
-constexpr double kMoved_px = 1;   ///< by which the board may have moved during the patterns
+constexpr double kMoved_px = 1;  ///< by which the board may have moved during the patterns
 
 /// One measurement of the projector.
 class ScreenMeasurement {
@@ -121,10 +121,10 @@ class ScreenMeasurement {
     const glm::dvec2 size_m(1e-3 * board.square_mm * board.columns,
                             1e-3 * board.square_mm * board.rows);
     // The homography from undistorted camera pixels to the board's plane, metres.
-    const auto board_from_camera = glm::inverse(
-        camera.matrix() * glm::dmat3(glm::dvec3(camera_from_board[0]),
-                                     glm::dvec3(camera_from_board[1]),
-                                     glm::dvec3(camera_from_board[3])));
+    const auto board_from_camera =
+        glm::inverse(camera.matrix() * glm::dmat3(glm::dvec3(camera_from_board[0]),
+                                                  glm::dvec3(camera_from_board[1]),
+                                                  glm::dvec3(camera_from_board[3])));
     for (int y = 0; y < camera.height_px; ++y)
       for (int x = 0; x < camera.width_px; ++x) {
         const auto at = board_from_camera * glm::dvec3(camera.undistort({x, y}), 1);
@@ -155,8 +155,8 @@ double mean_depth_m(std::span<const calib::DepthView> views) {
 std::string place_of(const calib::ScreenFit& fit) {
   if (fit.coaxial) return "coaxial";
   if (!fit.baseline) return "not coaxial";
-  return fmt::format("the projector is {:.0f} mm from the camera, +- {:.0f}", fit.baseline->length_mm,
-                     fit.baseline->interval_mm);
+  return fmt::format("the projector is {:.0f} mm from the camera, +- {:.0f}",
+                     fit.baseline->length_mm, fit.baseline->interval_mm);
 }
 
 std::string delay_finding(const Desk& desk, const calib::LightDelay& delay) {
@@ -192,11 +192,11 @@ Result<Outcome> measure_screen(Desk& desk) {
   desk.draft.projector_from_camera = fit->model.projector_from_camera;
   desk.draft.parallax = fit->model.parallax;
   desk.draft.plane_m = fit->model.plane_m;
-  Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
-                              fit->coaxial ? fit->held_out_coaxial.median
-                                           : fit->held_out_full.median,
-                              place_of(*fit)),
-                  fit->findings.empty(), fit->findings};
+  Outcome outcome{
+      fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
+                  fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median,
+                  place_of(*fit)),
+      fit->findings.empty(), fit->findings};
   if (delay->low_ms > 1 || delay->high_ms < -1)
     outcome.findings.push_back(delay_finding(desk, *delay));
   return outcome;

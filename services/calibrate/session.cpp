@@ -20,9 +20,12 @@ constexpr std::array kSteps{Step::lens, Step::screen, Step::tracker};
 
 std::string& made_of(calib::Made& made, Step step) {
   switch (step) {
-    case Step::lens: return made.lens;
-    case Step::screen: return made.screen;
-    case Step::tracker: return made.tracker;
+    case Step::lens:
+      return made.lens;
+    case Step::screen:
+      return made.screen;
+    case Step::tracker:
+      return made.tracker;
   }
   return made.lens;
 }
@@ -69,8 +72,7 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
                 fmt::format("what was measured before, in {}, has images of {}x{} px, and the rig "
                             "has {}x{}; --restart forgets it",
                             session.folder_.string(), draft->camera.width_px,
-                            draft->camera.height_px, used.camera.width_px,
-                            used.camera.height_px));
+                            draft->camera.height_px, used.camera.width_px, used.camera.height_px));
   session.draft_ = *draft;
   return session;
 }

@@ -70,8 +70,7 @@ Result<SeenBySide> watch(Desk& desk) {
   if (!poses) return tl::make_unexpected(poses.error());
   auto landmarks = client::open_stream<msg::Landmarks>(desk.rig.name, "landmarks.hands");
   if (!landmarks) return tl::make_unexpected(landmarks.error());
-  calib::VolumeCoverage coverage(desk.draft.camera, desk.used.camera_from_tracker, kNear_m,
-                                 kFar_m);
+  calib::VolumeCoverage coverage(desk.draft.camera, desk.used.camera_from_tracker, kNear_m, kFar_m);
   SeenBySide seen;
   Progress progress(desk, "tracker");
   while (coverage.share() < 1) {
@@ -109,17 +108,18 @@ Result<calib::TrackerFit> fit(Desk& desk) {
   if (!seen) return tl::make_unexpected(seen.error());
   const auto& hand = most_seen(*seen);
   if (hand.samples.empty())
-    return fail(Errc::bad_data, "the tracker has seen no hand; `handcast status` shows whether it "
-                                "runs, and the hand must be in its view too");
+    return fail(Errc::bad_data,
+                "the tracker has seen no hand; `handcast status` shows whether it "
+                "runs, and the hand must be in its view too");
   return calib::fit_tracker(desk.draft.camera, hand.samples, hand.sightings);
 }
 
 std::string made_of(const calib::TrackerFit& fit) {
-  return fmt::format("{:.1f} px held out, {:.0f} % of the points fit, light repeatable within {:.1f} mm, clock "
-                     "{:+.1f} ms",
-                     fit.held_out.median_px, 100 * fit.inlier_share,
-                     2 * fit.place_errors.front().light_mm,
-                     1e-6 * static_cast<double>(fit.clock_offset_ns));
+  return fmt::format(
+      "{:.1f} px held out, {:.0f} % of the points fit, light repeatable within {:.1f} mm, clock "
+      "{:+.1f} ms",
+      fit.held_out.median_px, 100 * fit.inlier_share, 2 * fit.place_errors.front().light_mm,
+      1e-6 * static_cast<double>(fit.clock_offset_ns));
 }
 
 }  // namespace
@@ -134,10 +134,10 @@ Result<Outcome> measure_tracker(Desk& desk) {
 Result<Outcome> check_tracker(Desk& desk) {
   const auto found = fit(desk);
   if (!found) return tl::make_unexpected(found.error());
-  const glm::dvec4 middle = glm::inverse(found->camera_from_tracker) *
-                            glm::dvec4(found->place_errors.front().place_m, 1);
-  const auto off_m = glm::dvec3(desk.used.camera_from_tracker * middle -
-                                found->camera_from_tracker * middle);
+  const glm::dvec4 middle =
+      glm::inverse(found->camera_from_tracker) * glm::dvec4(found->place_errors.front().place_m, 1);
+  const auto off_m =
+      glm::dvec3(desk.used.camera_from_tracker * middle - found->camera_from_tracker * middle);
   Outcome outcome{fmt::format("in the middle of the volume the tracker's place is off by {:.1f} mm "
                               "across and {:.1f} mm along the camera's axis",
                               1e3 * std::hypot(off_m.x, off_m.y), 1e3 * std::abs(off_m.z)),

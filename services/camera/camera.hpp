@@ -27,8 +27,8 @@ class Camera {
   virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                                Deadline deadline) = 0;
 
-  /// True for a camera of the twin in front of which the rig's own light falls. Its service gives it
-  /// the projections before the first capture().
+  /// True for a camera of the twin in front of which the rig's own light falls. Its service gives
+  /// it the projections before the first capture().
   virtual bool sees_light() const { return false; }
   /// Takes the reader of projection.frames.
   virtual void watch_light(ipc::Reader<msg::Projection> /*projections*/) {}

@@ -25,11 +25,14 @@ std::array<std::uint8_t, 256> linear_levels() {
 void SeenLight::add(const msg::Projection& projection) {
   static const auto kLinear = linear_levels();
   if (!lit_.empty() && lit_.back().test_picture == projection.test_picture) return;
-  Lit lit{projection.lit_ns + late_ns_, projection.test_picture,
+  Lit lit{projection.lit_ns + late_ns_,
+          projection.test_picture,
           static_cast<int>(projection.region_width_px),
-          static_cast<int>(projection.region_height_px), {}};
+          static_cast<int>(projection.region_height_px),
+          {}};
   if (projection.test_picture != 0) {
-    lit.grey.resize(static_cast<std::size_t>(lit.width_px) * static_cast<std::size_t>(lit.height_px));
+    lit.grey.resize(static_cast<std::size_t>(lit.width_px) *
+                    static_cast<std::size_t>(lit.height_px));
     for (std::size_t i = 0; i < lit.grey.size(); ++i)
       lit.grey[i] = kLinear[projection.pixels()[i] & 255];
   }

@@ -86,8 +86,8 @@ class TwinCamera final : public Camera {
   }
 
  private:
-  /// Takes the light as it is published, until the last moment at which the image of this arrival can
-  /// be drawn.
+  /// Takes the light as it is published, until the last moment at which the image of this arrival
+  /// can be drawn.
   void take_light(std::int64_t arrival_ns) {
     const auto until = Deadline::at_ns(arrival_ns - drawing_ns_ * 3 / 2);
     do {
@@ -104,8 +104,8 @@ class TwinCamera final : public Camera {
     frame.height_px = static_cast<std::uint32_t>(model_.height_px);
     const renderer::View<std::uint8_t> image{frame.pixels(), model_.width_px, model_.height_px,
                                              model_.width_px};
-    if (const auto light = light_ ? light_->at(epoch_ns_ + twin_->camera_origin_ns(k))
-                                  : std::nullopt)
+    if (const auto light =
+            light_ ? light_->at(epoch_ns_ + twin_->camera_origin_ns(k)) : std::nullopt)
       twin_->camera_image(k, *light, image);
     else
       twin_->camera_image(k, image);

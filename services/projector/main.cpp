@@ -34,14 +34,14 @@ static void run_projector(service::Context& context) {
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")), calibration.id);
-  projector::TestPictures test_pictures(
-      must(context.reader<msg::TestPicture>(msg::kTestPictures)), calibration.projector_width_px,
-      calibration.projector_height_px);
+  projector::TestPictures test_pictures(must(context.reader<msg::TestPicture>(msg::kTestPictures)),
+                                        calibration.projector_width_px,
+                                        calibration.projector_height_px);
   projector::Brightness brightness(rig.projector, context.epoch_ns());
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
   if (rig.projector.packing != config::Packing::none)
-    return projector::show_sub_frames(
-        context, {*pipeline, inputs, test_pictures, *projector, brightness, std::move(projections)});
+    return projector::show_sub_frames(context, {*pipeline, inputs, test_pictures, *projector,
+                                                brightness, std::move(projections)});
   projector::Pacer pacer(rig.projector.rate_hz);
   projector::Horizon horizon(rig.projector);
   projector::LastLight last_light(context, brightness);

@@ -29,7 +29,8 @@ void give_status(LiveRig& rig, const Reply& reply) {
   reply(answer);
 }
 
-/// Only the ring that no service writes to may be changed by a tool; the others not even by accident.
+/// Only the ring that no service writes to may be changed by a tool; the others not even by
+/// accident.
 int access_to(std::string_view stream) { return stream == msg::kTestPictures ? O_RDWR : O_RDONLY; }
 
 void give_rings(const LiveRig& rig, const Reply& reply) {
@@ -38,7 +39,8 @@ void give_rings(const LiveRig& rig, const Reply& reply) {
   std::vector<UniqueFd> owned;
   std::vector<int> descriptors;
   for (const auto& [stream, fd] : rig.launch.rings) {
-    owned.emplace_back(::open(fmt::format("/proc/self/fd/{}", fd).c_str(), access_to(stream) | O_CLOEXEC));
+    owned.emplace_back(
+        ::open(fmt::format("/proc/self/fd/{}", fd).c_str(), access_to(stream) | O_CLOEXEC));
     if (!owned.back())
       return reply(failure(
           fmt::format("ring '{}' cannot be opened again: {}", stream, std::strerror(errno))));

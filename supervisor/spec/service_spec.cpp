@@ -34,9 +34,9 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::Projection>(
           "projection.frames", kImageSlots, kNewestOnly,
           msg::Projection::bytes(msg::kLargestProjectorWidth_px, msg::kLargestProjectorHeight_px)),
-      RingSpec::of<msg::TestPicture>(
-          std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
-          msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px, msg::kLargestTestPictureHeight_px)),
+      RingSpec::of<msg::TestPicture>(std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
+                                     msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px,
+                                                             msg::kLargestTestPictureHeight_px)),
   };
 }
 

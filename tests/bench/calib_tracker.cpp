@@ -35,7 +35,7 @@ struct Table {
   int fits = 0, failed = 0;
 };
 
-const calib::Uncertainty& spread_of(const calib::TrackerFit& fit, std::size_t i) {
+const calib::Interval& spread_of(const calib::TrackerFit& fit, std::size_t i) {
   return i < 3 ? fit.camera_place_mm[i] : i < 6 ? fit.rotation_deg[i - 3] : fit.clock_offset_ms;
 }
 

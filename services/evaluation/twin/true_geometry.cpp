@@ -62,8 +62,7 @@ TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
   true_.parallax -= true_.projector_from_camera * (true_.camera.matrix() * centre_m);
   if (settings.tracker_mm > 0 || settings.tracker_deg > 0)
     true_.camera_from_tracker = pose_error(settings, random) * base.camera_from_tracker;
-  if (settings.lens_px > 0)
-    true_.camera.k1 += lens_error(base.camera, settings.lens_px, random);
+  if (settings.lens_px > 0) true_.camera.k1 += lens_error(base.camera, settings.lens_px, random);
 }
 
 glm::dvec2 TrueGeometry::to_projector(const glm::dvec3& camera_m) const {

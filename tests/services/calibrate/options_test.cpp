@@ -46,7 +46,8 @@ TEST(CalibrateOptions, WhatIsWrongIsSaidInASentence) {
   EXPECT_THAT(refusal({"rig.toml", "lense"}), HasSubstr("there are lens, screen, tracker"));
   EXPECT_THAT(refusal({"rig.toml", "--camera", "1280"}), HasSubstr("--camera: '1280'"));
   EXPECT_THAT(refusal({"rig.toml", "--camera", "1280x1024x3"}), HasSubstr("--camera"));
-  EXPECT_THAT(refusal({"rig.toml", "--board", "chess:9x6:24"}), HasSubstr("--board: 'chess:9x6:24'"));
+  EXPECT_THAT(refusal({"rig.toml", "--board", "chess:9x6:24"}),
+              HasSubstr("--board: 'chess:9x6:24'"));
   EXPECT_THAT(refusal({"rig.toml", "--board", "charuco:9x6"}), HasSubstr("--board"));
   EXPECT_THAT(refusal({"rig.toml", "lens", "--check"}), HasSubstr("--check"));
   EXPECT_THAT(refusal({"rig.toml", "--most-s", "0"}), HasSubstr("--most-s"));
