@@ -10,8 +10,7 @@
 
 namespace handcast::client {
 
-/// A ring of a rig that is up, mapped read-only unless a tool may write to it
-/// (client::open_writer()).
+/// A ring of a rig that is up, mapped read-only unless a tool may write to it (msg::kTestPictures).
 struct RigRing {
   std::string rig;       ///< name of the rig
   ipc::Segment segment;  ///< the memory of the ring

@@ -12,7 +12,6 @@
 #include "ipc/client/rig_presence.hpp"
 #include "ipc/client/rig_ring.hpp"
 #include "ipc/ring/reader.hpp"
-#include "ipc/ring/writer.hpp"
 
 /// Reading the streams of a rig from a program that is not part of it:
 ///
@@ -91,16 +90,6 @@ Result<Stream<T>> open_stream(const std::string& rig, std::string_view stream,
   auto reader = ipc::Reader<T>::watch(std::move(ring->segment), wait);
   if (!reader) return tl::make_unexpected(std::move(reader.error()));
   return Stream<T>(std::move(*reader), std::move(presence), std::move(ring->rig));
-}
-
-/// Opens a stream of a rig for writing: one that no service of the rig writes to, like
-/// msg::kTestPictures. Errors: as open_stream(); unavailable (another program writes to it, or it
-/// is a stream that is only read).
-template <class T>
-Result<ipc::Writer<T>> open_writer(const std::string& rig, std::string_view stream) {
-  auto ring = rig_ring(rig, stream);
-  if (!ring) return tl::make_unexpected(std::move(ring.error()));
-  return ipc::Writer<T>::attach(std::move(ring->segment));
 }
 
 }  // namespace handcast::client

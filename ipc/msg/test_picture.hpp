@@ -10,7 +10,7 @@
 namespace handcast::msg {
 
 /// The stream of the test pictures. No service of a rig writes to it: the supervisor gives its ring
-/// with the right to write to programs that ask for it (client::open_writer()).
+/// with the right to write to programs that ask for it.
 inline constexpr std::string_view kTestPictures = "calibration.pictures";
 
 /// A grey picture that the projector shows in place of its hands, e.g. structured light. The levels

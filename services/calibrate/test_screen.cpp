@@ -29,7 +29,9 @@ void put_line(const renderer::Image<std::uint8_t>& line, int x, int y,
 }  // namespace
 
 Result<TestScreen> TestScreen::open(const std::string& rig, int width_px, int height_px) {
-  auto writer = client::open_writer<msg::TestPicture>(rig, msg::kTestPictures);
+  auto ring = client::rig_ring(rig, msg::kTestPictures);
+  if (!ring) return tl::make_unexpected(ring.error());
+  auto writer = ipc::Writer<msg::TestPicture>::attach(std::move(ring->segment));
   if (!writer) return fail_in("test pictures", writer.error());
   auto projections = client::open_stream<msg::Projection>(rig, "projection.frames");
   if (!projections) return tl::make_unexpected(projections.error());

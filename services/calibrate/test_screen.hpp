@@ -9,6 +9,7 @@
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/test_picture.hpp"
+#include "ipc/ring/writer.hpp"
 #include "renderer/base/image.hpp"
 
 namespace handcast::calibrate {
@@ -17,7 +18,7 @@ namespace handcast::calibrate {
 class TestScreen {
  public:
   /// Opens the streams of a rig that is up. The sizes are those of its projector. Errors: those of
-  /// client::open_stream() and client::open_writer().
+  /// client::open_stream() and ipc::Writer::attach().
   static Result<TestScreen> open(const std::string& rig, int width_px, int height_px);
 
   int width_px() const { return picture_.width(); }    ///< of the pictures

@@ -15,6 +15,7 @@
 #include "ipc/control/choose_rig.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/daemon/stop_signal.hpp"
+#include "ipc/msg/test_picture.hpp"
 #include "services/record/npy_folder.hpp"
 #include "services/record/recorder.hpp"
 #include "services/recording/about.hpp"
@@ -106,8 +107,9 @@ void print_totals(const Recorder::Totals& totals, double seconds) {
 Result<void> record(const Options& options) {
   const auto rig = control::choose_rig(options.rig);
   if (!rig) return tl::make_unexpected(rig.error());
-  const auto there = client::stream_names(*rig);
+  auto there = client::stream_names(*rig);
   if (!there) return tl::make_unexpected(there.error());
+  std::erase(*there, msg::kTestPictures);  // projections have what was shown
   const auto streams = choose(options.rings, *there);
   if (!streams) return tl::make_unexpected(streams.error());
   auto writer = recording::RecordingWriter::create(options.folder, about_of(*rig), *streams);
