@@ -104,14 +104,14 @@ Result<void> check_common_time(const Observations& o) {
 }
 
 Result<void> check_extent(const Observations& o) {
-  constexpr double kLeastMotion_m = 0.010;
+  constexpr double kLeastMotion_m = 0.010, kLeastWidth_m = 0.005;
   const auto extent = extent_of(o);
   if (extent.motion_m < kLeastMotion_m)
     return fail(Errc::bad_data,
                 fmt::format("The hand hardly moves (standard deviation {:.1f} mm); move it through "
                             "the whole volume.",
                             1000 * extent.motion_m));
-  if (false)
+  if (extent.axes_m.y < kLeastWidth_m)
     return fail(Errc::bad_data, fmt::format("The points lie on a line, to within {:.1f} mm, which "
                                             "leaves the rotation about it open; move the hand in "
                                             "all directions.",

@@ -53,7 +53,8 @@ Result<Options> parse(int argc, char** argv) {
   std::string board = calib::print_board_name(calib::Board{}), camera, projector;
   app.add_option("RIG.toml", options.rig_file, "The rig file");
   app.add_option("STEP", steps, "lens, screen, tracker; default: all that are left");
-  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's");
+  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's")
+      ->allow_extra_args(false);
   app.add_option("--board", board, "The board: KIND:COLUMNSxROWS:MM, the size of a square in mm")
       ->capture_default_str();
   app.add_option("--print-board", options.board_pdf, "Writes the board as a PDF, and ends");

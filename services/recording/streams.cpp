@@ -77,7 +77,7 @@ const MessageType& type_of<msg::Projection>() {
           R"(["region_width_px", "<u4"], ["region_height_px", "<u4"], ["hand_count", "<u4"], )"
           R"(["foldovers", "<u4"], ["hands", [["side", "<u4"], ["vertex_count", "<u4"], )"
           R"(["presence", "<f4"], ["reserved", "<u4"], ["landings", [["x_px", "<f4"], )"
-          R"(["y_px", "<f4"]], [4096]]], [2]], ["has_shown", "<u4"], ["reserved", "<u4"]])"};
+          R"(["y_px", "<f4"]], [4096]]], [2]], ["has_shown", "<u4"], ["reserved", "<u4"], ["test_picture", "<u8"]])"};
   return kType;
 }
 

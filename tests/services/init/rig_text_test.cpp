@@ -185,7 +185,7 @@ TEST_F(RigText, ADevicesNameCannotWriteSettings) {
 
 TEST_F(RigText, WhatIsMissingIsSaidInTheFileAndInTheReport) {
   const auto plan = plan_of({colour_webcam(), connector("HDMI-A-1", "EPSON PJ")});
-  const auto sizes = HasSubstr("images of 640x480 and a projector of 1280x800");
+  const auto sizes = HasSubstr("--camera 640x480 --projector 1280x800");
   EXPECT_THAT(rig_text(plan, options_.file), AllOf(HasSubstr("THIS IS MISSING"), sizes));
   EXPECT_THAT(report(plan, options_.file),
               AllOf(HasSubstr("MISSING"), sizes, HasSubstr("handcast up /srv/my_rig.toml")));
