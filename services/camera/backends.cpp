@@ -28,8 +28,7 @@ static constexpr std::array kBackends{
     CameraBackend{.name = "twin",
                   .sentence = "Draws the twin's hand as an infrared camera would see it.",
                   .open = open_twin,
-                  .reads = twin::kWorldSettings +
-                           config::SettingList{"twin.image"}},
+                  .reads = twin::kWorldSettings + config::SettingList{"twin.image"}},
     CameraBackend{.name = "replay",
                   .sentence =
                       "Plays a recording of `handcast record`, PNG images, a film or a .npy "
