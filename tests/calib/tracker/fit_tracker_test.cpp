@@ -17,6 +17,7 @@ namespace {
 using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::World;
 
 Result<TrackerFit> fit(const testing::Recording& r) {
@@ -61,8 +62,9 @@ TEST(FitTracker, WithoutNoiseTheAnswerIsExact) {
 }
 
 TEST(FitTracker, TheOffsetIsTheTrackersClockMinusTheCameras) {
-  for (const double offset_s : {-0.06, 0.07}) {
-    const auto truth = testing::record({.seconds = 8, .offset_s = offset_s});
+  for (const double offset_s : {-0.09, 0.07}) {
+    const auto truth = testing::record(
+        {.seconds = 8, .offset_s = offset_s, .reach_m = {0.12, 0.12, 0.11}, .turn_rad = 1.2});
     const auto found = fit(truth);
     ASSERT_TRUE(found) << found.error().what;
     EXPECT_NEAR(static_cast<double>(found->clock_offset_ns) * 1e-6, 1000 * offset_s, 1.5);
@@ -197,6 +199,18 @@ TEST(FitTracker, ASmallVolumeIsPoorWithAdvice) {
   EXPECT_EQ(found->quality, Quality::poor);
   EXPECT_THAT(found->findings, Contains(AllOf(HasSubstr("The points cover only"),
                                               HasSubstr("move the hand nearer and farther"))));
+}
+
+TEST(FitTracker, ASmallPartOfTheImageIsPoorHoweverWellItFits) {
+  const auto truth = testing::record({.reach_m = {0.035, 0.015, 0.035},
+                                      .turn_rad = 0,
+                                      .fingers_bend = false,
+                                      .only_index_tip = true});
+  const auto found = fit(truth);
+  ASSERT_TRUE(found) << found.error().what;
+  for (const auto& place : found->camera_place_mm) EXPECT_LT(place.sd, 10);
+  EXPECT_THAT(found->findings, Not(Contains(HasSubstr("A second pose"))));
+  EXPECT_EQ(found->quality, Quality::poor);
 }
 
 TEST(FitTracker, PointsOnAPlaneAreNamed) {
