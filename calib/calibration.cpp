@@ -56,9 +56,7 @@ glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px) const {
 }
 
 glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px, double depth_m) const {
-  const auto mapped =
-      projector_from_camera * glm::dvec3(camera_px, 1) + parallax * (1 / depth_m - 1 / plane_m);
-  return glm::dvec2(mapped) / mapped.z;
+  return apply(homography_at(depth_m), camera_px);
 }
 
 glm::dmat3 Calibration::homography_at(double depth_m) const {

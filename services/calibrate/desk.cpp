@@ -23,12 +23,9 @@ Progress::~Progress() {
   if (is_terminal_) fmt::print(stderr, "\n");
 }
 
-void Progress::show(double share, const std::string& advice, bool is_dark) {
+void Progress::show(double share, const std::string& advice) {
   const auto percent = static_cast<int>(std::lround(100 * share));
-  if (is_dark)
-    desk_.screen.keep();
-  else
-    desk_.screen.show_text({fmt::format("{}  {} %", title_, percent), advice});
+  desk_.screen.show_text({fmt::format("{}  {} %", title_, percent), advice});
   if (now_ns() - printed_ns_ < (is_terminal_ ? kPrintEvery_ns : kLogEvery_ns)) return;
   printed_ns_ = now_ns();
   // \033[K clears the rest of the line (ECMA-48).

@@ -35,8 +35,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();  ///< Ends the line in the terminal.
 
-  /// Shows how far it is (0..1) and what to do next; on the projector too unless `is_dark`.
-  void show(double share, const std::string& advice, bool is_dark = false);
+  /// Shows how far it is (0..1) and what to do next.
+  void show(double share, const std::string& advice);
   /// False if the step must end: Enter was pressed or its time is over. Looks after the rig.
   Result<bool> goes_on();
 

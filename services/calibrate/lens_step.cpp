@@ -21,7 +21,7 @@ constexpr std::size_t kEnoughViews = 15;
 /// What a good fit stays below: the error of what it has not seen, and that of the focal length.
 /// @{
 constexpr double kGood_px = 0.6;
-constexpr double kGoodFocal = 0.005;
+constexpr double kGoodFocal = 0.01;
 /// @}
 
 calib::GreyView view_of(const msg::CameraFrame& frame) {
@@ -60,11 +60,11 @@ Result<std::vector<calib::BoardView>> take_views(Desk& desk) {
 }
 
 std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
-  std::vector<Dot> dots;
+  std::vector<glm::dvec2> dots;
   for (const auto& view : views)
-    for (const auto& px : view.image_px) dots.push_back({px});
+    dots.insert(dots.end(), view.image_px.begin(), view.image_px.end());
   return dots_svg(
-      fit.camera.width_px, fit.camera.height_px, dots, 1,
+      fit.camera.width_px, fit.camera.height_px, dots,
       fmt::format("Where the board was seen: {} corners in {} images.", dots.size(), views.size()));
 }
 

@@ -11,6 +11,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/daemon/stop_signal.hpp"
 #include "services/calibrate/lens_step.hpp"
 #include "services/calibrate/rig_settings.hpp"
 #include "services/calibrate/screen_step.hpp"
@@ -60,13 +61,14 @@ bool is_wanted(const Options& options, Keys& keys, const StepEntry& entry) {
   fmt::print(stderr, "\n{}\n  {}\n", config::word_of(entry.step), entry.instruction);
   if (options.yes || !keys.has_person()) return true;
   fmt::print(stderr, "  Enter begins, and ends the step early; s leaves it out\n");
-  for (;;) {
+  while (!daemon::stop_requested()) {
     if (const auto key = keys.pressed()) {
       if (key->character == '\n') return true;
       if (key->character == 's') return false;
     }
     sleep_until_ns(now_ns() + 20'000'000);
   }
+  return false;
 }
 
 void print_outcome(const Outcome& outcome) {
@@ -80,14 +82,31 @@ Result<Outcome> with_rig(const Options& options, const config::Rig& rig, const R
                          Result<Outcome> (*measure)(Desk& desk)) {
   auto settings = running.settings;
   if (rig.camera.backend == "twin") add_twin_scene(entry.step, options.board, settings);
+  const auto as_it_runs = config::load_rig(options.rig_file, settings);
+  if (!as_it_runs) return tl::make_unexpected(as_it_runs.error());
   auto own_rig = OwnRig::start(options.rig_file, rig.name, settings,
                                session.file(fmt::format("{}.log", config::word_of(entry.step))));
   if (!own_rig) return tl::make_unexpected(own_rig.error());
   auto screen = TestScreen::open(rig.name, running.calibration.projector_width_px,
                                  running.calibration.projector_height_px);
   if (!screen) return tl::make_unexpected(screen.error());
-  Desk desk{options, rig, running.calibration, session.draft(), *own_rig, *screen, keys};
+  Desk desk{options, *as_it_runs, running.calibration, session.draft(), *own_rig, *screen, keys};
   return measure(desk);
+}
+
+/// Does one step, and keeps what it has measured if that is good.
+Result<void> do_step(const Options& options, const config::Rig& rig, const RunningAs& running,
+                     Session& session, Keys& keys, const StepEntry& entry) {
+  const auto before = session.draft();
+  const auto outcome = with_rig(options, rig, running, session, keys, entry, entry.measure);
+  if (!outcome) return fail_in(config::word_of(entry.step), outcome.error());
+  print_outcome(*outcome);
+  if (outcome->is_good) return session.keep(entry.step, *outcome);
+  session.draft() = before;
+  return fail(Errc::bad_data,
+              fmt::format("{}: this is not good enough to be used, and was not kept; measure it "
+                          "again",
+                          config::word_of(entry.step)));
 }
 
 Result<void> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
@@ -97,10 +116,7 @@ Result<void> measure_all(const Options& options, const config::Rig& rig, const R
   for (const Step step : steps_of(options, rig, session)) {
     const auto& entry = entry_of(step);
     if (!is_wanted(options, keys, entry)) continue;
-    const auto outcome = with_rig(options, rig, running, session, keys, entry, entry.measure);
-    if (!outcome) return fail_in(config::word_of(step), outcome.error());
-    print_outcome(*outcome);
-    if (auto kept = session.keep(step, *outcome); !kept) return kept;
+    if (auto kept = do_step(options, rig, running, session, keys, entry); !kept) return kept;
     ++done;
   }
   fmt::print("the report is {}\n", session.report().string());
@@ -155,6 +171,7 @@ int run_verb(int argc, char** argv) {
     fmt::print("{}", options->text);
     return kExitDone;
   }
+  daemon::install_stop_signals();
   const auto done = run(std::move(*options));
   return done ? kExitDone : complain(done.error());
 }

@@ -14,6 +14,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/client/stream.hpp"
+#include "ipc/daemon/stop_signal.hpp"
 #include "ipc/msg/camera_frame.hpp"
 
 namespace handcast::calibrate {
@@ -73,6 +74,8 @@ OwnRig::~OwnRig() {
 }
 
 Result<void> OwnRig::check() {
+  if (daemon::stop_requested())
+    return fail(Errc::unavailable, "stopped; the next call goes on with this step");
   if (::waitpid(child_, nullptr, WNOHANG) == 0) return {};
   child_ = 0;
   return fail(Errc::unavailable, "the rig has ended: " + last_words());

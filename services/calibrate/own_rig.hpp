@@ -23,7 +23,7 @@ class OwnRig {
   OwnRig& operator=(OwnRig&&) = delete;
   ~OwnRig();  ///< Stops the rig and waits until it is down.
 
-  /// Error unavailable if the rig has ended.
+  /// Error unavailable if the rig has ended, or this program was asked to stop.
   Result<void> check();
 
  private:

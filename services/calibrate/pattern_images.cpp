@@ -2,7 +2,6 @@
 #include "services/calibrate/pattern_images.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace handcast::calibrate {
 namespace {
@@ -38,6 +37,7 @@ Result<calib::LightDelay> PatternImages::measure_delay() {
   std::vector<calib::Toggle> toggles;
   std::vector<calib::Brightness> images;
   for (int i = 0; i < kToggles; ++i) {
+    if (auto runs = desk_.own_rig.check(); !runs) return tl::make_unexpected(runs.error());
     const bool is_bright = i % 2 == 0;
     // Times that are no multiple of the camera's period meet its exposures everywhere.
     const auto until = Deadline::in(kHold + i * 3ms);
@@ -52,12 +52,13 @@ Result<calib::LightDelay> PatternImages::measure_delay() {
   auto delay = calib::fit_light_delay(toggles, images);
   if (delay)
     settled_ns_ = std::max<std::int64_t>(0, ms_to_ns(delay->high_ms)) +
-                  seconds_to_ns(1 / desk_.rig.projector.rate_hz + 1 / desk_.rig.camera.rate_hz);
+                  seconds_to_ns(1 / desk_.rig.projector.rate_hz + 2 / desk_.rig.camera.rate_hz);
   return delay;
 }
 
 Result<PatternImages::Image> PatternImages::image(
     const std::function<void(std::uint8_t* levels)>& draw) {
+  if (auto runs = desk_.own_rig.check(); !runs) return tl::make_unexpected(runs.error());
   desk_.screen.show(draw);
   const auto lit_ns = desk_.screen.lit_ns(Deadline::in(2s));
   if (!lit_ns) return tl::make_unexpected(lit_ns.error());

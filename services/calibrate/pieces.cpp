@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kStyle =
     "svg{border:1px solid currentColor;max-width:100%;height:auto}"
-    "svg circle{fill:currentColor}svg line{stroke:#d33;stroke-width:1.5}";
+    "svg circle{fill:currentColor}";
 
 }  // namespace
 
@@ -41,31 +41,13 @@ std::string report_html(const std::string& rig, const calib::Calibration& draft,
                         .body = pieces});
 }
 
-std::string dots_svg(int width_px, int height_px, std::span<const Dot> dots, double scale,
+std::string dots_svg(int width_px, int height_px, std::span<const glm::dvec2> dots_px,
                      std::string_view caption) {
   auto svg =
       fmt::format("<figure><svg width='{0}' viewBox='-0.5 -0.5 {0} {1}'>", width_px, height_px);
-  for (const auto& dot : dots) {
-    const glm::dvec2 end = dot.at_px + scale * dot.error_px;
-    svg += fmt::format("<circle cx='{0:.1f}' cy='{1:.1f}' r='1.5'/>", dot.at_px.x, dot.at_px.y);
-    if (dot.error_px != glm::dvec2(0))
-      svg += fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}'/>", dot.at_px.x,
-                         dot.at_px.y, end.x, end.y);
-  }
+  for (const auto& px : dots_px)
+    svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='1.5'/>", px.x, px.y);
   return svg + fmt::format("</svg><figcaption>{}</figcaption></figure>", page::escape(caption));
-}
-
-std::string table_html(std::span<const std::string> head,
-                       std::span<const std::vector<std::string>> rows) {
-  std::string html = "<table><thead><tr>";
-  for (const auto& name : head) html += fmt::format("<th>{}</th>", page::escape(name));
-  html += "</tr></thead><tbody>";
-  for (const auto& row : rows) {
-    html += "<tr>";
-    for (const auto& cell : row) html += fmt::format("<td>{}</td>", page::escape(cell));
-    html += "</tr>";
-  }
-  return html + "</tbody></table>";
 }
 
 }  // namespace handcast::calibrate

@@ -55,6 +55,7 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig)
 }
 
 void add_twin_scene(Step step, const calib::Board& board, std::vector<std::string>& settings) {
+  settings.push_back("projector.rate_hz=60");  // whole pictures at 946 Hz take a core
   if (step == Step::tracker) {
     settings.push_back("twin.motion=builtin:show");
     return;

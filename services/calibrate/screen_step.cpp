@@ -24,6 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kWantedViews = 5;
+constexpr double kGood_px = 1;   ///< error of what a good fit has not seen, median
 constexpr double kMoved_px = 1;  ///< by which the board may have moved during the patterns
 
 /// One measurement of the projector.
@@ -192,11 +193,11 @@ Result<Outcome> measure_screen(Desk& desk) {
   desk.draft.projector_from_camera = fit->model.projector_from_camera;
   desk.draft.parallax = fit->model.parallax;
   desk.draft.plane_m = fit->model.plane_m;
-  Outcome outcome{
-      fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
-                  fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median,
-                  place_of(*fit)),
-      fit->findings.empty(), fit->findings};
+  const double held_out_px =
+      fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median;
+  Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
+                              held_out_px, place_of(*fit)),
+                  held_out_px <= kGood_px, fit->findings};
   if (delay->low_ms > 1 || delay->high_ms < -1)
     outcome.findings.push_back(delay_finding(desk, *delay));
   return outcome;

@@ -60,7 +60,6 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
                                               options.folder.string(), error.message()));
   Session session(fs::absolute(options.folder), target_of(options, rig), used);
   session.rig_name_ = rig.name;
-  session.rig_file_ = options.rig_file.string();
   session.draft_.made = {};
   const auto file = session.file("draft.toml");
   if (options.restart || !fs::exists(file)) return session;

@@ -14,7 +14,7 @@ namespace handcast::calibrate {
 /// What a step has found out.
 struct Outcome {
   std::string made;                   ///< one sentence for the calibration file: how good it is
-  bool is_good = true;                ///< false: it can be used, but should be measured again
+  bool is_good = true;                ///< false: it must not take the place of what there is
   std::vector<std::string> findings;  ///< what a person should know or do, most important first
   std::string pictures{};             ///< HTML for the report
 };
@@ -56,7 +56,7 @@ class Session {
   std::filesystem::path piece_of(Step step) const;
 
   std::filesystem::path folder_, target_;
-  std::string rig_name_, rig_file_;
+  std::string rig_name_;
   calib::Calibration draft_;
 };
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/calibrate/test_screen.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
+#include "ipc/msg/largest_images.hpp"
 #include "renderer/content/lettering.hpp"
 
 namespace handcast::calibrate {
@@ -31,6 +34,13 @@ void put_line(const renderer::Image<std::uint8_t>& line, int x, int y,
 Result<TestScreen> TestScreen::open(const std::string& rig, int width_px, int height_px) {
   auto ring = client::rig_ring(rig, msg::kTestPictures);
   if (!ring) return tl::make_unexpected(ring.error());
+  if (msg::TestPicture::bytes(static_cast<std::size_t>(width_px),
+                              static_cast<std::size_t>(height_px)) > ring->segment.payload_bytes())
+    return fail(Errc::bad_config,
+                fmt::format("a projector of {}x{} px is too large for test pictures; {}x{} is "
+                            "possible",
+                            width_px, height_px, msg::kLargestTestPictureWidth_px,
+                            msg::kLargestTestPictureHeight_px));
   auto writer = ipc::Writer<msg::TestPicture>::attach(std::move(ring->segment));
   if (!writer) return fail_in("test pictures", writer.error());
   auto projections = client::open_stream<msg::Projection>(rig, "projection.frames");

@@ -18,7 +18,7 @@ namespace handcast::calibrate {
 class TestScreen {
  public:
   /// Opens the streams of a rig that is up. The sizes are those of its projector. Errors: those of
-  /// client::open_stream() and ipc::Writer::attach().
+  /// client::open_stream() and ipc::Writer::attach(); bad_config (the projector is too large).
   static Result<TestScreen> open(const std::string& rig, int width_px, int height_px);
 
   int width_px() const { return picture_.width(); }    ///< of the pictures

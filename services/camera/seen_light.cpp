@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/seen_light.hpp"
 
+#include <array>
 #include <cmath>
 #include <utility>
 

@@ -49,10 +49,10 @@ class TwinCamera final : public Camera {
     projections_ = std::move(projections);
   }
   /// Shows a board in place of hands.
-  Result<void> show_board(const config::Twin& settings) {
-    auto picture = picture_of(settings.prop.board);
+  Result<void> show_board(const config::TwinProp& settings) {
+    auto picture = picture_of(settings.board);
     if (!picture) return tl::make_unexpected(picture.error());
-    light_.emplace(ms_to_ns(settings.projector.late_ms));
+    light_.emplace(ms_to_ns(settings.light_late_ms));
     return twin_->show_board(*picture);
   }
 
@@ -131,7 +131,7 @@ Result<std::unique_ptr<Camera>> open_twin(const config::Rig& rig,
   auto camera =
       std::make_unique<TwinCamera>(std::move(*twin), rig.camera, calibration.camera, epoch_ns);
   if (rig.twin.prop.kind == config::TwinPropKind::board)
-    if (auto shown = camera->show_board(rig.twin); !shown)
+    if (auto shown = camera->show_board(rig.twin.prop); !shown)
       return fail_in("camera 'twin': twin.prop.board", shown.error());
   camera->warm_up();
   return camera;

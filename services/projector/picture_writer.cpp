@@ -43,23 +43,21 @@ PictureWriter::~PictureWriter() {
 Result<void> PictureWriter::write(const renderer::Frame& frame, const renderer::LightTable& light,
                                   std::int64_t time_ns) {
   const std::lock_guard lock(mutex_);
-  if (is_busy_) {
-    if (left_out_++ == 0)
-      log::warning(
-          "frames come faster than they can be written to '{}' and are left out; a larger "
-          "projector.file.every leaves out none",
-          folder_.string());
-    return {};
+  if (is_waiting_ && left_out_++ == 0)
+    log::warning(
+        "frames come faster than they can be written to '{}' and are left out; a larger "
+        "projector.file.every leaves out none",
+        folder_.string());
+  auto& [picture, lit, lit_ns] = waiting_;
+  if (picture.width() != frame.colour.width || picture.height() != frame.colour.height) {
+    picture = renderer::Texture(frame.colour.width, frame.colour.height);
+    lit = {};
   }
-  if (picture_.width() != frame.colour.width || picture_.height() != frame.colour.height) {
-    picture_ = renderer::Texture(frame.colour.width, frame.colour.height);
-    lit_ = {};
-  }
-  for (int y = lit_.y0; y < lit_.y1; ++y) std::fill_n(picture_.row(y) + lit_.x0, lit_.width(), 0);
-  lit_ = frame.region.within(picture_.width(), picture_.height());
-  renderer::write_light(frame.colour, lit_, light, picture_.view());
-  time_ns_ = time_ns;
-  is_busy_ = true;
+  for (int y = lit.y0; y < lit.y1; ++y) std::fill_n(picture.row(y) + lit.x0, lit.width(), 0);
+  lit = frame.region.within(picture.width(), picture.height());
+  renderer::write_light(frame.colour, lit, light, picture.view());
+  lit_ns = time_ns;
+  is_waiting_ = true;
   changed_.notify_all();
   return std::exchange(last_, {});
 }
@@ -69,35 +67,37 @@ void PictureWriter::work() {
   pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);  // the daemon may be real-time
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [&] { return is_busy_ || is_ending_; });
-    if (!is_busy_) return;
+    changed_.wait(lock, [&] { return is_waiting_ || is_ending_; });
+    if (!is_waiting_) return;
+    std::swap(waiting_, written_now_);
+    is_waiting_ = false;
     lock.unlock();
     auto written = is_film_ ? write_to_film() : write_picture();
     lock.lock();
     if (written) ++written_;
     last_ = std::move(written);
-    is_busy_ = false;
   }
 }
 
 Result<void> PictureWriter::write_picture() {
   return renderer::write_png(folder_ / fmt::format("light_{:03}.png", number_++ % kKept),
-                             picture_.view());
+                             written_now_.light.view());
 }
 
 Result<void> PictureWriter::begin_film() {
-  auto film = renderer::Film::create(new_film_in(folder_), picture_.width(), picture_.height());
+  auto film = renderer::Film::create(new_film_in(folder_), written_now_.light.width(),
+                                     written_now_.light.height());
   if (!film) return tl::make_unexpected(film.error());
   film_.emplace(std::move(*film));
   return {};
 }
 
 Result<void> PictureWriter::write_to_film() {
-  const auto jpeg = renderer::jpeg_of(picture_.view());
+  const auto jpeg = renderer::jpeg_of(written_now_.light.view());
   if (film_ && !film_->has_room_for(jpeg.size())) film_.reset();
   if (!film_)
     if (auto begun = begin_film(); !begun) return begun;
-  return film_->add(jpeg, time_ns_);
+  return film_->add(jpeg, written_now_.time_ns);
 }
 
 }  // namespace handcast::projector

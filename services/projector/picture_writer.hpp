@@ -14,8 +14,9 @@
 
 namespace handcast::projector {
 
-/// Writes the light of frames to files on a thread of its own, as PNG pictures or as a film. A
-/// frame that comes before the last one is written is left out. One thread calls it.
+/// Writes the light of frames to files on a thread of its own, as PNG pictures or as a film. If
+/// frames come faster than that, only the newest one waits; so the last one is never left out. One
+/// thread calls it.
 class PictureWriter {
  public:
   /// Writes to light_000.png … light_099.png in the folder, then from the first again, or to
@@ -26,13 +27,19 @@ class PictureWriter {
   PictureWriter(const PictureWriter&) = delete;
   PictureWriter& operator=(const PictureWriter&) = delete;
 
-  /// Begins to write the whole projector image, dark outside the region of the frame, and returns
-  /// at once. Errors: unavailable, bad_config (the frame before could
-  /// not be written).
+  /// Has the whole projector image written, dark outside the region of the frame, and returns at
+  /// once. Errors: unavailable, bad_config (a frame before could not be written).
   Result<void> write(const renderer::Frame& frame, const renderer::LightTable& light,
                      std::int64_t time_ns);
 
  private:
+  /// A projector image, and when it is lit.
+  struct Picture {
+    renderer::Texture light;
+    renderer::Rect lit;  ///< the part of it that may not be dark
+    std::int64_t time_ns = 0;
+  };
+
   void work();
   Result<void> write_picture();
   Result<void> write_to_film();
@@ -44,12 +51,11 @@ class PictureWriter {
 
   std::mutex mutex_;  ///< for what follows
   std::condition_variable changed_;
-  bool is_busy_ = false, is_ending_ = false;
+  bool is_waiting_ = false, is_ending_ = false;
+  Picture waiting_;    ///< if is_waiting_, what is to be written next
   Result<void> last_;  ///< whether the last frame was written
-  // The thread's own while is_busy_.
-  renderer::Texture picture_;
-  renderer::Rect lit_;
-  std::int64_t time_ns_ = 0;
+  // The thread's own.
+  Picture written_now_;
   std::uint64_t number_ = 0;  ///< of the next picture
   std::optional<renderer::Film> film_;
 

@@ -11,7 +11,6 @@ struct TwinProjector {
   double stalls = 0;
   double stall_ms = 4;
   double rate_ppm = 0;
-  double late_ms = 0;
 };
 
 template <class Visitor>
@@ -27,8 +26,6 @@ void describe(Visitor& visitor, TwinProjector& projector) {
   visitor.field("stall_ms", projector.stall_ms, between(0, 1000, "ms"), "See stalls.");
   visitor.field("rate_ppm", projector.rate_ppm, between(-100000, 100000, "ppm"),
                 "Simulator: rate error of the projector's refresh clock.");
-  visitor.field("late_ms", projector.late_ms, between(-100, 200, "ms"),
-                "How much later than reported the light comes that falls on a board (twin.prop).");
 }
 
 }  // namespace handcast::config

@@ -20,6 +20,7 @@ struct TwinProp {
   TwinPropKind kind = TwinPropKind::none;
   double hold_s = 2;
   std::string board = "charuco:11x8:20";
+  double light_late_ms = 0;
 };
 
 template <class Visitor>
@@ -32,6 +33,8 @@ void describe(Visitor& visitor, TwinProp& prop) {
   visitor.field("board", prop.board,
                 "The board: KIND:COLUMNSxROWS:MM with the kinds charuco, checkerboard and circles, "
                 "as for `handcast calibrate --board`.");
+  visitor.field("light_late_ms", prop.light_late_ms, between(-100, 200, "ms"),
+                "How much later than the projector reports its light falls on the board.");
 }
 
 }  // namespace handcast::config
