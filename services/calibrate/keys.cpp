@@ -4,6 +4,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "ipc/daemon/stop_signal.hpp"
+
 namespace handcast::calibrate {
 namespace {
 
@@ -25,6 +27,11 @@ Key::Arrow arrow_of(char code) {
 }
 
 }  // namespace
+
+Result<void> not_stopped() {
+  if (!daemon::stop_requested()) return {};
+  return fail(Errc::unavailable, "stopped; the next call goes on with this step");
+}
 
 Keys::Keys() {
   termios state{};

@@ -4,6 +4,8 @@
 
 #include <optional>
 
+#include "ipc/base/result.hpp"
+
 namespace handcast::calibrate {
 
 /// A key of the terminal.
@@ -13,8 +15,11 @@ struct Key {
   Arrow arrow = Arrow::none;
 };
 
-/// The keys that a person presses in the terminal, without waiting for Enter. Ctrl-C still ends the
-/// program. Without a terminal there are none. One object at a time.
+/// Error unavailable if the program was asked to stop, by Ctrl-C or SIGTERM.
+Result<void> not_stopped();
+
+/// The keys that a person presses in the terminal, without waiting for Enter. Ctrl-C is none of
+/// them: see not_stopped(). Without a terminal there are none. One object at a time.
 class Keys {
  public:
   Keys();

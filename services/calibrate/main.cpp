@@ -56,19 +56,20 @@ std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const
   return steps;
 }
 
-/// Waits until a person is ready. False if the step shall be left out.
-bool is_wanted(const Options& options, Keys& keys, const StepEntry& entry) {
+/// Waits until a person is ready. False if the step shall be left out. Error unavailable: the
+/// program was asked to stop.
+Result<bool> is_wanted(const Options& options, Keys& keys, const StepEntry& entry) {
   fmt::print(stderr, "\n{}\n  {}\n", config::word_of(entry.step), entry.instruction);
   if (options.yes || !keys.has_person()) return true;
   fmt::print(stderr, "  Enter begins, and ends the step early; s leaves it out\n");
-  while (!daemon::stop_requested()) {
+  for (;;) {
+    if (auto on = not_stopped(); !on) return tl::make_unexpected(on.error());
     if (const auto key = keys.pressed()) {
       if (key->character == '\n') return true;
       if (key->character == 's') return false;
     }
     sleep_until_ns(now_ns() + 20'000'000);
   }
-  return false;
 }
 
 void print_outcome(const Outcome& outcome) {
@@ -76,10 +77,10 @@ void print_outcome(const Outcome& outcome) {
   for (const auto& finding : outcome.findings) fmt::print(stderr, "  - {}\n", printable(finding));
 }
 
-/// Starts the rig as a step needs it, and calls `measure`.
+/// Starts the rig as a step needs it, and calls `measure`, which writes to the draft.
 Result<Outcome> with_rig(const Options& options, const config::Rig& rig, const RunningAs& running,
-                         Session& session, Keys& keys, const StepEntry& entry,
-                         Result<Outcome> (*measure)(Desk& desk)) {
+                         const Session& session, calib::Calibration& draft, Keys& keys,
+                         const StepEntry& entry, Result<Outcome> (*measure)(Desk& desk)) {
   auto settings = running.settings;
   if (rig.camera.backend == "twin") add_twin_scene(entry.step, options.board, settings);
   const auto as_it_runs = config::load_rig(options.rig_file, settings);
@@ -90,40 +91,38 @@ Result<Outcome> with_rig(const Options& options, const config::Rig& rig, const R
   auto screen = TestScreen::open(rig.name, running.calibration.projector_width_px,
                                  running.calibration.projector_height_px);
   if (!screen) return tl::make_unexpected(screen.error());
-  Desk desk{options, *as_it_runs, running.calibration, session.draft(), *own_rig, *screen, keys};
+  Desk desk{options, *as_it_runs, running.calibration, draft, *own_rig, *screen, keys};
   return measure(desk);
 }
 
-/// Does one step, and keeps what it has measured if that is good.
-Result<void> do_step(const Options& options, const config::Rig& rig, const RunningAs& running,
+/// Does one step, and keeps what it has measured. False if the person has left the step out.
+Result<bool> do_step(const Options& options, const config::Rig& rig, const RunningAs& running,
                      Session& session, Keys& keys, const StepEntry& entry) {
-  const auto before = session.draft();
-  const auto outcome = with_rig(options, rig, running, session, keys, entry, entry.measure);
-  if (!outcome) return fail_in(config::word_of(entry.step), outcome.error());
+  const auto wanted = is_wanted(options, keys, entry);
+  if (!wanted || !*wanted) return wanted;
+  auto draft = session.draft();
+  const auto outcome = with_rig(options, rig, running, session, draft, keys, entry, entry.measure);
+  if (!outcome) return tl::make_unexpected(outcome.error());
   print_outcome(*outcome);
-  if (outcome->is_good) return session.keep(entry.step, *outcome);
-  session.draft() = before;
-  return fail(Errc::bad_data,
-              fmt::format("{}: this is not good enough to be used, and was not kept; measure it "
-                          "again",
-                          config::word_of(entry.step)));
+  return session.keep(entry.step, *outcome, draft).map([] { return true; });
 }
 
 Result<void> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
                          Session& session) {
   Keys keys;
+  const auto steps = steps_of(options, rig, session);
   int done = 0;
-  for (const Step step : steps_of(options, rig, session)) {
-    const auto& entry = entry_of(step);
-    if (!is_wanted(options, keys, entry)) continue;
-    if (auto kept = do_step(options, rig, running, session, keys, entry); !kept) return kept;
-    ++done;
+  for (const Step step : steps) {
+    const auto kept = do_step(options, rig, running, session, keys, entry_of(step));
+    if (!kept) return fail_in(config::word_of(step), kept.error());
+    if (*kept) ++done;
   }
-  fmt::print("the report is {}\n", session.report().string());
   if (done == 0) {
-    fmt::print("nothing is left to be measured; --restart begins anew\n");
+    fmt::print("{}\n", steps.empty() ? "nothing is left to be measured; --restart begins anew"
+                                     : "nothing was measured");
     return {};
   }
+  fmt::print("the report is {}\n", session.report().string());
   const auto finished = session.finish();
   if (!finished) return tl::make_unexpected(finished.error());
   fmt::print("{}\n", *finished);
@@ -137,9 +136,11 @@ Result<void> check_rig(const Options& options, const config::Rig& rig, const Run
                        Session& session) {
   Keys keys;
   const auto& entry = entry_of(Step::tracker);
-  if (!is_wanted(options, keys, entry)) return {};
-  session.draft() = running.calibration;
-  const auto outcome = with_rig(options, rig, running, session, keys, entry, check_tracker);
+  const auto wanted = is_wanted(options, keys, entry);
+  if (!wanted) return tl::make_unexpected(wanted.error());
+  if (!*wanted) return {};
+  auto draft = running.calibration;
+  const auto outcome = with_rig(options, rig, running, session, draft, keys, entry, check_tracker);
   if (!outcome) return tl::make_unexpected(outcome.error());
   print_outcome(*outcome);
   return {};

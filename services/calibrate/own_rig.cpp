@@ -14,8 +14,8 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/client/stream.hpp"
-#include "ipc/daemon/stop_signal.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "services/calibrate/keys.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -74,8 +74,7 @@ OwnRig::~OwnRig() {
 }
 
 Result<void> OwnRig::check() {
-  if (daemon::stop_requested())
-    return fail(Errc::unavailable, "stopped; the next call goes on with this step");
+  if (auto on = not_stopped(); !on) return on;
   if (::waitpid(child_, nullptr, WNOHANG) == 0) return {};
   child_ = 0;
   return fail(Errc::unavailable, "the rig has ended: " + last_words());

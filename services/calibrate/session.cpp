@@ -91,7 +91,11 @@ void Session::forget(Step step) {
   fs::remove(piece_of(step), absent);
 }
 
-Result<void> Session::keep(Step step, const Outcome& outcome) {
+Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calibration& measured) {
+  if (!outcome.is_good)
+    return fail(Errc::bad_data,
+                "this is not good enough to be used, and was not kept; measure it again");
+  draft_ = measured;
   if (step == Step::lens)
     for (const Step later : {Step::screen, Step::tracker}) forget(later);
   made_of(draft_.made, step) = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);

@@ -31,7 +31,7 @@ class Session {
                               const calib::Calibration& used);
 
   /// The calibration as far as it was measured; the rest is that of the rig.
-  calib::Calibration& draft() { return draft_; }
+  const calib::Calibration& draft() const { return draft_; }
   /// The file that the calibration becomes: the rig's own, or a new one next to the rig file.
   const std::filesystem::path& target() const { return target_; }
   /// The page with what was measured.
@@ -41,9 +41,10 @@ class Session {
 
   /// True if the draft has this part.
   bool is_done(Step step) const;
-  /// Keeps the draft and the outcome of a step, and writes the report anew. What was measured with
-  /// an older lens is forgotten. Errors: unavailable (a file cannot be written).
-  Result<void> keep(Step step, const Outcome& outcome);
+  /// Makes what a step has measured the draft, keeps the step's outcome, and writes the report
+  /// anew. What was measured with an older lens is forgotten. Errors: bad_data (the outcome is not
+  /// good, and all stays as it is), unavailable (a file cannot be written).
+  Result<void> keep(Step step, const Outcome& outcome, const calib::Calibration& measured);
   /// Writes the draft to target(); the file before it is kept with the time in its name. Returns a
   /// sentence about where they are. Errors: unavailable, bad_config.
   Result<std::string> finish() const;

@@ -83,6 +83,7 @@ Result<SeenBySide> watch(Desk& desk) {
     if (found)
       for (std::uint32_t h = 0; h < std::min((*found)->count, std::uint32_t{msg::kMaxHands}); ++h) {
         const auto& hand = (*found)->hands[h];
+        if (hand.side > msg::Side::right) continue;  // damaged
         add_sightings(desk, (*found)->header.origin_ns, hand,
                       seen[static_cast<std::size_t>(hand.side)]);
       }
@@ -90,6 +91,7 @@ Result<SeenBySide> watch(Desk& desk) {
       for (std::uint32_t h = 0; h < std::min((*sample)->count, std::uint32_t{msg::kMaxHands});
            ++h) {
         const auto& hand = (*sample)->hands[h];
+        if (hand.side > msg::Side::right) continue;  // damaged
         auto& of_side = seen[static_cast<std::size_t>(hand.side)];
         of_side.samples.push_back(sample_of((*sample)->header.origin_ns, hand));
         cover(of_side, coverage);

@@ -59,7 +59,7 @@ Result<void> PictureWriter::write(const renderer::Frame& frame, const renderer::
   lit_ns = time_ns;
   is_waiting_ = true;
   changed_.notify_all();
-  return std::exchange(last_, {});
+  return std::exchange(failed_, {});
 }
 
 void PictureWriter::work() {
@@ -74,8 +74,10 @@ void PictureWriter::work() {
     lock.unlock();
     auto written = is_film_ ? write_to_film() : write_picture();
     lock.lock();
-    if (written) ++written_;
-    last_ = std::move(written);
+    if (written)
+      ++written_;
+    else
+      failed_ = std::move(written);
   }
 }
 

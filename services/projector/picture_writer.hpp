@@ -52,8 +52,8 @@ class PictureWriter {
   std::mutex mutex_;  ///< for what follows
   std::condition_variable changed_;
   bool is_waiting_ = false, is_ending_ = false;
-  Picture waiting_;    ///< if is_waiting_, what is to be written next
-  Result<void> last_;  ///< whether the last frame was written
+  Picture waiting_;      ///< if is_waiting_, what is to be written next
+  Result<void> failed_;  ///< why a frame since the last call could not be written
   // The thread's own.
   Picture written_now_;
   std::uint64_t number_ = 0;  ///< of the next picture

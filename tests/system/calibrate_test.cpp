@@ -22,15 +22,8 @@ class Calibrate : public SystemTest {
     return file;
   }
   Outcome calibrate(Arguments more) const {
-    Arguments arguments{"calibrate",
-                        rig_file(),
-                        "--yes",
-                        "--set",
-                        "observer.enabled=false",
-                        "--set",
-                        "projector.rate_hz=60",
-                        "--set",
-                        "camera.rate_hz=30"};
+    Arguments arguments{"calibrate", rig_file(),         "--yes", "--set", "observer.enabled=false",
+                        "--set",     "camera.rate_hz=30"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return handcast(arguments);
   }

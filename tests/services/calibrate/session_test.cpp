@@ -24,6 +24,12 @@ class CalibrateSession : public testing::Test {
     options_.folder = scratch_.path() / "rig.calibration";
   }
   Session open() { return *Session::open(options_, rig_, used_); }
+  /// The calibration in use with another lens.
+  calib::Calibration with_focal_length(double fx_px) const {
+    auto measured = used_;
+    measured.camera.fx_px = fx_px;
+    return measured;
+  }
   std::string text_of(const fs::path& file) const { return *config::read_text(file); }
 
   test::Scratch scratch_;
@@ -33,11 +39,7 @@ class CalibrateSession : public testing::Test {
 };
 
 TEST_F(CalibrateSession, GoesOnWhereItWasLeft) {
-  {
-    auto session = open();
-    session.draft().camera.fx_px = 1200;
-    ASSERT_TRUE(session.keep(Step::lens, {"20 images"}));
-  }
+  { ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, with_focal_length(1200))); }
   auto session = open();
   EXPECT_TRUE(session.is_done(Step::lens));
   EXPECT_FALSE(session.is_done(Step::screen));
@@ -46,19 +48,31 @@ TEST_F(CalibrateSession, GoesOnWhereItWasLeft) {
   EXPECT_FALSE(open().is_done(Step::lens));
 }
 
+TEST_F(CalibrateSession, AMeasurementThatIsNotGoodChangesNothing) {
+  ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, with_focal_length(1200)));
+  auto session = open();
+  const auto report = text_of(session.report());
+  const auto kept = session.keep(Step::lens, {"2 images", false}, with_focal_length(900));
+  ASSERT_FALSE(kept);
+  EXPECT_THAT(kept.error().what, HasSubstr("measure it again"));
+  EXPECT_EQ(session.draft().camera.fx_px, 1200);
+  EXPECT_EQ(open().draft().camera.fx_px, 1200);
+  EXPECT_EQ(text_of(session.report()), report);
+}
+
 TEST_F(CalibrateSession, ANewLensForgetsWhatWasMeasuredWithTheOld) {
   auto session = open();
-  ASSERT_TRUE(session.keep(Step::lens, {"one"}));
-  ASSERT_TRUE(session.keep(Step::screen, {"two"}));
+  ASSERT_TRUE(session.keep(Step::lens, {"one"}, used_));
+  ASSERT_TRUE(session.keep(Step::screen, {"two"}, used_));
   EXPECT_TRUE(session.is_done(Step::screen));
-  ASSERT_TRUE(session.keep(Step::lens, {"three"}));
+  ASSERT_TRUE(session.keep(Step::lens, {"three"}, used_));
   EXPECT_FALSE(session.is_done(Step::screen));
   EXPECT_THAT(text_of(session.report()), Not(HasSubstr("two")));
 }
 
 TEST_F(CalibrateSession, TheReportHasTheFindingsOfEachStep) {
   auto session = open();
-  ASSERT_TRUE(session.keep(Step::lens, {"20 images", true, {"tilt <more>"}, "<svg></svg>"}));
+  ASSERT_TRUE(session.keep(Step::lens, {"20 images", true, {"tilt <more>"}, "<svg></svg>"}, used_));
   const auto page = text_of(session.report());
   EXPECT_THAT(page, HasSubstr("tilt &lt;more&gt;"));
   EXPECT_THAT(page, HasSubstr("<svg></svg>"));
@@ -70,8 +84,7 @@ TEST_F(CalibrateSession, TheOldCalibrationIsKept) {
   std::ofstream(own) << calib::print_calibration(used_);
   rig_.calibration = own;
   auto session = open();
-  session.draft().camera.fx_px = 1200;
-  ASSERT_TRUE(session.keep(Step::lens, {"20 images"}));
+  ASSERT_TRUE(session.keep(Step::lens, {"20 images"}, with_focal_length(1200)));
   const auto finished = session.finish();
   ASSERT_TRUE(finished) << finished.error().what;
   EXPECT_EQ(calib::load_calibration(own)->camera.fx_px, 1200);
@@ -89,8 +102,9 @@ TEST_F(CalibrateSession, ADraftThatServicesWouldRefuseDoesNotTakeThePlaceOfAGood
   std::ofstream(own) << calib::print_calibration(used_);
   rig_.calibration = own;
   auto session = open();
-  session.draft().projector_from_camera = glm::dmat3(0);
-  ASSERT_TRUE(session.keep(Step::screen, {"nonsense"}));
+  auto unusable = used_;
+  unusable.projector_from_camera = glm::dmat3(0);
+  ASSERT_TRUE(session.keep(Step::screen, {"nonsense"}, unusable));
   const auto finished = session.finish();
   ASSERT_FALSE(finished);
   EXPECT_THAT(finished.error().what, HasSubstr("homography"));
@@ -98,7 +112,7 @@ TEST_F(CalibrateSession, ADraftThatServicesWouldRefuseDoesNotTakeThePlaceOfAGood
 }
 
 TEST_F(CalibrateSession, ADraftOfAnotherCameraIsRefused) {
-  ASSERT_TRUE(open().keep(Step::lens, {"20 images"}));
+  ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, used_));
   used_.camera.width_px = 640;
   const auto session = Session::open(options_, rig_, used_);
   ASSERT_FALSE(session);
