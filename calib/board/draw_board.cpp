@@ -24,7 +24,8 @@ void paint(const Shape& shape, int width_px, std::vector<double>& black) {
   const glm::ivec2 end(glm::ceil(shape.centre + shape.half_size + 0.5));
   for (int y = begin.y; y < end.y; ++y)
     for (int x = begin.x; x < end.x; ++x)
-      black[static_cast<std::size_t>(y * width_px + x)] += covered(shape, glm::dvec2(x, y) + 0.5);
+      black[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) +
+            static_cast<std::size_t>(x)] += covered(shape, glm::dvec2(x, y) + 0.5);
 }
 
 }  // namespace

@@ -66,8 +66,9 @@ std::vector<Found> find_circles(const Board& board, const cv::Mat1b& image) {
     return {};
   turn_upright(size, centres);
   std::vector<cv::Point2f> grid;
-  for (int i = 0; i < size.area(); ++i)
-    grid.emplace_back(static_cast<float>(i % size.width), static_cast<float>(i / size.width));
+  grid.reserve(centres.size());
+  for (int row = 0; row < size.height; ++row)
+    for (int column = 0; column < size.width; ++column) grid.emplace_back(column, row);
   const cv::Matx33d map = cv::findHomography(grid, centres);
   std::vector<Found> found;
   for (std::size_t i = 0; i < centres.size(); ++i)

@@ -50,10 +50,18 @@ double nearest_px(const std::vector<Found>& corners, cv::Point2f corner) {
 std::vector<cv::Point2f> in_squares(const Board& board, const std::vector<Found>& found) {
   const int columns = columns_of(board);
   std::vector<cv::Point2f> points;
-  for (const auto& point : found)
-    points.emplace_back(static_cast<float>(point.id % columns),
-                        static_cast<float>(point.id / columns));
+  points.reserve(found.size());
+  for (const auto& point : found) {
+    const int column = point.id % columns, row = point.id / columns;
+    points.emplace_back(column, row);
+  }
   return points;
+}
+
+std::vector<cv::Point2f> in_image(const std::vector<Found>& found) {
+  std::vector<cv::Point2f> points_px(found.size());
+  std::ranges::transform(found, points_px.begin(), &Found::image_px);
+  return points_px;
 }
 
 bool is_wide(const std::vector<cv::Point2f>& points) {
@@ -121,9 +129,7 @@ double contrast_at(const cv::Mat1b& image, const cv::Mat& map, const Found& corn
 /// Leaves out the corners at which there are no four squares.
 void erase_covered(const Board& board, const cv::Mat1b& image, std::vector<Found>& found) {
   const auto squares = in_squares(board, found);
-  std::vector<cv::Point2f> image_px;
-  for (const auto& point : found) image_px.push_back(point.image_px);
-  const auto map = cv::findHomography(squares, image_px);
+  const auto map = cv::findHomography(squares, in_image(found));
   std::vector<double> contrasts;
   for (std::size_t i = 0; i < found.size(); ++i)
     contrasts.push_back(contrast_at(image, map, found[i], squares[i]));
@@ -146,10 +152,8 @@ bool enough(const Board& board, const std::vector<Found>& found) {
 
 std::vector<Found> consistent(const Board& board, std::vector<Found> found) {
   if (!enough(board, found)) return {};
-  std::vector<cv::Point2f> image_px;
-  for (const auto& point : found) image_px.push_back(point.image_px);
   std::vector<std::uint8_t> agrees;
-  cv::findHomography(image_px, in_squares(board, found), cv::RANSAC, kMistake, agrees);
+  cv::findHomography(in_image(found), in_squares(board, found), cv::RANSAC, kMistake, agrees);
   std::vector<Found> kept;
   for (std::size_t i = 0; i < agrees.size(); ++i)
     if (agrees[i]) kept.push_back(found[i]);

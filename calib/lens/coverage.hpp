@@ -36,7 +36,8 @@ class Coverage {
 
  private:
   static std::size_t index(int column, int row) {
-    return static_cast<std::size_t>(row * kColumns + column);
+    const int cell = row * kColumns + column;
+    return static_cast<std::size_t>(cell);
   }
   int tilts_seen() const;
   std::string place_advice() const;

@@ -29,7 +29,8 @@ class VolumeCoverage {
   static constexpr int kSide = 3, kDepths = 3, kEnough = 30;
 
   bool covered(int depth, int row, int column) const {
-    return counts_[static_cast<std::size_t>((depth * kSide + row) * kSide + column)] >= kEnough;
+    const int cell = (depth * kSide + row) * kSide + column;
+    return counts_[static_cast<std::size_t>(cell)] >= kEnough;
   }
 
   CameraModel camera_;

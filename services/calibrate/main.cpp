@@ -98,7 +98,7 @@ Result<Outcome> with_rig(const Options& options, const config::Rig& rig, const R
 /// Does one step, and keeps what it has measured. False if the person has left the step out.
 Result<bool> do_step(const Options& options, const config::Rig& rig, const RunningAs& running,
                      Session& session, Keys& keys, const StepEntry& entry) {
-  const auto wanted = is_wanted(options, keys, entry);
+  auto wanted = is_wanted(options, keys, entry);
   if (!wanted || !*wanted) return wanted;
   auto draft = session.draft();
   const auto outcome = with_rig(options, rig, running, session, draft, keys, entry, entry.measure);
@@ -136,7 +136,7 @@ Result<void> check_rig(const Options& options, const config::Rig& rig, const Run
                        Session& session) {
   Keys keys;
   const auto& entry = entry_of(Step::tracker);
-  const auto wanted = is_wanted(options, keys, entry);
+  auto wanted = is_wanted(options, keys, entry);
   if (!wanted) return tl::make_unexpected(wanted.error());
   if (!*wanted) return {};
   auto draft = running.calibration;

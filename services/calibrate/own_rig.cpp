@@ -26,6 +26,7 @@ using namespace std::chrono_literals;
 /// this program, which then stops the rig. -1 if it cannot be started.
 pid_t spawn(std::vector<std::string> words, const std::filesystem::path& log) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t files;

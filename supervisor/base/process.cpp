@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/base/process.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <time.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <iterator>
+#include <array>
 #include <sstream>
 #include <string>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/unique_fd.hpp"
 
 namespace handcast::supervisor {
 
@@ -27,10 +28,21 @@ std::string field_of_living(pid_t pid, int number) {
 
 }  // namespace
 
+std::string proc_text(const std::filesystem::path& file) {
+  const UniqueFd fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  std::string text;
+  std::array<char, 4096> bytes;
+  for (;;) {
+    const auto count = fd ? ::read(fd.get(), bytes.data(), bytes.size()) : -1;
+    if (count < 0) return {};
+    if (count == 0) return text;
+    text.append(bytes.data(), static_cast<std::size_t>(count));
+  }
+}
+
 // "PID (name) state ppid ...": the name may contain any characters, so fields are counted after it.
 std::string stat_field(const std::filesystem::path& folder, int number) {
-  std::ifstream file(folder / "stat");
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const auto text = proc_text(folder / "stat");
   const auto behind_name = text.rfind(") ");
   if (behind_name == std::string::npos) return {};
   std::istringstream fields(text.substr(behind_name + 2));

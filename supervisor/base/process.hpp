@@ -9,6 +9,10 @@
 
 namespace handcast::supervisor {
 
+/// The text of a file in /proc; "" if it cannot be read, for example because its process has ended
+/// since it was opened. (The buffer of a std::ifstream throws in that case.)
+std::string proc_text(const std::filesystem::path& file);
+
 /// A field of the file `stat` of a process or thread (proc(5)), counted from 1, from the third on;
 /// `folder`: /proc/PID or /proc/PID/task/TID. "" if there is no such process.
 std::string stat_field(const std::filesystem::path& folder, int number);

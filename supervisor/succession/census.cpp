@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -20,6 +18,7 @@
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "supervisor/base/pidfd.hpp"
+#include "supervisor/base/process.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -82,8 +81,7 @@ std::string environment_of(const std::filesystem::path& process) {
   std::string environment;
   for (int i = 0; i < kMostReads && environment.empty(); ++i) {
     if (i > 0) usleep(1000);
-    std::ifstream file(process / "environ");
-    environment.assign(std::istreambuf_iterator<char>(file), {});
+    environment = proc_text(process / "environ");
   }
   return environment;
 }

@@ -9,11 +9,10 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "supervisor/base/process.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -32,15 +31,13 @@ std::vector<std::int64_t> numbers_in(std::string_view text) {
   return numbers;
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 int descriptors_in(const std::filesystem::path& folder) {
   std::error_code forbidden;
-  const std::filesystem::directory_iterator entries(folder, forbidden);
-  return forbidden ? -1 : static_cast<int>(std::distance(entries, {}));
+  int count = 0;
+  for (std::filesystem::directory_iterator entry(folder, forbidden), end;
+       !forbidden && entry != end; entry.increment(forbidden))
+    ++count;
+  return forbidden ? -1 : count;
 }
 
 /// The processor time, in nanoseconds and not in the ticks of 10 ms of /proc/PID/stat.
@@ -88,8 +85,8 @@ std::optional<ProcessUsage> usage_of(pid_t pid) {
   if (pid <= 0) return std::nullopt;
   const auto folder = std::filesystem::path("/proc") / std::to_string(pid);
   ProcessUsage usage;
-  if (!read_stat(text_of(folder / "stat"), sysconf(_SC_CLK_TCK), usage)) return std::nullopt;
-  if (!read_statm(text_of(folder / "statm"), sysconf(_SC_PAGESIZE), usage)) return std::nullopt;
+  if (!read_stat(proc_text(folder / "stat"), sysconf(_SC_CLK_TCK), usage)) return std::nullopt;
+  if (!read_statm(proc_text(folder / "statm"), sysconf(_SC_PAGESIZE), usage)) return std::nullopt;
   usage.descriptors = descriptors_in(folder / "fd");
   usage.cpu_ns = cpu_time_of(pid).value_or(usage.cpu_ns);
   usage.taken_ns = now_ns();

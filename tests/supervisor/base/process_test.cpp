@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/base/process.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "ipc/base/clock.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -33,6 +35,15 @@ TEST(StartTicks, AreATimeOnTheClockOfTheRig) {
   const auto started_ns = start_ns_of(start_ticks_of(getpid()).value());
   EXPECT_LE(started_ns, now_ns());
   EXPECT_GT(started_ns, now_ns() - seconds_to_ns(3600)) << "this test has just been started";
+}
+
+TEST(ProcText, IsEmptyWhereReadingFailsAfterOpening) {
+  const handcast::test::Scratch scratch;
+  std::filesystem::create_directory(scratch.path() / "stat");  // opens, but cannot be read
+  EXPECT_EQ(proc_text(scratch.path() / "stat"), "");
+  EXPECT_EQ(stat_field(scratch.path(), 3), "");
+  EXPECT_EQ(proc_text(scratch.path() / "absent"), "");
+  EXPECT_THAT(proc_text("/proc/self/stat"), testing::StartsWith(std::to_string(getpid()) + " ("));
 }
 
 }  // namespace

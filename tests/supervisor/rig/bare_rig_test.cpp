@@ -126,7 +126,7 @@ TEST_F(BareRig, ASuccessorGoesOnWithTheRigAsItWasAppliedAndTheFileCountsWhenItIs
   replace_supervisor(*rig);
   EXPECT_EQ(pid_of("camera"), camera);
   const auto reloaded = reload();
-  ASSERT_TRUE(reloaded) << reloaded.error().what;
+  ASSERT_TRUE(reloaded) << reloaded.error().what << rig->log();
   EXPECT_NE(pid_of("camera"), camera);
 }
 
