@@ -50,8 +50,8 @@ double median(std::vector<double> values) {
 double limit_px(const std::vector<double>& rms_px) {
   constexpr double kDeviations = 1.4826;  // of a normal distribution, in median absolute deviations
   const double middle_px = median(rms_px);
-  std::vector<double> off_px;
-  for (const double px : rms_px) off_px.push_back(std::abs(px - middle_px));
+  auto off_px = rms_px;
+  for (double& px : off_px) px = std::abs(px - middle_px);
   return std::max(middle_px + kOutlier * kDeviations * median(off_px), kOutlierFactor * middle_px);
 }
 

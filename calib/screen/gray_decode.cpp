@@ -22,6 +22,7 @@ constexpr double kSureInNoise = 4;             ///< standard deviations
 constexpr double kLeastLitShare = 0.005;       ///< of the camera's pixels
 constexpr double kLeastStripeContrast = 0.25;  ///< noise of 5 % alone gives 0.05
 constexpr double kMostTornShare = 0.08;  ///< of the pairs of neighbours; noise of 5 % makes 0.02
+constexpr double kTremor_px = 0.12;      ///< camera px; of a board that a person holds still
 constexpr double kEdgeSigma_px = 0.1;    ///< camera px; of an edge without noise
 constexpr double kUnusual = 2;  ///< misfit of a patch in medians; noise makes no such patch
 constexpr double kMostUnusualShare = 0.005;   ///< of the patches
@@ -61,9 +62,11 @@ class GrayDecoder {
   int difference(std::size_t bit, int x, int y) const {
     return grey(2 + 2 * bit, x, y) - grey(3 + 2 * bit, x, y);
   }
-  const Cell& cell(int x, int y) const {
-    return cells_[static_cast<std::size_t>(y * width_px_ + x)];
+  Cell& cell(int x, int y) {
+    const int index = y * width_px_ + x;
+    return cells_[static_cast<std::size_t>(index)];
   }
+  double noise(int x, int y) const;
   double cell_px() const { return 1 << code_.lowest_bit_; }
 
   void measure_light();
@@ -114,11 +117,24 @@ void GrayDecoder::measure_light() {
       std::max(kLeastContrast, static_cast<int>(kLeastContrastInNoise * result_.noise));
 }
 
+/// The standard deviation of a pixel, grey levels: that of the camera, and at an edge of the
+/// board's print also the tremor of the hand that holds it, which moves the print over the pixel.
+double GrayDecoder::noise(int x, int y) const {
+  const auto step = [&](int dx, int dy) {
+    const int left = std::max(x - dx, 0), right = std::min(x + dx, width_px_ - 1);
+    const int upper = std::max(y - dy, 0), lower = std::min(y + dy, height_px_ - 1);
+    const int behind = grey(0, left, upper), here = grey(0, x, y), ahead = grey(0, right, lower);
+    return std::max(std::abs(here - behind), std::abs(ahead - here));
+  };
+  const double printed = std::hypot(step(1, 0), step(0, 1));
+  return std::hypot(result_.noise, kTremor_px * std::max(0., printed - 3 * result_.noise));
+}
+
 /// At most one bit of each coordinate may be unsure: on an edge, either side is right.
 Cell GrayDecoder::read_cell(int x, int y) const {
   const int light = contrast(x, y);
   if (light < least_contrast_) return {};
-  const double sure = std::max(kSureShare * light, kSureInNoise * result_.noise);
+  const double sure = std::max(kSureShare * light, kSureInNoise * noise(x, y));
   int values[2] = {0, 0}, unsure[2] = {0, 0}, last[2] = {0, 0};
   for (std::size_t bit = 0; bit < code_.bits_.size(); ++bit) {
     const int axis = code_.bits_[bit].of_row;
@@ -132,12 +148,12 @@ Cell GrayDecoder::read_cell(int x, int y) const {
 }
 
 void GrayDecoder::read_cells() {
-  cells_.resize(static_cast<std::size_t>(width_px_ * height_px_));
+  cells_.resize(static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_));
   long lit = 0;
   for (int y = 0; y < height_px_; ++y)
     for (int x = 0; x < width_px_; ++x) {
       const auto read = read_cell(x, y);
-      cells_[static_cast<std::size_t>(y * width_px_ + x)] = read;
+      cell(x, y) = read;
       lit += read.column != kDark;
     }
   result_.lit_share = static_cast<double>(lit) / (width_px_ * height_px_);
@@ -150,9 +166,10 @@ Crossing GrayDecoder::crossing(std::size_t bit, int x, int y, int dx, int dy) co
   const double from = difference(bit, x, y) / light;
   const double to = difference(bit, x + dx, y + dy) / next_light;
   const double rise = from - to;
-  const double noise = std::numbers::sqrt2 * result_.noise *
-                       std::hypot(to / light, from / next_light) / (rise * rise);
-  return {from / rise, 1 / (kEdgeSigma_px * kEdgeSigma_px + noise * noise)};
+  const double sigma_px =
+      std::numbers::sqrt2 / (rise * rise) *
+      std::hypot(to * noise(x, y) / light, from * noise(x + dx, y + dy) / next_light);
+  return {from / rise, 1 / (kEdgeSigma_px * kEdgeSigma_px + sigma_px * sigma_px)};
 }
 
 /// Looks at a pixel and its neighbour: between cells c and c + 1 the bit changes that is the lowest
@@ -171,7 +188,8 @@ void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
     return candidate.of_row == of_row && candidate.number == number;
   });
   const auto edge = crossing(static_cast<std::size_t>(bit - code_.bits_.begin()), x, y, dx, dy);
-  auto& patch = patches_[static_cast<std::size_t>(y / kPatch_px * patches_across_ + x / kPatch_px)];
+  const int index = y / kPatch_px * patches_across_ + x / kPatch_px;
+  auto& patch = patches_[static_cast<std::size_t>(index)];
   const glm::dvec2 px(x % kPatch_px + edge.share * dx, y % kPatch_px + edge.share * dy);
   (of_row ? patch.row : patch.column).add(px, upper * cell_px() - 0.5, edge.weight);
 }
@@ -179,7 +197,7 @@ void GrayDecoder::add_edge(int x, int y, int dx, int dy) {
 void GrayDecoder::find_edges() {
   patches_across_ = (width_px_ + kPatch_px - 1) / kPatch_px;
   const int down = (height_px_ + kPatch_px - 1) / kPatch_px;
-  patches_.resize(static_cast<std::size_t>(patches_across_ * down));
+  patches_.resize(static_cast<std::size_t>(patches_across_) * static_cast<std::size_t>(down));
   for (int y = 0; y < height_px_; ++y)
     for (int x = 0; x < width_px_; ++x) {
       if (x + 1 < width_px_) add_edge(x, y, 1, 0);

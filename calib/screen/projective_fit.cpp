@@ -152,18 +152,19 @@ ScreenModel refined(const ScreenModel& start, std::span<const Observation> obser
       add(normal, right, linearised(best, scaling, start.plane_m, observation));
     if (!solved(normal, right, count)) return undetermined(start.plane_m);
     const double before = cost;
-    for (; damping < kMostDamping; damping *= 10) {
+    while (damping < kMostDamping) {
       Normal damped = normal;
       damped.diagonal() *= 1 + damping;
       const auto move = solved(damped, right, count);
-      if (!move) continue;
-      const Vector next = best + *move;
+      const Vector next = best + move.value_or(Vector::Zero());
       const double next_cost = cost_of(next, scaling, start.plane_m, observations);
-      if (!(next_cost <= cost)) continue;
-      best = next;
-      cost = next_cost;
-      damping = std::max(damping / 10, 1e-12);
-      break;
+      if (move && next_cost <= cost) {
+        best = next;
+        cost = next_cost;
+        damping = std::max(damping / 10, 1e-12);
+        break;
+      }
+      damping *= 10;
     }
     if (damping >= kMostDamping || before - cost <= kDone * before) break;
   }

@@ -184,6 +184,7 @@ void Choice::add_findings(ScreenFit& fit) const {
                     "is extrapolated.",
                     nearest_m, farthest_m));
   std::vector<double> medians_px;
+  medians_px.reserve(static_cast<std::size_t>(views_));
   for (int view = 0; view < views_; ++view)
     medians_px.push_back(errors_of(fit.model, inliers_.of_view(view)).median);
   const double usual_px = median(medians_px);

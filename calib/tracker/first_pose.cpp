@@ -33,8 +33,10 @@ std::vector<Pair> pairs_at(const Observations& o, double offset_s) {
       std::max(1., static_cast<double>(o.sightings.size()) / static_cast<double>(kJudges));
   // A quarter of the golden ratio keeps the stride from always meeting the same point of the hand.
   constexpr double kShift = 0.1545;
-  for (double at = 0; at < static_cast<double>(o.sightings.size()); at += stride + kShift) {
-    const auto& s = o.sightings[static_cast<std::size_t>(at)];
+  const auto count =
+      static_cast<int>(std::ceil(static_cast<double>(o.sightings.size()) / (stride + kShift)));
+  for (int i = 0; i < count; ++i) {
+    const auto& s = o.sightings[static_cast<std::size_t>(i * (stride + kShift))];
     if (const auto moving = o.track.at(s.point, s.time_s + offset_s))
       pairs.push_back({moving->at_m, s.px});
   }
@@ -115,7 +117,7 @@ void search(const CameraModel& camera, const std::vector<Pair>& pairs, double of
 
 std::vector<Hypothesis> first_poses(const Observations& o) {
   std::vector<Hypothesis> found;
-  const int steps = static_cast<int>(kSearch_s / kStep_s + 0.5);
+  const int steps = static_cast<int>(std::lround(kSearch_s / kStep_s));
   for (int i = -steps; i <= steps; ++i) {
     const auto pairs = pairs_at(o, i * kStep_s);
     if (pairs.size() >= 3) search(o.camera, pairs, i * kStep_s, found);

@@ -91,8 +91,8 @@ Uncertainty uncertainty_of(const Observations& o, const Refined& refined) {
   const auto normals = normals_by_time(o, refined, kBin_s);
   Uncertainty uncertainty;
   uncertainty.covariance = bootstrap(normals);
-  const auto blocks = static_cast<double>(normals.size() / block_length(normals.size()));
-  uncertainty.width = students_t(blocks - 1);
+  const std::size_t blocks = normals.size() / block_length(normals.size());
+  uncertainty.width = students_t(static_cast<double>(blocks) - 1);
   for (const double factor : {0.5, 2.})
     if (const auto other = refine(o, refined.pose, factor * refined.scale)) {
       const auto change = change_between(refined.pose, other->pose);

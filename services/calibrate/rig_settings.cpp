@@ -62,7 +62,7 @@ void add_twin_scene(Step step, const calib::Board& board, std::vector<std::strin
   }
   settings.push_back("twin.prop.kind=board");
   settings.push_back("twin.prop.board=" + calib::print_board_name(board));
-  settings.push_back(fmt::format("twin.prop.hold_s={}", step == Step::lens ? 1 : 12));
+  settings.push_back(fmt::format("twin.prop.hold_s={}", step == Step::lens ? 1 : 8));
   if (step == Step::screen)
     settings.insert(settings.end(), {"twin.image.leak=1", "twin.image.gain=80"});
 }

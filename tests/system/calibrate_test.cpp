@@ -43,6 +43,20 @@ TEST_F(Calibrate, TheTwinsLensIsFoundAndWrittenAsACalibration) {
   EXPECT_THAT(found->made.lens, HasSubstr("images"));
 }
 
+TEST_F(Calibrate, TheTwinsProjectorIsFoundByStructuredLight) {
+  const auto outcome = calibrate({"screen", "--most-s", "150"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
+  EXPECT_THAT(outcome.log, HasSubstr("5 places of the board"));
+  EXPECT_THAT(outcome.log, HasSubstr("coaxial"));
+  const auto found = calib::load_calibration(scratch_.path() / "twin_calibration.toml");
+  ASSERT_TRUE(found) << found.error().what;
+  const auto truth = calib::reference_rig();
+  const double depth_m = truth.plane_m;
+  for (const glm::dvec2 px : {glm::dvec2(180, 135), {540, 135}, {180, 405}, {540, 405}})
+    EXPECT_LT(glm::distance(found->to_projector(px, depth_m), truth.to_projector(px, depth_m)), 1)
+        << px.x << " " << px.y;
+}
+
 TEST_F(Calibrate, ARigThatCannotStartIsToldInASentence) {
   const auto outcome = calibrate({"lens", "--set", "camera.rate_hz=-5"});
   EXPECT_NE(outcome.exit_code, 0);

@@ -147,6 +147,27 @@ TEST(GrayCode, ReadsTheWhiteSquaresOfAPrintedBoard) {
   EXPECT_LT(quantile(errors, 0.95), 0.3);
 }
 
+TEST(GrayCode, ReadsAPrintedBoardInATremblingHand) {
+  // By up to 0.8 px, other than from one pattern to the next.
+  std::vector<RenderedBoard> boards;
+  for (const double shift_m : {-0.5e-3, -0.2e-3, 0.2e-3, 0.5e-3})
+    boards.push_back(
+        board({.contrast = 110, .ambient = 60, .squares_m = 0.010, .print_right_m = shift_m}));
+  test::Shots shots{{}, 720, 540};
+  std::vector<std::uint8_t> picture(test::kProjectorWidth_px * test::kProjectorHeight_px);
+  for (int i = 0; i < code().patterns(); ++i) {
+    code().draw(i, picture.data());
+    shots.images.push_back(boards[static_cast<std::size_t>(i * i + i / 3) % 4].image_of(picture));
+  }
+  const auto decoded = code().decode(shots.views());
+  ASSERT_TRUE(decoded) << decoded.error().what;
+  const auto errors = errors_px(*decoded);
+  std::printf("  %zu points, error p50 %.3f px, p95 %.3f px, worst %.2f px\n", errors.size(),
+              median(errors), quantile(errors, 0.95), quantile(errors, 1));
+  EXPECT_GT(errors.size(), 700u);
+  EXPECT_LT(quantile(errors, 0.95), 0.4);
+}
+
 TEST(GrayCode, LeavesOutPixelsWithTwoUnsureBits) {
   // Two patterns of columns and their inverses are hidden in the middle of the image.
   auto images = shots().images;

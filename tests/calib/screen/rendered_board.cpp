@@ -53,8 +53,8 @@ double albedo(const Scene& scene, double x_m, double y_m) {
   constexpr double kBlack = 0.07;
   if (x_m >= scene.board_right_m) return 0;
   if (scene.squares_m == 0) return 1;
-  const int square =
-      static_cast<int>(std::floor(x_m / scene.squares_m) + std::floor(y_m / scene.squares_m));
+  const int square = static_cast<int>(std::floor((x_m - scene.print_right_m) / scene.squares_m) +
+                                      std::floor((y_m - scene.print_right_m) / scene.squares_m));
   return square & 1 ? kBlack : 1;
 }
 

@@ -34,6 +34,7 @@ struct Scene {
   double blur_px = 0.7;       ///< standard deviation
   double vignetting = 0.4;    ///< light missing in the corners of the image
   double squares_m = 0;       ///< printed on the board, every other one black; 0: it is white
+  double print_right_m = 0;   ///< the print lies so far to the right, and as far down
   double board_right_m = 10;  ///< the board ends there; the background is dark
   unsigned seed = 1;
 };
