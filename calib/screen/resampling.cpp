@@ -26,7 +26,7 @@ std::vector<std::vector<int>> filled_blocks(std::span<const Observation> observa
     filled[static_cast<std::size_t>(observation.block / kImageBlocks)].push_back(observation.block);
   for (auto& blocks : filled) {
     std::ranges::sort(blocks);
-    blocks.erase(std::ranges::unique(blocks).begin(), blocks.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
   }
   std::erase_if(filled, [](const auto& blocks) { return blocks.empty(); });
   return filled;

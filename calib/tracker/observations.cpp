@@ -29,8 +29,9 @@ std::vector<const TrackerSample*> sorted(std::span<const TrackerSample> samples)
   for (const auto& sample : samples)
     if (std::ranges::all_of(sample.points_m, finite)) usable.push_back(&sample);
   std::ranges::stable_sort(usable, {}, &TrackerSample::time_ns);
-  const auto again = std::ranges::unique(usable, {}, &TrackerSample::time_ns);
-  usable.erase(again.begin(), again.end());
+  // Not std::ranges::unique(), which clang 14 does not compile.
+  const auto same_time = [](const auto* a, const auto* b) { return a->time_ns == b->time_ns; };
+  usable.erase(std::unique(usable.begin(), usable.end(), same_time), usable.end());
   return usable;
 }
 

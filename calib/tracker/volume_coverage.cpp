@@ -5,23 +5,41 @@
 
 #include <algorithm>
 #include <string_view>
+#include <vector>
 
 namespace handcast::calib {
 
-VolumeCoverage::VolumeCoverage(const CameraModel& camera,
-                               const glm::dmat4& rough_camera_from_tracker, double near_m,
-                               double far_m)
-    : camera_(camera), rough_(rough_camera_from_tracker), near_m_(near_m), far_m_(far_m) {}
+double depth_by_size_m(const CameraModel& camera, std::span<const SeenPoint> hand) {
+  constexpr double kLeast_m = 0.04, kLeast_px = 8, kQuantile = 0.2;
+  constexpr std::size_t kFewest = 10;
+  std::vector<double> depths_m;
+  for (std::size_t i = 0; i < hand.size(); ++i)
+    for (std::size_t j = i + 1; j < hand.size(); ++j) {
+      const double apart_m = glm::distance(hand[i].tracker_m, hand[j].tracker_m);
+      const double apart_px = glm::distance(hand[i].undistorted_px, hand[j].undistorted_px);
+      if (apart_m >= kLeast_m && apart_px >= kLeast_px)
+        depths_m.push_back(camera.fx_px * apart_m / apart_px);
+    }
+  if (depths_m.size() < kFewest) return 0;
+  const auto at = depths_m.begin() +
+                  static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(depths_m.size()));
+  std::nth_element(depths_m.begin(), at, depths_m.end());
+  return *at;
+}
 
-void VolumeCoverage::add(const glm::dvec2& px, const glm::dvec3& tracker_m) {
-  const double depth_m = (rough_ * glm::dvec4(tracker_m, 1)).z;
-  const double x = kSide * (px.x + 0.5) / camera_.width_px,
-               y = kSide * (px.y + 0.5) / camera_.height_px,
-               z = kDepths * (depth_m - near_m_) / (far_m_ - near_m_);
-  if (!(x >= 0 && x < kSide && y >= 0 && y < kSide && z >= 0 && z < kDepths)) return;
-  const int cell =
-      (static_cast<int>(z) * kSide + static_cast<int>(y)) * kSide + static_cast<int>(x);
-  ++counts_[static_cast<std::size_t>(cell)];
+VolumeCoverage::VolumeCoverage(const CameraModel& camera, double near_m, double far_m)
+    : camera_(camera), near_m_(near_m), far_m_(far_m) {}
+
+void VolumeCoverage::add(std::span<const SeenPoint> hand) {
+  const double z = kDepths * (depth_by_size_m(camera_, hand) - near_m_) / (far_m_ - near_m_);
+  for (const auto& [px, tracker_m] : hand) {
+    const double x = kSide * (px.x + 0.5) / camera_.width_px,
+                 y = kSide * (px.y + 0.5) / camera_.height_px;
+    if (!(x >= 0 && x < kSide && y >= 0 && y < kSide && z >= 0 && z < kDepths)) continue;
+    const int cell =
+        (static_cast<int>(z) * kSide + static_cast<int>(y)) * kSide + static_cast<int>(x);
+    ++counts_[static_cast<std::size_t>(cell)];
+  }
 }
 
 double VolumeCoverage::share() const {

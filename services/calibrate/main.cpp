@@ -13,6 +13,7 @@
 #include "ipc/base/program.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/calibrate/lens_step.hpp"
+#include "services/calibrate/own_devices.hpp"
 #include "services/calibrate/rig_settings.hpp"
 #include "services/calibrate/screen_step.hpp"
 #include "services/calibrate/tracker_step.hpp"
@@ -156,7 +157,11 @@ Result<void> run(Options options) {
   if (!rig) return tl::make_unexpected(rig.error());
   const auto running = rig_as_it_runs(options, *rig);
   if (!running) return tl::make_unexpected(running.error());
-  auto session = Session::open(options, *rig, running->calibration);
+  auto used = running->calibration;
+  const auto own = own_devices(*rig);
+  if (used.camera_device.empty()) used.camera_device = own.camera;
+  if (used.projector_device.empty()) used.projector_device = own.projector;
+  auto session = Session::open(options, *rig, used);
   if (!session) return tl::make_unexpected(session.error());
   return options.check ? check_rig(options, *rig, *running, *session)
                        : measure_all(options, *rig, *running, *session);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "calib/board/board_finder.hpp"
 #include "calib/lens/auto_capture.hpp"
 #include "calib/lens/board_pose.hpp"
+#include "calib/screen/depth_error.hpp"
 #include "calib/screen/gray_code.hpp"
 #include "calib/screen/screen_fit.hpp"
 #include "ipc/msg/camera_frame.hpp"
@@ -160,6 +162,23 @@ std::string place_of(const calib::ScreenFit& fit) {
                      fit.baseline->length_mm, fit.baseline->interval_mm);
 }
 
+/// Where the light was measured, and what one homography would miss.
+std::string pictures_of(const Desk& desk, std::span<const calib::DepthView> views,
+                        const calib::ScreenFit& fit) {
+  std::vector<glm::dvec2> dots_px;
+  for (const auto& view : views)
+    for (const auto& point : view.points) dots_px.push_back(point.camera_px);
+  const auto& camera = desk.draft.camera;
+  auto html =
+      dots_svg(camera.width_px, camera.height_px, dots_px,
+               "Where the projector's light was measured; elsewhere the model is extrapolated.");
+  if (fit.coaxial) return html;
+  const std::array depths_m{fit.depths_m[0], fit.model.plane_m, fit.depths_m[1]};
+  return html + errors_svg(calib::coaxial_error(fit.model, camera, depths_m),
+                           "By how many projector pixels one homography for all depths would miss. "
+                           "The calibration has the parallax, and does not.");
+}
+
 std::string delay_finding(const Desk& desk, const calib::LightDelay& delay) {
   const double latency_ms = desk.rig.projector.latency_ms + delay.delay_ms;
   return fmt::format(
@@ -197,7 +216,7 @@ Result<Outcome> measure_screen(Desk& desk) {
       fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median;
   Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
                               held_out_px, place_of(*fit)),
-                  held_out_px <= kGood_px, fit->findings};
+                  held_out_px <= kGood_px, fit->findings, pictures_of(desk, *views, *fit)};
   if (delay->low_ms > 1 || delay->high_ms < -1)
     outcome.findings.push_back(delay_finding(desk, *delay));
   return outcome;

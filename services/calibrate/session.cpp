@@ -7,6 +7,7 @@
 #include <array>
 #include <ctime>
 
+#include "calib/opencv_file.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
 #include "services/calibrate/pieces.hpp"
@@ -49,6 +50,20 @@ fs::path old_name_of(const fs::path& file) {
   return file.parent_path() / (stem + file.extension().string());
 }
 
+/// Gives a draft the names of the devices in use. Error bad_config: it has others.
+Result<void> adopt_devices(const calib::Calibration& used, calib::Calibration& draft) {
+  const auto adopt = [](const char* what, const std::string& now,
+                        std::string& before) -> Result<void> {
+    if (!before.empty() && !now.empty() && before != now)
+      return fail(Errc::bad_config,
+                  fmt::format("it was the {} '{}', and now it is '{}'", what, before, now));
+    if (before.empty()) before = now;
+    return {};
+  };
+  auto same = adopt("camera", used.camera_device, draft.camera_device);
+  return same ? adopt("projector", used.projector_device, draft.projector_device) : same;
+}
+
 }  // namespace
 
 Result<Session> Session::open(const Options& options, const config::Rig& rig,
@@ -72,6 +87,10 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
                             "has {}x{}; --restart forgets it",
                             session.folder_.string(), draft->camera.width_px,
                             draft->camera.height_px, used.camera.width_px, used.camera.height_px));
+  if (auto same = adopt_devices(used, *draft); !same)
+    return fail(same.error().code, fmt::format("what was measured before, in {}: {}; --restart "
+                                               "forgets it",
+                                               session.folder_.string(), same.error().what));
   session.draft_ = *draft;
   return session;
 }
@@ -125,9 +144,9 @@ Result<std::string> Session::finish() const {
                                                  old.string(), error.message()));
     sentence += fmt::format("; the one before it is kept as {}", old.filename().string());
   }
-  return config::write_whole(target_, calib::print_calibration(draft_)).map([&] {
-    return sentence;
-  });
+  auto written = config::write_whole(target_, calib::print_calibration(draft_));
+  if (written) written = config::write_whole(file("opencv.yml"), calib::print_opencv_file(draft_));
+  return written.map([&] { return sentence; });
 }
 
 }  // namespace handcast::calibrate

@@ -25,8 +25,9 @@ struct Outcome {
 class Session {
  public:
   /// Opens the session in options.folder, or begins one. `used`: the calibration that the rig's
-  /// services have meanwhile. Errors: bad_config (the folder cannot be made, or a draft of other
-  /// images), those of calib::load_calibration() for a draft.
+  /// services have meanwhile, and the devices that are calibrated. Errors: bad_config (the folder
+  /// cannot be made, or a draft of other images or devices), those of calib::load_calibration() for
+  /// a draft.
   static Result<Session> open(const Options& options, const config::Rig& rig,
                               const calib::Calibration& used);
 
@@ -45,7 +46,8 @@ class Session {
   /// anew. What was measured with an older lens is forgotten. Errors: bad_data (the outcome is not
   /// good, and all stays as it is), unavailable (a file cannot be written).
   Result<void> keep(Step step, const Outcome& outcome, const calib::Calibration& measured);
-  /// Writes the draft to target(); the file before it is kept with the time in its name. Returns a
+  /// Writes the draft to target(), and as opencv.yml to the session's folder for other programs;
+  /// the file before it is kept with the time in its name. Returns a
   /// sentence about where they are. Errors: unavailable, bad_config.
   Result<std::string> finish() const;
 

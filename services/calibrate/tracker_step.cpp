@@ -56,30 +56,55 @@ void add_sightings(const Desk& desk, std::int64_t time_ns, const msg::HandLandma
 
 /// Adds the newest sample with the newest image: the advice may be some ms old.
 void cover(const Seen& seen, calib::VolumeCoverage& coverage) {
+  std::vector<calib::SeenPoint> hand;
   for (std::size_t i = seen.sightings.size(); i-- > 0;) {
     const auto& sighting = seen.sightings[i];
-    if (sighting.time_ns != seen.sightings.back().time_ns) return;
-    coverage.add(sighting.undistorted_px,
-                 seen.samples.back().points_m[static_cast<std::size_t>(sighting.point)]);
+    if (sighting.time_ns != seen.sightings.back().time_ns) break;
+    hand.push_back({sighting.undistorted_px,
+                    seen.samples.back().points_m[static_cast<std::size_t>(sighting.point)]});
   }
+  coverage.add(hand);
 }
 
-/// Watches a hand until it was everywhere in the volume, Enter is pressed, or the time is over.
+/// How much of the volume was seen, and whether the hand still finds new places in it.
+class Harvest {
+ public:
+  /// False once the hand was seen at no new place for kNothingNew_s.
+  bool goes_on(double share, bool sees_hand) {
+    const auto now = now_ns();
+    if (sees_hand) waited_ns_ += now - looked_ns_;
+    looked_ns_ = now;
+    if (share > share_) waited_ns_ = 0;
+    share_ = share;
+    return share < 1 && (share < kEnough || waited_ns_ < seconds_to_ns(kNothingNew_s));
+  }
+
+ private:
+  static constexpr double kEnough = 0.5, kNothingNew_s = 20;
+
+  double share_ = 0;
+  std::int64_t looked_ns_ = now_ns(), waited_ns_ = 0;
+};
+
+/// Watches a hand until it was everywhere that it can reach, Enter is pressed, or the time is over.
 Result<SeenBySide> watch(Desk& desk) {
   auto poses = client::open_stream<msg::HandPoses>(desk.rig.name, "pose.hands");
   if (!poses) return tl::make_unexpected(poses.error());
   auto landmarks = client::open_stream<msg::Landmarks>(desk.rig.name, "landmarks.hands");
   if (!landmarks) return tl::make_unexpected(landmarks.error());
-  calib::VolumeCoverage coverage(desk.draft.camera, desk.used.camera_from_tracker, kNear_m, kFar_m);
+  calib::VolumeCoverage coverage(desk.draft.camera, kNear_m, kFar_m);
+  Harvest harvest;
+  bool sees_hand = false;
   SeenBySide seen;
   Progress progress(desk, "tracker");
-  while (coverage.share() < 1) {
+  while (harvest.goes_on(coverage.share(), sees_hand)) {
     if (const auto on = progress.goes_on(); !on || !*on) {
       if (!on) return tl::make_unexpected(on.error());
       break;
     }
     progress.show(coverage.share(), coverage.advice());
     const auto found = landmarks->next(Deadline::in(200ms));
+    sees_hand = found && (*found)->count > 0;
     if (found)
       for (std::uint32_t h = 0; h < std::min((*found)->count, std::uint32_t{msg::kMaxHands}); ++h) {
         const auto& hand = (*found)->hands[h];

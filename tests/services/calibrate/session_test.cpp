@@ -119,5 +119,22 @@ TEST_F(CalibrateSession, ADraftOfAnotherCameraIsRefused) {
   EXPECT_THAT(session.error().what, HasSubstr("--restart"));
 }
 
+TEST_F(CalibrateSession, TheDevicesAreNamedAndADraftOfOthersIsRefused) {
+  used_.camera_device = "HD Webcam";
+  auto session = open();
+  ASSERT_TRUE(session.keep(Step::lens, {"20 images"}, session.draft()));
+  ASSERT_TRUE(session.finish());
+  EXPECT_EQ(calib::load_calibration(session.target())->camera_device, "HD Webcam");
+  EXPECT_THAT(text_of(session.file("opencv.yml")), HasSubstr("\"HD Webcam\""));
+
+  used_.projector_device = "EPSON PJ";  // was not known before
+  EXPECT_EQ(open().draft().projector_device, "EPSON PJ");
+  used_.camera_device = "Other Webcam";
+  const auto other = Session::open(options_, rig_, used_);
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error().what, HasSubstr("'HD Webcam', and now it is 'Other Webcam'"));
+  EXPECT_THAT(other.error().what, HasSubstr("--restart"));
+}
+
 }  // namespace
 }  // namespace handcast::calibrate

@@ -52,7 +52,8 @@ class LightCrafterTest : public testing::TestWithParam<Controller> {
   std::unique_ptr<DlpController> open() const { return std::move(open_dlp(rig_).value()); }
   /// Darkens it, and tends it until it waits for nothing but a signal.
   Health bring_up(DlpController& controller) const {
-    EXPECT_TRUE(controller.darken(Deadline::in(5s)));
+    const auto dark = controller.darken(Deadline::in(5s));
+    EXPECT_TRUE(dark) << dark.error().what;
     for (int i = 0; i < 20; ++i) {
       const auto health = controller.tend(Deadline::in(5s));
       if (!health) throw std::runtime_error(health.error().what);

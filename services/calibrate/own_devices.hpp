@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "config/rig.hpp"
+#include "services/devices/attached.hpp"
+
+namespace handcast::calibrate {
+
+/// The devices that a calibration was made with, by names that calib::check_device() accepts for
+/// them. Empty: it has no name (the twin), or the rig file does not say which of several it is.
+struct OwnDevices {
+  std::string camera, projector;
+};
+
+/// The devices of a rig. `attached`: those of this computer, in which an unnamed one is looked up.
+OwnDevices own_devices(const config::Rig& rig, const std::vector<devices::Attached>& attached);
+/// The same with what is attached now. Takes a second if the rig has devices.
+OwnDevices own_devices(const config::Rig& rig);
+
+}  // namespace handcast::calibrate
