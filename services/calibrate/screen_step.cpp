@@ -17,6 +17,7 @@
 #include "calib/screen/screen_fit.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "services/calibrate/by_hand.hpp"
+#include "services/calibrate/image_fields.hpp"
 #include "services/calibrate/pattern_images.hpp"
 #include "services/calibrate/pieces.hpp"
 
@@ -38,7 +39,8 @@ class ScreenMeasurement {
         patterns_(std::move(patterns)),
         finder_(desk.options.board),
         code_(desk.screen.width_px(), desk.screen.height_px()),
-        capture_(desk.used.camera.width_px) {}
+        capture_(desk.used.camera.width_px),
+        seen_(desk.used.camera.width_px, desk.used.camera.height_px) {}
 
   Result<std::vector<calib::DepthView>> take_views() {
     std::vector<calib::DepthView> views;
@@ -56,11 +58,19 @@ class ScreenMeasurement {
       auto view = measure();
       if (!view && view.error().code == Errc::bad_data) view = measure();
       if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
-      advice = view ? "Now hold it nearer or farther, and tilted" : view.error().what;
-      if (view) views.push_back(std::move(*view));
+      if (!view) {
+        advice = view.error().what;
+        continue;
+      }
+      for (const auto& point : view->points) seen_.add(point.camera_px);
+      views.push_back(std::move(*view));
+      advice = fmt::format(
+          "Now hold it nearer or farther, tilted, and more to the {} of the camera's image",
+          seen_.emptiest());
     }
     return views;
   }
+  const ImageFields& seen() const { return seen_; }
 
  private:
   /// True if the next image has the board, still and at a new place.
@@ -147,6 +157,7 @@ class ScreenMeasurement {
   calib::BoardFinder finder_;
   calib::GrayCode code_;
   calib::AutoCapture capture_;
+  ImageFields seen_;
 };
 
 double mean_depth_m(std::span<const calib::DepthView> views) {
@@ -217,6 +228,9 @@ Result<Outcome> measure_screen(Desk& desk) {
   Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
                               held_out_px, place_of(*fit)),
                   held_out_px <= kGood_px, fit->findings, pictures_of(desk, *views, *fit)};
+  if (const auto empty = measurement.seen().empty(); !empty.empty())
+    outcome.findings.push_back("no light was measured in these parts of the camera's image: " +
+                               empty + "; there the model is extrapolated");
   if (delay->low_ms > 1 || delay->high_ms < -1)
     outcome.findings.push_back(delay_finding(desk, *delay));
   return outcome;

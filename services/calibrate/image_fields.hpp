@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+
+namespace handcast::calibrate {
+
+/// What was seen where in an image, in 3 x 3 fields that a person can be sent to.
+class ImageFields {
+ public:
+  ImageFields(int width_px, int height_px) : width_px_(width_px), height_px_(height_px) {}
+
+  /// Counts the points that are inside the image.
+  void add(const glm::dvec2& px);
+  /// The field with the fewest points, as "top left" or "middle".
+  std::string emptiest() const;
+  /// The fields without points: "top left, bottom right"; "" if there are none.
+  std::string empty() const;
+
+ private:
+  static constexpr int kSide = 3;
+
+  int width_px_, height_px_;
+  std::array<int, kSide * kSide> counts_{};  ///< row by row
+};
+
+}  // namespace handcast::calibrate
