@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/screen_views.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#include "calib/lens/board_pose.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kWantedViews = 5;
+constexpr double kMoved_px = 1;  ///< by which the board may have moved during the patterns
+
+/// The largest move of a point that both views have; infinite if they share none.
+double largest_move_px(const calib::BoardView& a, const calib::BoardView& b) {
+  double largest = -1;
+  for (std::size_t i = 0; i < a.ids.size(); ++i)
+    for (std::size_t j = 0; j < b.ids.size(); ++j)
+      if (a.ids[i] == b.ids[j])
+        largest = std::max(largest, glm::distance(a.image_px[i], b.image_px[j]));
+  return largest < 0 ? std::numeric_limits<double>::infinity() : largest;
+}
+
+}  // namespace
+
+ScreenViews::ScreenViews(Desk& desk, client::Stream<msg::CameraFrame> frames,
+                         PatternImages patterns)
+    : desk_(desk),
+      frames_(std::move(frames)),
+      patterns_(std::move(patterns)),
+      finder_(desk.options.board),
+      code_(desk.screen.width_px(), desk.screen.height_px()),
+      capture_(desk.used.camera.width_px),
+      seen_(desk.used.camera.width_px, desk.used.camera.height_px) {}
+
+Result<std::vector<calib::DepthView>> ScreenViews::take() {
+  std::vector<calib::DepthView> views;
+  Progress progress(desk_, "screen");
+  std::string advice = "Hold the board still in the light";
+  while (views.size() < kWantedViews) {
+    if (const auto on = progress.goes_on(); !on || !*on) {
+      if (!on) return tl::make_unexpected(on.error());
+      break;
+    }
+    progress.show(static_cast<double>(views.size()) / static_cast<double>(kWantedViews), advice);
+    const auto ready = is_ready();
+    if (!ready) return tl::make_unexpected(ready.error());
+    if (!*ready) continue;
+    auto view = measure();
+    if (!view && view.error().code == Errc::bad_data) view = measure();
+    if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
+    if (!view) {
+      advice = view.error().what;
+      continue;
+    }
+    for (const auto& point : view->points) seen_.add(point.camera_px);
+    views.push_back(std::move(*view));
+    advice = fmt::format(
+        "Now hold it nearer or farther, tilted, and more to the {} of the camera's image",
+        seen_.emptiest());
+  }
+  return views;
+}
+
+/// True if the next image has the board, still and at a new place.
+Result<bool> ScreenViews::is_ready() {
+  const auto frame = frames_.latest(Deadline::in(200ms));
+  if (!frame && frame.error().code == Errc::timeout) return false;
+  if (!frame) return tl::make_unexpected(frame.error());
+  const auto width = static_cast<int>((*frame)->width_px);
+  const auto board =
+      finder_.find({(*frame)->pixels(), width, static_cast<int>((*frame)->height_px), width});
+  return board && capture_.take((*frame)->header.origin_ns, *board);
+}
+
+/// Shows all patterns, and then the first one, white, again.
+Result<std::vector<PatternImages::Image>> ScreenViews::shoot() {
+  std::vector<PatternImages::Image> images;
+  for (int i = 0; i <= code_.patterns(); ++i) {
+    const int pattern = i % code_.patterns();  // 0 is white
+    auto image = patterns_.image([&](std::uint8_t* levels) { code_.draw(pattern, levels); });
+    if (!image) return tl::make_unexpected(image.error());
+    images.push_back(std::move(*image));
+  }
+  return images;
+}
+
+/// Error bad_data: the board is not at the same place in both white images, or the patterns cannot
+/// be read.
+Result<calib::DepthView> ScreenViews::measure() {
+  auto shot = shoot();
+  if (!shot) return tl::make_unexpected(shot.error());
+  auto& images = *shot;
+  const auto& camera = desk_.draft.camera;
+  const auto view_of = [&](const PatternImages::Image& image) {
+    return calib::GreyView{image.data(), camera.width_px, camera.height_px, camera.width_px};
+  };
+  const auto before = finder_.find(view_of(images.front())),
+             after = finder_.find(view_of(images.back()));
+  if (!before || !after) return fail(Errc::bad_data, "The whole board must be in the light");
+  if (!(largest_move_px(*before, *after) < kMoved_px))
+    return fail(Errc::bad_data, "The board moved: hold it still");
+  const auto pose = calib::board_pose(camera, *before);
+  if (!pose) return fail(Errc::bad_data, "The board is not flat, or the lens is wrong");
+  images.pop_back();
+  darken_beside(*pose, images);
+  std::vector<calib::GreyView> views;
+  std::ranges::transform(images, std::back_inserter(views), view_of);
+  auto decoded = code_.decode(views);
+  if (!decoded) return tl::make_unexpected(decoded.error());
+  light_.contrast = std::max(light_.contrast, decoded->contrast);
+  light_.saturated_share = std::max(light_.saturated_share, decoded->saturated_share);
+  const glm::dvec3 normal((*pose)[2]), origin((*pose)[3]);
+  return calib::DepthView{std::move(decoded->points),
+                          glm::dvec4(normal, -glm::dot(normal, origin))};
+}
+
+/// Sets the pixels beside the board to 0 in all images: what is behind it is lit, too.
+void ScreenViews::darken_beside(const glm::dmat4& camera_from_board,
+                                std::vector<PatternImages::Image>& images) const {
+  const auto& camera = desk_.draft.camera;
+  const auto& board = desk_.options.board;
+  const glm::dvec2 size_m(1e-3 * board.square_mm * board.columns,
+                          1e-3 * board.square_mm * board.rows);
+  // The homography from undistorted camera pixels to the board's plane, metres.
+  const auto board_from_camera =
+      glm::inverse(camera.matrix() * glm::dmat3(glm::dvec3(camera_from_board[0]),
+                                                glm::dvec3(camera_from_board[1]),
+                                                glm::dvec3(camera_from_board[3])));
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      const auto at = board_from_camera * glm::dvec3(camera.undistort({x, y}), 1);
+      const glm::dvec2 at_m = glm::dvec2(at) / at.z;
+      if (glm::all(glm::greaterThan(at_m, glm::dvec2(0))) && glm::all(glm::lessThan(at_m, size_m)))
+        continue;
+      const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width_px) +
+                     static_cast<std::size_t>(x);
+      for (auto& image : images) image[i] = 0;
+    }
+}
+
+}  // namespace handcast::calibrate

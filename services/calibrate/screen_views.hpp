@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "calib/board/board_finder.hpp"
+#include "calib/lens/auto_capture.hpp"
+#include "calib/screen/gray_code.hpp"
+#include "calib/screen/screen_fit.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "services/calibrate/image_fields.hpp"
+#include "services/calibrate/pattern_images.hpp"
+
+namespace handcast::calibrate {
+
+/// How the camera sees the projector's light, at its brightest place.
+struct LightSeen {
+  double contrast = 0;         ///< full light minus none, median, grey levels
+  double saturated_share = 0;  ///< of the lit pixels
+};
+
+/// Measures by structured light where a board is lit that a person holds at several places. One
+/// thread.
+class ScreenViews {
+ public:
+  ScreenViews(Desk& desk, client::Stream<msg::CameraFrame> frames, PatternImages patterns);
+
+  /// Takes a view of each place at which the board is held still, until there are enough, Enter is
+  /// pressed or the time is over. Errors: those of the streams and of the rig.
+  Result<std::vector<calib::DepthView>> take();
+  /// Where in the camera's image the views are.
+  const ImageFields& seen() const { return seen_; }
+  const LightSeen& light() const { return light_; }
+
+ private:
+  Result<bool> is_ready();
+  Result<std::vector<PatternImages::Image>> shoot();
+  Result<calib::DepthView> measure();
+  void darken_beside(const glm::dmat4& camera_from_board,
+                     std::vector<PatternImages::Image>& images) const;
+
+  Desk& desk_;
+  client::Stream<msg::CameraFrame> frames_;
+  PatternImages patterns_;
+  calib::BoardFinder finder_;
+  calib::GrayCode code_;
+  calib::AutoCapture capture_;
+  ImageFields seen_;
+  LightSeen light_;
+};
+
+}  // namespace handcast::calibrate
