@@ -55,8 +55,8 @@ class CommandedProjector : public SystemTest {
   }
   /// The first messages after a forget() are those of the safe state.
   void expect_darkness_first() const {
+    ASSERT_TRUE(eventually([&] { return !device_->received().empty(); }));
     const auto received = device_->received();
-    ASSERT_FALSE(received.empty());
     EXPECT_FALSE(received.front().is_read);
     EXPECT_EQ(received.front().command, dlp::protocol::Command::led_enables);
     EXPECT_EQ(received.front().data, dlp::protocol::Bytes{0});
