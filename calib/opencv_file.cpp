@@ -19,7 +19,7 @@ std::string matrix_text(const char* name, int rows, int columns,
 template <class Matrix>
 std::vector<double> rows_of(const Matrix& matrix) {
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(Matrix::length() * Matrix::col_type::length()));
+  values.reserve(sizeof(Matrix) / sizeof(double));
   for (int row = 0; row < Matrix::col_type::length(); ++row)
     for (int column = 0; column < Matrix::length(); ++column) values.push_back(matrix[column][row]);
   return values;

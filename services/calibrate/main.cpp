@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "calib/board/board_pdf.hpp"
 #include "config/settings/choice.hpp"
@@ -82,8 +83,10 @@ void print_outcome(const Outcome& outcome) {
 Result<Outcome> with_rig(const Options& options, const config::Rig& rig, const RunningAs& running,
                          const Session& session, calib::Calibration& draft, Keys& keys,
                          const StepEntry& entry, Result<Outcome> (*measure)(Desk& desk)) {
-  auto settings = running.settings;
-  if (rig.camera.backend == "twin") add_twin_scene(entry.step, options.board, settings);
+  std::vector<std::string> settings;
+  if (rig.camera.backend == "twin") settings = twin_scene(entry.step, options.board);
+  // What the person sets comes later, and wins.
+  settings.insert(settings.end(), running.settings.begin(), running.settings.end());
   const auto as_it_runs = config::load_rig(options.rig_file, settings);
   if (!as_it_runs) return tl::make_unexpected(as_it_runs.error());
   auto own_rig = OwnRig::start(options.rig_file, rig.name, settings,

@@ -54,17 +54,19 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig)
   return running;
 }
 
-void add_twin_scene(Step step, const calib::Board& board, std::vector<std::string>& settings) {
-  settings.push_back("projector.rate_hz=60");  // whole pictures at 946 Hz take a core
+std::vector<std::string> twin_scene(Step step, const calib::Board& board) {
+  std::vector<std::string> settings{
+      "projector.rate_hz=60"};  // whole pictures at 946 Hz take a core
   if (step == Step::tracker) {
-    settings.push_back("twin.motion=builtin:show");
-    return;
+    settings.emplace_back("twin.motion=builtin:show");
+    return settings;
   }
-  settings.push_back("twin.prop.kind=board");
+  settings.emplace_back("twin.prop.kind=board");
   settings.push_back("twin.prop.board=" + calib::print_board_name(board));
   settings.push_back(fmt::format("twin.prop.hold_s={}", step == Step::lens ? 1 : 8));
   if (step == Step::screen)
     settings.insert(settings.end(), {"twin.image.leak=1", "twin.image.gain=80"});
+  return settings;
 }
 
 }  // namespace handcast::calibrate

@@ -20,8 +20,8 @@ struct RunningAs {
 /// folder. Errors: bad_config (the sizes are missing), those of calib::load_calibration().
 Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig);
 
-/// Adds the settings with which the twin shows what a step needs, at a rate that leaves a small
-/// computer time for it.
-void add_twin_scene(Step step, const calib::Board& board, std::vector<std::string>& settings);
+/// The settings (for --set) with which the twin shows what a step needs, at a rate that leaves a
+/// small computer time for it.
+std::vector<std::string> twin_scene(Step step, const calib::Board& board);
 
 }  // namespace handcast::calibrate

@@ -50,13 +50,11 @@ TEST_F(RigSettings, WithSizesItRunsWithACalibrationThatTheServicesAccept) {
 }
 
 TEST_F(RigSettings, TheTwinShowsWhatAStepNeeds) {
-  std::vector<std::string> settings;
-  add_twin_scene(Step::screen, calib::Board{}, settings);
+  const auto settings = twin_scene(Step::screen, calib::Board{});
   EXPECT_THAT(settings, Contains("twin.prop.board=charuco:11x8:20"));
   EXPECT_THAT(settings, Contains("twin.image.leak=1"));
-  settings.clear();
-  add_twin_scene(Step::tracker, calib::Board{}, settings);
-  EXPECT_THAT(settings, testing::Not(Contains(HasSubstr("twin.prop"))));
+  EXPECT_THAT(twin_scene(Step::tracker, calib::Board{}),
+              testing::Not(Contains(HasSubstr("twin.prop"))));
 }
 
 }  // namespace
