@@ -61,8 +61,8 @@ Result<std::vector<Observation>> usable_sightings(std::span<const Sighting> sigh
           {seconds_between(begin_ns, s.time_ns), s.point, s.undistorted_px, s.sigma_px});
   }
   std::ranges::stable_sort(usable, {}, &Observation::time_s);
-  std::vector<double> sigmas;
-  for (const auto& s : usable) sigmas.push_back(s.sigma);
+  std::vector<double> sigmas(usable.size());
+  std::ranges::transform(usable, sigmas.begin(), &Observation::sigma);
   const double usual_px = percentile_of(std::move(sigmas), 0.5);
   for (auto& s : usable) s.sigma /= usual_px;
   return usable;
