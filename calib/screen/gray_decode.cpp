@@ -119,6 +119,7 @@ void GrayDecoder::measure_light() {
 
 /// The standard deviation of a pixel, grey levels: that of the camera, and at an edge of the
 /// board's print also the tremor of the hand that holds it, which moves the print over the pixel.
+/// Steps that the camera's noise alone makes are no print.
 double GrayDecoder::noise(int x, int y) const {
   const auto step = [&](int dx, int dy) {
     const int left = std::max(x - dx, 0), right = std::min(x + dx, width_px_ - 1);

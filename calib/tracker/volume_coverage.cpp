@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -28,51 +29,37 @@ double depth_by_size_m(const CameraModel& camera, std::span<const SeenPoint> han
 }
 
 VolumeCoverage::VolumeCoverage(const CameraModel& camera, double near_m, double far_m)
-    : camera_(camera), near_m_(near_m), far_m_(far_m) {}
+    : camera_(camera),
+      near_m_(near_m),
+      far_m_(far_m),
+      fields_(kDepths, {camera.width_px, camera.height_px}) {}
 
 void VolumeCoverage::add(std::span<const SeenPoint> hand) {
   const double z = kDepths * (depth_by_size_m(camera_, hand) - near_m_) / (far_m_ - near_m_);
-  for (const auto& [px, tracker_m] : hand) {
-    const double x = kSide * (px.x + 0.5) / camera_.width_px,
-                 y = kSide * (px.y + 0.5) / camera_.height_px;
-    if (!(x >= 0 && x < kSide && y >= 0 && y < kSide && z >= 0 && z < kDepths)) continue;
-    const int cell =
-        (static_cast<int>(z) * kSide + static_cast<int>(y)) * kSide + static_cast<int>(x);
-    ++counts_[static_cast<std::size_t>(cell)];
-  }
+  if (!(z >= 0 && z < kDepths)) return;
+  for (const auto& point : hand) fields_[static_cast<std::size_t>(z)].add(point.undistorted_px);
 }
 
 double VolumeCoverage::share() const {
-  return static_cast<double>(std::ranges::count_if(counts_, [](int n) { return n >= kEnough; })) /
-         static_cast<double>(counts_.size());
+  std::size_t missing = 0;
+  for (const auto& fields : fields_) missing += fields.with_fewer_than(kEnough).size();
+  return 1 - static_cast<double>(missing) / (kDepths * ImageFields::kFields);
 }
 
 std::string VolumeCoverage::advice() const {
   constexpr std::array<std::string_view, kDepths> kDistances{"near the camera", "halfway",
                                                              "far from the camera"};
-  constexpr std::array<std::string_view, kSide> kRows{"top", "middle", "bottom"},
-      kColumns{"left", "middle", "right"};
-  // The depth with the most empty cells; there, the first empty one.
-  int emptiest = 0, most = 0;
-  for (int d = 0; d < kDepths; ++d) {
-    int empty = 0;
-    for (int cell = 0; cell < kSide * kSide; ++cell)
-      empty += !covered(d, cell / kSide, cell % kSide);
-    if (empty > most) {
-      most = empty;
-      emptiest = d;
-    }
-  }
-  if (most == 0) return "The volume is covered.";
+  const auto missing = [](const ImageFields& fields) {
+    return fields.with_fewer_than(kEnough).size();
+  };
+  const auto emptiest = std::ranges::max_element(fields_, {}, missing);
+  if (missing(*emptiest) == 0) return "The volume is covered.";
+  const auto depth = static_cast<std::size_t>(emptiest - fields_.begin());
   const std::string where =
-      fmt::format("{} ({:.1f} m)", kDistances[static_cast<std::size_t>(emptiest)],
-                  near_m_ + (emptiest + 0.5) * (far_m_ - near_m_) / kDepths);
-  if (most == kSide * kSide) return fmt::format("Move the hand {}.", where);
-  int cell = 0;
-  while (covered(emptiest, cell / kSide, cell % kSide)) ++cell;
-  return fmt::format("Move the hand to the {} {} of the image, {}.",
-                     kRows[static_cast<std::size_t>(cell / kSide)],
-                     kColumns[static_cast<std::size_t>(cell % kSide)], where);
+      fmt::format("{} ({:.1f} m)", kDistances[depth],
+                  near_m_ + (static_cast<double>(depth) + 0.5) * (far_m_ - near_m_) / kDepths);
+  if (missing(*emptiest) == ImageFields::kFields) return fmt::format("Move the hand {}.", where);
+  return fmt::format("Move the hand to the {} of the image, {}.", emptiest->emptiest(), where);
 }
 
 }  // namespace handcast::calib

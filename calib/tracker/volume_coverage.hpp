@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <glm/glm.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "calib/calibration.hpp"
+#include "calib/image_fields.hpp"
 
 namespace handcast::calib {
 
@@ -38,16 +39,11 @@ class VolumeCoverage {
   std::string advice() const;
 
  private:
-  static constexpr int kSide = 3, kDepths = 3, kEnough = 30;
-
-  bool covered(int depth, int row, int column) const {
-    const int cell = (depth * kSide + row) * kSide + column;
-    return counts_[static_cast<std::size_t>(cell)] >= kEnough;
-  }
+  static constexpr int kDepths = 3, kEnough = 30;
 
   CameraModel camera_;
   double near_m_, far_m_;
-  std::array<int, kSide * kSide * kDepths> counts_{};
+  std::vector<ImageFields> fields_;  ///< of each depth, the nearest first
 };
 
 }  // namespace handcast::calib

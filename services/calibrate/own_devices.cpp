@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 namespace handcast::calibrate {
 namespace {
@@ -13,20 +14,23 @@ struct Wanted {
   std::string name;                             ///< empty: whichever fits
 };
 
-Wanted camera_of(const config::Rig& rig) {
-  const auto& camera = rig.camera;
-  Wanted wanted{{"camera.backend", camera.backend}, {}};
-  if (camera.backend == "aravis") wanted.name = camera.aravis.device;
-  if (camera.backend == "v4l2") wanted.name = camera.v4l2.device;
-  return wanted;
+/// Nothing if the back end has no devices.
+std::optional<Wanted> camera_of(const config::Camera& camera) {
+  const auto named = [&](const std::string& name) {
+    return Wanted{{"camera.backend", camera.backend}, name};
+  };
+  if (camera.backend == "aravis") return named(camera.aravis.device);
+  if (camera.backend == "v4l2") return named(camera.v4l2.device);
+  return {};
 }
 
-Wanted projector_of(const config::Rig& rig) {
-  const auto& projector = rig.projector;
-  Wanted wanted{{"projector.backend", projector.backend}, {}};
-  if (projector.backend == "kms") wanted.name = projector.kms.connector;
-  if (projector.backend == "window") wanted.name = projector.window.monitor;
-  return wanted;
+std::optional<Wanted> projector_of(const config::Projector& projector) {
+  const auto named = [&](const std::string& name) {
+    return Wanted{{"projector.backend", projector.backend}, name};
+  };
+  if (projector.backend == "kms") return named(projector.kms.connector);
+  if (projector.backend == "window") return named(projector.window.monitor);
+  return {};
 }
 
 /// A number or a file says where a device is now, and not which one it is.
@@ -47,24 +51,20 @@ std::string name_of(const Wanted& wanted, const std::vector<devices::Attached>& 
   return is_lasting(wanted.name) ? wanted.name : "";
 }
 
-bool is_device(const std::string& backend) {
-  return backend == "aravis" || backend == "v4l2" || backend == "kms" || backend == "window";
-}
-
 }  // namespace
 
 OwnDevices own_devices(const config::Rig& rig, const std::vector<devices::Attached>& attached) {
-  return {name_of(camera_of(rig), attached), name_of(projector_of(rig), attached)};
+  const auto camera = camera_of(rig.camera), projector = projector_of(rig.projector);
+  return {camera ? name_of(*camera, attached) : "", projector ? name_of(*projector, attached) : ""};
 }
 
 OwnDevices own_devices(const config::Rig& rig) {
   std::vector<devices::Attached> attached;
-  const auto look_for = [&](devices::Kind kind, const std::string& backend) {
-    if (!is_device(backend)) return;
+  const auto look_for = [&](devices::Kind kind) {
     for (auto& device : devices::attached_of(kind)) attached.push_back(std::move(device));
   };
-  look_for(devices::Kind::camera, rig.camera.backend);
-  look_for(devices::Kind::display, rig.projector.backend);
+  if (camera_of(rig.camera)) look_for(devices::Kind::camera);
+  if (projector_of(rig.projector)) look_for(devices::Kind::display);
   return own_devices(rig, attached);
 }
 

@@ -2,6 +2,7 @@
 #include "services/calibrate/screen_step.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 
@@ -107,9 +108,11 @@ Result<Outcome> measure_screen(Desk& desk) {
                   held_out_px <= kGood_px, fit->findings, pictures_of(desk, *views, *fit)};
   for (auto& finding : light_findings(measurement.light()))
     outcome.findings.push_back(std::move(finding));
-  if (const auto empty = measurement.seen().empty(); !empty.empty())
-    outcome.findings.push_back("no light was measured in these parts of the camera's image: " +
-                               empty + "; there the model is extrapolated");
+  if (const auto empty = measurement.seen().with_fewer_than(1); !empty.empty())
+    outcome.findings.push_back(
+        fmt::format("no light was measured in these parts of the camera's image: {}; there the "
+                    "model is extrapolated",
+                    fmt::join(empty, ", ")));
   if (delay->low_ms > 1 || delay->high_ms < -1)
     outcome.findings.push_back(delay_finding(desk, *delay));
   return outcome;

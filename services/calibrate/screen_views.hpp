@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "calib/board/board_finder.hpp"
+#include "calib/image_fields.hpp"
 #include "calib/lens/auto_capture.hpp"
 #include "calib/screen/gray_code.hpp"
 #include "calib/screen/screen_fit.hpp"
 #include "ipc/msg/camera_frame.hpp"
-#include "services/calibrate/image_fields.hpp"
 #include "services/calibrate/pattern_images.hpp"
 
 namespace handcast::calibrate {
@@ -28,7 +28,7 @@ class ScreenViews {
   /// pressed or the time is over. Errors: those of the streams and of the rig.
   Result<std::vector<calib::DepthView>> take();
   /// Where in the camera's image the views are.
-  const ImageFields& seen() const { return seen_; }
+  const calib::ImageFields& seen() const { return seen_; }
   const LightSeen& light() const { return light_; }
 
  private:
@@ -44,7 +44,7 @@ class ScreenViews {
   calib::BoardFinder finder_;
   calib::GrayCode code_;
   calib::AutoCapture capture_;
-  ImageFields seen_;
+  calib::ImageFields seen_;
   LightSeen light_;
 };
 

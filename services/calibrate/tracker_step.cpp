@@ -69,7 +69,7 @@ void cover(const Seen& seen, calib::VolumeCoverage& coverage) {
 /// How much of the volume was seen, and whether the hand still finds new places in it.
 class Harvest {
  public:
-  /// False once the hand was seen at no new place for kNothingNew_s.
+  /// False if all was seen, or enough and the hand was at no new place for kNothingNew_s.
   bool goes_on(double share, bool sees_hand) {
     const auto now = now_ns();
     if (sees_hand) waited_ns_ += now - looked_ns_;

@@ -148,7 +148,7 @@ TEST(GrayCode, ReadsTheWhiteSquaresOfAPrintedBoard) {
 }
 
 TEST(GrayCode, ReadsAPrintedBoardInATremblingHand) {
-  // By up to 0.8 px, other than from one pattern to the next.
+  // The print moves by up to 1.6 px from image to image.
   std::vector<RenderedBoard> boards;
   for (const double shift_m : {-0.5e-3, -0.2e-3, 0.2e-3, 0.5e-3})
     boards.push_back(

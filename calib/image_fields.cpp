@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/calibrate/image_fields.hpp"
+#include "calib/image_fields.hpp"
 
 #include <algorithm>
 
-namespace handcast::calibrate {
+namespace handcast::calib {
 namespace {
 
 constexpr std::array kNames{"top left", "top",         "top right", "left",        "middle",
@@ -22,11 +22,11 @@ std::string ImageFields::emptiest() const {
   return kNames[static_cast<std::size_t>(std::ranges::min_element(counts_) - counts_.begin())];
 }
 
-std::string ImageFields::empty() const {
-  std::string names;
+std::vector<std::string> ImageFields::with_fewer_than(int points) const {
+  std::vector<std::string> names;
   for (std::size_t field = 0; field < counts_.size(); ++field)
-    if (counts_[field] == 0) names += (names.empty() ? "" : ", ") + std::string(kNames[field]);
+    if (counts_[field] < points) names.emplace_back(kNames[field]);
   return names;
 }
 
-}  // namespace handcast::calibrate
+}  // namespace handcast::calib

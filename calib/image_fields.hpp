@@ -2,10 +2,10 @@
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
-#include <span>
 #include <string>
+#include <vector>
 
-namespace handcast::calibrate {
+namespace handcast::calib {
 
 /// What was seen where in an image, in 3 x 3 fields that a person can be sent to.
 class ImageFields {
@@ -16,14 +16,16 @@ class ImageFields {
   void add(const glm::dvec2& px);
   /// The field with the fewest points, as "top left" or "middle".
   std::string emptiest() const;
-  /// The fields without points: "top left, bottom right"; "" if there are none.
-  std::string empty() const;
+  /// The names of the fields with fewer points.
+  std::vector<std::string> with_fewer_than(int points) const;
+
+  static constexpr int kFields = 9;
 
  private:
   static constexpr int kSide = 3;
 
   int width_px_, height_px_;
-  std::array<int, kSide * kSide> counts_{};  ///< row by row
+  std::array<int, kFields> counts_{};  ///< row by row
 };
 
-}  // namespace handcast::calibrate
+}  // namespace handcast::calib
