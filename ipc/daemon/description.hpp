@@ -30,6 +30,8 @@ struct ServiceDescription {
   /// the service.
   std::vector<std::string> settings{};
   std::vector<BackendDescription> backends{};  ///< empty if it has none to choose from
+  /// It works for the second camera (services/runtime/second_view.hpp). Known to the program alone.
+  bool is_second_view = false;
 };
 
 /// The description as JSON, with a line end.

@@ -24,7 +24,7 @@ struct Joint {
 /// One hand in one tracker sample.
 struct HandPose {
   Side side = Side::left;               ///< as reported by the tracker
-  float confidence = 0;                 ///< 0..1
+  float confidence = 0;                 ///< 0..1; below 0.1 the hand is not drawn from it
   std::array<Joint, kJoints> joints{};  ///< in the order of XR_EXT_hand_tracking
 };
 
