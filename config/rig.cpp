@@ -18,9 +18,15 @@ namespace {
 /// The settings whose values are paths of files or folders.
 constexpr std::string_view kPaths[] = {"calibration",
                                        "camera.replay.directory",
+                                       "camera.leap.bring_up",
+                                       "pose.openxr.runtime",
+                                       "pose.leapc.library",
+                                       "camera2.replay.directory",
                                        "pose.replay.directory",
                                        "landmarks.replay.directory",
                                        "landmarks.models",
+                                       "landmarks2.replay.directory",
+                                       "landmarks2.models",
                                        "hand.left",
                                        "hand.right",
                                        "content.left",
@@ -38,7 +44,8 @@ void resolve_paths(const Listing& listing, const std::filesystem::path& folder) 
 }
 
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
-  for (const auto* service : {"camera", "pose", "landmarks", "projector", "dlp", "observer"})
+  for (const auto* service :
+       {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector", "dlp", "observer"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,
@@ -79,8 +86,10 @@ bool names_a_file(std::string_view setting) {
 
 Process process_of(const Rig& rig, std::string_view service) {
   if (service == "camera") return rig.camera.process;
+  if (service == "camera2") return rig.camera2.process;
   if (service == "pose") return rig.pose.process;
   if (service == "landmarks") return rig.landmarks.process;
+  if (service == "landmarks2") return rig.landmarks2.process;
   if (service == "projector") return rig.projector.process;
   if (service == "dlp") return rig.dlp.process;
   if (service == "observer") return rig.observer.process;

@@ -24,8 +24,10 @@ struct Rig {
   /// The sections.
   /// @{
   Camera camera;
+  Camera camera2{.backend = "none"};
   Pose pose;
   Landmarks landmarks;
+  Landmarks landmarks2;
   Projector projector;
   Dlp dlp;
   Content content;
@@ -47,8 +49,13 @@ void describe(Visitor& visitor, Rig& rig) {
       "Calibration file, relative to the rig file. Empty: the rig of the paper, whose file is "
       "config/calibrations/paper.toml.");
   visitor.section("camera", rig.camera, "The infrared camera.");
+  visitor.section(
+      "camera2", rig.camera2,
+      "A second infrared camera, for pose.backend = \"stereo\"; backend = \"none\": there "
+      "is none.");
   visitor.section("pose", rig.pose, "The hand tracker.");
   visitor.section("landmarks", rig.landmarks, "The landmark detector.");
+  visitor.section("landmarks2", rig.landmarks2, "The landmark detector of the second camera.");
   visitor.section("projector", rig.projector, "The projector.");
   visitor.section("dlp", rig.dlp, "The projector's own controller.");
   visitor.section("content", rig.content, "The pictures on the hands.");

@@ -151,6 +151,7 @@ struct Correct {
   int grid_hands = 2;
   double bone_short_px = 8;
   double bone_long_px = 24;
+  bool outline = true;
 };
 
 template <class Visitor>
@@ -181,6 +182,9 @@ void describe(Visitor& visitor, Correct& correct) {
   visitor.field("bone_long_px", correct.bone_long_px, between(1, 400, "px"),
                 "vertices: a bone whose image is longer than this is moved by its similarity; "
                 "between the two lengths both are blended.");
+  visitor.field("outline", correct.outline,
+                "vertices: move the fingers sideways, and their tips along them, until the drawn "
+                "outline lies on that of the mask.");
 }
 
 /// [cascade.mask]

@@ -5,8 +5,14 @@
 #include <string_view>
 #include <vector>
 
+#include "config/sections/drift.hpp"
 #include "config/sections/executor.hpp"
+#include "config/sections/handover.hpp"
+#include "config/sections/leap.hpp"
+#include "config/sections/leapc.hpp"
+#include "config/sections/openxr.hpp"
 #include "config/sections/process.hpp"
+#include "config/sections/stereo.hpp"
 #include "config/settings/field.hpp"
 
 namespace handcast::config {
@@ -153,6 +159,7 @@ struct Camera {
   double delivery_ms = 0;
   Aravis aravis;
   V4l2 v4l2;
+  Leap leap;
   CameraReplay replay;
   Process process;
 };
@@ -167,10 +174,12 @@ void describe(Visitor& visitor, Camera& camera) {
                 "Duration of the exposure.");
   visitor.field("delivery_ms", camera.delivery_ms, between(0, 100, "ms"),
                 "aravis, v4l2: the least time from the end of an exposure until its image has "
-                "arrived: readout and transfer.");
+                "arrived: readout and transfer. leap: until its first bytes are sent.");
   visitor.section("aravis", camera.aravis,
                   "For backend = \"aravis\": a GigE Vision or USB3 Vision camera.");
   visitor.section("v4l2", camera.v4l2, "For backend = \"v4l2\": a webcam.");
+  visitor.section("leap", camera.leap,
+                  "For backend = \"leap\": a Leap Motion Controller, read over USB.");
   visitor.section("replay", camera.replay, "For backend = \"replay\".");
   visitor.section("process", camera.process, "The process of the service.");
 }
@@ -193,8 +202,14 @@ void describe(Visitor& visitor, PoseNone& none) {
 /// [pose]
 struct Pose {
   std::string backend = "twin";
+  std::string second;
+  Handover handover;
+  Leapc leapc;
   PoseNone none;
+  OpenXr openxr;
+  PoseStereo stereo;
   Replay replay;
+  Drift drift;
   Process process;
 };
 
@@ -202,12 +217,25 @@ template <class Visitor>
 void describe(Visitor& visitor, Pose& pose) {
   visitor.field("backend", pose.backend,
                 "The source of hand poses; `handcast-pose --backends` lists them.");
+  visitor.field("second", pose.second,
+                "A second source, another back end, which takes over while the first one sees no "
+                "hand. Empty: none.");
+  visitor.section("handover", pose.handover, "Two sources: when one takes over from the other.");
+  visitor.section("leapc", pose.leapc, "For backend = \"leapc\": Ultraleap's service.");
   visitor.section("none", pose.none,
                   "For backend = \"none\": a rig without a tracker. The landmarks are lifted to "
                   "the distance of the hand.");
+  visitor.section("openxr", pose.openxr,
+                  "For backend = \"openxr\": the hand tracker of an OpenXR runtime.");
+  visitor.section(
+      "stereo", pose.stereo,
+      "For backend = \"stereo\": the hands of two calibrated cameras, from the landmarks "
+      "of both.");
   visitor.section("replay", pose.replay,
                   "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and "
                   "bones_{left,right}.npy.");
+  visitor.section("drift", pose.drift,
+                  "The watch over the calibration: has the tracker moved against the camera?");
   visitor.section("process", pose.process, "The process of the service.");
 }
 
@@ -220,8 +248,10 @@ constexpr std::array<std::string_view, 2> words_of(LandmarkDefinition) {
   return {"tracker", "network"};
 }
 
+/// [landmarks]
 struct Landmarks {
   std::string backend = "twin";
+  std::string fallback;
   Executor executor = Executor::onednn;
   std::string models;
   int hands = 2;
@@ -238,6 +268,9 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
       "has. handcast: handcast's own network, which also reads the tracker's joints and "
       "needs no file from outside. mediapipe: MediaPipe Hands lite. twin: the twin's "
       "model of a detector. replay: a recording.");
+  visitor.field("fallback", landmarks.fallback,
+                "The back end that takes the place of `backend` if a file of its networks is "
+                "missing; a line of the log says so. Empty: a missing file is an error.");
   visitor.field("executor", landmarks.executor,
                 "handcast, mediapipe: the library that runs the networks. onednn is the faster "
                 "one; opencv needs a build with OpenCV's dnn module.");

@@ -25,8 +25,8 @@ void describe(Visitor& visitor, TwinDetector& detector) {
   visitor.field(
       "age_ms", detector.age_ms, between(0, 500, "ms"),
       "Mean time from the middle of an exposure to its landmarks; one detection follows the other "
-      "without a pause. In the simulator, age_ms, age_sd_ms and clock_skew_ms apply to every "
-      "landmarks.backend, the other settings only to the twin's model of a detector.");
+      "without a pause. In the simulator, noise_px and the settings of the bias apply only to the "
+      "twin's model of a detector, the others to every landmarks.backend.");
   visitor.field("age_sd_ms", detector.age_sd_ms, between(0, 50, "ms"),
                 "Standard deviation of that time.");
   visitor.field("noise_px", detector.noise_px, between(0, 50, "px"),

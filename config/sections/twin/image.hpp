@@ -20,6 +20,7 @@ struct TwinImage {
   double sunlight = 0;
   double table = 0;
   double leak = 0;
+  double reflector_mm = 0;
   bool second_person = false;
   double delivery_ms = 0.3;
   double lost = 0;
@@ -62,6 +63,8 @@ void describe(Visitor& visitor, TwinImage& image) {
   visitor.field("leak", image.leak, between(0, 1),
                 "Share of the projector's light that passes the camera's filter, relative to the "
                 "lamp's light on the skin.");
+  visitor.field("reflector_mm", image.reflector_mm, between(0, 30, "mm"),
+                "Diameter of a retro-reflector on the tip of each index finger; 0: none.");
   visitor.field("second_person", image.second_person,
                 "True: a second person's hand rests at the edge of the image.");
   visitor.field("delivery_ms", image.delivery_ms, between(0, 50, "ms"),

@@ -18,7 +18,8 @@ void describe(Visitor& visitor, TwinProjector& projector) {
   visitor.field(
       "work_ms", projector.work_ms, between(0, 1000, "ms"),
       "Simulator: median time of a frame. One that takes longer than projector.software_ms "
-      "misses its refresh: the light of the frame before stays on.");
+      "misses its refresh: the light of the frame before stays on. Refreshes that begin while a "
+      "frame is drawn get no frame of their own. 0: every frame is in time.");
   visitor.field("work_spread", projector.work_spread, between(0, 2),
                 "Simulator: standard deviation of the logarithm of that time.");
   visitor.field("stalls", projector.stalls, between(0, 1),

@@ -21,6 +21,7 @@ struct TwinProp {
   double hold_s = 2;
   std::string board = "charuco:11x8:20";
   double light_late_ms = 0;
+  double light_gamma = 0;
 };
 
 template <class Visitor>
@@ -35,6 +36,9 @@ void describe(Visitor& visitor, TwinProp& prop) {
                 "as for `handcast calibrate --board`.");
   visitor.field("light_late_ms", prop.light_late_ms, between(-100, 200, "ms"),
                 "How much later than the projector reports its light falls on the board.");
+  visitor.field("light_gamma", prop.light_gamma, between(0, 5),
+                "The true projector turns a level 0..1 into the light level^light_gamma. 0: as in "
+                "sRGB.");
 }
 
 }  // namespace handcast::config
