@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "calib/rigid.hpp"
 
@@ -82,6 +83,28 @@ double Calibration::mm_per_projector_px(double distance_m) const {
   // Area of one projector pixel in the camera image.
   const double area_px2 = std::abs(right.x * down.y - right.y * down.x);
   return 1000 * distance_m * std::sqrt(area_px2 / (camera.fx_px * camera.fy_px));
+}
+
+namespace {
+
+Calibration with_cameras_exchanged(Calibration rig) {
+  auto& other = *rig.camera2;
+  std::swap(rig.camera_device, other.device);
+  std::swap(rig.camera, other.camera);
+  rig.camera_from_tracker = other.from_camera * rig.camera_from_tracker;
+  other.from_camera = glm::inverse(other.from_camera);
+  rig.is_second_view = !rig.is_second_view;
+  return rig;
+}
+
+}  // namespace
+
+Calibration second_view(const Calibration& calibration) {
+  return calibration.is_second_view ? calibration : with_cameras_exchanged(calibration);
+}
+
+Calibration first_view(const Calibration& calibration) {
+  return calibration.is_second_view ? with_cameras_exchanged(calibration) : calibration;
 }
 
 Calibration reference_rig() {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,6 +46,13 @@ struct Made {
   std::string lens, screen, tracker;
 };
 
+/// A second camera, for hands from two views (pose.backend = "stereo").
+struct SecondCamera {
+  std::string device;         ///< as Calibration::camera_device
+  CameraModel camera;         ///< its lens
+  glm::dmat4 from_camera{1};  ///< from the space of the other camera to its own; rigid, in metres
+};
+
 /// The calibration of a rig: camera, tracker and projector. The names of transforms read from right
 /// to left.
 ///
@@ -66,6 +74,9 @@ struct Calibration {
   std::string projector_device;
   /// @}
   CameraModel camera;                   ///< the infrared camera
+  std::optional<SecondCamera> camera2;  ///< empty: the rig has one camera
+  /// True for what second_view() made: `camera` is the second camera, and camera2 the first.
+  bool is_second_view = false;
   glm::dmat4 camera_from_tracker{1};    ///< rigid, in metres
   glm::dmat3 projector_from_camera{1};  ///< H: undistorted camera px to projector px
   glm::dvec3 parallax{0};               ///< e: projector px times m
@@ -94,6 +105,13 @@ struct Calibration {
 /// The rig of the paper, from the calibration that its authors published: 720x540 camera, 1024x768
 /// coaxial projector.
 Calibration reference_rig();
+
+/// The calibration as the second camera has it: `camera`, its device and camera_from_tracker are
+/// its own. The same id; what concerns the projector is left as it is, and holds for the first
+/// camera alone. The calibration must have a second camera.
+Calibration second_view(const Calibration& calibration);
+/// The calibration as the first camera has it: undoes second_view().
+Calibration first_view(const Calibration& calibration);
 
 /// Reads a calibration file: TOML, with matrices as rows. An empty path gives the reference rig; a
 /// frozen file (config::freeze()) is read like the file. Errors: bad_config (the file cannot be

@@ -110,6 +110,20 @@ void describe(Visitor& visitor, File& file) {
                   "When and how well the parts were measured; written by `handcast calibrate`.");
 }
 
+/// The file of a rig with a second camera.
+struct PairFile : File {
+  CameraSection camera2;
+  TransformSection camera2_from_camera;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, PairFile& file) {
+  describe(visitor, static_cast<File&>(file));
+  visitor.section("camera2", file.camera2, "The second infrared camera, for hands from two views.");
+  visitor.section("camera2_from_camera", file.camera2_from_camera,
+                  "Rigid transform from the first camera, in rows as camera_from_tracker.");
+}
+
 namespace {
 
 constexpr double kRigidTolerance = 1e-3;
@@ -127,18 +141,25 @@ void set_row(Matrix& matrix, int row, const std::vector<double>& values) {
   for (int column = 0; column < Matrix::length(); ++column) matrix[column][row] = values[column];
 }
 
+CameraSection to_section(const std::string& device, const CameraModel& c) {
+  return {device,
+          c.width_px,
+          c.height_px,
+          {c.fx_px, c.fy_px},
+          {c.cx_px, c.cy_px},
+          {c.k1, c.k2, c.p1, c.p2, c.k3}};
+}
+
+TransformSection to_section(const glm::dmat4& transform) {
+  return {row_of(transform, 0), row_of(transform, 1), row_of(transform, 2)};
+}
+
 File to_file(const Calibration& calibration) {
-  const auto& c = calibration.camera;
   const auto& tracker = calibration.camera_from_tracker;
   const auto& homography = calibration.projector_from_camera;
   const auto& e = calibration.parallax;
-  return {{calibration.camera_device,
-           c.width_px,
-           c.height_px,
-           {c.fx_px, c.fy_px},
-           {c.cx_px, c.cy_px},
-           {c.k1, c.k2, c.p1, c.p2, c.k3}},
-          {row_of(tracker, 0), row_of(tracker, 1), row_of(tracker, 2)},
+  return {to_section(calibration.camera_device, calibration.camera),
+          to_section(tracker),
           {calibration.projector_device,
            calibration.projector_width_px,
            calibration.projector_height_px,
@@ -150,10 +171,26 @@ File to_file(const Calibration& calibration) {
           calibration.made};
 }
 
+/// `calibration` may lack a second camera: the first one stands for it.
+PairFile to_pair_file(const Calibration& calibration) {
+  const auto& first = calibration.camera;
+  const auto second = calibration.camera2.value_or(SecondCamera{{}, first, glm::dmat4(1)});
+  return {to_file(calibration), to_section(second.device, second.camera),
+          to_section(second.from_camera)};
+}
+
 CameraModel to_camera_model(const CameraSection& s) {
   return {s.width_px,      s.height_px,     s.focal_px[0],   s.focal_px[1],
           s.centre_px[0],  s.centre_px[1],  s.distortion[0], s.distortion[1],
           s.distortion[2], s.distortion[3], s.distortion[4]};
+}
+
+glm::dmat4 to_transform(const TransformSection& rows) {
+  glm::dmat4 transform(1);
+  set_row(transform, 0, rows.x);
+  set_row(transform, 1, rows.y);
+  set_row(transform, 2, rows.z);
+  return transform;
 }
 
 Calibration to_calibration(const File& file) {
@@ -161,10 +198,7 @@ Calibration to_calibration(const File& file) {
   calibration.camera_device = file.camera.device;
   calibration.projector_device = file.projector.device;
   calibration.camera = to_camera_model(file.camera);
-  const auto& tracker = file.camera_from_tracker;
-  set_row(calibration.camera_from_tracker, 0, tracker.x);
-  set_row(calibration.camera_from_tracker, 1, tracker.y);
-  set_row(calibration.camera_from_tracker, 2, tracker.z);
+  calibration.camera_from_tracker = to_transform(file.camera_from_tracker);
   const auto& projector = file.projector;
   calibration.projector_width_px = projector.width_px;
   calibration.projector_height_px = projector.height_px;
@@ -174,6 +208,13 @@ Calibration to_calibration(const File& file) {
   calibration.parallax = {projector.parallax[0], projector.parallax[1], projector.parallax[2]};
   calibration.plane_m = projector.plane_m;
   calibration.made = file.made;
+  return calibration;
+}
+
+Calibration to_calibration(const PairFile& file) {
+  Calibration calibration = to_calibration(static_cast<const File&>(file));
+  calibration.camera2 = SecondCamera{file.camera2.device, to_camera_model(file.camera2),
+                                     to_transform(file.camera2_from_camera)};
   return calibration;
 }
 
@@ -233,45 +274,76 @@ void check_size(std::string_view what, double width_px, double height_px, std::s
                            file, what, width_px, height_px, kMostArea_px2 / 1e6));
 }
 
+/// A focal length in pixels of rows or columns against the image's size in that direction: sensors
+/// that put rows together have two focal lengths.
+void check_focal(std::string_view what, double focal_px, int size_px, std::string_view size,
+                 std::string_view file, config::Faults& faults) {
+  constexpr double kShortest = 0.15, kLongest = 20;
+  if (focal_px < kShortest * size_px || focal_px > kLongest * size_px)
+    faults.add(
+        fmt::format("{}: {}.focal_px: {} px is not plausible for an image of {} px; it "
+                    "must be {} to {} {} of the image",
+                    file, what, focal_px, size_px, kShortest, kLongest, size));
+}
+
 /// Lenses between a fisheye and a telescope, whose axis meets the image or passes close by.
-void check_lens(const CameraModel& camera, std::string_view file, config::Faults& faults) {
-  constexpr double kShortest = 0.2, kLongest = 20;  // focal length, in widths of the image
-  for (const double focal_px : {camera.fx_px, camera.fy_px})
-    if (focal_px < kShortest * camera.width_px || focal_px > kLongest * camera.width_px)
-      faults.add(
-          fmt::format("{}: camera.focal_px: {} px is not plausible for an image of {} px; it "
-                      "must be {} to {} widths of the image",
-                      file, focal_px, camera.width_px, kShortest, kLongest));
+void check_lens(std::string_view what, const CameraModel& camera, std::string_view file,
+                config::Faults& faults) {
+  check_focal(what, camera.fx_px, camera.width_px, "widths", file, faults);
+  check_focal(what, camera.fy_px, camera.height_px, "heights", file, faults);
   const glm::dvec2 centre(camera.cx_px / camera.width_px, camera.cy_px / camera.height_px);
   if (glm::any(glm::greaterThan(glm::abs(centre - 0.5), glm::dvec2(1.5))))
     faults.add(
-        fmt::format("{}: camera.centre_px: the principal point lies more than an image "
+        fmt::format("{}: {}.centre_px: the principal point lies more than an image "
                     "beside the image",
-                    file));
+                    file, what));
+}
+
+/// `what`: "camera_from_tracker"; `whose`: "tracker".
+void check_transform(std::string_view what, std::string_view whose, const glm::dmat4& transform,
+                     std::string_view file, config::Faults& faults) {
+  if (const double off = distance_from_rigid(transform); !(off < kRigidTolerance))
+    faults.add(
+        fmt::format("{}: {}: its first three columns are not a right-handed "
+                    "rotation (off by {:.2g}; {} is allowed)",
+                    file, what, off, kRigidTolerance));
+  if (const double away_m = glm::length(glm::dvec3(transform[3])); !(away_m < kFarthestTracker_m))
+    faults.add(
+        fmt::format("{}: {}: the {} is {:.3g} m away from the camera; "
+                    "at most {} m are possible. Is it in millimetres?",
+                    file, what, whose, away_m, kFarthestTracker_m));
+}
+
+void check_camera(std::string_view what, const CameraModel& camera, std::string_view file,
+                  config::Faults& faults) {
+  check_size(what, camera.width_px, camera.height_px, file, faults);
+  check_lens(what, camera, file, faults);
+  if (faults.empty() && camera.folds())
+    faults.add(
+        fmt::format("{}: {}.distortion: the lens folds the image: near its edge, two "
+                    "directions map to one pixel",
+                    file, what));
+}
+
+/// Two cameras at one place see no depth.
+void check_pair(const Calibration& calibration, std::string_view file, config::Faults& faults) {
+  constexpr double kLeastApart_m = 0.005;
+  const auto& second = *calibration.camera2;
+  check_transform("camera2_from_camera", "second camera", second.from_camera, file, faults);
+  check_camera("camera2", second.camera, file, faults);
+  if (glm::length(glm::dvec3(second.from_camera[3])) < kLeastApart_m)
+    faults.add(
+        fmt::format("{}: camera2_from_camera: the cameras are less than {} mm apart, and see no "
+                    "depth. Is it in metres?",
+                    file, 1e3 * kLeastApart_m));
 }
 
 void check(const Calibration& calibration, std::string_view file, config::Faults& faults) {
-  if (const double off = distance_from_rigid(calibration.camera_from_tracker);
-      !(off < kRigidTolerance))
-    faults.add(
-        fmt::format("{}: camera_from_tracker: its first three columns are not a right-handed "
-                    "rotation (off by {:.2g}; {} is allowed)",
-                    file, off, kRigidTolerance));
-  if (const double away_m = glm::length(glm::dvec3(calibration.camera_from_tracker[3]));
-      !(away_m < kFarthestTracker_m))
-    faults.add(
-        fmt::format("{}: camera_from_tracker: the tracker is {:.3g} m away from the camera; "
-                    "at most {} m are possible. Is it in millimetres?",
-                    file, away_m, kFarthestTracker_m));
-  check_size("camera", calibration.camera.width_px, calibration.camera.height_px, file, faults);
+  check_transform("camera_from_tracker", "tracker", calibration.camera_from_tracker, file, faults);
   check_size("projector", calibration.projector_width_px, calibration.projector_height_px, file,
              faults);
-  check_lens(calibration.camera, file, faults);
-  if (faults.empty() && calibration.camera.folds())
-    faults.add(
-        fmt::format("{}: camera.distortion: the lens folds the image: near its edge, two "
-                    "directions map to one pixel",
-                    file));
+  check_camera("camera", calibration.camera, file, faults);
+  if (calibration.camera2) check_pair(calibration, file, faults);
   if (!(std::abs(glm::determinant(calibration.projector_from_camera)) > 1e-9))
     faults.add(fmt::format(
         "{}: projector: the rows x, y, w of the homography are linearly dependent", file));
@@ -279,13 +351,18 @@ void check(const Calibration& calibration, std::string_view file, config::Faults
     faults.add(fmt::format("{}: projector: {}", file, fault));
 }
 
+const config::Value* member_of(const config::Value& value, std::string_view wanted) {
+  const auto* table = std::get_if<config::Table>(&value.data);
+  if (!table) return nullptr;
+  const auto found = std::ranges::find(*table, wanted, &config::Member::name);
+  return found == table->end() ? nullptr : &found->value;
+}
+
+bool has_second_camera(const config::Value& document) {
+  return member_of(document, "camera2") || member_of(document, "camera2_from_camera");
+}
+
 bool has(const config::Value& document, std::string_view section, std::string_view name) {
-  const auto member_of = [](const config::Value& value, std::string_view wanted) {
-    const auto* table = std::get_if<config::Table>(&value.data);
-    if (!table) return static_cast<const config::Value*>(nullptr);
-    const auto found = std::ranges::find(*table, wanted, &config::Member::name);
-    return found == table->end() ? nullptr : &found->value;
-  };
   const auto* inside = member_of(document, section);
   return inside && member_of(*inside, name);
 }
@@ -300,6 +377,10 @@ std::string missing_in(const config::Value& document) {
   };
   look_for("camera", {"width_px", "height_px", "focal_px", "centre_px"});
   look_for("projector", {"width_px", "height_px", "x", "y", "w"});
+  if (has_second_camera(document)) {
+    look_for("camera2", {"width_px", "height_px", "focal_px", "centre_px"});
+    look_for("camera2_from_camera", {"x", "y", "z"});
+  }
   return missing.empty() ? "" : join(missing, ", ") + (missing.size() == 1 ? " is" : " are");
 }
 
@@ -323,15 +404,22 @@ Result<Calibration> load_calibration(const std::filesystem::path& path) {
   const auto document = config::parse_document(source->text, name);
   if (!document) return tl::make_unexpected(document.error());
 
-  auto file = to_file(reference_rig());
+  const bool has_second = has_second_camera(*document);
+  auto file = to_pair_file(reference_rig());
   config::Faults faults;
-  config::apply_document(*document, name, config::list_settings(file), faults);
+  config::apply_document(
+      *document, name,
+      has_second ? config::list_settings(file) : config::list_settings(static_cast<File&>(file)),
+      faults);
   if (const auto missing = missing_in(*document); !missing.empty())
     faults.add(fmt::format("{}: {} missing; a part of a calibration fits no rig", name, missing));
-  auto calibration = with_id(to_calibration(file));
+  auto calibration =
+      with_id(has_second ? to_calibration(file) : to_calibration(static_cast<File&>(file)));
   if (faults.empty()) check(calibration, name, faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   calibration.camera_from_tracker = orthonormalised(calibration.camera_from_tracker);
+  if (calibration.camera2)
+    calibration.camera2->from_camera = orthonormalised(calibration.camera2->from_camera);
   return calibration;
 }
 
@@ -346,8 +434,11 @@ Result<void> check_device(std::string_view what, std::string_view calibrated,
 }
 
 std::string print_calibration(const Calibration& calibration) {
-  auto file = to_file(calibration);
-  return config::print_settings(config::list_settings(file), "The calibration of a rig.");
+  constexpr auto kTitle = "The calibration of a rig.";
+  auto file = to_pair_file(calibration);
+  return calibration.camera2
+             ? config::print_settings(config::list_settings(file), kTitle)
+             : config::print_settings(config::list_settings(static_cast<File&>(file)), kTitle);
 }
 
 }  // namespace handcast::calib

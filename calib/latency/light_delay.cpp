@@ -24,16 +24,12 @@ double ms_of(std::int64_t ns) { return 1e-6 * static_cast<double>(ns); }
 /// Squared errors by step of the delay, of the images around one toggle.
 using Curve = std::vector<double>;
 
-struct Levels {
-  double dark = 0, bright = 0;
-};
-
-/// The levels that 10 % of the images are below, and above.
-Levels levels_of(std::span<const Brightness> images) {
+/// Bright less dark: the levels that 10 % of the images are above, and below.
+double contrast_of(std::span<const Brightness> images) {
   std::vector<double> greys;
   for (const auto& image : images) greys.push_back(image.grey);
   std::ranges::sort(greys);
-  return {greys[greys.size() / 10], greys[greys.size() - 1 - greys.size() / 10]};
+  return greys[greys.size() - 1 - greys.size() / 10] - greys[greys.size() / 10];
 }
 
 /// The images between the middles of the times before and after toggle `i`, in which nothing but
@@ -52,36 +48,77 @@ std::span<const Brightness> around(std::span<const Toggle> toggles, std::size_t 
   return {first, last};
 }
 
-Curve curve_of(const Toggle& toggle, std::span<const Brightness> images, const Levels& levels) {
+/// The squared errors of the line that explains the images around a toggle by the share of their
+/// exposure after it: what a person moves in front of the camera meanwhile changes the levels of
+/// dark and bright from toggle to toggle.
+class LineFit {
+ public:
+  void add(double share, double grey) {
+    ++count_;
+    shares_ += share;
+    greys_ += grey;
+    share_squares_ += share * share;
+    grey_squares_ += grey * grey;
+    products_ += share * grey;
+  }
+  /// `is_rising`: the line must not fall, else it must not rise.
+  double squared_errors(bool is_rising) const {
+    const double shares = share_squares_ - shares_ * shares_ / count_,
+                 greys = grey_squares_ - greys_ * greys_ / count_,
+                 products = products_ - shares_ * greys_ / count_;
+    if (shares < 1e-9 || (products > 0) != is_rising) return greys;
+    return std::max(0.0, greys - products * products / shares);
+  }
+
+ private:
+  double count_ = 0, shares_ = 0, greys_ = 0;
+  double share_squares_ = 0, grey_squares_ = 0, products_ = 0;
+};
+
+/// In the unit of the contrast.
+Curve curve_of(const Toggle& toggle, std::span<const Brightness> images, double contrast) {
   Curve curve(kSteps, 0.0);
-  for (const auto& image : images) {
-    const double seen =
-        std::clamp((image.grey - levels.dark) / (levels.bright - levels.dark), 0.0, 1.0);
-    const double share_after = toggle.is_bright ? seen : 1 - seen;
-    const double exposure_ms = std::max(ms_of(image.exposure_ns), kStep_ms);
-    const double end_ms = ms_of(image.origin_ns - toggle.begin_ns) + exposure_ms / 2;
-    for (int step = 0; step < kSteps; ++step) {
-      const double expected = std::clamp((end_ms - delay_of(step)) / exposure_ms, 0.0, 1.0);
-      curve[static_cast<std::size_t>(step)] += (share_after - expected) * (share_after - expected);
+  for (int step = 0; step < kSteps; ++step) {
+    LineFit line;
+    for (const auto& image : images) {
+      const double exposure_ms = std::max(ms_of(image.exposure_ns), kStep_ms);
+      const double end_ms = ms_of(image.origin_ns - toggle.begin_ns) + exposure_ms / 2;
+      line.add(std::clamp((end_ms - delay_of(step)) / exposure_ms, 0.0, 1.0),
+               image.grey / contrast);
     }
+    curve[static_cast<std::size_t>(step)] = line.squared_errors(toggle.is_bright);
   }
   return curve;
 }
 
-/// The delay of the least error: the middle of the steps that share it, because between two images
-/// nothing is known.
-double best_of(const Curve& curve) {
+/// The delays of the least error: between two images nothing is known, so that several steps share
+/// it.
+struct Best {
+  double first_ms = 0, last_ms = 0;
+  double middle_ms() const { return (first_ms + last_ms) / 2; }
+};
+
+Best best_of(const Curve& curve) {
   const double least = *std::ranges::min_element(curve), same = least + 1e-9 + 1e-6 * least;
   const auto is_best = [&](double error) { return error <= same; };
   const auto first = std::ranges::find_if(curve, is_best) - curve.begin();
   const auto last = std::find_if(curve.rbegin(), curve.rend(), is_best).base() - 1 - curve.begin();
-  return (delay_of(static_cast<int>(first)) + delay_of(static_cast<int>(last))) / 2;
+  return {delay_of(static_cast<int>(first)), delay_of(static_cast<int>(last))};
 }
 
 void add(Curve& sum, const Curve& curve) {
   std::ranges::transform(sum, curve, sum.begin(), std::plus());
 }
 
+double median_error_ms(std::span<const Brightness> images) {
+  std::vector<std::int64_t> errors_ns;
+  for (const auto& image : images) errors_ns.push_back(image.error_ns);
+  const auto middle = errors_ns.begin() + static_cast<std::ptrdiff_t>(errors_ns.size() / 2);
+  std::ranges::nth_element(errors_ns, middle);
+  return ms_of(*middle);
+}
+
+/// Without the errors of the images' times.
 LightDelay with_interval(std::span<const Curve> curves, double contrast) {
   constexpr int kResamples = 400;
   Curve all(kSteps, 0.0);
@@ -92,11 +129,13 @@ LightDelay with_interval(std::span<const Curve> curves, double contrast) {
   for (int i = 0; i < kResamples; ++i) {
     Curve sum(kSteps, 0.0);
     for (std::size_t k = 0; k < curves.size(); ++k) add(sum, curves[any(random)]);
-    delays.push_back(best_of(sum));
+    delays.push_back(best_of(sum).middle_ms());
   }
   std::ranges::sort(delays);
-  return {best_of(all), delays[kResamples / 40] - kStep_ms,
-          delays[kResamples - 1 - kResamples / 40] + kStep_ms, contrast};
+  const auto best = best_of(all);
+  return {best.middle_ms(), std::min(delays[kResamples / 40], best.first_ms) - kStep_ms,
+          std::max(delays[kResamples - 1 - kResamples / 40], best.last_ms) + kStep_ms,
+          best.last_ms - best.first_ms, contrast};
 }
 
 }  // namespace
@@ -107,19 +146,21 @@ Result<LightDelay> fit_light_delay(std::span<const Toggle> toggles,
   if (images.empty() || toggles.size() < kLeastToggles)
     return fail(Errc::bad_data, fmt::format("{} changes of the light and {} images are too few",
                                             toggles.size(), images.size()));
-  const auto levels = levels_of(images);
-  const double contrast = levels.bright - levels.dark;
+  const double contrast = contrast_of(images);
   if (!(contrast >= kLeastContrast))
     return fail(Errc::bad_data,
                 fmt::format("the camera does not see the projector's light: bright and dark differ "
                             "by {:.1f} grey values",
                             contrast));
   for (std::size_t i = 0; i < toggles.size(); ++i)
-    if (const auto near = around(toggles, i, images); near.size() >= 2)
-      curves.push_back(curve_of(toggles[i], near, levels));
+    if (const auto near = around(toggles, i, images); toggles[i].is_sure && near.size() >= 2)
+      curves.push_back(curve_of(toggles[i], near, contrast));
   if (curves.size() < kLeastToggles)
     return fail(Errc::bad_data, "the light changed when the camera sent no images");
-  const auto delay = with_interval(curves, contrast);
+  auto delay = with_interval(curves, contrast);
+  const double error_ms = median_error_ms(images);
+  delay.low_ms -= error_ms;
+  delay.high_ms += error_ms;
   if (std::abs(delay.delay_ms) > kLongestDelay_ms - 1)
     return fail(Errc::bad_data, fmt::format("the light comes more than {:g} ms from the time that "
                                             "the projector reports",

@@ -2,9 +2,11 @@
 #include "calib/tracker/refine.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <set>
 
 #include "calib/tracker/first_pose.hpp"
 
@@ -46,6 +48,87 @@ double scale_of(const std::vector<Residual>& residuals, double limit) {
   return std::max(percentile_of(std::move(lengths), 0.5) / 1.1774, 1e-3);
 }
 
+/// A part of the normal equations, in standard deviations, at which the tracker's error is the
+/// same.
+struct Moment {
+  Normal normal;                         ///< as if there was no such error
+  Curvature second = Curvature::Zero();  ///< what the curvature of the robust cost is less
+
+  void add(const Residual& r, double limit, double unit) {
+    const double share = 1 - r.off.squaredNorm() / (limit * limit);
+    if (share <= 0) return;
+    const Change slope = r.slope.transpose() * r.off;
+    normal.curvature.noalias() += unit * share * share * r.slope.transpose() * r.slope;
+    normal.gradient.noalias() += unit * share * share * slope;
+    second.noalias() += 4 * unit * share / (limit * limit) * slope * slope.transpose();
+  }
+};
+
+/// The error of a moment, as an unknown shift with a standard deviation: its mean and covariance.
+struct SharedError {
+  Eigen::Vector3d mean;
+  Eigen::Matrix3d covariance;
+};
+SharedError shared_error(const Normal& n, double wander_m) {
+  if (wander_m == 0) return {Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
+  const Eigen::Matrix3d information =
+      n.curvature.block<3, 3>(3, 3) + Eigen::Matrix3d::Identity() / (wander_m * wander_m);
+  const Eigen::Matrix3d covariance = information.inverse();
+  return {covariance * n.gradient.segment<3>(3), covariance};
+}
+
+/// Whether the points of a time can tell the shared error from their own.
+bool has_shared_error(const Observations& o) {
+  constexpr std::size_t kLeastPoints = 4;
+  std::set<int> points;
+  for (const auto& s : o.sightings) points.insert(s.point);
+  return points.size() >= kLeastPoints;
+}
+
+/// What a moment says about the pose, whatever its shared error is. A shift by that error and one
+/// of the pose have the same slopes.
+Normal without_shared_error(const Normal& n, const SharedError& error) {
+  const Eigen::Matrix<double, 7, 3> across = n.curvature.middleCols<3>(3);
+  return {n.curvature - across * error.covariance * across.transpose(),
+          n.gradient - across * error.mean};
+}
+
+/// The same with the curvature of the robust cost; without its second part if outliers prevail.
+/// The gradient is that of step(), so that the sum over all moments is 0 at the solution.
+Normal of_robust_cost(const Moment& moment, double wander_m) {
+  auto robust = moment.normal;
+  robust.curvature -= moment.second;
+  if (wander_m == 0) return robust;
+  auto plain = without_shared_error(moment.normal, shared_error(moment.normal, wander_m));
+  const Eigen::LDLT<Eigen::Matrix3d> solver(robust.curvature.block<3, 3>(3, 3));
+  if (!solver.isPositive()) return plain;
+  robust = without_shared_error(robust, shared_error(robust, wander_m));
+  return {robust.curvature, plain.gradient};
+}
+
+/// `limit`: sightings that are farther off, in standard deviations of the median one times px,
+/// have no weight.
+std::vector<Moment> moments_of(const Observations& o, const Refined& refined, double limit) {
+  const double begin_s = o.sightings.front().time_s;
+  std::vector<Moment> moments;
+  for (const auto& s : o.sightings) {
+    const auto at = static_cast<std::size_t>((s.time_s - begin_s) / kWander_s);
+    if (moments.size() <= at) moments.resize(at + 1);
+    if (const auto r = residual_of(o, s, refined.pose))
+      moments[at].add(*r, limit, 1 / (refined.scale * refined.scale));
+  }
+  return moments;
+}
+
+/// From the residuals at this pose. `most`: the largest scale.
+double scale_at(const Observations& o, const Refined& refined, double most) {
+  std::vector<Residual> residuals;
+  residuals.reserve(o.sightings.size());
+  for (const auto& s : o.sightings)
+    if (const auto r = residual_of(o, s, refined.pose)) residuals.push_back(*r);
+  return std::min(scale_of(residuals, kTukey * refined.scale), most);
+}
+
 }  // namespace
 
 Pose moved(const Pose& pose, const Change& change) {
@@ -66,58 +149,78 @@ Change change_between(const Pose& a, const Pose& b) {
   return change;
 }
 
-std::optional<Refined> refine(const Observations& o, const Pose& start,
-                              std::optional<double> fixed_scale) {
-  constexpr int kMostRounds = 50;
+namespace {
+
+/// One Gauss-Newton step; nothing if the equations are singular. Estimates the shared error anew.
+std::optional<Change> step(const Observations& o, Refined& refined, double limit) {
+  constexpr double kLeastWander_m = 1e-5, kMostWander_m = 0.005;
+  Normal sum;
+  double squares_m2 = 0, count = 0;
+  for (const auto& moment : moments_of(o, refined, limit)) {
+    const auto error = shared_error(moment.normal, refined.wander_m);
+    const auto normal = without_shared_error(moment.normal, error);
+    sum.curvature += normal.curvature;
+    sum.gradient += normal.gradient;
+    squares_m2 += error.mean.squaredNorm() + error.covariance.trace();
+    count += 3;
+  }
+  if (refined.wander_m > 0)
+    refined.wander_m = std::clamp(std::sqrt(squares_m2 / count), kLeastWander_m, kMostWander_m);
+  const Eigen::LDLT<Curvature> solver(sum.curvature);
+  if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0)) return std::nullopt;
+  Change change = solver.solve(sum.gradient);
+  change[6] =
+      std::clamp(refined.pose.offset_s + change[6], -kSearch_s, kSearch_s) - refined.pose.offset_s;
+  return change.allFinite() ? std::optional(change) : std::nullopt;
+}
+
+/// 1 um at 1 m, 1 us.
+bool is_small(const Change& change) {
+  constexpr double kDone = 1e-6;
+  return change.cwiseAbs().maxCoeff() < kDone;
+}
+
+constexpr int kMostRounds = 50;
+
+}  // namespace
+
+std::optional<Refined> refine(const Observations& o, const Pose& start) {
   // Larger scales would grow without end on sightings that are anywhere in the image.
-  constexpr double kLargestScale = 3 * kNear_px / kTukey;
-  Refined refined{start, fixed_scale.value_or(kLargestScale)};
+  constexpr double kLargestScale = 3 * kNear_px / kTukey, kUsualWander_m = 0.001;
+  Refined refined{
+      .pose = start, .wander_m = has_shared_error(o) ? kUsualWander_m : 0, .scale = kLargestScale};
   for (int round = 0; round < kMostRounds; ++round) {
-    std::vector<Residual> residuals;
-    residuals.reserve(o.sightings.size());
-    for (const auto& s : o.sightings)
-      if (const auto r = residual_of(o, s, refined.pose)) residuals.push_back(*r);
-    if (!fixed_scale)
-      refined.scale = std::min(scale_of(residuals, kTukey * refined.scale), kLargestScale);
-    const double limit = kTukey * refined.scale;
-    Curvature curvature = Curvature::Zero();
-    Change gradient = Change::Zero();
-    for (const auto& r : residuals) {
-      const double share = 1 - r.off.squaredNorm() / (limit * limit);
-      if (share <= 0) continue;
-      curvature.noalias() += share * share * r.slope.transpose() * r.slope;
-      gradient.noalias() += share * share * r.slope.transpose() * r.off;
-    }
-    const Eigen::LDLT<Curvature> solver(curvature);
-    if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0)) return std::nullopt;
-    Change change = solver.solve(gradient);
-    change[6] = std::clamp(refined.pose.offset_s + change[6], -kSearch_s, kSearch_s) -
-                refined.pose.offset_s;
-    if (!change.allFinite()) return std::nullopt;
-    refined.pose = moved(refined.pose, change);
-    // 1 um at 1 m, 1 us
-    constexpr double kDone = 1e-6;
-    if (change.cwiseAbs().maxCoeff() < kDone) break;
+    refined.scale = scale_at(o, refined, kLargestScale);
+    const auto change = step(o, refined, kTukey * refined.scale);
+    if (!change) return std::nullopt;
+    refined.pose = moved(refined.pose, *change);
+    if (is_small(*change)) break;
   }
   return refined;
 }
 
+std::optional<Pose> with_limit(const Observations& o, const Refined& refined, double factor) {
+  auto other = refined;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto change = step(o, other, factor * kTukey * refined.scale);
+    if (!change) return std::nullopt;
+    other.pose = moved(other.pose, *change);
+    other.wander_m = refined.wander_m;
+    if (is_small(*change)) break;
+  }
+  return other.pose;
+}
+
 std::vector<Normal> normals_by_time(const Observations& o, const Refined& refined, double bin_s) {
-  const double begin_s = o.sightings.front().time_s, limit = kTukey * refined.scale;
   std::vector<Normal> normals;
-  for (const auto& s : o.sightings) {
-    const auto bin = static_cast<std::size_t>((s.time_s - begin_s) / bin_s);
+  double begin_s = 0;
+  for (const auto& moment : moments_of(o, refined, kTukey * refined.scale)) {
+    const auto bin = static_cast<std::size_t>(begin_s / bin_s);
+    begin_s += kWander_s;
     if (normals.size() <= bin) normals.resize(bin + 1);
-    const auto r = residual_of(o, s, refined.pose);
-    if (!r) continue;
-    const double share = 1 - r->off.squaredNorm() / (limit * limit);
-    if (share <= 0) continue;
-    // Of limit^2 / 6 (1 - share^3), in units of the scale.
-    const double unit = 1 / (refined.scale * refined.scale);
-    const Change slope = r->slope.transpose() * r->off;
-    normals[bin].curvature += unit * (share * share * r->slope.transpose() * r->slope -
-                                      4 * share / (limit * limit) * slope * slope.transpose());
-    normals[bin].gradient += unit * share * share * slope;
+    const auto normal = of_robust_cost(moment, refined.wander_m);
+    normals[bin].curvature += normal.curvature;
+    normals[bin].gradient += normal.gradient;
   }
   return normals;
 }

@@ -17,6 +17,9 @@ using Curvature = Eigen::Matrix<double, 7, 7>;
 /// 95 % efficiency for normal errors).
 constexpr double kTukey = 4.685;
 
+/// The tracker's common error is taken as constant for so long, and independent after it.
+constexpr double kWander_s = 0.25;
+
 Pose moved(const Pose& pose, const Change& change);
 /// The change from `a` to `b`, to first order.
 Change change_between(const Pose& a, const Pose& b);
@@ -24,17 +27,27 @@ Change change_between(const Pose& a, const Pose& b);
 /// A pose that minimises the robust cost.
 struct Refined {
   Pose pose;
+  /// Standard deviation, along each axis, of the error that all points of the tracker share for a
+  /// while (kWander_s): an unknown for each of these times. 0: there is none, because fewer than
+  /// four points were seen, which cannot tell it from their own.
+  double wander_m = 0;
   /// Standard deviation of one coordinate of a sighting that fits and has the median sigma, in px.
   /// From the median distance of those within kTukey scales.
   double scale = 1;
 };
 
 /// Tukey's M-estimator by Gauss-Newton steps with reweighting, from a pose near the solution.
-/// `scale`: the scale; if absent, it is estimated, at most as for
-/// sightings within 3 kNear_px.
+/// What the points of one time say about each other is not touched by the tracker's common error,
+/// so it counts more than where they are (generalised least squares; the size of that error is
+/// estimated with the pose: Dempster, Laird and Rubin 1977).
+/// The scale is estimated, at most as for sightings within 3 kNear_px.
 /// Nothing if the equations are singular.
-std::optional<Refined> refine(const Observations& observations, const Pose& start,
-                              std::optional<double> scale = {});
+std::optional<Refined> refine(const Observations& observations, const Pose& start);
+
+/// The pose with another limit for outliers: so many times that of `refined`, whose scale and
+/// wander_m stay. Nothing if the equations are singular.
+std::optional<Pose> with_limit(const Observations& observations, const Refined& refined,
+                               double factor);
 
 /// The second derivative of the robust cost and minus its gradient, over a part of the sightings.
 struct Normal {

@@ -11,7 +11,7 @@
 namespace handcast::calib {
 namespace {
 
-constexpr double kBin_s = 0.25;
+constexpr double kBin_s = kWander_s;
 /// A block lasts as long as the errors stay correlated, but a recording needs a few of them.
 constexpr double kBlock_s = 2.5;
 constexpr std::size_t kLeastBlocks = 8;
@@ -67,6 +67,14 @@ Curvature bootstrap(const std::vector<Normal>& normals) {
   return covariance * static_cast<double>(blocks) / static_cast<double>(blocks - 1);
 }
 
+/// What the blocks do not see: the tracker's common error outlasts them, and its mean over a short
+/// recording is a shift of the pose. Its variance, if the correlation falls to 1/e in kLasting_s.
+double lasting_error_m2(const Observations& o, const Refined& refined) {
+  constexpr double kLasting_s = 1.5;
+  const double time_s = o.sightings.back().time_s - o.sightings.front().time_s;
+  return refined.wander_m * refined.wander_m * std::min(1., 2 * kLasting_s / time_s);
+}
+
 }  // namespace
 
 Interval Uncertainty::spread(int unknown, double factor) const {
@@ -91,11 +99,12 @@ Uncertainty uncertainty_of(const Observations& o, const Refined& refined) {
   const auto normals = normals_by_time(o, refined, kBin_s);
   Uncertainty uncertainty;
   uncertainty.covariance = bootstrap(normals);
+  uncertainty.covariance.diagonal().segment<3>(3).array() += lasting_error_m2(o, refined);
   const std::size_t blocks = normals.size() / block_length(normals.size());
   uncertainty.width = students_t(static_cast<double>(blocks) - 1);
   for (const double factor : {0.5, 2.})
-    if (const auto other = refine(o, refined.pose, factor * refined.scale)) {
-      const auto change = change_between(refined.pose, other->pose);
+    if (const auto other = with_limit(o, refined, factor)) {
+      const auto change = change_between(refined.pose, *other);
       uncertainty.covariance += change * change.transpose() / 2;
       uncertainty.limit_shift_mm =
           std::max(uncertainty.limit_shift_mm, 1000 * change.segment<3>(3).norm());

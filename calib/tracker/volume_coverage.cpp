@@ -35,9 +35,13 @@ VolumeCoverage::VolumeCoverage(const CameraModel& camera, double near_m, double 
       fields_(kDepths, {camera.width_px, camera.height_px}) {}
 
 void VolumeCoverage::add(std::span<const SeenPoint> hand) {
-  const double z = kDepths * (depth_by_size_m(camera_, hand) - near_m_) / (far_m_ - near_m_);
-  if (!(z >= 0 && z < kDepths)) return;
-  for (const auto& point : hand) fields_[static_cast<std::size_t>(z)].add(point.undistorted_px);
+  const double depth_m = depth_by_size_m(camera_, hand);
+  for (const auto& point : hand) add(point.undistorted_px, depth_m);
+}
+
+void VolumeCoverage::add(const glm::dvec2& undistorted_px, double depth_m) {
+  const double z = kDepths * (depth_m - near_m_) / (far_m_ - near_m_);
+  if (z >= 0 && z < kDepths) fields_[static_cast<std::size_t>(z)].add(undistorted_px);
 }
 
 double VolumeCoverage::share() const {

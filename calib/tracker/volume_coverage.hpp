@@ -33,6 +33,8 @@ class VolumeCoverage {
   /// size, which needs no earlier calibration. Points outside the image, nearer or farther than the
   /// volume, or with numbers that are not finite do not count.
   void add(std::span<const SeenPoint> hand);
+  /// One point at a known depth, e.g. a reflector.
+  void add(const glm::dvec2& undistorted_px, double depth_m);
   /// Of the cells, those with at least 30 points: 0 to 1.
   double share() const;
   /// Where to move the hand next, as a sentence; that the volume is covered if it is.

@@ -386,5 +386,78 @@ TEST(CalibrationFile, IsNamedWhenItIsMissing) {
   EXPECT_THAT(rig.error().what, HasSubstr("/no/such/calibration.toml"));
 }
 
+/// The reference rig with a second camera 0.3 m beside the first, turned by 0.4 rad.
+Calibration two_cameras() {
+  auto rig = reference_rig();
+  SecondCamera second{"B-77", rig.camera, glm::dmat4(1)};
+  second.camera.width_px = 640;
+  second.from_camera[0] = {std::cos(0.4), 0, -std::sin(0.4), 0};
+  second.from_camera[2] = {std::sin(0.4), 0, std::cos(0.4), 0};
+  second.from_camera[3] = {-0.3, 0, 0.01, 1};
+  rig.camera2 = second;
+  return rig;
+}
+
+TEST(SecondCamera, IsReadBackAsItWasPrinted) {
+  const auto read = load_calibration(file_with(print_calibration(two_cameras())));
+  ASSERT_TRUE(read) << read.error().what;
+  ASSERT_TRUE(read->camera2);
+  EXPECT_EQ(read->camera2->device, "B-77");
+  EXPECT_EQ(read->camera2->camera.width_px, 640);
+  EXPECT_LT(largest_difference(read->camera2->from_camera, two_cameras().camera2->from_camera),
+            1e-9);
+}
+
+TEST(SecondCamera, IsAPartOfTheId) {
+  const auto one = load_calibration(file_with(print_calibration(reference_rig())));
+  auto moved = two_cameras();
+  const auto two = load_calibration(file_with(print_calibration(moved)));
+  moved.camera2->from_camera[3].x = -0.31;
+  const auto other = load_calibration(file_with(print_calibration(moved)));
+  ASSERT_TRUE(one && two && other);
+  EXPECT_NE(one->id, two->id);
+  EXPECT_NE(two->id, other->id);
+  EXPECT_FALSE(one->camera2);
+}
+
+TEST(SecondCamera, IsRefusedIfItCannotBe) {
+  const auto refusal = [](const Calibration& calibration) {
+    const auto read = load_calibration(file_with(print_calibration(calibration)));
+    return read ? std::string() : read.error().what;
+  };
+  auto rig = two_cameras();
+  rig.camera2->from_camera[3] = {0.001, 0, 0, 1};
+  EXPECT_THAT(refusal(rig), HasSubstr("see no depth"));
+  rig.camera2->from_camera[3] = {-300, 0, 0, 1};
+  EXPECT_THAT(refusal(rig), HasSubstr("camera2_from_camera: the second camera is 300 m away"));
+  rig = two_cameras();
+  rig.camera2->from_camera[0][0] = 2;
+  EXPECT_THAT(refusal(rig), HasSubstr("camera2_from_camera: its first three columns"));
+  rig = two_cameras();
+  rig.camera2->camera.fx_px = 5;
+  EXPECT_THAT(refusal(rig), HasSubstr("camera2.focal_px"));
+  const auto half = load_calibration(
+      file_with(print_calibration(reference_rig()) + "[camera2]\nwidth_px = 720\n"));
+  ASSERT_FALSE(half);
+  EXPECT_THAT(half.error().what, HasSubstr("camera2_from_camera.x"));
+}
+
+TEST(SecondView, IsTheSameRigFromTheOtherCamera) {
+  const auto rig = two_cameras();
+  const auto second = second_view(rig);
+  EXPECT_EQ(second.camera.width_px, 640);
+  EXPECT_EQ(second.camera_device, "B-77");
+  const glm::dvec4 in_tracker(0.1, 0.2, 0.3, 1);
+  const auto first_m = rig.camera_from_tracker * in_tracker;
+  EXPECT_LT(
+      glm::distance(second.camera_from_tracker * in_tracker, rig.camera2->from_camera * first_m),
+      1e-12);
+  const auto back = first_view(second);
+  EXPECT_EQ(back.camera.width_px, rig.camera.width_px);
+  EXPECT_LT(largest_difference(back.camera_from_tracker, rig.camera_from_tracker), 1e-12);
+  EXPECT_LT(largest_difference(back.camera2->from_camera, rig.camera2->from_camera), 1e-12);
+  EXPECT_FALSE(back.is_second_view);
+}
+
 }  // namespace
 }  // namespace handcast::calib

@@ -66,6 +66,65 @@ TEST(LightDelay, ItsIntervalHoldsTheTruthInNineOfTenRuns) {
   EXPECT_GE(narrow, 90) << "an interval that says nothing";
 }
 
+TEST(LightDelay, IsUnbiasedToATenthOfAMillisecond) {
+  constexpr int kRuns = 40;
+  double sum_ms = 0;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    const auto found = fit_light_delay(Scene(7, seed, 60).toggles, Scene(7, seed, 60).images);
+    ASSERT_TRUE(found) << found.error().what;
+    sum_ms += found->delay_ms;
+    EXPECT_NEAR(found->delay_ms, 7, 0.3) << seed;
+  }
+  EXPECT_NEAR(sum_ms / kRuns, 7, 0.1);
+}
+
+/// Changes that all meet the same moment of a camera's period.
+TEST(LightDelay, ACameraThatKeepsStepWithTheLightGetsAnIntervalThatHoldsTheTruth) {
+  for (const double phase_ms : {1.0, 5.0, 9.0, 13.0}) {
+    Scene scene(7.7);
+    scene.toggles.clear();
+    scene.images.clear();
+    for (int i = 0; i < 20; ++i)
+      scene.toggles.push_back({ns(1000 + phase_ms + 12 * kPeriod_ms * i), i % 2 == 0});
+    for (int i = 0; i < 300; ++i) {
+      const double at_ms = 500 + i * kPeriod_ms;
+      double share = 0;
+      for (const auto& toggle : scene.toggles)
+        share += (toggle.is_bright ? 1 : -1) *
+                 std::clamp((at_ms + kExposure_ms / 2 -
+                             1e-6 * static_cast<double>(toggle.begin_ns) - 7.7) /
+                                kExposure_ms,
+                            0.0, 1.0);
+      scene.images.push_back({ns(at_ms), ns(kExposure_ms), kDark + (kBright - kDark) * share});
+    }
+    const auto found = fit_light_delay(scene.toggles, scene.images);
+    ASSERT_TRUE(found) << found.error().what;
+    EXPECT_LE(found->low_ms, 7.7) << phase_ms;
+    EXPECT_GE(found->high_ms, 7.7) << phase_ms;
+  }
+}
+
+TEST(LightDelay, TheErrorOfTheCamerasClockIsInTheInterval) {
+  Scene scene(7);
+  const auto sure = fit_light_delay(scene.toggles, scene.images);
+  for (auto& image : scene.images) image.error_ns = ns(2);
+  const auto unsure = fit_light_delay(scene.toggles, scene.images);
+  ASSERT_TRUE(sure && unsure);
+  EXPECT_NEAR(unsure->low_ms, sure->low_ms - 2, 1e-6);
+  EXPECT_NEAR(unsure->high_ms, sure->high_ms + 2, 1e-6);
+}
+
+TEST(LightDelay, AChangeWhoseFirstFrameWasMissedIsLeftOut) {
+  Scene scene(7, 1, 30);
+  for (std::size_t i = 3; i < scene.toggles.size(); i += 3) {
+    scene.toggles[i].begin_ns += ns(17);
+    scene.toggles[i].is_sure = false;
+  }
+  const auto found = fit_light_delay(scene.toggles, scene.images);
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_NEAR(found->delay_ms, 7, 0.8);
+}
+
 TEST(LightDelay, ACameraBehindAnInfraredFilterIsTold) {
   const Scene scene(5, 1, 20, kDark + 1);
   const auto found = fit_light_delay(scene.toggles, scene.images);
