@@ -16,6 +16,8 @@ constexpr double kFar_px = 8;         ///< offsets farther than this from the le
 constexpr double kLasting_s = 0.4;    ///< errors of landmarks are independent after this
 constexpr double kMemory_s = 20;
 constexpr double kMost_m = 0.025;
+/// Sum of the flexion of a finger's joints at which it begins to teach less, and teaches nothing.
+constexpr double kFolding_rad = 1.2, kFolded_rad = 2.4;
 constexpr double kNearest_m = 0.05;
 
 /// One joint as the camera sees it.
@@ -37,6 +39,26 @@ SeenJoint see(const calib::Calibration& calibration, const msg::Joint& joint) {
   const glm::dmat3x2 project(glm::dvec2(fx, 0), glm::dvec2(0, fy),
                              glm::dvec2(-fx * at.x / at.z, -fy * at.y / at.z));
   return {true, camera.project(at), project * camera_from_joint};
+}
+
+/// The direction of the bone that begins at a joint.
+glm::dvec3 towards_tip(const msg::HandPose& pose, int joint) {
+  const auto& [x, y, z, w] = pose.joints[static_cast<std::size_t>(joint)].orientation_xyzw;
+  return glm::dquat(w, x, y, z) * glm::dvec3(0, 0, -1);
+}
+
+/// How far the tracker sees a landmark: 1, and less for those beyond the knuckle of a finger that
+/// is folded. Trackers guess such fingers, with errors that last for seconds.
+double seen_share(const msg::HandPose& pose, int landmark) {
+  const int part = (landmark - 1) % 4, knuckle = landmark - part;
+  if (landmark < 5 || part == 0) return 1;
+  double flexion_rad = 0;
+  for (int i = knuckle; i < knuckle + 3; ++i) {
+    const int joint = msg::kJointOfLandmark[static_cast<std::size_t>(i)];
+    const double cosine = glm::dot(towards_tip(pose, joint - 1), towards_tip(pose, joint));
+    flexion_rad += std::acos(std::clamp(cosine, -1.0, 1.0));
+  }
+  return 1 - glm::smoothstep(kFolding_rad, kFolded_rad, flexion_rad);
 }
 
 /// What is left of the offset of a landmark, and its weight.
@@ -120,7 +142,8 @@ void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
       continue;
     const glm::dvec2 left_px = glm::dvec2(point.x_px, point.y_px) - joints[i].at_px -
                                joints[i].moves_px * learned_[i].displacement_m;
-    offsets[i] = {joints[i].at_px, left_px, 1 / (sigma_px * sigma_px)};
+    offsets[i] = {joints[i].at_px, left_px,
+                  seen_share(pose, static_cast<int>(i)) / (sigma_px * sigma_px)};
   }
   // What all landmarks of this image share is not of the joints.
   const Shared shared = shared_by(offsets, shared_by(offsets, median_of(offsets)));

@@ -44,6 +44,8 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
       surface_(std::move(surface)),
       turn_(calibration),
       definitions_(calibration),
+      fingers_(surface_.mesh()),
+      palm_(surface_.mesh()),
       mover_(surface_.mesh()),
       untangler_(surface_.mesh()),
       picture_(std::move(picture)) {}
@@ -77,6 +79,8 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
     if (settings_.skin.turn) turn_.learn(origin_ns, *pose, seen);
     if (settings_.filter.definitions) definitions_.learn(origin_ns, turn_.turned(*pose), seen);
   }
+  has_sigmas_ =
+      std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
   const auto as_tracked = definitions_.as_tracked(seen);
   if (!landmarks_.is_alone()) ladder_.detection(track_, origin_ns, as_tracked);
   landmarks_.detection(now_ns, origin_ns, as_tracked, track_);
@@ -170,6 +174,7 @@ int HandPipeline::correct(HandFrame& frame) {
     correct_vertices(settings_.correct, surface_.mesh(), from_px(frame), to_px(frame),
                      skinned.landings_px);
   }
+  if (settings_.correct.outline) palm_.move(to_px(frame), skinned.landings_px);
   if (corrected.moves < Rung::fingers) return 0;
   return untangler_.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
 }
@@ -179,9 +184,18 @@ int HandPipeline::foldovers(const HandFrame& frame) const {
   return untangler_.count(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
 }
 
-void HandPipeline::learn_widths(const HandFrame& frame, std::int64_t target_ns, GreyView mask) {
-  if (settings_.skin.fit && settings_.skin.widths && frame.corrected.has_landmarks)
-    surface_.learn_widths(target_ns, to_px(frame), mask);
+void HandPipeline::learn_outline(const HandFrame& frame, std::int64_t target_ns, GreyView mask) {
+  if (!frame.corrected.has_landmarks) return;
+  const LandmarkPoints landmarks_px = to_px(frame);
+  if (settings_.skin.fit && settings_.skin.widths)
+    surface_.learn_widths(target_ns, landmarks_px, mask);
+  // Landmarks without sigmas may be exact: the twin's model has none, and pulling them to the
+  // outline of a drawn shape that is not exact makes them worse.
+  if (settings_.correct.method != config::CorrectMethod::vertices || !settings_.correct.outline ||
+      !has_sigmas_)
+    return;
+  palm_.measure(target_ns, frame.skinned->landings_px, landmarks_px, mask);
+  fingers_.measure(target_ns, frame.skinned->landings_px, landmarks_px, mask);
 }
 
 DrawnHand HandPipeline::drawn(const Skinned& skinned,

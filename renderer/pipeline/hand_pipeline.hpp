@@ -7,6 +7,8 @@
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
 #include "config/sections/projector.hpp"
+#include "renderer/correct/finger_outline.hpp"
+#include "renderer/correct/palm_outline.hpp"
 #include "renderer/correct/rung_mover.hpp"
 #include "renderer/correct/untangle.hpp"
 #include "renderer/draw/painter.hpp"
@@ -95,7 +97,7 @@ class HandPipeline {
     return to_projector(frame.drawn_from, frame.depths_m);
   }
   LandmarkPoints to_px(const HandFrame& frame) const {
-    return to_projector(frame.registered.landmarks, frame.depths_m);
+    return fingers_.moved(to_projector(frame.registered.landmarks, frame.depths_m));
   }
   /// @}
   /// Step correct: moves the landings from P onto Q̂ by the model of the frame's rung. Returns the
@@ -103,8 +105,9 @@ class HandPipeline {
   int correct(HandFrame& frame);
   /// The number of triangles that a warp of the landings has turned over.
   int foldovers(const HandFrame& frame) const;
-  /// Learns the widths of the person's fingers. `mask`: of this hand, projector px.
-  void learn_widths(const HandFrame& frame, std::int64_t target_ns, GreyView mask);
+  /// Learns the widths of the person's fingers and where they are beside their landmarks. `mask`:
+  /// of this hand, projector px.
+  void learn_outline(const HandFrame& frame, std::int64_t target_ns, GreyView mask);
 
   /// The hand for the painter, with its vertices at `position_px`. Borrows the mesh and the
   /// picture.
@@ -135,6 +138,9 @@ class HandPipeline {
   HandSurface surface_;
   HandTurn turn_;
   JointDefinitions definitions_;
+  bool has_sigmas_ = false;  ///< the detector says how wrong its landmarks may be
+  FingerOutline fingers_;
+  PalmOutline palm_;
   RungMover mover_;
   Untangler untangler_;
   MipChain picture_;

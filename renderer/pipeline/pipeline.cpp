@@ -15,6 +15,9 @@ namespace {
 
 using msg::Stage;
 
+/// A hand with less is as good as not reported: a pose that was repeated, not measured.
+constexpr float kLeastConfidence = 0.1f;
+
 LandmarkOracle of_side(const Pipeline::Oracle& oracle, Side side) {
   if (!oracle) return {};
   return [oracle, side](std::int64_t time_ns) { return oracle(side, time_ns); };
@@ -71,7 +74,7 @@ void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
       reported, {both_[0].expected_pose(origin_ns), both_[1].expected_pose(origin_ns)});
   for (HandPipeline& hand : both_)
     if (const msg::HandPose* pose = poses.find(hand.side());
-        pose && is_plausible(*pose, camera_from_tracker_))
+        pose && pose->confidence >= kLeastConfidence && is_plausible(*pose, camera_from_tracker_))
       hand.push(now_ns, origin_ns, *pose);
 }
 
@@ -106,7 +109,7 @@ void Pipeline::learn(std::int64_t image_ns, std::int64_t target_ns) {
   }
   expect(image_ns);
   mask_.advance(expected_);
-  learn_widths(target_ns);
+  learn_outline(target_ns);
   for (auto& [hand, frame] : hands_) frame.skinned.reset();
 }
 
@@ -143,7 +146,7 @@ Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedI
   Rect region;
   if (is_masked) {
     region = advance_masks(camera);
-    learn_widths(target_ns);
+    learn_outline(target_ns);
     stages_.mark(Stage::advance);
   } else {
     region = landing_bounds();
@@ -289,10 +292,10 @@ std::uint32_t Pipeline::rungs() const {
   return detail;
 }
 
-void Pipeline::learn_widths(std::int64_t target_ns) {
+void Pipeline::learn_outline(std::int64_t target_ns) {
   for (std::size_t h = 0; h < hands_.size(); ++h)
     if (mask_.shows(h))
-      hands_[h].hand->learn_widths(hands_[h].frame, target_ns, mask_.in_projector());
+      hands_[h].hand->learn_outline(hands_[h].frame, target_ns, mask_.in_projector());
 }
 
 Rect Pipeline::landing_bounds() const {

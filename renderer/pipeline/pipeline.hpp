@@ -104,7 +104,7 @@ class Pipeline {
   int correct();
   int correct_by_grid();
   void learn(std::int64_t image_ns, std::int64_t target_ns);
-  void learn_widths(std::int64_t target_ns);
+  void learn_outline(std::int64_t target_ns);
   std::uint32_t rungs() const;
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
   Rect landing_bounds() const;

@@ -107,11 +107,14 @@ class Window::Screen {
   std::optional<Monitor> monitor() const { return found_; }
   std::optional<std::int64_t> refresh_ns() const;
   std::vector<std::string> take_keys() { return std::exchange(keys_, {}); }
+  std::vector<PointerEvent> take_pointer() { return std::exchange(pointer_, {}); }
   bool is_closed() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
   std::pair<int, int> size_px() const;
 
  private:
   Result<void> find_monitor();
+  void listen();
+  void note(PointerEvent::Kind kind);
   void warm_up();
   void appear();
   bool covers_monitor() const;
@@ -128,6 +131,9 @@ class Window::Screen {
   bool has_appeared_ = false;
   std::int64_t next_look_ns_ = 0;  ///< when to look again whether the window covers the monitor
   std::vector<std::string> keys_;
+  std::vector<PointerEvent> pointer_;
+  std::pair<double, double> cursor_;  ///< where the mouse was last, px
+  bool is_pressed_ = false;
 
   static Screen* the_screen_;  ///< GLFW reports monitors without a window
 };
@@ -175,14 +181,7 @@ Result<void> Window::Screen::create() {
   levels_ = std::make_unique<LevelsShader>();
   warm_up();
 
-  glfwSetWindowUserPointer(window_, this);
-  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned codepoint) {
-    static_cast<Screen*>(glfwGetWindowUserPointer(window))->keys_.push_back(text_of(codepoint));
-  });
-  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-    if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS)
-      static_cast<Screen*>(glfwGetWindowUserPointer(window))->keys_.emplace_back("Escape");
-  });
+  listen();
   the_screen_ = this;
   glfwSetMonitorCallback([](GLFWmonitor* monitor, int event) {
     if (event != GLFW_DISCONNECTED || monitor != the_screen_->monitor_) return;
@@ -192,6 +191,35 @@ Result<void> Window::Screen::create() {
     the_screen_->has_appeared_ = false;
   });
   return {};
+}
+
+/// Takes the events of keyboard and mouse.
+void Window::Screen::listen() {
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned codepoint) {
+    static_cast<Screen*>(glfwGetWindowUserPointer(window))->keys_.push_back(text_of(codepoint));
+  });
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS)
+      static_cast<Screen*>(glfwGetWindowUserPointer(window))->keys_.emplace_back("Escape");
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+    if (button != GLFW_MOUSE_BUTTON_LEFT) return;
+    auto& screen = *static_cast<Screen*>(glfwGetWindowUserPointer(window));
+    screen.is_pressed_ = action == GLFW_PRESS;
+    screen.note(screen.is_pressed_ ? PointerEvent::Kind::press : PointerEvent::Kind::release);
+  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+    auto& screen = *static_cast<Screen*>(glfwGetWindowUserPointer(window));
+    screen.cursor_ = {x, y};
+    if (screen.is_pressed_) screen.note(PointerEvent::Kind::move);
+  });
+}
+
+/// Keeps an event of the mouse at its last place. Few are kept if nobody takes them.
+void Window::Screen::note(PointerEvent::Kind kind) {
+  constexpr std::size_t kMost = 4096;
+  if (pointer_.size() < kMost) pointer_.push_back({kind, cursor_.first, cursor_.second});
 }
 
 /// Draws a picture that nobody sees: drivers compile their programs and take memory for the first
@@ -302,6 +330,7 @@ ShareGroup Window::share_group() const { return screen_->share_group(); }
 std::optional<Monitor> Window::monitor() const { return screen_->monitor(); }
 std::optional<std::int64_t> Window::refresh_ns() const { return screen_->refresh_ns(); }
 std::vector<std::string> Window::take_keys() { return screen_->take_keys(); }
+std::vector<PointerEvent> Window::take_pointer() { return screen_->take_pointer(); }
 bool Window::is_closed() const { return screen_->is_closed(); }
 int Window::width_px() const { return screen_->size_px().first; }
 int Window::height_px() const { return screen_->size_px().second; }

@@ -36,6 +36,16 @@ struct Shown {
   std::int64_t shown_ns = 0;   ///< when the window system had taken it; with vsync, the refresh
 };
 
+/// What a person does with the left button of the mouse.
+struct PointerEvent {
+  enum class Kind { press, move, release };
+  Kind kind = Kind::move;  ///< move: with the button pressed
+  /// Pixels of the window, from its top left corner.
+  /// @{
+  double x_px = 0, y_px = 0;
+  /// @}
+};
+
 /// The monitors of the display server, the primary one first. Not while a Window is open. Errors:
 /// unavailable (no display).
 Result<std::vector<Monitor>> list_monitors();
@@ -67,6 +77,8 @@ class Window {
   std::optional<std::int64_t> refresh_ns() const;
   /// The characters typed and "Escape", since the last call.
   std::vector<std::string> take_keys();
+  /// What the mouse did in this window since the last call, in order.
+  std::vector<PointerEvent> take_pointer();
   /// True if the user has closed the window. A full-screen window stays open.
   bool is_closed() const;
   /// Current size in pixels, of a window that the user may have resized.

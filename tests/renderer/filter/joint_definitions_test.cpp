@@ -103,6 +103,31 @@ TEST_F(JointDefinitionsTest, AHandThatIsElsewhereIsNotADefinition) {
     EXPECT_LT(glm::length(definitions_.displacement_m(i)), 0.0003) << "landmark " << i;
 }
 
+TEST_F(JointDefinitionsTest, AFoldedFingerThatTheTrackerGuessesIsNotADefinition) {
+  constexpr int kIndexTip = 8;
+  const auto learned_m = [&](float bend_rad) {
+    definitions_ = JointDefinitions(calibration_);
+    for (int i = 0; i < kViews; ++i) {
+      auto pose = any_view();
+      auto landmarks = seen(pose, {});
+      landmarks.points[kIndexTip].x_px += 6;
+      for (int k = 0; k < 3; ++k) {
+        auto& [x, y, z, w] =
+            pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[kIndexKnuckle + k])]
+                .orientation_xyzw;
+        const glm::quat bent =
+            glm::quat(w, x, y, z) *
+            glm::angleAxis(-bend_rad * static_cast<float>(k + 1), glm::vec3(1, 0, 0));
+        x = bent.x, y = bent.y, z = bent.z, w = bent.w;
+      }
+      definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+    }
+    return glm::length(definitions_.displacement_m(kIndexTip));
+  };
+  EXPECT_GT(learned_m(0.1f), 0.0005);
+  EXPECT_EQ(learned_m(1.2f), 0);
+}
+
 TEST_F(JointDefinitionsTest, OneImageTeachesLittle) {
   const auto pose = any_view();
   for (int i = 0; i < 3; ++i)

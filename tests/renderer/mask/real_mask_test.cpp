@@ -13,8 +13,8 @@
 #include "renderer/content/picture.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/predict/project_landmarks.hpp"
-#include "services/evaluation/twin/leap_layout.hpp"
 #include "services/evaluation/twin/npy.hpp"
+#include "services/joints/leap_layout.hpp"
 #include "tests/renderer/mask/outline_score.hpp"
 #include "tests/renderer/mask/real_outlines.hpp"
 
@@ -74,7 +74,7 @@ std::optional<msg::HandPose> tracker_pose(const std::string& name) {
   };
   msg::HandPose pose{};
   for (int j = 1; j < msg::kJoints; ++j) {
-    const glm::dvec3 p = place_m(twin::kLeapJoint[j]);
+    const glm::dvec3 p = place_m(joints::kLeapJoint[j]);
     pose.joints[j].position_m = {float(p.x), float(p.y), float(p.z)};
     pose.joints[j].orientation_xyzw = {0, 0, 0, 1};
   }

@@ -92,6 +92,45 @@ TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
   }
 }
 
+/// A detector that sees the index finger beside its place, and images that show where it is: the
+/// mean distance of the landings from those with a flawless detector, projector px.
+float beside_px(bool outline, float sigma_px = 3) {
+  const auto calibration = rig_above_hand();
+  const auto hand = pose_of(Side::left);
+  const auto image = image_of(calibration, {hand});
+  const auto landings = [&](float wrong_px) {
+    auto settings = cascade(config::CorrectMethod::vertices, config::FillMethod::reflect);
+    settings.correct.outline = outline;
+    settings.filter.definitions = false;
+    const auto pipeline = make_pipeline(settings);
+    feed_still(*pipeline, {hand}, 400 * kMs);
+    for (std::int64_t t = 20 * kMs; t < 400 * kMs; t += 2 * kMs) {
+      auto seen = landmarks_of(calibration, t - 8 * kMs, hand, {});
+      for (auto& point : seen.hands[0].points) point.sigma_px = sigma_px;
+      for (const int i : {6, 7, 8}) seen.hands[0].points[i].x_px += wrong_px;
+      pipeline->push(t, seen);
+      pipeline->look({image.view(), t - 2 * kMs, static_cast<std::uint64_t>(t)});
+      pipeline->track(t, t + 4 * kMs);
+    }
+    const auto hands = pipeline->render(400 * kMs, 404 * kMs, {image.view(), 398 * kMs, 1}).hands;
+    return std::vector<glm::vec2>(hands[0].landings.begin(), hands[0].landings.end());
+  };
+  const auto right = landings(0), wrong = landings(6);
+  float sum_px = 0;
+  for (std::size_t v = 0; v < right.size(); ++v) sum_px += glm::distance(right[v], wrong[v]);
+  return sum_px / static_cast<float>(right.size());
+}
+
+TEST(Correction, TheOutlineMendsAFingerThatTheDetectorSeesBesideItsPlace) {
+  const float without_px = beside_px(false);
+  EXPECT_GT(without_px, 0.3f);
+  EXPECT_LT(beside_px(true), 0.75f * without_px);
+}
+
+TEST(Correction, LandmarksOfADetectorWithoutSigmasAreNotPulledToTheOutline) {
+  EXPECT_EQ(beside_px(true, 0), beside_px(false, 0));
+}
+
 TEST(Correction, AGridThatFoldsIsCounted) {
   const auto calibration = rig_above_hand();
   const auto pipeline =

@@ -233,6 +233,17 @@ TEST(Pipeline, AProjectionWhoseRegionIsLeftOutHasNoPlaceOfAnEarlierOne) {
   EXPECT_EQ(projection->region_y_px, 0);
 }
 
+TEST(Pipeline, APoseInWhichTheTrackerHasNoConfidenceIsNotUsed) {
+  for (const float confidence : {0.05f, 0.5f}) {
+    const auto pipeline = make_pipeline();
+    auto hand = pose_of(Side::left);
+    hand.confidence = confidence;
+    feed_still(*pipeline, {hand});
+    const auto hands = pipeline->render(104 * kMs, 108 * kMs, {}).hands.size();
+    EXPECT_EQ(hands, confidence < 0.1f ? 0u : 1u);
+  }
+}
+
 TEST(Pipeline, AHandBehindTheCameraIsNotDrawn) {
   const auto pipeline = make_pipeline();
   feed_still(*pipeline, {pose_of(Side::left, {0, 1.0f, 0})});

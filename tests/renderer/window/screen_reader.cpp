@@ -81,6 +81,29 @@ void hide_windows() {
   XSync(display.get(), False);
 }
 
+void drag_in_window(int from_x, int from_y, int to_x, int to_y) {
+  const auto display = connect();
+  const auto windows = shown_windows(display);
+  if (windows.empty()) return;
+  const auto send = [&](int type, long mask, int x, int y) {
+    XEvent event{};
+    event.type = type;
+    event.xbutton.window = windows.back();
+    event.xbutton.root = DefaultRootWindow(display.get());
+    event.xbutton.same_screen = True;
+    event.xbutton.x = x;  // at the same place in XMotionEvent
+    event.xbutton.y = y;
+    if (type != MotionNotify) event.xbutton.button = Button1;
+    XSendEvent(display.get(), windows.back(), False, mask, &event);
+  };
+  send(MotionNotify, PointerMotionMask, from_x, from_y);
+  send(ButtonPress, ButtonPressMask, from_x, from_y);
+  send(MotionNotify, PointerMotionMask, to_x, to_y);
+  send(ButtonRelease, ButtonReleaseMask, to_x, to_y);
+  send(MotionNotify, PointerMotionMask, from_x, from_y);
+  XSync(display.get(), False);
+}
+
 void paint_the_desktop(unsigned long rgb) {
   const auto display = connect();
   XSetWindowBackground(display.get(), DefaultRootWindow(display.get()), rgb);

@@ -18,6 +18,9 @@ bool shows_a_window();
 void resize_windows(int width, int height);
 void hide_windows();
 /// @}
+/// Presses the left button at one place of the shown window and releases it at another; px of the
+/// window.
+void drag_in_window(int from_x, int from_y, int to_x, int to_y);
 /// Fills what no window covers. `rgb`: 0xRRGGBB.
 void paint_the_desktop(unsigned long rgb);
 /// Gives an output an EDID with this name.

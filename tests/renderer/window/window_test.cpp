@@ -79,6 +79,27 @@ TEST_F(WindowTest, IsBlackWhereAnOlderPictureWasLit) {
   EXPECT_EQ(test::pixel(kLeft + 150, 100), kBlack);
 }
 
+TEST_F(WindowTest, TheMouseIsReportedWhileItsButtonIsPressed) {
+  auto window = Window::open({.title = "drag", .width_px = 400, .height_px = 300, .vsync = false});
+  ASSERT_TRUE(window) << window.error().what;
+  for (const auto limit = Deadline::in(5s); !test::shows_a_window() && !limit.passed();)
+    (void)(*window)->show(square_.pixels.view(), square_.region);
+  test::drag_in_window(30, 40, 130, 90);
+  std::vector<PointerEvent> events;
+  for (const auto limit = Deadline::in(5s); events.size() < 3 && !limit.passed();) {
+    (void)(*window)->show(square_.pixels.view(), square_.region);
+    for (const auto& event : (*window)->take_pointer()) events.push_back(event);
+  }
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].kind, PointerEvent::Kind::press);
+  EXPECT_EQ(events[0].x_px, 30);
+  EXPECT_EQ(events[0].y_px, 40);
+  EXPECT_EQ(events[1].kind, PointerEvent::Kind::move);
+  EXPECT_EQ(events[1].x_px, 130);
+  EXPECT_EQ(events[2].kind, PointerEvent::Kind::release);
+  EXPECT_EQ(events[2].y_px, 90);
+}
+
 TEST_F(WindowTest, IsHiddenUntilItsFirstPicture) {
   auto window = Window::open(full_screen());
   ASSERT_TRUE(window) << window.error().what;

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "renderer/correct/outline_parts.hpp"
+
+namespace handcast::renderer {
+
+/// Moves the fingers of a drawn hand onto the outline of the mask. Landmarks are wrong for longer
+/// than a filter may wait, but the mask shows where a finger is: both of its sides across each
+/// phalanx, and its end beyond the tip. What the mask differs from the drawing is averaged over
+/// some hundredths of a second, and a Gaussian prior along each finger makes displacements of its
+/// landmarks of it. Not used are sides that another part of the drawn hand covers or touches, and
+/// sides that are far from the drawn ones: a mask that merges with another finger, a second hand, a
+/// sleeve or clutter. Measured are open hands that do not show their edge, and of these the fingers
+/// that do not fold back in the image. Without measurements the displacements fade. See
+/// `docs/method.md#correct`. One thread.
+class FingerOutline {
+ public:
+  /// For the fingers of `mesh`. Nothing is displaced yet.
+  explicit FingerOutline(const HandMesh& mesh);
+
+  /// Measures one frame that was drawn with moved(): its vertices and landmarks after all
+  /// corrections, and the mask of the hand at the same time, all in projector px. `vertices_px`:
+  /// one per vertex of the mesh.
+  void measure(std::int64_t time_ns, std::span<const glm::vec2> vertices_px,
+               const LandmarkPoints& landmarks_px, GreyView mask);
+
+  /// The landmarks (projector px), displaced by what was measured.
+  LandmarkPoints moved(const LandmarkPoints& landmarks_px) const;
+
+ private:
+  static constexpr int kFingers = 5, kOfFinger = 4, kMostBones = 3;
+
+  /// A phalanx that is measured.
+  struct Bone {
+    int first = 0;  ///< where it starts among the landmarks of its finger; it ends at the next
+    float station = 0.5f;         ///< where it is measured, as a share of its length
+    std::vector<MeshEdge> edges;  ///< those that may cross it there
+    Lasting across_px;            ///< the mask's middle from the drawn one without displacement
+  };
+  struct Finger {
+    int landmark = 0;  ///< its first one
+    std::vector<Bone> bones;
+    std::vector<std::uint16_t> tip;  ///< vertices of the last phalanx
+    Lasting along_px;                ///< the mask's end from the drawn one without displacement
+    /// Displacements of its landmarks, across the finger and along it.
+    std::array<float, kOfFinger> across{}, along{};
+  };
+  /// A phalanx as it is drawn: the axes begin at the middle of its section, along to the tip.
+  struct Drawn {
+    Axes axes;
+    float half_px = 0;  ///< half of its width
+  };
+  using DrawnBones = std::array<std::optional<Drawn>, kMostBones>;
+
+  static bool is_straight(const Finger& finger, const LandmarkPoints& landmarks_px);
+  static std::optional<Drawn> drawn(const Finger& finger, const Bone& bone,
+                                    std::span<const glm::vec2> vertices_px,
+                                    const LandmarkPoints& landmarks_px);
+  std::optional<float> across(const Finger& finger, const Bone& bone, const Drawn& drawn,
+                              const LandmarkPoints& landmarks_px, GreyView mask) const;
+  std::optional<float> along(const Finger& finger, const Drawn& drawn,
+                             std::span<const glm::vec2> vertices_px,
+                             const LandmarkPoints& landmarks_px, GreyView mask) const;
+  bool is_free(glm::vec2 place, int landmark, const LandmarkPoints& landmarks_px) const;
+  void solve_across(Finger& finger) const;
+  void solve_along(Finger& finger) const;
+
+  std::array<Finger, kFingers> fingers_;
+  std::int64_t last_ns_ = 0;
+  LandmarkPoints last_px_{};
+  float radius_px_ = 0;  ///< half of the width of a drawn finger, the mean of those seen
+};
+
+}  // namespace handcast::renderer
