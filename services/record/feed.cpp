@@ -98,9 +98,11 @@ std::size_t bytes_of(const AnySample& sample) {
 
 Result<std::unique_ptr<Feed>> open_feed(const std::string& rig, const std::string& name,
                                         const FeedSettings& settings) {
-  if (name == "camera.frames") return open_as<msg::CameraFrame>(rig, name, settings);
+  if (name == "camera.frames" || name == "camera2.frames")
+    return open_as<msg::CameraFrame>(rig, name, settings);
   if (name == "pose.hands") return open_as<msg::HandPoses>(rig, name, settings);
-  if (name == "landmarks.hands") return open_as<msg::Landmarks>(rig, name, settings);
+  if (name == "landmarks.hands" || name == "landmarks2.hands")
+    return open_as<msg::Landmarks>(rig, name, settings);
   if (name == "projection.frames") return open_as<msg::Projection>(rig, name, settings);
   if (name.starts_with("marks.")) return open_as<msg::StageMarks>(rig, name, settings);
   return fail(Errc::bad_config, fmt::format("the messages of ring '{}' are unknown", name));

@@ -92,9 +92,10 @@ const MessageType& type_of<msg::StageMarks>() {
 }
 
 const MessageType* type_of_stream(std::string_view stream) {
-  if (stream == "camera.frames") return &type_of<msg::CameraFrame>();
+  if (stream == "camera.frames" || stream == "camera2.frames") return &type_of<msg::CameraFrame>();
   if (stream == "pose.hands") return &type_of<msg::HandPoses>();
-  if (stream == "landmarks.hands") return &type_of<msg::Landmarks>();
+  if (stream == "landmarks.hands" || stream == "landmarks2.hands")
+    return &type_of<msg::Landmarks>();
   if (stream == "projection.frames") return &type_of<msg::Projection>();
   if (stream.starts_with("marks.")) return &type_of<msg::StageMarks>();
   return nullptr;

@@ -7,6 +7,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/stop_signal.hpp"
+#include "services/runtime/second_view.hpp"
 
 namespace handcast::service {
 namespace {
@@ -54,12 +55,14 @@ void Context::stand_by() {
   open_marks();
 }
 
-Result<ipc::Segment> Context::take_segment(std::string_view stream,
+Result<ipc::Segment> Context::take_segment(std::string_view asked,
                                            const std::vector<std::string>& described) {
+  const std::string stream =
+      description_.is_second_view ? of_second_view(asked) : std::string(asked);
   if (std::ranges::find(described, stream) == described.end())
     return fail(Errc::bad_config, fmt::format("ring '{}' is not in the description of {}", stream,
                                               description_.name));
-  if (const auto mapped = mapped_.extract(std::string(stream))) return std::move(mapped.mapped());
+  if (const auto mapped = mapped_.extract(stream)) return std::move(mapped.mapped());
   return open_segment(stream);
 }
 

@@ -45,9 +45,10 @@ class Context {
   /// The time of the rig's start, the same for every daemon of the rig: time zero of the twin.
   std::int64_t epoch_ns() const { return supervision_.epoch_ns(); }
 
-  /// The writer of a ring. A spare waits for its turn first (see stand_by()), and then until the
-  /// worker that it replaces has left the ring. Errors: bad_config
-  /// (the description does not name the ring, or there is none), those of ipc::Writer::attach().
+  /// The writer of a ring; in a service of the second view, of its own ring of that kind. A spare
+  /// waits for its turn first (see stand_by()), and then until the worker that it replaces has left
+  /// the ring. Errors: bad_config (the description does not name the ring, or there is none), those
+  /// of ipc::Writer::attach().
   template <class T>
   Result<ipc::Writer<T>> writer(std::string_view stream) {
     stand_by();
@@ -94,7 +95,7 @@ class Context {
           calib::Calibration calibration);
 
  private:
-  Result<ipc::Segment> take_segment(std::string_view stream,
+  Result<ipc::Segment> take_segment(std::string_view asked,
                                     const std::vector<std::string>& described);
   Result<ipc::Segment> open_segment(std::string_view stream) const;
   void open_marks();

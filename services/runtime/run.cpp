@@ -2,6 +2,7 @@
 #include <exception>
 
 #include "calib/sub_frames.hpp"
+#include "config/second_view.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
@@ -9,6 +10,7 @@
 #include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
 #include "services/runtime/scheduling.hpp"
+#include "services/runtime/second_view.hpp"
 
 namespace handcast::service {
 namespace {
@@ -37,6 +39,19 @@ void print_answer(const daemon::ServiceDescription& description, CommandLine::Ta
   if (task == Task::describe) fmt::print("{}", daemon::print_description(complete(description)));
 }
 
+/// The calibration as this service has it. Errors: those of calib::load_calibration(); bad_config
+/// (a service of the second view, and there is no second camera).
+Result<calib::Calibration> load_calibration(const config::Rig& rig,
+                                            const daemon::ServiceDescription& description) {
+  auto calibration = calib::load_calibration(rig.calibration, rig.projector.packing);
+  if (!calibration || !description.is_second_view) return calibration;
+  if (calibration->camera2) return calib::second_view(*calibration);
+  return fail(Errc::bad_config,
+              fmt::format("{}: the calibration has no second camera; add [camera2] and "
+                          "[camera2_from_camera] to its file",
+                          description.name));
+}
+
 int serve(const daemon::ServiceDescription& description, const CommandLine& line,
           const std::function<void(Context&)>& body) try {
   daemon::install_stop_signals();
@@ -44,7 +59,8 @@ int serve(const daemon::ServiceDescription& description, const CommandLine& line
   for (const auto& note :
        must(apply_scheduling(config::process_of(rig, description.name), description.name)))
     log::warning("{}", note);
-  auto calibration = must(calib::load_calibration(rig.calibration, rig.projector.packing));
+  auto calibration = must(load_calibration(rig, description));
+  if (description.is_second_view) rig = config::seen_by_second(std::move(rig));
   Context context(description, std::move(rig), calibration);
   body(context);
   log::info("stopped");
@@ -54,16 +70,17 @@ int serve(const daemon::ServiceDescription& description, const CommandLine& line
 }
 
 /// What keeps a service from starting with this rig.
-std::vector<Error> find_faults(const config::Rig& rig, std::string_view service,
-                               const Check& check) {
+std::vector<Error> find_faults(const config::Rig& rig,
+                               const daemon::ServiceDescription& description, const Check& check) {
   std::vector<Error> faults;
   const auto note = [&](const Result<void>& result) {
     if (!result) faults.push_back(result.error());
   };
-  note(check_scheduling(config::process_of(rig, service), service));
-  const auto calibration = calib::load_calibration(rig.calibration, rig.projector.packing);
+  note(check_scheduling(config::process_of(rig, description.name), description.name));
+  const auto calibration = load_calibration(rig, description);
   if (!calibration) faults.push_back(calibration.error());
-  if (check) note(check(rig, calibration.value_or(calib::reference_rig())));
+  const auto seen = description.is_second_view ? config::seen_by_second(rig) : rig;
+  if (check) note(check(seen, calibration.value_or(calib::reference_rig())));
   return faults;
 }
 
@@ -72,7 +89,7 @@ int examine(const daemon::ServiceDescription& description, const CommandLine& li
             const Check& check) {
   log::set_level(log::Level::error);
   const auto rig = config::load_rig(line.config_file, line.settings);
-  const auto faults = rig ? find_faults(*rig, description.name, check) : std::vector{rig.error()};
+  const auto faults = rig ? find_faults(*rig, description, check) : std::vector{rig.error()};
   for (const auto& fault : faults) fmt::print("{}\n", printable(fault.what));
   return faults.empty() ? kExitDone : exit_code_of(faults.front());
 }
