@@ -85,6 +85,10 @@ find_package(X11 QUIET)
 handcast_found(found glfw3_FOUND OpenGL_OpenGL_FOUND X11_Xrandr_FOUND)
 handcast_feature(WINDOW "light in a window (libglfw3-dev libopengl-dev libxrandr-dev)" ${found})
 
+pkg_check_modules(alsa QUIET IMPORTED_TARGET alsa)
+handcast_found(found alsa_FOUND)
+handcast_feature(ALSA "delay of the light by a photodiode on a sound card (libasound2-dev)" ${found})
+
 pkg_check_modules(drm QUIET IMPORTED_TARGET libdrm)
 handcast_found(found drm_FOUND)
 handcast_feature(KMS "light on a projector without a window system (libdrm-dev)" ${found})
@@ -93,9 +97,17 @@ pkg_check_modules(aravis QUIET IMPORTED_TARGET aravis-0.8)
 handcast_found(found aravis_FOUND)
 handcast_feature(ARAVIS "GigE Vision and USB3 Vision cameras (libaravis-dev)" ${found})
 
+pkg_check_modules(libusb QUIET IMPORTED_TARGET libusb-1.0)
+handcast_found(found libusb_FOUND)
+handcast_feature(LIBUSB "Leap Motion Controllers as stereo cameras (libusb-1.0-0-dev)" ${found})
+
 pkg_check_modules(hidapi QUIET IMPORTED_TARGET hidapi-hidraw)
 handcast_found(found hidapi_FOUND)
 handcast_feature(HIDAPI "commands to DLP projectors, handcast-dlp (libhidapi-dev)" ${found})
+
+pkg_check_modules(openxr QUIET IMPORTED_TARGET openxr)
+handcast_found(found openxr_FOUND)
+handcast_feature(OPENXR "hand trackers of OpenXR runtimes (libopenxr-dev)" ${found})
 
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)

@@ -10,6 +10,10 @@ namespace handcast::camera {
 Result<std::unique_ptr<Camera>> open_aravis(const config::Rig&, const calib::Calibration&,
                                             const std::int64_t& epoch_ns);
 #endif
+#ifdef HANDCAST_WITH_LIBUSB
+Result<std::unique_ptr<Camera>> open_leap(const config::Rig&, const calib::Calibration&,
+                                          const std::int64_t& epoch_ns);
+#endif
 Result<std::unique_ptr<Camera>> open_twin(const config::Rig&, const calib::Calibration&,
                                           const std::int64_t& epoch_ns);
 Result<std::unique_ptr<Camera>> open_replay(const config::Rig&, const calib::Calibration&,
@@ -40,6 +44,14 @@ static constexpr std::array kBackends{
                   .open = open_v4l2,
                   .reads = {"camera.v4l2", "camera.delivery_ms"},
                   .exclusive = true},
+#ifdef HANDCAST_WITH_LIBUSB
+    CameraBackend{.name = "leap",
+                  .sentence = "A Leap Motion Controller as a stereo camera, over USB without its "
+                              "maker's software.",
+                  .open = open_leap,
+                  .reads = {"camera.leap", "camera.delivery_ms"},
+                  .exclusive = true},
+#endif
 };
 
 std::span<const CameraBackend> camera_backends() { return kBackends; }

@@ -27,6 +27,16 @@ class Camera {
   virtual Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                                Deadline deadline) = 0;
 
+  /// True for a stereo camera: each image comes with one of its other eye, which capture_both()
+  /// gives to its service and capture() drops.
+  virtual bool has_second_image() const { return false; }
+  /// As capture(); `second` has as much room and gets the other image, with the same frame id,
+  /// origin and losses. Only with has_second_image().
+  virtual Result<void> capture_both(msg::CameraFrame& frame, msg::CameraFrame& /*second*/,
+                                    std::size_t tail_bytes, Deadline deadline) {
+    return capture(frame, tail_bytes, deadline);
+  }
+
   /// True for a camera of the twin in front of which the rig's own light falls. Its service gives
   /// it the projections before the first capture().
   virtual bool sees_light() const { return false; }

@@ -34,7 +34,9 @@ Result<twin::FlatPicture> picture_of(const std::string& board_name) {
 }
 
 /// The twin's camera in real time. An image depends only on its number, so it is drawn before its
-/// arrival and delivered on time. A slow machine delivers fewer images, not late ones.
+/// arrival and delivered on time. A slow machine delivers fewer images, not late ones. Only images
+/// of the projector's light come late: they are drawn after their exposure, when all of its light
+/// is known. Their stamps are true.
 class TwinCamera final : public Camera {
  public:
   TwinCamera(std::unique_ptr<twin::Twin> twin, const config::Camera& settings,
@@ -48,11 +50,13 @@ class TwinCamera final : public Camera {
   void watch_light(ipc::Reader<msg::Projection> projections) override {
     projections_ = std::move(projections);
   }
-  /// Shows a board in place of hands.
-  Result<void> show_board(const config::TwinProp& settings) {
+  /// Shows a board in place of hands, in the light of the projector.
+  Result<void> show_board(const config::TwinProp& settings, const config::Projector& projector) {
     auto picture = picture_of(settings.board);
     if (!picture) return tl::make_unexpected(picture.error());
-    light_.emplace(ms_to_ns(settings.light_late_ms));
+    light_.emplace(ms_to_ns(settings.light_late_ms), seconds_to_ns(1 / projector.rate_hz),
+                   true_light(projector, settings.light_gamma));
+    early_ns_ = std::max<std::int64_t>(0, -ms_to_ns(settings.light_late_ms));
     return twin_->show_board(*picture);
   }
 
@@ -68,7 +72,7 @@ class TwinCamera final : public Camera {
       sleep_until_ns(deadline.time_ns());
       return fail(Errc::timeout, "camera 'twin': no frame before the deadline");
     }
-    if (projections_) take_light(arrival_ns(k));
+    if (projections_) take_light(k);
     draw(k, frame);
     sleep_until_ns(arrival_ns(k));
     next_ = k + 1;
@@ -86,10 +90,12 @@ class TwinCamera final : public Camera {
   }
 
  private:
-  /// Takes the light as it is published, until the last moment at which the image of this arrival
-  /// can be drawn.
-  void take_light(std::int64_t arrival_ns) {
-    const auto until = Deadline::at_ns(arrival_ns - drawing_ns_ * 3 / 2);
+  /// Takes the light as it is published, until that of the whole exposure must have been: a frame
+  /// is published before it is lit, or `kPublishing_ns` later if the projector has no latency.
+  void take_light(std::uint64_t k) {
+    constexpr std::int64_t kPublishing_ns = 3'000'000;
+    const auto until = Deadline::at_ns(epoch_ns_ + twin_->camera_origin_ns(k) + exposure_ns_ / 2 +
+                                       kPublishing_ns + early_ns_);
     do {
       if (const auto projection = projections_->next(until)) light_->add(**projection);
     } while (!until.passed());
@@ -105,7 +111,8 @@ class TwinCamera final : public Camera {
     const renderer::View<std::uint8_t> image{frame.pixels(), model_.width_px, model_.height_px,
                                              model_.width_px};
     if (const auto light =
-            light_ ? light_->at(epoch_ns_ + twin_->camera_origin_ns(k)) : std::nullopt)
+            light_ ? light_->during(epoch_ns_ + twin_->camera_origin_ns(k), exposure_ns_)
+                   : std::nullopt)
       twin_->camera_image(k, *light, image);
     else
       twin_->camera_image(k, image);
@@ -118,6 +125,7 @@ class TwinCamera final : public Camera {
   std::int64_t drawing_ns_ = 0;  ///< smoothed time to draw an image
   std::uint64_t next_ = 0;
   std::optional<SeenLight> light_;  ///< empty without a board
+  std::int64_t early_ns_ = 0;       ///< how much earlier than reported the light comes
   std::optional<ipc::Reader<msg::Projection>> projections_;
 };
 
@@ -131,7 +139,7 @@ Result<std::unique_ptr<Camera>> open_twin(const config::Rig& rig,
   auto camera =
       std::make_unique<TwinCamera>(std::move(*twin), rig.camera, calibration.camera, epoch_ns);
   if (rig.twin.prop.kind == config::TwinPropKind::board)
-    if (auto shown = camera->show_board(rig.twin.prop); !shown)
+    if (auto shown = camera->show_board(rig.twin.prop, rig.projector); !shown)
       return fail_in("camera 'twin': twin.prop.board", shown.error());
   camera->warm_up();
   return camera;

@@ -8,16 +8,12 @@
 #include <string>
 #include <thread>
 
+#include "tests/emulation/under_umockdev.hpp"
+
 namespace handcast::test {
 
 /// What a report is to the kernel: the number 0, then 64 bytes.
 using NumberedReport = std::array<std::uint8_t, 65>;
-
-/// Whether this process and its children see emulated devices: it was started by umockdev-wrapper.
-bool sees_emulated_devices();
-/// Starts this program again under umockdev-wrapper. Returns if that is not installed, or if it has
-/// been done.
-void see_emulated_devices(char** argv);
 
 /// A USB HID device at /dev/hidraw0, for this process and its children. One at a time.
 class EmulatedHid {

@@ -2,7 +2,7 @@
 // The main function of tests with emulated USB devices.
 #include <gtest/gtest.h>
 
-#include "tests/services/dlp/emulated_hid.hpp"
+#include "tests/emulation/under_umockdev.hpp"
 
 int main(int argc, char** argv) {
 #ifndef HANDCAST_WITH_SANITIZER
