@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "services/evaluation/twin/settings.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
+#include "services/landmarks/models/models_folder.hpp"
 
 namespace handcast::landmarks {
 
@@ -49,10 +52,26 @@ std::span<const DetectorBackend> detector_backends() {
   return kBackends;
 }
 
+DetectorChoice choose_detector(const config::Rig& rig) {
+  const auto& settings = rig.landmarks;
+  // A folder that does not exist is a wrong setting and not a missing file.
+  const auto folder = models_folder(settings.models);
+  if (settings.fallback.empty() || !folder) return {settings.backend, {}};
+  const auto missing =
+      missing_file(settings.backend, {.executor = settings.executor, .folder = *folder});
+  if (missing.empty()) return {settings.backend, {}};
+  return {settings.fallback,
+          fmt::format("landmarks: '{}' is missing, so '{}' takes the place of '{}' "
+                      "(landmarks.fallback)",
+                      missing.string(), settings.fallback, settings.backend)};
+}
+
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
                                                 std::int64_t epoch_ns) {
-  return service::open_backend("landmarks", rig.landmarks.backend, detector_backends(), rig,
+  auto chosen = rig;
+  chosen.landmarks.backend = choose_detector(rig).backend;
+  return service::open_backend("landmarks", chosen.landmarks.backend, detector_backends(), chosen,
                                calibration, epoch_ns);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
@@ -37,8 +38,18 @@ using DetectorBackend = service::Backend<Detector, config::Rig, calib::Calibrati
 /// All detectors: the landmark models, the twin, recordings.
 std::span<const DetectorBackend> detector_backends();
 
-/// Opens the detector that rig.landmarks.backend names. `epoch_ns`: the start of the rig. Errors:
-/// bad_config.
+/// What finds the landmarks of a rig.
+struct DetectorChoice {
+  std::string backend;  ///< rig.landmarks.backend, or rig.landmarks.fallback
+  /// Why it is the fallback: one sentence with the file that is missing. Empty if it is not.
+  std::string why;
+};
+
+/// The detector that open_detector() opens: the fallback, if there is one and a file of the back
+/// end is missing.
+DetectorChoice choose_detector(const config::Rig& rig);
+
+/// Opens the detector of choose_detector(). `epoch_ns`: the start of the rig. Errors: bad_config.
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
                                                 std::int64_t epoch_ns);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ipc/base/log.hpp"
 #include "ipc/msg/same_calibration.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/second_view.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
@@ -22,8 +24,9 @@ static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPo
 /// Publishes the landmarks of the newest camera frame on landmarks.hands, back to back. Frames that
 /// arrive during a detection are skipped.
 static void run_landmarks(service::Context& context) {
-  if (service::is_exclusive(context.rig().landmarks.backend, landmarks::detector_backends()))
-    context.stand_by();
+  const auto choice = landmarks::choose_detector(context.rig());
+  if (!choice.why.empty()) log::warning("{}", choice.why);
+  if (service::is_exclusive(choice.backend, landmarks::detector_backends())) context.stand_by();
   const auto detector =
       must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by();
@@ -61,16 +64,29 @@ static void run_landmarks(service::Context& context) {
 }
 
 static Result<void> check_landmarks(const config::Rig& rig, const calib::Calibration& calibration) {
-  return service::check_backend("landmarks", rig.landmarks.backend, landmarks::detector_backends(),
-                                rig, calibration, now_ns());
+  auto chosen = rig;
+  chosen.landmarks.backend = landmarks::choose_detector(rig).backend;
+  return service::check_backend("landmarks", chosen.landmarks.backend,
+                                landmarks::detector_backends(), chosen, calibration, now_ns());
+}
+
+/// HANDCAST_SECOND_VIEW: this program is handcast-landmarks2.
+static daemon::ServiceDescription description() {
+  daemon::ServiceDescription first{
+      .name = "landmarks",
+      .summary = "Finds the landmarks of the hands in camera images.",
+      .paced_by = "camera.frames",
+      .publishes = {"landmarks.hands"},
+      .subscribes = {"camera.frames", "pose.hands"},
+      .settings = {"landmarks.fallback"},
+      .backends = service::describe_rows(landmarks::detector_backends())};
+#ifdef HANDCAST_SECOND_VIEW
+  return service::of_second_view(std::move(first));
+#else
+  return first;
+#endif
 }
 
 int main(int argc, char** argv) {
-  return service::run({.name = "landmarks",
-                       .summary = "Finds the landmarks of the hands in camera images.",
-                       .paced_by = "camera.frames",
-                       .publishes = {"landmarks.hands"},
-                       .subscribes = {"camera.frames", "pose.hands"},
-                       .backends = service::describe_rows(landmarks::detector_backends())},
-                      argc, argv, run_landmarks, check_landmarks);
+  return service::run(description(), argc, argv, run_landmarks, check_landmarks);
 }

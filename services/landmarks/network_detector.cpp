@@ -96,9 +96,12 @@ Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
   const bool converts = settings.definition == config::LandmarkDefinition::tracker &&
                         !model->landmarks->traits().finds_tracker_joints;
   const bool has_tracker = rig.pose.backend != "none";
+  // The poses of `stereo` are made from these landmarks, too, but of two views: good hints, once
+  // the hands were found.
+  const bool finds_hands = !has_tracker || rig.pose.backend == "stereo";
   HandFinder finder(
       std::move(*model), settings.hands,
-      has_tracker ? HandFinder::WithoutPalms::not_at_all : HandFinder::WithoutPalms::by_brightness);
+      finds_hands ? HandFinder::WithoutPalms::by_brightness : HandFinder::WithoutPalms::not_at_all);
   return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, converts,
                                            has_tracker);
 }

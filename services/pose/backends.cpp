@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <array>
 
 #include "services/evaluation/twin/settings.hpp"
-#include "services/pose/pose_source.hpp"
+#include "services/pose/pair_source.hpp"
+#include "services/pose/watched_source.hpp"
 
 namespace handcast::pose {
 
@@ -12,6 +15,12 @@ Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig&, const calib:
                                                 const std::int64_t& epoch_ns);
 Result<std::unique_ptr<PoseSource>> open_none(const config::Rig&, const calib::Calibration&,
                                               const std::int64_t& epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_openxr(const config::Rig&, const calib::Calibration&,
+                                                const std::int64_t& epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_leapc(const config::Rig&, const calib::Calibration&,
+                                               const std::int64_t& epoch_ns);
+Result<std::unique_ptr<PoseSource>> open_stereo(const config::Rig&, const calib::Calibration&,
+                                                const std::int64_t& epoch_ns);
 
 static constexpr std::array kBackends{
     PoseBackend{.name = "twin",
@@ -22,19 +31,74 @@ static constexpr std::array kBackends{
                 .sentence = "Plays a recording of hand poses.",
                 .open = open_replay,
                 .reads = {"pose.replay"}},
+    PoseBackend{.name = "leapc",
+                .sentence = "A Leap Motion or Ultraleap device, by Ultraleap's service.",
+                .open = open_leapc,
+                .reads = {"pose.leapc"}},
     PoseBackend{.name = "none",
                 .sentence = "No tracker: lifts the landmarks of the camera image to poses.",
                 .open = open_none,
                 .reads = {"pose.none", "hand"}},
+#ifdef HANDCAST_WITH_OPENXR
+    PoseBackend{.name = "openxr",
+                .sentence = "The hand tracker of an OpenXR runtime.",
+                .open = open_openxr,
+                .reads = {"pose.openxr"},
+                .exclusive = true},
+#endif
+    PoseBackend{.name = "stereo",
+                .sentence = "A tracker of our own: makes poses from the landmarks of two cameras.",
+                .open = open_stereo,
+                .reads = {"pose.stereo", "hand"}},
 };
 
 std::span<const PoseBackend> pose_backends() { return kBackends; }
 
+namespace {
+
+Result<std::unique_ptr<WatchedSource>> open_watched(const std::string& name, const config::Rig& rig,
+                                                    const calib::Calibration& calibration,
+                                                    std::int64_t epoch_ns) {
+  auto source = service::open_backend("pose", name, pose_backends(), rig, calibration, epoch_ns);
+  if (!source) return tl::make_unexpected(source.error());
+  return std::make_unique<WatchedSource>(fmt::format("pose '{}'", name), std::move(*source));
+}
+
+Result<void> check_second(const config::Pose& settings) {
+  if (settings.second != settings.backend) return {};
+  return fail(Errc::bad_config,
+              fmt::format("pose.second = \"{}\": this is pose.backend; a second source must be "
+                          "another back end",
+                          settings.second));
+}
+
+}  // namespace
+
 Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
                                                      const calib::Calibration& calibration,
                                                      std::int64_t epoch_ns) {
-  return service::open_backend("pose", rig.pose.backend, pose_backends(), rig, calibration,
-                               epoch_ns);
+  const auto opener = [&](const std::string& name) {
+    return [name, rig, calibration, epoch_ns] {
+      return open_watched(name, rig, calibration, epoch_ns);
+    };
+  };
+  if (rig.pose.second.empty()) return opener(rig.pose.backend)();
+  if (auto differs = check_second(rig.pose); !differs) return tl::make_unexpected(differs.error());
+  return open_pair(rig.pose.handover, {opener(rig.pose.backend), opener(rig.pose.second)});
+}
+
+bool is_exclusive(const config::Pose& settings) {
+  return service::is_exclusive(settings.backend, pose_backends()) ||
+         service::is_exclusive(settings.second, pose_backends());
+}
+
+Result<void> check_pose_sources(const config::Rig& rig, const calib::Calibration& calibration) {
+  const auto check = [&](const std::string& name) {
+    return service::check_backend("pose", name, pose_backends(), rig, calibration, now_ns());
+  };
+  if (auto first = check(rig.pose.backend); !first || rig.pose.second.empty()) return first;
+  if (auto differs = check_second(rig.pose); !differs) return differs;
+  return check(rig.pose.second);
 }
 
 }  // namespace handcast::pose

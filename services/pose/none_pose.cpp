@@ -22,8 +22,12 @@ class NonePose final : public PoseSource {
     return {};
   }
 
-  bool needs_landmarks() const override { return true; }
-  void see(const msg::Landmarks& landmarks) override { seen_ = landmarks; }
+  int views() const override { return 1; }
+  joints::Conventions conventions() const override {
+    return {
+        .place = joints::Place::model, .has_measured_axes = false, .radii = joints::Radii::model};
+  }
+  void see(const msg::Landmarks& landmarks, int /*view*/) override { seen_ = landmarks; }
 
  private:
   Lifter lifter_;

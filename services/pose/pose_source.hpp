@@ -10,9 +10,14 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "ipc/msg/tracker_faults.hpp"
+#include "services/joints/conventions.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::pose {
+
+/// The most cameras whose landmarks a source takes: camera and camera2.
+inline constexpr int kMostViews = 2;
 
 /// A hand tracker, or what stands in for it. One thread.
 class PoseSource {
@@ -24,10 +29,22 @@ class PoseSource {
   /// sample is lost), disconnected.
   virtual Result<void> sample(msg::HandPoses& poses, Deadline deadline) = 0;
 
-  /// True if the samples are made from landmarks: those that were passed to see() before.
-  virtual bool needs_landmarks() const { return false; }
-  /// Receives the landmarks of the newest image. Ignored if needs_landmarks() is false.
-  virtual void see(const msg::Landmarks&) {}
+  /// The number of cameras whose landmarks it takes by see().
+  virtual int views() const { return 0; }
+  /// True if its samples are made from landmarks: none comes without them.
+  virtual bool needs_landmarks() const { return views() > 0; }
+  /// Of several views: the one whose landmarks the next sample waits for.
+  virtual int awaited_view() const { return 0; }
+  /// Receives the landmarks of the newest image of a view, 0 to views() - 1. Ignored if views() is
+  /// 0.
+  virtual void see(const msg::Landmarks& /*landmarks*/, int /*view*/) {}
+  /// True if the newest sample depends on the calibration of the camera.
+  virtual bool depends_on_calibration() const { return needs_landmarks(); }
+
+  /// What the joints of the samples mean. Constant.
+  virtual joints::Conventions conventions() const { return {}; }
+  /// What the tracker did wrong since the last call, as far as it was watched.
+  virtual msg::TrackerFaults take_faults() { return {}; }
 };
 
 /// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,
@@ -37,10 +54,15 @@ using PoseBackend = service::Backend<PoseSource, config::Rig, calib::Calibration
 /// All back ends of this build.
 std::span<const PoseBackend> pose_backends();
 
-/// Opens the back end rig.pose.backend. Errors: bad_config (unknown back end, or its settings are
-/// wrong), and those of the back end.
+/// Opens the back end rig.pose.backend, watched (WatchedSource), and rig.pose.second, if it is set.
+/// Errors: bad_config (unknown back end, or its settings are wrong), and those of the back end.
 Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
                                                      const calib::Calibration& calibration,
                                                      std::int64_t epoch_ns);
+/// Whether only one process at a time can have the sources of this rig open.
+bool is_exclusive(const config::Pose& settings);
+/// Opens the sources of a rig and closes them again, except exclusive ones. Errors: as
+/// open_pose_source().
+Result<void> check_pose_sources(const config::Rig& rig, const calib::Calibration& calibration);
 
 }  // namespace handcast::pose

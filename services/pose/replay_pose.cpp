@@ -34,6 +34,13 @@ class ReplayPose final : public PoseSource {
     return {};
   }
 
+  /// The recording has no widths; those of the mean hand are put in their place.
+  joints::Conventions conventions() const override {
+    auto recorded = joints::kLeap;
+    recorded.radii = joints::Radii::model;
+    return recorded;
+  }
+
  private:
   twin::Recording recording_;
   timing::Loop loop_;
@@ -61,6 +68,12 @@ class RecordedPose final : public PoseSource {
     poses.header = {item->frame_id, item->origin_ns, 0};
     sleep_until_ns(item->due_ns);
     return {};
+  }
+
+  joints::Conventions conventions() const override {
+    return {.place = joints::Place::as_recorded,
+            .has_measured_palm = true,
+            .radii = joints::Radii::as_recorded};
   }
 
  private:

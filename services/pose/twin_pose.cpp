@@ -34,6 +34,10 @@ class TwinPose final : public PoseSource {
     return {};
   }
 
+  joints::Conventions conventions() const override {
+    return {.place = joints::Place::model, .radii = joints::Radii::model};
+  }
+
  private:
   std::unique_ptr<twin::Twin> twin_;
   std::int64_t epoch_ns_;

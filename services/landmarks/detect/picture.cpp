@@ -5,8 +5,8 @@
 #include <fmt/ranges.h>
 
 #include "renderer/content/picture.hpp"
-#include "services/evaluation/twin/leap_layout.hpp"
 #include "services/evaluation/twin/recording.hpp"
+#include "services/joints/leap_layout.hpp"
 
 namespace handcast::detect {
 
@@ -28,14 +28,14 @@ Result<landmarks::Points> read_joints(const std::filesystem::path& file, int wid
   const auto array = twin::read_npy(file);
   if (!array) return tl::make_unexpected(array.error());
   const bool in_px = array->shape == std::vector<std::size_t>{msg::kLandmarks, 2};
-  if (!in_px && array->shape != std::vector<std::size_t>{twin::kLeapJoints, 2})
+  if (!in_px && array->shape != std::vector<std::size_t>{joints::kLeapJoints, 2})
     return fail(Errc::bad_config,
                 fmt::format("'{}' has the shape ({}); expected (21, 2) or (42, 2)", file.string(),
                             fmt::join(array->shape, ", ")));
   landmarks::Points points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::size_t at =
-        in_px ? i : static_cast<std::size_t>(twin::kLeapJoint[msg::kJointOfLandmark[i]]);
+        in_px ? i : static_cast<std::size_t>(joints::kLeapJoint[msg::kJointOfLandmark[i]]);
     const glm::dvec2 point(array->values[2 * at], array->values[2 * at + 1]);
     points[i] =
         in_px ? point

@@ -174,12 +174,12 @@ void HandFinder::drop_duplicate(const Hints& hints_px) {
 }
 
 /// Without a hand, one in a few images is searched. With one hand, images are searched for a second
-/// one rarely, and only without a tracker, because the tracker would report it.
+/// one rarely, and not with a tracker of its own sensors, which would report it.
 bool HandFinder::search_is_due(const Hints& hints_px) {
   ++since_search_;
   if (!model_.palms && !by_brightness_) return false;
   if (found_.empty()) return since_search_ >= kSearchEvery;
-  return !any(hints_px) && !has_most() && since_search_ >= kSearchForMoreEvery;
+  return (by_brightness_ || !any(hints_px)) && !has_most() && since_search_ >= kSearchForMoreEvery;
 }
 
 Result<void> HandFinder::search(renderer::GreyView image) {

@@ -61,10 +61,14 @@ fs::path shipped_network_file() {
   return renderer::default_hand_file(msg::Side::left).parent_path() / "landmarks" / "handcast.onnx";
 }
 
+std::vector<fs::path> handcast_files(const ModelOptions& options) {
+  return {options.handcast_network.empty() ? shipped_network_file() : options.handcast_network};
+}
+
 Result<OpenedModel> open_handcast_model(const ModelOptions& options) {
   std::error_code ignored;
   const bool is_shipped = options.handcast_network.empty();
-  const fs::path file = is_shipped ? shipped_network_file() : options.handcast_network;
+  const fs::path file = handcast_files(options).front();
   if (is_shipped && !fs::exists(file, ignored))
     return fail(
         Errc::bad_config,

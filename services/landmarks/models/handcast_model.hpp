@@ -41,5 +41,7 @@ std::filesystem::path shipped_network_file();
 
 /// The row `handcast` of the table. Opens MediaPipe's palm network, too, if options.folder has it.
 Result<OpenedModel> open_handcast_model(const ModelOptions& options);
+/// The file that it needs.
+std::vector<std::filesystem::path> handcast_files(const ModelOptions& options);
 
 }  // namespace handcast::landmarks

@@ -18,10 +18,12 @@ static constexpr std::array kModels{
     LandmarkModelRow{.name = "handcast",
                      .sentence = "handcast's own network, which also reads the tracker's joints.",
                      .open = open_handcast_model,
+                     .files = handcast_files,
                      .reads = kAlways},
     LandmarkModelRow{.name = "mediapipe",
                      .sentence = "MediaPipe Hands lite, whose files scripts/get-models fetches.",
                      .open = open_mediapipe_model,
+                     .files = mediapipe_files,
                      .reads = kAlways + config::SettingList{"landmarks.definition"}},
 };
 
@@ -35,6 +37,17 @@ Result<OpenedModel> open_landmark_model(std::string_view name, const ModelOption
   }
   return fail(Errc::bad_config,
               fmt::format("there is no landmark model '{}'; there are: {}", name, known));
+}
+
+std::filesystem::path missing_file(std::string_view name, const ModelOptions& options) {
+  for (const auto& model : kModels) {
+    if (model.name != name) continue;
+    for (auto& file : model.files(options)) {
+      std::error_code ignored;
+      if (!std::filesystem::exists(file, ignored)) return std::move(file);
+    }
+  }
+  return {};
 }
 
 }  // namespace handcast::landmarks

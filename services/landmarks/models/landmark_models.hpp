@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "config/sections/executor.hpp"
 #include "config/settings/setting_list.hpp"
@@ -34,7 +35,9 @@ struct LandmarkModelRow {
   std::string_view name;      ///< as landmarks.backend has it
   std::string_view sentence;  ///< what it is, for handcast-landmarks --backends
   Result<OpenedModel> (*open)(const ModelOptions& options);  ///< see open_landmark_model()
-  config::SettingList reads;                                 ///< the settings that it depends on
+  /// The files without which it cannot be opened.
+  std::vector<std::filesystem::path> (*files)(const ModelOptions& options);
+  config::SettingList reads;  ///< the settings that it depends on
 };
 
 /// All landmark models.
@@ -43,5 +46,9 @@ std::span<const LandmarkModelRow> landmark_models();
 /// Opens the model called `name`. Errors: bad_config (no such model; a file is missing or holds
 /// another network; the executor cannot run it).
 Result<OpenedModel> open_landmark_model(std::string_view name, const ModelOptions& options);
+
+/// The first file that the model called `name` needs and that does not exist. Empty if there is
+/// none, also if there is no such model.
+std::filesystem::path missing_file(std::string_view name, const ModelOptions& options);
 
 }  // namespace handcast::landmarks

@@ -45,6 +45,10 @@ Result<LandmarkEstimate> MediapipeModel::estimate(renderer::GreyView image, cons
   return estimate;
 }
 
+std::vector<std::filesystem::path> mediapipe_files(const ModelOptions& options) {
+  return {options.folder / kMediapipeHandFile, options.folder / kMediapipePalmFile};
+}
+
 Result<OpenedModel> open_mediapipe_model(const ModelOptions& options) {
   auto landmarks = MediapipeModel::open(options.executor, options.folder / kMediapipeHandFile);
   if (!landmarks) return tl::make_unexpected(landmarks.error());

@@ -32,5 +32,7 @@ class MediapipeModel final : public LandmarkModel {
 
 /// The row `mediapipe` of the table: landmark network and palm network from options.folder.
 Result<OpenedModel> open_mediapipe_model(const ModelOptions& options);
+/// The files that it needs.
+std::vector<std::filesystem::path> mediapipe_files(const ModelOptions& options);
 
 }  // namespace handcast::landmarks

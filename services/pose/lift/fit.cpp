@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/pose/lift/anatomy.hpp"
 #include "services/pose/lift/normal_equations.hpp"
 
 namespace handcast::pose {
@@ -11,18 +12,6 @@ namespace {
 
 using Equations = NormalEquations<kUnknowns>;
 
-/// What is usual and possible in one angle, in rad.
-struct Range {
-  double usual, sd, low, high;
-};
-using FingerRanges = std::array<Range, kAngles>;
-constexpr FingerRanges kThumb{
-    {{0, 0.35, -0.9, 0.9}, {0, 0.35, -0.8, 0.9}, {0.1, 0.4, -0.4, 1.1}, {0.2, 0.6, -0.5, 1.5}}};
-constexpr FingerRanges kFinger{
-    {{0, 0.15, -0.45, 0.45}, {0.2, 0.8, -0.5, 1.6}, {0.3, 0.9, -0.15, 1.9}, {0.2, 0.7, -0.2, 1.4}}};
-constexpr double kLimitSd = 0.05;  ///< how hard the limits are, rad
-/// The last joint of a finger follows the middle one.
-constexpr double kFollows = 0.6, kFollowsSd = 0.25;
 constexpr double kHuber = 3;  ///< beyond so many standard deviations, residuals count linearly
 constexpr double kUsualSizeSd = 0.25;
 constexpr double kNearest_m = 0.05;
@@ -43,16 +32,10 @@ struct Problem {
     double cost = 0;
     for (int i = 0; i < msg::kLandmarks; ++i)
       if (seen.sigma_px[i] > 0) cost += landmark(hand, i, equations);
-    return cost + known(posture, equations) + anatomy(posture, equations);
+    return cost + known(posture, equations) + anatomy(posture.angle, kFirstAngle, equations);
   }
 
  private:
-  static double square(int column, double r, double sd, Equations* equations) {
-    const double weight = 1 / (sd * sd);
-    if (equations) equations->add(column, r, weight);
-    return 0.5 * weight * r * r;
-  }
-
   double landmark(const PosedHand& hand, int i, Equations* equations) const {
     const int joint = msg::kJointOfLandmark[i];
     const glm::dvec3 at_m = hand.place_m[joint];
@@ -102,31 +85,6 @@ struct Problem {
     for (int i = 0; i < kUnknowns; ++i)
       if (prior.variance[i] > 0) cost += square(i, off[i], std::sqrt(prior.variance[i]), equations);
     return cost;
-  }
-
-  static double anatomy(const Posture& posture, Equations* equations) {
-    double cost = 0;
-    for (int f = 0; f < kFingers; ++f) {
-      for (int a = 0; a < kAngles; ++a) {
-        const Range& range = f == 0 ? kThumb[a] : kFinger[a];
-        const double angle = posture.angle[f][a];
-        cost += square(column_of(f, a), angle - range.usual, range.sd, equations);
-        const double beyond = angle - std::clamp(angle, range.low, range.high);
-        if (beyond != 0) cost += square(column_of(f, a), beyond, kLimitSd, equations);
-      }
-      if (f > 0) cost += following(posture.angle[f], column_of(f, 2), equations);
-    }
-    return cost;
-  }
-
-  static double following(const std::array<double, kAngles>& angle, int column,
-                          Equations* equations) {
-    constexpr std::array<double, 2> kDerivative{-kFollows, 1};
-    constexpr double kWeight = 1 / (kFollowsSd * kFollowsSd);
-    const std::array<int, 2> columns{column, column + 1};
-    const double r = angle[3] - kFollows * angle[2];
-    if (equations) equations->add(columns.data(), kDerivative.data(), 2, r, kWeight);
-    return 0.5 * kWeight * r * r;
   }
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/pose/lift/posture_track.hpp"
 
-#include <algorithm>
-
 namespace handcast::pose {
 namespace {
 
@@ -22,48 +20,32 @@ constexpr Motion motion_of(int unknown) {
 }  // namespace
 
 PostureTrack::PostureTrack(const Fit& fit) : posture_(fit.posture) {
-  for (int i = 0; i < kUnknowns; ++i) {
-    const double speed = motion_of(i).speed;
-    spread_[i] = {fit.variance[i], 0, speed * speed};
-  }
+  for (int i = 0; i < kUnknowns; ++i)
+    motion_[i] = MovingUnknown::at_rest(fit.variance[i], motion_of(i).speed);
 }
 
 Prior PostureTrack::predict(double step_s) {
   Unknowns step;
   Prior prior;
   for (int i = 0; i < kUnknowns; ++i) {
-    const double q = motion_of(i).process;
-    auto& [value, both, velocity] = spread_[i];
-    value += step_s * (2 * both + step_s * (velocity + q * step_s / 3));
-    both += step_s * (velocity + q * step_s / 2);
-    velocity += q * step_s;
-    step[i] = velocity_[i] * step_s;
-    prior.variance[i] = value;
+    step[i] = motion_[i].predict(step_s, motion_of(i).process);
+    prior.variance[i] = motion_[i].value_variance;
   }
   posture_ = moved(posture_, step);
   prior.mean = posture_;
   return prior;
 }
 
-/// The fit has used the prior, so its shift from the mean is the gain times the innovation, and its
-/// variance that of the corrected value.
 void PostureTrack::correct(const Fit& fit) {
   const Unknowns shift = difference(posture_, fit.posture);
-  for (int i = 0; i < kUnknowns; ++i) {
-    auto& [value, both, velocity] = spread_[i];
-    const double remains = std::clamp(fit.variance[i] / value, 0.0, 1.0), share = both / value;
-    velocity_[i] += share * shift[i];
-    velocity -= share * both * (1 - remains);
-    both *= remains;
-    value *= remains;
-  }
+  for (int i = 0; i < kUnknowns; ++i) motion_[i].correct(shift[i], fit.variance[i]);
   posture_ = fit.posture;
 }
 
 void PostureTrack::jump(const Fit& fit) {
-  const Unknowns velocity = velocity_;
+  const auto before = motion_;
   *this = PostureTrack(fit);
-  for (int i = kPlaceUnknown; i <= kSizeUnknown; ++i) velocity_[i] = velocity[i];
+  for (int i = kPlaceUnknown; i <= kSizeUnknown; ++i) motion_[i].velocity = before[i].velocity;
 }
 
 }  // namespace handcast::pose

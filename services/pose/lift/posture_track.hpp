@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "services/pose/lift/fit.hpp"
+#include "services/pose/lift/moving_unknown.hpp"
 
 namespace handcast::pose {
 
@@ -22,14 +23,8 @@ class PostureTrack {
   const Posture& posture() const { return posture_; }
 
  private:
-  /// Covariance of one unknown and its velocity.
-  struct Spread {
-    double value, both, velocity;
-  };
-
   Posture posture_;
-  Unknowns velocity_{};
-  std::array<Spread, kUnknowns> spread_;
+  std::array<MovingUnknown, kUnknowns> motion_;
 };
 
 }  // namespace handcast::pose

@@ -45,6 +45,13 @@ Skeleton::Skeleton(const renderer::HandMesh& hand) {
 }
 
 PosedHand Skeleton::posed(const Posture& posture, double distance_m) const {
+  BoneFactors same;
+  for (auto& finger : same) finger.fill(1);
+  return posed(posture, distance_m, same);
+}
+
+PosedHand Skeleton::posed(const Posture& posture, double distance_m,
+                          const BoneFactors& factors) const {
   const glm::dvec3 palm_m(posture.palm_m, distance_m);
   const glm::dmat3 turn = glm::mat3_cast(posture.turn);
   const double size = std::exp(posture.log_size);
@@ -58,7 +65,7 @@ PosedHand Skeleton::posed(const Posture& posture, double distance_m) const {
     for (int k = 0; k < kAngles; ++k) {
       const int joint = kFirstJoint[f] + k, parent = kJointParent[joint];
       hand.place_m[joint] =
-          hand.place_m[parent] + hand.axes[parent] * (size * from_parent_m_[joint]);
+          hand.place_m[parent] + hand.axes[parent] * (size * factors[f][k] * from_parent_m_[joint]);
       glm::dmat3 axes = hand.axes[parent] * parent_from_joint_[joint];
       if (k == 0) {
         hand.hinge[f][0] = axes[1];

@@ -26,6 +26,10 @@ struct Posture {
   std::array<std::array<double, kAngles>, kFingers> angle{};
 };
 
+/// The lengths of the bones that end at the first four joints of each finger (kFirstJoint),
+/// relative to the model's at the hand's size.
+using BoneFactors = std::array<std::array<double, kAngles>, kFingers>;
+
 /// A hand in camera space, metres.
 struct PosedHand {
   std::array<glm::dvec3, msg::kJoints> place_m;  ///< of the joints
@@ -42,6 +46,8 @@ class Skeleton {
 
   /// The joints of a hand whose palm joint is `distance_m` in front of the camera.
   PosedHand posed(const Posture& posture, double distance_m) const;
+  /// The same for a person whose bones have other lengths.
+  PosedHand posed(const Posture& posture, double distance_m, const BoneFactors& factors) const;
   /// From the wrist to the tip of the middle finger, along the bones.
   double length_m() const { return length_m_; }
   /// A joint in the space of the hand at rest, relative to the palm joint.

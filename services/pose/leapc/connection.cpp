@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/leapc/connection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "ipc/base/log.hpp"
+#include "services/pose/leapc/memory.hpp"
+
+namespace handcast::pose::leapc {
+namespace {
+
+constexpr std::string_view kNoService =
+    "Ultraleap's service does not answer; start it with: systemctl start "
+    "ultraleap-hand-tracking-service";
+constexpr std::uint32_t kPoll_ms = 50;
+constexpr auto kPause = std::chrono::milliseconds(50);
+/// A connection without an answer for so long is made anew.
+constexpr std::int64_t kPatience_ns = 2'000'000'000;
+/// A state that lasts for so long is logged.
+constexpr std::int64_t kLasting_ns = 500'000'000;
+/// A gap in the service's numbers that is longer is a new count.
+constexpr std::int64_t kLongestGap = 10'000;
+constexpr std::array<std::uint32_t, 2> kConfigSizes{sizeof(ConnectionConfig),
+                                                    offsetof(ConnectionConfig, tracking_origin)};
+
+/// Room for the messages of later versions, which may be longer.
+union MessageRoom {
+  Message message;
+  std::byte room[256];
+};
+
+}  // namespace
+
+Connection::Connection(Library library, const config::Leapc& settings, std::uint64_t first_id,
+                       Mailbox& mailbox)
+    : library_(std::move(library)),
+      settings_(settings),
+      mailbox_(mailbox),
+      clock_(library_.call, ms_to_ns(settings.age_ms)),
+      devices_(library_.call, settings.device),
+      next_id_(first_id),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+void Connection::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    if (!handle_) connect();
+    if (handle_)
+      poll();
+    else
+      std::this_thread::sleep_for(kPause);
+    say_state();
+  }
+  disconnect();
+}
+
+/// Older versions know a smaller configuration.
+bool Connection::create() {
+  const auto create = [&](const ConnectionConfig* config) {
+    return library_.call.create_connection(config, &handle_) == kSuccess && handle_;
+  };
+  if (settings_.device.empty()) return create(nullptr);
+  return std::ranges::any_of(kConfigSizes, [&](std::uint32_t size) {
+    const ConnectionConfig config{size, kManyDevices, nullptr, 0};
+    return create(&config);
+  });
+}
+
+void Connection::connect() {
+  silent_since_ns_ = now_ns();
+  if (!create()) {
+    handle_ = nullptr;
+    return;
+  }
+  if (library_.call.open_connection(handle_) != kSuccess) disconnect();
+}
+
+void Connection::disconnect() {
+  if (!handle_) return;
+  lose_service();
+  library_.call.close_connection(handle_);
+  library_.call.destroy_connection(handle_);
+  handle_ = nullptr;
+}
+
+void Connection::poll() {
+  MessageRoom room{};
+  room.message.size = sizeof(Message);
+  const Status status = library_.call.poll(handle_, kPoll_ms, &room.message);
+  if (status == kSuccess) {
+    read(room.message);
+  } else if (status != kTimeout) {
+    if (is_up_) lose_service();
+    std::this_thread::sleep_for(kPause);
+  }
+  if (!is_up_ && now_ns() - silent_since_ns_ > kPatience_ns) disconnect();
+}
+
+void Connection::read(const Message& message) {
+  switch (message.type) {
+    case kConnection:
+      return begin();
+    case kConnectionLost:
+      return lose_service();
+    case kDevice:
+    case kDeviceLost:
+      return device_event(message);
+    case kTrackingMode:
+      return mode_event(message);
+    case kTracking:
+      return track(message);
+    default:
+      return;
+  }
+}
+
+void Connection::begin() {
+  is_up_ = true;
+  library_.call.set_policies(handle_, kBackgroundFrames, 0);
+  if (settings_.mode != config::LeapMode::unchanged &&
+      library_.call.set_mode(handle_, static_cast<std::int32_t>(settings_.mode)) != kSuccess)
+    log::warning("pose 'leapc': the service has refused pose.leapc.mode = \"{}\"",
+                 config::words_of(settings_.mode)[static_cast<std::size_t>(settings_.mode)]);
+  log::info("pose 'leapc': connected to Ultraleap's service by {}{}{}", library_.path,
+            library_.version.empty() ? "" : " of version ", library_.version);
+}
+
+void Connection::device_event(const Message& message) {
+  DeviceEvent event{};
+  if (!copy_memory(static_cast<const DeviceEvent*>(message.event), event)) return;
+  if (message.type == kDevice)
+    devices_.attached(handle_, event);
+  else
+    devices_.lost(event);
+}
+
+void Connection::mode_event(const Message& message) {
+  ModeEvent event{};
+  if (!copy_memory(static_cast<const ModeEvent*>(message.event), event)) return;
+  const bool is_ours = settings_.mode == config::LeapMode::unchanged ||
+                       event.mode == static_cast<std::int32_t>(settings_.mode);
+  if (!is_ours)
+    log::warning("pose 'leapc': another program has changed the tracking mode of the service");
+}
+
+void Connection::track(const Message& message) {
+  const std::int64_t arrival_ns = now_ns();
+  if (!devices_.is_wanted(message.device_id)) return;
+  auto tracked = message.size >= offsetof(Message, device_id)
+                     ? read_tracking(message)
+                     : fail(Errc::bad_data, "a message that is too short");
+  if (!tracked) return mailbox_.put(tl::make_unexpected(tracked.error()));
+  const std::int64_t origin_ns = clock_.origin_ns(tracked->stamp_us, arrival_ns);
+  if (clock_.is_guessed() && !std::exchange(has_said_guess_, true))
+    log::warning(
+        "pose 'leapc': the service's time stamps are not of its clock; samples are taken to be "
+        "{:g} ms old when they arrive (pose.leapc.age_ms)",
+        settings_.age_ms);
+  if (origin_ns <= last_origin_ns_)
+    return mailbox_.put(fail(Errc::bad_data, "a sample that is not newer than the one before it"));
+  tracked->poses.header.origin_ns = last_origin_ns_ = origin_ns;
+  tracked->poses.header.frame_id = next_id(tracked->frame_id);
+  mailbox_.put(tracked->poses);
+}
+
+/// The service's number counts on ours, so that gaps are seen; it may begin anew.
+std::uint64_t Connection::next_id(std::int64_t frame) {
+  const std::int64_t gap = last_frame_ ? frame - *last_frame_ : 1;
+  last_frame_ = frame;
+  if (gap > 1 && gap < kLongestGap) next_id_ += static_cast<std::uint64_t>(gap - 1);
+  return next_id_++;
+}
+
+/// The library connects anew by itself while it is polled.
+void Connection::lose_service() {
+  is_up_ = false;
+  silent_since_ns_ = now_ns();
+  devices_.clear();
+  last_frame_.reset();
+}
+
+/// Logs what keeps frames away, once it has lasted; the service announces its devices one by one.
+void Connection::say_state() {
+  auto trouble = is_up_ ? devices_.trouble() : std::string(kNoService);
+  if (trouble != trouble_) {
+    trouble_ = std::move(trouble);
+    trouble_since_ns_ = now_ns();
+    mailbox_.say(trouble_);
+  }
+  if (trouble_ == said_ || now_ns() - trouble_since_ns_ < kLasting_ns) return;
+  if (!trouble_.empty()) log::warning("pose 'leapc': {}", trouble_);
+  said_ = trouble_;
+}
+
+}  // namespace handcast::pose::leapc

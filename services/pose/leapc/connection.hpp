@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "config/sections/leapc.hpp"
+#include "services/pose/leapc/devices.hpp"
+#include "services/pose/leapc/event_reader.hpp"
+#include "services/pose/leapc/host_clock.hpp"
+#include "services/pose/leapc/library.hpp"
+#include "services/pose/leapc/mailbox.hpp"
+
+namespace handcast::pose::leapc {
+
+/// A connection to Ultraleap's service, polled on a thread of its own. Makes it anew if the service
+/// was away. Leaves samples, and why there are none, in a mailbox.
+class Connection {
+ public:
+  /// `first_id`: number of the first sample. `mailbox` must outlive it.
+  Connection(Library library, const config::Leapc& settings, std::uint64_t first_id,
+             Mailbox& mailbox);
+
+ private:
+  void run(const std::stop_token& stop);
+  bool create();
+  void connect();
+  void disconnect();
+  void poll();
+  void read(const Message& message);
+  void begin();
+  void device_event(const Message& message);
+  void mode_event(const Message& message);
+  void track(const Message& message);
+  std::uint64_t next_id(std::int64_t frame);
+  void lose_service();
+  void say_state();
+
+  Library library_;
+  config::Leapc settings_;
+  Mailbox& mailbox_;
+  HostClock clock_;
+  Devices devices_;
+  ConnectionHandle handle_ = nullptr;
+  bool is_up_ = false;                ///< the service has answered
+  std::int64_t silent_since_ns_ = 0;  ///< without an answer of the service
+  std::string trouble_, said_;        ///< why there are no frames: now, and as it was logged
+  std::int64_t trouble_since_ns_ = 0;
+  bool has_said_guess_ = false;
+  std::uint64_t next_id_;
+  std::optional<std::int64_t> last_frame_;  ///< the service's number
+  std::int64_t last_origin_ns_ = 0;
+  std::jthread thread_;
+};
+
+}  // namespace handcast::pose::leapc

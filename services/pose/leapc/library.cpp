@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/leapc/library.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "ipc/base/join.hpp"
+
+namespace handcast::pose::leapc {
+namespace {
+
+constexpr std::int32_t kOldest = 5;
+
+std::string last_error() {
+  const char* text = ::dlerror();
+  return text ? text : "unknown error";
+}
+
+Result<void*> load(const std::string& path) {
+  if (!std::filesystem::exists(path))
+    return fail(Errc::bad_config, fmt::format("{}: there is no such file", path));
+  if (void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) return handle;
+  return fail(Errc::bad_config,
+              fmt::format("{}: this library cannot be loaded: {}", path, last_error()));
+}
+
+/// The first library that is there; `path` gets its name.
+Result<void*> search(std::string& path) {
+  for (const auto place : kLibraryPlaces) {
+    path = place;
+    if (place.front() == '/') {
+      if (std::filesystem::exists(place)) return load(path);
+    } else if (void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+      return handle;
+    }
+  }
+  return fail(
+      Errc::bad_config,
+      fmt::format(
+          "Ultraleap's library is not installed; install their hand tracking software "
+          "(package ultraleap-hand-tracking-service), or name libLeapC.so in "
+          "pose.leapc.library; searched: {}",
+          join(std::vector<std::string_view>(kLibraryPlaces.begin(), kLibraryPlaces.end()), ", ")));
+}
+
+/// Looks up functions and remembers the names of those that are missing.
+class Symbols {
+ public:
+  explicit Symbols(void* handle) : handle_(handle) {}
+
+  template <class Function>
+  void find(const char* name, Function*& function) {
+    find_if_there(name, function);
+    if (!function) missing_.emplace_back(name);
+  }
+  template <class Function>
+  void find_if_there(const char* name, Function*& function) {
+    function = reinterpret_cast<Function*>(::dlsym(handle_, name));
+  }
+  const std::vector<std::string>& missing() const { return missing_; }
+
+ private:
+  void* handle_;
+  std::vector<std::string> missing_;
+};
+
+std::vector<std::string> find_functions(void* handle, Functions& call) {
+  Symbols symbols(handle);
+  symbols.find("LeapGetNow", call.now_us);
+  symbols.find("LeapCreateConnection", call.create_connection);
+  symbols.find("LeapOpenConnection", call.open_connection);
+  symbols.find("LeapPollConnection", call.poll);
+  symbols.find("LeapCloseConnection", call.close_connection);
+  symbols.find("LeapDestroyConnection", call.destroy_connection);
+  symbols.find("LeapSetPolicyFlags", call.set_policies);
+  symbols.find("LeapSetTrackingMode", call.set_mode);
+  symbols.find("LeapOpenDevice", call.open_device);
+  symbols.find("LeapCloseDevice", call.close_device);
+  symbols.find("LeapGetDeviceInfo", call.device_info);
+  symbols.find("LeapCreateClockRebaser", call.create_rebaser);
+  symbols.find("LeapUpdateRebase", call.update_rebaser);
+  symbols.find("LeapRebaseClock", call.rebase);
+  symbols.find("LeapDestroyClockRebaser", call.destroy_rebaser);
+  symbols.find_if_there("LeapGetVersion", call.version);
+  symbols.find_if_there("LeapSubscribeEvents", call.subscribe);
+  return symbols.missing();
+}
+
+}  // namespace
+
+Result<Library> open_library(const std::string& path) {
+  Library library{.path = path};
+  const auto handle = path.empty() ? search(library.path) : load(path);
+  if (!handle) return tl::make_unexpected(handle.error());
+  if (const auto missing = find_functions(*handle, library.call); !missing.empty())
+    return fail(Errc::bad_config,
+                fmt::format("{}: this is not the LeapC library of version {} or later; it lacks {}",
+                            library.path, kOldest, join(missing, ", ")));
+  Version version{};
+  if (!library.call.version || library.call.version(nullptr, 0, &version) != kSuccess)
+    return library;
+  library.version = fmt::format("{}.{}.{}", version.major, version.minor, version.patch);
+  if (version.major >= kOldest) return library;
+  return fail(Errc::bad_config,
+              fmt::format("{}: this is version {} of the library; version {} or later is needed, "
+                          "which comes with Ultraleap's hand tracking software",
+                          library.path, library.version, kOldest));
+}
+
+}  // namespace handcast::pose::leapc

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "ipc/base/result.hpp"
+#include "services/pose/leapc/declarations.hpp"
+
+namespace handcast::pose::leapc {
+
+/// Ultraleap's library in this process.
+struct Library {
+  std::string path;
+  std::string version;  ///< e.g. "5.17.1"; empty: older than 5.2
+  Functions call{};
+};
+
+/// Where the library is searched, in this order; a name without a folder is left to the linker.
+inline constexpr std::array<std::string_view, 7> kLibraryPlaces{
+    "/usr/lib/ultraleap-hand-tracking-service/libLeapC.so.6",
+    "/usr/lib/ultraleap-hand-tracking-service/libLeapC.so.5",
+    "/usr/lib/ultraleap-hand-tracking-service/libLeapC.so",
+    "/opt/ultraleap/LeapSDK/lib/x64/libLeapC.so",
+    "libLeapC.so.6",
+    "libLeapC.so.5",
+    "libLeapC.so"};
+
+/// Opens the library at `path`; empty: where Ultraleap's installers put it, and where the linker
+/// finds it. It stays in the process for good, because it has threads of its own. Errors
+/// (bad_config): it is not there (what to install, and where it was searched), it cannot be loaded,
+/// a function is missing, or it is older than version 5.
+Result<Library> open_library(const std::string& path);
+
+}  // namespace handcast::pose::leapc

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/pair/handover.hpp"
+
+#include <algorithm>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::pose {
+namespace {
+
+constexpr float kLearning = 0.02f;  ///< share of a new difference in the mean
+/// A difference so much larger than the mean one shows that the old source had gone astray.
+constexpr float kAstray_m = 0.03f;
+/// A hand that was published longer ago is not continued.
+constexpr std::int64_t kForgotten_ns = 200'000'000;
+
+constexpr std::array kSides{msg::Side::left, msg::Side::right};
+
+std::size_t index(msg::Side side) { return static_cast<std::size_t>(side); }
+
+From other(From from) { return from == From::first ? From::second : From::first; }
+
+/// 1 at the begin, 0 at the end, without a jump of the velocity.
+float remaining(double t) {
+  const auto u = static_cast<float>(std::clamp(t, 0.0, 1.0));
+  return 1 - u * u * (3 - 2 * u);
+}
+
+}  // namespace
+
+std::optional<msg::HandPoses> Handover::push(From from, const msg::HandPoses& sample,
+                                             std::int64_t arrival_ns, bool is_usable) {
+  if (!begun_ns_) begun_ns_ = arrival_ns;
+  note(from, sample, arrival_ns, is_usable);
+  for (const auto side : kSides) learn(side);
+  choose(arrival_ns);
+  const bool is_newer = !has_published_ || sample.header.origin_ns > last_ns_;
+  if (from != in_use_ || !is_newer) return std::nullopt;
+  auto published = blended(sample, is_usable);
+  if (has_published_) published.header.frame_id = std::max(sample.header.frame_id, last_id_ + 1);
+  last_id_ = published.header.frame_id;
+  last_ns_ = published.header.origin_ns;
+  has_published_ = true;
+  return published;
+}
+
+void Handover::note(From from, const msg::HandPoses& sample, std::int64_t arrival_ns,
+                    bool is_usable) {
+  Source& source = of(from);
+  if (!is_good(from, arrival_ns)) source.since_ns.reset();
+  if (!is_usable) {
+    source.since_ns.reset();
+    return;
+  }
+  source.good_ns = arrival_ns;
+  if (!source.since_ns) source.since_ns = arrival_ns;
+  for (const auto side : kSides)
+    if (const auto* hand = sample.find(side))
+      source.hands[index(side)].add(sample.header.origin_ns, *hand);
+}
+
+bool Handover::is_good(From from, std::int64_t now_ns) const {
+  const auto& good_ns = sources_[static_cast<std::size_t>(from)].good_ns;
+  return good_ns && now_ns - *good_ns <= ms_to_ns(settings_.patience_ms);
+}
+
+void Handover::learn(msg::Side side) {
+  const auto& first = of(From::first).hands[index(side)];
+  const auto& second = of(From::second).hands[index(side)];
+  const std::int64_t time_ns = std::min(first.newest_ns(), second.newest_ns());
+  if (time_ns <= hands_[index(side)].learned_ns) return;
+  hands_[index(side)].learned_ns = time_ns;
+  const auto here = first.at(time_ns), there = second.at(time_ns);
+  if (!here || !there) return;
+  const auto offsets = JointOffsets::between(*there, *here);
+  auto& mean = hands_[index(side)].second_to_first;
+  if (mean)
+    mean->approach(offsets, kLearning);
+  else
+    mean = offsets;
+}
+
+void Handover::choose(std::int64_t now_ns) {
+  const bool is_new = now_ns - *begun_ns_ < ms_to_ns(settings_.patience_ms);
+  if (!is_good(in_use_, now_ns) && is_good(other(in_use_), now_ns) && !is_new)
+    return take(other(in_use_));
+  const auto& first = of(From::first);
+  if (in_use_ == From::second && is_good(From::first, now_ns) && first.since_ns &&
+      now_ns - *first.since_ns >= ms_to_ns(settings_.return_ms))
+    take(From::first);
+}
+
+void Handover::take(From from) {
+  for (const auto side : kSides) hands_[index(side)].blend = blend_to(from, side);
+  in_use_ = from;
+}
+
+std::optional<Handover::Blend> Handover::blend_to(From from, msg::Side side) const {
+  const Hand& hand = hands_[index(side)];
+  const auto& poses = sources_[static_cast<std::size_t>(from)].hands[index(side)];
+  const std::int64_t last_ns = hand.published.newest_ns();
+  if (last_ns == 0 || poses.newest_ns() - last_ns > kForgotten_ns) return std::nullopt;
+  std::optional<JointOffsets> mean = hand.second_to_first;
+  if (mean && from == From::first) mean = mean->reversed();
+  const auto was = hand.published.at(last_ns), there = poses.at(last_ns);
+  if (was && there) {
+    const auto offsets = JointOffsets::between(*there, *was);
+    const bool is_astray = mean && offsets.mean_m(*mean) > kAstray_m && !hand.blend;
+    return Blend{is_astray ? *mean : offsets, last_ns};
+  }
+  return mean ? std::optional(Blend{*mean, last_ns}) : std::nullopt;
+}
+
+msg::HandPoses Handover::blended(const msg::HandPoses& sample, bool is_usable) {
+  msg::HandPoses published = sample;
+  for (std::uint32_t i = 0; i < std::min<std::uint32_t>(sample.count, msg::kMaxHands); ++i) {
+    Hand& hand = hands_[index(sample.hands[i].side)];
+    if (hand.blend) {
+      const std::int64_t since_ns = sample.header.origin_ns - hand.blend->begins_ns;
+      const double span_ns = settings_.blend_ms * 1e6;
+      if (static_cast<double>(since_ns) < span_ns)
+        published.hands[i] = hand.blend->offsets.applied(
+            sample.hands[i], remaining(static_cast<double>(since_ns) / span_ns));
+      else
+        hand.blend.reset();
+    }
+    if (is_usable) hand.published.add(sample.header.origin_ns, published.hands[i]);
+  }
+  return published;
+}
+
+}  // namespace handcast::pose

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "config/sections/handover.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "services/pose/pair/joint_offsets.hpp"
+#include "services/pose/pair/recent_poses.hpp"
+
+namespace handcast::pose {
+
+/// The two sources of a pair.
+enum class From { first = 0, second = 1 };
+
+/// Makes one stream of samples from those of two sources in the same tracker space. The first one
+/// is preferred. The other one takes over when the one in use has had no usable hand for a while,
+/// and their difference at the last sample is blended out. If the source in use has gone astray at
+/// its end, the mean difference while both saw the hand is taken instead. Depends on its arguments
+/// alone. One thread.
+class Handover {
+ public:
+  explicit Handover(const config::Handover& settings) : settings_(settings) {}
+
+  /// Adds a sample that arrived at `arrival_ns`. `is_usable`: it has a hand that was measured.
+  /// Returns what is to be published: empty if the other source is in use, or something newer was
+  /// published. Times and numbers of what is returned increase.
+  std::optional<msg::HandPoses> push(From from, const msg::HandPoses& sample,
+                                     std::int64_t arrival_ns, bool is_usable);
+
+  /// The source in use.
+  From in_use() const { return in_use_; }
+
+ private:
+  struct Source {
+    std::array<RecentPoses, 2> hands;      ///< by side
+    std::optional<std::int64_t> good_ns;   ///< arrival of the newest usable sample
+    std::optional<std::int64_t> since_ns;  ///< how long they have been usable without a break
+  };
+  struct Blend {
+    JointOffsets offsets;
+    std::int64_t begins_ns = 0;
+  };
+  /// One hand of the stream.
+  struct Hand {
+    RecentPoses published;                        ///< those that were usable
+    std::optional<JointOffsets> second_to_first;  ///< mean while both saw the hand
+    std::int64_t learned_ns = 0;                  ///< up to which time
+    std::optional<Blend> blend;
+  };
+
+  Source& of(From from) { return sources_[static_cast<std::size_t>(from)]; }
+  bool is_good(From from, std::int64_t now_ns) const;
+  void note(From from, const msg::HandPoses& sample, std::int64_t arrival_ns, bool is_usable);
+  void learn(msg::Side side);
+  void choose(std::int64_t now_ns);
+  void take(From from);
+  std::optional<Blend> blend_to(From from, msg::Side side) const;
+  msg::HandPoses blended(const msg::HandPoses& sample, bool is_usable);
+
+  config::Handover settings_;
+  std::array<Source, 2> sources_;
+  std::array<Hand, 2> hands_;  ///< by side
+  From in_use_ = From::first;
+  std::optional<std::int64_t> begun_ns_;  ///< the first arrival of all
+  std::int64_t last_ns_ = 0;              ///< origin of what was published last
+  std::uint64_t last_id_ = 0;
+  bool has_published_ = false;
+};
+
+}  // namespace handcast::pose

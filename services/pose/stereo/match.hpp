@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "services/pose/lift/skeleton.hpp"
+#include "services/pose/stereo/seen_hand.hpp"
+#include "services/pose/stereo/view.hpp"
+
+namespace handcast::pose::stereo {
+
+/// A hand as one view reports it.
+struct ReportedHand {
+  msg::Side side;   ///< which hand the detector takes it for
+  double presence;  ///< 0..1
+  SeenHand seen;    ///< its landmarks
+};
+/// The hands that each view reports.
+using Reports = std::array<std::vector<ReportedHand>, kViews>;
+
+/// Where a hand is expected in each view; empty: it is not followed.
+using Expected = std::optional<std::array<Points, kViews>>;
+
+/// For one hand of the person: which report of each view is this hand; -1: none.
+using Match = std::array<int, kViews>;
+/// By msg::Side.
+using Matches = std::array<Match, msg::kMaxHands>;
+
+/// How badly two reports fit one hand: the mean squared epipolar distance of their landmarks in
+/// sigmas (each at most 9), and how unusual the triangulated palm's size is. 1 is usual for the
+/// same hand. Infinite if the landmarks meet nowhere in front of the cameras. `skeleton`: of either
+/// side.
+double misfit_of(const Skeleton& skeleton, const Views& views, const SeenHand& first,
+                 const SeenHand& second);
+
+/// Which reports belong to which hand of the person. A hand that is followed is where it is
+/// expected, whatever side the detectors take it for; of others the detectors' sides count.
+/// Reports that fit no hand are left out.
+Matches match(const Skeleton& skeleton, const Views& views, const Reports& reports,
+              const std::array<Expected, msg::kMaxHands>& expected);
+
+}  // namespace handcast::pose::stereo

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/stereo/stereo_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ipc/base/clock.hpp"
+#include "services/pose/lift/starts.hpp"
+#include "services/pose/stereo/triangulate.hpp"
+
+namespace handcast::pose::stereo {
+namespace {
+
+constexpr int kFirstSteps = 20, kSteps = 4;
+constexpr int kTryEvery = 8, kTrials = 2;
+constexpr double kClearlyBetter = 0.8;
+constexpr double kSmooth_s = 0.1, kVotes_s = 1;
+/// A hand is found anew if its landmarks are off by so many sigmas, or if nearly all reports take
+/// it for the other one.
+constexpr double kLost_sigmas = 6, kOtherHand = 0.9;
+/// The least confidence of a hand that only one view sees.
+constexpr double kOneViewConfidence = 0.5;
+
+bool sees_both(const SeenInViews& seen) {
+  return std::ranges::all_of(seen, [](const auto& view) { return view.has_value(); });
+}
+
+/// Pairs of landmarks in a palm whose distance tells how far away it is.
+constexpr std::array<std::array<int, 2>, 4> kPalmBones{{{0, 5}, {0, 9}, {0, 17}, {5, 17}}};
+
+/// Distance of the hand from a view that alone sees it, by its size: that of the bone that is least
+/// foreshortened.
+double depth_by_size(const Skeleton& skeleton, const View& view, const SeenHand& seen,
+                     double log_size) {
+  double depth_m = 10;
+  const double focal_px = std::min(view.camera.fx_px, view.camera.fy_px);
+  for (const auto& [a, b] : kPalmBones) {
+    const double model_m = glm::distance(skeleton.at_rest_m(msg::kJointOfLandmark[a]),
+                                         skeleton.at_rest_m(msg::kJointOfLandmark[b])),
+                 seen_px = glm::distance(seen.px[a], seen.px[b]);
+    depth_m = std::min(depth_m, focal_px * model_m * std::exp(log_size) / std::max(seen_px, 1.0));
+  }
+  return std::max(depth_m, 2 * View::kNearest_m);
+}
+
+/// Distance of the hand from the first camera: the mean of its triangulated landmarks, by their
+/// variance. Empty if none can be triangulated.
+std::optional<double> triangulated_depth(const Views& views, const SeenInViews& seen) {
+  double sum = 0, weights = 0;
+  for (int i = 0; i < msg::kLandmarks; ++i) {
+    if (!(seen[0]->sigma_px[i] > 0) || !(seen[1]->sigma_px[i] > 0)) continue;
+    const std::array sights{Sight{&views[0], seen[0]->px[i], seen[0]->sigma_px[i]},
+                            Sight{&views[1], seen[1]->px[i], seen[1]->sigma_px[i]}};
+    const auto point = triangulate(sights);
+    if (!point) continue;
+    const double weight = 1 / point->covariance_m2[2][2];
+    sum += weight * point->place_m.z;
+    weights += weight;
+  }
+  if (!(weights > 0)) return std::nullopt;
+  return sum / weights;
+}
+
+/// A posture in the space of a view, `depth_m` in front of it, as a state.
+HandState state_of(const View& view, Posture posture, double depth_m, const HandState& bones) {
+  const glm::dmat4 first_from_view = glm::inverse(view.view_from_first);
+  const glm::dvec3 palm_m(first_from_view * glm::dvec4(posture.palm_m, depth_m, 1));
+  posture.turn = glm::normalize(glm::quat_cast(glm::dmat3(first_from_view)) * posture.turn);
+  posture.palm_m = glm::dvec2(palm_m);
+  return {posture, palm_m.z, bones.log_bone};
+}
+
+/// A posture in which least squares may begin, too.
+Posture alternative(int which, const Posture& posture) {
+  if (which == 0) return mirrored_in_depth(posture);
+  return with_fingers_at_rest(posture);
+}
+
+bool all_finite(const msg::HandPose& pose) {
+  const auto finite = [](const auto& values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+  };
+  return std::ranges::all_of(pose.joints, [&](const auto& joint) {
+    return finite(joint.position_m) && finite(joint.orientation_xyzw);
+  });
+}
+
+}  // namespace
+
+StereoHand::StereoHand(const renderer::HandMesh& hand, const config::PoseStereo& settings,
+                       const Views& views, const glm::dmat4& tracker_from_first)
+    : skeleton_(hand),
+      side_(hand.side),
+      views_(views),
+      tracker_from_first_(tracker_from_first),
+      people_(
+          HandTrack::of_people(settings.hand_length_mm > 0
+                                   ? std::log(1e-3 * settings.hand_length_mm / skeleton_.length_m())
+                                   : 0)),
+      one_view_ns_(seconds_to_ns(settings.one_view_s)) {}
+
+bool StereoHand::is_followed(std::int64_t time_ns) const {
+  return track_ && std::abs(time_ns - last_ns_) < kForget_ns;
+}
+
+Expected StereoHand::expected(std::int64_t time_ns) const {
+  if (!is_followed(time_ns)) return std::nullopt;
+  const auto prior = track_->predicted(std::max(0.0, ns_to_seconds(time_ns - last_ns_)));
+  const PosedHand hand = posed(skeleton_, prior.mean);
+  std::array<Points, kViews> points;
+  for (int v = 0; v < kViews; ++v)
+    for (int i = 0; i < msg::kLandmarks; ++i)
+      points[v][i] = views_[v].project(hand.place_m[msg::kJointOfLandmark[i]]);
+  return points;
+}
+
+/// The landmarks of all views, moved by the way that the hand is expected to go in the image
+/// between their time and `time_ns`.
+SeenInViews StereoHand::moved_to(std::int64_t time_ns, const Looks& looks) const {
+  SeenInViews seen;
+  for (int v = 0; v < kViews; ++v) {
+    if (!looks[v]) continue;
+    seen[v] = looks[v]->hand.seen;
+    if (looks[v]->time_ns == time_ns || !is_followed(time_ns)) continue;
+    const auto then = track_->predicted(ns_to_seconds(looks[v]->time_ns - last_ns_));
+    const auto now = track_->predicted(ns_to_seconds(time_ns - last_ns_));
+    const PosedHand from = posed(skeleton_, then.mean), to = posed(skeleton_, now.mean);
+    for (int i = 0; i < msg::kLandmarks; ++i) {
+      const int joint = msg::kJointOfLandmark[i];
+      seen[v]->px[i] +=
+          views_[v].project(to.place_m[joint]) - views_[v].project(from.place_m[joint]);
+    }
+  }
+  return seen;
+}
+
+std::optional<msg::HandPose> StereoHand::follow(std::int64_t time_ns, const Looks& looks) {
+  if (track_ && time_ns <= last_ns_) return std::nullopt;
+  const SeenInViews seen = moved_to(time_ns, looks);
+  const bool has_both = sees_both(seen);
+  if (!seen[0] && !seen[1]) return std::nullopt;
+  const bool goes_on =
+      is_followed(time_ns) && (has_both || time_ns - last_both_ns_ <= one_view_ns_);
+  const double step_s = goes_on ? ns_to_seconds(time_ns - last_ns_) : 0;
+  if (goes_on)
+    go_on(seen, step_s);
+  else if (!begin(seen))
+    return std::nullopt;
+  last_ns_ = time_ns;
+  if (has_both || !goes_on) last_both_ns_ = time_ns;
+  vote(looks, step_s);
+  const auto pose = pose_of(confidence_of(looks));
+  if (sigmas_ < kLost_sigmas && other_side_ < kOtherHand && all_finite(pose)) return pose;
+  forget();
+  return std::nullopt;
+}
+
+void StereoHand::forget() {
+  track_.reset();
+  sigmas_ = 1;
+  other_side_ = 0;
+}
+
+/// A hand that one view alone sees begins at the distance at which its size is usual. Its pose is
+/// the hint by which the detector of the other view finds it.
+bool StereoHand::begin(const SeenInViews& seen) {
+  const HandPrior prior = track_ ? track_->bones() : people_;
+  const double log_size = prior.mean.posture.log_size;
+  const int from = seen[0] ? 0 : 1;
+  const auto depth_m = sees_both(seen)
+                           ? triangulated_depth(views_, seen)
+                           : depth_by_size(skeleton_, views_[from], *seen[from], log_size);
+  if (!depth_m) return false;
+  std::optional<HandFit> best;
+  for (const Posture& posture :
+       starts_for(skeleton_, views_[from].camera, *depth_m, *seen[from], log_size)) {
+    const HandState start = state_of(views_[from], posture, *depth_m, prior.mean);
+    const HandFit fit = fit_views(skeleton_, views_, seen, prior, start, kFirstSteps);
+    if (!best || fit.cost < best->cost) best = fit;
+  }
+  track_.emplace(*best);
+  sigmas_ = best->sigmas;
+  other_side_ = 0;
+  is_whole_ = sees_both(seen);
+  images_ = 0;
+  better_ = {};
+  return true;
+}
+
+void StereoHand::go_on(const SeenInViews& seen, double step_s) {
+  const HandPrior prior = track_->predicted(step_s);
+  const HandFit fit = fit_views(skeleton_, views_, seen, prior, prior.mean, kSteps);
+  track_->correct(fit, step_s);
+  is_whole_ = is_whole_ || sees_both(seen);
+  sigmas_ += (fit.sigmas - sigmas_) * std::min(1.0, step_s / kSmooth_s);
+  if (++images_ % kTryEvery == 0 && sees_both(seen)) try_another(seen);
+}
+
+/// Least squares may have ended in the wrong posture. In turn, another one is tried now and then,
+/// and taken if it is clearly better more than once.
+void StereoHand::try_another(const SeenInViews& seen) {
+  const HandState& state = track_->state();
+  const HandPrior prior = track_->bones();
+  const auto fitted = [&](const Posture& posture) {
+    const HandState start{posture, state.depth_m, state.log_bone};
+    return fit_views(skeleton_, views_, seen, prior, start, kFirstSteps);
+  };
+  const HandFit here = fitted(state.posture);
+  const int which = images_ / kTryEvery % kAlternatives;
+  const HandFit there = fitted(alternative(which, state.posture));
+  better_[which] = there.cost < kClearlyBetter * here.cost ? better_[which] + 1 : 0;
+  if (better_[which] < kTrials) return;
+  track_->jump(there);
+  better_ = {};
+}
+
+void StereoHand::vote(const Looks& looks, double step_s) {
+  for (const auto& look : looks) {
+    if (!look) continue;
+    const double other = look->hand.side == side_ ? 0 : 1;
+    other_side_ += (other - other_side_) * std::min(1.0, step_s / kVotes_s);
+  }
+}
+
+/// The detectors' presence, less if the landmarks fit the hand badly or only one view has seen it
+/// for a while.
+double StereoHand::confidence_of(const Looks& looks) const {
+  double presence = 0;
+  int count = 0;
+  for (const auto& look : looks)
+    if (look) presence += look->hand.presence, ++count;
+  const double fits = std::clamp(2 / std::max(sigmas_, 1e-3), 0.2, 1.0);
+  const double alone_share = static_cast<double>(last_ns_ - last_both_ns_) /
+                             static_cast<double>(std::max<std::int64_t>(one_view_ns_, 1));
+  const double alone = is_whole_ ? std::clamp(alone_share, 0.0, 1.0) : 1;
+  return presence / std::max(count, 1) * fits * (1 - (1 - kOneViewConfidence) * alone);
+}
+
+msg::HandPose StereoHand::pose_of(double confidence) const {
+  const HandState& state = track_->state();
+  const PosedHand hand = posed(skeleton_, state);
+  const double size = std::exp(state.posture.log_size);
+  msg::HandPose pose{side_, static_cast<float>(confidence), {}};
+  for (int j = 0; j < msg::kJoints; ++j) {
+    const glm::vec3 place(tracker_from_first_ * glm::dvec4(hand.place_m[j], 1));
+    const glm::quat turn(
+        glm::normalize(glm::quat_cast(glm::dmat3(tracker_from_first_) * hand.axes[j])));
+    pose.joints[j] = {{place.x, place.y, place.z},
+                      {turn.x, turn.y, turn.z, turn.w},
+                      static_cast<float>(size * skeleton_.radius_m(j))};
+  }
+  return pose;
+}
+
+}  // namespace handcast::pose::stereo

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/stereo/triangulate.hpp"
+
+#include <cmath>
+
+namespace handcast::pose::stereo {
+namespace {
+
+constexpr int kSteps = 4;
+constexpr double kParallel = 1e-9;  ///< least determinant of the sum of two rays' projectors
+
+bool is_finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// The point with the least sum of squared distances from the rays.
+std::optional<glm::dvec3> nearest_to_rays(std::span<const Sight> sights) {
+  glm::dmat3 sum(0);
+  glm::dvec3 right(0);
+  for (const Sight& sight : sights) {
+    const auto& camera = sight.view->camera;
+    const glm::dmat3 first_from_view = glm::transpose(glm::dmat3(sight.view->view_from_first));
+    const glm::dvec3 centre_m = -(first_from_view * glm::dvec3(sight.view->view_from_first[3]));
+    const glm::dvec3 ray =
+        glm::normalize(first_from_view * glm::dvec3((sight.px.x - camera.cx_px) / camera.fx_px,
+                                                    (sight.px.y - camera.cy_px) / camera.fy_px, 1));
+    const glm::dmat3 across = glm::dmat3(1) - glm::outerProduct(ray, ray);
+    sum += across;
+    right += across * centre_m;
+  }
+  if (!(std::abs(glm::determinant(sum)) > kParallel)) return std::nullopt;
+  return glm::inverse(sum) * right;
+}
+
+/// The problem at a point: information matrix, gradient and misfit. False if it is behind a camera.
+struct Normal {
+  glm::dmat3 information{0};
+  glm::dvec3 gradient{0};
+  double misfit = 0;
+};
+std::optional<Normal> normal_at(std::span<const Sight> sights, const glm::dvec3& place_m) {
+  Normal normal;
+  for (const Sight& sight : sights) {
+    const auto& camera = sight.view->camera;
+    const glm::dvec3 at_m = sight.view->in_view(place_m);
+    if (!(at_m.z > View::kNearest_m)) return std::nullopt;
+    const glm::dmat3 first_from_view = glm::transpose(glm::dmat3(sight.view->view_from_first));
+    const glm::dvec2 miss = (camera.project(at_m) - sight.px) / sight.sigma_px;
+    const glm::dvec3 across = first_from_view * glm::dvec3(1, 0, -at_m.x / at_m.z) *
+                              (camera.fx_px / at_m.z / sight.sigma_px),
+                     down = first_from_view * glm::dvec3(0, 1, -at_m.y / at_m.z) *
+                            (camera.fy_px / at_m.z / sight.sigma_px);
+    normal.information += glm::outerProduct(across, across) + glm::outerProduct(down, down);
+    normal.gradient += across * miss.x + down * miss.y;
+    normal.misfit += glm::dot(miss, miss);
+  }
+  return normal;
+}
+
+}  // namespace
+
+std::optional<SpacePoint> triangulate(std::span<const Sight> sights) {
+  if (sights.size() < 2) return std::nullopt;
+  auto place_m = nearest_to_rays(sights);
+  if (!place_m || !is_finite(*place_m)) return std::nullopt;
+  for (int i = 0; i < kSteps; ++i) {
+    const auto normal = normal_at(sights, *place_m);
+    if (!normal) return std::nullopt;
+    *place_m -= glm::inverse(normal->information) * normal->gradient;
+  }
+  const auto normal = normal_at(sights, *place_m);
+  if (!normal || !is_finite(*place_m)) return std::nullopt;
+  return SpacePoint{*place_m, glm::inverse(normal->information), normal->misfit};
+}
+
+}  // namespace handcast::pose::stereo
