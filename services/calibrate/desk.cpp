@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::int64_t kPrintEvery_ns = 200'000'000, kLogEvery_ns = 5'000'000'000;
 
+int percent_of(double share) { return static_cast<int>(std::lround(100 * share)); }
+
 }  // namespace
 
 Progress::Progress(Desk& desk, std::string title)
@@ -24,13 +26,16 @@ Progress::~Progress() {
 }
 
 void Progress::show(double share, const std::string& advice) {
-  const auto percent = static_cast<int>(std::lround(100 * share));
-  desk_.screen.show_text({fmt::format("{}  {} %", title_, percent), advice});
+  desk_.screen.show_text({fmt::format("{}  {} %", title_, percent_of(share)), advice});
+  say(share, advice);
+}
+
+void Progress::say(double share, const std::string& advice) {
   if (now_ns() - printed_ns_ < (is_terminal_ ? kPrintEvery_ns : kLogEvery_ns)) return;
   printed_ns_ = now_ns();
   // \033[K clears the rest of the line (ECMA-48).
-  fmt::print(stderr, "{}  {}: {:3} %  {}{}", is_terminal_ ? "\r" : "", title_, percent, advice,
-             is_terminal_ ? "\033[K" : "\n");
+  fmt::print(stderr, "{}  {}: {:3} %  {}{}", is_terminal_ ? "\r" : "", title_, percent_of(share),
+             advice, is_terminal_ ? "\033[K" : "\n");
 }
 
 Result<bool> Progress::goes_on() {

@@ -37,6 +37,8 @@ class Progress {
 
   /// Shows how far it is (0..1) and what to do next.
   void show(double share, const std::string& advice);
+  /// The same in the terminal alone, while the projector shows something else.
+  void say(double share, const std::string& advice);
   /// False if the step must end: Enter was pressed or its time is over. Looks after the rig.
   Result<bool> goes_on();
 

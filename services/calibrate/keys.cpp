@@ -41,8 +41,9 @@ Keys::Keys() {
   tcsetattr(STDIN_FILENO, TCSANOW, &state);
 }
 
-Keys::~Keys() {
+void Keys::restore() {
   if (before_) tcsetattr(STDIN_FILENO, TCSANOW, &*before_);
+  before_.reset();
 }
 
 std::optional<char> Keys::next_byte() {

@@ -25,7 +25,10 @@ class Keys {
   Keys();
   Keys(const Keys&) = delete;
   Keys& operator=(const Keys&) = delete;
-  ~Keys();  ///< Restores the terminal.
+  ~Keys() { restore(); }
+
+  /// Gives the terminal back as it was; there are no keys afterwards.
+  void restore();
 
   /// True if there is a person to press keys.
   bool has_person() const { return before_.has_value(); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "calib/board/board_pdf.hpp"
@@ -13,8 +14,13 @@
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/daemon/stop_signal.hpp"
+#include "services/calibrate/check.hpp"
+#include "services/calibrate/correct.hpp"
 #include "services/calibrate/lens_step.hpp"
+#include "services/calibrate/light_step.hpp"
 #include "services/calibrate/own_devices.hpp"
+#include "services/calibrate/points.hpp"
+#include "services/calibrate/rig_file_edit.hpp"
 #include "services/calibrate/rig_settings.hpp"
 #include "services/calibrate/screen_step.hpp"
 #include "services/calibrate/tracker_step.hpp"
@@ -43,7 +49,15 @@ constexpr std::array kSteps{
     StepEntry{Step::tracker, measure_tracker,
               "Take the board away. Move an open hand slowly through the whole volume in which the "
               "show takes place, nearer and farther, too."},
+    StepEntry{Step::light, measure_light,
+              "Hold one open hand still in the middle of the camera's view, for ten seconds. The "
+              "projector lights it white and dark in turns."},
 };
+
+constexpr const char* kReflectorInstruction =
+    "Take the board away, and put the reflector on the very tip of an index finger. Expose so "
+    "briefly that only the reflector is white. Move the stretched finger through the whole volume "
+    "in which the show takes place, nearer and farther, too, and turn the hand.";
 
 const StepEntry& entry_of(Step step) { return *std::ranges::find(kSteps, step, &StepEntry::step); }
 
@@ -61,7 +75,9 @@ std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const
 /// Waits until a person is ready. False if the step shall be left out. Error unavailable: the
 /// program was asked to stop.
 Result<bool> is_wanted(const Options& options, Keys& keys, const StepEntry& entry) {
-  fmt::print(stderr, "\n{}\n  {}\n", config::word_of(entry.step), entry.instruction);
+  const bool by_reflector = entry.step == Step::tracker && options.reflector_mm > 0;
+  fmt::print(stderr, "\n{}\n  {}\n", config::word_of(entry.step),
+             by_reflector ? kReflectorInstruction : entry.instruction);
   if (options.yes || !keys.has_person()) return true;
   fmt::print(stderr, "  Enter begins, and ends the step early; s leaves it out\n");
   for (;;) {
@@ -79,95 +95,183 @@ void print_outcome(const Outcome& outcome) {
   for (const auto& finding : outcome.findings) fmt::print(stderr, "  - {}\n", printable(finding));
 }
 
-/// Starts the rig as a step needs it, and calls `measure`, which writes to the draft.
-Result<Outcome> with_rig(const Options& options, const config::Rig& rig, const RunningAs& running,
-                         const Session& session, calib::Calibration& draft, Keys& keys,
-                         const StepEntry& entry, Result<Outcome> (*measure)(Desk& desk)) {
+/// Starts the rig as a step needs it, and measures, which writes to the draft. `logs`: a folder for
+/// what the rig prints.
+Result<Outcome> with_rig(const Options& options, const RunningAs& running,
+                         const std::filesystem::path& logs, calib::Calibration& draft, Keys& keys,
+                         const StepEntry& entry) {
+  const auto rig = config::load_rig(options.rig_file, options.settings);
+  if (!rig) return tl::make_unexpected(rig.error());
   std::vector<std::string> settings;
-  if (rig.camera.backend == "twin") settings = twin_scene(entry.step, options.board);
+  if (rig->camera.backend == "twin") settings = twin_scene(entry.step, options);
   // What the person sets comes later, and wins.
   settings.insert(settings.end(), running.settings.begin(), running.settings.end());
   const auto as_it_runs = config::load_rig(options.rig_file, settings);
   if (!as_it_runs) return tl::make_unexpected(as_it_runs.error());
-  auto own_rig = OwnRig::start(options.rig_file, rig.name, settings,
-                               session.file(fmt::format("{}.log", config::word_of(entry.step))));
+  auto own_rig = OwnRig::start(options.rig_file, rig->name, settings,
+                               logs / fmt::format("{}.log", config::word_of(entry.step)));
   if (!own_rig) return tl::make_unexpected(own_rig.error());
-  auto screen = TestScreen::open(rig.name, running.calibration.projector_width_px,
+  auto screen = TestScreen::open(rig->name, running.calibration.projector_width_px,
                                  running.calibration.projector_height_px);
   if (!screen) return tl::make_unexpected(screen.error());
   Desk desk{options, *as_it_runs, running.calibration, draft, *own_rig, *screen, keys};
-  return measure(desk);
+  return entry.measure(desk);
 }
 
 /// Does one step, and keeps what it has measured. False if the person has left the step out.
-Result<bool> do_step(const Options& options, const config::Rig& rig, const RunningAs& running,
-                     Session& session, Keys& keys, const StepEntry& entry) {
+Result<bool> do_step(const Options& options, const RunningAs& running, Session& session, Keys& keys,
+                     const StepEntry& entry, std::vector<MeasuredSetting>& settings) {
   auto wanted = is_wanted(options, keys, entry);
   if (!wanted || !*wanted) return wanted;
   auto draft = session.draft();
-  const auto outcome = with_rig(options, rig, running, session, draft, keys, entry, entry.measure);
+  const auto outcome =
+      with_rig(options, running, session.report().parent_path(), draft, keys, entry);
   if (!outcome) return tl::make_unexpected(outcome.error());
   print_outcome(*outcome);
+  settings.insert(settings.end(), outcome->settings.begin(), outcome->settings.end());
   return session.keep(entry.step, *outcome, draft).map([] { return true; });
 }
 
-Result<void> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
-                         Session& session) {
-  Keys keys;
-  const auto steps = steps_of(options, rig, session);
-  int done = 0;
-  for (const Step step : steps) {
-    const auto kept = do_step(options, rig, running, session, keys, entry_of(step));
-    if (!kept) return fail_in(config::word_of(step), kept.error());
-    if (*kept) ++done;
-  }
-  if (done == 0) {
-    fmt::print("{}\n", steps.empty() ? "nothing is left to be measured; --restart begins anew"
-                                     : "nothing was measured");
-    return {};
-  }
-  fmt::print("the report is {}\n", session.report().string());
+/// Prints the settings that were measured, or writes them to the rig file.
+Result<void> hand_over(const Options& options, std::span<const MeasuredSetting> settings) {
+  if (settings.empty()) return {};
+  if (options.apply)
+    return apply_settings(options.rig_file, settings).map([](const std::string& sentence) {
+      fmt::print("{}\n", sentence);
+    });
+  fmt::print("settings for {}, which --apply writes there:\n", options.rig_file.string());
+  for (const auto& setting : settings) fmt::print("  {} = {}\n", setting.path, setting.value);
+  return {};
+}
+
+/// Puts the calibration in its place.
+Result<void> finish(const Options& options, const config::Rig& rig, const Session& session) {
   const auto finished = session.finish();
   if (!finished) return tl::make_unexpected(finished.error());
   fmt::print("{}\n", *finished);
-  if (rig.calibration.empty())
+  if (std::filesystem::path(rig.calibration) != session.target())
     fmt::print("name it in {}, above the first section:\n  calibration = \"{}\"\n",
                options.rig_file.string(), session.target().filename().string());
   return {};
 }
 
-Result<void> check_rig(const Options& options, const config::Rig& rig, const RunningAs& running,
-                       Session& session) {
+Result<int> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
+                        Session& session) {
   Keys keys;
-  const auto& entry = entry_of(Step::tracker);
-  auto wanted = is_wanted(options, keys, entry);
-  if (!wanted) return tl::make_unexpected(wanted.error());
-  if (!*wanted) return {};
-  auto draft = running.calibration;
-  const auto outcome = with_rig(options, rig, running, session, draft, keys, entry, check_tracker);
-  if (!outcome) return tl::make_unexpected(outcome.error());
-  print_outcome(*outcome);
-  return {};
+  const auto steps = steps_of(options, rig, session);
+  int done = 0;
+  bool is_calibrated = false;
+  std::vector<MeasuredSetting> settings;
+  for (const Step step : steps) {
+    const auto kept = do_step(options, running, session, keys, entry_of(step), settings);
+    if (!kept) return fail_in(config::word_of(step), kept.error());
+    if (!*kept) continue;
+    ++done;
+    is_calibrated = is_calibrated || step != Step::light;
+  }
+  if (done == 0) {
+    fmt::print("{}\n", steps.empty() ? "nothing is left to be measured; --restart begins anew"
+                                     : "nothing was measured");
+    return kExitDone;
+  }
+  fmt::print("the report is {}\n", session.report().string());
+  if (is_calibrated)
+    if (auto finished = finish(options, rig, session); !finished)
+      return tl::make_unexpected(finished.error());
+  return hand_over(options, settings).map([] { return kExitDone; });
 }
 
-Result<void> run(Options options) {
-  if (!options.board_pdf.empty())
-    return config::write_whole(options.board_pdf, calib::board_pdf(options.board)).map([&] {
-      fmt::print("{}: print it at true scale (100 %), and glue it on something flat\n",
-                 options.board_pdf.string());
-    });
-  const auto rig = config::load_rig(options.rig_file, options.settings);
+/// A part of --check.
+struct Check {
+  Step step;  ///< whose scene and calibration it is about
+  Result<Outcome> (*measure)(Desk& desk);
+  const char* instruction;
+};
+
+constexpr std::array kChecks{
+    Check{Step::tracker, check_tracker,
+          "Move an open hand through the middle of the volume, nearer and farther."},
+    Check{Step::screen, check_screen, "Hold or stand the board in the projector's light, still."},
+};
+
+/// Compares an installed rig with its calibration. kExitBadResult if it has moved. `logs`: a folder
+/// for what the rig prints.
+Result<int> check_rig(const Options& options, const config::Rig& rig, const RunningAs& running,
+                      const std::filesystem::path& logs) {
+  Keys keys;
+  bool is_good = true;
+  for (const auto& check : kChecks) {
+    if (check.step == Step::tracker && rig.pose.backend == "none") continue;
+    const StepEntry entry{check.step, check.measure, check.instruction};
+    auto wanted = is_wanted(options, keys, entry);
+    if (!wanted) return tl::make_unexpected(wanted.error());
+    if (!*wanted) continue;
+    auto draft = running.calibration;
+    const auto outcome = with_rig(options, running, logs, draft, keys, entry);
+    if (!outcome) return fail_in(config::word_of(check.step), outcome.error());
+    print_outcome(*outcome);
+    fmt::print("{}: {}\n", config::word_of(check.step),
+               outcome->is_good ? "as calibrated" : "has moved");
+    is_good = is_good && outcome->is_good;
+  }
+  return is_good ? kExitDone : kExitBadResult;
+}
+
+Result<int> check_installed(const Options& options, const config::Rig& rig,
+                            const RunningAs& running) {
+  std::error_code error;
+  const auto logs =
+      std::filesystem::temp_directory_path(error) / fmt::format("handcast-check-{}", now_ns());
+  std::filesystem::create_directories(logs, error);
+  if (error)
+    return fail(Errc::unavailable,
+                fmt::format("the folder '{}' cannot be made: {}", logs.string(), error.message()));
+  auto checked = check_rig(options, rig, running, logs);
+  std::filesystem::remove_all(logs, error);
+  return checked;
+}
+
+Result<int> print_board(const Options& options) {
+  return config::write_whole(options.board_pdf, calib::board_pdf(options.board)).map([&] {
+    fmt::print("{}: print it at true scale (100 %), and glue it on something flat\n",
+               options.board_pdf.string());
+    return kExitDone;
+  });
+}
+
+/// Files for devices that are not those of the rig's calibration have names of their own.
+void name_anew(Options& options, config::Rig& rig, const std::string& devices) {
+  const std::filesystem::path old(rig.calibration);
+  rig.calibration = (old.parent_path() / (old.stem().string() + "." + devices + ".toml")).string();
+  if (options.folder == std::filesystem::path(options.rig_file).replace_extension(".calibration"))
+    options.folder.replace_extension(devices + ".calibration");
+}
+
+Result<int> run(Options options) {
+  if (!options.board_pdf.empty()) return print_board(options);
+  auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
-  const auto running = rig_as_it_runs(options, *rig);
-  if (!running) return tl::make_unexpected(running.error());
-  auto used = running->calibration;
   const auto own = own_devices(*rig);
+  const auto running = rig_as_it_runs(options, *rig, own);
+  if (!running) return tl::make_unexpected(running.error());
+  const auto done = [] { return kExitDone; };
+  if (!options.points.empty())
+    return judge_points(options.points, running->calibration.camera).map(done);
+  if (options.correct) return correct_tracker(options, *rig, running->calibration).map(done);
+  if (options.undo) return undo(*rig).map(done);
+  if (options.check && !running->new_devices.empty())
+    return fail(Errc::bad_config,
+                "--check needs a calibration of the devices that the rig has now");
+  if (options.check) return check_installed(options, *rig, *running);
+  const auto named = rig->calibration;
+  if (!running->new_devices.empty()) name_anew(options, *rig, running->new_devices);
+  auto used = running->calibration;
   if (used.camera_device.empty()) used.camera_device = own.camera;
   if (used.projector_device.empty()) used.projector_device = own.projector;
   auto session = Session::open(options, *rig, used);
   if (!session) return tl::make_unexpected(session.error());
-  return options.check ? check_rig(options, *rig, *running, *session)
-                       : measure_all(options, *rig, *running, *session);
+  rig->calibration = named;
+  return measure_all(options, *rig, *running, *session);
 }
 
 int run_verb(int argc, char** argv) {
@@ -182,7 +286,7 @@ int run_verb(int argc, char** argv) {
   }
   daemon::install_stop_signals();
   const auto done = run(std::move(*options));
-  return done ? kExitDone : complain(done.error());
+  return done ? *done : complain(done.error());
 }
 
 }  // namespace

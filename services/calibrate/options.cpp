@@ -19,6 +19,8 @@ constexpr const char* kSummary =
     "time and called again: it goes on where it was left. The old calibration is kept.\n\n"
     "Print the board first: handcast calibrate --print-board board.pdf";
 
+constexpr double kCheck_s = 12;  ///< how long --check looks at the hand, and at the board
+
 /// "1024x768".
 Result<Size> parse_size(const std::string& flag, const std::string& text) {
   Size size;
@@ -39,8 +41,14 @@ Result<void> check(const Options& options) {
   if (!options.board_pdf.empty()) return {};
   if (options.rig_file.empty())
     return fail(Errc::bad_config, "name the rig file: handcast calibrate RIG.toml");
-  if (options.check && !options.steps.empty())
-    return fail(Errc::bad_config, "--check measures no single steps; leave them out");
+  const int alone =
+      int{options.check} + int{options.correct} + int{options.undo} + int{!options.points.empty()};
+  if (alone > 1)
+    return fail(Errc::bad_config,
+                "--check, --points, --correct and --undo do different things; choose one");
+  if (alone == 1 && !options.steps.empty())
+    return fail(Errc::bad_config,
+                "--check, --points, --correct and --undo measure no single steps; leave them out");
   return {};
 }
 
@@ -52,7 +60,7 @@ Result<Options> parse(int argc, char** argv) {
   std::vector<std::string> steps;
   std::string board = calib::print_board_name(calib::Board{}), camera, projector;
   app.add_option("RIG.toml", options.rig_file, "The rig file");
-  app.add_option("STEP", steps, "lens, screen, tracker; default: all that are left");
+  app.add_option("STEP", steps, "lens, screen, tracker, light; default: all that are left");
   app.add_option("--set", options.settings, "path=value: a setting that overrides the file's")
       ->allow_extra_args(false);
   app.add_option("--board", board, "The board: KIND:COLUMNSxROWS:MM, the size of a square in mm")
@@ -64,22 +72,40 @@ Result<Options> parse(int argc, char** argv) {
                  "Size of the projector's image, for a rig without a calibration");
   app.add_option("--folder", options.folder,
                  "Where pictures, results and the report go; default: RIG.calibration");
-  app.add_option("--most-s", options.most_s, "How long a step may take")
-      ->check(CLI::Range(5, 3600))
-      ->capture_default_str();
+  const auto* most_s = app.add_option("--most-s", options.most_s, "How long a step may take")
+                           ->check(CLI::Range(5, 3600))
+                           ->capture_default_str();
+  app.add_flag("--apply", options.apply,
+               "Writes the settings that were measured (projector.latency_ms, projector.gamma) to "
+               "the rig file; the old file is kept");
+  app.add_option("--photodiode", options.photodiode,
+                 "An ALSA capture device with a photodiode in the projector's light: the step "
+                 "light measures with it when the light comes, for a camera that does not see it");
   app.add_flag("--yes", options.yes, "Starts each step without waiting for a key");
   app.add_flag("--restart", options.restart, "Forgets what was measured before");
   app.add_flag("--check", options.check,
                "Measures today's error of the calibration in 30 s, and changes nothing");
+  app.add_option("--reflector", options.reflector_mm,
+                 "Measures the tracker by a retro-reflector of this diameter, mm, on the tip of an "
+                 "index finger, in place of the landmarks of a hand")
+      ->check(CLI::Range(1, 50));
+  app.add_option("--points", options.points,
+                 "Says how good recorded points of a reflector are, and ends: a folder with "
+                 "2dpoints.npy (px), 3dpoints.npy (mm) and perhaps timestamps.npy (us)");
+  app.add_flag("--correct", options.correct,
+               "Corrects a tracker that has moved a little, by still hands, while the rig is up");
+  app.add_flag("--undo", options.undo, "Takes back the last change of the calibration file");
   auto text = parse_options(app, argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   if (!(options.text = std::move(*text)).empty()) return options;
 
+  if (options.check && most_s->count() == 0) options.most_s = kCheck_s;
   for (const auto& word : steps) {
     const auto step = config::choice_named<Step>(word);
     if (!step)
-      return fail(Errc::bad_config,
-                  fmt::format("there is no step '{}'; there are lens, screen, tracker", word));
+      return fail(
+          Errc::bad_config,
+          fmt::format("there is no step '{}'; there are lens, screen, tracker, light", word));
     options.steps.push_back(*step);
   }
   auto parsed = calib::parse_board(board);

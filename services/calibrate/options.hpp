@@ -12,8 +12,10 @@
 namespace handcast::calibrate {
 
 /// What is measured, in this order: each step needs those before it.
-enum class Step { lens, screen, tracker };
-constexpr std::array<std::string_view, 3> words_of(Step) { return {"lens", "screen", "tracker"}; }
+enum class Step { lens, screen, tracker, light };
+constexpr std::array<std::string_view, 4> words_of(Step) {
+  return {"lens", "screen", "tracker", "light"};
+}
 
 /// The size of an image in pixels; 0 x 0: not said.
 struct Size {
@@ -33,7 +35,15 @@ struct Options {
   bool yes = false;                 ///< starts each step without a key
   bool restart = false;             ///< forgets what was measured before
   bool check = false;               ///< measures today's error and changes nothing
-  std::string text{};  ///< that --help or --version asks for; "" if the program shall run
+  /// Diameter of the reflector on an index finger tip; 0: the tracker is measured by a hand's
+  /// landmarks.
+  double reflector_mm = 0;
+  std::filesystem::path points;  ///< folder of recorded points; nothing else is done
+  bool correct = false;          ///< corrects a tracker that has moved while the rig is up
+  bool undo = false;             ///< takes back the last change of the calibration file
+  bool apply = false;            ///< writes measured settings to the rig file
+  std::string photodiode;        ///< ALSA device with a photodiode in the light; empty: none
+  std::string text{};            ///< that --help or --version asks for; "" if the program shall run
 };
 
 /// Errors: bad_config.

@@ -39,23 +39,38 @@ bool is_lasting(const std::string& name) {
          !std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// The most telling name of the only device that fits.
-std::string name_of(const Wanted& wanted, const std::vector<devices::Attached>& attached) {
+/// The only device that fits; null if there are several or none.
+const devices::Attached* only_fitting(const Wanted& wanted,
+                                      const std::vector<devices::Attached>& attached) {
   std::vector<const devices::Attached*> fitting;
   for (const auto& device : attached)
     if (!device.names.empty() &&
         std::ranges::find(device.settings, wanted.backend) != device.settings.end() &&
         (wanted.name.empty() || std::ranges::count(device.names, wanted.name) > 0))
       fitting.push_back(&device);
-  if (fitting.size() == 1) return fitting.front()->names.front();
-  return is_lasting(wanted.name) ? wanted.name : "";
+  return fitting.size() == 1 ? fitting.front() : nullptr;
+}
+
+/// Sets the most telling name of a device, and all of its names.
+void name_device(const std::optional<Wanted>& wanted,
+                 const std::vector<devices::Attached>& attached, std::string& name,
+                 std::vector<std::string>& names) {
+  if (!wanted) return;
+  if (const auto* device = only_fitting(*wanted, attached)) {
+    name = device->names.front();
+    names.assign(device->names.begin(), device->names.end());
+  } else if (is_lasting(wanted->name)) {
+    name = wanted->name;
+  }
 }
 
 }  // namespace
 
 OwnDevices own_devices(const config::Rig& rig, const std::vector<devices::Attached>& attached) {
-  const auto camera = camera_of(rig.camera), projector = projector_of(rig.projector);
-  return {camera ? name_of(*camera, attached) : "", projector ? name_of(*projector, attached) : ""};
+  OwnDevices own;
+  name_device(camera_of(rig.camera), attached, own.camera, own.camera_names);
+  name_device(projector_of(rig.projector), attached, own.projector, own.projector_names);
+  return own;
 }
 
 OwnDevices own_devices(const config::Rig& rig) {

@@ -12,6 +12,10 @@ namespace handcast::calibrate {
 /// them. Empty: it has no name (the twin), or the rig file does not say which of several it is.
 struct OwnDevices {
   std::string camera, projector;
+  /// All names of each; empty if it is not attached.
+  /// @{
+  std::vector<std::string> camera_names{}, projector_names{};
+  /// @}
 };
 
 /// The devices of a rig. `attached`: those of this computer, in which an unnamed one is looked up.

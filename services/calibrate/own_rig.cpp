@@ -68,10 +68,11 @@ Result<OwnRig> OwnRig::start(const std::filesystem::path& rig_file, const std::s
 OwnRig::OwnRig(OwnRig&& other) noexcept
     : child_(std::exchange(other.child_, 0)), log_(std::move(other.log_)) {}
 
-OwnRig::~OwnRig() {
-  if (child_ <= 0) return;
-  ::kill(child_, SIGTERM);
-  while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) continue;
+void OwnRig::stop() {
+  const auto child = std::exchange(child_, 0);
+  if (child <= 0) return;
+  ::kill(child, SIGTERM);
+  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) continue;
 }
 
 Result<void> OwnRig::check() {

@@ -21,7 +21,10 @@ class OwnRig {
                               const std::filesystem::path& log);
   OwnRig(OwnRig&& other) noexcept;
   OwnRig& operator=(OwnRig&&) = delete;
-  ~OwnRig();  ///< Stops the rig and waits until it is down.
+  ~OwnRig() { stop(); }
+
+  /// Stops the rig and waits until it is down.
+  void stop();
 
   /// Error unavailable if the rig has ended, or this program was asked to stop.
   Result<void> check();

@@ -19,19 +19,33 @@ class PatternImages {
   static Result<PatternImages> open(Desk& desk);
 
   /// Measures by a light that toggles how much later than reported it comes, which image() needs.
-  /// Takes about 6 s. Errors: those of calib::fit_light_delay(), and of the streams.
+  /// Takes 4 to 15 s: until the interval is narrow. Errors: those of calib::fit_light_delay(), and
+  /// of the streams.
   Result<calib::LightDelay> measure_delay();
+  /// The same in 4 s, for image() alone.
+  Result<calib::LightDelay> measure_delay_roughly();
   /// Shows a picture and returns the first image that was exposed in its light only. Errors:
   /// timeout, and those of the streams.
   Result<Image> image(const std::function<void(std::uint8_t* levels)>& draw);
+  /// image() of one grey level for the whole picture.
+  Result<Image> image_of_level(std::uint8_t level);
 
  private:
+  /// A light that toggles, and the images of it.
+  struct Watched {
+    std::vector<calib::Toggle> toggles;
+    std::vector<calib::Brightness> images;
+  };
+
   PatternImages(Desk& desk, client::Stream<msg::CameraFrame> frames)
       : desk_(desk), frames_(std::move(frames)) {}
-  void show_level(std::uint8_t level);
+  void fill(std::uint8_t level, std::uint8_t* levels) const;
+  Result<void> toggle(int count, double hold_s, Watched& watched);
+  Result<calib::LightDelay> measure_delay(std::size_t most_toggles);
 
   Desk& desk_;
   client::Stream<msg::CameraFrame> frames_;
+  std::int64_t period_ns_ = 0;             ///< of the projector's frames
   std::int64_t settled_ns_ = 100'000'000;  ///< from a reported light to one that is there
 };
 

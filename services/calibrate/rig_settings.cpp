@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "calib/board/board_name.hpp"
 #include "config/settings/files.hpp"
 
@@ -29,21 +32,59 @@ calib::Calibration from_sizes(Size camera, Size projector) {
   return rough;
 }
 
+/// What a calibration and a rig have differently; empty if they have the same devices, or these are
+/// not known.
+std::string other_devices(const calib::Calibration& calibration, const OwnDevices& own) {
+  const auto differ = [](const std::string& before, const std::vector<std::string>& names) {
+    return !before.empty() && !names.empty() && std::ranges::count(names, before) == 0;
+  };
+  if (differ(calibration.camera_device, own.camera_names))
+    return fmt::format("the camera '{}', and the rig has '{}'", calibration.camera_device,
+                       own.camera);
+  if (differ(calibration.projector_device, own.projector_names))
+    return fmt::format("the projector '{}', and the rig has '{}'", calibration.projector_device,
+                       own.projector);
+  return {};
+}
+
+/// The names of devices as a part of a file's name: letters and digits.
+std::string slug_of(const OwnDevices& own) {
+  std::string slug;
+  for (const char c : own.camera + "_" + own.projector) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (is_plain || (!slug.empty() && slug.back() != '_')) slug += is_plain ? c : '_';
+  }
+  while (!slug.empty() && slug.back() == '_') slug.pop_back();
+  return slug;
+}
+
 }  // namespace
 
-Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig) {
+Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
+                                 const OwnDevices& own) {
   const bool is_real = rig.camera.backend != "twin";
   const bool has_sizes = options.camera.width_px > 0 && options.projector.width_px > 0;
+  std::string others;
   if (!rig.calibration.empty() || (!is_real && !has_sizes)) {
     auto calibration = calib::load_calibration(rig.calibration);
     if (!calibration) return tl::make_unexpected(calibration.error());
-    return RunningAs{std::move(*calibration), options.settings};
+    others = other_devices(*calibration, own);
+    if (others.empty()) return RunningAs{std::move(*calibration), options.settings, {}};
+    if (!has_sizes)
+      return fail(
+          Errc::bad_config,
+          fmt::format("{} was made with {}; to calibrate the new one, too, add the sizes of "
+                      "the images, e.g. --camera 1280x1024 --projector {}x{}: it gets a "
+                      "file of its own, and the old one stays",
+                      rig.calibration, others, calibration->projector_width_px,
+                      calibration->projector_height_px));
   }
   if (!has_sizes)
     return fail(Errc::bad_config,
                 "the rig names no calibration, so the sizes of its images are not known: add "
                 "--camera and --projector, e.g. --camera 1280x1024 --projector 1920x1080");
-  RunningAs running{from_sizes(options.camera, options.projector), options.settings};
+  RunningAs running{from_sizes(options.camera, options.projector), options.settings,
+                    others.empty() ? std::string() : slug_of(own)};
   const auto file = std::filesystem::absolute(options.folder) / "rough.toml";
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
@@ -54,15 +95,24 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig)
   return running;
 }
 
-std::vector<std::string> twin_scene(Step step, const calib::Board& board) {
-  std::vector<std::string> settings{
-      "projector.rate_hz=60"};  // whole pictures at 946 Hz take a core
+std::vector<std::string> twin_scene(Step step, const Options& options) {
+  // Whole pictures at 946 Hz take a core. 57 Hz keeps step with no usual rate of a camera.
+  std::vector<std::string> settings{"projector.rate_hz=57"};
   if (step == Step::tracker) {
-    settings.emplace_back("twin.motion=builtin:show");
+    if (options.reflector_mm == 0) {
+      settings.emplace_back("twin.motion=builtin:show");
+      return settings;
+    }
+    settings.push_back(fmt::format("twin.image.reflector_mm={}", options.reflector_mm));
+    settings.insert(settings.end(), {"twin.motion=builtin:places", "twin.image.gain=80"});
+    return settings;
+  }
+  if (step == Step::light) {
+    settings.insert(settings.end(), {"twin.motion=builtin:still", "twin.hands=left"});
     return settings;
   }
   settings.emplace_back("twin.prop.kind=board");
-  settings.push_back("twin.prop.board=" + calib::print_board_name(board));
+  settings.push_back("twin.prop.board=" + calib::print_board_name(options.board));
   settings.push_back(fmt::format("twin.prop.hold_s={}", step == Step::lens ? 1 : 8));
   if (step == Step::screen)
     settings.insert(settings.end(), {"twin.image.leak=1", "twin.image.gain=80"});

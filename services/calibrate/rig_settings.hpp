@@ -6,6 +6,7 @@
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "services/calibrate/options.hpp"
+#include "services/calibrate/own_devices.hpp"
 
 namespace handcast::calibrate {
 
@@ -13,15 +14,20 @@ namespace handcast::calibrate {
 struct RunningAs {
   calib::Calibration calibration;     ///< that its services use meanwhile
   std::vector<std::string> settings;  ///< for --set
+  /// If the rig's calibration is that of other devices: a part of the names of files for the
+  /// devices that the rig has now. Else empty.
+  std::string new_devices{};
 };
 
-/// The rig with its own calibration, or, if it names none and has real devices, with one that has
-/// only the sizes of the images (options.camera, options.projector) and is written to the session's
-/// folder. Errors: bad_config (the sizes are missing), those of calib::load_calibration().
-Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig);
+/// The rig with its own calibration. If it names none and has real devices, or if its calibration
+/// is that of other devices than `own`, with one that has only the sizes of the images
+/// (options.camera, options.projector) and is written to the session's folder. Errors: bad_config
+/// (the sizes are missing), those of calib::load_calibration().
+Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
+                                 const OwnDevices& own = {});
 
 /// The settings (for --set) with which the twin shows what a step needs, at a rate that leaves a
 /// small computer time for it.
-std::vector<std::string> twin_scene(Step step, const calib::Board& board);
+std::vector<std::string> twin_scene(Step step, const Options& options);
 
 }  // namespace handcast::calibrate

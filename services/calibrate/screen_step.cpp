@@ -8,6 +8,8 @@
 
 #include "calib/screen/depth_error.hpp"
 #include "services/calibrate/by_hand.hpp"
+#include "services/calibrate/delay_report.hpp"
+#include "services/calibrate/gamma_step.hpp"
 #include "services/calibrate/pieces.hpp"
 #include "services/calibrate/screen_views.hpp"
 
@@ -68,12 +70,33 @@ std::string pictures_of(const Desk& desk, std::span<const calib::DepthView> view
                            "The calibration has the parallax, and does not.");
 }
 
-std::string delay_finding(const Desk& desk, const calib::LightDelay& delay) {
-  const double latency_ms = desk.rig.projector.latency_ms + delay.delay_ms;
-  return fmt::format(
-      "the light comes {:.1f} ms ({:.1f} to {:.1f}) later than the projector reports: set "
-      "projector.latency_ms = {:.1f}",
-      delay.delay_ms, delay.low_ms, delay.high_ms, latency_ms);
+/// The findings about what was seen, after those of the fit.
+void add_findings(const ScreenViews& measurement, Outcome& outcome) {
+  for (auto& finding : light_findings(measurement.light()))
+    outcome.findings.push_back(std::move(finding));
+  if (const auto empty = measurement.seen().with_fewer_than(1); !empty.empty())
+    outcome.findings.push_back(
+        fmt::format("no light was measured in these parts of the camera's image: {}; there the "
+                    "model is extrapolated",
+                    fmt::join(empty, ", ")));
+  if (measurement.repeated() > 0)
+    outcome.findings.push_back(fmt::format("{} patterns were shown again; the last one was {}",
+                                           measurement.repeated(), measurement.why_repeated()));
+}
+
+/// The projector by the views; sets that of the draft.
+Result<Outcome> fit_views(Desk& desk, std::span<const calib::DepthView> views) {
+  const auto fit = calib::fit_screen(views, desk.draft.camera, mean_depth_m(views),
+                                     {desk.screen.width_px(), desk.screen.height_px()});
+  if (!fit) return tl::make_unexpected(fit.error());
+  desk.draft.projector_from_camera = fit->model.projector_from_camera;
+  desk.draft.parallax = fit->model.parallax;
+  desk.draft.plane_m = fit->model.plane_m;
+  const double held_out_px =
+      fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median;
+  return Outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views.size(),
+                             held_out_px, place_of(*fit)),
+                 held_out_px <= kGood_px, fit->findings, pictures_of(desk, views, *fit)};
 }
 
 }  // namespace
@@ -90,31 +113,18 @@ Result<Outcome> measure_screen(Desk& desk) {
   if (!delay) return tl::make_unexpected(delay.error());
   auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, "camera.frames");
   if (!frames) return tl::make_unexpected(frames.error());
-  ScreenViews measurement(desk, std::move(*frames), std::move(*patterns));
+  ScreenViews measurement(desk, std::move(*frames), *patterns);
   const auto views = measurement.take();
   if (!views) return tl::make_unexpected(views.error());
   if (views->empty())
     return fail(Errc::bad_data, "the board was never still in the projector's light");
-  const auto fit = calib::fit_screen(*views, desk.draft.camera, mean_depth_m(*views),
-                                     {desk.screen.width_px(), desk.screen.height_px()});
-  if (!fit) return tl::make_unexpected(fit.error());
-  desk.draft.projector_from_camera = fit->model.projector_from_camera;
-  desk.draft.parallax = fit->model.parallax;
-  desk.draft.plane_m = fit->model.plane_m;
-  const double held_out_px =
-      fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median;
-  Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views->size(),
-                              held_out_px, place_of(*fit)),
-                  held_out_px <= kGood_px, fit->findings, pictures_of(desk, *views, *fit)};
-  for (auto& finding : light_findings(measurement.light()))
-    outcome.findings.push_back(std::move(finding));
-  if (const auto empty = measurement.seen().with_fewer_than(1); !empty.empty())
-    outcome.findings.push_back(
-        fmt::format("no light was measured in these parts of the camera's image: {}; there the "
-                    "model is extrapolated",
-                    fmt::join(empty, ", ")));
-  if (delay->low_ms > 1 || delay->high_ms < -1)
-    outcome.findings.push_back(delay_finding(desk, *delay));
+  auto outcome = fit_views(desk, *views);
+  if (!outcome) return outcome;
+  add_findings(measurement, *outcome);
+  report_delay(desk.rig, *delay, *outcome);
+  fmt::print(stderr, "  measuring the gamma of the projector\n");
+  if (auto measured = measure_gamma(desk, *patterns, *outcome); !measured)
+    return tl::make_unexpected(measured.error());
   return outcome;
 }
 

@@ -4,17 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 
 #include "calib/lens/board_pose.hpp"
+#include "calib/screen/pattern_check.hpp"
 
 namespace handcast::calibrate {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kWantedViews = 5;
+constexpr int kTries = 3;        ///< of a pattern
 constexpr double kMoved_px = 1;  ///< by which the board may have moved during the patterns
 
 /// The largest move of a point that both views have; infinite if they share none.
@@ -30,25 +30,25 @@ double largest_move_px(const calib::BoardView& a, const calib::BoardView& b) {
 }  // namespace
 
 ScreenViews::ScreenViews(Desk& desk, client::Stream<msg::CameraFrame> frames,
-                         PatternImages patterns)
+                         PatternImages& patterns)
     : desk_(desk),
       frames_(std::move(frames)),
-      patterns_(std::move(patterns)),
+      patterns_(patterns),
       finder_(desk.options.board),
       code_(desk.screen.width_px(), desk.screen.height_px()),
       capture_(desk.used.camera.width_px),
       seen_(desk.used.camera.width_px, desk.used.camera.height_px) {}
 
-Result<std::vector<calib::DepthView>> ScreenViews::take() {
+Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
   std::vector<calib::DepthView> views;
   Progress progress(desk_, "screen");
   std::string advice = "Hold the board still in the light";
-  while (views.size() < kWantedViews) {
+  while (views.size() < wanted) {
     if (const auto on = progress.goes_on(); !on || !*on) {
       if (!on) return tl::make_unexpected(on.error());
       break;
     }
-    progress.show(static_cast<double>(views.size()) / static_cast<double>(kWantedViews), advice);
+    progress.show(static_cast<double>(views.size()) / static_cast<double>(wanted), advice);
     const auto ready = is_ready();
     if (!ready) return tl::make_unexpected(ready.error());
     if (!*ready) continue;
@@ -79,15 +79,64 @@ Result<bool> ScreenViews::is_ready() {
   return board && capture_.take((*frame)->header.origin_ns, *board);
 }
 
+calib::GreyView ScreenViews::view_of(const PatternImages::Image& image) const {
+  const auto& camera = desk_.draft.camera;
+  return {image.data(), camera.width_px, camera.height_px, camera.width_px};
+}
+
+/// Tells why a pattern is shown again.
+void ScreenViews::repeat(int pattern, const std::string& why) {
+  ++repeated_;
+  why_repeated_ = fmt::format("pattern {} of {}: {}", pattern + 1, code_.patterns(), why);
+  fmt::print(stderr, "\n  {}; it is shown again\n", why_repeated_);
+}
+
+/// Shows a pattern, several times if its image does not come.
+Result<PatternImages::Image> ScreenViews::shoot_one(int pattern) {
+  for (int tries = 1;; ++tries) {
+    auto image = patterns_.image([&](std::uint8_t* levels) { code_.draw(pattern, levels); });
+    if (image || image.error().code != Errc::timeout || tries == kTries) return image;
+    repeat(pattern, "no image of it came within 2 s");
+  }
+}
+
+/// Shows a pattern and its inverse, several times if they do not fit to white and black. Error
+/// bad_data: they never do.
+Result<void> ScreenViews::shoot_pair(int pattern, std::vector<PatternImages::Image>& images) {
+  for (int tries = 1;; ++tries) {
+    auto image = shoot_one(pattern);
+    if (!image) return tl::make_unexpected(image.error());
+    auto inverse = shoot_one(pattern + 1);
+    if (!inverse) return tl::make_unexpected(inverse.error());
+    const double misfit = calib::pattern_misfit(view_of(images[0]), view_of(images[1]),
+                                                view_of(*image), view_of(*inverse));
+    if (misfit <= calib::kMostPatternMisfit) {
+      images.push_back(std::move(*image));
+      images.push_back(std::move(*inverse));
+      return {};
+    }
+    const auto why = fmt::format(
+        "its image and that of its inverse are off by {:.0f} % of the "
+        "light: the board moved, or the light flickers",
+        100 * misfit);
+    if (tries == kTries) return fail(Errc::bad_data, why);
+    repeat(pattern, why);
+  }
+}
+
 /// Shows all patterns, and then the first one, white, again.
 Result<std::vector<PatternImages::Image>> ScreenViews::shoot() {
   std::vector<PatternImages::Image> images;
-  for (int i = 0; i <= code_.patterns(); ++i) {
-    const int pattern = i % code_.patterns();  // 0 is white
-    auto image = patterns_.image([&](std::uint8_t* levels) { code_.draw(pattern, levels); });
+  for (const int pattern : {0, 1}) {  // white, black
+    auto image = shoot_one(pattern);
     if (!image) return tl::make_unexpected(image.error());
     images.push_back(std::move(*image));
   }
+  for (int pattern = 2; pattern < code_.patterns(); pattern += 2)
+    if (auto pair = shoot_pair(pattern, images); !pair) return tl::make_unexpected(pair.error());
+  auto image = shoot_one(0);
+  if (!image) return tl::make_unexpected(image.error());
+  images.push_back(std::move(*image));
   return images;
 }
 
@@ -98,9 +147,6 @@ Result<calib::DepthView> ScreenViews::measure() {
   if (!shot) return tl::make_unexpected(shot.error());
   auto& images = *shot;
   const auto& camera = desk_.draft.camera;
-  const auto view_of = [&](const PatternImages::Image& image) {
-    return calib::GreyView{image.data(), camera.width_px, camera.height_px, camera.width_px};
-  };
   const auto before = finder_.find(view_of(images.front())),
              after = finder_.find(view_of(images.back()));
   if (!before || !after) return fail(Errc::bad_data, "The whole board must be in the light");
@@ -111,7 +157,8 @@ Result<calib::DepthView> ScreenViews::measure() {
   images.pop_back();
   darken_beside(*pose, images);
   std::vector<calib::GreyView> views;
-  std::ranges::transform(images, std::back_inserter(views), view_of);
+  views.reserve(images.size());
+  for (const auto& image : images) views.push_back(view_of(image));
   auto decoded = code_.decode(views);
   if (!decoded) return tl::make_unexpected(decoded.error());
   light_.contrast = std::max(light_.contrast, decoded->contrast);

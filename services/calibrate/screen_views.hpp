@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <vector>
 
 #include "calib/board/board_finder.hpp"
@@ -22,30 +23,43 @@ struct LightSeen {
 /// thread.
 class ScreenViews {
  public:
-  ScreenViews(Desk& desk, client::Stream<msg::CameraFrame> frames, PatternImages patterns);
+  ScreenViews(Desk& desk, client::Stream<msg::CameraFrame> frames, PatternImages& patterns);
 
-  /// Takes a view of each place at which the board is held still, until there are enough, Enter is
-  /// pressed or the time is over. Errors: those of the streams and of the rig.
-  Result<std::vector<calib::DepthView>> take();
+  static constexpr std::size_t kWanted = 5;  ///< views that are enough
+
+  /// Takes a view of each place at which the board is held still, until there are `wanted`, Enter
+  /// is pressed or the time is over. Errors: those of the streams and of the rig.
+  Result<std::vector<calib::DepthView>> take(std::size_t wanted = kWanted);
   /// Where in the camera's image the views are.
   const calib::ImageFields& seen() const { return seen_; }
   const LightSeen& light() const { return light_; }
+  /// How many patterns had to be shown again, and why the last one.
+  /// @{
+  int repeated() const { return repeated_; }
+  const std::string& why_repeated() const { return why_repeated_; }
+  /// @}
 
  private:
   Result<bool> is_ready();
+  Result<PatternImages::Image> shoot_one(int pattern);
+  Result<void> shoot_pair(int pattern, std::vector<PatternImages::Image>& images);
   Result<std::vector<PatternImages::Image>> shoot();
+  void repeat(int pattern, const std::string& why);
+  calib::GreyView view_of(const PatternImages::Image& image) const;
   Result<calib::DepthView> measure();
   void darken_beside(const glm::dmat4& camera_from_board,
                      std::vector<PatternImages::Image>& images) const;
 
   Desk& desk_;
   client::Stream<msg::CameraFrame> frames_;
-  PatternImages patterns_;
+  PatternImages& patterns_;
   calib::BoardFinder finder_;
   calib::GrayCode code_;
   calib::AutoCapture capture_;
   calib::ImageFields seen_;
   LightSeen light_;
+  int repeated_ = 0;
+  std::string why_repeated_;
 };
 
 }  // namespace handcast::calibrate

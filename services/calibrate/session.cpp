@@ -10,6 +10,7 @@
 #include "calib/opencv_file.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
+#include "services/calibrate/kept_file.hpp"
 #include "services/calibrate/pieces.hpp"
 
 namespace handcast::calibrate {
@@ -17,18 +18,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kSteps{Step::lens, Step::screen, Step::tracker};
+constexpr std::array kSteps{Step::lens, Step::screen, Step::tracker, Step::light};
 
-std::string& made_of(calib::Made& made, Step step) {
+/// The sentence of a step in the calibration; null if the step measures no part of it.
+std::string* made_of(calib::Made& made, Step step) {
   switch (step) {
     case Step::lens:
-      return made.lens;
+      return &made.lens;
     case Step::screen:
-      return made.screen;
+      return &made.screen;
     case Step::tracker:
-      return made.tracker;
+      return &made.tracker;
+    case Step::light:
+      break;
   }
-  return made.lens;
+  return nullptr;
 }
 
 std::tm local_time() {
@@ -42,12 +46,6 @@ std::tm local_time() {
 fs::path target_of(const Options& options, const config::Rig& rig) {
   if (!rig.calibration.empty()) return rig.calibration;
   return fs::absolute(options.rig_file).replace_extension("").string() + "_calibration.toml";
-}
-
-/// The name under which the file is kept when another one takes its place.
-fs::path old_name_of(const fs::path& file) {
-  const auto stem = fmt::format("{}.{:%Y-%m-%dT%H%M%S}", file.stem().string(), local_time());
-  return file.parent_path() / (stem + file.extension().string());
 }
 
 /// Gives a draft the names of the devices in use. Error bad_config: it has others.
@@ -77,7 +75,10 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
   session.rig_name_ = rig.name;
   session.draft_.made = {};
   const auto file = session.file("draft.toml");
-  if (options.restart || !fs::exists(file)) return session;
+  if (options.restart || !fs::exists(file)) {
+    for (const Step step : kSteps) session.forget(step);
+    return session;
+  }
   auto draft = calib::load_calibration(file);
   if (!draft) return tl::make_unexpected(draft.error());
   if (draft->camera.width_px != used.camera.width_px ||
@@ -97,7 +98,8 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
 
 bool Session::is_done(Step step) const {
   auto made = draft_.made;
-  return !made_of(made, step).empty();
+  const auto* sentence = made_of(made, step);
+  return sentence ? !sentence->empty() : fs::exists(piece_of(step));
 }
 
 fs::path Session::piece_of(Step step) const {
@@ -106,7 +108,7 @@ fs::path Session::piece_of(Step step) const {
 
 void Session::forget(Step step) {
   std::error_code absent;
-  made_of(draft_.made, step).clear();
+  if (auto* made = made_of(draft_.made, step)) made->clear();
   fs::remove(piece_of(step), absent);
 }
 
@@ -117,7 +119,8 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
   draft_ = measured;
   if (step == Step::lens)
     for (const Step later : {Step::screen, Step::tracker}) forget(later);
-  made_of(draft_.made, step) = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
+  if (auto* made = made_of(draft_.made, step))
+    *made = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
   auto kept = config::write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
   if (kept) kept = config::write_whole(file("draft.toml"), calib::print_calibration(draft_));
   return kept ? write_report() : kept;
@@ -134,19 +137,11 @@ Result<std::string> Session::finish() const {
   // A file that the services would refuse must not take the place of a good one.
   if (const auto usable = calib::load_calibration(file("draft.toml")); !usable)
     return tl::make_unexpected(usable.error());
-  std::string sentence = fmt::format("the calibration is in {}", target_.string());
-  std::error_code error;
-  if (fs::exists(target_)) {
-    const auto old = old_name_of(target_);
-    fs::copy_file(target_, old, fs::copy_options::overwrite_existing, error);
-    if (error)
-      return fail(Errc::unavailable, fmt::format("the old calibration cannot be copied to {}: {}",
-                                                 old.string(), error.message()));
-    sentence += fmt::format("; the one before it is kept as {}", old.filename().string());
-  }
-  auto written = config::write_whole(target_, calib::print_calibration(draft_));
-  if (written) written = config::write_whole(file("opencv.yml"), calib::print_opencv_file(draft_));
-  return written.map([&] { return sentence; });
+  auto sentence = write_and_keep(target_, calib::print_calibration(draft_));
+  if (!sentence) return sentence;
+  return config::write_whole(file("opencv.yml"), calib::print_opencv_file(draft_)).map([&] {
+    return *sentence;
+  });
 }
 
 }  // namespace handcast::calibrate

@@ -11,12 +11,19 @@
 
 namespace handcast::calibrate {
 
+/// A setting of the rig file that was measured.
+struct MeasuredSetting {
+  std::string path;   ///< "projector.latency_ms"
+  std::string value;  ///< as --set takes it
+};
+
 /// What a step has found out.
 struct Outcome {
   std::string made;                   ///< one sentence for the calibration file: how good it is
   bool is_good = true;                ///< false: it must not take the place of what there is
   std::vector<std::string> findings;  ///< what a person should know or do, most important first
   std::string pictures{};             ///< HTML for the report
+  std::vector<MeasuredSetting> settings{};
 };
 
 /// One calibration of a rig, which may take several calls of the program: the folder with what was
@@ -40,7 +47,7 @@ class Session {
   /// A file of the session.
   std::filesystem::path file(std::string_view name) const { return folder_ / name; }
 
-  /// True if the draft has this part.
+  /// True if this step was done.
   bool is_done(Step step) const;
   /// Makes what a step has measured the draft, keeps the step's outcome, and writes the report
   /// anew. What was measured with an older lens is forgotten. Errors: bad_data (the outcome is not

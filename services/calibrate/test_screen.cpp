@@ -15,7 +15,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kRepeatEvery_ns = 250'000'000;
-constexpr int kLinesOnScreen = 12;  ///< height of the screen in lines of text
+constexpr std::size_t kPeriods = 31;  ///< whose median is the rhythm of the frames
+constexpr int kLinesOnScreen = 12;    ///< height of the screen in lines of text
 
 /// Copies a line of text into a picture, its middle at `x`, its top at `y`; what does not fit is
 /// cut off.
@@ -27,6 +28,14 @@ void put_line(const renderer::Image<std::uint8_t>& line, int x, int y,
       if (const int px = left + column, py = y + row;
           px >= 0 && px < picture.width() && py >= 0 && py < picture.height())
         picture.at(px, py) = line.at(column, row);
+}
+
+std::int64_t median_of(const std::deque<std::int64_t>& times_ns) {
+  if (times_ns.empty()) return 0;
+  std::vector<std::int64_t> sorted(times_ns.begin(), times_ns.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::ranges::nth_element(sorted, middle);
+  return *middle;
 }
 
 }  // namespace
@@ -89,11 +98,23 @@ void TestScreen::publish() {
   writer_.publish(std::move(slot));
 }
 
-Result<std::int64_t> TestScreen::lit_ns(Deadline deadline) {
+/// Notes the rhythm of the frames. True if the frame before this one was read, too.
+bool TestScreen::follow(const msg::Projection& shown) {
+  const bool is_next = last_frame_ != 0 && shown.header.frame_id == last_frame_ + 1;
+  if (is_next) periods_ns_.push_back(shown.lit_ns - last_lit_ns_);
+  if (periods_ns_.size() > kPeriods) periods_ns_.pop_front();
+  last_frame_ = shown.header.frame_id;
+  last_lit_ns_ = shown.lit_ns;
+  return is_next;
+}
+
+Result<FirstLight> TestScreen::first_light(Deadline deadline) {
   for (;;) {
     const auto shown = projections_.next(deadline);
     if (!shown) return tl::make_unexpected(shown.error());
-    if ((*shown)->test_picture == number_) return (*shown)->lit_ns;
+    const bool is_sure = follow(**shown);
+    if ((*shown)->test_picture == number_)
+      return FirstLight{(*shown)->lit_ns, median_of(periods_ns_), is_sure};
     keep();
   }
 }

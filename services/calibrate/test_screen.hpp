@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <string>
 #include <vector>
@@ -13,6 +14,14 @@
 #include "renderer/base/image.hpp"
 
 namespace handcast::calibrate {
+
+/// The first frame that showed a picture, as the projector reports it. Times are CLOCK_MONOTONIC.
+struct FirstLight {
+  std::int64_t middle_ns = 0;  ///< of the time it was lit
+  std::int64_t period_ns =
+      0;                 ///< from one frame to the next, median of the last ones; 0: not known
+  bool is_sure = false;  ///< the frame before it was seen, and showed another picture
+};
 
 /// The rig's projector as a screen for test pictures. One thread.
 class TestScreen {
@@ -30,9 +39,9 @@ class TestScreen {
   void show_text(const std::vector<std::string>& lines);
   /// Keeps the picture: call it at least twice a second.
   void keep();
-  /// Waits until the light of the last picture has come: the middle of its first frame,
-  /// CLOCK_MONOTONIC, as the projector reports it. Errors: timeout, and those of client::Stream.
-  Result<std::int64_t> lit_ns(Deadline deadline);
+  /// Waits until the projector has shown the last picture. Errors: timeout, and those of
+  /// client::Stream.
+  Result<FirstLight> first_light(Deadline deadline);
 
  private:
   TestScreen(ipc::Writer<msg::TestPicture> writer, client::Stream<msg::Projection> projections,
@@ -41,6 +50,7 @@ class TestScreen {
         projections_(std::move(projections)),
         picture_(width_px, height_px) {}
   void publish();
+  bool follow(const msg::Projection& shown);
 
   ipc::Writer<msg::TestPicture> writer_;
   client::Stream<msg::Projection> projections_;
@@ -48,6 +58,9 @@ class TestScreen {
   std::vector<std::string> text_;  ///< that is shown; empty: another picture
   std::uint64_t number_ = 0;
   std::int64_t published_ns_ = 0;
+  std::uint64_t last_frame_ = 0;         ///< of the projector that was read; 0: none
+  std::int64_t last_lit_ns_ = 0;         ///< its time
+  std::deque<std::int64_t> periods_ns_;  ///< of the last pairs of frames
 };
 
 }  // namespace handcast::calibrate

@@ -10,7 +10,9 @@
 #include "calib/tracker/volume_coverage.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "services/calibrate/harvest.hpp"
 #include "services/calibrate/pieces.hpp"
+#include "services/calibrate/reflector_fit.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -19,10 +21,6 @@ using namespace std::chrono_literals;
 
 constexpr double kSigmaIfUnknown_px = 3;
 constexpr float kLeastConfidence = 0.3f;
-/// Distances from the camera between which a hand should move.
-/// @{
-constexpr double kNear_m = 0.55, kFar_m = 0.9;
-/// @}
 
 /// What tracker and camera have seen of one hand.
 struct Seen {
@@ -65,26 +63,6 @@ void cover(const Seen& seen, calib::VolumeCoverage& coverage) {
   }
   coverage.add(hand);
 }
-
-/// How much of the volume was seen, and whether the hand still finds new places in it.
-class Harvest {
- public:
-  /// False if all was seen, or enough and the hand was at no new place for kNothingNew_s.
-  bool goes_on(double share, bool sees_hand) {
-    const auto now = now_ns();
-    if (sees_hand) waited_ns_ += now - looked_ns_;
-    looked_ns_ = now;
-    if (share > share_) waited_ns_ = 0;
-    share_ = share;
-    return share < 1 && (share < kEnough || waited_ns_ < seconds_to_ns(kNothingNew_s));
-  }
-
- private:
-  static constexpr double kEnough = 0.5, kNothingNew_s = 20;
-
-  double share_ = 0;
-  std::int64_t looked_ns_ = now_ns(), waited_ns_ = 0;
-};
 
 /// Watches a hand until it was everywhere that it can reach, Enter is pressed, or the time is over.
 Result<SeenBySide> watch(Desk& desk) {
@@ -131,6 +109,7 @@ const Seen& most_seen(const SeenBySide& seen) {
 }
 
 Result<calib::TrackerFit> fit(Desk& desk) {
+  if (desk.options.reflector_mm > 0) return fit_by_reflector(desk);
   const auto seen = watch(desk);
   if (!seen) return tl::make_unexpected(seen.error());
   const auto& hand = most_seen(*seen);
@@ -158,17 +137,33 @@ Result<Outcome> measure_tracker(Desk& desk) {
   return Outcome{made_of(*found), found->quality != calib::Quality::poor, found->findings};
 }
 
+/// The tracker has moved if it is off by more than this and by more than twice what the fit does
+/// not know.
+/// @{
+constexpr double kMovedAcross_mm = 2.5, kMovedAlong_mm = 6;
+/// @}
+
 Result<Outcome> check_tracker(Desk& desk) {
   const auto found = fit(desk);
   if (!found) return tl::make_unexpected(found.error());
-  const glm::dvec4 middle =
-      glm::inverse(found->camera_from_tracker) * glm::dvec4(found->place_errors.front().place_m, 1);
+  const auto& middle = found->place_errors.front();
+  const glm::dvec4 place = glm::inverse(found->camera_from_tracker) * glm::dvec4(middle.place_m, 1);
   const auto off_m =
-      glm::dvec3(desk.used.camera_from_tracker * middle - found->camera_from_tracker * middle);
-  Outcome outcome{fmt::format("in the middle of the volume the tracker's place is off by {:.1f} mm "
-                              "across and {:.1f} mm along the camera's axis",
-                              1e3 * std::hypot(off_m.x, off_m.y), 1e3 * std::abs(off_m.z)),
-                  true, found->findings};
+      glm::dvec3(desk.used.camera_from_tracker * place - found->camera_from_tracker * place);
+  const double across_mm = 1e3 * std::hypot(off_m.x, off_m.y), along_mm = 1e3 * std::abs(off_m.z);
+  const double unsure_along_mm =
+      std::sqrt(std::max(0.0, std::pow(middle.whole_mm, 2) - std::pow(middle.light_mm, 2)));
+  Outcome outcome{
+      fmt::format("in the middle of the volume the tracker's place is off by {:.1f} mm across (+- "
+                  "{:.1f}) and {:.1f} mm along the camera's axis (+- {:.1f})",
+                  across_mm, 2 * middle.light_mm, along_mm, 2 * unsure_along_mm),
+      across_mm <= std::max(kMovedAcross_mm, 2 * middle.light_mm) &&
+          along_mm <= std::max(kMovedAlong_mm, 2 * unsure_along_mm),
+      found->findings};
+  if (!outcome.is_good)
+    outcome.findings.insert(outcome.findings.begin(),
+                            "camera or tracker have moved since they were calibrated: measure the "
+                            "step `tracker` again");
   return outcome;
 }
 

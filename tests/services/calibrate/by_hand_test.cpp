@@ -44,6 +44,26 @@ TEST(DraggedCorners, TheStepCanBeFinerAndCoarserWithinLimits) {
   EXPECT_EQ(corners.state(), "corner 1 (top left), steps of 50 px");
 }
 
+TEST(DraggedCorners, TheMouseDragsTheCornerThatItGrabsByWhereItGrabsIt) {
+  DraggedCorners corners(calib::reference_rig());
+  const auto before = corners.corners_px();
+  ASSERT_TRUE(corners.grab(before[2] + glm::dvec2(10, -5)));
+  corners.drag_to(before[2] + glm::dvec2(40, 25));
+  corners.drop();
+  corners.drag_to({0, 0});
+  EXPECT_LT(glm::distance(corners.corners_px()[2], before[2] + glm::dvec2(30, 30)), 1e-9);
+  for (const std::size_t other : {0, 1, 3}) EXPECT_EQ(corners.corners_px()[other], before[other]);
+  EXPECT_EQ(corners.state(), "corner 3 (bottom right), steps of 5 px") << "arrows go on with it";
+}
+
+TEST(DraggedCorners, TheMouseDragsNothingFarFromAllCorners) {
+  DraggedCorners corners(calib::reference_rig());
+  const auto before = corners.corners_px();
+  EXPECT_FALSE(corners.grab((before[0] + before[2]) / 2.0));
+  corners.drag_to({5, 5});
+  EXPECT_EQ(corners.corners_px(), before);
+}
+
 TEST(DraggedCorners, OtherKeysMeanNothing) {
   DraggedCorners corners(calib::reference_rig());
   for (const char key : {'0', '5', 'x', '\x1b'}) EXPECT_FALSE(corners.press({key})) << key;

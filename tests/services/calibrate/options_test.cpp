@@ -22,6 +22,16 @@ std::string refusal(std::vector<std::string> words) {
   return options ? "" : options.error().what;
 }
 
+TEST(CalibrateOptions, WhatDoesSomethingElseStandsAlone) {
+  EXPECT_EQ(parsed({"rig.toml", "tracker", "--reflector", "8"})->reflector_mm, 8);
+  EXPECT_THAT(refusal({"rig.toml", "--reflector", "0"}), HasSubstr("--reflector"));
+  EXPECT_EQ(parsed({"rig.toml", "--points", "data"})->points, "data");
+  EXPECT_TRUE(parsed({"rig.toml", "--correct"})->correct);
+  EXPECT_TRUE(parsed({"rig.toml", "--undo"})->undo);
+  EXPECT_THAT(refusal({"rig.toml", "--undo", "--correct"}), HasSubstr("choose one"));
+  EXPECT_THAT(refusal({"rig.toml", "tracker", "--points", "data"}), HasSubstr("no single steps"));
+}
+
 TEST(CalibrateOptions, ARigFileIsEnough) {
   const auto options = parsed({"show/rig.toml"});
   ASSERT_TRUE(options) << options.error().what;

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "tests/scratch.hpp"
 
 namespace handcast::calibrate {
@@ -49,12 +51,37 @@ TEST_F(RigSettings, WithSizesItRunsWithACalibrationThatTheServicesAccept) {
   EXPECT_LT(glm::distance(rough->to_projector({639.5, 511.5}), {959.5, 539.5}), 1e-6);
 }
 
+TEST_F(RigSettings, ACalibrationOfAnotherCameraLeadsToOneOfItsOwn) {
+  auto first = calib::reference_rig();
+  first.camera_device = "usb-1.2";
+  rig_.calibration = scratch_.path() / "first.toml";
+  std::ofstream(rig_.calibration) << calib::print_calibration(first);
+  rig_.camera.backend = "v4l2";
+  const OwnDevices same{"HD Webcam", "", {"HD Webcam", "usb-1.2"}, {}};
+  const auto as_before = rig_as_it_runs(options_, rig_, same);
+  ASSERT_TRUE(as_before) << as_before.error().what;
+  EXPECT_TRUE(as_before->new_devices.empty()) << "another name of the same camera";
+
+  const OwnDevices other{"Other Cam 2", "", {"Other Cam 2"}, {}};
+  const auto refused = rig_as_it_runs(options_, rig_, other);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what,
+              HasSubstr("made with the camera 'usb-1.2', and the rig has 'Other Cam 2'"));
+  EXPECT_THAT(refused.error().what, HasSubstr("--camera 1280x1024 --projector 1024x768"));
+
+  options_.camera = {640, 480};
+  options_.projector = {1024, 768};
+  const auto anew = rig_as_it_runs(options_, rig_, other);
+  ASSERT_TRUE(anew) << anew.error().what;
+  EXPECT_EQ(anew->new_devices, "Other_Cam_2");
+  EXPECT_EQ(anew->calibration.camera.width_px, 640);
+}
+
 TEST_F(RigSettings, TheTwinShowsWhatAStepNeeds) {
-  const auto settings = twin_scene(Step::screen, calib::Board{});
+  const auto settings = twin_scene(Step::screen, Options{});
   EXPECT_THAT(settings, Contains("twin.prop.board=charuco:11x8:20"));
   EXPECT_THAT(settings, Contains("twin.image.leak=1"));
-  EXPECT_THAT(twin_scene(Step::tracker, calib::Board{}),
-              testing::Not(Contains(HasSubstr("twin.prop"))));
+  EXPECT_THAT(twin_scene(Step::tracker, Options{}), testing::Not(Contains(HasSubstr("twin.prop"))));
 }
 
 }  // namespace

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::calibrate {
+
+/// Distances from the camera between which a hand should move.
+/// @{
+inline constexpr double kNear_m = 0.55, kFar_m = 0.9;
+/// @}
+
+/// How much of the volume was seen, and whether the hand still finds new places in it.
+class Harvest {
+ public:
+  /// False if all was seen, or enough and the hand was at no new place for kNothingNew_s.
+  bool goes_on(double share, bool sees_hand) {
+    const auto now = now_ns();
+    if (sees_hand) waited_ns_ += now - looked_ns_;
+    looked_ns_ = now;
+    if (share > share_) waited_ns_ = 0;
+    share_ = share;
+    return share < 1 && (share < kEnough || waited_ns_ < seconds_to_ns(kNothingNew_s));
+  }
+
+ private:
+  static constexpr double kEnough = 0.5, kNothingNew_s = 20;
+
+  double share_ = 0;
+  std::int64_t looked_ns_ = now_ns(), waited_ns_ = 0;
+};
+
+}  // namespace handcast::calibrate

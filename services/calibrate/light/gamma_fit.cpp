@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/light/gamma_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "renderer/base/srgb.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+constexpr double kLeastGamma = 0.3, kMostGamma = 5;
+constexpr std::size_t kLeastLevels = 5;
+
+template <class Curve>
+double misfit_of(std::span<const GreyStep> steps, const Curve& curve) {
+  double sum = 0;
+  for (const auto& step : steps) sum += std::pow(step.share - curve(step.level), 2);
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(steps.size(), 1)));
+}
+
+double misfit_of_gamma(std::span<const GreyStep> steps, double brightest, double gamma) {
+  return misfit_of(steps, [&](double level) { return share_of(level, brightest, gamma); });
+}
+
+/// The exponent of the least misfit, which has one minimum: golden section search.
+double best_gamma(std::span<const GreyStep> steps, double brightest) {
+  constexpr double kGolden = 0.6180339887, kExact = 1e-4;
+  double low = kLeastGamma, high = kMostGamma;
+  while (high - low > kExact) {
+    const double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+    if (misfit_of_gamma(steps, brightest, left) < misfit_of_gamma(steps, brightest, right))
+      high = right;
+    else
+      low = left;
+  }
+  return (low + high) / 2;
+}
+
+/// Fewer resamples than the fit has steps would be too few; 200 give the 95 % to a few percent.
+std::pair<double, double> interval_of(std::span<const GreyStep> steps, double brightest) {
+  constexpr std::size_t kResamples = 200;
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::size_t> any(0, steps.size() - 1);
+  std::vector<double> gammas;
+  std::vector<GreyStep> sample(steps.size());
+  for (std::size_t i = 0; i < kResamples; ++i) {
+    for (auto& step : sample) step = steps[any(random)];
+    gammas.push_back(best_gamma(sample, brightest));
+  }
+  std::ranges::sort(gammas);
+  return {gammas[kResamples / 40], gammas[kResamples - 1 - kResamples / 40]};
+}
+
+/// The correlation of level and share.
+double correlation(std::span<const GreyStep> steps) {
+  const auto count = static_cast<double>(steps.size());
+  double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+  for (const auto& step : steps) {
+    x += step.level / count;
+    y += step.share / count;
+  }
+  for (const auto& step : steps) {
+    xx += std::pow(step.level - x, 2);
+    yy += std::pow(step.share - y, 2);
+    xy += (step.level - x) * (step.share - y);
+  }
+  return xy / std::sqrt(std::max(xx * yy, 1e-12));
+}
+
+constexpr int kSide_px = 260;  ///< of the picture
+
+std::string point_of(double level, double share) {
+  return fmt::format("{:.1f},{:.1f}", level * kSide_px, (1 - share) * kSide_px);
+}
+
+std::string curve_svg(double brightest, double gamma_setting, std::string_view style) {
+  constexpr int kPoints = 64;
+  std::string points;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double level = brightest * i / kPoints;
+    points += point_of(level, share_of(level, brightest, gamma_setting)) + " ";
+  }
+  return fmt::format("<polyline points='{}' fill='none' stroke='currentColor' {}/>", points, style);
+}
+
+}  // namespace
+
+double share_of(double level, double brightest, double gamma_setting) {
+  if (gamma_setting == 0) return renderer::srgb_light(level) / renderer::srgb_light(brightest);
+  return std::pow(level / brightest, gamma_setting);
+}
+
+Result<GammaFit> fit_gamma(std::span<const GreyStep> steps, double brightest) {
+  std::set<double> levels;
+  for (const auto& step : steps) levels.insert(step.level);
+  if (levels.size() < kLeastLevels || !(brightest > 0))
+    return fail(Errc::bad_data,
+                fmt::format("the light of {} grey levels was seen, and {} are needed",
+                            levels.size(), kLeastLevels));
+  constexpr double kLeastCorrelation = 0.7;
+  if (!(correlation(steps) > kLeastCorrelation))
+    return fail(Errc::bad_data,
+                "the light does not grow with the grey level: something moved, or the camera sees "
+                "too little of the projector's light");
+  GammaFit fit;
+  fit.gamma = best_gamma(steps, brightest);
+  std::tie(fit.low, fit.high) = interval_of(steps, brightest);
+  fit.misfit = misfit_of_gamma(steps, brightest, fit.gamma);
+  fit.misfit_of_srgb = misfit_of_gamma(steps, brightest, 0);
+  constexpr double kAtEdge = 0.01;
+  if (fit.gamma < kLeastGamma + kAtEdge || fit.gamma > kMostGamma - kAtEdge)
+    return fail(Errc::bad_data,
+                fmt::format("the light is level^{:.1f}, which no projector makes: the camera's "
+                            "images are saturated or not linear",
+                            fit.gamma));
+  return fit;
+}
+
+std::string gamma_svg(std::span<const GreyStep> steps, double brightest, const GammaFit& fit,
+                      double gamma_setting) {
+  std::string dots;
+  for (const auto& step : steps)
+    dots += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2'/>", step.level * kSide_px,
+                        (1 - step.share) * kSide_px);
+  return fmt::format(
+      "<figure><svg width='{0}' viewBox='-2 -2 {0} {0}'>{1}{2}{3}</svg><figcaption>The light "
+      "(upwards, as a share of the brightest) by the level that the projector was given. Line: "
+      "the curve that fits. Dashes: the rig's setting.</figcaption></figure>",
+      kSide_px + 4, curve_svg(brightest, fit.setting(), "stroke-width='1.5'"),
+      curve_svg(brightest, gamma_setting, "stroke-dasharray='4 4'"), dots);
+}
+
+}  // namespace handcast::calibrate

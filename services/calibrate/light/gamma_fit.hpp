@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string>
+
+#include "ipc/base/result.hpp"
+
+namespace handcast::calibrate {
+
+/// A grey level that was projected, and the light that was seen.
+struct GreyStep {
+  double level = 0;  ///< that the projector was given, 0..1
+  double share = 0;  ///< its light as a share of that of the brightest level
+};
+
+/// How a projector turns levels into light.
+struct GammaFit {
+  double gamma = 0;           ///< light = level^gamma
+  double low = 0, high = 0;   ///< 95 % interval of gamma
+  double misfit = 0;          ///< of the shares, root of the mean square
+  double misfit_of_srgb = 0;  ///< the same for the curve of sRGB (IEC 61966-2-1)
+  bool is_srgb() const { return misfit_of_srgb <= misfit; }
+  /// The value of projector.gamma.
+  double setting() const { return is_srgb() ? 0 : gamma; }
+};
+
+/// The light of a level by a setting of projector.gamma, as a share of that of `brightest`.
+double share_of(double level, double brightest, double gamma_setting);
+
+/// Fits the exponent by least squares of the shares; the interval is that of 200 resamples of the
+/// steps (percentiles). `brightest`: the level whose share is 1. Errors: bad_data (fewer than 5
+/// levels; the light does not grow with the level; an exponent below 0.3 or above 5).
+Result<GammaFit> fit_gamma(std::span<const GreyStep> steps, double brightest);
+
+/// A picture (SVG) of the steps, of the fitted curve and of the one that the rig's setting
+/// `gamma_setting` stands for, and a caption.
+std::string gamma_svg(std::span<const GreyStep> steps, double brightest, const GammaFit& fit,
+                      double gamma_setting);
+
+}  // namespace handcast::calibrate
