@@ -6,6 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "services/devices/trackers.hpp"
+
 namespace handcast::devices {
 namespace {
 
@@ -47,12 +49,13 @@ std::vector<Attached> joined(std::vector<Attached> first, std::vector<Attached> 
 
 std::vector<Attached> attached_of(Kind kind) {
   if (kind == Kind::camera) return joined(industrial_cameras(), webcams());
+  if (kind == Kind::tracker) return trackers();
   return kind == Kind::display ? joined(monitors(), connectors()) : controllers();
 }
 
 std::vector<Attached> all_attached() {
   return joined(joined(attached_of(Kind::camera), attached_of(Kind::display)),
-                attached_of(Kind::controller));
+                joined(attached_of(Kind::controller), attached_of(Kind::tracker)));
 }
 
 std::vector<std::string> blind_spots() {

@@ -9,8 +9,9 @@
 namespace handcast::devices {
 
 /// What a device can be in a rig.
-enum class Kind { camera, display, controller };
-inline constexpr std::array<std::string_view, 3> kKindNames{"cameras", "displays", "controllers"};
+enum class Kind { camera, display, controller, tracker };
+inline constexpr std::array<std::string_view, 4> kKindNames{"cameras", "displays", "controllers",
+                                                            "trackers"};
 
 /// Sizes of the images that a device takes or shows.
 struct Mode {

@@ -7,15 +7,24 @@
 #include "ipc/base/program.hpp"
 #include "ipc/base/verb_options.hpp"
 #include "services/devices/attached.hpp"
+#include "services/devices/leap_calibration.hpp"
 
 static int run_verb(int argc, char** argv) {
   using namespace handcast;
   CLI::App app(
-      "Lists the cameras, displays and projector controllers of this computer, with the settings "
-      "that use them, and why one cannot be opened.",
+      "Lists the cameras, displays, projector controllers and hand trackers of this computer, with "
+      "the settings that use them, and why one cannot be opened.",
       "handcast devices");
   bool as_json = false;
   app.add_flag("--json", as_json, "The same as JSON");
+  devices::LeapCalibration leap;
+  app.add_option(
+      "--leap-calibration", leap.file,
+      "Write a calibration file with the lens that a Leap Motion Controller has measured "
+      "itself; its projector and tracker are still to be calibrated");
+  app.add_option("--leap", leap.device, "Its serial number or USB port; default: the only one");
+  app.add_option("--eye", leap.eye, "left or right")->capture_default_str();
+  app.add_option("--size", leap.size, "Size of its images")->capture_default_str();
   const auto text = parse_options(app, argc, argv);
   if (!text) {
     fmt::print(stderr, "handcast devices: {}\n", text.error().what);
@@ -24,6 +33,12 @@ static int run_verb(int argc, char** argv) {
   if (!text->empty()) {
     fmt::print("{}", *text);
     return kExitDone;
+  }
+  if (!leap.file.empty()) {
+    const auto written = devices::write_leap_calibration(leap);
+    if (written) return kExitDone;
+    fmt::print(stderr, "handcast devices: {}\n", written.error().what);
+    return exit_code_of(written.error());
   }
   const auto attached = devices::all_attached();
   fmt::print("{}", as_json ? devices::to_json(attached)

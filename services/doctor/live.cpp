@@ -9,6 +9,7 @@
 #include "ipc/client/stream.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "services/doctor/images.hpp"
 
@@ -29,6 +30,7 @@ struct Seen {
   Greys greys;
   std::int64_t worst_clock_ns = 0;
   std::uint64_t images = 0, searched = 0, with_hand = 0;
+  std::uint64_t tracked = 0, tracked_with_hand = 0;  ///< samples of the tracker
 };
 
 void look_at(const msg::CameraFrame& frame, std::int64_t& next_look_ns, Seen& seen) {
@@ -43,6 +45,7 @@ Result<Seen> watch(const std::string& rig, double seconds) {
   auto frames = client::open_stream<msg::CameraFrame>(rig, "camera.frames");
   if (!frames) return tl::make_unexpected(std::move(frames.error()));
   auto landmarks = client::open_stream<msg::Landmarks>(rig, "landmarks.hands");
+  auto poses = client::open_stream<msg::HandPoses>(rig, "pose.hands");
   Seen seen;
   const std::int64_t begun_ns = now_ns();
   // A ring still has what was published before a service stopped.
@@ -55,6 +58,13 @@ Result<Seen> watch(const std::string& rig, double seconds) {
     if (frame && is_new(**frame)) look_at(**frame, next_look_ns, seen);
     if (!frame && frame.error().code == Errc::disconnected)
       return tl::make_unexpected(frame.error());
+    while (poses) {
+      const auto sample = poses->next(Deadline::now());
+      if (!sample) break;
+      if (!is_new(**sample)) continue;
+      ++seen.tracked;
+      seen.tracked_with_hand += (*sample)->count > 0;
+    }
     if (!landmarks) continue;
     while (const auto found = landmarks->next(Deadline::now())) {
       if (!is_new(**found)) continue;
@@ -138,6 +148,18 @@ Finding hands_in(const Seen& seen) {
           "hold a hand in the camera's view while the doctor looks; `handcast preview` shows it"};
 }
 
+Finding tracker_of(const Seen& seen, double seconds) {
+  if (seen.tracked == 0)
+    return {"tracker", Grade::fault, "the pose service delivers nothing",
+            "`handcast status` shows its last words"};
+  const auto sentence = fmt::format(
+      "{:.0f} samples a second, a hand in {:.0f} %", static_cast<double>(seen.tracked) / seconds,
+      100. * static_cast<double>(seen.tracked_with_hand) / static_cast<double>(seen.tracked));
+  if (seen.tracked_with_hand > 0) return {"tracker", Grade::good, sentence, ""};
+  return {"tracker", Grade::advice, sentence,
+          "hold a hand in the tracker's view while the doctor looks"};
+}
+
 Finding light_of(const json& status) {
   const auto light = status.value("light", json());
   if (!light.is_object())
@@ -165,6 +187,7 @@ Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds
   findings.push_back(clock_of(*seen));
   findings.push_back(losses_in(status, *seen));
   findings.push_back(hands_in(*seen));
+  findings.push_back(tracker_of(*seen, seconds));
   if (!seen->greys.empty()) {
     auto images = judge_images(seen->greys, seen->with_hand > 0);
     findings.insert(findings.end(), images.begin(), images.end());

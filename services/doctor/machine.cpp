@@ -146,7 +146,8 @@ std::vector<Finding> examine_machine(const config::Rig& rig, const fs::path& roo
     findings.push_back(socket_buffers(root));
     findings.push_back(packet_size(root));
   }
-  if (has_aravis || rig.dlp.backend != "none") findings.push_back(udev_rules(root));
+  if (has_aravis || rig.camera.backend == "leap" || rig.dlp.backend != "none")
+    findings.push_back(udev_rules(root));
   return findings;
 }
 

@@ -14,6 +14,7 @@
 #include "services/doctor/machine.hpp"
 #include "services/doctor/rig_file.hpp"
 #include "services/doctor/start_check.hpp"
+#include "services/doctor/tracker.hpp"
 
 namespace handcast::doctor {
 namespace {
@@ -26,21 +27,23 @@ struct Options {
 };
 
 /// The findings about a running rig; one finding if it is not up.
-std::vector<Finding> examine_if_up(const std::string& rig, double seconds) {
-  auto findings = examine_live(rig, seconds);
-  if (findings) return std::move(*findings);
-  return {{"rig", Grade::advice,
-           "it was not watched, so nothing is known of cameras, hands and light: " +
-               findings.error().what,
-           "start it with `handcast up`, and call the doctor again"}};
+std::vector<Finding> findings_of(Result<std::vector<Finding>> live) {
+  if (live) return std::move(*live);
+  return {
+      {"rig", Grade::advice,
+       "it was not watched, so nothing is known of cameras, hands and light: " + live.error().what,
+       "start it with `handcast up`, and call the doctor again"}};
 }
 
 std::vector<Finding> examine(const Options& options) {
   const auto rig = config::load_rig(options.file, options.settings);
   auto findings = examine_file(rig);
   if (!rig) return findings;
-  for (auto more : {examine_start(options.file, options.settings), examine_machine(*rig),
-                    examine_if_up(rig->name, options.seconds)})
+  auto live = examine_live(rig->name, options.seconds);
+  const bool is_up = live.has_value();
+  for (auto more :
+       {examine_start(options.file, options.settings), examine_machine(*rig),
+        examine_tracker(*rig, is_up ? Asking::not_now : Asking::now), findings_of(std::move(live))})
     std::move(more.begin(), more.end(), std::back_inserter(findings));
   return findings;
 }

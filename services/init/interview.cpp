@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
+#include "ipc/base/join.hpp"
 #include "ipc/base/rig_name.hpp"
 
 namespace handcast::init {
@@ -28,26 +30,64 @@ Question choice(const std::string& flag, const std::string& text,
   return question;
 }
 
-Result<void> take_tracker(const std::string& answer, Plan& plan) {
-  if (answer == kNone) {
-    plan.tracker = Tracker::none;
-    return {};
-  }
-  if (answer != "twin")
-    return fail(Errc::bad_config, fmt::format("'{}' is not none or twin", answer));
-  if (plan.camera.is_device())
+/// A real tracker among the devices; nullptr if there is none with this back end.
+const devices::Attached* tracker_among(const std::vector<devices::Attached>& attached,
+                                       std::string_view backend) {
+  for (const auto& device : attached)
+    if (device.kind == devices::Kind::tracker && device.settings.front().second == backend)
+      return &device;
+  return nullptr;
+}
+
+/// The words of the trackers that a rig of these devices can have.
+std::vector<std::string_view> tracker_words(const std::vector<devices::Attached>& attached) {
+  std::vector<std::string_view> words;
+  for (const auto word : words_of(Tracker{}))
+    if (word == kNone || word == "twin" || tracker_among(attached, word)) words.push_back(word);
+  return words;
+}
+
+Result<void> take_tracker(const std::string& answer, const std::vector<devices::Attached>& attached,
+                          Plan& plan) {
+  const auto words = tracker_words(attached);
+  if (std::ranges::find(words, answer) == words.end())
+    return fail(Errc::bad_config, fmt::format("'{}' is not {}", answer, join(words, " or ")));
+  if (answer == "twin" && plan.camera.is_device())
     return fail(Errc::bad_config,
                 "the twin's tracker does not see the hand in front of a real camera; take none");
-  plan.tracker = Tracker::twin;
+  if (answer != "twin" && answer != kNone && !plan.camera.is_device())
+    return fail(Errc::bad_config, "a real tracker does not see the twin's hand; take twin");
+  const auto all = words_of(Tracker{});
+  plan.tracker = static_cast<Tracker>(std::ranges::find(all, answer) - all.begin());
+  const auto* device = tracker_among(attached, answer);
+  plan.tracker_name = device ? device->name : "";
   return {};
 }
 
-Question tracker_question(Plan& plan) {
+/// A real tracker that can be used now, before none; with the twin's camera, its tracker.
+std::string likely_tracker(const std::vector<devices::Attached>& attached, const Plan& plan) {
+  if (!plan.camera.is_device()) return "twin";
+  for (const auto& device : attached)
+    if (device.kind == devices::Kind::tracker && device.trouble.empty())
+      return device.settings.front().second;
+  return std::string(kNone);
+}
+
+Question tracker_question(const std::vector<devices::Attached>& attached, Plan& plan) {
   Question question{.flag = "--tracker", .text = "Which hand tracker?"};
-  question.preset = plan.camera.is_device() ? "none" : "twin";
+  question.preset = likely_tracker(attached, plan);
   if (!plan.camera.is_device()) question.options.push_back({"twin", "the digital twin's"});
+  for (const auto word : tracker_words(attached))
+    if (const auto* device = tracker_among(attached, word); device && plan.camera.is_device()) {
+      const auto& trouble = device->trouble;
+      question.options.push_back(
+          {std::string(word),
+           one_line(device->name + (trouble.empty() ? "" : "; cannot be used now: " + trouble))});
+    }
   question.options.push_back({"none", "none: the hand is found in the camera's image alone"});
-  question.take = [&plan](const std::string& answer) { return take_tracker(answer, plan); };
+  question.take = [&attached, &plan](const std::string& answer) {
+    return take_tracker(answer, attached, plan);
+  };
   return question;
 }
 
@@ -175,7 +215,8 @@ Result<Plan> interview(const std::vector<devices::Attached>& attached, const Opt
   // The twin's hand has its distance and the reference rig its calibration: only flags say
   // otherwise.
   const auto ask_distance = [&] {
-    const bool is_asked = plan.camera.is_device() || flags.distance;
+    const bool is_lifted = plan.camera.is_device() && plan.tracker == Tracker::none;
+    const bool is_asked = is_lifted || flags.distance;
     return is_asked ? settle(distance_question(plan), flags.distance, prompt) : Result<void>();
   };
   const auto ask_calibration = [&] {
@@ -184,7 +225,7 @@ Result<Plan> interview(const std::vector<devices::Attached>& attached, const Opt
   };
   return ask_camera()
       .and_then(ask_light)
-      .and_then([&] { return settle(tracker_question(plan), flags.tracker, prompt); })
+      .and_then([&] { return settle(tracker_question(attached, plan), flags.tracker, prompt); })
       .and_then(ask_distance)
       .and_then(ask_calibration)
       .and_then([&] { return settle(name_question(options, plan), flags.name, prompt); })

@@ -15,12 +15,16 @@
 
 namespace handcast::init {
 
-/// The back ends of `pose` that a new rig can have. A driver of a real tracker will be a row more.
+/// The back ends of `pose` that a new rig can have.
 enum class Tracker {
-  none,  ///< landmarks are lifted to poses
-  twin,  ///< watches the twin's hand
+  none,    ///< landmarks are lifted to poses
+  twin,    ///< watches the twin's hand
+  leapc,   ///< Ultraleap's service
+  openxr,  ///< an OpenXR runtime
 };
-constexpr std::array<std::string_view, 2> words_of(Tracker) { return {"none", "twin"}; }
+constexpr std::array<std::string_view, 4> words_of(Tracker) {
+  return {"none", "twin", "leapc", "openxr"};
+}
 
 /// What a rig file is written from.
 struct Plan {
@@ -28,7 +32,8 @@ struct Plan {
   Candidate camera;
   Candidate light;
   Tracker tracker = Tracker::twin;
-  double distance_m = 0.73;  ///< from the camera to the hand, if there is no tracker
+  std::string tracker_name{};  ///< of a real one, for people
+  double distance_m = 0.73;    ///< from the camera to the hand, if there is no tracker
   /// Empty: none yet, or the reference rig's for the twin.
   /// @{
   std::filesystem::path calibration_file;

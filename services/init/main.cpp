@@ -44,7 +44,7 @@ Result<void> write(const Options& options, const std::string& text) {
 }
 
 /// What is attached. The search for cameras takes a second, so it is left out where the answer is
-/// known.
+/// known. The twin's camera sees no hand in front of a real tracker.
 std::vector<devices::Attached> look(const Flags& flags) {
   if (flags.camera != "twin") return devices::all_attached();
   auto attached = devices::attached_of(devices::Kind::display);

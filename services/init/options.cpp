@@ -19,7 +19,9 @@ Result<Options> parse(int argc, char** argv) {
   app.add_option("--output", flags.output,
                  "A display, as `handcast devices` lists it, or file: pictures in a folder, or "
                  "twin");
-  app.add_option("--tracker", flags.tracker, "none, or twin (with the camera twin)");
+  app.add_option("--tracker", flags.tracker,
+                 "none, or one that `handcast devices` lists: leapc, openxr; or twin (with the "
+                 "camera twin)");
   app.add_option("--distance", flags.distance,
                  "Without a tracker: metres from the camera to the hand");
   app.add_option("--calibration", flags.calibration,

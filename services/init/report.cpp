@@ -28,6 +28,7 @@ std::string light_of(const Plan& plan) {
 
 std::string tracker_of(const Plan& plan) {
   if (plan.tracker == Tracker::twin) return "the digital twin's";
+  if (plan.tracker != Tracker::none) return plan.tracker_name;
   return fmt::format("none; the hand is {:g} m from the camera", plan.distance_m);
 }
 

@@ -119,7 +119,23 @@ std::string camera(const Plan& plan) {
          "delivery_ms = 0\n";
 }
 
+std::string real_tracker(const Plan& plan) {
+  const auto head = fmt::format("\n[pose]\n# {}\n", one_line(plan.tracker_name));
+  const auto landmarks =
+      "\n[landmarks]\n"
+      "backend = \"handcast\"\n";
+  if (plan.tracker == Tracker::leapc) return head + "backend = \"leapc\"\n" + landmarks;
+  return head +
+         "backend = \"openxr\"\n"
+         "# How long ago the newest joints were measured that the runtime has. It does not say; "
+         "the step `tracker` of\n"
+         "# `handcast calibrate` finds what is left of this.\n"
+         "openxr.age_ms = 10\n" +
+         landmarks;
+}
+
 std::string tracker(const Plan& plan) {
+  if (plan.tracker == Tracker::leapc || plan.tracker == Tracker::openxr) return real_tracker(plan);
   if (plan.tracker == Tracker::twin)
     return "\n[pose]\n# The twin's tracker. With \"none\", the hand is found in the camera's image "
            "alone.\nbackend = \"twin\"\n";

@@ -10,7 +10,11 @@
 #include "services/doctor/machine.hpp"
 #include "services/doctor/rig_file.hpp"
 #include "services/doctor/start_check.hpp"
+#include "services/doctor/tracker.hpp"
 #include "tests/scratch.hpp"
+#ifdef HANDCAST_TEST_RUNTIME_MANIFEST
+#include "tests/services/pose/openxr/scripted_runtime.hpp"
+#endif
 
 namespace handcast::doctor {
 namespace {
@@ -77,6 +81,48 @@ TEST_F(Computer, TheRulesForUsbDevicesAreLookedForIfTheRigHasOne) {
   write("etc/udev/rules.d/70-handcast.rules", "");
   EXPECT_EQ(finding("udev rules").grade, Grade::good);
 }
+
+TEST_F(Computer, TheSoftwareAndTheDeviceOfUltraleapAreLookedFor) {
+  const auto tracker = [this](const char* check) {
+    return finding_of(examine_tracker(rig_, Asking::now, scratch_.path()), check);
+  };
+  EXPECT_EQ(tracker("tracker software").sentence, "") << "the twin's tracker needs none";
+  rig_.pose.backend = "leapc";
+  EXPECT_EQ(tracker("tracker software").grade, Grade::fault);
+  EXPECT_THAT(tracker("tracker software").remedy, HasSubstr("install Ultraleap's"));
+  EXPECT_EQ(tracker("tracker device").grade, Grade::fault);
+  write("usr/lib/ultraleap-hand-tracking-service/libLeapC.so.5", "");
+  write("sys/bus/usb/devices/1-4/idVendor", "f182");
+  write("sys/bus/usb/devices/1-4/idProduct", "0003");
+  EXPECT_EQ(tracker("tracker software").grade, Grade::good);
+  EXPECT_EQ(tracker("tracker device").sentence, "Leap Motion Controller (f182:0003) at USB 1-4");
+}
+
+TEST_F(Computer, ARuntimeThatIsNotThereIsAFaultWithARemedy) {
+  rig_.pose.backend = "openxr";
+  rig_.pose.openxr.runtime = "/nowhere/runtime.json";
+  const auto findings = examine_tracker(rig_, Asking::now);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].grade, Grade::fault);
+  EXPECT_THAT(findings[0].sentence, HasSubstr("/nowhere/runtime.json"));
+  EXPECT_THAT(findings[0].remedy, HasSubstr("install a runtime"));
+}
+
+#ifdef HANDCAST_TEST_RUNTIME_MANIFEST
+TEST_F(Computer, ARuntimeIsAskedUnlessTheRigIsUsingIt) {
+  rig_.pose.backend = "openxr";
+  rig_.pose.openxr.runtime = HANDCAST_TEST_RUNTIME_MANIFEST;
+  const auto asked = examine_tracker(rig_, Asking::now);
+  EXPECT_FALSE(has_fault(asked));
+  EXPECT_EQ(finding_of(asked, "tracker service").sentence,
+            "Test Runtime 0.1.2, 'Test Tracker' answers");
+  EXPECT_EQ(examine_tracker(rig_, Asking::not_now).size(), 1u);
+  const test::ScriptedRuntime runtime("no_hands");
+  const auto found = finding_of(examine_tracker(rig_, Asking::now), "tracker service");
+  EXPECT_EQ(found.grade, Grade::fault);
+  EXPECT_THAT(found.sentence, HasSubstr("no hand tracker"));
+}
+#endif
 
 Greys greys_of(int background, int hand, double share) {
   std::vector<std::uint8_t> pixels(10'000, static_cast<std::uint8_t>(background));

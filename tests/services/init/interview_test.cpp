@@ -97,6 +97,30 @@ TEST_F(Interview, FlagsAnswerAllQuestions) {
   EXPECT_FALSE(plan->controller) << "no light goes to a projector";
 }
 
+TEST_F(Interview, ATrackerThatCanBeUsedIsOfferedFirstAndNeedsNoDistance) {
+  const std::vector<Attached> attached{
+      colour_webcam(), monitor("HDMI-1", "EPSON PJ", false),
+      tracker("leapc", "Leap Motion Controller", "Ultraleap's library is missing"),
+      tracker("openxr", "OpenXR runtime Monado")};
+  const auto plan = ask(attached, "\n\n\nnone\nstage\n");
+  ASSERT_TRUE(plan) << plan.error().what;
+  EXPECT_EQ(plan->tracker, Tracker::openxr);
+  EXPECT_EQ(plan->tracker_name, "OpenXR runtime Monado");
+  EXPECT_EQ(questions(), 5) << "camera, light, tracker, calibration, name";
+  EXPECT_THAT(shown_.str(), HasSubstr("cannot be used now: Ultraleap's library is missing"));
+  options_.flags = {.tracker = "leapc"};
+  EXPECT_EQ(guess(attached).value().tracker, Tracker::leapc) << "it may be usable later";
+  options_.flags = {.distance = "1"};
+  EXPECT_THAT(refusal_of(guess(attached)), HasSubstr("--distance: it counts only without"));
+}
+
+TEST_F(Interview, ARealTrackerDoesNotSeeTheTwinsHand) {
+  options_.flags = {.camera = "twin", .tracker = "openxr"};
+  EXPECT_THAT(refusal_of(guess({tracker("openxr", "OpenXR runtime Monado")})),
+              HasSubstr("--tracker: a real tracker does not see the twin's hand"));
+  EXPECT_THAT(refusal_of(guess({})), HasSubstr("'openxr' is not none or twin"));
+}
+
 TEST_F(Interview, ASettingThatCannotWorkIsRefusedWithItsFlag) {
   const auto refused = [this](Flags flags) {
     options_.flags = std::move(flags);

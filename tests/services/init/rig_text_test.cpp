@@ -62,6 +62,19 @@ class RigText : public testing::Test {
   Options options_{.file = "/srv/my_rig.toml"};
 };
 
+TEST_F(RigText, ARealTrackerIsWrittenWithTheDetectorThatSeesTheSameHand) {
+  for (const auto* backend : {"openxr", "leapc"}) {
+    const auto text = text_of({colour_webcam(), tracker(backend, "It \n it")});
+    EXPECT_THAT(text, AllOf(HasSubstr(std::string("[pose]\n# It ? it\nbackend = \"") + backend),
+                            Not(HasSubstr("distance_m"))));
+    const auto rig = read(text);
+    EXPECT_EQ(rig.pose.backend, backend);
+    EXPECT_EQ(rig.landmarks.backend, "handcast") << "the twin's detector sees another hand";
+  }
+  EXPECT_THAT(report(plan_of({colour_webcam(), tracker("openxr", "Monado")}), "a.toml"),
+              HasSubstr("tracker      Monado"));
+}
+
 TEST_F(RigText, ForEveryCombinationOfDevicesIsARigThatTheDoctorPasses) {
   const std::vector<std::vector<Attached>> cameras{{},
                                                    {colour_webcam()},

@@ -66,4 +66,14 @@ inline devices::Attached controller() {
           .names = {"LCR3", "/dev/hidraw0"}};
 }
 
+inline devices::Attached tracker(const std::string& backend, const std::string& name,
+                                 const std::string& trouble = "") {
+  return {.kind = devices::Kind::tracker,
+          .name = name,
+          .about = "",
+          .settings = {{"pose.backend", backend}},
+          .trouble = trouble,
+          .names = {backend}};
+}
+
 }  // namespace handcast::init

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "ipc/base/result.hpp"
+
+namespace handcast::devices {
+
+/// What of a Leap Motion Controller's own calibration is written.
+struct LeapCalibration {
+  std::string file;              ///< must not exist
+  std::string device;            ///< serial number or USB port; empty: the only one
+  std::string eye = "left";      ///< or "right"
+  std::string size = "640x240";  ///< of the images
+};
+
+/// Writes a calibration file with the lens that the controller has measured itself. Errors:
+/// bad_config (the file exists or cannot be written, no such size or eye, not in this build), those
+/// of the controller.
+Result<void> write_leap_calibration(const LeapCalibration& wanted);
+
+}  // namespace handcast::devices
