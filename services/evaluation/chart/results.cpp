@@ -31,7 +31,7 @@ Result<Run> run_of(const sweep::Table& table, const sweep::Row& row, const std::
   Run run{after(table.heading.stamp, "plan"), row[1], {}, {}};
   for (std::size_t i = 2; i + 1 < row.size(); ++i) {
     const auto& column = table.heading.columns[i];
-    if (row[i].empty()) continue;
+    if (row[i].empty() || column == sweep::kDetector) continue;
     if (is_setting(column)) {
       run.settings[column] = row[i];
     } else if (const auto value = number_of(row[i])) {

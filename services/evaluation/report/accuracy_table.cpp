@@ -90,6 +90,40 @@ std::string metric_rows(const Inputs& inputs, const Metric& metric) {
                            metric.reading);
 }
 
+/// A value of the detector of a run; null if the run has none.
+nlohmann::json of_detector(const Run& run, const char* key) {
+  const nlohmann::json::json_pointer place("/detector");
+  if (!run.metrics.content || !run.metrics.content->contains(place)) return {};
+  const auto& detector = run.metrics.content->at(place);
+  return detector.is_object() ? detector.value(key, nlohmann::json()) : nlohmann::json();
+}
+
+/// What found the landmarks of a run, and how old they were.
+std::string detector_of(const Run& run) {
+  const auto backend = of_detector(run, "backend"), used = of_detector(run, "used");
+  if (used.is_boolean() && !used.get<bool>()) return "not used";
+  if (!backend.is_string()) return "–";
+  return fmt::format("{}, {} ms old", page::escape(backend.get<std::string>()),
+                     page::figure(run.metrics.number("/detector/age_ms"), 1));
+}
+
+std::string detector_row(const Inputs& inputs) {
+  std::string row = "<tr class=\"figures\"><th scope=\"row\">Landmarks</th>";
+  for (const auto& run : inputs.runs) row += fmt::format("<td>{}</td>", detector_of(run));
+  return row +
+         "</tr>\n<tr class=\"reading\"><td colspan=\"4\">The detector that has run, on the images "
+         "of the twin. twin: no detector but the twin's model of one.</td></tr>\n";
+}
+
+/// A sentence for each run that had another detector than its rig names.
+std::string replaced_detectors(const Inputs& inputs) {
+  std::string sentences;
+  for (const auto& run : inputs.runs)
+    if (const auto why = of_detector(run, "why"); why.is_string())
+      sentences += page::missing(fmt::format("{}: {}.", run.name, why.get<std::string>()));
+  return sentences;
+}
+
 /// A paragraph that separates the effect of the method from that of the software time, in which the
 /// rigs differ too.
 std::string equal_legs(const Inputs& inputs) {
@@ -130,10 +164,10 @@ std::string accuracy_table(const Inputs& inputs) {
   std::string table = "<div class=\"wide\"><table class=\"accuracy\">\n<thead><tr><th></th>";
   for (const auto& run : inputs.runs)
     table += fmt::format("<th scope=\"col\" class=\"{0}\">{0}</th>", page::escape(run.name));
-  table += "</tr></thead>\n<tbody>\n";
+  table += "</tr></thead>\n<tbody>\n" + detector_row(inputs);
   for (const auto& metric : kMetrics) table += metric_rows(inputs, metric);
   table += "</tbody></table></div>\n";
-  table += equal_legs(inputs);
+  table += equal_legs(inputs) + replaced_detectors(inputs);
   for (const auto& run : inputs.runs)
     if (!run.metrics.content)
       table += page::missing(

@@ -18,7 +18,7 @@ const char* const kBody = R"html(<section id="headline">
 {{film}}</section>
 <section id="accuracy">
 <h2>Where the light lands</h2>
-<p>Simulated, and compared with the truth of the digital twin. All three use the same sensors with the same delays and errors. The best value of a row is bold.</p>
+<p>Simulated, and compared with the truth of the digital twin. All three use the same sensors with the same delays and errors; each has the detector of its rig. The best value of a row is bold.</p>
 {{accuracy}}</section>
 <section id="speed">
 <h2>By speed of the hand</h2>

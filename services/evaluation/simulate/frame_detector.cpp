@@ -6,7 +6,6 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/owned.hpp"
-#include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::simulate {
@@ -58,6 +57,7 @@ class RealDetector final : public FrameDetector {
     const auto work_ns = now_ns() - begin_ns;
     const auto model = twin_.detect(run, exposure.frame_id, exposure.stamp_ns);
     if (!found) return {std::nullopt, model.age_ns, work_ns};
+    twin_.spoil(run, exposure.origin_ns, *found);
     found->header = model.landmarks.header;
     return {*found, model.age_ns, work_ns};
   }
@@ -75,14 +75,19 @@ std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin) {
   return std::make_unique<TwinDetector>(twin);
 }
 
-std::string simulated_backend(const config::Rig& rig) {
-  return rig.landmarks.backend == "replay" ? "twin" : rig.landmarks.backend;
+landmarks::DetectorChoice simulated_backend(const config::Rig& rig) {
+  auto choice = landmarks::choose_detector(rig);
+  if (choice.backend == "replay")
+    choice = {"twin",
+              "landmarks: recorded landmarks belong to other images, so 'twin' takes their "
+              "place"};
+  return choice;
 }
 
 Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,
                                                            const calib::Calibration& calibration,
                                                            const twin::Twin& twin) {
-  if (simulated_backend(rig) == "twin") return make_twin_detector(twin);
+  if (simulated_backend(rig).backend == "twin") return make_twin_detector(twin);
   auto detector = landmarks::open_detector(rig, calibration, 0);
   if (!detector) return tl::make_unexpected(detector.error());
   return std::make_unique<RealDetector>(std::move(*detector), rig.camera, calibration, twin);

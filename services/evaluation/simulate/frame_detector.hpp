@@ -12,6 +12,7 @@
 #include "ipc/msg/landmarks.hpp"
 #include "services/evaluation/simulate/exposure.hpp"
 #include "services/evaluation/twin/twin.hpp"
+#include "services/landmarks/detector.hpp"
 
 namespace handcast::simulate {
 
@@ -35,14 +36,14 @@ class FrameDetector {
 /// Makes the twin's model of a detector. `twin` must outlive it.
 std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin);
 
-/// The back end that the simulator runs for rig.landmarks.backend: the same, on the twin's images,
-/// except that "replay" becomes "twin" because recorded landmarks belong to other images.
-std::string simulated_backend(const config::Rig& rig);
+/// The back end that the simulator runs for a rig: that of landmarks::choose_detector(), on the
+/// twin's images, except that "replay" becomes "twin" because recorded landmarks belong to other
+/// images.
+landmarks::DetectorChoice simulated_backend(const config::Rig& rig);
 
-/// Opens the detector of simulated_backend(). A real detector has the age and the clock error of
-/// the twin's model (twin.detector.age_ms, age_sd_ms, clock_skew_ms), but none of its other errors.
-/// `twin` must outlive it. Errors: those of landmarks::open_detector (bad_config if a model is
-/// missing).
+/// Opens the detector of simulated_backend(). A real detector has the age, the clock error and the
+/// faults of the twin's model (Twin::spoil), but neither its noise nor its bias. `twin` must
+/// outlive it. Errors: those of landmarks::open_detector (bad_config if a model is missing).
 Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,
                                                            const calib::Calibration& calibration,
                                                            const twin::Twin& twin);

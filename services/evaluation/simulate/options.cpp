@@ -33,7 +33,7 @@ constexpr char kHelp[] =
   --quiet                    prints no progress
   --help, --version
 
-Landmarks come from the twin's model of a detector, or from a landmark model that runs on the images of the twin:
+Landmarks come from the detector of the rig, a landmark model that runs on the images of the twin, or from the twin's model of one (twin):
   --set landmarks.backend={}
 The age of the landmarks is simulated for every back end (twin.detector.age_ms and age_sd_ms), so that a slow machine can simulate
 a fast one. "detector" in the metrics has its run time on this machine (ms_p50) and the number of hands that it missed.

@@ -36,21 +36,32 @@ std::int64_t Refreshes::begin_ns(std::int64_t frame) const {
   return static_cast<std::int64_t>(std::llround(1e9 * static_cast<double>(frame) / rate_hz_));
 }
 
-/// The number of refreshes that a frame is late.
-std::int64_t Refreshes::late_by(std::int64_t frame) const {
-  if (errors_.work_ms <= 0) return 0;
+double Refreshes::work_ms(std::int64_t frame) const {
   const twin::Random random(seed_, twin::Stream::frame_time);
   const auto k = static_cast<std::uint64_t>(frame);
-  double work_ms = errors_.work_ms * std::exp(errors_.work_spread * random.normal(k, 0));
-  if (random.uniform(k, 1) < errors_.stalls) work_ms += errors_.stall_ms;
-  const double late = std::ceil((work_ms - software_ms_) * 1e-3 * rate_hz_);
-  return std::clamp(static_cast<std::int64_t>(late), std::int64_t{0}, kLongestDelay);
+  const double work_ms = errors_.work_ms * std::exp(errors_.work_spread * random.normal(k, 0));
+  return random.uniform(k, 1) < errors_.stalls ? work_ms + errors_.stall_ms : work_ms;
 }
 
-std::int64_t Refreshes::shown_at(std::int64_t frame) const {
-  std::int64_t shown = frame;
-  while (shown > 0 && shown + late_by(shown) > frame) --shown;
-  return shown;
+/// Begins the next frame, or leaves it out because the one before is not finished. A frame is
+/// never shown before one that began earlier: they are drawn one after the other.
+void Refreshes::begin_next() {
+  const std::int64_t frame = next_++;
+  const auto at = static_cast<std::size_t>(frame);
+  if (shown_.size() <= at) shown_.push_back(shown_.empty() ? 0 : shown_.back());
+  if (begin_ns(frame) < free_ns_) return;
+  const double work = work_ms(frame);
+  free_ns_ = begin_ns(frame) + ms_to_ns(work);
+  const double late = std::ceil((work - software_ms_) * 1e-3 * rate_hz_);
+  const auto by = std::clamp(static_cast<std::int64_t>(late), std::int64_t{0}, kLongestDelay);
+  while (shown_.size() <= at + static_cast<std::size_t>(by)) shown_.push_back(shown_.back());
+  std::fill(shown_.begin() + frame + by, shown_.end(), frame);
+}
+
+std::int64_t Refreshes::shown_at(std::int64_t frame) {
+  if (errors_.work_ms <= 0) return frame;
+  while (next_ <= frame) begin_next();
+  return shown_[static_cast<std::size_t>(frame)];
 }
 
 }  // namespace handcast::simulate

@@ -54,8 +54,9 @@ Result<nlohmann::json> score_in_sight(const config::Rig& rig, const calib::Calib
   return score(rig, calibration, options, [&](double done_s) { progress.at(done_s); });
 }
 
-/// Prints the accuracy of the detector if a real one has run.
+/// Prints why another detector has run than the rig names, and its accuracy if it is a real one.
 void print_detector(const nlohmann::json& detector) {
+  if (detector["why"].is_string()) fmt::print("{}\n", detector["why"].get<std::string>());
   if (!detector["ms_p50"].is_number()) return;
   const auto error_px = detector["error_px"]["p50"];
   fmt::print(

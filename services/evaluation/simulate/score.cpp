@@ -163,7 +163,10 @@ OnDetection from(std::int64_t start_ns, DetectorTally& tally) {
 
 nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig) {
   auto json = tally.to_json();
-  json["backend"] = simulated_backend(rig);
+  const auto choice = simulated_backend(rig);
+  json["backend"] = choice.backend;
+  json["used"] = rig.cascade.filter.method != config::FilterMethod::none;
+  json["why"] = choice.why.empty() ? nlohmann::json() : nlohmann::json(choice.why);
   json["age_ms"] = rig.twin.detector.age_ms;
   return json;
 }
@@ -183,8 +186,9 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
   if (!products) return tl::make_unexpected(products.error());
 
   DetectorTally tally(twin, calibration.camera);
-  auto feed = make_twin_feed(twin, std::move(parts->detector),
-                             from(seconds_to_ns(options.warm_up_s), tally), parts->lifter);
+  auto feed =
+      make_twin_feed(twin, std::move(parts->detector),
+                     from(seconds_to_ns(options.warm_up_s), tally), parts->lifter, parts->second);
   RecordingFeed* recording = nullptr;
   if (!options.record_directory.empty()) {
     auto recorder = std::make_unique<RecordingFeed>(std::move(feed), calibration.camera,

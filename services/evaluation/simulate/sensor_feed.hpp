@@ -36,16 +36,19 @@ class SensorFeed {
   virtual void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) = 0;
 };
 
+class SecondView;
+
 /// Called after each run of a detector.
 using OnDetection = std::function<void(const Exposure&, const Detection&)>;
 
 /// Makes the feed of the twin's tracker and camera and a detector that runs back to back. `twin`
 /// must outlive it. `lifter`: a rig without a tracker (pose.backend "none"), whose poses are lifted
-/// from the landmarks and arrive 0.2 ms after them.
+/// from the landmarks and arrive 0.2 ms after them. `second`: a rig with pose.backend "stereo".
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin,
                                            std::unique_ptr<FrameDetector> detector,
                                            OnDetection on_detection = {},
-                                           const std::optional<pose::Lifter>& lifter = {});
+                                           const std::optional<pose::Lifter>& lifter = {},
+                                           std::shared_ptr<SecondView> second = {});
 /// The same with the twin's model of a detector.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin);
 

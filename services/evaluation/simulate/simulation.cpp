@@ -18,7 +18,7 @@ Simulation::Simulation(const config::Rig& rig, const calib::Calibration& calibra
 }
 
 /// The refreshes that show a frame, of those that are to be drawn.
-std::vector<std::int64_t> Simulation::drawn_refreshes(std::int64_t frame) const {
+std::vector<std::int64_t> Simulation::drawn_refreshes(std::int64_t frame) {
   std::vector<std::int64_t> refreshes;
   if (draw_every_ <= 0) return refreshes;
   const std::int64_t last = frame + Refreshes::kLongestDelay;

@@ -42,7 +42,7 @@ class Simulation {
   std::int64_t now_ns() const { return refreshes_.begin_ns(next_tick_); }
 
  private:
-  std::vector<std::int64_t> drawn_refreshes(std::int64_t frame) const;
+  std::vector<std::int64_t> drawn_refreshes(std::int64_t frame);
   void deliver(std::int64_t now_ns);
   renderer::TimedImage newest_image(std::int64_t now_ns);
   renderer::Frame draw(std::int64_t now_ns, std::int64_t target_ns);

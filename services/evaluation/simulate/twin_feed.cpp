@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "services/evaluation/simulate/back_to_back.hpp"
+#include "services/evaluation/simulate/second_view.hpp"
 #include "services/evaluation/simulate/sensor_feed.hpp"
 
 namespace handcast::simulate {
@@ -13,17 +14,26 @@ constexpr std::int64_t kLift_ns = 200'000;
 class TwinFeed : public SensorFeed {
  public:
   TwinFeed(const twin::Twin& twin, std::unique_ptr<FrameDetector> detector,
-           OnDetection on_detection, const std::optional<pose::Lifter>& lifter)
+           OnDetection on_detection, const std::optional<pose::Lifter>& lifter,
+           std::shared_ptr<SecondView> second)
       : twin_(twin),
         detector_(twin, std::move(detector), std::move(on_detection)),
-        lifter_(lifter) {}
+        lifter_(lifter),
+        second_(std::move(second)) {}
 
   std::vector<SensorEvent> until(std::int64_t now_ns) override {
     std::vector<SensorEvent> events;
-    if (!lifter_) take_tracker_samples(now_ns, events);
+    if (second_) {
+      take_lifted(now_ns, events);
+    } else if (!lifter_) {
+      take_tracker_samples(now_ns, events);
+    }
     std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
+    const std::vector<SensorEvent> poses = second_ ? events : std::vector<SensorEvent>{};
     detector_.until(now_ns, events);
     if (lifter_) lift(now_ns, events);
+    if (second_)
+      for (auto& made : second_->until(now_ns, events, poses)) lifted_.push_back(std::move(made));
     std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
     return events;
   }
@@ -57,6 +67,10 @@ class TwinFeed : public SensorFeed {
     for (const auto& event : events)
       if (const auto* landmarks = std::get_if<msg::Landmarks>(&event.message))
         lifted_.push_back({event.arrival_ns + kLift_ns, lifter_->lift(*landmarks)});
+    take_lifted(now_ns, events);
+  }
+
+  void take_lifted(std::int64_t now_ns, std::vector<SensorEvent>& events) {
     std::erase_if(lifted_, [&](const SensorEvent& event) {
       if (event.arrival_ns > now_ns) return false;
       events.push_back(event);
@@ -67,7 +81,8 @@ class TwinFeed : public SensorFeed {
   const twin::Twin& twin_;
   BackToBack detector_;
   std::optional<pose::Lifter> lifter_;
-  std::vector<SensorEvent> lifted_;  ///< arrive after the last call
+  std::shared_ptr<SecondView> second_;  ///< its poses arrive with the next call
+  std::vector<SensorEvent> lifted_;     ///< arrive after the last call
   std::vector<twin::Twin::TrackerSample> pending_;
   std::uint64_t next_sample_ = 0;
   std::uint64_t next_frame_ = 0;
@@ -79,8 +94,10 @@ class TwinFeed : public SensorFeed {
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin,
                                            std::unique_ptr<FrameDetector> detector,
                                            OnDetection on_detection,
-                                           const std::optional<pose::Lifter>& lifter) {
-  return std::make_unique<TwinFeed>(twin, std::move(detector), std::move(on_detection), lifter);
+                                           const std::optional<pose::Lifter>& lifter,
+                                           std::shared_ptr<SecondView> second) {
+  return std::make_unique<TwinFeed>(twin, std::move(detector), std::move(on_detection), lifter,
+                                    std::move(second));
 }
 
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin) {

@@ -19,7 +19,13 @@ Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibra
   if (!pipeline) return tl::make_unexpected(pipeline.error());
   auto detector = open_frame_detector(rig, calibration, **twin);
   if (!detector) return tl::make_unexpected(detector.error());
-  VirtualRig parts{std::move(*twin), std::move(*pipeline), std::move(*detector), std::nullopt};
+  VirtualRig parts{std::move(*twin), std::move(*pipeline), std::move(*detector), std::nullopt,
+                   nullptr};
+  if (rig.pose.backend == "stereo") {
+    auto second = SecondView::open(rig, calibration);
+    if (!second) return tl::make_unexpected(second.error());
+    parts.second = std::move(*second);
+  }
   if (rig.pose.backend != "none") return parts;
   auto lifter = pose::Lifter::open(rig, calibration);
   if (!lifter) return tl::make_unexpected(lifter.error());
@@ -50,7 +56,8 @@ Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig,
   rig.twin = without_faults(rig.twin);
   auto parts = open_virtual_rig(rig, calibration);
   if (!parts) return tl::make_unexpected(parts.error());
-  const auto feed = make_twin_feed(*parts->twin, std::move(parts->detector), {}, parts->lifter);
+  const auto feed =
+      make_twin_feed(*parts->twin, std::move(parts->detector), {}, parts->lifter, parts->second);
   Simulation simulation(rig, calibration, *parts->pipeline, *feed, options.draw_every);
   std::vector<LightMoment> moments;
   const auto add = [&](const Tick& tick) -> Result<void> {

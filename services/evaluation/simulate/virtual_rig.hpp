@@ -5,6 +5,7 @@
 
 #include "services/evaluation/simulate/light_moment.hpp"
 #include "services/evaluation/simulate/options.hpp"
+#include "services/evaluation/simulate/second_view.hpp"
 #include "services/evaluation/simulate/sensor_feed.hpp"
 
 namespace handcast::simulate {
@@ -15,6 +16,7 @@ struct VirtualRig {
   std::unique_ptr<renderer::Pipeline> pipeline;  ///< the cascade
   std::unique_ptr<FrameDetector> detector;       ///< must be moved into the feed
   std::optional<pose::Lifter> lifter;            ///< the same; empty if the rig has a tracker
+  std::shared_ptr<SecondView> second;            ///< the same; null without pose.backend "stereo"
 };
 /// Opens the parts for a rig. Errors: those of Twin::create, Pipeline::create and
 /// open_frame_detector.

@@ -21,6 +21,7 @@ void describe(Visitor&, ReadByHand&) {}
 /// The settings at the top level of a plan file.
 struct Head {
   std::string rig = "../rigs/twin.toml";
+  std::string settings_from;
   double seconds = Plan().seconds;
   double warm_up_s = Plan().warm_up_s;
   int draw_every = Plan().draw_every;
@@ -31,6 +32,9 @@ struct Head {
 template <class Visitor>
 void describe(Visitor& visitor, Head& head) {
   visitor.field("rig", head.rig, "Rig file of the variants without one, relative to the plan.");
+  visitor.field("settings_from", head.settings_from,
+                "TOML file with settings of all runs, which several plans share; relative to the "
+                "plan. Those of the plan itself count more.");
   visitor.field("seconds", head.seconds, config::between(0.01, 86400, "s"),
                 "Scored time of each run.");
   visitor.field("warm_up_s", head.warm_up_s, config::between(0, 3600, "s"),
@@ -97,7 +101,8 @@ void flatten(const config::Table& table, const std::string& outer, config::Table
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file)
-      : file_(file),
+      : plan_file_(file),
+        file_(file),
         folder_(std::filesystem::absolute(file).parent_path()),
         listing_(config::list_settings(scratch_)) {}
 
@@ -111,7 +116,7 @@ class Reader {
               head.seconds,
               head.warm_up_s,
               head.joints_only ? 0 : head.draw_every,
-              fixed(section("settings")),
+              fixed_settings(head.settings_from),
               {},
               grids()};
     variants(head, plan);
@@ -166,6 +171,25 @@ class Reader {
     for (const auto& [path, value] : members(settings, "settings"))
       axes.push_back({path, {choice(path, value)}});
     return axes;
+  }
+
+  /// The settings of all runs: of the file `shared`, then of the plan.
+  std::vector<Axis> fixed_settings(const std::string& shared) {
+    auto settings = fixed(section("settings"));
+    if (shared.empty()) return settings;
+    const auto file = (folder_ / shared).lexically_normal();
+    const auto text = config::read_text(file);
+    const auto document = text ? config::parse_document(*text, file.string())
+                               : Result<Value>(tl::make_unexpected(text.error()));
+    if (!document) {
+      faults_.add(document.error().what);
+      return settings;
+    }
+    file_ = file;  // whose lines are named if a setting is wrong
+    auto all = fixed(&*document);
+    file_ = plan_file_;
+    all.insert(all.end(), settings.begin(), settings.end());
+    return all;
   }
 
   std::vector<Grid> grids() {
@@ -254,8 +278,10 @@ class Reader {
     for (const auto& variant : plan.variants) check(variant.settings);
   }
 
-  std::filesystem::path file_, folder_;
-  config::Rig scratch_;  ///< receives each value when it is checked
+  std::filesystem::path plan_file_;
+  std::filesystem::path file_;    ///< the file that is read
+  std::filesystem::path folder_;  ///< of the plan
+  config::Rig scratch_;           ///< receives each value when it is checked
   config::Listing listing_;
   config::Faults faults_;
   config::Table taken_;

@@ -41,6 +41,7 @@ std::vector<Metric> make_metrics() {
     add(plain, fmt::format("/{}", plain).c_str());
   for (const char* of_fault : {"usual_mm", "worst_mm", "dark_ms", "recovery_ms"})
     add(fmt::format("fault_{}", of_fault).c_str(), fmt::format("/fault/{}", of_fault).c_str());
+  add(std::string(kDetector).c_str(), "/detector/backend");
   for (const char* of_detector : {"age_ms", "ms_p50", "missed", "invented"})
     add(fmt::format("detector_{}", of_detector).c_str(),
         fmt::format("/detector/{}", of_detector).c_str());
@@ -75,9 +76,11 @@ Row begin_row(const Plan& plan, const Run& run) {
   return row;
 }
 
-std::string print_number(const nlohmann::json& json, const nlohmann::json::json_pointer& place) {
-  if (!json.contains(place) || !json[place].is_number()) return {};
-  return fmt::format("{:.9g}", json[place].get<double>());
+/// A number, or the word of kDetector. Empty if there is neither.
+std::string print_figure(const nlohmann::json& json, const nlohmann::json::json_pointer& place) {
+  if (!json.contains(place)) return {};
+  if (json[place].is_string()) return json[place].get<std::string>();
+  return json[place].is_number() ? fmt::format("{:.9g}", json[place].get<double>()) : "";
 }
 
 std::string print_cell(std::string cell) {
@@ -128,7 +131,7 @@ Heading heading_of(const Plan& plan, const Expansion& expansion, std::string_vie
 
 Row scored_row(const Plan& plan, const Run& run, const nlohmann::json& json) {
   auto row = begin_row(plan, run);
-  for (const auto& metric : metrics()) row.push_back(print_number(json, metric.place));
+  for (const auto& metric : metrics()) row.push_back(print_figure(json, metric.place));
   row.emplace_back();
   return row;
 }

@@ -39,6 +39,7 @@ CameraScene::CameraScene(const config::TwinImage& settings, int seed,
       sum_(camera_.width_px, camera_.height_px) {
   if (settings_.face) face_ = make_face(camera_);
   if (settings_.object) object_ = make_held_object();
+  if (settings_.reflector_mm > 0) reflector_ = make_reflector(settings_.reflector_mm * 1e-3);
   if (settings_.table > 0)
     mirror_image_ = renderer::Image<float>(camera_.width_px, camera_.height_px);
 }
@@ -98,6 +99,17 @@ void CameraScene::shoot_solid(const Solid& solid, const glm::mat4& camera_from_s
   shot.triangles = &solid.triangles;
 }
 
+/// `tip_m`: camera space.
+void CameraScene::shoot_reflector(const glm::vec3& tip_m, glm::vec2 within_pixel,
+                                  std::size_t& count) {
+  glm::mat4 place(1);
+  const float nearer = 1 - kReflectorNearer_m / tip_m.z;
+  for (int axis = 0; axis < 3; ++axis) place[axis][axis] = nearer;  // the same size in the image
+  place[3] = glm::vec4(nearer * tip_m, 1);
+  shoot_solid(reflector_, place, 1, within_pixel, count);
+  std::ranges::fill(shots_[count - 1].grey, kReflectorGrey);
+}
+
 renderer::Rect CameraScene::shoot_face(std::int64_t time_ns, glm::vec2 within_pixel,
                                        std::size_t& count) {
   if (!faulty_ || face_.positions.empty()) return {};
@@ -144,6 +156,9 @@ renderer::Rect CameraScene::shoot_hands(std::int64_t time_ns, const TruthAt& tru
     shoot_hand(hand, *joints, within_pixel, count);
     if (faulty_ && !object_.positions.empty())
       shoot_solid(object_, (*joints)[0], kObjectBrightness, within_pixel, count);
+    constexpr int kIndexTip = 10;
+    if (!reflector_.positions.empty())
+      shoot_reflector(glm::vec3((*joints)[kIndexTip][3]), within_pixel, count);
   }
   renderer::Rect bounds;
   for (std::size_t s = first; s < count; ++s) bounds = bounds.joined(shots_[s].screen.bounds());

@@ -65,6 +65,7 @@ class CameraScene {
                   std::size_t& count);
   void shoot_solid(const Solid& solid, const glm::mat4& camera_from_solid, float brightness,
                    glm::vec2 within_pixel, std::size_t& count);
+  void shoot_reflector(const glm::vec3& tip_m, glm::vec2 within_pixel, std::size_t& count);
   renderer::Rect shoot_face(std::int64_t time_ns, glm::vec2 within_pixel, std::size_t& count);
   void draw_shots(std::size_t first, std::size_t last, float front, const renderer::Rect& region);
   void copy_background(const renderer::Rect& region);
@@ -81,6 +82,7 @@ class CameraScene {
   std::array<Hand, 2> hands_;
   Solid face_;           ///< empty without a face
   Solid object_;         ///< that the hands hold, in the axes of the palm joint; empty without it
+  Solid reflector_;      ///< on the index finger tips, in camera axes; empty without it
   bool faulty_ = false;  ///< the frame being drawn has the image faults
 
   renderer::Image<float> background_;  ///< before the point spread

@@ -264,7 +264,43 @@ Posture turn_fist(double t) {
   return posture;
 }
 
-constexpr std::array<Choreography, 17> kChoreographies{{
+/// The hand of a person who calibrates or tries a rig: it goes from place to place, and is held for
+/// a moment at each, turned and bent differently.
+Posture places(double t) {
+  constexpr double kEach_s = 1.8, kWay_s = 0.7;
+  const auto pose_of = [](double place) {
+    // Steps by irrational shares of the range never repeat a place.
+    const auto share = [place](double step) {
+      return 2 * (place * step - std::floor(place * step)) - 1;
+    };
+    Posture posture;
+    posture.shift = {0.045 * share(0.6180), 0.04 * share(0.7549), 0.07 * share(0.5698)};
+    posture.sway = 0.5 * share(0.8192);
+    constexpr double kForearm_m = 0.25;  // the sway turns about the elbow, and here about the wrist
+    posture.shift.x -= kForearm_m * std::sin(posture.sway);
+    posture.shift.y -= kForearm_m * (1 - std::cos(posture.sway));
+    posture.turn = 0.8 * share(0.6710) + (share(0.4142) > 0.4 ? std::numbers::pi : 0);
+    posture.nod = 0.35 * share(0.5497);
+    for (int f = 1; f < 5; ++f) curl(posture.bend, f, 0.25 * (1 + share(0.3247 + 0.1 * f)));
+    return posture;
+  };
+  const double place = std::floor(t / kEach_s);
+  const double way = step_at(0, kWay_s, within(kEach_s, t));
+  const Posture from = pose_of(place), to = pose_of(place + 1);
+  Posture posture;
+  posture.shift = glm::mix(from.shift, to.shift, way);
+  posture.sway = std::lerp(from.sway, to.sway, way);
+  posture.turn = std::lerp(from.turn, to.turn, way);
+  posture.nod = std::lerp(from.nod, to.nod, way);
+  for (int f = 1; f < 5; ++f)
+    for (int bone = 0; bone < 3; ++bone)
+      posture.bend.flexion[f][bone] =
+          std::lerp(from.bend.flexion[f][bone], to.bend.flexion[f][bone], way);
+  posture.shift += 0.0005 * glm::dvec3(wave_at(1.1, t), wave_at(0.9, t, 0.3), wave_at(0.7, t, 0.6));
+  return posture;
+}
+
+constexpr std::array<Choreography, 18> kChoreographies{{
     {"show", show},
     {"open_close", open_close},
     {"wave", wave},
@@ -282,6 +318,7 @@ constexpr std::array<Choreography, 17> kChoreographies{{
     {"cross_fingers", cross_fingers},
     {"turn_pointing", turn_pointing},
     {"turn_fist", turn_fist},
+    {"places", places},
 }};
 
 }  // namespace

@@ -23,6 +23,11 @@ void merge_fingers(msg::HandLandmarks& hand) {
   }
 }
 
+/// The first of the two random numbers of a landmark.
+std::uint64_t draw_of(msg::Side side, std::size_t landmark) {
+  return (static_cast<std::uint64_t>(side) * msg::kLandmarks + landmark) * 2;
+}
+
 }  // namespace
 
 DetectorModel::DetectorModel(const config::TwinDetector& settings, int seed,
@@ -63,28 +68,38 @@ msg::HandLandmarks DetectorModel::report(std::uint64_t run, msg::Side side,
                                          const renderer::JointFrames& camera_frames,
                                          std::int64_t origin_ns) const {
   const Random random(seed_, Stream::detector_noise);
-  const Outliers far{settings_.outliers, 40, 200, Stream::detector_outlier},
-      near{settings_.near_outliers, 5, 40, Stream::detector_near};
   const auto bias_px = bias_.at(side, camera_frames, truth);
   msg::HandLandmarks hand;
   hand.side = side;
   hand.presence = 0.95f;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const std::uint64_t draw = (static_cast<std::uint64_t>(side) * msg::kLandmarks + i) * 2;
+    const std::uint64_t draw = draw_of(side, i);
     const glm::dvec2 noise(random.normal(run, draw), random.normal(run, draw + 1));
-    const glm::dvec2 seen = glm::dvec2(truth[i]) + bias_px[i] + noise * settings_.noise_px +
-                            outlier_px(far, run, draw) + outlier_px(near, run, draw);
+    const glm::dvec2 seen = glm::dvec2(truth[i]) + bias_px[i] + noise * settings_.noise_px;
     const glm::dvec2 image = camera_.distort(truth[i]);
     const bool inside = image.x > -0.5 && image.y > -0.5 && image.x < camera_.width_px - 0.5 &&
                         image.y < camera_.height_px - 0.5;
     hand.points[i] = {static_cast<float>(seen.x), static_cast<float>(seen.y), inside ? 1.0f : 0.0f};
+  }
+  spoil(run, origin_ns, hand);
+  return hand;
+}
+
+void DetectorModel::spoil(std::uint64_t run, std::int64_t origin_ns,
+                          msg::HandLandmarks& hand) const {
+  const Outliers far{settings_.outliers, 40, 200, Stream::detector_outlier},
+      near{settings_.near_outliers, 5, 40, Stream::detector_near};
+  for (std::size_t i = 0; i < msg::kLandmarks; ++i) {
+    const std::uint64_t draw = draw_of(hand.side, i);
+    const glm::dvec2 moved_px = outlier_px(far, run, draw) + outlier_px(near, run, draw);
+    hand.points[i].x_px += static_cast<float>(moved_px.x);
+    hand.points[i].y_px += static_cast<float>(moved_px.y);
   }
   const double seconds = ns_to_seconds(origin_ns);
   if (settings_.merged.holds(seconds)) merge_fingers(hand);
   if (settings_.wrong_finger.holds(seconds))
     std::swap_ranges(&hand.points[kIndexKnuckle], &hand.points[kMiddleKnuckle],
                      &hand.points[kMiddleKnuckle]);
-  return hand;
 }
 
 }  // namespace handcast::twin

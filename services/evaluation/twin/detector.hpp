@@ -37,6 +37,9 @@ class DetectorModel {
                             const std::array<glm::vec2, msg::kLandmarks>& truth,
                             const renderer::JointFrames& camera_frames,
                             std::int64_t origin_ns) const;
+  /// Adds the outliers and the faults of run number `run`, on a frame of `origin_ns`, to a hand.
+  /// The landmarks of report() have them already.
+  void spoil(std::uint64_t run, std::int64_t origin_ns, msg::HandLandmarks& hand) const;
 
  private:
   /// Outliers at a range of distances.

@@ -10,12 +10,13 @@
 #include <span>
 
 #include "renderer/hand/maker/hand_shape.hpp"
-#include "services/evaluation/twin/leap_layout.hpp"
 #include "services/evaluation/twin/recording_checks.hpp"
+#include "services/joints/leap_hand.hpp"
 
 namespace handcast::twin {
 namespace {
 
+using namespace joints;
 using msg::kJoints;
 using std::filesystem::path;
 
@@ -62,35 +63,22 @@ Result<void> remove_file(const path& file) {
   return {};
 }
 
-/// The rows of a bone are -Z, -Y and, for a left hand, -X. For either hand, X is computed from the
-/// other two.
-Result<glm::dquat> axes_of_bone(const double* bone) {
-  const glm::dvec3 to_wrist = -glm::dvec3(bone[0], bone[1], bone[2]);
-  const glm::dvec3 back = -glm::dvec3(bone[4], bone[5], bone[6]);
-  const glm::dvec3 x = glm::cross(back, to_wrist);
-  if (glm::length(x) < 1) return fail(Errc::bad_data, "a bone without axes");
-  const glm::dvec3 z = glm::normalize(to_wrist);
-  const glm::dvec3 lateral = glm::normalize(x);
-  return glm::quat_cast(glm::dmat3(lateral, glm::cross(z, lateral), z));
-}
-
-Result<msg::HandPose> pose_of(msg::Side side, const double* joints, const double* bones,
+/// A hand of a recording. The first two rows of a bone point to its tip and out of the palm.
+Result<msg::HandPose> pose_of(msg::Side side, const double* joint_mm, const double* bones,
                               const std::array<float, kJoints>& radius_m) {
-  msg::HandPose pose;
-  pose.side = side;
-  pose.confidence = 1;
-  for (int j = 0; j < kJoints; ++j) {
-    const auto axes = axes_of_bone(bones + 16 * kLeapBone[j]);
-    if (!axes) return tl::make_unexpected(axes.error());
-    auto& joint = pose.joints[j];
-    joint.orientation_xyzw = {float(axes->x), float(axes->y), float(axes->z), float(axes->w)};
-    joint.radius_m = radius_m[j];
-    for (int c = 0; c < 3 && j != kPalm; ++c)
-      joint.position_m[c] = static_cast<float>(joints[3 * kLeapJoint[j] + c] * 1e-3);
+  joints::LeapHand hand{.side = side};
+  for (int bone = 0; bone < kLeapBones; ++bone) {
+    const double* rows = bones + 16 * bone;
+    const auto axes =
+        joints::axes_of_bone({rows[0], rows[1], rows[2]}, {rows[4], rows[5], rows[6]});
+    if (!axes && std::ranges::find(kLeapBone, bone) != kLeapBone.end())
+      return fail(Errc::bad_data, "a bone without axes");
+    hand.axes[bone] = axes.value_or(glm::dquat(1, 0, 0, 0));
   }
-  for (int c = 0; c < 3; ++c)
-    pose.joints[kPalm].position_m[c] = 0.5f * (pose.joints[kMiddleMetacarpal].position_m[c] +
-                                               pose.joints[kMiddleMetacarpal + 1].position_m[c]);
+  for (int joint = 0; joint < kLeapJoints; ++joint)
+    hand.joint_mm[joint] = {joint_mm[3 * joint], joint_mm[3 * joint + 1], joint_mm[3 * joint + 2]};
+  auto pose = joints::rig_hand(hand);
+  for (int j = 0; j < kJoints; ++j) pose.joints[j].radius_m = radius_m[j];
   return pose;
 }
 

@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/leap_layout.hpp"
+#include "services/joints/leap_layout.hpp"
 
 namespace handcast::twin {
 namespace {
+
+using joints::kMiddleMetacarpal;
+using joints::kWrist;
 
 constexpr double kMostStamp_us = 4e15;  ///< differences in ns fit in 64 bits
 constexpr double kShortestStep_us = 100, kLongestStep_us = 1.05e6;

@@ -34,6 +34,10 @@ Solid make_ellipsoid(const glm::vec3& middle, const glm::vec3& half_axes) {
   return solid;
 }
 
+Solid make_reflector(double diameter_m) {
+  return make_ellipsoid(glm::vec3(0), glm::vec3(static_cast<float>(diameter_m / 2)));
+}
+
 Solid make_held_object() {
   // The palm joint's y axis leaves the back of the hand; the fingers close around the object.
   const glm::vec3 before_palm_m(0, -0.040f, -0.030f), half_axes_m(0.075f, 0.025f, 0.025f);

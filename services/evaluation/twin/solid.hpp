@@ -22,4 +22,12 @@ Solid make_held_object();
 /// Its brightness relative to skin.
 inline constexpr float kObjectBrightness = 1.3f;
 
+/// A retro-reflector on the tip of a finger, in the axes of camera space around the tip.
+Solid make_reflector(double diameter_m);
+/// Its grey value, whatever the angle of the light.
+inline constexpr float kReflectorGrey = 1000;
+/// It is taped around the finger tip, so it is drawn this much nearer to the camera: flesh of the
+/// finger tip itself does not hide it, and other flesh does.
+inline constexpr float kReflectorNearer_m = 0.012f;
+
 }  // namespace handcast::twin

@@ -19,11 +19,19 @@ namespace {
 
 constexpr std::array<Side, 2> kSides{Side::left, Side::right};
 
+/// The camera through which the twin is seen.
+struct SeenFrom {
+  calib::Calibration truth;     ///< its true lens and place
+  calib::CameraModel believed;  ///< its lens by the rig's calibration
+  int seed;                     ///< of its noise and its detector's errors
+};
+
 class RigTwin final : public Twin {
  public:
-  RigTwin(const config::Rig& rig, const TrueGeometry& geometry, std::unique_ptr<Motion> motion,
-          std::unique_ptr<TrueHands> hands)
+  RigTwin(const config::Rig& rig, const TrueGeometry& geometry, const SeenFrom& view,
+          std::unique_ptr<Motion> motion, std::unique_ptr<TrueHands> hands)
       : geometry_(geometry),
+        view_(view),
         exposure_ns_(ms_to_ns(rig.camera.exposure_ms)),
         camera_(rig),
         absent_(rig.twin.hands == config::TwinHands::left    ? std::optional(Side::right)
@@ -32,8 +40,7 @@ class RigTwin final : public Twin {
         motion_(std::move(motion)),
         hands_(std::move(hands)),
         tracker_(rig.twin.tracker, rig.twin.seed, geometry.calibration(), motion_->shape()),
-        detector_(rig.twin.detector, rig.twin.seed, geometry.calibration().camera,
-                  motion_->shape()),
+        detector_(rig.twin.detector, view.seed, view.truth.camera, motion_->shape()),
         settings_(rig.twin) {}
 
   std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const override {
@@ -48,12 +55,12 @@ class RigTwin final : public Twin {
       Side side, std::int64_t time_ns) const override {
     const auto truth = joints(side, time_ns);
     if (!truth) return std::nullopt;
-    const auto& truth_camera = geometry_.calibration().camera;
-    const auto& camera_from_tracker = geometry_.calibration().camera_from_tracker;
+    const auto& truth_camera = view_.truth.camera;
+    const auto& camera_from_tracker = view_.truth.camera_from_tracker;
     std::array<glm::vec2, msg::kLandmarks> points;
     for (int i = 0; i < msg::kLandmarks; ++i) {
       const glm::dvec4 place((*truth)[msg::kJointOfLandmark[i]][3]);
-      points[i] = geometry_.believed_px(
+      points[i] = view_.believed.undistort(
           truth_camera.distort(truth_camera.project(glm::dvec3(camera_from_tracker * place))));
     }
     return points;
@@ -122,21 +129,27 @@ class RigTwin final : public Twin {
     return detection;
   }
 
+  void spoil(std::uint64_t n, std::int64_t origin_ns, msg::Landmarks& found) const override {
+    if (detector_.lost(n, origin_ns)) found.count = 0;
+    for (std::uint32_t i = 0; i < found.count; ++i) detector_.spoil(n, origin_ns, found.hands[i]);
+  }
+
  private:
   JointFrames in_camera(JointFrames frames) const {
-    const glm::dmat4& camera_from_tracker = geometry_.calibration().camera_from_tracker;
+    const glm::dmat4& camera_from_tracker = view_.truth.camera_from_tracker;
     for (auto& frame : frames) frame = glm::mat4(camera_from_tracker * glm::dmat4(frame));
     return frames;
   }
 
   CameraScene& scene() const {
     if (scene_) return *scene_;
-    scene_.emplace(settings_.image, settings_.seed, geometry_.calibration());
+    scene_.emplace(settings_.image, view_.seed, view_.truth);
     for (const Side side : kSides) scene_->set_hand(side, true_hand(side));
     return *scene_;
   }
 
   TrueGeometry geometry_;
+  SeenFrom view_;
   std::int64_t exposure_ns_;
   CameraTimes camera_;
   std::optional<Side> absent_;  ///< the hand of the motion that is left out
@@ -167,8 +180,21 @@ static Result<calib::Calibration> true_base(const config::Rig& rig,
   return base;
 }
 
-Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig,
-                                           const calib::Calibration& calibration) {
+/// The camera that `calibration` is of. The second one is where it is believed to be, relative to
+/// the true first one.
+static SeenFrom seen_from(const calib::Calibration& calibration, const TrueGeometry& geometry,
+                          int seed) {
+  constexpr int kOtherSeed = 1000;
+  if (!calibration.is_second_view) return {geometry.calibration(), calibration.camera, seed};
+  auto truth = geometry.calibration();
+  truth.camera = calibration.camera;
+  truth.camera_from_tracker =
+      glm::inverse(calibration.camera2->from_camera) * truth.camera_from_tracker;
+  return {truth, calibration.camera, seed + kOtherSeed};
+}
+
+Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig, const calib::Calibration& seen) {
+  const auto calibration = calib::first_view(seen);
   const auto base = true_base(rig, calibration);
   if (!base) return tl::make_unexpected(base.error());
   const TrueGeometry geometry(rig.twin.geometry, rig.twin.seed, *base, calibration.camera);
@@ -177,7 +203,8 @@ Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig,
   const auto moves = [&](Side side) { return (*motion)->at(side, 0).has_value(); };
   auto hands = TrueHands::create(rig, {moves(Side::left), moves(Side::right)}, (*motion)->shape());
   if (!hands) return tl::make_unexpected(hands.error());
-  return std::make_unique<RigTwin>(rig, geometry, std::move(*motion), std::move(*hands));
+  return std::make_unique<RigTwin>(rig, geometry, seen_from(seen, geometry, rig.twin.seed),
+                                   std::move(*motion), std::move(*hands));
 }
 
 }  // namespace handcast::twin

@@ -27,8 +27,9 @@ namespace handcast::twin {
 /// epoch (virtual or real). Not thread-safe: use one object per thread.
 class Twin {
  public:
-  /// Creates the twin of a rig; copies what it needs. Errors: those of open_motion and of loading
-  /// the hand models (bad_config).
+  /// Creates the twin of a rig; copies what it needs. With calib::second_view(), the world is the
+  /// same, and camera and detector are those of the second view. Errors: those of open_motion and
+  /// of loading the hand models (bad_config).
   static Result<std::unique_ptr<Twin>> create(const config::Rig& rig,
                                               const calib::Calibration& calibration);
   virtual ~Twin() = default;
@@ -91,6 +92,9 @@ class Twin {
   /// that is not of the twin's camera is taken to show the hand at its stamp.
   virtual Detection detect(std::uint64_t n, std::uint64_t frame_id,
                            std::int64_t stamp_ns) const = 0;
+  /// Adds the losses, outliers and faults of that run to what a real detector has found in a frame
+  /// of this true time. detect() has them already.
+  virtual void spoil(std::uint64_t n, std::int64_t origin_ns, msg::Landmarks& found) const = 0;
 };
 
 /// The score of the light of one frame on the true hands (`docs/method.md#metrics`). Lengths are in

@@ -62,6 +62,24 @@ TEST_F(Report, ShowsTheFiguresFilmTimesAndRates) {
   EXPECT_THAT(html, Not(HasSubstr("class=\"missing\"")));
 }
 
+TEST_F(Report, SaysWhichDetectorEachRunHadAndWhy) {
+  test::write_demonstration(folder(), 1);
+  const auto detector = [](bool used, const char* backend, const nlohmann::json& why) {
+    return nlohmann::json{{"used", used}, {"backend", backend}, {"age_ms", 16.2}, {"why", why}};
+  };
+  const auto write = [&](const char* name, const nlohmann::json& of_run) {
+    auto metrics = test::metrics_of(name, 1);
+    metrics["detector"] = of_run;
+    test::write_json(folder() / (std::string(name) + ".json"), metrics);
+  };
+  write("baseline", detector(false, "twin", nullptr));
+  write("paper", detector(true, "twin", "'a.onnx' is missing"));
+  write("twin", detector(true, "handcast", nullptr));
+  EXPECT_THAT(page(), AllOf(HasSubstr("Landmarks</th><td>not used</td><td>twin, 16.2 ms old</td>"
+                                      "<td>handcast, 16.2 ms old</td>"),
+                            HasSubstr("paper: &#39;a.onnx&#39; is missing.")));
+}
+
 TEST_F(Report, MakesAVideoOfThePicturesItHas) {
   test::write_frames(folder() / "frames" / "twin", 6, 0);
   const std::string html = page();

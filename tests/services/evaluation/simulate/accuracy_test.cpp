@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "services/evaluation/simulate/score.hpp"
 #include "tests/services/evaluation/simulate/run_rig.hpp"
 
 namespace handcast::simulate {
@@ -54,6 +55,23 @@ INSTANTIATE_TEST_SUITE_P(Motions, Accuracy,
                                '_');
                            return name;
                          });
+
+/// The rigs as they are shipped: real detectors at their ages, and frames that miss refreshes.
+TEST(ShippedRigs, OursIsBetterThanThePapersAndThePapersThanTheTrackerAlone) {
+  const auto error_mm = [](const std::string& name) {
+    const auto rig = config::load_rig(source_root() / ("config/rigs/" + name + ".toml"),
+                                      {"twin.motion=builtin:wave"});
+    EXPECT_TRUE(rig) << rig.error().what;
+    auto options = options_of(name, 1);
+    options.draw_every = 24;
+    const auto json = score(*rig, calib::reference_rig(), options);
+    EXPECT_TRUE(json) << json.error().what;
+    return figure(*json, "/interior_mm/mean");
+  };
+  const double ours = error_mm("twin"), paper = error_mm("paper"), baseline = error_mm("baseline");
+  EXPECT_GT(paper, 1.2 * ours);
+  EXPECT_GT(baseline, 1.2 * paper);
+}
 
 /// What each lever of ours is worth: without it, the error of the light grows by this factor.
 struct Lever {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,9 +13,16 @@
 namespace handcast::simulate {
 namespace {
 
-/// A model that errs as our network does (docs/method.md#twin).
-const std::vector<std::string> kModel{"twin.detector.noise_px=0.6", "twin.detector.bias_px=2.5",
-                                      "twin.detector.bias_ms=350", "twin.detector.bias_hidden=6"};
+/// The model that config/rigs/twin.toml has in the place of our network (docs/method.md#twin).
+std::vector<std::string> shipped_model() {
+  const auto rig = config::load_rig(source_root() / "config/rigs/twin.toml");
+  EXPECT_TRUE(rig) << rig.error().what;
+  const auto& model = rig->twin.detector;
+  return {"landmarks.backend=twin", fmt::format("twin.detector.noise_px={}", model.noise_px),
+          fmt::format("twin.detector.bias_px={}", model.bias_px),
+          fmt::format("twin.detector.bias_ms={}", model.bias_ms),
+          fmt::format("twin.detector.bias_hidden={}", model.bias_hidden)};
+}
 
 /// p50 and p95 of the landmark error in px, and its autocorrelation at four delays.
 using Figures = std::array<double, 6>;
@@ -48,8 +56,7 @@ TEST(DetectorModel, ErrsAsFarAndAsLongAsOurNetwork) {
   const auto network = mean_over_recordings({"landmarks.backend=handcast"});
   Figures model{};
   for (const int seed : {1, 2, 3}) {
-    auto settings = kModel;
-    settings.push_back("landmarks.backend=twin");
+    auto settings = shipped_model();
     settings.push_back("twin.seed=" + std::to_string(seed));
     const auto figures = mean_over_recordings(settings);
     for (std::size_t i = 0; i < model.size(); ++i) model[i] += figures[i] / 3;

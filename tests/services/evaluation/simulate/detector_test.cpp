@@ -6,6 +6,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/evaluation/simulate/detector_tally.hpp"
+#include "services/evaluation/simulate/score.hpp"
 #include "services/evaluation/simulate/simulation.hpp"
 #include "tests/services/evaluation/simulate/run_rig.hpp"
 
@@ -126,6 +127,7 @@ TEST(SimulatedDetector, KnowsTheTrackersSamplesThatHaveArrivedAndNoOthers) {
         arrived.emplace_back(at_ns, k);
     std::ranges::sort(arrived);
     std::vector<std::uint64_t> expected;
+    expected.reserve(arrived.size());
     for (const auto& sample : arrived) expected.push_back(sample.second);
     ASSERT_EQ(samples, expected) << "frame " << exposure.frame_id;
     free_ns = exposure.origin_ns + kAge_ns;
@@ -215,7 +217,8 @@ TEST(DetectorTally, CountsMissedAndInventedHandsAndTheErrorOfTheOthers) {
 TEST(SimulatedDetector, AMissingModelIsOneSentence) {
   const test::Scratch empty;
   Options options = options_of("twin", 1);
-  options.settings = {"landmarks.backend=mediapipe", "landmarks.models=" + empty.path().string()};
+  add_settings(options,
+               {"landmarks.backend=mediapipe", "landmarks.models=" + empty.path().string()});
   const auto done = run(options);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::bad_config);
@@ -226,7 +229,7 @@ TEST(SimulatedDetector, AMissingModelIsOneSentence) {
 
 TEST(SimulatedDetector, ABackEndThatIsNotThereIsNamedBesideThoseThatAre) {
   Options options = options_of("twin", 1);
-  options.settings = {"landmarks.backend=eagle"};
+  add_settings(options, {"landmarks.backend=eagle"});
   const auto done = run(options);
   ASSERT_FALSE(done);
   EXPECT_THAT(done.error().what, AllOf(HasSubstr("eagle"), HasSubstr("handcast, mediapipe, twin"),
@@ -237,6 +240,53 @@ TEST(SimulatedDetector, ARecordingsLandmarksAreOfOtherImagesSoTheTwinsModelStand
   EXPECT_EQ(
       run_rig("twin", "builtin:wave", 0.05, {"landmarks.backend=replay"})["detector"]["backend"],
       "twin");
+}
+
+/// config/rigs/paper.toml as it is shipped, with the folder of MediaPipe's files.
+nlohmann::json run_shipped_paper(const std::filesystem::path& models) {
+  auto rig = config::load_rig(source_root() / "config/rigs/paper.toml",
+                              {"twin.motion=builtin:wave", "landmarks.models=" + models.string()});
+  EXPECT_TRUE(rig) << rig.error().what;
+  auto options = options_of("paper", 0.05);
+  options.warm_up_s = 0;
+  options.draw_every = 0;
+  const auto json = score(*rig, calib::reference_rig(), options);
+  EXPECT_TRUE(json) << json.error().what;
+  return json ? (*json)["detector"] : nlohmann::json();
+}
+
+TEST(SimulatedDetector, ThePapersRigWithoutMediaPipesFilesRunsTheModelAndSaysWhichFileIsMissing) {
+  const test::Scratch empty;
+  const auto detector = run_shipped_paper(empty.path());
+  EXPECT_EQ(detector["backend"], "twin");
+  EXPECT_THAT(detector["why"].get<std::string>(),
+              AllOf(HasSubstr((empty.path() / "hand_landmark_lite.onnx").string()),
+                    HasSubstr("'mediapipe'"), HasSubstr("'twin'")));
+}
+
+TEST(SimulatedDetector, ThePapersRigRunsMediaPipeIfItsFilesAreThere) {
+  SKIP_WITHOUT_MODELS();
+  const auto detector = run_shipped_paper(models());
+  EXPECT_EQ(detector["backend"], "mediapipe");
+  EXPECT_TRUE(detector["why"].is_null());
+  EXPECT_EQ(detector["age_ms"], 16.2);
+}
+
+TEST(SimulatedDetector, FaultsAndOutliersAlsoSpoilARealOne) {
+  const auto detector_with = [](const std::vector<std::string>& faults) {
+    auto settings = faults;
+    settings.insert(settings.end(), {"landmarks.backend=handcast", "twin.detector.age_ms=5"});
+    return run_rig("twin", "builtin:wave", 0.3, settings, 0)["detector"];
+  };
+  const auto clean = detector_with({});
+  EXPECT_EQ(clean["missed"], 0);
+  const auto lost = detector_with({"twin.detector.lost_at_s=0.6", "twin.detector.lost_s=0.1"});
+  EXPECT_NEAR(lost["missed"].get<double>() / lost["hands"].get<double>(), 1. / 3, 0.05);
+  const auto far = detector_with({"twin.detector.outliers=0.2"});
+  EXPECT_GT(figure(far, "/error_px/p95"), figure(clean, "/error_px/p95") + 40);
+  const auto wrong =
+      detector_with({"twin.detector.wrong_finger_at_s=0.5", "twin.detector.wrong_finger_s=0.3"});
+  EXPECT_GT(figure(wrong, "/error_px/mean"), 2 * figure(clean, "/error_px/mean"));
 }
 
 TEST(SimulatedDetector, TheSameSeedGivesTheSameFiguresTwice) {

@@ -45,7 +45,7 @@ struct Run {
 
 config::Rig rig_with(const std::string& motion, Settings settings) {
   settings.push_back("twin.motion=builtin:" + motion);
-  auto rig = config::load_rig(source_root() / "config/rigs/twin.toml", settings);
+  auto rig = config::load_rig(source_root() / "config/rigs/twin.toml", plain("twin", settings));
   EXPECT_TRUE(rig) << rig.error().what;
   return *rig;
 }

@@ -71,7 +71,7 @@ TEST(NoTracker, CrossingHandsKeepTheirSides) {
                    "landmarks.models=" + no_models.path().string()};
   Options options = options_of("twin", 0.3);
   const test::Scratch folder;
-  options.settings = network;
+  add_settings(options, network);
   options.settings.emplace_back("twin.motion=builtin:crossing");
   options.draw_every = 0;
   options.warm_up_s = 0.75;

@@ -178,7 +178,7 @@ TEST(Frames, OfAnEarlierRunAreRemovedAndOtherFilesLeft) {
 TEST(Recording, OfARigThatLooksAtNoImageHoldsThemAllTheSame) {
   const test::Scratch folder;
   Options options = options_of("baseline", 0.2);
-  options.settings = {"camera.rate_hz=100"};
+  add_settings(options, {"camera.rate_hz=100"});
   options.warm_up_s = 0;
   options.draw_every = 0;
   options.record_directory = folder.path().string();

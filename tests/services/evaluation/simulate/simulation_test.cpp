@@ -141,7 +141,7 @@ TEST(TwinFeed, MessagesArriveInOrderAndAtTheirAge) {
 TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
   const test::Scratch folder;
   Options options = options_of("twin", 0.5);
-  options.settings = {"twin.detector.dropout=0.6"};
+  add_settings(options, {"twin.detector.dropout=0.6"});
   options.draw_every = 64;
   options.record_directory = folder.path().string();
   for (int seed = 1; seed <= 3; ++seed) {  // the first detection without a hand varies
@@ -207,7 +207,7 @@ TEST(Simulation, ANameThatIsNotUtf8IsWrittenAllTheSame) {
   auto recorded = short_run(), options = short_run();
   recorded.record_directory = (folder.path() / "caf\xe9").string();
   ASSERT_TRUE(run(recorded));
-  options.settings = {"twin.motion=" + recorded.record_directory};
+  add_settings(options, {"twin.motion=" + recorded.record_directory});
   options.json_file = (folder.path() / "metrics.json").string();
   const auto done = run(options);
   ASSERT_TRUE(done) << done.error().what;
@@ -216,8 +216,8 @@ TEST(Simulation, ANameThatIsNotUtf8IsWrittenAllTheSame) {
 }
 
 TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
-  const auto rig =
-      config::load_rig(source_root() / "config/rigs/baseline.toml", {"twin.motion=builtin:wave"});
+  const auto rig = config::load_rig(source_root() / "config/rigs/baseline.toml",
+                                    plain("baseline", {"twin.motion=builtin:wave"}));
   ASSERT_TRUE(rig) << rig.error().what;
   auto blind = *rig;
   blind.twin.tracker.lost = {0.2, 0.6};
@@ -233,7 +233,7 @@ TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
 
 TEST(Simulation, ABrokenRecordingIsOneSentence) {
   Options options = options_of("twin", 1);
-  options.settings = {"twin.motion=/nowhere/at/all"};
+  add_settings(options, {"twin.motion=/nowhere/at/all"});
   const auto done = run(options);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::bad_config);
@@ -242,12 +242,13 @@ TEST(Simulation, ABrokenRecordingIsOneSentence) {
 
 TEST(Refreshes, AFrameThatIsLateLeavesTheLightOfTheOneBeforeOn) {
   config::Projector projector;
+  projector.rate_hz = 120;  // every frame is finished before the next begins
   projector.software_ms = 1;
-  const Refreshes never(projector, {}, 1);
-  const Refreshes seldom(projector, {.work_ms = 0.7, .work_spread = 0.17}, 1);
-  const Refreshes half(projector, {.work_ms = 1, .work_spread = 0.17}, 1);
+  Refreshes never(projector, {}, 1);
+  Refreshes seldom(projector, {.work_ms = 0.7, .work_spread = 0.17}, 1);
+  Refreshes half(projector, {.work_ms = 1, .work_spread = 0.17}, 1);
   int seldom_late = 0, half_late = 0;
-  for (std::int64_t k = 0; k < 2000; ++k) {
+  for (std::int64_t k = 1; k <= 2000; ++k) {
     EXPECT_EQ(never.shown_at(k), k);
     EXPECT_LE(half.shown_at(k), k);
     EXPECT_GE(half.shown_at(k + 1), half.shown_at(k)) << "light does not go back in time";
@@ -258,13 +259,30 @@ TEST(Refreshes, AFrameThatIsLateLeavesTheLightOfTheOneBeforeOn) {
   EXPECT_NEAR(seldom_late, 2000 * 0.018, 25);
 }
 
+TEST(Refreshes, AFrameThatTakesLongerThanARefreshLeavesTheNextWithoutOne) {
+  config::Projector projector;
+  projector.rate_hz = 1000;
+  projector.software_ms = 2;
+  Refreshes refreshes(projector, {.work_ms = 1.6, .work_spread = 0}, 1);
+  for (std::int64_t k = 0; k < 100; ++k) EXPECT_EQ(refreshes.shown_at(k), k - k % 2) << k;
+}
+
 TEST(Refreshes, AStallIsShownAsOneOldFrameForItsWholeLength) {
   config::Projector projector;
   projector.rate_hz = 1000;
   projector.software_ms = 1;
-  const Refreshes refreshes(projector,
-                            {.work_ms = 0.1, .work_spread = 0, .stalls = 1, .stall_ms = 4.5}, 1);
-  EXPECT_EQ(refreshes.shown_at(100), 96) << "0.1 + 4.5 ms are 4 refreshes more than 1 ms";
+  Refreshes refreshes(projector, {.work_ms = 0.1, .work_spread = 0, .stalls = 1, .stall_ms = 4.5},
+                      1);
+  // Frames begin every 5 ms, when the one before is finished, and are shown 4 refreshes late.
+  for (std::int64_t k = 4; k < 100; ++k) EXPECT_EQ(refreshes.shown_at(k), (k - 4) / 5 * 5) << k;
+}
+
+TEST(Refreshes, AnyOrderOfQuestionsGetsTheSameAnswers) {
+  config::Projector projector;
+  const config::TwinProjector errors{.work_ms = 1.6, .work_spread = 0.3, .stalls = 0.05};
+  Refreshes upwards(projector, errors, 1), from_the_end(projector, errors, 1);
+  from_the_end.shown_at(500);
+  for (std::int64_t k = 0; k < 500; ++k) EXPECT_EQ(upwards.shown_at(k), from_the_end.shown_at(k));
 }
 
 TEST(Simulation, LightThatStaysOnBecauseEverySecondFrameIsLateIsWorse) {

@@ -80,6 +80,33 @@ TEST(Plan, WithoutVariantsAndGridItIsOneRunOfItsRig) {
   EXPECT_EQ(describe_run(*plan, expand(*plan)->runs[0]), "twin");
 }
 
+TEST(Plan, SharesSettingsWithOtherPlansAndItsOwnCountMore) {
+  const test::Scratch folder;
+  write_text(folder.path() / "world.toml", "twin.tracker.age_ms = 20\n[twin.image]\nlost = 0.5\n");
+  const auto plan = plan_of(
+      "settings_from = \"world.toml\"\n[settings]\ntwin.image.lost = 0.25\n[[variant]]\nname = "
+      "\"a\"\n[[variant]]\nname = \"b\"\nsettings.twin.tracker.age_ms = 30\n",
+      folder.path() / "plan.toml");
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto runs = expand(*plan)->runs;
+  const auto a = rig_of(*plan, runs[0]), b = rig_of(*plan, runs[1]);
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->twin.tracker.age_ms, 20);
+  EXPECT_EQ(a->twin.image.lost, 0.25);
+  EXPECT_EQ(b->twin.tracker.age_ms, 30);
+}
+
+TEST(Plan, AWrongSharedSettingIsNamedWithItsOwnFileAndLine) {
+  const test::Scratch folder;
+  write_text(folder.path() / "world.toml", "# a comment\ntwin.tracker.age_ms = -1\n");
+  const auto with = [&](const std::string& file) {
+    const auto plan = plan_of("settings_from = \"" + file + "\"\n", folder.path() / "plan.toml");
+    return plan ? "" : plan.error().what;
+  };
+  EXPECT_THAT(with("world.toml"), HasSubstr("world.toml:2: "));
+  EXPECT_THAT(with("nowhere.toml"), HasSubstr((folder.path() / "nowhere.toml").string()));
+}
+
 TEST(Plan, SeveralGridsAreRunOneAfterTheOther) {
   const auto plan = plan_of(
       "[[grid]]\ntwin.tracker.age_ms = [5, 40]\n[[grid]]\ntwin.speed = [2]\ntwin.tracker.dropout = "
@@ -227,7 +254,8 @@ TEST(Shards, AreWrittenAsIndexAndCount) {
 
 TEST(ShippedPlans, AreWithoutFault) {
   for (const char* name :
-       {"detectors", "failures", "filters", "installation", "ladder", "stress", "times"}) {
+       {"causes", "comparison", "detectors", "failures", "fast", "fidelity", "filters", "ladder",
+        "levers", "motions", "no_tracker", "stress", "times"}) {
     const auto plan = load_plan(source_root() / "config/sweeps" / (std::string(name) + ".toml"));
     ASSERT_TRUE(plan) << plan.error().what;
     const auto expansion = expand(*plan);

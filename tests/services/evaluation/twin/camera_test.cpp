@@ -161,5 +161,34 @@ TEST(CameraImage, Pictures) {
   }
 }
 
+TEST(Camera, TheSecondViewSeesTheSameWorldFromItsOwnPlace) {
+  config::Rig rig;
+  auto cameras = calib::reference_rig();
+  glm::dmat4 from_camera(1);
+  from_camera[3].x = -0.05;
+  cameras.camera2 = calib::SecondCamera{{}, cameras.camera, from_camera};
+  const auto first = Twin::create(rig, cameras).value(),
+             second = Twin::create(rig, calib::second_view(cameras)).value();
+  const auto here = first->joints(Side::left, 0).value(),
+             there = second->joints(Side::left, 0).value();
+  EXPECT_EQ(here[10], there[10]) << "one hand";
+  const auto seen = first->landmarks(Side::left, 0).value(),
+             beside = second->landmarks(Side::left, 0).value();
+  const double depth_m = (cameras.camera_from_tracker * glm::dvec4(glm::dvec3(here[12][3]), 1)).z;
+  EXPECT_NEAR(seen[9].x - beside[9].x, 0.05 * cameras.camera.fx_px / depth_m, 0.1);
+  EXPECT_NEAR(seen[9].y, beside[9].y, 0.1);
+  const auto image = picture(*first, 3), other = picture(*second, 3);
+  EXPECT_EQ(first->camera_stamp_ns(3), second->camera_stamp_ns(3)) << "triggered together";
+  int moved = 0, same = 0;
+  const int step_px = static_cast<int>(std::lround(seen[9].x - beside[9].x));
+  for (int y = 0; y < 540; ++y)
+    for (int x = step_px; x < 720; ++x)
+      if (image.at(x, y) > 100) {
+        moved += other.at(x - step_px, y) > 100;
+        same += other.at(x, y) > 100;
+      }
+  EXPECT_GT(moved, same) << "the picture of the hand is where the second camera has it";
+}
+
 }  // namespace
 }  // namespace handcast::twin

@@ -15,9 +15,9 @@ namespace {
 using testing::HasSubstr;
 
 const std::vector<std::string> kBuiltin{
-    "open_close", "wave",          "rotate",        "pinch",    "shake",           "two_hands",
-    "still",      "crossing",      "flip",          "fist",     "point_at_camera", "enter_leave",
-    "reverse",    "cross_fingers", "turn_pointing", "turn_fist"};
+    "open_close", "wave",          "rotate",        "pinch",     "shake",           "two_hands",
+    "still",      "crossing",      "flip",          "fist",      "point_at_camera", "enter_leave",
+    "reverse",    "cross_fingers", "turn_pointing", "turn_fist", "places"};
 
 std::unique_ptr<Motion> motion_of(const config::Twin& settings) {
   auto motion = open_motion(settings, calib::reference_rig());
