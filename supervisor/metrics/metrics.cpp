@@ -233,6 +233,30 @@ MetricFamily losses_of(const nlohmann::json& status) {
   return losses.family;
 }
 
+MetricFamily faults_of(const nlohmann::json& status) {
+  auto faults = Family::counter("handcast_tracker_faults_total",
+                                "What the tracker did wrong, by kind: how often it began.");
+  if (!status.contains("tracker_faults")) return faults.family;
+  for (const auto& [kind, count] : status["tracker_faults"].items())
+    if (count.is_number()) faults.add({{"kind", kind}}, count.template get<double>());
+  return faults.family;
+}
+
+std::vector<MetricFamily> families_of_drift(const nlohmann::json& status) {
+  auto moved = Family::gauge("handcast_tracker_moved",
+                             "1 if the tracker is not where the calibration says.");
+  auto across = Family::gauge("handcast_tracker_drift_millimetres",
+                              "How far it is from there, across the camera's axis.");
+  auto turn = Family::gauge("handcast_tracker_drift_degrees", "How far it is turned from there.");
+  if (status.contains("tracker_drift") && status["tracker_drift"].is_object()) {
+    const auto& drift = status["tracker_drift"];
+    moved.add({}, drift.value("moved", false) ? 1 : 0);
+    across.add({}, drift.value("across_mm", 0.0));
+    turn.add({}, drift.value("turn_deg", 0.0));
+  }
+  return {moved.family, across.family, turn.family};
+}
+
 std::vector<MetricFamily> metrics_of(const RigLook& look) {
   const auto model = compare(look, look);
   auto families = families_of_rig(model);
@@ -243,6 +267,8 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   families.push_back(rungs_of(look.status));
   append(families, families_of_light(look.status));
   families.push_back(losses_of(look.status));
+  families.push_back(faults_of(look.status));
+  append(families, families_of_drift(look.status));
   std::erase_if(families, [](const auto& family) { return family.metric.empty(); });
   return families;
 }

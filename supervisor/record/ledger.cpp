@@ -75,6 +75,11 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
     if (const auto note = msg::light_note_in(mark.detail); note && mark.stage == msg::Stage::light)
       light_.add(*note);
     if (mark.stage == msg::Stage::capture) lost_images_.add(msg::losses_in(mark.detail));
+    if (mark.stage == msg::Stage::sample) {
+      const auto faults = msg::tracker_faults_in(mark.detail);
+      for (std::size_t k = 0; k < faults.count.size(); ++k) tracker_faults_[k] += faults.count[k];
+    }
+    if (mark.stage == msg::Stage::watch) tracker_drift_ = msg::drift_note_in(mark.detail);
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})
       if (const auto rung = msg::rung_in(mark.detail, side))

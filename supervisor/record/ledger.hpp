@@ -8,8 +8,10 @@
 #include <string>
 #include <string_view>
 
+#include "ipc/msg/drift_note.hpp"
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
+#include "ipc/msg/tracker_faults.hpp"
 #include "supervisor/record/histogram.hpp"
 #include "supervisor/record/light_count.hpp"
 #include "supervisor/record/loss_count.hpp"
@@ -83,6 +85,12 @@ class Ledger {
   const LightCount& light() const { return light_; }
   /// The images that the camera lost.
   const LossCount& lost_images() const { return lost_images_; }
+  /// What the tracker did wrong: how often each kind of fault began.
+  const std::array<std::uint64_t, msg::kTrackerFaults>& tracker_faults() const {
+    return tracker_faults_;
+  }
+  /// Where the tracker seems to be, by its newest sample.
+  const msg::DriftNote& tracker_drift() const { return tracker_drift_; }
 
  private:
   std::map<std::string, FrameCount, std::less<>> frames_;
@@ -90,6 +98,8 @@ class Ledger {
   std::array<std::uint64_t, msg::kRungs> rungs_{};
   LightCount light_;
   LossCount lost_images_;
+  std::array<std::uint64_t, msg::kTrackerFaults> tracker_faults_{};
+  msg::DriftNote tracker_drift_;
 };
 
 }  // namespace handcast::supervisor

@@ -80,6 +80,23 @@ json loss_status(const LossCount& lost) {
   return status;
 }
 
+/// "frozen": 2, ... by kind.
+json fault_status(const Ledger& ledger) {
+  json status;
+  for (std::size_t k = 0; k < msg::kTrackerFaults; ++k)
+    status[std::string(msg::kTrackerFaultNames[k])] = ledger.tracker_faults()[k];
+  return status;
+}
+
+/// Where the tracker seems to be, relative to its calibration; null if nothing is known.
+json drift_status(const msg::DriftNote& drift) {
+  if (drift.places == 0) return {};
+  return {{"moved", drift.moved},
+          {"places", drift.places},
+          {"across_mm", rounded(drift.across_mm)},
+          {"turn_deg", rounded(drift.turn_deg)}};
+}
+
 json summary_of(const Histogram& times) {
   return {{"p50", rounded(times.percentile_ns(0.50) * 1e-3)},
           {"p99", rounded(times.percentile_ns(0.99) * 1e-3)},
@@ -122,6 +139,36 @@ std::string print_losses(const json& status) {
       count("missing"), count("incomplete"), count("underrun"), count("skipped"));
 }
 
+/// "tracker: frozen 2 times, late 1 time". "" if it did nothing wrong.
+std::string print_faults(const json& status) {
+  const auto faults = status.value("tracker_faults", json::object());
+  std::string text;
+  for (const auto& [kind, count] : faults.items()) {
+    if (!count.is_number_unsigned() || count == 0) continue;
+    const auto times = count.get<std::uint64_t>();
+    text += fmt::format("{}{} {} time{}", text.empty() ? "\ntracker: " : ", ", kind, times,
+                        times == 1 ? "" : "s");
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+/// Whether the tracker is where the calibration says. "" if nothing is known.
+std::string print_drift(const json& status) {
+  const auto drift = status.value("tracker_drift", json());
+  if (!drift.is_object()) return "";
+  const auto off = fmt::format("{} mm and {} degrees", text_of(drift.value("across_mm", json())),
+                               text_of(drift.value("turn_deg", json())));
+  if (!drift.value("moved", false))
+    return fmt::format(
+        "\ntracker: where the calibration says, as far as {} places of still hands "
+        "tell ({})\n",
+        text_of(drift.value("places", json())), off);
+  return fmt::format(
+      "\ntracker: it has moved by {} since the calibration; fasten it, then `handcast calibrate "
+      "RIG.toml --correct` corrects the calibration\n",
+      off);
+}
+
 /// The trouble of a service: "died 10 times within 60 s; tried again in 4.2 s". "" if it has none.
 std::string print_trouble(const json& service) {
   std::string text =
@@ -144,6 +191,8 @@ json status_of(const RigView& rig) {
   }
   status["light"] = light_status(rig.recorder.ledger().light());
   status["lost_images"] = loss_status(rig.recorder.ledger().lost_images());
+  status["tracker_faults"] = fault_status(rig.recorder.ledger());
+  status["tracker_drift"] = drift_status(rig.recorder.ledger().tracker_drift());
   status["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages())
     status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
@@ -179,6 +228,8 @@ std::string print_status(const json& status) {
                         text_of(ring["newest_age_ms"], " ms"), text_of(ring["count"]));
   text += print_light(status);
   text += print_losses(status);
+  text += print_faults(status);
+  text += print_drift(status);
   text +=
       fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
   for (const auto& [stage, times] : status["stage_us"].items())
@@ -208,6 +259,7 @@ json live_report(const RigView& rig) {
   }
   report["light"] = light_status(rig.recorder.ledger().light());
   report["lost_images"] = loss_status(rig.recorder.ledger().lost_images());
+  report["tracker_faults"] = fault_status(rig.recorder.ledger());
   report["stage_us"] = json::object();
   for (const auto& [stage, times] : rig.recorder.ledger().stages())
     report["stage_us"][stage] = summary_of(times.whole_run());

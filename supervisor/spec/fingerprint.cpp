@@ -36,17 +36,19 @@ bool is_in(std::string_view path, const Paths& paths) {
   return std::ranges::any_of(paths, [&](const auto& section) { return is_within(path, section); });
 }
 
-/// What the service reads with this back end. Empty if the catalogue does not know one of them.
-std::optional<Paths> reads_of(std::string_view service, std::string_view backend,
+/// What the service reads with these back ends. Empty if the catalogue does not know one of them.
+std::optional<Paths> reads_of(std::string_view service, const std::vector<std::string>& names,
                               const Catalogue& catalogue) {
   const auto found = catalogue.find(service);
   if (found == catalogue.end()) return std::nullopt;
   auto paths = found->second.settings;
   const auto& backends = found->second.backends;
   if (backends.empty()) return paths;
-  const auto row = std::ranges::find(backends, backend, &daemon::BackendDescription::name);
-  if (row == backends.end()) return std::nullopt;
-  paths.insert(paths.end(), row->settings.begin(), row->settings.end());
+  for (const auto& name : names) {
+    const auto row = std::ranges::find(backends, name, &daemon::BackendDescription::name);
+    if (row == backends.end()) return std::nullopt;
+    paths.insert(paths.end(), row->settings.begin(), row->settings.end());
+  }
   return paths;
 }
 
@@ -71,10 +73,25 @@ std::string content_of(const config::Setting& setting) {
   return config::read_text(file).value_or("");
 }
 
+/// The word of SERVICE.NAME; null if there is no such setting.
+std::string* word_of(std::string_view service, std::string_view name,
+                     const config::Listing& listing) {
+  const auto* word = config::find_setting(listing, fmt::format("{}.{}", service, name));
+  return word ? std::get<std::string*>(word->target) : nullptr;
+}
+
 /// Null for a service without back ends.
 std::string* backend_in(std::string_view service, const config::Listing& listing) {
-  const auto* backend = config::find_setting(listing, fmt::format("{}.backend", service));
-  return backend ? std::get<std::string*>(backend->target) : nullptr;
+  return word_of(service, "backend", listing);
+}
+
+/// The back end, a second one beside it and its fallback, as far as the service has them.
+std::vector<std::string> backends_in(std::string_view service, const config::Listing& listing) {
+  std::vector<std::string> names;
+  for (const auto* name : {"backend", "second", "fallback"})
+    if (const auto* word = word_of(service, name, listing); word && !word->empty())
+      names.push_back(*word);
+  return names;
 }
 
 }  // namespace
@@ -83,7 +100,7 @@ std::string fingerprint_of(std::string_view service, const config::Rig& rig,
                            const Catalogue& catalogue) {
   auto copy = rig;  // a listing refers to values that can be written
   const auto listing = config::list_settings(copy);
-  const auto reads = reads_of(service, backend_of(service, rig), catalogue);
+  const auto reads = reads_of(service, backends_in(service, listing), catalogue);
   Hash hash;
   for (const auto& section : listing) {
     for (const auto& setting : section.settings) {

@@ -29,8 +29,12 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::CameraFrame>(
           "camera.frames", kImageSlots, kNewestOnly,
           msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
+      RingSpec::of<msg::CameraFrame>(
+          "camera2.frames", kImageSlots, kNewestOnly,
+          msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
       RingSpec::of<msg::HandPoses>("pose.hands", 64, kWithHistory),
       RingSpec::of<msg::Landmarks>("landmarks.hands", 32, kWithHistory),
+      RingSpec::of<msg::Landmarks>("landmarks2.hands", 32, kWithHistory),
       RingSpec::of<msg::Projection>(
           "projection.frames", kImageSlots, kNewestOnly,
           msg::Projection::bytes(msg::kLargestProjectorWidth_px, msg::kLargestProjectorHeight_px)),
@@ -38,6 +42,21 @@ std::vector<ipc::RingSpec> all_streams() {
                                      msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px,
                                                              msg::kLargestTestPictureHeight_px)),
   };
+}
+
+/// The services of a second camera. One that delivers the images of both ("leap") is one service,
+/// which needs no second one.
+void add_second_view(const config::Rig& rig, std::vector<ServiceSpec>& services) {
+  const bool has_camera = rig.camera2.backend != "none";
+  if (has_camera)
+    services.push_back({"camera2", "camera2.frames", rig.camera2.backend, rig.camera2.rate_hz});
+  if (has_camera || rig.pose.backend == "stereo")
+    services.push_back({"landmarks2",
+                        "landmarks2.hands",
+                        rig.landmarks2.backend,
+                        0,
+                        "",
+                        {has_camera ? "camera2" : "camera"}});
 }
 
 ipc::RingSpec marks_of(const ServiceSpec& service) {
@@ -52,13 +71,14 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
       {"camera", "camera.frames", rig.camera.backend, rig.camera.rate_hz},
       {"pose", "pose.hands", rig.pose.backend, rig.twin.tracker.rate_hz, "twin"},
       {"landmarks", "landmarks.hands", rig.landmarks.backend, 0, "", {"camera"}},
-      {"projector",
-       "projection.frames",
-       rig.projector.backend,
-       rig.projector.rate_hz,
-       "",
-       {"camera", "pose", "landmarks"}},
   };
+  add_second_view(rig, services);
+  services.push_back({"projector",
+                      "projection.frames",
+                      rig.projector.backend,
+                      rig.projector.rate_hz,
+                      "",
+                      {"camera", "pose", "landmarks"}});
   if (rig.dlp.backend != "none") {
     services.push_back({"dlp", "", rig.dlp.backend, 0});
     services.back().has_safe_state = true;

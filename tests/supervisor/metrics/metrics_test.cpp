@@ -78,6 +78,26 @@ TEST(Metrics, LostImagesAreCountedByReason) {
   EXPECT_THAT(text, HasSubstr(R"(handcast_camera_lost_images_total{reason="skipped"} 2)"));
 }
 
+TEST(Metrics, FaultsOfTheTrackerAreCountedByKind) {
+  auto look = look_at(10);
+  EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_tracker_faults")));
+  look.status["tracker_faults"] = {{"frozen", 3}, {"exchanged", 0}};
+  const auto text = metrics_text(look);
+  EXPECT_THAT(text, HasSubstr(R"(handcast_tracker_faults_total{kind="frozen"} 3)"));
+  EXPECT_THAT(text, HasSubstr(R"(handcast_tracker_faults_total{kind="exchanged"} 0)"));
+}
+
+TEST(Metrics, TheDriftOfTheTrackerIsThereOnceItIsKnown) {
+  auto look = look_at(10);
+  EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_tracker")));
+  look.status["tracker_drift"] = {
+      {"moved", true}, {"places", 9}, {"across_mm", 5.5}, {"turn_deg", 0.25}};
+  const auto text = metrics_text(look);
+  EXPECT_THAT(text, HasSubstr("handcast_tracker_moved 1"));
+  EXPECT_THAT(text, HasSubstr("handcast_tracker_drift_millimetres 5.5"));
+  EXPECT_THAT(text, HasSubstr("handcast_tracker_drift_degrees 0.25"));
+}
+
 TEST(Metrics, StagesAreInSeconds) {
   const auto text = metrics_text(look_at(10));
   EXPECT_THAT(text, HasSubstr(R"(handcast_stage_seconds{stage="draw",quantile="0.5"} 0.0015)"));

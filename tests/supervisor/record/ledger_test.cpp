@@ -92,6 +92,45 @@ TEST(Ledger, LostImagesAreCountedByReason) {
   EXPECT_EQ(ledger.lost_images().missing, 1 + 255u) << "only a camera loses images";
 }
 
+TEST(Ledger, FaultsOfTheTrackerAreCountedByKind) {
+  Ledger ledger;
+  auto marks = frame_at(kSecond_ns);
+  marks.marks[0].stage = msg::Stage::sample;
+  msg::TrackerFaults faults;
+  faults.of(msg::TrackerFault::frozen) = 1;
+  faults.of(msg::TrackerFault::impossible) = 1000;
+  marks.marks[0].detail = msg::detail_of(faults);
+  ledger.add("pose", marks);
+  ledger.add("pose", marks);
+  const auto counted = [&](msg::TrackerFault fault) {
+    return ledger.tracker_faults()[static_cast<std::size_t>(fault)];
+  };
+  EXPECT_EQ(counted(msg::TrackerFault::frozen), 2u);
+  EXPECT_EQ(counted(msg::TrackerFault::impossible), 2 * 31u) << "a mark has room for 31";
+  EXPECT_EQ(counted(msg::TrackerFault::late), 0u);
+  marks.marks[0].stage = msg::Stage::capture;
+  ledger.add("camera", marks);
+  EXPECT_EQ(counted(msg::TrackerFault::frozen), 2u) << "only a tracker has these faults";
+}
+
+TEST(Ledger, TheDriftOfTheTrackerIsThatOfItsNewestSample) {
+  Ledger ledger;
+  EXPECT_EQ(ledger.tracker_drift().places, 0u);
+  auto marks = frame_at(kSecond_ns);
+  marks.marks[0].stage = msg::Stage::watch;
+  marks.marks[0].detail = msg::detail_of(msg::DriftNote{true, 9, 5, 1});
+  ledger.add("pose", marks);
+  EXPECT_TRUE(ledger.tracker_drift().moved);
+  EXPECT_EQ(ledger.tracker_drift().places, 9u);
+  marks.marks[0].stage = msg::Stage::detect;
+  marks.marks[0].detail = 0;
+  ledger.add("landmarks", marks);
+  EXPECT_TRUE(ledger.tracker_drift().moved) << "only the tracker tells it";
+  marks.marks[0].stage = msg::Stage::watch;
+  ledger.add("pose", marks);
+  EXPECT_FALSE(ledger.tracker_drift().moved) << "started anew";
+}
+
 TEST(LightNote, ManyRefreshesDoNotChangeTheSource) {
   const auto note = msg::light_note_in(msg::detail_of({msg::LightSource::window, 0xffffffff}));
   ASSERT_TRUE(note);

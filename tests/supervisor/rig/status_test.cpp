@@ -64,6 +64,35 @@ TEST(Status, SaysWhatTheCameraLostAndNothingIfItLostNothing) {
   EXPECT_THAT(print_status(status), Not(HasSubstr("camera:")));
 }
 
+TEST(Status, SaysWhatTheTrackerDidWrongAndNothingIfItDidNothing) {
+  json status{{"rig", "desk"},
+              {"uptime_s", 7},
+              {"services", json::object()},
+              {"rings", json::object()},
+              {"stage_us", json::object()},
+              {"tracker_faults", {{"frozen", 1u}, {"jumped", 12u}, {"late", 0u}}}};
+  EXPECT_THAT(print_status(status), HasSubstr("tracker: frozen 1 time, jumped 12 times\n"));
+  status["tracker_faults"] = {{"frozen", 0u}, {"jumped", "?"}};
+  EXPECT_THAT(print_status(status), Not(HasSubstr("tracker:")));
+}
+
+TEST(Status, SaysWhetherTheTrackerIsWhereTheCalibrationSays) {
+  json status{{"rig", "desk"},
+              {"uptime_s", 7},
+              {"services", json::object()},
+              {"rings", json::object()},
+              {"stage_us", json::object()},
+              {"tracker_drift", nullptr}};
+  EXPECT_THAT(print_status(status), Not(HasSubstr("tracker:")));
+  status["tracker_drift"] = {
+      {"moved", false}, {"places", 9}, {"across_mm", 0.8}, {"turn_deg", 0.21}};
+  EXPECT_THAT(print_status(status), HasSubstr("tracker: where the calibration says, as far as 9 "
+                                              "places of still hands tell (0.8 mm and 0.21"));
+  status["tracker_drift"]["moved"] = true;
+  EXPECT_THAT(print_status(status),
+              AllOf(HasSubstr("it has moved by 0.8 mm and 0.21 degrees"), HasSubstr("--correct")));
+}
+
 TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {
   const auto text = print_with(service({{"state", "degraded"},
                                         {"last_exit", "exit 111"},

@@ -92,10 +92,11 @@ std::vector<std::string> truth_and(std::vector<std::string> more) {
 TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakesOfThem) {
   const config::Rig rig;
   expect_reads("camera", rig, truth_and({"camera", "twin.image"}),
-               settings_in({"camera.aravis", "camera.v4l2", "camera.delivery_ms", "camera.replay",
-                            "camera.process.standby"}));
+               settings_in({"camera.aravis", "camera.v4l2", "camera.leap", "camera.delivery_ms",
+                            "camera.replay", "camera.process.standby"}));
   expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
-               settings_in({"pose.replay", "pose.none", "pose.process.standby"}));
+               settings_in({"pose.replay", "pose.none", "pose.leapc", "pose.openxr", "pose.stereo",
+                            "pose.process.standby"}));
   expect_reads(
       "landmarks", rig,
       truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "twin.image.lost",
@@ -115,11 +116,23 @@ TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
       settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
 }
 
+TEST(Fingerprint, ADetectorDependsOnWhatItsFallbackReads) {
+  auto rig = networks();
+  rig.landmarks.fallback = "twin";
+  expect_reads("landmarks", rig,
+               truth_and({"landmarks", "pose.backend", "twin.detector", "twin.image.delivery_ms",
+                          "twin.image.lost", "twin.image.burst", "twin.image.clock_drift_ppm",
+                          "twin.image.clock_jitter_ms", "camera.rate_hz", "camera.exposure_ms"}),
+               settings_in({"landmarks.replay", "landmarks.process.standby"}));
+}
+
 TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
   expect_reads("camera", replay(), {"camera"},
-               settings_in({"camera.aravis", "camera.v4l2", "camera.delivery_ms",
+               settings_in({"camera.aravis", "camera.v4l2", "camera.leap", "camera.delivery_ms",
                             "camera.process.standby"}));
-  expect_reads("pose", replay(), {"pose"}, settings_in({"pose.none", "pose.process.standby"}));
+  expect_reads("pose", replay(), {"pose"},
+               settings_in({"pose.none", "pose.leapc", "pose.openxr", "pose.stereo",
+                            "pose.process.standby"}));
   expect_reads("landmarks", replay(), {"landmarks"},
                settings_in({"landmarks.executor", "landmarks.models", "landmarks.hands",
                             "landmarks.definition", "landmarks.process.standby"}));
@@ -132,14 +145,28 @@ config::Rig with_camera(const char* backend) {
   return rig;
 }
 
+config::Rig with_second_tracker(const char* backend) {
+  config::Rig rig;
+  rig.pose.second = backend;
+  return rig;
+}
+
+TEST(Fingerprint, ASecondTrackerAddsWhatItReads) {
+  expect_reads("pose", with_second_tracker("leapc"), truth_and({"pose", "twin.tracker"}),
+               settings_in({"pose.replay", "pose.none", "pose.openxr", "pose.stereo",
+                            "pose.process.standby"}));
+}
+
 TEST(Fingerprint, ARealCameraDependsOnItsOwnSection) {
-  expect_reads("camera", with_camera("v4l2"), {"camera"},
-               settings_in({"camera.aravis", "camera.replay", "camera.process.standby"}));
+  expect_reads(
+      "camera", with_camera("v4l2"), {"camera"},
+      settings_in({"camera.aravis", "camera.leap", "camera.replay", "camera.process.standby"}));
   if (std::ranges::none_of(built().at("camera").backends,
                            [](const auto& backend) { return backend.name == "aravis"; }))
     GTEST_SKIP() << "this build has no Aravis";
-  expect_reads("camera", with_camera("aravis"), {"camera"},
-               settings_in({"camera.v4l2", "camera.replay", "camera.process.standby"}));
+  expect_reads(
+      "camera", with_camera("aravis"), {"camera"},
+      settings_in({"camera.v4l2", "camera.leap", "camera.replay", "camera.process.standby"}));
 }
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
@@ -180,6 +207,27 @@ TEST(Fingerprint, WhatOnlyTheSupervisorReadsIsInNone) {
   }
 }
 
+/// A rig of two cameras, whose second one and its detector have these back ends.
+config::Rig pair(const std::string& camera2, const std::string& landmarks2) {
+  config::Rig rig;
+  rig.camera2.backend = camera2;
+  rig.landmarks2.backend = landmarks2;
+  rig.pose.backend = "stereo";
+  return rig;
+}
+
+TEST(Fingerprint, TheServicesOfTheSecondViewDependOnItsSectionsAndNotOnTheFirsts) {
+  expect_reads("camera2", pair("replay", "replay"), {"camera2"},
+               settings_in({"camera2.aravis", "camera2.v4l2", "camera2.leap", "camera2.delivery_ms",
+                            "camera2.process.standby"}));
+  expect_reads(
+      "landmarks2", pair("replay", "handcast"), {"landmarks2", "pose.backend"},
+      settings_in({"landmarks2.replay", "landmarks2.definition", "landmarks2.process.standby"}));
+  expect_reads("pose", pair("replay", "replay"), {"pose", "hand"},
+               settings_in({"pose.none", "pose.replay", "pose.leapc", "pose.openxr",
+                            "pose.process.standby"}));
+}
+
 TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
   Paths read;
   for (const auto& service : kServices) {
@@ -188,7 +236,15 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
     read.merge(read_by(service, networks()));
     read.merge(read_by(service, with_camera("aravis")));
     read.merge(read_by(service, with_camera("v4l2")));
+    read.merge(read_by(service, with_camera("leap")));
+    read.merge(read_by(service, with_second_tracker("leapc")));
+    read.merge(read_by(service, with_second_tracker("openxr")));
   }
+  read.merge(read_by("pose", pair("twin", "twin")));
+  for (const auto* camera2 : {"twin", "replay", "aravis", "v4l2", "leap"})
+    read.merge(read_by("camera2", pair(camera2, "twin")));
+  for (const auto* landmarks2 : {"twin", "replay", "mediapipe"})
+    read.merge(read_by("landmarks2", pair("twin", landmarks2)));
   read.merge(read_by("dlp", commanded()));
   config::Rig rig;
   for (const auto& section : config::list_settings(rig)) {
