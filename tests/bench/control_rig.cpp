@@ -14,7 +14,7 @@ namespace handcast::bench {
 namespace {
 
 constexpr auto kRigName = "twin";
-constexpr auto kSetting = "software_ms = 1.2";
+constexpr auto kSetting = "software_ms = 2.0";
 constexpr int kWork_us = 400'000;
 
 std::filesystem::path folder_of_programs() {

@@ -2,10 +2,15 @@
 // `handcast calibrate` measures the twin, whose truth is known.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "calib/calibration.hpp"
+#include "config/rig.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {
@@ -27,6 +32,23 @@ class Calibrate : public SystemTest {
                         "--set",     "camera.rate_hz=30"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return handcast(arguments);
+  }
+  /// What --apply has written to the rig file: 3 ms and a gamma as in sRGB were there before.
+  void expect_projector(double latency_ms, double gamma) const {
+    const auto rig = config::load_rig(rig_file(), {});
+    ASSERT_TRUE(rig) << rig.error().what;
+    EXPECT_NEAR(rig->projector.latency_ms, latency_ms, 0.5);
+    EXPECT_NEAR(rig->projector.gamma, gamma, 0.1);
+  }
+  /// Files beside the rig file, and their times.
+  std::vector<std::pair<fs::path, fs::file_time_type>> files() const {
+    std::vector<std::pair<fs::path, fs::file_time_type>> files;
+    for (const auto& entry : fs::recursive_directory_iterator(scratch_.path()))
+      if (const auto name = entry.path().filename().string();
+          !name.starts_with("output-") && !name.starts_with("log-"))
+        files.emplace_back(entry.path(), entry.last_write_time());
+    std::ranges::sort(files);
+    return files;
   }
 };
 
@@ -50,9 +72,11 @@ TEST_F(Calibrate, TheTwinsProjectorIsFoundByStructuredLight) {
   truth.parallax = {82, 0, 0};
   const auto file = (scratch_.path() / "truth.toml").string();
   std::ofstream(file) << calib::print_calibration(truth);
-  const auto outcome =
-      calibrate({"screen", "--most-s", "150", "--set", "twin.geometry.calibration=" + file});
+  const auto outcome = calibrate(
+      {"screen", "--most-s", "150", "--apply", "--set", "twin.geometry.calibration=" + file,
+       "--set", "twin.prop.light_late_ms=1", "--set", "twin.prop.light_gamma=1.8"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
+  expect_projector(4, 1.8);
   EXPECT_THAT(outcome.log, HasSubstr("5 places of the board"));
   const auto found = calib::load_calibration(scratch_.path() / "twin_calibration.toml");
   ASSERT_TRUE(found) << found.error().what;
@@ -60,6 +84,53 @@ TEST_F(Calibrate, TheTwinsProjectorIsFoundByStructuredLight) {
     for (const glm::dvec2 px : {glm::dvec2(180, 135), {540, 135}, {180, 405}, {540, 405}})
       EXPECT_LT(glm::distance(found->to_projector(px, depth_m), truth.to_projector(px, depth_m)), 1)
           << px.x << " " << px.y << " at " << depth_m << " m";
+}
+
+TEST_F(Calibrate, TheTwinsTrackerIsFoundByAReflector) {
+  const auto outcome = calibrate(
+      {"tracker", "--reflector", "8", "--most-s", "45", "--set", "twin.geometry.tracker_mm=20",
+       "--set", "twin.geometry.tracker_deg=2", "--set", "twin.tracker.offset_mm=0", "--set",
+       "twin.tracker.rotation_deg=0", "--set", "twin.tracker.scale=1"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
+  const auto found = calib::load_calibration(scratch_.path() / "twin_calibration.toml");
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_THAT(found->made.tracker, HasSubstr("held out"));
+  // Twenty millimetres were wrong, in the middle of the volume.
+  const auto& before = calib::reference_rig().camera_from_tracker;
+  const glm::dvec4 middle = glm::inverse(before) * glm::dvec4(0, 0, 0.73, 1);
+  const double moved_mm =
+      1e3 * glm::distance(glm::dvec3(found->camera_from_tracker * middle), {0, 0, 0.73});
+  EXPECT_NEAR(moved_mm, 20, 3);
+}
+
+TEST_F(Calibrate, RecordedPointsAreJudged) {
+  const auto missing = handcast({"calibrate", rig_file(), "--points", scratch_.path().string()});
+  EXPECT_NE(missing.exit_code, 0);
+  EXPECT_THAT(missing.log, HasSubstr("2dpoints.npy"));
+}
+
+TEST_F(Calibrate, TheCheckTellsAProjectorThatHasMovedAndChangesNothing) {
+  (void)rig_file();
+  const auto before = files();
+  const auto good = calibrate({"--check", "--set", "pose.backend=none"});
+  EXPECT_EQ(good.exit_code, 0) << good.log;
+  EXPECT_THAT(good.output, HasSubstr("screen: as calibrated"));
+  const auto moved = calibrate(
+      {"--check", "--set", "pose.backend=none", "--set", "twin.geometry.homography_px=3"});
+  EXPECT_EQ(moved.exit_code, 1) << moved.log;
+  EXPECT_THAT(moved.output, HasSubstr("screen: has moved"));
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Calibrate, TheLightOnAStillHandIsJudged) {
+  const auto outcome = calibrate({"light", "--most-s", "60"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
+  EXPECT_THAT(outcome.log, HasSubstr("finger tips"));
+  EXPECT_FALSE(fs::exists(scratch_.path() / "twin_calibration.toml"))
+      << "it measures no part of it";
+  std::ifstream report(scratch_.path() / "twin.calibration" / "report.html");
+  const std::string page((std::istreambuf_iterator<char>(report)), {});
+  EXPECT_THAT(page, HasSubstr("Grey values 0 to 255 of the background"));
 }
 
 TEST_F(Calibrate, ARigThatCannotStartIsToldInASentence) {

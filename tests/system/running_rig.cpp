@@ -17,8 +17,8 @@ SystemTest::Outcome SystemTest::handcast(const Arguments& arguments) const {
 
 std::unique_ptr<Command> SystemTest::up(const Arguments& more) const {
   Arguments arguments{"up", "config/rigs/twin.toml"};
-  for (const auto* setting :
-       {"camera.rate_hz=60", "projector.rate_hz=60", "observer.rate_hz=2", "supervisor.ready_s=60"})
+  for (const auto* setting : {"camera.rate_hz=60", "projector.rate_hz=60", "observer.rate_hz=2",
+                              "supervisor.ready_s=60", "landmarks.backend=twin"})
     arguments.insert(arguments.end(), {"--set", setting});
   arguments.insert(arguments.end(), more.begin(), more.end());
   return std::make_unique<Command>(scratch_.path(), arguments);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "config/rig.hpp"
+#include "ipc/base/result.hpp"
+#include "tests/bench/stereo_rigs.hpp"
+
+namespace handcast::bench {
+
+/// Errors of joints against the truth, mm.
+struct JointErrors {
+  std::vector<double> all_mm;          ///< of the 21 joints that have landmarks
+  std::vector<double> open_mm;         ///< of these, on hands without a folded finger
+  std::vector<double> folded_tips_mm;  ///< of the tips of folded fingers
+  int hands = 0, missing = 0;          ///< true hands at the times of samples; not reported ones
+
+  /// Adds the errors of another run.
+  void add(const JointErrors& more);
+};
+
+/// A run of the tracker over a motion.
+struct StereoTrial {
+  JointErrors stereo;                ///< of our poses
+  JointErrors tracker;               ///< of the twin's model of a tracker
+  std::vector<double> work_us;       ///< thread time of StereoTracker::sample() per sample
+  std::vector<double> landmarks_mm;  ///< of the landmarks in their views, across the line of sight
+};
+
+/// Draws the twin's images for both views, finds landmarks in them with the network, and makes
+/// poses. `hints`: the network gets what the poses predict. Errors: those of the parts.
+Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, double seconds, bool hints);
+
+}  // namespace handcast::bench
