@@ -13,10 +13,10 @@ Result<void> LandmarkFeed::pass_on(PoseSource& source) {
   // The landmarks of the other view are taken at most so late.
   constexpr auto kOtherView = 2ms;
   const int awaited = source.awaited_view();
-  const auto first = pass_on(source, awaited,
-                             source.needs_landmarks() ? Deadline::in(kOtherView) : Deadline::now());
+  auto first = pass_on(source, awaited,
+                       source.needs_landmarks() ? Deadline::in(kOtherView) : Deadline::now());
   if (!first && first.error().code != Errc::timeout) return first;
-  const auto other = pass_on(source, 1 - awaited, Deadline::now());
+  auto other = pass_on(source, 1 - awaited, Deadline::now());
   if (!other && other.error().code != Errc::timeout) return other;
   return {};
 }
