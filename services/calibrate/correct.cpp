@@ -118,7 +118,9 @@ Result<void> correct_tracker(const Options& options, const config::Rig& rig,
 
 Result<void> undo(const config::Rig& rig) {
   if (auto has_file = check_file(rig); !has_file) return has_file;
-  const auto taken_back = take_back(rig.calibration);
+  const auto taken_back = take_back(rig.calibration, [](const std::filesystem::path& kept) {
+    return calib::load_calibration(kept).map([](const auto&) {});
+  });
   if (!taken_back) return tl::make_unexpected(taken_back.error());
   fmt::print("{}; `handcast reload` applies it\n", *taken_back);
   return {};

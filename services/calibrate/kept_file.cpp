@@ -4,7 +4,13 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <ctime>
+#include <functional>
+#include <string_view>
+#include <tuple>
+#include <vector>
 
 #include "config/settings/files.hpp"
 
@@ -24,27 +30,47 @@ fs::path free_name_of(const fs::path& file) {
   localtime_r(&now, &local);
   const auto stem = fmt::format("{}.{:%Y-%m-%dT%H%M%S}", file.stem().string(), local);
   auto name = in_folder(file, stem);
-  for (int number = 2; fs::exists(name); ++number)
+  std::error_code unknown;
+  for (int number = 2; fs::exists(name, unknown); ++number)
     name = in_folder(file, fmt::format("{}.{}", stem, number));
   return name;
 }
 
-/// Whether this is STEM.TIME.EXTENSION of the file.
+constexpr std::string_view kTime = "dddd-dd-ddTdddddd";  ///< in a name; d: a digit
+
+/// Whether this is STEM.TIME.EXTENSION of the file, with a number behind the time or without.
 bool is_kept_of(const fs::path& file, const fs::path& other) {
-  constexpr std::size_t kTime = 17;  // 2026-01-31T120000
-  const auto name = other.stem().string(), stem = file.stem().string() + ".";
-  return other.extension() == file.extension() && name.starts_with(stem) &&
-         name.size() >= stem.size() + kTime && name.find('T', stem.size()) == stem.size() + 10;
+  const auto stem = file.stem().string() + ".";
+  auto name = other.stem().string();
+  std::error_code unknown;
+  if (other.extension() != file.extension() || !name.starts_with(stem) ||
+      !fs::is_regular_file(other, unknown))
+    return false;
+  name.erase(0, stem.size());
+  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  const bool has_time =
+      name.size() >= kTime.size() &&
+      std::equal(kTime.begin(), kTime.end(), name.begin(),
+                 [&](char kind, char c) { return kind == 'd' ? is_digit(c) : kind == c; });
+  if (!has_time) return false;
+  name.erase(0, kTime.size());
+  return name.empty() ||
+         (name.size() > 1 && name[0] == '.' && std::all_of(name.begin() + 1, name.end(), is_digit));
 }
 
-/// The kept file with the last name, which is the newest; empty if there is none.
-fs::path newest_kept(const fs::path& file) {
-  fs::path newest;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(file.parent_path(), error))
-    if (is_kept_of(file, entry.path()) && entry.path().stem() > newest.stem())
-      newest = entry.path();
-  return newest;
+/// The kept files, the newest first: by their names.
+std::vector<fs::path> all_kept(const fs::path& file) {
+  std::vector<fs::path> kept;
+  std::error_code unknown;
+  for (const auto& entry : fs::directory_iterator(file.parent_path(), unknown))
+    if (is_kept_of(file, entry.path())) kept.push_back(entry.path());
+  // Those of one second by their numbers: "...00" before "...00.2" before "...00.10".
+  const auto second = file.stem().string().size() + 1 + kTime.size();
+  std::ranges::sort(kept, std::greater<>(), [second](const fs::path& path) {
+    const auto stem = path.stem().string();
+    return std::tuple(stem.substr(0, second), stem.size(), stem);
+  });
+  return kept;
 }
 
 }  // namespace
@@ -62,7 +88,8 @@ Result<fs::path> keep_old(const fs::path& file) {
 
 Result<std::string> write_and_keep(const fs::path& file, const std::string& text) {
   std::string sentence = fmt::format("the calibration is in {}", file.string());
-  if (fs::exists(file)) {
+  std::error_code unknown;
+  if (fs::exists(file, unknown)) {
     const auto old = keep_old(file);
     if (!old) return tl::make_unexpected(old.error());
     sentence += fmt::format("; the one before it is kept as {}", old->filename().string());
@@ -70,18 +97,23 @@ Result<std::string> write_and_keep(const fs::path& file, const std::string& text
   return config::write_whole(file, text).map([&] { return sentence; });
 }
 
-Result<std::string> take_back(const fs::path& file) {
-  const auto kept = newest_kept(file);
-  if (kept.empty())
-    return fail(Errc::bad_config,
-                fmt::format("no earlier calibration is kept beside {}", file.string()));
-  const auto text = config::read_text(kept);
-  if (!text) return tl::make_unexpected(text.error());
-  auto written = write_and_keep(file, *text);
-  if (!written) return written;
-  std::error_code error;
-  fs::remove(kept, error);
-  return fmt::format("{} is again as it was in {}", file.string(), kept.filename().string());
+Result<std::string> take_back(const fs::path& file, const IsUsable& is_usable) {
+  std::string faults;
+  for (const auto& kept : all_kept(file)) {
+    if (const auto usable = is_usable(kept); !usable) {
+      faults += fmt::format("; {}", usable.error().what);
+      continue;
+    }
+    const auto text = config::read_text(kept);
+    if (!text) return tl::make_unexpected(text.error());
+    if (auto written = write_and_keep(file, *text); !written) return written;
+    std::error_code unknown;
+    fs::remove(kept, unknown);
+    return fmt::format("{} is again as it was in {}{}", file.string(), kept.filename().string(),
+                       faults);
+  }
+  return fail(Errc::bad_config,
+              fmt::format("no earlier calibration is kept beside {}{}", file.string(), faults));
 }
 
 }  // namespace handcast::calibrate

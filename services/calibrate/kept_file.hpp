@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "ipc/base/result.hpp"
@@ -16,8 +17,12 @@ Result<std::filesystem::path> keep_old(const std::filesystem::path& file);
 /// sentence that says where both are. Errors: unavailable (a file cannot be written).
 Result<std::string> write_and_keep(const std::filesystem::path& file, const std::string& text);
 
-/// Puts the newest kept file in the place of the file, which is kept in turn: a second call takes
-/// the first one back. Returns a sentence. Errors: bad_config (none was kept), unavailable.
-Result<std::string> take_back(const std::filesystem::path& file);
+/// Says why a kept file cannot be used.
+using IsUsable = std::function<Result<void>(const std::filesystem::path&)>;
+
+/// Puts the newest kept file that can be used in the place of the file, which is kept in turn: a
+/// second call takes the first one back. Returns a sentence. Errors: bad_config (there is none),
+/// unavailable.
+Result<std::string> take_back(const std::filesystem::path& file, const IsUsable& is_usable);
 
 }  // namespace handcast::calibrate

@@ -135,13 +135,19 @@ Result<bool> do_step(const Options& options, const RunningAs& running, Session& 
 /// Prints the settings that were measured, or writes them to the rig file.
 Result<void> hand_over(const Options& options, std::span<const MeasuredSetting> settings) {
   if (settings.empty()) return {};
-  if (options.apply)
-    return apply_settings(options.rig_file, settings).map([](const std::string& sentence) {
-      fmt::print("{}\n", sentence);
-    });
-  fmt::print("settings for {}, which --apply writes there:\n", options.rig_file.string());
+  Result<void> applied;
+  if (options.apply) {
+    const auto sentence = apply_settings(options.rig_file, settings);
+    if (sentence) {
+      fmt::print("{}\n", *sentence);
+      return {};
+    }
+    applied = tl::make_unexpected(sentence.error());
+  }
+  fmt::print("settings for {}{}:\n", options.rig_file.string(),
+             options.apply ? "" : ", which --apply writes there");
   for (const auto& setting : settings) fmt::print("  {} = {}\n", setting.path, setting.value);
-  return {};
+  return applied;
 }
 
 /// Puts the calibration in its place.
@@ -251,14 +257,15 @@ Result<int> run(Options options) {
   if (!options.board_pdf.empty()) return print_board(options);
   auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
+  const auto done = [] { return kExitDone; };
+  // Also if the calibration cannot be read any more.
+  if (options.undo) return undo(*rig).map(done);
   const auto own = own_devices(*rig);
   const auto running = rig_as_it_runs(options, *rig, own);
   if (!running) return tl::make_unexpected(running.error());
-  const auto done = [] { return kExitDone; };
   if (!options.points.empty())
     return judge_points(options.points, running->calibration.camera).map(done);
   if (options.correct) return correct_tracker(options, *rig, running->calibration).map(done);
-  if (options.undo) return undo(*rig).map(done);
   if (options.check && !running->new_devices.empty())
     return fail(Errc::bad_config,
                 "--check needs a calibration of the devices that the rig has now");

@@ -28,7 +28,11 @@ Result<twin::Npy> read_rows(const fs::path& file, std::size_t columns) {
 Result<std::vector<std::int64_t>> times_of(const fs::path& folder, std::size_t count) {
   std::vector<std::int64_t> times_ns;
   const auto file = folder / "timestamps.npy";
-  if (!fs::exists(file)) {
+  std::error_code unknown;
+  const bool has_times = fs::exists(file, unknown);
+  if (unknown)
+    return fail(Errc::bad_config, fmt::format("{}: {}", file.string(), unknown.message()));
+  if (!has_times) {
     for (std::size_t i = 0; i < count; ++i)
       times_ns.push_back(seconds_to_ns(static_cast<double>(i) / kPoints_hz));
     return times_ns;
@@ -38,12 +42,13 @@ Result<std::vector<std::int64_t>> times_of(const fs::path& folder, std::size_t c
   if (times_us->values.size() != count)
     return fail(Errc::bad_data, fmt::format("{}: there are {} times of {} points", file.string(),
                                             times_us->values.size(), count));
-  constexpr double kMost_us = 1e12;
+  constexpr double kMost_us = 2 * 3600e6;
   for (const double time_us : times_us->values) {
     const double since_us = time_us - times_us->values.front();
     if (!(std::abs(since_us) < kMost_us))
-      return fail(Errc::bad_data,
-                  fmt::format("{}: the times are not within days of each other", file.string()));
+      return fail(
+          Errc::bad_data,
+          fmt::format("{}: the times are not within two hours of each other", file.string()));
     times_ns.push_back(static_cast<std::int64_t>(since_us * 1e3));
   }
   return times_ns;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
+#include "ipc/base/join.hpp"
 #include "services/evaluation/twin/settings.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
@@ -66,9 +68,19 @@ DetectorChoice choose_detector(const config::Rig& rig) {
                       missing.string(), settings.fallback, settings.backend)};
 }
 
+Result<void> check_fallback(const config::Rig& rig) {
+  const auto& fallback = rig.landmarks.fallback;
+  const auto names = service::names_of(detector_backends());
+  if (fallback.empty() || std::ranges::find(names, fallback) != names.end()) return {};
+  return fail(Errc::bad_config,
+              fmt::format("landmarks.fallback: there is no back end '{}'; there are: {}", fallback,
+                          join(names, ", ")));
+}
+
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
                                                 std::int64_t epoch_ns) {
+  if (auto known = check_fallback(rig); !known) return tl::make_unexpected(known.error());
   auto chosen = rig;
   chosen.landmarks.backend = choose_detector(rig).backend;
   return service::open_backend("landmarks", chosen.landmarks.backend, detector_backends(), chosen,

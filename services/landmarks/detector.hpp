@@ -49,6 +49,9 @@ struct DetectorChoice {
 /// end is missing.
 DetectorChoice choose_detector(const config::Rig& rig);
 
+/// Errors: bad_config (landmarks.fallback names no back end).
+Result<void> check_fallback(const config::Rig& rig);
+
 /// Opens the detector of choose_detector(). `epoch_ns`: the start of the rig. Errors: bad_config.
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,

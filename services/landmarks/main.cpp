@@ -64,6 +64,7 @@ static void run_landmarks(service::Context& context) {
 }
 
 static Result<void> check_landmarks(const config::Rig& rig, const calib::Calibration& calibration) {
+  if (auto known = landmarks::check_fallback(rig); !known) return known;
   auto chosen = rig;
   chosen.landmarks.backend = landmarks::choose_detector(rig).backend;
   return service::check_backend("landmarks", chosen.landmarks.backend,

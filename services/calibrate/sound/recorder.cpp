@@ -21,6 +21,8 @@ Recorder::Recorder(std::unique_ptr<SoundCard> card)
 Recorder::~Recorder() = default;
 
 void Recorder::record(const std::stop_token& asked) {
+  constexpr double kLead_s = 2;  // what a card may have in its buffer
+  const auto began_ns = now_ns();
   while (!asked.stop_requested()) {
     if (const auto read = card_->read(samples_); !read) {
       error_ = read.error();
@@ -28,6 +30,12 @@ void Recorder::record(const std::stop_token& asked) {
     }
     // A block arrives when its last sample has been taken.
     clock_.add(device_ns(samples_.size(), card_->rate_hz()), now_ns());
+    // A device that is not a card (ALSA's `null`) sends as fast as it is read.
+    const double heard_s = static_cast<double>(samples_.size()) / card_->rate_hz();
+    if (heard_s > 2 * ns_to_seconds(now_ns() - began_ns) + kLead_s) {
+      error_ = Error{Errc::bad_config, "the sound device does not keep its rate; is it a card?"};
+      return;
+    }
   }
 }
 

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMostBytes = 1 << 20;  ///< of a file
 constexpr std::size_t kMostData = 4096;      ///< of a transfer
 constexpr unsigned kMostPause_ms = 1000;
+constexpr std::int64_t kMostPauses_ns = 10'000'000'000;  ///< in all
 constexpr std::size_t kMostFaults = 20;
 
 using Words = std::vector<std::string_view>;
@@ -134,6 +135,13 @@ Result<std::vector<BringUpStep>> parse_bring_up(std::string_view text, std::stri
     if (const auto read = read_line(words, line, pause_ns, steps); !read)
       faults +=
           fmt::format("{}{}:{}: {}", fault_count++ ? "\n" : "", file, line, read.error().what);
+  }
+  std::int64_t all_ns = pause_ns;
+  for (const auto& step : steps) all_ns += step.pause_ns;
+  if (all_ns > kMostPauses_ns) {
+    faults +=
+        fmt::format("{}{}: the pauses are {} s in all; at most {} s", fault_count++ ? "\n" : "",
+                    file, all_ns / 1'000'000'000, kMostPauses_ns / 1'000'000'000);
   }
   if (fault_count > 0) return fail(Errc::bad_config, faults);
   return steps;

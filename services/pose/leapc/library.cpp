@@ -20,8 +20,12 @@ std::string last_error() {
 }
 
 Result<void*> load(const std::string& path) {
-  if (!std::filesystem::exists(path))
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown))
     return fail(Errc::bad_config, fmt::format("{}: there is no such file", path));
+  // A pipe would be waited for.
+  if (!std::filesystem::is_regular_file(path, unknown))
+    return fail(Errc::bad_config, fmt::format("{}: this is not a file", path));
   if (void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) return handle;
   return fail(Errc::bad_config,
               fmt::format("{}: this library cannot be loaded: {}", path, last_error()));
@@ -32,7 +36,7 @@ Result<void*> search(std::string& path) {
   for (const auto place : kLibraryPlaces) {
     path = place;
     if (place.front() == '/') {
-      if (std::filesystem::exists(place)) return load(path);
+      if (std::error_code unknown; std::filesystem::exists(place, unknown)) return load(path);
     } else if (void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
       return handle;
     }

@@ -13,6 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
+Result<void> any(const fs::path& /*kept*/) { return {}; }
+
 class KeptFile : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
@@ -39,16 +41,33 @@ TEST_F(KeptFile, NoVersionIsLostEvenWithinASecond) {
 TEST_F(KeptFile, TheLastChangeIsTakenBackAndThatToo) {
   for (const char* version : {"one", "two"}) ASSERT_TRUE(write_and_keep(file_, version));
   std::ofstream(folder_ / "desk.notes.toml") << "of somebody else";
-  const auto taken_back = take_back(file_);
+  const auto taken_back = take_back(file_, any);
   ASSERT_TRUE(taken_back) << taken_back.error().what;
   EXPECT_EQ(text(), "one");
-  ASSERT_TRUE(take_back(file_));
+  ASSERT_TRUE(take_back(file_, any));
   EXPECT_EQ(text(), "two");
+}
+
+TEST_F(KeptFile, OneThatCannotBeUsedAndThatOfAnotherDeviceAreLeftAlone) {
+  for (const char* version : {"one", "damaged", "three"})
+    ASSERT_TRUE(write_and_keep(file_, version));
+  std::ofstream(folder_ / "desk.Basler2463THDMI_1.toml") << "of another device";
+  const auto is_whole = [](const fs::path& kept) -> Result<void> {
+    std::string word;
+    std::ifstream(kept) >> word;
+    if (word == "damaged") return fail(Errc::bad_config, "it is damaged");
+    return {};
+  };
+  const auto taken_back = take_back(file_, is_whole);
+  ASSERT_TRUE(taken_back) << taken_back.error().what;
+  EXPECT_THAT(*taken_back, HasSubstr("it is damaged"));
+  EXPECT_EQ(text(), "one");
+  EXPECT_TRUE(fs::exists(folder_ / "desk.Basler2463THDMI_1.toml"));
 }
 
 TEST_F(KeptFile, WithoutAnEarlierOneThatIsSaid) {
   ASSERT_TRUE(write_and_keep(file_, "one"));
-  const auto none = take_back(file_);
+  const auto none = take_back(file_, any);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, Errc::bad_config);
   EXPECT_THAT(none.error().what, HasSubstr("no earlier calibration is kept"));

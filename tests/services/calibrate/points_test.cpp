@@ -60,7 +60,7 @@ TEST_F(Points, ThatDoNotBelongTogetherAreRefusedInASentence) {
   ASSERT_TRUE(twin::write_npy_i64(folder_ / "timestamps.npy", {1, 2, 3}));
   EXPECT_THAT(refusal(), HasSubstr("3 times of 2 points"));
   write("timestamps.npy", {2}, {0, INFINITY});
-  EXPECT_THAT(refusal(), HasSubstr("not within days"));
+  EXPECT_THAT(refusal(), HasSubstr("not within two hours"));
   std::ofstream(folder_ / "2dpoints.npy") << "no array";
   EXPECT_THAT(refusal(), HasSubstr("2dpoints.npy"));
 }
