@@ -48,7 +48,7 @@ struct Plan {
 /// say what it can. nullopt: it has none of the calibrated size.
 std::optional<Images> images_of(const Plan& plan);
 
-/// Finds out what a rig is made of, by the flags, at most five questions, and best guesses.
+/// Finds out what a rig is made of, by the flags, at most six questions, and best guesses.
 /// `prompt`: null if there is nobody to ask. Errors: those of settle().
 Result<Plan> interview(const std::vector<devices::Attached>& attached, const Options& options,
                        Prompt* prompt);

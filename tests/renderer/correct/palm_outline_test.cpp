@@ -46,7 +46,7 @@ class PalmOutlineTest : public testing::Test {
     look_at(mask, frames, hand_.landmarks_px);
   }
 
-  /// Mean distance of the heel's border on the little finger's side from where a person has it.
+  /// The larger distance of the heel's two borders from where a person has them.
   float border_error_px(const std::vector<glm::vec2>& px, const std::vector<glm::vec2>& person) {
     const float y = glm::mix(hand_.landmarks_px[0].y, hand_.landmarks_px[9].y, 0.2f);
     const auto border = [&](const std::vector<glm::vec2>& vertices) {
