@@ -150,10 +150,9 @@ TEST(PairOfARig, AnUnknownSecondSourceIsAnErrorWithTheKnownOnes) {
   EXPECT_THAT(source.error().what, HasSubstr("telepathy"));
 }
 
-TEST(PairOfARig, TheTwinsTrackerIsReplacedByTheLandmarksWhenItIsLost) {
+TEST(PairOfARig, TheTwinsTrackerComesBeforeTheLandmarks) {
   config::Rig rig;
   rig.pose.second = "none";
-  rig.twin.tracker.lost = {0.5, 60};
   const auto source = open_pose_source(rig, calib::reference_rig(), now_ns()).value();
   EXPECT_GT(source->views(), 0);
   msg::HandPoses poses;
