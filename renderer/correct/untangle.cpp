@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <utility>
 
 namespace handcast::renderer {
 namespace {
@@ -43,19 +42,12 @@ bool Untangler::turned_over(std::size_t triangle, std::span<const glm::vec2> bef
          area(after, triangles_[triangle]) * facing_sign < -kInvisible_px2;
 }
 
-void Untangler::shift(std::uint16_t place, const glm::vec2& moved,
-                      std::span<const glm::vec2> before, std::span<glm::vec2> after) {
-  for (const std::uint16_t v : at_place_[place]) after[v] = before[v] + moved;
-  waiting_.insert(waiting_.end(), around_[place].begin(), around_[place].end());
-}
-
 /// Makes each place a cluster.
 void Untangler::start(std::span<const glm::vec2> before, std::span<const glm::vec2> after) {
   clusters_.resize(at_place_.size());
   for (std::size_t place = 0; place < at_place_.size(); ++place) {
     const std::uint16_t v = at_place_[place].front();
-    const auto self = static_cast<std::uint16_t>(place);
-    clusters_[place] = {self, self, after[v] - before[v], 1};
+    clusters_[place] = {static_cast<std::uint16_t>(place), after[v] - before[v], 1};
   }
 }
 
@@ -65,32 +57,29 @@ std::uint16_t Untangler::root_of(std::uint16_t place) {
   return place;
 }
 
-bool Untangler::is_joined(const Triangle& triangle) {
+/// Joins the clusters of the corners. Returns false if they are one already.
+bool Untangler::join(const Triangle& triangle) {
   const std::uint16_t root = root_of(place_of_[triangle[0]]);
-  return root_of(place_of_[triangle[1]]) == root && root_of(place_of_[triangle[2]]) == root;
-}
-
-std::uint16_t Untangler::join(const Triangle& triangle) {
-  std::uint16_t root = root_of(place_of_[triangle[0]]);
+  bool has_grown = false;
   for (const std::uint16_t v : {triangle[1], triangle[2]}) {
     const std::uint16_t other = root_of(place_of_[v]);
     if (other == root) continue;
     clusters_[other].parent = root;
-    std::swap(clusters_[other].next, clusters_[root].next);  // two rings become one
     clusters_[root].moved += clusters_[other].moved;
     clusters_[root].count += clusters_[other].count;
+    has_grown = true;
   }
-  return root;
+  return has_grown;
 }
 
-void Untangler::move(std::uint16_t root, std::span<const glm::vec2> before,
-                     std::span<glm::vec2> after) {
-  const glm::vec2 moved = clusters_[root].moved / clusters_[root].count;
-  std::uint16_t place = root;
-  do {
-    shift(place, moved, before, after);
-    place = clusters_[place].next;
-  } while (place != root);
+/// Gives the places of each cluster its mean displacement.
+void Untangler::move_clusters(std::span<const glm::vec2> before, std::span<glm::vec2> after) {
+  for (std::size_t place = 0; place < at_place_.size(); ++place) {
+    const Cluster& cluster = clusters_[root_of(static_cast<std::uint16_t>(place))];
+    if (cluster.count < 2) continue;
+    const glm::vec2 moved = cluster.moved / cluster.count;
+    for (const std::uint16_t v : at_place_[place]) after[v] = before[v] + moved;
+  }
 }
 
 /// Gives the corners of each turned-over triangle their mean displacement and examines its
@@ -104,7 +93,11 @@ bool Untangler::smooth(std::span<const glm::vec2> before, std::span<glm::vec2> a
     const Triangle& triangle = triangles_[waiting_[next]];
     glm::vec2 moved{0};
     for (const std::uint16_t v : triangle) moved += (after[v] - before[v]) / 3.0f;
-    for (const std::uint16_t v : triangle) shift(place_of_[v], moved, before, after);
+    for (const std::uint16_t corner : triangle) {
+      const std::uint16_t place = place_of_[corner];
+      for (const std::uint16_t v : at_place_[place]) after[v] = before[v] + moved;
+      waiting_.insert(waiting_.end(), around_[place].begin(), around_[place].end());
+    }
   }
   return true;
 }
@@ -125,19 +118,37 @@ void Untangler::find_turned_over(std::span<const glm::vec2> before,
       waiting_.push_back(static_cast<std::uint32_t>(t));
 }
 
+/// The triangles that face the camera.
+void Untangler::find_facing(std::span<const glm::vec2> before, float facing_sign) {
+  waiting_.clear();
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    if (area(before, triangles_[t]) * facing_sign > 0)
+      waiting_.push_back(static_cast<std::uint32_t>(t));
+}
+
 int Untangler::untangle(std::span<const glm::vec2> before, std::span<glm::vec2> after,
                         float facing_sign) {
   find_turned_over(before, after, facing_sign);
   if (smooth(before, after, facing_sign)) return 0;
-  find_turned_over(before, after, facing_sign);
   start(before, after);
-  // Each turn of the loop that appends joins two clusters, so there are fewer than there are
-  // places.
-  for (std::size_t next = 0; next < waiting_.size(); ++next) {
-    const Triangle& triangle = triangles_[waiting_[next]];
-    if (turned_over(waiting_[next], before, after, facing_sign) && !is_joined(triangle))
-      move(join(triangle), before, after);
+  find_facing(before, facing_sign);
+  const auto at = [&](std::uint16_t v) {
+    const Cluster& cluster = clusters_[root_of(place_of_[v])];
+    return cluster.count > 1 ? before[v] + cluster.moved / cluster.count : after[v];
+  };
+  // Each round but the last joins clusters, so there are fewer rounds than places. Positions follow
+  // from the clusters; to write them after each join would take the time of the square of a
+  // cluster's size.
+  for (bool has_grown = true; has_grown;) {
+    has_grown = false;
+    for (const std::uint32_t t : waiting_) {
+      const Triangle& triangle = triangles_[t];
+      const std::array corners{at(triangle[0]), at(triangle[1]), at(triangle[2])};
+      if (area(corners, {0, 1, 2}) * facing_sign < -kInvisible_px2)
+        has_grown = join(triangle) || has_grown;
+    }
   }
+  move_clusters(before, after);
   find_turned_over(before, after, facing_sign);
   return static_cast<int>(waiting_.size());
 }

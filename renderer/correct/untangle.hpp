@@ -33,7 +33,6 @@ class Untangler {
   using Triangle = std::array<std::uint16_t, 3>;
   struct Cluster {
     std::uint16_t parent;  ///< a place nearer to the root; its own if it is the root
-    std::uint16_t next;    ///< next place of the cluster, in a ring
     glm::vec2 moved;       ///< in the root: sum of the displacements of the cluster
     float count;           ///< in the root: places of the cluster
   };
@@ -42,14 +41,12 @@ class Untangler {
                    std::span<const glm::vec2> after, float facing_sign) const;
   void find_turned_over(std::span<const glm::vec2> before, std::span<const glm::vec2> after,
                         float facing_sign);
-  void shift(std::uint16_t place, const glm::vec2& moved, std::span<const glm::vec2> before,
-             std::span<glm::vec2> after);
+  void find_facing(std::span<const glm::vec2> before, float facing_sign);
   bool smooth(std::span<const glm::vec2> before, std::span<glm::vec2> after, float facing_sign);
   void start(std::span<const glm::vec2> before, std::span<const glm::vec2> after);
   std::uint16_t root_of(std::uint16_t place);
-  bool is_joined(const Triangle& triangle);
-  std::uint16_t join(const Triangle& triangle);
-  void move(std::uint16_t root, std::span<const glm::vec2> before, std::span<glm::vec2> after);
+  bool join(const Triangle& triangle);
+  void move_clusters(std::span<const glm::vec2> before, std::span<glm::vec2> after);
 
   std::vector<Triangle> triangles_;
   // A place is a position at rest that one or more vertices have.
