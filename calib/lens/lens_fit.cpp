@@ -81,7 +81,9 @@ Result<LensFit> fit_lens(std::span<const BoardView> views, int width_px, int hei
   fit.distortion = choice->distortion;
   fit.held_out_of_px = choice->held_out_px;
   fit.held_out_px = fit.held_out_of_px[static_cast<std::size_t>(fit.distortion)];
-  fit.spreads = spreads_of(selection.views, choice->solution, fit.distortion);
+  const auto spread = spreads_of(selection.views, choice->solution, fit.distortion);
+  fit.spreads = spread.spreads;
+  fit.covariance = spread.covariance;
   const double uncertain = fit.spreads[0].deviation / fit.camera.fx_px;
   if (!(uncertain < kFocalUncertain))
     return not_tilted(fmt::format("it may be off by {:.0f} %", 200 * uncertain));

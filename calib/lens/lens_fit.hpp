@@ -30,6 +30,9 @@ struct Spread {
   double low = 0, high = 0;  ///< the 95 % interval
 };
 
+/// The covariance of kLensParameters; 0 for those that were not fitted.
+using LensCovariance = std::array<std::array<double, 9>, 9>;
+
 /// One of the given views. If it was rejected and has no pose at all, the error is 0.
 struct FittedView {
   double rms_px = 0;                ///< distance of the corners from where the fit has them
@@ -45,6 +48,7 @@ struct LensFit {
   double held_out_px = 0;                  ///< the same for views that the fit has not seen
   std::array<double, 5> held_out_of_px{};  ///< held_out_px of each Distortion
   std::array<Spread, 9> spreads;           ///< of kLensParameters; those not fitted have 0, 0, 0
+  LensCovariance covariance{};             ///< of the same bootstrap as the spreads
   std::vector<FittedView> views;           ///< one for each of the given views
 };
 

@@ -46,15 +46,6 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// The largest error of a view that is no outlier.
-double limit_px(const std::vector<double>& rms_px) {
-  constexpr double kDeviations = 1.4826;  // of a normal distribution, in median absolute deviations
-  const double middle_px = median(rms_px);
-  auto off_px = rms_px;
-  for (double& px : off_px) px = std::abs(px - middle_px);
-  return std::max(middle_px + kOutlier * kDeviations * median(off_px), kOutlierFactor * middle_px);
-}
-
 void reject(Selection& selection, std::size_t i, std::string reason) {
   selection.reasons[selection.places[i]] = std::move(reason);
   selection.views.erase(selection.views.begin() + static_cast<std::ptrdiff_t>(i));
@@ -62,6 +53,14 @@ void reject(Selection& selection, std::size_t i, std::string reason) {
 }
 
 }  // namespace
+
+double limit_px(const std::vector<double>& rms_px) {
+  constexpr double kDeviations = 1.4826;  // of a normal distribution, in median absolute deviations
+  const double middle_px = median(rms_px);
+  auto off_px = rms_px;
+  for (double& px : off_px) px = std::abs(px - middle_px);
+  return std::max(middle_px + kOutlier * kDeviations * median(off_px), kOutlierFactor * middle_px);
+}
 
 tl::unexpected<Error> too_few(std::size_t views) {
   return fail(Errc::bad_data,

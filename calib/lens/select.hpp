@@ -27,6 +27,9 @@ Selection select(std::span<const BoardView> views);
 /// (too few views are left, they contradict each other, or they do not determine a camera).
 Result<Solution> solve_robustly(Selection& selection, int width_px, int height_px);
 
+/// The largest error, px, of a view that does not contradict the others. `rms_px`: of all views.
+double limit_px(const std::vector<double>& rms_px);
+
 /// The sentences for views that do not determine a camera.
 /// @{
 tl::unexpected<Error> too_few(std::size_t views);

@@ -47,23 +47,20 @@ std::vector<LensVector> resample(const std::vector<Statement>& statements) {
   return changes;
 }
 
-/// The 97.5 % quantile of Student's t, by the first terms of its expansion in 1 / freedom
-/// (Abramowitz and Stegun, 26.7.5).
+double covariance_of(const std::vector<LensVector>& changes, int one, int other) {
+  double sum = 0;
+  for (const auto& change : changes) sum += change[one] * change[other];
+  return sum / static_cast<double>(changes.size());
+}
+
+}  // namespace
+
 double students_t(double freedom) {
   constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z;
   return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom);
 }
 
-double deviation_of(const std::vector<LensVector>& changes, int parameter) {
-  double squares = 0;
-  for (const auto& change : changes) squares += change[parameter] * change[parameter];
-  return std::sqrt(squares / static_cast<double>(changes.size()));
-}
-
-}  // namespace
-
-std::array<Spread, 9> spreads_of(std::span<const Points> views, const Solution& solution,
-                                 Distortion distortion) {
+Spreads spreads_of(std::span<const Points> views, const Solution& solution, Distortion distortion) {
   std::vector<Statement> statements;
   for (std::size_t i = 0; i < views.size(); ++i)
     statements.push_back(
@@ -72,14 +69,18 @@ std::array<Spread, 9> spreads_of(std::span<const Points> views, const Solution& 
   const auto changes = resample(statements);
   const auto values = values_of(solution.camera);
   const double t = students_t(static_cast<double>(views.size()) - 1);
-  std::array<Spread, 9> spreads;
+  Spreads found;
   for (int i = 0; i < free_parameters(distortion); ++i) {
-    auto& spread = spreads[static_cast<std::size_t>(i)];
-    spread.deviation = deviation_of(changes, i) / scale[i];
+    const auto at = static_cast<std::size_t>(i);
+    for (int j = 0; j < free_parameters(distortion); ++j)
+      found.covariance[at][static_cast<std::size_t>(j)] =
+          covariance_of(changes, i, j) / (scale[i] * scale[j]);
+    auto& spread = found.spreads[at];
+    spread.deviation = std::sqrt(found.covariance[at][at]);
     spread.low = values[i] - t * spread.deviation;
     spread.high = values[i] + t * spread.deviation;
   }
-  return spreads;
+  return found;
 }
 
 }  // namespace handcast::calib

@@ -16,7 +16,14 @@ constexpr int kResamples = 1000;
 /// drawn and not corners, since the errors of a view's corners may depend on each other: a bent
 /// board, motion. The interval is that of Student's t with one degree of freedom less than there
 /// are views; tests/bench/calib_lens.cpp measures how often it holds the truth.
-std::array<Spread, 9> spreads_of(std::span<const Points> views, const Solution& solution,
-                                 Distortion distortion);
+struct Spreads {
+  std::array<Spread, 9> spreads;
+  LensCovariance covariance{};
+};
+Spreads spreads_of(std::span<const Points> views, const Solution& solution, Distortion distortion);
+
+/// The 97.5 % quantile of Student's t, by the first terms of its expansion in 1 / freedom
+/// (Abramowitz and Stegun, 26.7.5).
+double students_t(double freedom);
 
 }  // namespace handcast::calib
