@@ -44,6 +44,7 @@ struct CameraModel {
 /// it is not known.
 struct Made {
   std::string lens, screen, tracker;
+  std::string lens2, pair;  ///< the lens and the place of the second camera
 };
 
 /// A second camera, for hands from two views (pose.backend = "stereo").

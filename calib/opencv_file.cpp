@@ -36,6 +36,16 @@ std::string text_line(const char* name, const std::string& text) {
 
 }  // namespace
 
+static std::string second_camera_text(const SecondCamera& second) {
+  const auto& lens = second.camera;
+  return fmt::format("camera2_width: {}\ncamera2_height: {}\n", lens.width_px, lens.height_px) +
+         text_line("camera2_device", second.device) +
+         matrix_text("camera2_matrix", 3, 3, rows_of(lens.matrix())) +
+         matrix_text("camera2_distortion_coefficients", 1, 5,
+                     {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}) +
+         matrix_text("camera2_from_camera", 4, 4, rows_of(second.from_camera));
+}
+
 std::string print_opencv_file(const Calibration& calibration) {
   const auto& camera = calibration.camera;
   const auto& parallax = calibration.parallax;
@@ -52,6 +62,10 @@ std::string print_opencv_file(const Calibration& calibration) {
          matrix_text("projector_from_camera", 3, 3, rows_of(calibration.projector_from_camera)) +
          matrix_text("parallax", 3, 1, {parallax.x, parallax.y, parallax.z}) +
          fmt::format("plane_m: {:#}\n", calibration.plane_m) +
+         (calibration.camera2 ? second_camera_text(*calibration.camera2) +
+                                    text_line("made_lens2", calibration.made.lens2) +
+                                    text_line("made_pair", calibration.made.pair)
+                              : std::string()) +
          text_line("made_lens", calibration.made.lens) +
          text_line("made_screen", calibration.made.screen) +
          text_line("made_tracker", calibration.made.tracker);

@@ -14,4 +14,9 @@ inline Rig seen_by_second(Rig rig) {
   return rig;
 }
 
+/// True if the rig has two cameras: a second one, or one that delivers the images of both.
+inline bool has_second_view(const Rig& rig) {
+  return rig.camera2.backend != "none" || rig.pose.backend == "stereo";
+}
+
 }  // namespace handcast::config

@@ -43,13 +43,13 @@ double motion_px(const BoardView& a, const BoardView& b) {
 
 }  // namespace
 
-bool AutoCapture::take(std::int64_t time_ns, const BoardView& view) {
-  if (!is_still(time_ns, view) || !is_new(view)) return false;
+bool AutoCapture::take_still(const BoardView& view) {
+  if (!is_new(view)) return false;
   taken_.push_back({view, tilt_of(view, usual_focal_length_px(width_px_))});
   return true;
 }
 
-bool AutoCapture::is_still(std::int64_t time_ns, const BoardView& view) {
+bool Stillness::see(std::int64_t time_ns, const BoardView& view) {
   const bool gap = time_ns < last_ns_ || time_ns - last_ns_ > kGap_ns;
   last_ns_ = time_ns;
   if (gap || !(motion_px(rest_, view) < kStill_px)) {

@@ -14,6 +14,7 @@ namespace handcast::calib {
 namespace {
 
 constexpr double kMostRejected = 0.3;  ///< the share of the views that may contradict the others
+constexpr double kHarmless_px = 0.25;  ///< so little is no contradiction
 constexpr double kNonsense_px = 5;     ///< no still board is so far from where it is expected
 
 /// The views that take part, their places in the caller's list, and why the others do not.
@@ -70,7 +71,7 @@ Result<PairSolution> solve_robustly(Chosen& chosen, const Cameras& cameras) {
       return fail(Errc::bad_data, "The views do not determine the second camera's place.");
     const double limit = limit_px(solution->rms_px);
     const auto worst = std::ranges::max_element(solution->rms_px);
-    if (*worst <= std::min(limit, kNonsense_px)) return *solution;
+    if (*worst <= std::clamp(limit, kHarmless_px, kNonsense_px)) return *solution;
     const auto rejected = before - chosen.views.size() + 1;
     if (static_cast<double>(rejected) > kMostRejected * static_cast<double>(before))
       return fail(Errc::bad_data,

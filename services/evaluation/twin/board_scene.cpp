@@ -79,21 +79,40 @@ void light_table(const float* table, const float* shine, float leak, float* out,
   for (int i = 0; i < count; ++i) out[i] += leak * shine[i] * table[i];
 }
 
+/// The cameras through whose images a person moves the board, and the pose of the first of them:
+/// from the space of the rig's first camera.
+struct Viewers {
+  std::vector<BoardViewer> cameras;
+  glm::dmat4 from_first{1};
+};
+
+Viewers viewers_of(config::TwinPropViews views, const calib::Calibration& rig) {
+  const BoardViewer first{rig.camera};
+  if (views == config::TwinPropViews::first || !rig.camera2) return {{first}};
+  const auto& second = *rig.camera2;
+  if (views == config::TwinPropViews::second) return {{{second.camera}}, second.from_camera};
+  return {{first, {second.camera, second.from_camera}}};
+}
+
 }  // namespace
 
 BoardScene::BoardScene(const config::Twin& settings, const TrueGeometry& geometry,
-                       const FlatPicture& picture)
+                       const SceneView& view, const FlatPicture& picture)
     : settings_(settings.image),
       geometry_(geometry),
+      view_(view),
       metres_per_px_(picture.metres_per_px),
       origin_px_(picture.origin_px),
-      held_(geometry.calibration().camera, outline_of(picture), settings.seed,
-            settings.prop.hold_s),
+      held_(viewers_of(settings.prop.views, geometry.calibration()).cameras, outline_of(picture),
+            settings.seed, settings.prop.hold_s),
+      view_from_held_(
+          view.from_first *
+          glm::inverse(viewers_of(settings.prop.views, geometry.calibration()).from_first)),
       levels_(make_levels(
           {picture.pixels.data(), picture.width_px, picture.height_px, picture.width_px})),
       light_on_table_(light_from_ray(glm::translate(glm::dmat4(1), {0, 0, kTable_m}))),
-      sensor_(settings.image, settings.seed, geometry.calibration().camera.width_px) {
-  const calib::CameraModel& camera = geometry_.calibration().camera;
+      sensor_(settings.image, view.seed, view.camera.width_px) {
+  const calib::CameraModel& camera = view_.camera;
   const Random clutter(settings.seed, Stream::image_clutter);
   background_ = make_background(settings_, camera, clutter);
   auto lamp_alone = settings_;
@@ -120,25 +139,27 @@ void BoardScene::look_through_lens(const calib::CameraModel& camera) {
 }
 
 glm::dmat4 BoardScene::camera_from_board(std::int64_t time_ns) const {
-  return held_.camera_from_board(ns_to_seconds(time_ns));
+  return view_from_held_ * held_.camera_from_board(ns_to_seconds(time_ns));
 }
 
 /// Maps rays to the projector pixels that light the plane z = 0 of `camera_from_plane`: a
 /// homography, which four rays determine.
 glm::dmat3 BoardScene::light_from_ray(const glm::dmat4& camera_from_plane) const {
   const glm::dvec3 normal(camera_from_plane[2]), on_plane(camera_from_plane[3]);
+  const auto first_from_view = glm::inverse(view_.from_first);
   const std::array<glm::dvec2, 4> rays{{{-0.2, -0.2}, {0.2, -0.2}, {0.2, 0.2}, {-0.2, 0.2}}};
   std::array<glm::dvec2, 4> lights;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const glm::dvec3 ray(rays[i], 1);
-    lights[i] = geometry_.to_projector(ray * glm::dot(normal, on_plane) / glm::dot(normal, ray));
+    const glm::dvec3 lit_m = ray * glm::dot(normal, on_plane) / glm::dot(normal, ray);
+    lights[i] = geometry_.to_projector(glm::dvec3(first_from_view * glm::dvec4(lit_m, 1)));
   }
   return homography(rays, lights);
 }
 
 /// Chooses the level whose pixels are half to just as large as those of the image.
 void BoardScene::take_samples(std::int64_t origin_ns, std::int64_t exposure_ns) {
-  const calib::CameraModel& camera = geometry_.calibration().camera;
+  const calib::CameraModel& camera = view_.camera;
   camera_from_board_ = camera_from_board(origin_ns);
   light_on_board_ = light_from_ray(camera_from_board_);
   const auto metres_per_image_px = camera_from_board_[3].z / camera.fx_px;
@@ -165,9 +186,8 @@ void BoardScene::take_samples(std::int64_t origin_ns, std::int64_t exposure_ns) 
 renderer::Rect BoardScene::board_near(int y) const {
   const auto& level = levels_[static_cast<std::size_t>(level_)];
   // Two steps of the grid on the board, so that no corner is between the rays.
-  const double margin = 2 * kGrid_px * camera_from_board_[3].z /
-                        geometry_.calibration().camera.fx_px / metres_per_px_ /
-                        std::ldexp(1, level_);
+  const double margin = 2 * kGrid_px * camera_from_board_[3].z / view_.camera.fx_px /
+                        metres_per_px_ / std::ldexp(1, level_);
   renderer::Rect near;
   for (int x = 0; x < sum_.width(); x += kGrid_px)
     for (const auto& picture_from_ray : {samples_.front(), samples_.back()}) {

@@ -15,9 +15,16 @@
 
 namespace handcast::twin {
 
-/// The images of the twin's infrared camera while a person holds a calibration board: the board,
-/// lit by the lamp at the lens, the sun and the projector, over the empty scene, with motion blur
-/// and what the sensor adds. The background reflects the projector's light as it reflects the
+/// The camera that sees a board: the rig's first one or its second one.
+struct SceneView {
+  calib::CameraModel camera;  ///< its true lens
+  glm::dmat4 from_first{1};   ///< from the space of the rig's first camera to its own
+  int seed = 0;               ///< of what its sensor adds
+};
+
+/// The images of one of the twin's infrared cameras while a person holds a calibration board: the
+/// board, lit by the lamp at the lens, the sun and the projector, over the empty scene, with motion
+/// blur and what the sensor adds. The background reflects the projector's light as it reflects the
 /// lamp's, as a plane 1 m in front of the camera. The board throws no shadow on it.
 ///
 /// The projector's light is `twin.image.leak` times as bright as the lamp's and reaches a surface
@@ -25,10 +32,11 @@ namespace handcast::twin {
 class BoardScene {
  public:
   /// Copies what it needs. `picture` must pass check().
-  BoardScene(const config::Twin& settings, const TrueGeometry& geometry,
+  BoardScene(const config::Twin& settings, const TrueGeometry& geometry, const SceneView& view,
              const FlatPicture& picture);
 
-  /// The true pose of the board's axes (FlatPicture) at a time since the epoch.
+  /// The true pose of the board's axes (FlatPicture) in the space of this camera at a time since
+  /// the epoch.
   glm::dmat4 camera_from_board(std::int64_t time_ns) const;
 
   /// Draws frame `k`, exposed for `exposure_ns` around `origin_ns` (ns since the epoch). `light`:
@@ -48,9 +56,11 @@ class BoardScene {
 
   config::TwinImage settings_;
   TrueGeometry geometry_;
+  SceneView view_;
   double metres_per_px_;  ///< of levels_[0]
   glm::dvec2 origin_px_;
   HeldBoard held_;
+  glm::dmat4 view_from_held_;             ///< from the space of held_ to that of this camera
   std::vector<QuadImage> levels_;         ///< see make_levels()
   renderer::Image<float> ray_x_, ray_y_;  ///< by pixel: it looks along (x, y, 1)
   renderer::Image<float> white_;          ///< by pixel: grey value of white paper at lamp_on() = 1

@@ -2,6 +2,7 @@
 #include "services/evaluation/twin/held_board.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -28,18 +29,32 @@ double fitting_m(const calib::CameraModel& camera, const glm::dvec2& half_m) {
                       half_m.y * camera.fy_px / camera.height_px);
 }
 
-/// The share of a board around `centre_m` that is in the image.
-double share_inside(const calib::CameraModel& camera, const glm::dvec3& centre_m,
-                    const glm::dquat& turn, const glm::dvec2& half_m) {
+/// The share of a board around `centre_m` that is in the image of a viewer.
+double share_inside(const BoardViewer& viewer, const glm::dvec3& centre_m, const glm::dquat& turn,
+                    const glm::dvec2& half_m) {
   constexpr int kSteps = 10;
+  constexpr double kBehind_m = 0.01;
+  const auto& camera = viewer.camera;
   int inside = 0;
   for (int i = 0; i < kSteps * kSteps; ++i) {
     const auto at = (glm::dvec2(i % kSteps, i / kSteps) + 0.5) * (2.0 / kSteps) - 1.0;
-    const auto px = camera.distort(camera.project(centre_m + turn * glm::dvec3(at * half_m, 0)));
+    const glm::dvec3 point_m(viewer.from_first *
+                             glm::dvec4(centre_m + turn * glm::dvec3(at * half_m, 0), 1));
+    if (point_m.z < kBehind_m) continue;
+    const auto px = camera.distort(camera.project(point_m));
     inside +=
         px.x > -0.5 && px.y > -0.5 && px.x < camera.width_px - 0.5 && px.y < camera.height_px - 0.5;
   }
   return static_cast<double>(inside) / (kSteps * kSteps);
+}
+
+/// The smallest share over all viewers.
+double share_inside(std::span<const BoardViewer> viewers, const glm::dvec3& centre_m,
+                    const glm::dquat& turn, const glm::dvec2& half_m) {
+  double least = 1;
+  for (const auto& viewer : viewers)
+    least = std::min(least, share_inside(viewer, centre_m, turn, half_m));
+  return least;
 }
 
 /// The point at this distance that is seen in the image at `towards`: (0, 0) in its middle to
@@ -54,14 +69,18 @@ glm::dvec3 seen_at_m(const calib::CameraModel& camera, const glm::dvec2& towards
 
 }  // namespace
 
-HeldBoard::HeldBoard(const calib::CameraModel& camera, const BoardOutline& board, int seed,
+HeldBoard::HeldBoard(std::span<const BoardViewer> viewers, const BoardOutline& board, int seed,
                      double hold_s)
     : random_(seed, Stream::board),
       hold_s_(hold_s),
       centre_m_((board.from_m + board.to_m) / 2.0),
       half_m_(glm::abs(board.to_m - board.from_m) / 2.0) {
-  for (std::uint64_t i = 0; i < kPlaces; ++i) places_.push_back(make_place(i, camera));
+  for (std::uint64_t i = 0; i < kPlaces; ++i) places_.push_back(make_place(i, viewers));
 }
+
+HeldBoard::HeldBoard(const calib::CameraModel& camera, const BoardOutline& board, int seed,
+                     double hold_s)
+    : HeldBoard(std::array{BoardViewer{camera}}, board, seed, hold_s) {}
 
 glm::dquat HeldBoard::turn_at(std::uint64_t i) const {
   const bool flat = i % 5 == 0;
@@ -74,10 +93,14 @@ glm::dquat HeldBoard::turn_at(std::uint64_t i) const {
          glm::angleAxis(glm::radians(kRoll_deg * random_.spread(i, roll)), glm::dvec3(0, 0, 1));
 }
 
-/// Moves the board from the middle of the image towards one cell, as far as kInside permits. Cells,
-/// distances and tilts take turns in independent orders.
-HeldBoard::Place HeldBoard::make_place(std::uint64_t i, const calib::CameraModel& camera) const {
-  const double nearest_m = std::max(kNearest_m, fitting_m(camera, half_m_));
+/// Moves the board from the middle of the first image towards one cell, as far as kInside permits.
+/// Cells, distances and tilts take turns in independent orders.
+HeldBoard::Place HeldBoard::make_place(std::uint64_t i,
+                                       std::span<const BoardViewer> viewers) const {
+  const auto& camera = viewers.front().camera;
+  double nearest_m = kNearest_m;
+  for (const auto& viewer : viewers)
+    nearest_m = std::max(nearest_m, fitting_m(viewer.camera, half_m_));
   const double farthest_m = std::max(kFarthest_m, 1.3 * nearest_m);
   const double level =
       (static_cast<double>(i * 11 % kPlaces) + random_.uniform(i, distance)) / kPlaces;
@@ -91,7 +114,7 @@ HeldBoard::Place HeldBoard::make_place(std::uint64_t i, const calib::CameraModel
   for (int step = 0; step < 12; ++step) {
     const double middle = (inside + outside) / 2;
     const auto centre_m = seen_at_m(camera, middle * towards, distance_m);
-    (share_inside(camera, centre_m, turn, half_m_) >= kInside ? inside : outside) = middle;
+    (share_inside(viewers, centre_m, turn, half_m_) >= kInside ? inside : outside) = middle;
   }
   return {seen_at_m(camera, inside * towards, distance_m), turn};
 }

@@ -24,6 +24,7 @@ struct SeenFrom {
   calib::Calibration truth;     ///< its true lens and place
   calib::CameraModel believed;  ///< its lens by the rig's calibration
   int seed;                     ///< of its noise and its detector's errors
+  glm::dmat4 from_first{1};     ///< from the space of the first camera to its own
 };
 
 class RigTwin final : public Twin {
@@ -103,8 +104,12 @@ class RigTwin final : public Twin {
   Result<void> show_board(const FlatPicture& picture) override {
     if (settings_.prop.kind != config::TwinPropKind::board)
       return fail(Errc::bad_config, "twin: no board is held, because twin.prop.kind is not board");
+    if (settings_.prop.views != config::TwinPropViews::first && !geometry_.calibration().camera2)
+      return fail(Errc::bad_config,
+                  "twin: the rig has one camera; set twin.prop.views = \"first\"");
     if (auto usable = check(picture); !usable) return usable;
-    board_.emplace(settings_, geometry_, picture);
+    board_.emplace(settings_, geometry_,
+                   SceneView{view_.truth.camera, view_.from_first, view_.seed}, picture);
     return {};
   }
 
@@ -164,33 +169,36 @@ class RigTwin final : public Twin {
 
 }  // namespace
 
-/// The calibration from which the true rig differs by twin.geometry.
+/// The calibration from which the true rig differs by twin.geometry. If its file has no second
+/// camera, that is where it is believed to be, relative to the true first one.
 static Result<calib::Calibration> true_base(const config::Rig& rig,
                                             const calib::Calibration& believed) {
   const auto& file = rig.twin.geometry.calibration;
   if (file.empty()) return believed;
   auto base = calib::load_calibration(file, rig.projector.packing);
-  if (base && (base->camera.width_px != believed.camera.width_px ||
-               base->camera.height_px != believed.camera.height_px ||
+  const auto has_other_size = [](const calib::CameraModel& a, const calib::CameraModel& b) {
+    return a.width_px != b.width_px || a.height_px != b.height_px;
+  };
+  if (base && (has_other_size(base->camera, believed.camera) ||
+               (base->camera2 && believed.camera2 &&
+                has_other_size(base->camera2->camera, believed.camera2->camera)) ||
                base->projector_width_px != believed.projector_width_px ||
                base->projector_height_px != believed.projector_height_px))
     return fail(Errc::bad_config, fmt::format("twin.geometry.calibration: {} has images of other "
                                               "sizes than the calibration of the rig",
                                               file));
+  if (base && !base->camera2) base->camera2 = believed.camera2;
   return base;
 }
 
-/// The camera that `calibration` is of. The second one is where it is believed to be, relative to
-/// the true first one.
+/// The camera that `calibration` is of.
 static SeenFrom seen_from(const calib::Calibration& calibration, const TrueGeometry& geometry,
                           int seed) {
   constexpr int kOtherSeed = 1000;
   if (!calibration.is_second_view) return {geometry.calibration(), calibration.camera, seed};
-  auto truth = geometry.calibration();
-  truth.camera = calibration.camera;
-  truth.camera_from_tracker =
-      glm::inverse(calibration.camera2->from_camera) * truth.camera_from_tracker;
-  return {truth, calibration.camera, seed + kOtherSeed};
+  const auto& truth = geometry.calibration();
+  return {calib::second_view(truth), calibration.camera, seed + kOtherSeed,
+          truth.camera2->from_camera};
 }
 
 Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig, const calib::Calibration& seen) {

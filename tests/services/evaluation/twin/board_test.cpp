@@ -4,9 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "tests/scratch.hpp"
 #include "tests/services/evaluation/twin/board_world.hpp"
 
 /// The camera's images of a board that is held.
@@ -55,6 +58,88 @@ TEST(Board, ItsCornersAreWhereTheTruthPutsThem) {
               *std::max_element(all.begin(), all.end()));
   EXPECT_LT(mean_of(all), 0.08);
   EXPECT_LT(*std::max_element(all.begin(), all.end()), 0.4);
+}
+
+/// The calibration of two cameras that look at one place, with different lenses.
+calib::Calibration two_cameras() {
+  auto rig = calib::reference_rig();
+  auto lens = rig.camera;
+  lens.fx_px = lens.fy_px = 1100;
+  const auto turn = glm::rotate(glm::dmat4(1), std::atan2(0.3, 0.73), {0, 1, 0});
+  rig.camera2 = calib::SecondCamera{{}, lens, glm::translate(turn, {-0.3, 0, 0})};
+  return rig;
+}
+
+TEST(Board, ASecondCameraSeesTheSameBoardFromItsOwnPlace) {
+  auto rig = board_rig();
+  rig.twin.image.noise = 2;
+  rig.twin.prop.views = config::TwinPropViews::both;
+  const auto cameras = two_cameras();
+  auto first = Twin::create(rig, cameras).value(),
+       second = Twin::create(rig, calib::second_view(cameras)).value();
+  ASSERT_TRUE(first->show_board(checkerboard(100)));
+  ASSERT_TRUE(second->show_board(checkerboard(100)));
+  for (int place = 0; place < HeldBoard::kPlaces; place += 4) {
+    const auto k = frame_at(rig, place);
+    const auto time_ns = first->camera_origin_ns(k);
+    const auto there = *second->board_pose(time_ns);
+    const auto off = there - cameras.camera2->from_camera * *first->board_pose(time_ns);
+    for (int column = 0; column < 4; ++column) EXPECT_LT(glm::length(off[column]), 1e-12);
+    std::vector<cv::Point2f> truth;
+    for (int row = 0; row + 1 < kRows; ++row)
+      for (int column = 0; column + 1 < kColumns; ++column) {
+        const glm::dvec4 corner_m(kSquare_m * glm::dvec2(column, row), 0, 1);
+        const auto& lens = cameras.camera2->camera;
+        const auto px = lens.distort(lens.project(glm::dvec3(there * corner_m)));
+        if (px.x > 10 && px.y > 10 && px.x < 709 && px.y < 529) truth.emplace_back(px.x, px.y);
+      }
+    EXPECT_GT(truth.size(), 38u) << "the second camera sees most of it, place " << place;
+    auto found = truth;
+    for (auto& px : found) px += cv::Point2f(0.7f, -0.6f);
+    auto image = shot(*second, k);
+    cv::cornerSubPix(cv::Mat(image.height(), image.width(), CV_8U, image.pixels().data()), found,
+                     {4, 4}, {-1, -1}, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 60, 1e-3});
+    double sum_px = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) sum_px += cv::norm(found[i] - truth[i]);
+    EXPECT_LT(sum_px / static_cast<double>(found.size()), 0.12) << "place " << place;
+  }
+}
+
+TEST(Board, ItIsMovedThroughTheImageOfTheCameraThatIsNamed) {
+  auto rig = board_rig();
+  rig.twin.prop.views = config::TwinPropViews::second;
+  const auto cameras = two_cameras();
+  auto second = Twin::create(rig, calib::second_view(cameras)).value();
+  ASSERT_TRUE(second->show_board(checkerboard(20)));
+  double leftmost = 720, rightmost = 0;
+  for (int place = 0; place < HeldBoard::kPlaces; ++place) {
+    const auto pose = *second->board_pose(second->camera_origin_ns(frame_at(rig, place)));
+    const auto px = cameras.camera2->camera.project(glm::dvec3(pose * glm::dvec4(0.1, 0.07, 0, 1)));
+    leftmost = std::min(leftmost, px.x);
+    rightmost = std::max(rightmost, px.x);
+  }
+  EXPECT_LT(leftmost, 240);
+  EXPECT_GT(rightmost, 480);
+  auto alone = twin_of(rig);
+  const auto shown = alone->show_board(checkerboard(20));
+  ASSERT_FALSE(shown);
+  EXPECT_THAT(shown.error().what, testing::HasSubstr("the rig has one camera"));
+}
+
+TEST(Board, TheTrueSecondCameraIsThatOfTheTrueRig) {
+  auto rig = board_rig();
+  const test::Scratch scratch;
+  const auto truth = two_cameras();
+  rig.twin.geometry.calibration = scratch.path() / "truth.toml";
+  std::ofstream(rig.twin.geometry.calibration) << calib::print_calibration(truth);
+  auto believed = truth;
+  believed.camera2->from_camera[3].x += 0.02;
+  auto first = Twin::create(rig, believed).value(),
+       second = Twin::create(rig, calib::second_view(believed)).value();
+  ASSERT_TRUE(first->show_board(checkerboard(20)));
+  ASSERT_TRUE(second->show_board(checkerboard(20)));
+  const auto off = *second->board_pose(0) - truth.camera2->from_camera * *first->board_pose(0);
+  EXPECT_LT(glm::length(off[3]), 1e-9);
 }
 
 TEST(Board, TheResolutionOfItsPictureDoesNotMatter) {
