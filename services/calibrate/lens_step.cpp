@@ -9,7 +9,7 @@
 #include "calib/lens/auto_capture.hpp"
 #include "calib/lens/coverage.hpp"
 #include "calib/lens/lens_fit.hpp"
-#include "ipc/msg/camera_frame.hpp"
+#include "services/calibrate/lens_memory.hpp"
 #include "services/calibrate/pieces.hpp"
 
 namespace handcast::calibrate {
@@ -24,21 +24,23 @@ constexpr double kGood_px = 0.6;
 constexpr double kGoodFocal = 0.01;
 /// @}
 
-calib::GreyView view_of(const msg::CameraFrame& frame) {
-  const auto width = static_cast<int>(frame.width_px);
-  return {frame.pixels(), width, static_cast<int>(frame.height_px), width};
-}
+/// One of the rig's cameras.
+struct Ring {
+  const char* step;
+  const char* stream;
+};
+constexpr Ring kFirst{"lens", "camera.frames"}, kSecond{"lens2", "camera2.frames"};
 
-/// The views of a board that a person has shown.
-Result<std::vector<calib::BoardView>> take_views(Desk& desk) {
-  auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, "camera.frames");
+/// The views of a board that a person has shown. `camera`: its size counts.
+Result<std::vector<calib::BoardView>> take_views(Desk& desk, const Ring& ring,
+                                                 const calib::CameraModel& camera) {
+  auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, ring.stream);
   if (!frames) return tl::make_unexpected(frames.error());
-  const auto& camera = desk.used.camera;
   const calib::BoardFinder finder(desk.options.board);
   calib::Coverage coverage(camera.width_px, camera.height_px);
   calib::AutoCapture capture(camera.width_px);
   std::vector<calib::BoardView> views;
-  Progress progress(desk, "lens");
+  Progress progress(desk, ring.step);
   while (coverage.share() < 1 || views.size() < kEnoughViews) {
     if (const auto on = progress.goes_on(); !on || !*on) {
       if (!on) return tl::make_unexpected(on.error());
@@ -87,16 +89,25 @@ Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> 
   return outcome;
 }
 
-}  // namespace
-
-Result<Outcome> measure_lens(Desk& desk) {
-  const auto views = take_views(desk);
+/// Measures one camera, and sets its lens.
+Result<Outcome> measure(Desk& desk, const Ring& ring, calib::CameraModel& camera) {
+  const auto views = take_views(desk, ring, camera);
   if (!views) return tl::make_unexpected(views.error());
-  const auto& camera = desk.used.camera;
   const auto fit = calib::fit_lens(*views, camera.width_px, camera.height_px);
   if (!fit) return tl::make_unexpected(fit.error());
-  desk.draft.camera = fit->camera;
-  return outcome_of(*fit, *views);
+  camera = fit->camera;
+  auto outcome = outcome_of(*fit, *views);
+  if (!outcome.is_good) return outcome;
+  return remember_lens(desk.options.folder, ring.step, *fit).map([&] { return outcome; });
+}
+
+}  // namespace
+
+Result<Outcome> measure_lens(Desk& desk) { return measure(desk, kFirst, desk.draft.camera); }
+
+Result<Outcome> measure_second_lens(Desk& desk) {
+  if (!desk.draft.camera2) return fail(Errc::bad_config, "the rig has no second camera");
+  return measure(desk, kSecond, desk.draft.camera2->camera);
 }
 
 }  // namespace handcast::calibrate

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/board/board_pdf.hpp"
+#include "config/second_view.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
 #include "ipc/base/exit_code.hpp"
@@ -19,6 +20,7 @@
 #include "services/calibrate/lens_step.hpp"
 #include "services/calibrate/light_step.hpp"
 #include "services/calibrate/own_devices.hpp"
+#include "services/calibrate/pair_step.hpp"
 #include "services/calibrate/points.hpp"
 #include "services/calibrate/rig_file_edit.hpp"
 #include "services/calibrate/rig_settings.hpp"
@@ -43,6 +45,13 @@ constexpr std::array kSteps{
     StepEntry{Step::lens, measure_lens,
               "Hold the printed board in front of the camera, still for a moment at each place: in "
               "the middle and in every corner of the image, near and far, tilted to all sides."},
+    StepEntry{
+        Step::lens2, measure_second_lens,
+        "The same with the second camera: hold the board in the middle and in every corner of "
+        "its image, near and far, tilted to all sides."},
+    StepEntry{Step::pair, measure_pair,
+              "Hold the board where both cameras see all of it, still for a moment at each place: "
+              "near and far, left and right, tilted to all sides."},
     StepEntry{Step::screen, measure_screen,
               "Hold or stand the board in the projector's light, still until it asks for the next "
               "place: at three or more distances."},
@@ -61,14 +70,19 @@ constexpr const char* kReflectorInstruction =
 
 const StepEntry& entry_of(Step step) { return *std::ranges::find(kSteps, step, &StepEntry::step); }
 
+/// False for a step that measures what the rig does not have. Poses from two cameras are in the
+/// space of the first one: there is no tracker whose place could be wrong.
+bool has_need_of(const config::Rig& rig, Step step) {
+  if (step == Step::lens2 || step == Step::pair) return config::has_second_view(rig);
+  return step != Step::tracker || (rig.pose.backend != "none" && rig.pose.backend != "stereo");
+}
+
 /// The steps to do now.
 std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const Session& session) {
   std::vector<Step> steps = options.steps;
   if (!steps.empty()) return steps;
-  for (const auto& entry : kSteps) {
-    const bool needless = entry.step == Step::tracker && rig.pose.backend == "none";
-    if (!needless && !session.is_done(entry.step)) steps.push_back(entry.step);
-  }
+  for (const auto& entry : kSteps)
+    if (has_need_of(rig, entry.step) && !session.is_done(entry.step)) steps.push_back(entry.step);
   return steps;
 }
 
@@ -161,6 +175,16 @@ Result<void> finish(const Options& options, const config::Rig& rig, const Sessio
   return {};
 }
 
+/// Errors: bad_config (a step was asked for that needs a second camera).
+Result<void> check_steps(const Options& options, const config::Rig& rig) {
+  for (const Step step : options.steps)
+    if ((step == Step::lens2 || step == Step::pair) && !has_need_of(rig, step))
+      return fail(Errc::bad_config,
+                  fmt::format("{}: the rig has no second camera; set camera2.backend",
+                              config::word_of(step)));
+  return {};
+}
+
 Result<int> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
                         Session& session) {
   Keys keys;
@@ -207,7 +231,7 @@ Result<int> check_rig(const Options& options, const config::Rig& rig, const Runn
   Keys keys;
   bool is_good = true;
   for (const auto& check : kChecks) {
-    if (check.step == Step::tracker && rig.pose.backend == "none") continue;
+    if (!has_need_of(rig, check.step)) continue;
     const StepEntry entry{check.step, check.measure, check.instruction};
     auto wanted = is_wanted(options, keys, entry);
     if (!wanted) return tl::make_unexpected(wanted.error());
@@ -260,6 +284,8 @@ Result<int> run(Options options) {
   const auto done = [] { return kExitDone; };
   // Also if the calibration cannot be read any more.
   if (options.undo) return undo(*rig).map(done);
+  if (auto possible = check_steps(options, *rig); !possible)
+    return tl::make_unexpected(possible.error());
   const auto own = own_devices(*rig);
   const auto running = rig_as_it_runs(options, *rig, own);
   if (!running) return tl::make_unexpected(running.error());
@@ -274,6 +300,7 @@ Result<int> run(Options options) {
   if (!running->new_devices.empty()) name_anew(options, *rig, running->new_devices);
   auto used = running->calibration;
   if (used.camera_device.empty()) used.camera_device = own.camera;
+  if (used.camera2 && used.camera2->device.empty()) used.camera2->device = own.camera2;
   if (used.projector_device.empty()) used.projector_device = own.projector;
   auto session = Session::open(options, *rig, used);
   if (!session) return tl::make_unexpected(session.error());

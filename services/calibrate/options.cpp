@@ -2,6 +2,7 @@
 #include "services/calibrate/options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <tuple>
@@ -14,7 +15,9 @@ namespace handcast::calibrate {
 namespace {
 
 constexpr const char* kSummary =
-    "Measures the camera's lens, the projector and the tracker's place of a rig, and writes its "
+    "Measures the lens of the camera, the projector and the tracker's place of a rig, and the "
+    "second "
+    "camera of a rig with two, and writes its "
     "calibration file. It starts the rig itself, says what to hold where, and can be left at any "
     "time and called again: it goes on where it was left. The old calibration is kept.\n\n"
     "Print the board first: handcast calibrate --print-board board.pdf";
@@ -58,9 +61,11 @@ Result<Options> parse(int argc, char** argv) {
   CLI::App app(kSummary, "handcast calibrate");
   Options options;
   std::vector<std::string> steps;
-  std::string board = calib::print_board_name(calib::Board{}), camera, projector;
+  std::string board = calib::print_board_name(calib::Board{}), camera, camera2, projector;
   app.add_option("RIG.toml", options.rig_file, "The rig file");
-  app.add_option("STEP", steps, "lens, screen, tracker, light; default: all that are left");
+  app.add_option("STEP", steps,
+                 "lens, lens2, pair (of a second camera), screen, tracker, light; "
+                 "default: all that are left");
   app.add_option("--set", options.settings, "path=value: a setting that overrides the file's")
       ->allow_extra_args(false);
   app.add_option("--board", board, "The board: KIND:COLUMNSxROWS:MM, the size of a square in mm")
@@ -68,6 +73,9 @@ Result<Options> parse(int argc, char** argv) {
   app.add_option("--print-board", options.board_pdf, "Writes the board as a PDF, and ends");
   app.add_option("--camera", camera,
                  "Size of the camera's images, for a rig without a calibration");
+  app.add_option("--camera2", camera2,
+                 "Size of the second camera's images, if they are of another size than the first "
+                 "one's and not calibrated");
   app.add_option("--projector", projector,
                  "Size of the projector's image, for a rig without a calibration");
   app.add_option("--folder", options.folder,
@@ -103,9 +111,8 @@ Result<Options> parse(int argc, char** argv) {
   for (const auto& word : steps) {
     const auto step = config::choice_named<Step>(word);
     if (!step)
-      return fail(
-          Errc::bad_config,
-          fmt::format("there is no step '{}'; there are lens, screen, tracker, light", word));
+      return fail(Errc::bad_config, fmt::format("there is no step '{}'; there are {}", word,
+                                                fmt::join(words_of(Step{}), ", ")));
     options.steps.push_back(*step);
   }
   auto parsed = calib::parse_board(board);
@@ -113,6 +120,7 @@ Result<Options> parse(int argc, char** argv) {
   options.board = *parsed;
   for (const auto& [flag, given, size] :
        {std::tuple{"--camera", &camera, &options.camera},
+        std::tuple{"--camera2", &camera2, &options.camera2},
         std::tuple{"--projector", &projector, &options.projector}}) {
     if (given->empty()) continue;
     const auto read = parse_size(flag, *given);

@@ -12,9 +12,9 @@
 namespace handcast::calibrate {
 
 /// What is measured, in this order: each step needs those before it.
-enum class Step { lens, screen, tracker, light };
-constexpr std::array<std::string_view, 4> words_of(Step) {
-  return {"lens", "screen", "tracker", "light"};
+enum class Step { lens, lens2, pair, screen, tracker, light };
+constexpr std::array<std::string_view, 6> words_of(Step) {
+  return {"lens", "lens2", "pair", "screen", "tracker", "light"};
 }
 
 /// The size of an image in pixels; 0 x 0: not said.
@@ -28,7 +28,7 @@ struct Options {
   std::vector<Step> steps;            ///< empty: all that are left
   std::vector<std::string> settings;  ///< of --set
   calib::Board board;
-  Size camera, projector;           ///< of a rig without a calibration
+  Size camera, camera2, projector;  ///< of a rig without a calibration
   std::filesystem::path folder;     ///< of the session; default: next to the rig file
   std::filesystem::path board_pdf;  ///< where the board is to be written, and nothing else is done
   double most_s = 180;              ///< how long a step may take

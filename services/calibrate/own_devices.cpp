@@ -69,6 +69,7 @@ void name_device(const std::optional<Wanted>& wanted,
 OwnDevices own_devices(const config::Rig& rig, const std::vector<devices::Attached>& attached) {
   OwnDevices own;
   name_device(camera_of(rig.camera), attached, own.camera, own.camera_names);
+  name_device(camera_of(rig.camera2), attached, own.camera2, own.camera2_names);
   name_device(projector_of(rig.projector), attached, own.projector, own.projector_names);
   return own;
 }
@@ -78,7 +79,7 @@ OwnDevices own_devices(const config::Rig& rig) {
   const auto look_for = [&](devices::Kind kind) {
     for (auto& device : devices::attached_of(kind)) attached.push_back(std::move(device));
   };
-  if (camera_of(rig.camera)) look_for(devices::Kind::camera);
+  if (camera_of(rig.camera) || camera_of(rig.camera2)) look_for(devices::Kind::camera);
   if (projector_of(rig.projector)) look_for(devices::Kind::display);
   return own_devices(rig, attached);
 }

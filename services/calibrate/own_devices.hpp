@@ -16,6 +16,11 @@ struct OwnDevices {
   /// @{
   std::vector<std::string> camera_names{}, projector_names{};
   /// @}
+  /// The same of a second camera.
+  /// @{
+  std::string camera2{};
+  std::vector<std::string> camera2_names{};
+  /// @}
 };
 
 /// The devices of a rig. `attached`: those of this computer, in which an unnamed one is looked up.

@@ -53,13 +53,16 @@ std::string report_html(const std::string& rig, const calib::Calibration& draft,
   const auto fact_of = [](std::string_view name, const std::string& made) {
     return page::fact(name, made.empty() ? "not measured yet" : made);
   };
-  return page::to_html({.title = "Calibration of " + rig,
-                        .style = kStyle,
-                        .facts = fact_of("lens", draft.made.lens) +
-                                 fact_of("screen", draft.made.screen) +
-                                 fact_of("tracker", draft.made.tracker),
-                        .header = {},
-                        .body = pieces});
+  return page::to_html(
+      {.title = "Calibration of " + rig,
+       .style = kStyle,
+       .facts =
+           fact_of("lens", draft.made.lens) +
+           (draft.camera2 ? fact_of("lens2", draft.made.lens2) + fact_of("pair", draft.made.pair)
+                          : std::string()) +
+           fact_of("screen", draft.made.screen) + fact_of("tracker", draft.made.tracker),
+       .header = {},
+       .body = pieces});
 }
 
 std::string errors_svg(const calib::ErrorVolume& errors, std::string_view caption) {

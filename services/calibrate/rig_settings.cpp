@@ -7,22 +7,28 @@
 #include <cctype>
 
 #include "calib/board/board_name.hpp"
+#include "config/second_view.hpp"
 #include "config/settings/files.hpp"
 
 namespace handcast::calibrate {
 namespace {
 
+/// A lens as wide as most.
+calib::CameraModel usual_lens(Size size) {
+  constexpr double kFocalLength_widths = 1.3;
+  return {size.width_px,
+          size.height_px,
+          kFocalLength_widths * size.width_px,
+          kFocalLength_widths * size.width_px,
+          (size.width_px - 1) / 2.0,
+          (size.height_px - 1) / 2.0};
+}
+
 /// A calibration of which only the sizes are known: a lens as wide as most, and a projector image
 /// as large as the camera's.
 calib::Calibration from_sizes(Size camera, Size projector) {
-  constexpr double kFocalLength_widths = 1.3;
   calib::Calibration rough;
-  rough.camera = {camera.width_px,
-                  camera.height_px,
-                  kFocalLength_widths * camera.width_px,
-                  kFocalLength_widths * camera.width_px,
-                  (camera.width_px - 1) / 2.0,
-                  (camera.height_px - 1) / 2.0};
+  rough.camera = usual_lens(camera);
   rough.projector_width_px = projector.width_px;
   rough.projector_height_px = projector.height_px;
   const double scale_x = static_cast<double>(projector.width_px) / camera.width_px,
@@ -30,6 +36,30 @@ calib::Calibration from_sizes(Size camera, Size projector) {
   rough.projector_from_camera = {scale_x,           0, 0, 0, scale_y, 0, (scale_x - 1) / 2,
                                  (scale_y - 1) / 2, 1};
   return rough;
+}
+
+/// A second camera of which only the size is known: a hand's width to the right of the first one.
+calib::SecondCamera guessed_second(const Options& options, const calib::CameraModel& first) {
+  constexpr double kApart_m = 0.1;
+  auto size = options.camera2;
+  if (size.width_px == 0) size = {first.width_px, first.height_px};
+  glm::dmat4 from_first(1);
+  from_first[3].x = -kApart_m;
+  return {{}, usual_lens(size), from_first};
+}
+
+/// Writes a calibration to the session's folder, for the services.
+Result<RunningAs> run_with(const Options& options, calib::Calibration calibration,
+                           std::string new_devices) {
+  RunningAs running{std::move(calibration), options.settings, std::move(new_devices)};
+  const auto file = std::filesystem::absolute(options.folder) / "rough.toml";
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (auto written = config::write_whole(file, calib::print_calibration(running.calibration));
+      !written)
+    return tl::make_unexpected(written.error());
+  running.settings.push_back("calibration=" + file.string());
+  return running;
 }
 
 /// What a calibration and a rig have differently; empty if they have the same devices, or these are
@@ -41,6 +71,9 @@ std::string other_devices(const calib::Calibration& calibration, const OwnDevice
   if (differ(calibration.camera_device, own.camera_names))
     return fmt::format("the camera '{}', and the rig has '{}'", calibration.camera_device,
                        own.camera);
+  if (calibration.camera2 && differ(calibration.camera2->device, own.camera2_names))
+    return fmt::format("the second camera '{}', and the rig has '{}'", calibration.camera2->device,
+                       own.camera2);
   if (differ(calibration.projector_device, own.projector_names))
     return fmt::format("the projector '{}', and the rig has '{}'", calibration.projector_device,
                        own.projector);
@@ -50,7 +83,7 @@ std::string other_devices(const calib::Calibration& calibration, const OwnDevice
 /// The names of devices as a part of a file's name: letters and digits.
 std::string slug_of(const OwnDevices& own) {
   std::string slug;
-  for (const char c : own.camera + "_" + own.projector) {
+  for (const char c : own.camera + "_" + own.camera2 + "_" + own.projector) {
     const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
     if (is_plain || (!slug.empty() && slug.back() != '_')) slug += is_plain ? c : '_';
   }
@@ -69,6 +102,9 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
     auto calibration = calib::load_calibration(rig.calibration);
     if (!calibration) return tl::make_unexpected(calibration.error());
     others = other_devices(*calibration, own);
+    const bool lacks_second = config::has_second_view(rig) && !calibration->camera2;
+    if (lacks_second) calibration->camera2 = guessed_second(options, calibration->camera);
+    if (others.empty() && lacks_second) return run_with(options, std::move(*calibration), {});
     if (others.empty()) return RunningAs{std::move(*calibration), options.settings, {}};
     if (!has_sizes)
       return fail(
@@ -83,16 +119,9 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
     return fail(Errc::bad_config,
                 "the rig names no calibration, so the sizes of its images are not known: add "
                 "--camera and --projector, e.g. --camera 1280x1024 --projector 1920x1080");
-  RunningAs running{from_sizes(options.camera, options.projector), options.settings,
-                    others.empty() ? std::string() : slug_of(own)};
-  const auto file = std::filesystem::absolute(options.folder) / "rough.toml";
-  std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
-  if (auto written = config::write_whole(file, calib::print_calibration(running.calibration));
-      !written)
-    return tl::make_unexpected(written.error());
-  running.settings.push_back("calibration=" + file.string());
-  return running;
+  auto rough = from_sizes(options.camera, options.projector);
+  if (config::has_second_view(rig)) rough.camera2 = guessed_second(options, rough.camera);
+  return run_with(options, std::move(rough), others.empty() ? std::string() : slug_of(own));
 }
 
 std::vector<std::string> twin_scene(Step step, const Options& options) {
@@ -113,7 +142,9 @@ std::vector<std::string> twin_scene(Step step, const Options& options) {
   }
   settings.emplace_back("twin.prop.kind=board");
   settings.push_back("twin.prop.board=" + calib::print_board_name(options.board));
-  settings.push_back(fmt::format("twin.prop.hold_s={}", step == Step::lens ? 1 : 8));
+  settings.push_back(fmt::format("twin.prop.hold_s={}", step == Step::screen ? 8 : 1));
+  if (step == Step::lens2) settings.emplace_back("twin.prop.views=second");
+  if (step == Step::pair) settings.emplace_back("twin.prop.views=both");
   if (step == Step::screen)
     settings.insert(settings.end(), {"twin.image.leak=1", "twin.image.gain=80"});
   return settings;

@@ -21,7 +21,8 @@ struct RunningAs {
 
 /// The rig with its own calibration. If it names none and has real devices, or if its calibration
 /// is that of other devices than `own`, with one that has only the sizes of the images
-/// (options.camera, options.projector) and is written to the session's folder. Errors: bad_config
+/// (options.camera, options.projector) and is written to the session's folder. If only the second
+/// camera of two is not calibrated, with a guess of that one. Errors: bad_config
 /// (the sizes are missing), those of calib::load_calibration().
 Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
                                  const OwnDevices& own = {});

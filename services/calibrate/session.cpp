@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kSteps{Step::lens, Step::screen, Step::tracker, Step::light};
+constexpr std::array kSteps{Step::lens,   Step::lens2,   Step::pair,
+                            Step::screen, Step::tracker, Step::light};
 
 /// The sentence of a step in the calibration; null if the step measures no part of it.
 std::string* made_of(calib::Made& made, Step step) {
@@ -29,6 +30,10 @@ std::string* made_of(calib::Made& made, Step step) {
       return &made.screen;
     case Step::tracker:
       return &made.tracker;
+    case Step::lens2:
+      return &made.lens2;
+    case Step::pair:
+      return &made.pair;
     case Step::light:
       break;
   }
@@ -59,7 +64,33 @@ Result<void> adopt_devices(const calib::Calibration& used, calib::Calibration& d
     return {};
   };
   auto same = adopt("camera", used.camera_device, draft.camera_device);
+  if (same && used.camera2) {
+    if (!draft.camera2) draft.camera2 = used.camera2;
+    same = adopt("second camera", used.camera2->device, draft.camera2->device);
+  }
   return same ? adopt("projector", used.projector_device, draft.projector_device) : same;
+}
+
+bool has_size_of(const calib::CameraModel& one, const calib::CameraModel& other) {
+  return one.width_px == other.width_px && one.height_px == other.height_px;
+}
+
+/// What a new measurement makes worthless: it was measured with the old lens.
+std::vector<Step> outdated_by(Step step) {
+  if (step == Step::lens) return {Step::pair, Step::screen, Step::tracker};
+  if (step == Step::lens2) return {Step::pair};
+  return {};
+}
+
+/// The draft without a second camera whose place nobody has measured: it is a guess with which the
+/// cameras could be started.
+calib::Calibration without_guess(calib::Calibration draft, const fs::path& target) {
+  std::error_code unknown;
+  if (!draft.camera2 || !draft.made.pair.empty()) return draft;
+  const auto before =
+      fs::exists(target, unknown) ? calib::load_calibration(target) : Result<calib::Calibration>{};
+  if (before && !before->camera2) draft.camera2.reset();
+  return draft;
 }
 
 }  // namespace
@@ -81,13 +112,17 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
   }
   auto draft = calib::load_calibration(file);
   if (!draft) return tl::make_unexpected(draft.error());
-  if (draft->camera.width_px != used.camera.width_px ||
-      draft->camera.height_px != used.camera.height_px)
+  if (!has_size_of(draft->camera, used.camera))
     return fail(Errc::bad_config,
                 fmt::format("what was measured before, in {}, has images of {}x{} px, and the rig "
                             "has {}x{}; --restart forgets it",
                             session.folder_.string(), draft->camera.width_px,
                             draft->camera.height_px, used.camera.width_px, used.camera.height_px));
+  if (draft->camera2 && used.camera2 && !has_size_of(draft->camera2->camera, used.camera2->camera))
+    return fail(Errc::bad_config,
+                fmt::format("what was measured before, in {}, has images of another size of the "
+                            "second camera; --restart forgets it",
+                            session.folder_.string()));
   if (auto same = adopt_devices(used, *draft); !same)
     return fail(same.error().code, fmt::format("what was measured before, in {}: {}; --restart "
                                                "forgets it",
@@ -117,8 +152,7 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
     return fail(Errc::bad_data,
                 "this is not good enough to be used, and was not kept; measure it again");
   draft_ = measured;
-  if (step == Step::lens)
-    for (const Step later : {Step::screen, Step::tracker}) forget(later);
+  for (const Step later : outdated_by(step)) forget(later);
   if (auto* made = made_of(draft_.made, step))
     *made = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
   auto kept = config::write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
@@ -137,9 +171,10 @@ Result<std::string> Session::finish() const {
   // A file that the services would refuse must not take the place of a good one.
   if (const auto usable = calib::load_calibration(file("draft.toml")); !usable)
     return tl::make_unexpected(usable.error());
-  auto sentence = write_and_keep(target_, calib::print_calibration(draft_));
+  const auto measured = without_guess(draft_, target_);
+  auto sentence = write_and_keep(target_, calib::print_calibration(measured));
   if (!sentence) return sentence;
-  return config::write_whole(file("opencv.yml"), calib::print_opencv_file(draft_)).map([&] {
+  return config::write_whole(file("opencv.yml"), calib::print_opencv_file(measured)).map([&] {
     return *sentence;
   });
 }

@@ -41,19 +41,22 @@ TEST(CalibrateOptions, ARigFileIsEnough) {
 }
 
 TEST(CalibrateOptions, StepsBoardAndSizesAreRead) {
-  const auto options = parsed({"rig.toml", "screen", "tracker", "--board", "checkerboard:9x6:24.5",
-                               "--camera", "1280x1024", "--projector", "1920x1080"});
+  const auto options =
+      parsed({"rig.toml", "screen", "tracker", "--board", "checkerboard:9x6:24.5", "--camera",
+              "1280x1024", "--camera2", "640x480", "--projector", "1920x1080"});
   ASSERT_TRUE(options) << options.error().what;
   EXPECT_THAT(options->steps, ElementsAre(Step::screen, Step::tracker));
   EXPECT_EQ(options->board.kind, calib::BoardKind::checkerboard);
   EXPECT_EQ(options->board.square_mm, 24.5);
   EXPECT_EQ(options->camera.height_px, 1024);
+  EXPECT_EQ(options->camera2.width_px, 640);
   EXPECT_EQ(options->projector.width_px, 1920);
 }
 
 TEST(CalibrateOptions, WhatIsWrongIsSaidInASentence) {
   EXPECT_THAT(refusal({}), HasSubstr("name the rig file"));
-  EXPECT_THAT(refusal({"rig.toml", "lense"}), HasSubstr("there are lens, screen, tracker"));
+  EXPECT_THAT(refusal({"rig.toml", "lense"}),
+              HasSubstr("there are lens, lens2, pair, screen, tracker, light"));
   EXPECT_THAT(refusal({"rig.toml", "--camera", "1280"}), HasSubstr("--camera: '1280'"));
   EXPECT_THAT(refusal({"rig.toml", "--camera", "1280x1024x3"}), HasSubstr("--camera"));
   EXPECT_THAT(refusal({"rig.toml", "--board", "chess:9x6:24"}),

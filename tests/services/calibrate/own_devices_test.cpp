@@ -55,6 +55,17 @@ TEST(OwnDevices, ADeviceThatIsNotFoundKeepsTheRigsNameButNoPlace) {
   EXPECT_EQ(placed.projector, "");
 }
 
+TEST(OwnDevices, TheSecondCameraHasItsOwnNames) {
+  auto two = rig("usb-1.2", "");
+  two.camera2.backend = "v4l2";
+  two.camera2.v4l2.device = "/dev/video2";
+  const auto own = own_devices(two, {kWebcam, kOtherWebcam});
+  EXPECT_EQ(own.camera, "HD Webcam");
+  EXPECT_EQ(own.camera2, "Other Webcam");
+  EXPECT_EQ(own.camera2_names,
+            (std::vector<std::string>{"Other Webcam", "usb-1.3", "/dev/video2"}));
+}
+
 TEST(OwnDevices, TheTwinHasNone) {
   const auto own = own_devices(config::Rig(), {kWebcam, kProjector});
   EXPECT_EQ(own.camera, "");

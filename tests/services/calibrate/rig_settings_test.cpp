@@ -77,10 +77,48 @@ TEST_F(RigSettings, ACalibrationOfAnotherCameraLeadsToOneOfItsOwn) {
   EXPECT_EQ(anew->calibration.camera.width_px, 640);
 }
 
+TEST_F(RigSettings, ASecondCameraThatIsNotCalibratedIsGuessedWithTheFirstAsItIs) {
+  auto first = calib::reference_rig();
+  first.camera.fx_px = 1100;
+  rig_.calibration = scratch_.path() / "first.toml";
+  std::ofstream(rig_.calibration) << calib::print_calibration(first);
+  rig_.camera2.backend = "v4l2";
+  options_.camera2 = {640, 480};
+  const auto running = rig_as_it_runs(options_, rig_);
+  ASSERT_TRUE(running) << running.error().what;
+  const auto file = options_.folder / "rough.toml";
+  EXPECT_THAT(running->settings, Contains("calibration=" + file.string()));
+  const auto rough = calib::load_calibration(file);
+  ASSERT_TRUE(rough) << rough.error().what;
+  EXPECT_EQ(rough->camera.fx_px, 1100);
+  EXPECT_EQ(rough->camera2->camera.width_px, 640);
+}
+
+TEST_F(RigSettings, ACalibrationOfAnotherSecondCameraIsRefused) {
+  auto pair = calib::reference_rig();
+  pair.camera_device = "usb-1.2";
+  pair.camera2 = calib::SecondCamera{"usb-1.3", pair.camera, glm::dmat4(1)};
+  pair.camera2->from_camera[3].x = -0.1;
+  rig_.calibration = scratch_.path() / "pair.toml";
+  std::ofstream(rig_.calibration) << calib::print_calibration(pair);
+  rig_.camera.backend = rig_.camera2.backend = "v4l2";
+  OwnDevices own{"One", "", {"One", "usb-1.2"}, {}, "Two", {"Two", "usb-1.3"}};
+  const auto same = rig_as_it_runs(options_, rig_, own);
+  EXPECT_TRUE(same) << same.error().what;
+  std::swap(own.camera_names, own.camera2_names);
+  EXPECT_FALSE(rig_as_it_runs(options_, rig_, own)) << "the cameras are exchanged";
+  std::swap(own.camera_names, own.camera2_names);
+  own.camera2_names = {"Three"};
+  EXPECT_THAT(rig_as_it_runs(options_, rig_, own).error().what,
+              HasSubstr("made with the second camera 'usb-1.3'"));
+}
+
 TEST_F(RigSettings, TheTwinShowsWhatAStepNeeds) {
   const auto settings = twin_scene(Step::screen, Options{});
   EXPECT_THAT(settings, Contains("twin.prop.board=charuco:11x8:20"));
   EXPECT_THAT(settings, Contains("twin.image.leak=1"));
+  EXPECT_THAT(twin_scene(Step::pair, Options{}), Contains("twin.prop.views=both"));
+  EXPECT_THAT(twin_scene(Step::lens2, Options{}), Contains("twin.prop.views=second"));
   EXPECT_THAT(twin_scene(Step::tracker, Options{}), testing::Not(Contains(HasSubstr("twin.prop"))));
 }
 

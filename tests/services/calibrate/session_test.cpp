@@ -70,6 +70,52 @@ TEST_F(CalibrateSession, ANewLensForgetsWhatWasMeasuredWithTheOld) {
   EXPECT_THAT(text_of(session.report()), Not(HasSubstr("two")));
 }
 
+TEST_F(CalibrateSession, TheSecondCamerasPlaceStandsOnBothLensesAndTheScreenOnTheFirst) {
+  used_.camera2 = calib::SecondCamera{{}, used_.camera, glm::dmat4(1)};
+  used_.camera2->from_camera[3].x = -0.1;
+  auto session = open();
+  for (const Step step : {Step::lens, Step::lens2, Step::pair, Step::screen})
+    ASSERT_TRUE(session.keep(step, {"measured"}, session.draft()));
+  EXPECT_THAT(text_of(session.report()), HasSubstr("<h2>pair</h2>"));
+  ASSERT_TRUE(session.keep(Step::lens2, {"again"}, session.draft()));
+  EXPECT_FALSE(session.is_done(Step::pair));
+  EXPECT_TRUE(session.is_done(Step::screen));
+  ASSERT_TRUE(session.keep(Step::pair, {"again"}, session.draft()));
+  ASSERT_TRUE(session.keep(Step::lens, {"again"}, session.draft()));
+  EXPECT_FALSE(session.is_done(Step::pair));
+  EXPECT_TRUE(session.is_done(Step::lens2));
+}
+
+TEST_F(CalibrateSession, APlaceOfTheSecondCameraThatNobodyMeasuredIsNotWritten) {
+  rig_.calibration = scratch_.path() / "own.toml";
+  std::ofstream(rig_.calibration) << calib::print_calibration(used_);
+  used_.camera2 = calib::SecondCamera{{}, used_.camera, glm::dmat4(1)};
+  used_.camera2->from_camera[3].x = -0.1;
+  auto session = open();
+  ASSERT_TRUE(session.keep(Step::lens2, {"20 images"}, used_));
+  ASSERT_TRUE(session.finish());
+  EXPECT_FALSE(calib::load_calibration(session.target())->camera2);
+  ASSERT_TRUE(session.keep(Step::pair, {"15 views"}, session.draft()));
+  ASSERT_TRUE(session.finish());
+  const auto whole = calib::load_calibration(session.target());
+  ASSERT_TRUE(whole->camera2);
+  EXPECT_THAT(whole->made.pair, HasSubstr("15 views"));
+  EXPECT_THAT(text_of(session.file("opencv.yml")), HasSubstr("camera2_from_camera"));
+}
+
+TEST_F(CalibrateSession, ADraftOfAnotherSecondCameraIsRefused) {
+  used_.camera2 = calib::SecondCamera{"left eye", used_.camera, glm::dmat4(1)};
+  used_.camera2->from_camera[3].x = -0.1;
+  { ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, used_)); }
+  used_.camera2->device = "right eye";
+  const auto other = Session::open(options_, rig_, used_);
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error().what, HasSubstr("it was the second camera 'left eye'"));
+  used_.camera2->device = "left eye";
+  used_.camera2->camera.width_px = 640;
+  EXPECT_THAT(Session::open(options_, rig_, used_).error().what, HasSubstr("second camera"));
+}
+
 TEST_F(CalibrateSession, TheReportHasTheFindingsOfEachStep) {
   auto session = open();
   ASSERT_TRUE(session.keep(Step::lens, {"20 images", true, {"tilt <more>"}, "<svg></svg>"}, used_));
