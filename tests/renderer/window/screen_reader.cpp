@@ -37,6 +37,19 @@ std::vector<Window> shown_windows(const Connection& display) {
   return shown;
 }
 
+/// Those with this title; all if it is empty.
+std::vector<Window> titled_windows(const Connection& display, std::string_view title) {
+  auto windows = shown_windows(display);
+  std::erase_if(windows, [&](Window window) {
+    char* name = nullptr;
+    const bool has_name = XFetchName(display.get(), window, &name) != 0 && name != nullptr;
+    const bool is_other = !title.empty() && (!has_name || title != name);
+    if (has_name) XFree(name);
+    return is_other;
+  });
+  return windows;
+}
+
 }  // namespace
 
 std::uint32_t pixel(int x, int y) {
@@ -67,6 +80,11 @@ bool shows_a_window() {
   return !shown_windows(display).empty();
 }
 
+bool shows_a_window(std::string_view title) {
+  const auto display = connect();
+  return !titled_windows(display, title).empty();
+}
+
 void resize_windows(int width, int height) {
   const auto display = connect();
   for (const auto window : shown_windows(display))
@@ -81,9 +99,9 @@ void hide_windows() {
   XSync(display.get(), False);
 }
 
-void drag_in_window(int from_x, int from_y, int to_x, int to_y) {
+void drag_in_window(int from_x, int from_y, int to_x, int to_y, std::string_view title) {
   const auto display = connect();
-  const auto windows = shown_windows(display);
+  const auto windows = titled_windows(display, title);
   if (windows.empty()) return;
   const auto send = [&](int type, long mask, int x, int y) {
     XEvent event{};

@@ -18,9 +18,11 @@ bool shows_a_window();
 void resize_windows(int width, int height);
 void hide_windows();
 /// @}
+/// True if a window with this title is shown.
+bool shows_a_window(std::string_view title);
 /// Presses the left button at one place of the shown window and releases it at another; px of the
-/// window.
-void drag_in_window(int from_x, int from_y, int to_x, int to_y);
+/// window. `title`: of the window that is meant, if there are several.
+void drag_in_window(int from_x, int from_y, int to_x, int to_y, std::string_view title = {});
 /// Fills what no window covers. `rgb`: 0xRRGGBB.
 void paint_the_desktop(unsigned long rgb);
 /// Gives an output an EDID with this name.
