@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "calib/lens/tilt.hpp"
 
@@ -15,10 +16,16 @@ namespace {
 /// Tangent of the angle from which a board counts as tilted, about 11 degrees.
 constexpr double kTilted = 0.2;
 
-Tilt tilt_bin(glm::dvec2 tilt) {
-  if (glm::length(tilt) < kTilted) return Tilt::flat;
-  if (std::abs(tilt.x) > std::abs(tilt.y)) return tilt.x < 0 ? Tilt::left : Tilt::right;
-  return tilt.y < 0 ? Tilt::up : Tilt::down;
+/// How the board is tilted: towards a corner counts for both sides.
+std::vector<Tilt> tilts_of(glm::dvec2 tilt) {
+  if (glm::length(tilt) < kTilted) return {Tilt::flat};
+  const bool is_across = std::abs(tilt.x) > std::abs(tilt.y);
+  std::vector<Tilt> tilts;
+  if (is_across || std::abs(tilt.x) >= kTilted)
+    tilts.push_back(tilt.x < 0 ? Tilt::left : Tilt::right);
+  if (!is_across || std::abs(tilt.y) >= kTilted)
+    tilts.push_back(tilt.y < 0 ? Tilt::up : Tilt::down);
+  return tilts;
 }
 
 std::string_view tilt_advice(Tilt tilt) {
@@ -59,7 +66,7 @@ void Coverage::add(const BoardView& view) {
   }
   for (const auto cell : seen) ++cells_[cell];
   if (const auto tilt = tilt_of(view, usual_focal_length_px(width_px_)))
-    ++tilts_[static_cast<std::size_t>(tilt_bin(*tilt))];
+    for (const auto bin : tilts_of(*tilt)) ++tilts_[static_cast<std::size_t>(bin)];
 }
 
 double Coverage::area() const {

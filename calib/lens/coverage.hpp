@@ -8,7 +8,8 @@
 
 namespace handcast::calib {
 
-/// How a board is held, as seen in the image: its back tilts away on that side.
+/// How a board is held, as seen in the image: its back tilts away on that side. Towards a corner it
+/// is tilted to two sides.
 enum class Tilt { flat, left, right, up, down };
 constexpr std::array<std::string_view, 5> words_of(Tilt) {
   return {"flat", "left", "right", "up", "down"};

@@ -58,6 +58,17 @@ TEST(Coverage, KnowsOnWhichSideTheBoardIsAway) {
   EXPECT_EQ(covered_by(seen(middle_m, {0.4, 0})).views_with(Tilt::down), 1);
 }
 
+TEST(Coverage, ABoardThatIsTiltedTowardsACornerIsTiltedToBothSides) {
+  const auto coverage = covered_by(seen({0, 0, 0.5}, {0.35, 0.4}));
+  EXPECT_EQ(coverage.views_with(Tilt::left), 1);
+  EXPECT_EQ(coverage.views_with(Tilt::down), 1);
+  EXPECT_EQ(coverage.views_with(Tilt::right) + coverage.views_with(Tilt::up), 0);
+  EXPECT_EQ(coverage.views_with(Tilt::flat), 0);
+  const auto hardly_down = covered_by(seen({0, 0, 0.5}, {0.1, 0.4}));
+  EXPECT_EQ(hardly_down.views_with(Tilt::left), 1);
+  EXPECT_EQ(hardly_down.views_with(Tilt::down), 0);
+}
+
 TEST(Coverage, TheTiltIsThatInTheImageHoweverTheBoardIsTurned) {
   for (const double turn : {0.5, 1.57, 3.1})
     EXPECT_EQ(covered_by(seen({0, 0, 0.5}, {0, 0.4}, turn)).views_with(Tilt::left), 1) << turn;
