@@ -59,11 +59,13 @@ TEST(Coverage, KnowsOnWhichSideTheBoardIsAway) {
 }
 
 TEST(Coverage, ABoardThatIsTiltedTowardsACornerIsTiltedToBothSides) {
-  const auto coverage = covered_by(seen({0, 0, 0.5}, {0.35, 0.4}));
-  EXPECT_EQ(coverage.views_with(Tilt::left), 1);
-  EXPECT_EQ(coverage.views_with(Tilt::down), 1);
-  EXPECT_EQ(coverage.views_with(Tilt::right) + coverage.views_with(Tilt::up), 0);
-  EXPECT_EQ(coverage.views_with(Tilt::flat), 0);
+  for (const glm::dvec2 tilt_rad : {glm::dvec2(0.3, 0.45), glm::dvec2(0.45, 0.3)}) {
+    const auto coverage = covered_by(seen({0, 0, 0.5}, tilt_rad));
+    EXPECT_EQ(coverage.views_with(Tilt::left), 1);
+    EXPECT_EQ(coverage.views_with(Tilt::down), 1);
+    EXPECT_EQ(coverage.views_with(Tilt::right) + coverage.views_with(Tilt::up), 0);
+    EXPECT_EQ(coverage.views_with(Tilt::flat), 0);
+  }
   const auto hardly_down = covered_by(seen({0, 0, 0.5}, {0.1, 0.4}));
   EXPECT_EQ(hardly_down.views_with(Tilt::left), 1);
   EXPECT_EQ(hardly_down.views_with(Tilt::down), 0);
