@@ -2,6 +2,7 @@
 #include "calib/pair/pair_spread.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 

@@ -47,8 +47,8 @@ Result<calib::Calibration> load_calibration(const config::Rig& rig,
   if (!calibration || !description.is_second_view) return calibration;
   if (calibration->camera2) return calib::second_view(*calibration);
   return fail(Errc::bad_config,
-              fmt::format("{}: the calibration has no second camera; add [camera2] and "
-                          "[camera2_from_camera] to its file",
+              fmt::format("{}: the calibration has no second camera; measure it with "
+                          "`handcast calibrate`",
                           description.name));
 }
 

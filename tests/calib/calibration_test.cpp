@@ -221,9 +221,11 @@ TEST(CalibrationFile, KeepsTheProjectorsPlace) {
 TEST(CalibrationFile, SaysHowItWasMadeWithoutBecomingAnotherCalibration) {
   auto rig = reference_rig();
   rig.made.lens = "2026-11-24: 20 images";
+  rig.made.pair = "2026-11-25: 15 views";
   const auto back = load_calibration(file_with(print_calibration(rig)));
   ASSERT_TRUE(back) << back.error().what;
   EXPECT_EQ(back->made.lens, rig.made.lens);
+  EXPECT_EQ(back->made.pair, rig.made.pair);
   EXPECT_EQ(back->id, load_calibration("")->id);
 }
 

@@ -58,7 +58,7 @@ bool Terminal::says(std::string_view text) {
 }
 
 void Terminal::press(std::string_view keys) const {
-  if (write(terminal_, keys.data(), keys.size()) < 0) return;
+  [[maybe_unused]] const auto written = write(terminal_, keys.data(), keys.size());
 }
 
 int Terminal::wait() {

@@ -15,8 +15,7 @@ Result<Views> views_of(const calib::Calibration& calibration) {
   const auto& second = calibration.camera2;
   if (!second)
     return fail(Errc::bad_config,
-                "the calibration has no second camera; add [camera2] and [camera2_from_camera] to "
-                "its file");
+                "the calibration has no second camera; measure it with `handcast calibrate`");
   return Views{View{calibration.camera}, View{second->camera, second->from_camera}};
 }
 
