@@ -35,7 +35,8 @@ void describe(Visitor& visitor, TwinShape& shape) {
   visitor.field("mesh", shape.mesh,
                 "The surface of the true hands: handcast (the mesh that is drawn), webxr (the "
                 "generic hand of WebXR's input profiles, which `scripts/setup --hands` installs), "
-                "or a glTF file of a left hand with WebXR's joint names.");
+                "implicit (a hand that is made of implicit surfaces, with vertices, weights and "
+                "proportions of its own), or a glTF file of a left hand with WebXR's joint names.");
   visitor.field(
       "length_spread", shape.length_spread, between(0, 0.2),
       "Largest deviation of a true bone length from the model, as a share; drawn from the seed.");

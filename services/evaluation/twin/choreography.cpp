@@ -1,47 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/twin/choreography.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "services/evaluation/twin/gestures.hpp"
+#include "services/evaluation/twin/posture_steps.hpp"
+
 namespace handcast::twin {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
-
-double wave_at(double hz, double t, double phase = 0) { return std::sin(kTurn * (hz * t + phase)); }
-/// Rises from 0 to 1 and falls back to 0 in each period, starting at 0.
-double pulse_at(double hz, double t) { return 0.5 - 0.5 * std::cos(kTurn * hz * t); }
-
-/// From 0 to 1 between two times along the minimum-jerk curve of reaching movements (Flash and
-/// Hogan 1985).
-double step_at(double begin_s, double end_s, double t) {
-  const double x = std::clamp((t - begin_s) / (end_s - begin_s), 0.0, 1.0);
-  return x * x * x * (10 + x * (6 * x - 15));
-}
-/// The time since the current period began.
-double within(double period_s, double t) { return t - period_s * std::floor(t / period_s); }
-
-/// Adds the slow sway of a hand that is held in the air.
-void breathe(Posture& posture, double t) {
-  posture.shift += glm::dvec3(0.008 * wave_at(0.23, t), 0.006 * wave_at(0.31, t, 0.2),
-                              0.006 * wave_at(0.17, t, 0.4));
-  posture.sway += 0.03 * wave_at(0.19, t, 0.1);
-  posture.nod += 0.04 * wave_at(0.27, t, 0.3);
-}
-
-void curl(Bend& bend, int finger, double amount) {
-  bend.flexion[finger] = {1.25 * amount, 1.65 * amount, 0.95 * amount};
-}
-
-/// Lays the thumb over the fingers: 0 open, 1 shut.
-void close_thumb(Bend& bend, double shut) {
-  bend.flexion[0] = {0.6 * shut, 0.9 * shut, 0};
-  bend.thumb_flexion = 0.25 * shut;
-  bend.thumb_opposition = -0.2 * shut;
-}
 
 Posture open_close(double t) {
   Posture posture;
@@ -300,7 +268,7 @@ Posture places(double t) {
   return posture;
 }
 
-constexpr std::array<Choreography, 18> kChoreographies{{
+constexpr std::array<Choreography, 23> kChoreographies{{
     {"show", show},
     {"open_close", open_close},
     {"wave", wave},
@@ -319,6 +287,11 @@ constexpr std::array<Choreography, 18> kChoreographies{{
     {"turn_pointing", turn_pointing},
     {"turn_fist", turn_fist},
     {"places", places},
+    {"count", count_fingers},
+    {"piano", play_piano},
+    {"grasp", grasp_and_release},
+    {"beckon", beckon},
+    {"coin", roll_coin},
 }};
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "services/evaluation/twin/finger_pose.hpp"
+#include "services/evaluation/twin/implicit/implicit_hand.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -21,6 +22,10 @@ renderer::HandMesh mirrored(renderer::HandMesh hand) {
   return hand;
 }
 
+FleshModel of_side(renderer::HandMesh left, renderer::Side side) {
+  return {side == renderer::Side::left ? std::move(left) : mirrored(std::move(left)), false};
+}
+
 }  // namespace
 
 std::filesystem::path webxr_hand_file() {
@@ -32,6 +37,7 @@ std::filesystem::path webxr_hand_file() {
 
 Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::HandMesh& drawn) {
   if (mesh == "handcast") return FleshModel{drawn, true};
+  if (mesh == "implicit") return of_side(implicit_hand(), drawn.side);
   std::filesystem::path file = mesh;
   if (mesh == "webxr") {
     file = webxr_hand_file();
@@ -39,8 +45,7 @@ Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::Han
   }
   auto left = renderer::load_hand(file, renderer::Side::left);
   if (!left) return tl::make_unexpected(left.error());
-  return FleshModel{
-      drawn.side == renderer::Side::left ? std::move(*left) : mirrored(std::move(*left)), false};
+  return of_side(std::move(*left), drawn.side);
 }
 
 }  // namespace handcast::twin

@@ -13,8 +13,9 @@ struct FleshModel {
   bool is_drawn_mesh = false;  ///< it is the mesh that the cascade draws
 };
 
-/// The model that `twin.shape.mesh` names: "handcast" (`drawn` itself), "webxr", or a glTF file of
-/// a left hand, which is mirrored for the right. Without the files of "webxr" it is `drawn`.
+/// The model that `twin.shape.mesh` names: "handcast" (`drawn` itself), "webxr", "implicit"
+/// (implicit_hand()), or a glTF file of a left hand, which is mirrored for the right. Without the
+/// files of "webxr" it is `drawn`.
 /// Errors: those of renderer::load_hand().
 Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::HandMesh& drawn);
 

@@ -17,7 +17,8 @@ using testing::HasSubstr;
 const std::vector<std::string> kBuiltin{
     "open_close", "wave",          "rotate",        "pinch",     "shake",           "two_hands",
     "still",      "crossing",      "flip",          "fist",      "point_at_camera", "enter_leave",
-    "reverse",    "cross_fingers", "turn_pointing", "turn_fist", "places"};
+    "reverse",    "cross_fingers", "turn_pointing", "turn_fist", "places",          "count",
+    "piano",      "grasp",         "beckon",        "coin"};
 
 std::unique_ptr<Motion> motion_of(const config::Twin& settings) {
   auto motion = open_motion(settings, calib::reference_rig());
@@ -292,6 +293,72 @@ TEST(BuiltinMotion, ReverseIsAsFastAsTwoMetresASecond) {
   const double peak = peak_speed_m_s(*motion_of("builtin:reverse"), 0);
   EXPECT_GT(peak, 1.8);
   EXPECT_LT(peak, 2.1);
+}
+
+TEST(BuiltinMotion, CountingRaisesOneFingerAfterTheOther) {
+  const auto motion = motion_of("builtin:count");
+  const auto raised = [&](double t) {
+    const auto hand = *motion->at(Side::left, t);
+    int count = flexion_of(hand)[0][1] < 0.5 ? 1 : 0;
+    for (const int tip : {10, 15, 20, 25}) count += reach_m(hand, tip) > 0.13;
+    return count;
+  };
+  for (int n = 0; n <= 5; ++n) EXPECT_EQ(raised(0.05 + 0.85 * n), n);
+}
+
+TEST(BuiltinMotion, ThePianoIsPlayedWithEachFingerInTurn) {
+  const auto motion = motion_of("builtin:piano");
+  for (int finger = 0; finger < 5; ++finger) {
+    // At its note, a finger is bent further than 0.3 s later.
+    const auto bend = [&](double t) {
+      return flexion_of(*motion->at(Side::left, t))[static_cast<std::size_t>(finger)][0];
+    };
+    const double note_s = 0.2 * finger;
+    EXPECT_GT(bend(1.6 + note_s), bend(1.6 + note_s + 0.3) + 0.1) << finger;
+  }
+}
+
+TEST(BuiltinMotion, TheGraspClosesAboutSomethingAndOpensWider) {
+  const auto motion = motion_of("builtin:grasp");
+  const auto gap_m = [&](double t) {
+    const auto hand = *motion->at(Side::left, t);
+    return glm::distance(place(hand[5]), place(hand[15]));
+  };
+  EXPECT_GT(gap_m(0.65), 0.11);
+  EXPECT_LT(gap_m(1.6), 0.08);
+  EXPECT_GT(gap_m(1.6), 0.03) << "there is something in the hand";
+}
+
+TEST(BuiltinMotion, BeckoningBendsTheFingersThreeTimes) {
+  const auto motion = motion_of("builtin:beckon");
+  int bent = 0;
+  bool is_bent = false;
+  for (double t = 0; t < 3; t += 0.005) {
+    const double bend = flexion_of(*motion->at(Side::left, t))[2][1];
+    if (!is_bent && bend > 1) ++bent;
+    if (bend > 1) is_bent = true;
+    if (bend < 0.6) is_bent = false;
+  }
+  EXPECT_EQ(bent, 3);
+}
+
+TEST(BuiltinMotion, TheFingersThatRollACoinFollowEachOther) {
+  const auto motion = motion_of("builtin:coin");
+  const auto highest_s = [&](std::size_t finger) {
+    double at_s = 0, least = 10;
+    for (double t = 0; t < 1 / 0.7; t += 0.002) {
+      const double bend = flexion_of(*motion->at(Side::left, t))[finger][0];
+      if (bend < least) {
+        least = bend;
+        at_s = t;
+      }
+    }
+    return at_s;
+  };
+  for (std::size_t finger = 1; finger < 4; ++finger) {
+    const double later_s = highest_s(finger + 1) - highest_s(finger);
+    EXPECT_NEAR(later_s - std::floor(later_s * 0.7) / 0.7, 0.16 / 0.7, 0.01) << finger;
+  }
 }
 
 TEST(Motion, SpeedScalesTime) {

@@ -118,15 +118,24 @@ void expect_a_sound_map(const Mapped& both) {
   EXPECT_LT(turned_over, of / 100);
 }
 
-TEST(TextureMap, ToTheWebxrHandKeepsTheOrderAlongFingersAndTurnsNothingOver) {
-  const auto file = webxr_hand_file();
-  if (file.empty()) GTEST_SKIP() << "the WebXR hand is not installed; see scripts/setup --hands";
+void expect_a_sound_map_to(const std::string& mesh) {
   const HandMesh drawn = drawn_hand();
-  const auto model = load_flesh_model("webxr", drawn);
+  const auto model = load_flesh_model(mesh, drawn);
   ASSERT_TRUE(model) << model.error().what;
+  ASSERT_FALSE(model->is_drawn_mesh);
   expect_a_sound_map(mapped(drawn, flesh_on_bones(model->mesh, drawn.rest, 1, Flesh::of_model(),
                                                   config::TwinSkinning::linear)
                                        .mesh));
+}
+
+TEST(TextureMap, ToTheWebxrHandKeepsTheOrderAlongFingersAndTurnsNothingOver) {
+  if (webxr_hand_file().empty())
+    GTEST_SKIP() << "the WebXR hand is not installed; see scripts/setup --hands";
+  expect_a_sound_map_to("webxr");
+}
+
+TEST(TextureMap, ToTheImplicitHandKeepsTheOrderAlongFingersAndTurnsNothingOver) {
+  expect_a_sound_map_to("implicit");
 }
 
 TEST(TextureLookup, FindsEachVertexByItsTextureCoordinates) {

@@ -122,15 +122,28 @@ TEST(TrueHand, PeopleDifferInWhatTheSettingsName) {
   EXPECT_NE(of(roll).roll_rad[1], of(roll).roll_rad[2]);
 }
 
-TEST(TrueHand, OfAnotherMeshHasTheBonesOfThePerson) {
-  if (webxr_hand_file().empty())
-    GTEST_SKIP() << "the WebXR hand is not installed; see scripts/setup --hands";
+/// Tests of every mesh that is not the drawn one.
+class OtherFlesh : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == std::string("webxr") && webxr_hand_file().empty())
+      GTEST_SKIP() << "the WebXR hand is not installed; see scripts/setup --hands";
+  }
+  static FleshModel model(Side side) {
+    auto model = load_flesh_model(GetParam(), *renderer::load_hand_or_default({}, side));
+    EXPECT_TRUE(model) << model.error().what;
+    return std::move(*model);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Meshes, OtherFlesh, testing::Values("webxr", "implicit"),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST_P(OtherFlesh, HasTheBonesOfThePerson) {
   const HandMesh drawn = drawn_hand();
-  const auto model = load_flesh_model("webxr", drawn);
-  ASSERT_TRUE(model) << model.error().what;
-  EXPECT_FALSE(model->is_drawn_mesh);
+  const auto flesh = model(Side::left);
+  EXPECT_FALSE(flesh.is_drawn_mesh);
   const auto hand =
-      flesh_on_bones(model->mesh, drawn.rest, 1, Flesh::of_model(), config::TwinSkinning::linear);
+      flesh_on_bones(flesh.mesh, drawn.rest, 1, Flesh::of_model(), config::TwinSkinning::linear);
   const auto fingers = fingers_of(hand.mesh);
   for (int f = 0; f < 5; ++f) {
     constexpr std::array<int, 5> kTip{5, 10, 15, 20, 25};
@@ -142,16 +155,12 @@ TEST(TrueHand, OfAnotherMeshHasTheBonesOfThePerson) {
   }
 }
 
-TEST(TrueHand, TheRightHandOfAnotherMeshIsTheMirrorImageOfTheLeft) {
-  if (webxr_hand_file().empty())
-    GTEST_SKIP() << "the WebXR hand is not installed; see scripts/setup --hands";
-  const auto left = load_flesh_model("webxr", drawn_hand());
-  const auto right = load_flesh_model("webxr", *renderer::load_hand_or_default({}, Side::right));
-  ASSERT_TRUE(left && right);
-  EXPECT_EQ(right->mesh.side, Side::right);
-  for (std::size_t v = 0; v < left->mesh.vertex_count(); ++v)
-    ASSERT_EQ(right->mesh.positions[v].x, -left->mesh.positions[v].x);
-  EXPECT_GT(volume_m3(right->mesh, right->mesh.positions), 0) << "its triangles face outwards";
+TEST_P(OtherFlesh, OfTheRightHandIsTheMirrorImageOfTheLeft) {
+  const auto left = model(Side::left).mesh, right = model(Side::right).mesh;
+  EXPECT_EQ(right.side, Side::right);
+  for (std::size_t v = 0; v < left.vertex_count(); ++v)
+    ASSERT_EQ(right.positions[v].x, -left.positions[v].x);
+  EXPECT_GT(volume_m3(right, right.positions), 0) << "its triangles face outwards";
 }
 
 TEST(TrueHand, AMeshThatCannotBeReadIsABadSetting) {
