@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "config/rig.hpp"
 #include "config/settings/document.hpp"
@@ -111,16 +112,19 @@ class Reader {
     const auto rest = take_sections(document, {"settings", "variant", "grid"});
     config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
 
+    auto shared = shared_settings(head.settings_from);
     Plan plan{file_.stem().string(),
               file_,
               head.seconds,
               head.warm_up_s,
               head.joints_only ? 0 : head.draw_every,
-              fixed_settings(head.settings_from),
+              fixed(section("settings")),
               {},
               grids()};
     variants(head, plan);
     check_fixed_once(plan);
+    plan.settings.insert(plan.settings.begin(), std::make_move_iterator(shared.begin()),
+                         std::make_move_iterator(shared.end()));
     if (!faults_.empty()) return tl::make_unexpected(faults_.to_error());
     return plan;
   }
@@ -173,23 +177,21 @@ class Reader {
     return axes;
   }
 
-  /// The settings of all runs: of the file `shared`, then of the plan.
-  std::vector<Axis> fixed_settings(const std::string& shared) {
-    auto settings = fixed(section("settings"));
-    if (shared.empty()) return settings;
+  /// The settings of the file that several plans share. Those of the plan and its grid count more.
+  std::vector<Axis> shared_settings(const std::string& shared) {
+    if (shared.empty()) return {};
     const auto file = (folder_ / shared).lexically_normal();
     const auto text = config::read_text(file);
     const auto document = text ? config::parse_document(*text, file.string())
                                : Result<Value>(tl::make_unexpected(text.error()));
     if (!document) {
       faults_.add(document.error().what);
-      return settings;
+      return {};
     }
     file_ = file;  // whose lines are named if a setting is wrong
-    auto all = fixed(&*document);
+    auto settings = fixed(&*document);
     file_ = plan_file_;
-    all.insert(all.end(), settings.begin(), settings.end());
-    return all;
+    return settings;
   }
 
   std::vector<Grid> grids() {

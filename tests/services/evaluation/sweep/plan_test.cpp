@@ -96,6 +96,22 @@ TEST(Plan, SharesSettingsWithOtherPlansAndItsOwnCountMore) {
   EXPECT_EQ(b->twin.tracker.age_ms, 30);
 }
 
+TEST(Plan, AnAxisCountsMoreThanASharedSettingButCannotBeFixedInThePlanToo) {
+  const test::Scratch folder;
+  write_text(folder.path() / "world.toml", "twin.tracker.age_ms = 20\n");
+  const std::string head = "settings_from = \"world.toml\"\n",
+                    grids = "[[grid]]\ntwin.tracker.age_ms = [5]\n[[grid]]\ntwin.speed = [2]\n";
+  const auto plan = plan_of(head + grids, folder.path() / "plan.toml");
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto runs = expand(*plan)->runs;
+  EXPECT_EQ(rig_of(*plan, runs[0])->twin.tracker.age_ms, 5);
+  EXPECT_EQ(rig_of(*plan, runs[1])->twin.tracker.age_ms, 20) << "an axis of another grid";
+  const auto twice =
+      plan_of(head + "[settings]\ntwin.tracker.age_ms = 30\n" + grids, folder.path() / "plan.toml");
+  ASSERT_FALSE(twice);
+  EXPECT_THAT(twice.error().what, HasSubstr("is fixed here"));
+}
+
 TEST(Plan, AWrongSharedSettingIsNamedWithItsOwnFileAndLine) {
   const test::Scratch folder;
   write_text(folder.path() / "world.toml", "# a comment\ntwin.tracker.age_ms = -1\n");
