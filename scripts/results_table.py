@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the results of a sweep as a table, or as sentences, into a document.
 
-    results_table.py PART RESULTS.csv DOCUMENT.md [COMMAND]
+    results_table.py PART RESULTS.csv DOCUMENT.md [COMMAND [PEOPLE]]
 
-PART is a table of scripts/results (comparison, levers, fidelity, causes, motions, fast, no_tracker), or summary: sentences about
-the results of comparison. They replace what stands between the lines "<!-- PART: begin -->" and "<!-- PART: end -->". COMMAND is
-named below the table as what has made it. scripts/results calls this program.
+PART is a table of scripts/results (comparison, unseen, levers, fidelity, causes, motions, fast, no_tracker), or summary or
+unseen_summary: sentences about the results of comparison and unseen. They replace what stands between the lines
+"<!-- PART: begin -->" and "<!-- PART: end -->". COMMAND is named below the table as what has made it, and PEOPLE is the number of
+seeds that the protocol asks for: a table of fewer says so. scripts/results calls this program.
 """
 
 import collections
+import copy
 import csv
 import math
 import statistics
@@ -41,6 +43,7 @@ BY_VARIANT = {
         "registration": ("+ late registration", "paper"),
         "network": ("+ our network", "paper"),
         "learned": ("+ learned turn and definitions", "paper"),
+        "outline": ("+ outline of open hands", "paper"),
         "gate": ("+ gate: handcast", "paper"),
     },
     "fidelity": {
@@ -62,6 +65,8 @@ BY_VARIANT = {
         "perfect_sensors_our_mesh": ("perfect sensors, our own mesh", "all_errors"),
     },
 }
+# What has real detectors, on motions that nothing was tuned on: a table for each mesh.
+BY_VARIANT["unseen"] = {variant: row for variant, row in BY_VARIANT["comparison"].items() if not variant.endswith("_model")}
 # Tables by motion: the variants of the columns, and the one to whose error the last one's is compared.
 BY_MOTION = {
     "motions": (["baseline", "paper", "handcast"], "paper"),
@@ -97,15 +102,19 @@ def listed(seeds):
 
 
 class Runs:
-    """The figures of a sweep, by variant, motion and seed. Seeds of which a run failed are left out, and variants that have no
-    run at all."""
+    """The figures of a sweep, by variant, motion and seed; if the sweep has several meshes, a motion is a pair of both. Seeds of
+    which a run failed are left out, and variants that have no run at all."""
 
     def __init__(self, path, wanted):
         self.rows = collections.defaultdict(dict)
-        self.motions, self.errors = [], {}
+        self.motions, self.meshes, self.errors = [], [], {}
         with open(path, newline="", encoding="utf-8") as file:
             for row in csv.DictReader(line for line in file if not line.startswith("#")):
                 motion = row["twin.motion"].split("/")[-1].removeprefix("builtin:")
+                if mesh := row.get("twin.shape.mesh"):
+                    motion = (mesh, motion)
+                    if mesh not in self.meshes:
+                        self.meshes.append(mesh)
                 if motion not in self.motions:
                     self.motions.append(motion)
                 self.rows[row["variant"], motion][int(row["twin.seed"])] = row
@@ -123,6 +132,12 @@ class Runs:
         self.left_out = sorted(seeds - set(self.seeds))
         if len(self.seeds) < 2:
             die(f"{path} has fewer than two seeds with all runs")
+
+    def of_mesh(self, mesh):
+        """The same runs, of one mesh alone."""
+        part = copy.copy(self)
+        part.motions = [motion for motion in self.motions if motion[0] == mesh]
+        return part
 
     def of(self, variant, motion, name):
         """The figure `name` for each seed."""
@@ -161,8 +176,9 @@ class Runs:
         return variant in self.variants
 
 
-def footer(runs, command):
-    text = f"Seeds {listed(runs.seeds)}."
+def footer(runs, command, people):
+    text = f"Seeds {listed(runs.seeds)}"
+    text += f": {len(runs.seeds)} of the {people} people of the protocol." if len(runs.seeds) < people else "."
     if command:
         text += f" Made by `{command}`."
     yield ""
@@ -175,7 +191,8 @@ def footer(runs, command):
 
 def table_by_variant(part, runs):
     """A row for each variant, a column for each motion."""
-    yield "| | detector | " + " | ".join(runs.motions) + " | all | lit points alone | missing, % | ratio | to |"
+    names = [motion[1] if isinstance(motion, tuple) else motion for motion in runs.motions]
+    yield "| | detector | " + " | ".join(names) + " | all | lit points alone | missing, % | ratio | to |"
     yield "|" + "---|" * (len(runs.motions) + 7)
     for variant in runs.variants:
         label, reference = BY_VARIANT[part][variant]
@@ -213,7 +230,8 @@ def table_by_motion(part, runs):
 
 def lost_cells(runs, variant, reference):
     cells = runs.cells(variant, reference)
-    return f"{sum(ratio > 1 for ratio in cells)} of {len(cells)} cells of motion and seed (largest ratio {max(cells):.2f})"
+    kind = "mesh, motion and seed" if runs.meshes else "motion and seed"
+    return f"{sum(ratio > 1 for ratio in cells)} of {len(cells)} cells of {kind} (largest ratio {max(cells):.2f})"
 
 
 def verdict(runs):
@@ -244,7 +262,31 @@ def summary(runs):
            f"{lost_cells(runs, 'handcast', 'paper_network')}.")
 
 
-def lines_of(part, path, command):
+def unseen_summary(runs):
+    """The sentence of the README about motions that nothing was tuned on."""
+    motions = {motion for _, motion in runs.motions}
+    yield (f"On {len(motions)} motions that nothing was tuned on ({len(runs.seeds)} people, hands of {len(runs.meshes)} meshes) it is "
+           f"{runs.both('handcast', None)} mm with our network, against {runs.both('paper', None)} mm of the published method: a "
+           f"ratio of {interval(runs.ratios_of_all('handcast', 'paper'))}, and worse in {lost_cells(runs, 'handcast', 'paper')}.")
+
+
+def unseen_tables(runs):
+    """A table for each mesh, and what both say."""
+    for mesh in runs.meshes:
+        yield f"True hands of the mesh `{mesh}`:"
+        yield ""
+        yield from table_by_variant("unseen", runs.of_mesh(mesh))
+        yield ""
+    yield "All meshes together:"
+    yield from verdict(runs)
+
+
+def lines_of(part, path, command, people):
+    if part == "unseen_summary":
+        runs = Runs(path, ["paper", "handcast"])
+        if runs.absent or not runs.meshes:
+            die(f"{path} has no runs of {runs.absent[0] if runs.absent else 'several meshes'}")
+        return list(unseen_summary(runs))
     if part == "summary":
         runs = Runs(path, ["paper", "paper_network", "handcast"])
         if runs.absent:
@@ -252,25 +294,28 @@ def lines_of(part, path, command):
         return list(summary(runs))
     if part in BY_VARIANT:
         runs = Runs(path, BY_VARIANT[part])
-        lines = list(table_by_variant(part, runs))
-        if part == "comparison":
+        if part in ("comparison", "unseen"):
             for variant in ("paper", "paper_network", "handcast"):
                 if not runs.has(variant):
                     die(f"{path} has no runs of {variant}")
+        lines = list(unseen_tables(runs) if part == "unseen" else table_by_variant(part, runs))
+        if part == "comparison":
             lines += verdict(runs)
     elif part in BY_MOTION:
         runs = Runs(path, BY_MOTION[part][0])
         lines = list(table_by_motion(part, runs))
     else:
-        die(f"there is no table '{part}'; there are: {', '.join([*BY_VARIANT, *BY_MOTION, 'summary'])}")
-    return lines + list(footer(runs, command))
+        die(f"there is no table '{part}'; there are: {', '.join([*BY_VARIANT, *BY_MOTION, 'summary', 'unseen_summary'])}")
+    return lines + list(footer(runs, command, people))
 
 
 def main():
-    if len(sys.argv) not in (4, 5) or "-h" in sys.argv or "--help" in sys.argv:
+    if len(sys.argv) not in (4, 5, 6) or "-h" in sys.argv or "--help" in sys.argv:
         sys.exit(__doc__)
     part, results, document = sys.argv[1:4]
-    lines = lines_of(part, results, sys.argv[4] if len(sys.argv) == 5 else "")
+    command = sys.argv[4] if len(sys.argv) > 4 else ""
+    people = int(sys.argv[5]) if len(sys.argv) > 5 else 0
+    lines = lines_of(part, results, command, people)
     with open(document, encoding="utf-8") as file:
         text = file.read()
     begin, end = f"<!-- {part}: begin -->", f"<!-- {part}: end -->"

@@ -68,11 +68,13 @@ TEST(ShippedRigs, PaperIsThePapersCascade) {
           "projector.software_ms = 3.19", "twin.detector.noise_px = 0.6",
           "twin.detector.bias_px = 2.5", "twin.detector.bias_ms = 350",
           "twin.detector.bias_hidden = 6", "cascade.predict.method = \"velocity\"",
-          "cascade.predict.still_mm_s = 0", "cascade.skin.fit = false", "cascade.skin.turn = false",
+          "cascade.predict.still_mm_s = 0", "cascade.skin.fit = false",
+          "cascade.skin.widths = false", "cascade.skin.turn = false",
           "cascade.filter.method = \"paper\"", "cascade.filter.hindsight = false",
           "cascade.filter.blend_ms = 0", "cascade.filter.definitions = false",
           "cascade.correct.method = \"grid\"", "cascade.correct.alpha = 0.5",
-          "cascade.mask.advance = false", "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
+          "cascade.correct.outline = false", "cascade.mask.advance = false",
+          "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
           "cascade.register.method = \"none\"", "cascade.ladder.rung = \"landmarks\""));
   const auto cascade = shipped("paper").cascade;
   EXPECT_EQ(cascade.correct.grid_columns, 21);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <map>
+#include <set>
 
 #include "tests/config/every_setting.hpp"
 #include "tests/services/evaluation/sweep/plans.hpp"
@@ -9,8 +11,6 @@
 /// Tests of the plans in config/sweeps.
 namespace handcast::sweep {
 namespace {
-
-using testing::IsSubsetOf;
 
 /// The rigs of a shipped plan by variant, on the first motion of its grid, in the plan's order.
 std::vector<std::pair<std::string, config::Rig>> rigs_of(const std::string& name) {
@@ -63,23 +63,79 @@ TEST(ShippedPlans, WithEachDetectorBothCascadesHaveTheSameTimesAndTheSameWorld) 
       << "as published";
 }
 
-TEST(ShippedPlans, TheLeversLeadFromThePapersCascadeToOursStepByStep) {
+/// What each row of the levers changes in the row above it.
+const std::vector<std::pair<std::string, std::vector<std::string>>> kLevers{
+    {"paper", {}},
+    {"bone_fit", {"cascade.skin.fit"}},
+    {"widths", {"cascade.skin.widths"}},
+    {"offset_filter",
+     {"cascade.filter.method", "cascade.filter.hindsight", "cascade.filter.blend_ms"}},
+    {"vertices",
+     {"cascade.correct.method", "cascade.correct.alpha", "cascade.mask.advance",
+      "cascade.fill.reach_px", "cascade.fill.fade_px"}},
+    {"registration", {"cascade.register.method", "cascade.ladder.rung"}},
+    {"network", {"landmarks.backend", "twin.detector.age_ms", "twin.detector.age_sd_ms"}},
+    {"learned", {"cascade.skin.turn", "cascade.filter.definitions"}},
+    {"outline", {"cascade.correct.outline"}},
+    {"gate",
+     {"cascade.ladder.rung", "cascade.predict.method", "cascade.predict.still_mm_s",
+      // What takes the network's place without its files, which is no lever.
+      "landmarks.fallback"}},
+};
+
+TEST(ShippedPlans, EachLeverAddsWhatItIsNamedAfterAndTheLastRowIsOurs) {
   const auto rigs = rigs_of("levers");
-  ASSERT_GT(rigs.size(), 2u);
+  ASSERT_EQ(rigs.size(), kLevers.size());
+  const std::vector<std::string> everything{"cascade.", "landmarks.", "projector.", "twin.",
+                                            "camera.",  "pose.",      "content.",   "hand."};
   EXPECT_THAT(differences_in(rigs.front().second, shipped("paper"), {"cascade.", "landmarks."}),
               testing::IsEmpty());
-  EXPECT_THAT(differences_in(
-                  rigs.back().second, shipped("twin"),
-                  {"cascade.", "landmarks.", "projector.", "twin.detector.age", "twin.projector."}),
-              testing::IsEmpty());
-  for (std::size_t i = 1; i < rigs.size(); ++i)
-    EXPECT_THAT(differences_in(rigs[i].second, rigs[i - 1].second, {"cascade.", "landmarks."}),
-                Not(testing::IsEmpty()))
-        << rigs[i].first << " brings nothing";
+  for (std::size_t i = 0; i < rigs.size(); ++i) {
+    EXPECT_EQ(rigs[i].first, kLevers[i].first);
+    if (i == 0) continue;
+    EXPECT_THAT(differences_in(rigs[i].second, rigs[i - 1].second, everything),
+                testing::UnorderedElementsAreArray(kLevers[i].second))
+        << rigs[i].first;
+  }
   EXPECT_THAT(
-      differences_in(rigs.back().second, rigs[rigs.size() - 2].second, {"cascade."}),
-      IsSubsetOf({"cascade.ladder.rung", "cascade.predict.method", "cascade.predict.still_mm_s"}))
-      << "the gate alone";
+      differences_in(rigs.back().second, shipped("twin"),
+                     {"cascade.", "landmarks.", "projector.", "twin.detector.", "twin.projector."}),
+      testing::IsEmpty());
+}
+
+TEST(ShippedPlans, TheUnseenMotionsAreScoredWithTheRigsOfTheComparison) {
+  std::map<std::string, config::Rig> compared;
+  for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
+  const auto unseen = rigs_of("unseen");
+  EXPECT_EQ(unseen.size(), 6u);
+  for (const auto& [name, rig] : unseen)
+    EXPECT_THAT(config::differences(rig, compared.at(name)), testing::ElementsAre("twin.motion"))
+        << name;
+}
+
+/// The values of a setting in the grid of a shipped plan.
+std::set<std::string> values_in(const std::string& plan_name, const std::string& setting) {
+  const auto plan = load_plan(source_root() / "config/sweeps" / (plan_name + ".toml"));
+  EXPECT_TRUE(plan) << plan.error().what;
+  const auto expansion = expand(*plan);
+  std::set<std::string> values;
+  for (const auto& run : expansion->runs) {
+    const auto rig = rig_of(*plan, run);
+    values.insert(setting == "motion" ? rig->twin.motion : rig->twin.shape.mesh);
+  }
+  return values;
+}
+
+TEST(ShippedPlans, TheUnseenMotionsAreInNoOtherPlan) {
+  const auto unseen = values_in("unseen", "motion");
+  EXPECT_EQ(unseen.size(), 5u);
+  EXPECT_EQ(values_in("unseen", "mesh"), (std::set<std::string>{"implicit", "webxr"}));
+  for (const auto& file : std::filesystem::directory_iterator(source_root() / "config/sweeps")) {
+    const auto name = file.path().stem().string();
+    if (file.path().extension() != ".toml" || name == "unseen") continue;
+    for (const auto& motion : values_in(name, "motion"))
+      EXPECT_FALSE(unseen.contains(motion)) << name << ": " << motion;
+  }
 }
 
 }  // namespace
