@@ -178,7 +178,8 @@ NumberTable numbers_of(const std::vector<Panel>& panels, const std::vector<Metho
 Chart chart_b(const Results& results) {
   Chart chart{"chart_b",
               "B. Where methods fail",
-              "One setting at a time is made worse; the others have their defaults. The open "
+              "One setting at a time is made worse; the others have their defaults. Points without "
+              "light count as 20 mm. The open "
               "circle is the breakdown point, at which the harm is twice that of the mildest "
               "stress.",
               {},

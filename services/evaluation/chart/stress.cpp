@@ -8,19 +8,18 @@
 namespace handcast::chart {
 namespace {
 
-constexpr std::string_view kLandmarks = "landmark_mm_p95",
-                           kLandmarksTitle = "landmark error p95, mm";
+/// The error of the light: a stress that only the landmarks show would leave the registration out.
+constexpr std::string_view kLight = "interior_mm_mean", kLightTitle = "interior error, mean, mm";
 
 constexpr std::array kStresses{
-    Stress{"twin.tracker.age_ms", "tracker age", "ms", 1, "", kLandmarks, kLandmarksTitle},
-    Stress{"twin.tracker.dropout", "tracker samples lost", "%", 100, "", kLandmarks,
-           kLandmarksTitle},
-    Stress{"twin.detector.noise_px", "landmark noise", "px", 1, "", kLandmarks, kLandmarksTitle},
+    Stress{"twin.tracker.age_ms", "tracker age", "ms", 1, "", kLight, kLightTitle},
+    Stress{"twin.tracker.dropout", "tracker samples lost", "%", 100, "", kLight, kLightTitle},
+    Stress{"twin.detector.noise_px", "landmark noise", "px", 1, "", kLight, kLightTitle},
     Stress{"twin.detector.age_ms", "landmark age", "ms, back to back (100 ms: 10 Hz)", 1, "",
-           kLandmarks, kLandmarksTitle},
+           kLight, kLightTitle},
     Stress{"twin.image.holes", "holes in the camera image", "% of the hand", 100, "", "coverage",
            "hand without light, %", true},
-    Stress{"twin.speed", "hand speed", "m/s", 1, "hand_speed_m_s_p95", kLandmarks, kLandmarksTitle},
+    Stress{"twin.speed", "hand speed", "m/s", 1, "hand_speed_m_s_p95", kLight, kLightTitle},
 };
 
 /// True if the only axis of a run, motion and seed aside, is the setting of the stress. The caller

@@ -131,11 +131,11 @@ TEST_F(ChartsTest, AStressIsTheMeanOverSeedsAndItsBreakdownIsMarked) {
 }
 
 TEST_F(ChartsTest, ALevelThatOneMethodLacksIsAnEmptyCellAndTheOthersStayInTheirRows) {
-  const auto stress = write_sweep(scratch_.path(), "stress", "twin.tracker.age_ms,landmark_mm_p95",
+  const auto stress = write_sweep(scratch_.path(), "stress", "twin.tracker.age_ms,interior_mm_mean",
                                   {"paper,5,3,", "paper,10,,", "paper,20,7,", "handcast,10,1.1,",
                                    "handcast,20,1.9,", "handcast,40,2.5,"});
   ASSERT_TRUE(write_charts(order({stress})));
-  const std::string harm = ",ms,\"landmark error p95, mm\",";
+  const std::string harm = ",ms,\"interior error, mean, mm\",";
   EXPECT_THAT(text_of(out() / "chart_b.csv"),
               HasSubstr("tracker age,5" + harm + "3,\ntracker age,10" + harm +
                         ",1.1\ntracker age,20" + harm + "7,1.9\ntracker age,40" + harm + ",2.5\n"));

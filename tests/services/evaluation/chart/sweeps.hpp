@@ -47,7 +47,7 @@ inline std::filesystem::path write_ladder(const std::filesystem::path& folder) {
 /// Two methods with tracker samples of increasing age: the error of the paper doubles at 15 ms,
 /// that of handcast never.
 inline std::filesystem::path write_stress(const std::filesystem::path& folder) {
-  return write_sweep(folder, "stress", "twin.tracker.age_ms,twin.seed,landmark_mm_p95",
+  return write_sweep(folder, "stress", "twin.tracker.age_ms,twin.seed,interior_mm_mean",
                      {"paper,5,1,2,", "paper,5,2,4,", "paper,10,1,5,", "paper,20,1,7,",
                       "handcast,5,1,1,", "handcast,10,1,1.1,", "handcast,20,1,1.9,"});
 }
