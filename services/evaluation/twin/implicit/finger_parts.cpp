@@ -45,6 +45,7 @@ template <std::size_t N>
 std::vector<Section> sections(const std::array<FingerSection, N>& table,
                               const std::vector<double>& ends_mm, double girth) {
   std::vector<Section> sections;
+  sections.reserve(table.size());
   for (const auto& [phalanx, half_width_mm, back_mm, palm_mm] : table)
     sections.push_back(
         {along_mm(ends_mm, phalanx), girth * half_width_mm, girth * back_mm, girth * palm_mm});

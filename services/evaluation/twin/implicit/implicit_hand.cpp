@@ -30,9 +30,9 @@ class Union {
 /// The parts of the hand: the fingers first.
 std::vector<Part> parts_of(const renderer::HandShape& shape) {
   const auto rest = renderer::rest_pose(shape);
-  std::vector<Part> parts;
-  for (int f = 0; f < renderer::kFingers; ++f) parts.push_back(finger_part(shape, rest, f));
-  for (auto& part : palm_parts(shape, rest)) parts.push_back(std::move(part));
+  auto parts = palm_parts(shape, rest);
+  for (int f = renderer::kFingers - 1; f >= 0; --f)
+    parts.insert(parts.begin(), finger_part(shape, rest, f));
   return parts;
 }
 
