@@ -27,8 +27,8 @@ class AravisCamera final : public Camera {
   Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                        Deadline deadline) override {
     if (auto room = check_room(width_px_, height_px_, tail_bytes); !room) return room;
-    const auto image = mailbox_->take(deadline);
-    if (image) return copy(*image, frame);
+    aravis::Image image;
+    if (mailbox_->take(image, deadline)) return copy(image, frame);
     if (const auto trouble = keeper_.trouble()) return tl::make_unexpected(*trouble);
     return fail(Errc::timeout, "camera 'aravis': no image before the deadline");
   }
@@ -65,7 +65,7 @@ Result<std::unique_ptr<Camera>> open_aravis(const config::Rig& rig,
                                             const std::int64_t& /*epoch_ns*/) {
   const auto device = aravis::find_device(rig.camera.aravis.device);
   if (!device) return fail_in("camera 'aravis'", device.error());
-  const auto mailbox = std::make_shared<aravis::Mailbox>();
+  const auto mailbox = std::make_shared<aravis::Mailbox>(1);
   auto session = aravis::Session::start(*device, rig.camera, calibration, mailbox);
   if (!session) return fail_in("camera 'aravis'", session.error());
   const auto& named = (*session)->device();

@@ -12,15 +12,10 @@
 namespace handcast::camera::aravis {
 namespace {
 
-constexpr std::int64_t kPatience_ns = 50'000'000;
-/// For the first image of a session: a camera needs time to begin.
-constexpr std::int64_t kFirstImage_ns = 1'000'000'000;
-constexpr std::int64_t kTurn_ns = 5'000'000;
-
 /// An external trigger may pause for any time: only Aravis can tell that the camera is lost.
 std::int64_t patience_of(const config::Camera& settings) {
   if (settings.aravis.trigger == config::Trigger::line) return seconds_to_ns(6);
-  return std::max(kPatience_ns, seconds_to_ns(3 / settings.rate_hz));
+  return Silence::patience_of(settings.rate_hz);
 }
 
 }  // namespace
@@ -33,9 +28,8 @@ Keeper::Keeper(Device device, const config::Camera& settings, const calib::Calib
       session_(std::move(session)),
       mailbox_(std::move(mailbox)),
       presence_(device_),
-      patience_ns_(patience_of(settings)),
-      started_ns_(now_ns()),
-      next_trigger_ns_(started_ns_),
+      silence_(patience_of(settings)),
+      next_trigger_ns_(now_ns()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Keeper::~Keeper() {
@@ -43,16 +37,6 @@ Keeper::~Keeper() {
   thread_.join();
   // Taking leave of an absent camera takes seconds, which nobody has to wait for.
   if (is_lost_) std::thread([session = std::move(session_)] {}).detach();
-}
-
-std::optional<Error> Keeper::trouble() const {
-  const std::scoped_lock lock(mutex_);
-  return trouble_;
-}
-
-void Keeper::say(std::optional<Error> trouble) {
-  const std::scoped_lock lock(mutex_);
-  trouble_ = std::move(trouble);
 }
 
 void Keeper::run(const std::stop_token& stop) {
@@ -64,11 +48,6 @@ void Keeper::run(const std::stop_token& stop) {
   }
 }
 
-bool Keeper::is_silent() const {
-  const std::int64_t last_ns = mailbox_->last_arrival_ns();
-  return now_ns() > (last_ns > started_ns_ ? last_ns + patience_ns_ : started_ns_ + kFirstImage_ns);
-}
-
 void Keeper::watch() {
   if (settings_.aravis.trigger == config::Trigger::software) {
     // Triggers that came too late are not made up for.
@@ -76,16 +55,17 @@ void Keeper::watch() {
     sleep_until_ns(next_trigger_ns_);
     (void)session_->trigger();  // if it fails, no image comes, which is seen below
   } else {
-    sleep_until_ns(now_ns() + kTurn_ns);
+    sleep_until_ns(now_ns() + Silence::kTurn_ns);
   }
-  if (is_reopened_ && mailbox_->last_arrival_ns() > started_ns_) found("it was opened again");
-  if (!is_silent()) return;
+  const std::int64_t last_ns = mailbox_->last_sign_ns();
+  if (is_reopened_ && silence_.is_broken(last_ns)) found("it was opened again");
+  if (!silence_.is_too_long(last_ns, now_ns())) return;
   is_lost_ = true;
   if (!is_reopened_) lost_ns_ = now_ns();
 }
 
 Error Keeper::why_no_images(bool answers) const {
-  if (!answers || mailbox_->last_arrival_ns() > started_ns_)
+  if (!answers || silence_.is_broken(mailbox_->last_sign_ns()))
     return {Errc::timeout, fmt::format("camera 'aravis': {} sends no images; it is opened again as "
                                        "soon as it answers",
                                        device_.id)};
@@ -104,32 +84,32 @@ void Keeper::miss_it(bool answers) {
   // That it answers is known later than that it is silent.
   if (const auto said = trouble(); said && (!answers || !session_ || said->what == why.what))
     return;
-  log::warning("{}", why.what);
-  say(why);
+  trouble_.say(why);
 }
 
 void Keeper::look_for_it() {
   if (presence_.is_there()) return reopen();
-  if (mailbox_->last_arrival_ns() > lost_ns_) return found("its images came back");
+  if (mailbox_->last_sign_ns() > lost_ns_) return found("its images came back");
   miss_it(false);
-  sleep_until_ns(now_ns() + kTurn_ns);
+  sleep_until_ns(now_ns() + Silence::kTurn_ns);
 }
 
 void Keeper::reopen() {
   const std::int64_t answered_ns = now_ns();
   // After a cable was plugged in again, the images come back by themselves.
-  sleep_until_ns(answered_ns + std::max(2 * kTurn_ns, seconds_to_ns(3 / settings_.rate_hz)));
-  if (mailbox_->last_arrival_ns() > answered_ns) return found("its images came back");
+  sleep_until_ns(answered_ns +
+                 std::max(2 * Silence::kTurn_ns, seconds_to_ns(3 / settings_.rate_hz)));
+  if (mailbox_->last_sign_ns() > answered_ns) return found("its images came back");
   miss_it(true);
   session_.reset();
   auto session = Session::start(device_, settings_, calibration_, mailbox_);
   if (!session) {
-    say(Error{session.error().code == Errc::bad_config ? Errc::bad_config : Errc::timeout,
-              fmt::format("camera 'aravis': {}", session.error().what)});
-    return sleep_until_ns(now_ns() + kTurn_ns);
+    trouble_.say({session.error().code, fmt::format("camera 'aravis': {}", session.error().what)});
+    return sleep_until_ns(now_ns() + Silence::kTurn_ns);
   }
   session_ = std::move(*session);
-  started_ns_ = next_trigger_ns_ = now_ns();
+  silence_.begin_again();
+  next_trigger_ns_ = now_ns();
   is_lost_ = false;
   is_reopened_ = true;
 }
@@ -139,7 +119,7 @@ void Keeper::found(std::string_view how) {
     log::info("camera: {} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_),
               how);
   is_lost_ = is_reopened_ = false;
-  say(std::nullopt);
+  trouble_.end();
 }
 
 }  // namespace handcast::camera::aravis

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string_view>
 #include <thread>
 
 #include "services/camera/aravis/session.hpp"
+#include "services/camera/keep/silence.hpp"
+#include "services/camera/keep/trouble.hpp"
 
 namespace handcast::camera::aravis {
 
@@ -23,7 +24,7 @@ class Keeper {
   ~Keeper();
 
   /// Why no images come now; empty if they should come. Any thread.
-  std::optional<Error> trouble() const;
+  std::optional<Error> trouble() const { return trouble_.why(); }
 
  private:
   void run(const std::stop_token& stop);
@@ -37,8 +38,6 @@ class Keeper {
   void reopen();
   /// Its images have come.
   void found(std::string_view how);
-  void say(std::optional<Error> trouble);
-  bool is_silent() const;
 
   Device device_;
   config::Camera settings_;
@@ -46,14 +45,12 @@ class Keeper {
   std::unique_ptr<Session> session_;
   std::shared_ptr<Mailbox> mailbox_;
   Presence presence_;
-  std::int64_t patience_ns_;      ///< how long no image is no reason to look for the camera
-  std::int64_t started_ns_;       ///< the last start of the session
+  Silence silence_;
   std::int64_t next_trigger_ns_;  ///< of the software triggers
   bool is_lost_ = false;
   bool is_reopened_ = false;  ///< and has not yet sent an image
   std::int64_t lost_ns_ = 0;  ///< when it was lost
-  mutable std::mutex mutex_;
-  std::optional<Error> trouble_;
+  Trouble trouble_;
   std::jthread thread_;
 };
 

@@ -85,7 +85,7 @@ void Receiver::on_buffer_done(std::int64_t arrived_ns) {
   }
   auto image = image_of(std::move(buffer), arrived_ns);
   image.lost = lost;
-  mailbox_->put(std::move(image), steps);
+  mailbox_->put(image, steps);
 }
 
 /// Earliest arrival = end of the exposure + delivery, whatever moment the camera's stamp means: the
@@ -98,7 +98,6 @@ Image Receiver::image_of(Owned<ArvBuffer> buffer, std::int64_t arrived_ns) {
   image.exposure_ns = exposure_ns_;
   image.exposed_ns = std::min(arrival.ns, arrived_ns) - delivery_ns_ - image.exposure_ns / 2;
   image.exposed_error_ns = arrival.error_ns;
-  image.arrived_ns = arrived_ns;
   return image;
 }
 

@@ -7,7 +7,7 @@
 
 #include "calib/clock_map.hpp"
 #include "config/sections/sensors.hpp"
-#include "services/camera/aravis/mailbox.hpp"
+#include "services/camera/aravis/image.hpp"
 
 namespace handcast::camera::aravis {
 

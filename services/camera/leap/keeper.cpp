@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -12,11 +11,7 @@
 namespace handcast::camera::leap {
 namespace {
 
-constexpr std::int64_t kPatience_ns = 50'000'000;
-/// For the first image of a session.
-constexpr std::int64_t kFirstImage_ns = 1'000'000'000;
-constexpr std::int64_t kTurn_ns = 5'000'000, kAbsent_ns = 20'000'000;
-constexpr int kPatientPeriods = 3;
+constexpr std::int64_t kAbsent_ns = 20'000'000;
 
 }  // namespace
 
@@ -27,9 +22,7 @@ Keeper::Keeper(const config::Camera& settings, const calib::Calibration& calibra
       session_(std::move(session)),
       mailbox_(std::move(mailbox)),
       name_(session_->name()),
-      patience_ns_(
-          std::max(kPatience_ns, seconds_to_ns(kPatientPeriods / session_->mode().rate_hz))),
-      started_ns_(now_ns()),
+      silence_(Silence::patience_of(session_->mode().rate_hz)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Keeper::~Keeper() {
@@ -37,18 +30,8 @@ Keeper::~Keeper() {
   thread_.join();
 }
 
-std::optional<Error> Keeper::trouble() const {
-  const std::scoped_lock lock(mutex_);
-  return trouble_;
-}
-
-void Keeper::say(Error trouble) {
-  trouble.what = fmt::format("camera 'leap': {}", trouble.what);
-  // Whatever it is, it may pass, and the service goes on until then.
-  if (trouble.code != Errc::bad_config) trouble.code = Errc::timeout;
-  const std::scoped_lock lock(mutex_);
-  if (!trouble_ || trouble_->what != trouble.what) log::warning("{}", trouble.what);
-  trouble_ = std::move(trouble);
+void Keeper::say(const Error& why) {
+  trouble_.say({why.code, fmt::format("camera 'leap': {}", why.what)});
 }
 
 void Keeper::run(const std::stop_token& stop) {
@@ -60,21 +43,16 @@ void Keeper::run(const std::stop_token& stop) {
   }
 }
 
-bool Keeper::is_silent() const {
-  const std::int64_t last_ns = mailbox_->last_sign_ns();
-  return now_ns() > (last_ns > started_ns_ ? last_ns + patience_ns_ : started_ns_ + kFirstImage_ns);
-}
-
 void Keeper::watch() {
-  sleep_until_ns(now_ns() + kTurn_ns);
-  const bool has_come = mailbox_->last_sign_ns() > started_ns_;
+  sleep_until_ns(now_ns() + Silence::kTurn_ns);
+  const std::int64_t last_ns = mailbox_->last_sign_ns();
+  const bool has_come = silence_.is_broken(last_ns);
   if (has_come && trouble()) {
     log::info("camera: {} is back after {:.0f} ms", name_, ns_to_ms(now_ns() - lost_ns_));
-    const std::scoped_lock lock(mutex_);
-    trouble_.reset();
+    trouble_.end();
   }
   const auto ended = session_->trouble();
-  if (!ended && !is_silent()) return;
+  if (!ended && !silence_.is_too_long(last_ns, now_ns())) return;
   vain_starts_ = has_come ? 0 : vain_starts_ + 1;
   if (has_come) lost_ns_ = now_ns();
   if (ended)
@@ -98,7 +76,7 @@ void Keeper::reopen() {
     return sleep_until_ns(now_ns() + kAbsent_ns);
   }
   session_ = std::move(*session);
-  started_ns_ = now_ns();
+  silence_.begin_again();
 }
 
 }  // namespace handcast::camera::leap

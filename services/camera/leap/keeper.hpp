@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "services/camera/keep/silence.hpp"
+#include "services/camera/keep/trouble.hpp"
 #include "services/camera/leap/session.hpp"
 
 namespace handcast::camera::leap {
@@ -23,26 +24,23 @@ class Keeper {
   ~Keeper();
 
   /// Why no images come now; empty if they should come. Any thread.
-  std::optional<Error> trouble() const;
+  std::optional<Error> trouble() const { return trouble_.why(); }
 
  private:
   void run(const std::stop_token& stop);
   void watch();
   void reopen();
-  bool is_silent() const;
-  void say(Error trouble);
+  void say(const Error& why);
 
   config::Camera settings_;
   calib::Calibration calibration_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<Mailbox> mailbox_;
-  std::string name_;          ///< of the controller
-  std::int64_t patience_ns_;  ///< how long no image is no reason to open it again
-  std::int64_t started_ns_;   ///< the last start of the session
+  std::string name_;  ///< of the controller
+  Silence silence_;
   std::int64_t lost_ns_ = 0;  ///< when its images stopped
   int vain_starts_ = 0;       ///< sessions in a row without an image
-  mutable std::mutex mutex_;
-  std::optional<Error> trouble_;
+  Trouble trouble_;
   std::jthread thread_;
 };
 

@@ -5,8 +5,8 @@
 
 #include "services/camera/leap/frame_assembler.hpp"
 #include "services/camera/leap/frame_times.hpp"
-#include "services/camera/leap/mailbox.hpp"
 #include "services/camera/leap/payload_sink.hpp"
+#include "services/camera/leap/stereo_image.hpp"
 
 namespace handcast::camera::leap {
 
