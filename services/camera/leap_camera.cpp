@@ -61,7 +61,7 @@ class LeapCamera final : public Camera {
     frame.width_px = static_cast<std::uint32_t>(width_px_);
     frame.height_px = static_cast<std::uint32_t>(height_px_);
     const auto pixels = static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_);
-    leap::deinterleave(image_.bytes, eye, {frame.pixels(), pixels});
+    leap::deinterleave(image_.bytes, eye, width_px_, {frame.pixels(), pixels});
   }
 
   std::size_t eye_;  ///< whose images go to the first message: 0 left, 1 right

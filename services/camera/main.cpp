@@ -23,15 +23,15 @@ using Slot = ipc::Loan<msg::CameraFrame>;
 /// Captures into the slot of camera.frames, and of a stereo camera into that of camera2.frames,
 /// which is empty if readers hold all slots of that ring: the other eye's image is left out then.
 static Result<void> capture(camera::Camera& source, Slot& slot, std::optional<Slot>& second,
-                            std::uint32_t calibration) {
+                            const calib::Calibration& calibration) {
   slot->origin_error_ns = 0;
   slot->lost = {};
   const auto deadline = Deadline::in(50ms);
   const bool takes_both = second && *second;
   auto captured = takes_both ? source.capture_both(*slot, **second, slot.tail_bytes(), deadline)
                              : source.capture(*slot, slot.tail_bytes(), deadline);
-  slot->calibration = calibration;
-  if (takes_both) (*second)->calibration = 0;  // the other eye has a calibration of its own
+  slot->calibration = calibration.id;
+  if (takes_both) (*second)->calibration = calibration.camera2 ? calibration.id : 0;
   return captured;
 }
 
@@ -74,7 +74,7 @@ static void run_camera(service::Context& context) {
     }
     std::optional<Slot> second;
     if (second_frames) second.emplace(second_frames->loan());
-    if (const auto captured = capture(*source, slot, second, context.calibration().id); !captured) {
+    if (const auto captured = capture(*source, slot, second, context.calibration()); !captured) {
       context.tolerate(captured.error());
       continue;
     }

@@ -28,7 +28,7 @@ Result<void> write_leap_calibration(const LeapCalibration& wanted) {
   if (std::sscanf(wanted.size.c_str(), "%4dx%4d%n", &width_px, &height_px, &end) != 2 ||
       static_cast<std::size_t>(end) != wanted.size.size() || width_px < 1 || height_px < 1)
     return fail(Errc::bad_config,
-                fmt::format("'{}' is no size; for instance 640x240", wanted.size));
+                fmt::format("'{}' is no size; for instance 640x480", wanted.size));
   if (wanted.eye != "left" && wanted.eye != "right")
     return fail(Errc::bad_config,
                 fmt::format("'{}' is no eye; there are left and right", wanted.eye));

@@ -11,10 +11,10 @@ struct LeapCalibration {
   std::string file;              ///< must not exist
   std::string device;            ///< serial number or USB port; empty: the only one
   std::string eye = "left";      ///< or "right"
-  std::string size = "640x240";  ///< of the images
+  std::string size = "640x480";  ///< of the images
 };
 
-/// Writes a calibration file with the lens that the controller has measured itself. Errors:
+/// Writes a calibration file with the lenses that the controller has measured itself. Errors:
 /// bad_config (the file exists or cannot be written, no such size or eye, not in this build), those
 /// of the controller.
 Result<void> write_leap_calibration(const LeapCalibration& wanted);

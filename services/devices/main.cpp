@@ -20,10 +20,10 @@ static int run_verb(int argc, char** argv) {
   devices::LeapCalibration leap;
   app.add_option(
       "--leap-calibration", leap.file,
-      "Write a calibration file with the lens that a Leap Motion Controller has measured "
+      "Write a calibration file with the lenses that a Leap Motion Controller has measured "
       "itself; its projector and tracker are still to be calibrated");
   app.add_option("--leap", leap.device, "Its serial number or USB port; default: the only one");
-  app.add_option("--eye", leap.eye, "left or right")->capture_default_str();
+  app.add_option("--eye", leap.eye, "The first camera: left or right")->capture_default_str();
   app.add_option("--size", leap.size, "Size of its images")->capture_default_str();
   const auto text = parse_options(app, argc, argv);
   if (!text) {

@@ -82,12 +82,26 @@ class NetworkDetector final : public Detector {
   std::array<JointConventionOffsets, msg::kMaxHands> offsets_;
 };
 
+/// Networks, and the mask, take a hand for one whose image has the same scale in all directions.
+Result<void> check_pixels(const calib::CameraModel& camera) {
+  constexpr double kMost = 1.1;
+  const double height = camera.fx_px / camera.fy_px;
+  if (height < kMost && height > 1 / kMost) return {};
+  return fail(Errc::bad_config,
+              fmt::format("the camera's pixels are {:.3g} times as high as wide (focal_px in the "
+                          "calibration); landmarks are found in images with square pixels, which "
+                          "the Leap controller gives with a calibration for 640x480",
+                          height));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
                                                         const calib::Calibration& calibration,
                                                         const std::int64_t&) {
   const auto& settings = rig.landmarks;
+  if (auto square = check_pixels(calibration.camera); !square)
+    return fail_in(fmt::format("landmarks '{}'", settings.backend), square.error());
   const auto folder = models_folder(settings.models);
   if (!folder) return fail_in("landmarks.models", folder.error());
   auto model =

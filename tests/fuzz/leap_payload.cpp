@@ -19,7 +19,7 @@ static void read_descriptors(fuzz::Reader& input) {
   if (!description) return fuzz::require(!description.error().what.empty());
   for (const auto& mode : description->modes) {
     fuzz::require(mode.width_px > 0 && mode.height_px > 0 && mode.rate_hz >= 1);
-    fuzz::require(mode_of(*description, mode.width_px, mode.height_px).has_value());
+    fuzz::require(mode_of(*description, mode.width_px, mode.height_px, mode.rate_hz).has_value());
     (void)transfers_of({}, 2, mode);
     (void)payload_bytes_of(streaming, mode);
   }

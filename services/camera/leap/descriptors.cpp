@@ -16,6 +16,7 @@ constexpr std::uint8_t kControlHeader = 0x01, kFormatUncompressed = 0x04, kFrame
 constexpr std::size_t kLeastHeader = 12, kLeastFormat = 22, kLeastFrame = 26;
 constexpr int kLargest_px = 4096;
 constexpr double kTicksPerSecond = 1e7;
+constexpr double kFastEnough = 0.99;
 /// From 1 Hz to 10 kHz.
 constexpr std::uint32_t kShortestTicks = 1'000, kLongestTicks = 10'000'000;
 constexpr std::uint8_t kBitsPerPixel = 16;
@@ -72,13 +73,23 @@ Result<StreamDescription> parse_descriptors(std::span<const std::uint8_t> contro
   return description;
 }
 
-Result<StreamMode> mode_of(const StreamDescription& description, int width_px, int height_px) {
+Result<StreamMode> mode_of(const StreamDescription& description, int width_px, int height_px,
+                           double rate_hz) {
+  const auto find = [&](int rows) -> const StreamMode* {
+    for (const auto& mode : description.modes)
+      if (mode.width_px == width_px && mode.height_px == rows) return &mode;
+    return nullptr;
+  };
+  for (const int part : {1, 2, 4}) {
+    const auto* mode = height_px % part == 0 ? find(height_px / part) : nullptr;
+    if (mode && mode->rate_hz > kFastEnough * rate_hz) return *mode;
+  }
+  if (const auto* half = height_px % 2 == 0 ? find(height_px / 2) : nullptr) return *half;
+  if (const auto* whole = find(height_px)) return *whole;
   std::string sizes;
-  for (const auto& mode : description.modes) {
-    if (mode.width_px == width_px && mode.height_px == height_px) return mode;
+  for (const auto& mode : description.modes)
     sizes += fmt::format("{}{}x{} at {:.4g} Hz", sizes.empty() ? "" : ", ", mode.width_px,
                          mode.height_px, mode.rate_hz);
-  }
   return fail(Errc::bad_config,
               fmt::format("the calibration is for images of {}x{} px; the controller has {}",
                           width_px, height_px, sizes));

@@ -36,7 +36,10 @@ struct StreamDescription {
 Result<StreamDescription> parse_descriptors(std::span<const std::uint8_t> control,
                                             std::span<const std::uint8_t> streaming);
 
-/// The mode of a size. Errors: bad_config (there is none; the sentence names those that there are).
-Result<StreamMode> mode_of(const StreamDescription& description, int width_px, int height_px);
+/// The mode for images of a size at a rate: one of this size or, if that is too slow, one with half
+/// or a quarter of the rows. If none is fast enough, half of the rows. Errors: bad_config (there is
+/// none of this size or half of it; the sentence names those that there are).
+Result<StreamMode> mode_of(const StreamDescription& description, int width_px, int height_px,
+                           double rate_hz);
 
 }  // namespace handcast::camera::leap

@@ -175,11 +175,16 @@ Result<std::string> calibration_file_of(const ControllerCalibration& calibration
                                         const std::string& serial, config::Eye eye, int width_px,
                                         int height_px) {
   const bool is_left = eye == config::Eye::left;
-  const auto lens = fit_lens(is_left ? calibration.left : calibration.right, width_px, height_px);
-  if (!lens) return tl::make_unexpected(lens.error());
+  const auto left = fit_lens(calibration.left, width_px, height_px),
+             right = fit_lens(calibration.right, width_px, height_px);
+  if (!left) return fail_in("left eye", left.error());
+  if (!right) return fail_in("right eye", right.error());
+  const auto &lens = is_left ? left : right, &other = is_left ? right : left;
+  const auto from_left = right_from_left(calibration);
   calib::Calibration file = calib::reference_rig();
   file.camera_device = serial;
   file.camera = lens->camera;
+  file.camera2 = {serial, other->camera, is_left ? from_left : glm::inverse(from_left)};
   file.camera_from_tracker = glm::dmat4(1);
   file.projector_from_camera =
       glm::dmat3(file.projector_width_px / static_cast<double>(width_px), 0, 0, 0,

@@ -24,9 +24,9 @@ struct LensFit {
 /// bad_data (the eye's lens folds; no model without a fold comes near).
 Result<LensFit> fit_lens(const EyeCalibration& eye, int width_px, int height_px);
 
-/// A calibration file with the lens of one eye, for images of a size. Tracker and projector are not
-/// in it: it has neutral ones. `serial`: of the controller, may be empty. Errors: those of
-/// fit_lens().
+/// A calibration file for images of a size: the lens of `eye`, and that of the other one with its
+/// place as the second camera. Tracker and projector are not in it: it has neutral ones. `serial`:
+/// of the controller, may be empty. Errors: those of fit_lens().
 Result<std::string> calibration_file_of(const ControllerCalibration& calibration,
                                         const std::string& serial, config::Eye eye, int width_px,
                                         int height_px);

@@ -83,8 +83,8 @@ Result<std::unique_ptr<Session>> Session::start(const std::string& wanted,
     return tl::make_unexpected(ours.error());
   const auto description = controller->device.describe();
   if (!description) return tl::make_unexpected(description.error());
-  const auto mode =
-      mode_of(*description, calibration.camera.width_px, calibration.camera.height_px);
+  const auto mode = mode_of(*description, calibration.camera.width_px, calibration.camera.height_px,
+                            settings.rate_hz);
   if (!mode) return tl::make_unexpected(mode.error());
   const auto payload_bytes = set_up(controller->device, settings, *mode);
   if (!payload_bytes) return tl::make_unexpected(payload_bytes.error());

@@ -15,9 +15,9 @@ namespace handcast::camera::leap {
 /// calls from one thread; the images come on another one.
 class Session {
  public:
-  /// Opens a controller and starts its images, of the size in the calibration. `wanted`: see
-  /// open_controller(). `resets`: resets the device first, which helps some that have stopped.
-  /// Takes about 0.1 s. Errors: those of open_controller(), mode_of(), transfers_of() and
+  /// Opens a controller and starts its images, in the mode for the size in the calibration.
+  /// `wanted`: see open_controller(). `resets`: resets the device first, which helps some that have
+  /// stopped. Takes about 0.1 s. Errors: those of open_controller(), mode_of(), transfers_of() and
   /// load_bring_up(); bad_config (the calibration was made with another camera); timeout and
   /// bad_data (the controller does not do what it is told), disconnected.
   static Result<std::unique_ptr<Session>> start(const std::string& wanted,

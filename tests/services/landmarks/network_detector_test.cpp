@@ -19,6 +19,19 @@ Trial trial(int i) {
   return trials->make(i, 960).value();
 }
 
+TEST(NetworkDetector, ACameraWhosePixelsAreNotSquareIsRefused) {
+  config::Rig rig;
+  rig.landmarks.backend = "handcast";
+  auto calibration = calib::reference_rig();
+  calibration.camera.fy_px *= 0.98;
+  EXPECT_TRUE(open_detector(rig, calibration, 0));
+  calibration.camera.fy_px = calibration.camera.fx_px / 2;
+  const auto refused = open_detector(rig, calibration, 0);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::bad_config);
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("pixels are 2 times as high as wide"));
+}
+
 class MediapipeDetector : public testing::Test {
  protected:
   void SetUp() override {

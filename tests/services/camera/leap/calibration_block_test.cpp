@@ -112,6 +112,10 @@ TEST(LeapLens, TheCalibrationFileIsRead) {
   EXPECT_EQ(read->camera.height_px, 240);
   EXPECT_NEAR(read->camera.cx_px, 320, 20);
   EXPECT_THAT(read->made.lens, HasSubstr("right eye's"));
+  ASSERT_TRUE(read->camera2);
+  EXPECT_EQ(read->camera2->camera.height_px, 240);
+  EXPECT_NE(read->camera2->camera.cx_px, read->camera.cx_px);
+  EXPECT_GT(read->camera2->from_camera[3].x, 0.0399) << "the left eye sees it further to the right";
 }
 
 }  // namespace

@@ -32,16 +32,27 @@ TEST(LeapDescriptors, SizesRatesAndTheClockAreRead) {
   ASSERT_TRUE(read) << read.error().what;
   EXPECT_EQ(read->clock_hz, 1000u);
   ASSERT_EQ(read->modes.size(), 6u);
-  const auto mode = mode_of(*read, 640, 240);
+  const auto mode = mode_of(*read, 640, 240, 115);
   ASSERT_TRUE(mode);
   EXPECT_NEAR(mode->rate_hz, 115, 0.01);
   EXPECT_EQ(mode->frame, 2);
   EXPECT_EQ(mode->bytes(), 640u * 240 * 2);
 }
 
+TEST(LeapDescriptors, ARateThatIsTooHighForAllRowsIsThatOfAPartOfThem) {
+  const auto read = parse_descriptors(class_bytes(0), class_bytes(1)).value();
+  EXPECT_EQ(mode_of(read, 640, 480, 57.5)->height_px, 480);
+  EXPECT_EQ(mode_of(read, 640, 480, 115)->height_px, 240);
+  EXPECT_EQ(mode_of(read, 640, 480, 200)->height_px, 120);
+  EXPECT_EQ(mode_of(read, 640, 480, 500)->height_px, 240) << "none is fast enough";
+  EXPECT_EQ(mode_of(read, 640, 240, 115)->height_px, 240);
+  EXPECT_EQ(mode_of(read, 640, 240, 200)->height_px, 120);
+  EXPECT_EQ(mode_of(read, 640, 120, 500)->height_px, 120);
+}
+
 TEST(LeapDescriptors, ASizeThatIsNotThereIsRefusedWithThoseThatAre) {
   const auto read = parse_descriptors(class_bytes(0), class_bytes(1));
-  const auto mode = mode_of(*read, 720, 540);
+  const auto mode = mode_of(*read, 720, 540, 115);
   ASSERT_FALSE(mode);
   EXPECT_EQ(mode.error().code, Errc::bad_config);
   EXPECT_THAT(mode.error().what, AllOf(HasSubstr("720x540"), HasSubstr("640x240 at 115 Hz")));

@@ -258,9 +258,11 @@ bool EmulatedLeap::Usbfs::reap_now(UMockdevIoctlClient* client) {
   done.erase(own);
   auto* pointer = umockdev_ioctl_data_resolve(umockdev_ioctl_client_get_arg(client), 0,
                                               sizeof(gpointer), nullptr);
-  umockdev_ioctl_data_set_ptr(pointer, 0, data);
-  umockdev_ioctl_client_complete(client, 0, 0);
-  umockdev_ioctl_data_unref(pointer);
+  if (pointer) {  // null: its process has ended
+    umockdev_ioctl_data_set_ptr(pointer, 0, data);
+    umockdev_ioctl_data_unref(pointer);
+  }
+  umockdev_ioctl_client_complete(client, pointer ? 0 : -1, pointer ? 0 : EFAULT);
   umockdev_ioctl_data_unref(data);
   return true;
 }

@@ -52,7 +52,7 @@ TEST(FrameTimes, StampsOfAMillisecondGiveTimesOfATenth) {
       square += off_ms * off_ms;
       ++count;
     }
-    EXPECT_LT(std::sqrt(square / count), 0.2) << "ms, drift " << drift;
+    EXPECT_LT(std::sqrt(square / count), 0.1) << "ms, drift " << drift;
   }
 }
 

@@ -124,6 +124,7 @@ void LeapModel::start(int mode) {
 }
 
 void LeapModel::draw() {
+  if (draw_picture) return draw_picture(number_, image_);
   for (std::size_t i = 0; i < image_.size(); i += 2) {
     image_[i] = left_of(number_);
     image_[i + 1] = right_of(number_);

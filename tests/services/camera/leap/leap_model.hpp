@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -45,6 +46,8 @@ class LeapModel {
   bool has_stamps = true;                 ///< its payloads carry stamps
   double drift = 0;                       ///< by how much its clock is fast
   std::uint32_t numbers_per_start = 0;    ///< so much further begin the numbers of each next start
+  /// Draws the image of both eyes with a number, instead of the numbers and greys.
+  std::function<void(std::uint32_t number, std::span<std::uint8_t> both)> draw_picture;
 
   /// The configuration with its descriptors, as the device sends it.
   std::vector<std::uint8_t> configuration() const;
@@ -72,6 +75,8 @@ class LeapModel {
   /// Stops sending, as without power.
   void stop() { is_streaming_ = false; }
 
+  /// The number of the first image since the stream was started.
+  std::uint32_t first() const { return first_; }
   std::uint32_t frames_begun() const { return number_ - first_ + (payload_ > 0); }
   /// When an image began to be sent, the end of its exposure.
   std::int64_t begun_ns(std::uint32_t number) const {

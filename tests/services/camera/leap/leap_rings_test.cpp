@@ -86,7 +86,7 @@ TEST_F(LeapRings, EachEyeHasItsRingAndBothHaveTheSameTimes) {
     }
     if (const auto image = right.next(Deadline::in(100ms))) {
       EXPECT_EQ((*image)->pixels()[100], test::LeapModel::right_of(test::number_in(**image)));
-      EXPECT_EQ((*image)->calibration, 0u) << "the right eye has a calibration of its own";
+      EXPECT_NE((*image)->calibration, 0u) << "the calibration has both eyes";
       EXPECT_EQ((*image)->width_px, 640u);
       right_origins[(*image)->header.frame_id] = (*image)->header.origin_ns;
     }
@@ -115,6 +115,7 @@ TEST_F(LeapRings, TheVerbWritesTheLensOfTheController) {
   ASSERT_TRUE(read) << read.error().what;
   EXPECT_EQ(read->camera_device, "LP53304172541");
   EXPECT_EQ(read->camera.width_px, 640);
+  EXPECT_EQ(read->camera.height_px, 480) << "square pixels";
   EXPECT_NE(run(""), 0) << "a file that exists is kept";
 }
 
