@@ -26,7 +26,11 @@ class WatchedLeap {
     std::uint64_t uncounted = 0;            ///< lost, but not counted (or counted twice)
     std::uint64_t damaged = 0;              ///< delivered, but not whole
     msg::FrameLosses lost;
-    double latest_ms = 0;  ///< the latest return after a deadline
+    /// The latest return after a deadline: all of it, and without the time during which the thread
+    /// was ready and other work had the processors (0 if the kernel does not count it).
+    /// @{
+    double latest_ms = 0, latest_own_ms = 0;
+    /// @}
     std::vector<double>
         late_ms;  ///< from an image's last byte, as it should be sent, to its capture
   };

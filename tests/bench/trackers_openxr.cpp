@@ -153,12 +153,6 @@ Errors errors_of(const Played& played, const test_runtime::Motion& motion) {
   return errors;
 }
 
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0 : sum / static_cast<double>(values.size());
-}
-
 void compare(const test::ScriptedRuntime& runtime, const test_runtime::Motion& motion,
              const std::string& name, const std::string& times, double age_ms, double predict_ms,
              double seconds) {

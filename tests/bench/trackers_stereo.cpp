@@ -9,7 +9,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <numeric>
 
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
@@ -25,11 +24,6 @@ struct Options {
   double seconds = 4;
   int seed = 0;
 };
-
-double mean(const std::vector<double>& values) {
-  if (values.empty()) return 0;
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 std::vector<std::string> motions(const Options& options) {
   if (!options.motion.empty()) return {options.motion};

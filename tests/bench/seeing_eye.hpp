@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "ipc/base/result.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/owned.hpp"
+#include "services/evaluation/twin/camera_scene.hpp"
+#include "services/evaluation/twin/twin.hpp"
+#include "services/landmarks/detector.hpp"
+
+namespace handcast::bench {
+
+/// How far a landmark is from the joint that it belongs to.
+struct Miss {
+  double px = 0;   ///< in square pixels of the image
+  double deg = 0;  ///< about the camera
+  double mm = 0;   ///< across the line of sight, at the joint
+};
+
+/// A camera before the twin's hands, with its landmark detector.
+class SeeingEye {
+ public:
+  /// `seen`: the calibration with the camera as the detector has it. `rows_per_row`: rows of its
+  /// images for each row of the sensor; the driver of the Leap controller makes the one of the
+  /// other. Opens rig.landmarks; `twin` outlives it. Errors: those of open_detector().
+  static Result<std::unique_ptr<SeeingEye>> open(const calib::Calibration& seen, int rows_per_row,
+                                                 const config::Rig& rig, const twin::Twin& twin);
+
+  /// What the poses predict, for the detector.
+  void tell(const msg::HandPoses& poses) { hints_.push(poses); }
+  /// Draws image `k` at `time_ns` and finds landmarks in it. `hints`: with those of tell().
+  Result<msg::Landmarks> look(std::uint64_t k, std::int64_t time_ns, bool hints);
+  /// The landmarks of hands that are there.
+  std::vector<Miss> compare(const msg::Landmarks& seen) const;
+
+ private:
+  SeeingEye(const calib::Calibration& seen, int rows_per_row, const config::Rig& rig,
+            const twin::Twin& twin, std::unique_ptr<landmarks::Detector> detector);
+  void write_frame();
+
+  const twin::Twin& twin_;
+  calib::Calibration calibration_;
+  twin::CameraScene scene_;
+  std::int64_t exposure_ns_;
+  std::unique_ptr<landmarks::Detector> detector_;
+  landmarks::TrackerHints hints_;
+  renderer::Image<std::uint8_t> sensor_;
+  std::vector<std::uint8_t> both_;  ///< as the Leap controller sends it
+  msg::Owned<msg::CameraFrame> frame_;
+};
+
+}  // namespace handcast::bench
