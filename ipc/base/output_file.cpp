@@ -2,7 +2,6 @@
 #include "ipc/base/output_file.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace handcast {
@@ -22,11 +21,14 @@ const char* kind_of(mode_t mode) {
 
 }  // namespace
 
+bool is_standard_output(const struct stat& status) {
+  return is_descriptor(STDOUT_FILENO, status) || is_descriptor(STDERR_FILENO, status);
+}
+
 Result<void> check_output(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return {};  // opening it says why
-  if (S_ISREG(status.st_mode) || S_ISCHR(status.st_mode) || is_descriptor(STDOUT_FILENO, status) ||
-      is_descriptor(STDERR_FILENO, status))
+  if (S_ISREG(status.st_mode) || S_ISCHR(status.st_mode) || is_standard_output(status))
     return {};
   return fail(Errc::bad_config, fmt::format("{}: cannot be written: it is {}, not a file",
                                             file.string(), kind_of(status.st_mode)));

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <sys/stat.h>
+
 #include <filesystem>
 
 #include "ipc/base/result.hpp"
@@ -10,5 +12,8 @@ namespace handcast {
 /// or is the standard output or error of this process. A pipe, folder or socket is refused, because
 /// opening it may block. Errors: bad_config, with a sentence that begins with the path.
 Result<void> check_output(const std::filesystem::path& file);
+
+/// True if a file is the standard output or error of this process.
+bool is_standard_output(const struct stat& status);
 
 }  // namespace handcast

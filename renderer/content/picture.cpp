@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "config/settings/files.hpp"
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "renderer/content/jpeg_decoder.hpp"
 #include "renderer/content/png_chunks.hpp"
 
@@ -110,7 +110,7 @@ static Result<void> write_png(const std::filesystem::path& file, int width_px, i
     return fail(Errc::unavailable,
                 fmt::format("The picture '{}' cannot be made: {}.", file.string(), png.message));
   bytes.resize(size);
-  return config::write_whole(file, bytes);
+  return write_whole(file, bytes, Durable::no);
 }
 
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {

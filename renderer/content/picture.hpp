@@ -20,7 +20,8 @@ Result<Texture> read_picture(const std::filesystem::path& file);
 /// larger than 8192 px on a side.
 Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file);
 
-/// Writes RGBA8 as a PNG file without alpha, by config::write_whole(). Errors: those of it.
+/// Writes RGBA8 as a PNG file without alpha, by write_whole(), but not durably: there may be
+/// thousands. Errors: those of it.
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture);
 /// Writes grey values as a PNG file, in the same way.
 Result<void> write_png(const std::filesystem::path& file, const Image<std::uint8_t>& grey);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "config/settings/files.hpp"
+#include "ipc/base/write_whole.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -79,6 +80,10 @@ Result<fs::path> keep_old(const fs::path& file) {
   const auto old = free_name_of(file);
   std::error_code error;
   fs::copy_file(file, old, error);
+  if (error && error != std::errc::file_exists) {
+    std::error_code absent;
+    fs::remove(old, absent);  // a part of it, on a full disk
+  }
   if (error)
     return fail(Errc::unavailable,
                 fmt::format("the old {} cannot be copied to {}: {}", file.filename().string(),
@@ -94,7 +99,7 @@ Result<std::string> write_and_keep(const fs::path& file, const std::string& text
     if (!old) return tl::make_unexpected(old.error());
     sentence += fmt::format("; the one before it is kept as {}", old->filename().string());
   }
-  return config::write_whole(file, text).map([&] { return sentence; });
+  return write_whole(file, text).map([&] { return sentence; });
 }
 
 Result<std::string> take_back(const fs::path& file, const IsUsable& is_usable) {

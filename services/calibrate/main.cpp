@@ -10,10 +10,10 @@
 #include "calib/board/board_pdf.hpp"
 #include "config/second_view.hpp"
 #include "config/settings/choice.hpp"
-#include "config/settings/files.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/calibrate/check.hpp"
 #include "services/calibrate/correct.hpp"
@@ -262,7 +262,7 @@ Result<int> check_installed(const Options& options, const config::Rig& rig,
 }
 
 Result<int> print_board(const Options& options) {
-  return config::write_whole(options.board_pdf, calib::board_pdf(options.board)).map([&] {
+  return write_whole(options.board_pdf, calib::board_pdf(options.board)).map([&] {
     fmt::print("{}: print it at true scale (100 %), and glue it on something flat\n",
                options.board_pdf.string());
     return kExitDone;

@@ -8,7 +8,7 @@
 
 #include "calib/board/board_name.hpp"
 #include "config/second_view.hpp"
-#include "config/settings/files.hpp"
+#include "ipc/base/write_whole.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -55,8 +55,7 @@ Result<RunningAs> run_with(const Options& options, calib::Calibration calibratio
   const auto file = std::filesystem::absolute(options.folder) / "rough.toml";
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
-  if (auto written = config::write_whole(file, calib::print_calibration(running.calibration));
-      !written)
+  if (auto written = write_whole(file, calib::print_calibration(running.calibration)); !written)
     return tl::make_unexpected(written.error());
   running.settings.push_back("calibration=" + file.string());
   return running;

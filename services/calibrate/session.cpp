@@ -10,6 +10,7 @@
 #include "calib/opencv_file.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "services/calibrate/kept_file.hpp"
 #include "services/calibrate/pieces.hpp"
 
@@ -155,8 +156,8 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
   for (const Step later : outdated_by(step)) forget(later);
   if (auto* made = made_of(draft_.made, step))
     *made = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
-  auto kept = config::write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
-  if (kept) kept = config::write_whole(file("draft.toml"), calib::print_calibration(draft_));
+  auto kept = write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
+  if (kept) kept = write_whole(file("draft.toml"), calib::print_calibration(draft_));
   return kept ? write_report() : kept;
 }
 
@@ -164,7 +165,7 @@ Result<void> Session::write_report() const {
   std::string pieces;
   for (const Step step : kSteps)
     if (const auto piece = config::read_text(piece_of(step))) pieces += *piece;
-  return config::write_whole(report(), report_html(rig_name_, draft_, pieces));
+  return write_whole(report(), report_html(rig_name_, draft_, pieces));
 }
 
 Result<std::string> Session::finish() const {
@@ -174,7 +175,7 @@ Result<std::string> Session::finish() const {
   const auto measured = without_guess(draft_, target_);
   auto sentence = write_and_keep(target_, calib::print_calibration(measured));
   if (!sentence) return sentence;
-  return config::write_whole(file("opencv.yml"), calib::print_opencv_file(measured)).map([&] {
+  return write_whole(file("opencv.yml"), calib::print_opencv_file(measured)).map([&] {
     return *sentence;
   });
 }

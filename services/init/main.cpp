@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "config/rig.hpp"
-#include "config/settings/files.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "services/devices/attached.hpp"
 #include "services/init/interview.hpp"
 #include "services/init/options.hpp"
@@ -34,13 +34,13 @@ Result<void> check_file(const Options& options) {
     return fail(Errc::bad_config, fmt::format("'{}' exists; --force replaces it, or name another "
                                               "file: handcast init FILE",
                                               options.file.string()));
-  return config::check_writable(options.file);
+  return check_writable(options.file);
 }
 
 Result<void> write(const Options& options, const std::string& text) {
   // The file may have come while a person answered.
   if (auto possible = check_file(options); !possible) return possible;
-  return config::write_whole(options.file, text);
+  return write_whole(options.file, text);
 }
 
 /// What is attached. The search for cameras takes a second, so it is left out where the answer is

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "config/settings/files.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "services/evaluation/twin/settings.hpp"
 #include "services/observer/judge.hpp"
@@ -23,7 +23,7 @@ static void save(const observer::LiveScore& scores, service::Context& context) {
   const auto folder = daemon::out_folder();
   if (!folder || scores.empty()) return;
   const auto written =
-      config::write_whole(*folder / "observer.json", scores.to_json().dump(2) + "\n");
+      write_whole(*folder / "observer.json", scores.to_json().dump(2) + "\n");
   if (!written) context.tolerate({Errc::bad_data, "observer: " + written.error().what});
 }
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/preview/shot.hpp"
 
-#include "config/settings/files.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "renderer/content/picture.hpp"
 #include "services/preview/rig_feed.hpp"
 
 namespace handcast::preview {
 
 Result<void> shoot(const Options& options) {
-  if (auto possible = config::check_writable(options.shot); !possible) return possible;
+  if (auto possible = check_writable(options.shot); !possible) return possible;
   auto feed = RigFeed::open(options.rig);
   if (!feed) return tl::make_unexpected(std::move(feed.error()));
   const auto end_ns = now_ns() + seconds_to_ns(options.after_s);

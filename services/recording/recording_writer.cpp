@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "ipc/base/write_whole.hpp"
 #include "services/recording/about.hpp"
 
 namespace handcast::recording {
@@ -24,19 +24,6 @@ Result<void> make_folder(const fs::path& folder) {
   if (!empty)
     return fail(Errc::bad_config,
                 fmt::format("{}: the folder is not empty; name a new one", folder.string()));
-  return {};
-}
-
-/// A reader never sees a part of the file.
-Result<void> write_text(const fs::path& file, const std::string& text) {
-  const auto part = fs::path(file.string() + ".part");
-  std::ofstream out(part, std::ios::binary);
-  out << text;
-  out.close();
-  std::error_code failed;
-  if (out) fs::rename(part, file, failed);
-  if (!out || failed)
-    return fail(Errc::unavailable, fmt::format("{}: cannot be written", file.string()));
   return {};
 }
 
@@ -63,12 +50,12 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& folder, const Ab
       return fail(Errc::bad_config,
                   fmt::format("a stream '{}' cannot be recorded: its messages are unknown", name));
   if (auto made = make_folder(folder); !made) return tl::make_unexpected(made.error());
-  if (auto kept = write_text(folder / "rig.toml", about.rig_file); !kept)
+  if (auto kept = write_whole(folder / "rig.toml", about.rig_file); !kept)
     return tl::make_unexpected(kept.error());
   if (!about.calibration.empty())
-    if (auto kept = write_text(folder / kCalibrationFile, about.calibration); !kept)
+    if (auto kept = write_whole(folder / kCalibrationFile, about.calibration); !kept)
       return tl::make_unexpected(kept.error());
-  if (auto said = write_text(folder / kAboutFile, about_text(about.rig, streams)); !said)
+  if (auto said = write_whole(folder / kAboutFile, about_text(about.rig, streams)); !said)
     return tl::make_unexpected(said.error());
   std::vector<Stream> all;
   for (const auto& name : streams) {
@@ -139,7 +126,7 @@ Result<void> RecordingWriter::finish(const std::string& reason,
                             {"bytes", stream.files.bytes()}};
   }
   const nlohmann::ordered_json summary{{"ended", reason}, {"streams", streams}};
-  return write_text(folder_ / "summary.json", summary.dump(2) + "\n");
+  return write_whole(folder_ / "summary.json", summary.dump(2) + "\n");
 }
 
 }  // namespace handcast::recording

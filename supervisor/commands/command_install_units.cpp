@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
 
 #include "config/rig.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
@@ -36,13 +36,9 @@ Result<std::string> user_of(const Options& options) {
 Result<void> write_unit(const std::filesystem::path& file, const std::string& text) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
-  std::ofstream out(file, std::ios::trunc);
-  out << text;
-  out.close();
-  if (!out)
-    return fail(Errc::unavailable, fmt::format("{} cannot be written{}", file.string(),
-                                               getuid() == 0 ? "" : "; `sudo` may help"));
-  return {};
+  auto written = write_whole(file, text);
+  if (!written && getuid() != 0) written.error().what += "; `sudo` may help";
+  return written;
 }
 
 void print_next_steps(const UnitSpec& spec) {

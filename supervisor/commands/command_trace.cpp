@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
-#include "ipc/base/output_file.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
@@ -32,12 +31,8 @@ int run_trace(const Arguments& given) {
   if (!history) return complain(history.error());
 
   const auto path = options->value("--out");
-  if (const auto possible = check_output(path); !possible) return complain(possible.error());
   const auto trace = perfetto_trace(*history, *rig, ClockReadings::now());
-  std::ofstream file(path, std::ios::binary);
-  file.write(trace.data(), static_cast<std::streamsize>(trace.size()));
-  file.close();
-  if (!file) return complain(kExitRetry, fmt::format("{} cannot be written", path));
+  if (const auto written = write_whole(path, trace); !written) return complain(written.error());
   fmt::print("{}: {} frames of {} services, {:.1f} MB; open it in https://ui.perfetto.dev\n", path,
              history->frames.size(), history->services.size(),
              static_cast<double>(trace.size()) * 1e-6);

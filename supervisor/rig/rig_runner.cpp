@@ -9,9 +9,9 @@
 #include <limits>
 #include <utility>
 
-#include "config/settings/files.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "supervisor/base/console.hpp"
@@ -29,7 +29,7 @@ constexpr std::int64_t kStoodStill_ns = 1'000'000'000;
 std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
 
 Result<void> write_report(const std::filesystem::path& folder, const nlohmann::json& report) {
-  return config::write_whole(folder / "live.json", report.dump(2) + "\n");
+  return write_whole(folder / "live.json", report.dump(2) + "\n");
 }
 
 }  // namespace

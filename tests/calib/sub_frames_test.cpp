@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "config/settings/files.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::calib {
@@ -52,7 +52,7 @@ TEST(SubFrames, AnOutputThatCannotBeHalvedIsRefused) {
   auto odd = reference_rig();
   odd.projector_height_px = 767;
   const auto file = scratch.path() / "odd.toml";
-  ASSERT_TRUE(config::write_whole(file, print_calibration(odd)));
+  ASSERT_TRUE(write_whole(file, print_calibration(odd)));
   EXPECT_TRUE(load_calibration(file, Packing::planes_24x1));
   const auto refused = load_calibration(file, Packing::quadrants_12);
   ASSERT_FALSE(refused);

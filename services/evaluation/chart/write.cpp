@@ -3,23 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
-#include "ipc/base/output_file.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "services/evaluation/chart/gnuplot.hpp"
 #include "services/evaluation/chart/svg.hpp"
 
 namespace handcast::chart {
 namespace {
-
-Result<void> write_file(const std::filesystem::path& file, const std::string& text) {
-  if (auto possible = check_output(file); !possible) return possible;
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) return fail(Errc::bad_config, fmt::format("{}: cannot be written", file.string()));
-  return {};
-}
 
 Result<std::vector<std::string>> draw(const std::vector<Chart>& charts,
                                       const std::string& gnuplot) {
@@ -38,9 +27,9 @@ Result<std::vector<std::string>> draw(const std::vector<Chart>& charts,
 
 Result<void> write_chart(const std::filesystem::path& folder, const Chart& chart,
                          const std::string& drawing) {
-  if (auto written = write_file(folder / (chart.name + ".svg"), drawing); !written) return written;
+  if (auto written = write_whole(folder / (chart.name + ".svg"), drawing); !written) return written;
   for (const auto& table : chart.tables)
-    if (auto written = write_file(folder / (table.name + ".csv"), to_csv(table)); !written)
+    if (auto written = write_whole(folder / (table.name + ".csv"), to_csv(table)); !written)
       return written;
   return {};
 }
@@ -68,7 +57,7 @@ Result<Written> write_charts(const Order& order) {
     if (!charts[i].script.empty())
       if (auto done = write_chart(order.folder, charts[i], (*drawings)[i]); !done)
         return tl::make_unexpected(done.error());
-  if (auto done = write_file(written.page, make_page(*results, charts, *drawings, order.imprint));
+  if (auto done = write_whole(written.page, make_page(*results, charts, *drawings, order.imprint));
       !done)
     return tl::make_unexpected(done.error());
   return written;

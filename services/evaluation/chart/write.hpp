@@ -24,8 +24,7 @@ struct Written {
 };
 
 /// Writes charts.html, and the SVG and the CSV files of each chart that can be drawn. Errors: those
-/// of read_results and run_gnuplot, bad_data (no chart can be drawn), bad_config (the folder cannot
-/// be written).
+/// of read_results and run_gnuplot, bad_data (no chart can be drawn), those of write_whole().
 Result<Written> write_charts(const Order& order);
 
 }  // namespace handcast::chart

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ipc/base/write_whole.hpp"
 #include "services/evaluation/report/report.hpp"
 
-#include "config/settings/files.hpp"
 
 namespace handcast::report {
 namespace fs = std::filesystem;
@@ -23,11 +23,11 @@ Result<Written> write_report(const fs::path& folder, const Imprint& imprint) {
   if (!inputs) return tl::make_unexpected(inputs.error());
   const Film film = make_film(*inputs, folder / "preview.mp4");
   if (auto written =
-          config::write_whole(folder / "metrics.json", gather_metrics(*inputs).dump(2) + "\n");
+          write_whole(folder / "metrics.json", gather_metrics(*inputs).dump(2) + "\n");
       !written)
     return tl::make_unexpected(written.error());
   const fs::path page = folder / "report.html";
-  if (auto written = config::write_whole(page, make_page(*inputs, film, imprint)); !written)
+  if (auto written = write_whole(page, make_page(*inputs, film, imprint)); !written)
     return tl::make_unexpected(written.error());
   return Written{page, faults_of(*inputs)};
 }

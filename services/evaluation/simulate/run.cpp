@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/sub_frames.hpp"
-#include "config/settings/files.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "services/evaluation/simulate/score.hpp"
 
 namespace handcast::simulate {
@@ -112,7 +112,7 @@ std::string fault_of(const nlohmann::json& json, const Options& options) {
 
 Result<std::string> run(const Options& options) {
   if (!options.json_file.empty())
-    if (auto writable = config::check_writable(options.json_file); !writable)
+    if (auto writable = check_writable(options.json_file); !writable)
       return tl::make_unexpected(writable.error());
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
@@ -126,7 +126,7 @@ Result<std::string> run(const Options& options) {
   if (!options.json_file.empty()) {
     // Paths and names in the metrics need not be UTF-8.
     const auto text = json->dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-    if (auto written = config::write_whole(options.json_file, text); !written)
+    if (auto written = write_whole(options.json_file, text); !written)
       return tl::make_unexpected(written.error());
   }
   return fault_of(*json, options);

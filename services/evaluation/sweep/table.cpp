@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "config/settings/files.hpp"
-#include "ipc/base/output_file.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 
@@ -210,18 +209,9 @@ Result<Table> read_table(const std::filesystem::path& file) {
 Result<void> write_table(const std::filesystem::path& file, const Table& table) {
   std::map<std::size_t, const Row*> newest;
   for (const auto& row : table.rows) newest[Table::index_of(row)] = &row;
-  auto beside = file;
-  beside += ".new";
-  if (auto possible = check_output(beside); !possible) return possible;
-  std::ofstream stream(beside, std::ios::binary);
-  stream << table.heading.print();
-  for (const auto& [index, row] : newest) stream << print_row(*row);
-  stream.close();
-  std::error_code failed;
-  if (stream) std::filesystem::rename(beside, file, failed);
-  if (!stream || failed)
-    return fail(Errc::bad_config, fmt::format("{}: cannot be written", file.string()));
-  return {};
+  std::string text = table.heading.print();
+  for (const auto& [index, row] : newest) text += print_row(*row);
+  return write_whole(file, text);
 }
 
 }  // namespace handcast::sweep

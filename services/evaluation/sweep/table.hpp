@@ -68,8 +68,7 @@ struct Table {
 /// Reads a file of results. Errors: bad_config (it cannot be read), bad_data (a line that is not of
 /// a sweep).
 Result<Table> read_table(const std::filesystem::path& file);
-/// Replaces a file atomically: the newest row of each run, ordered by run. Errors: bad_config (it
-/// cannot be written).
+/// Replaces a file: the newest row of each run, ordered by run. Errors: those of write_whole().
 Result<void> write_table(const std::filesystem::path& file, const Table& table);
 
 }  // namespace handcast::sweep
