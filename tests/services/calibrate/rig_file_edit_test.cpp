@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
+#include <iterator>
 
 #include "config/rig.hpp"
 #include "config/settings/files.hpp"
@@ -16,31 +18,6 @@ namespace {
 using testing::HasSubstr;
 
 const MeasuredSetting kLatency{"projector.latency_ms", "10.2"};
-
-TEST(RigFileEdit, TheLineOfASettingGetsTheValueAndKeepsItsComment) {
-  EXPECT_EQ(with_setting("# mine\n[camera]\nlatency_ms = 1\n[projector]\n  latency_ms=3 # old\n",
-                         kLatency),
-            "# mine\n[camera]\nlatency_ms = 1\n[projector]\n  latency_ms= 10.2  # old\n");
-}
-
-TEST(RigFileEdit, ASettingThatIsNotInItsSectionGetsALineThere) {
-  EXPECT_EQ(with_setting("[projector] # light\nrate_hz = 60\n[camera]\n", kLatency),
-            "[projector] # light\nlatency_ms = 10.2\nrate_hz = 60\n[camera]\n");
-}
-
-TEST(RigFileEdit, ASectionThatIsNotThereIsAdded) {
-  EXPECT_EQ(with_setting("name = \"a\"\n", kLatency),
-            "name = \"a\"\n\n[projector]\nlatency_ms = 10.2\n");
-}
-
-TEST(RigFileEdit, ADottedKeyAtTheTopIsFound) {
-  EXPECT_EQ(with_setting("projector.latency_ms = 3\n", kLatency), "projector.latency_ms = 10.2\n");
-}
-
-TEST(RigFileEdit, TheSectionOfABackEndIsAnotherOne) {
-  EXPECT_EQ(with_setting("[projector.kms]\nlatency_ms = 3\n", kLatency),
-            "[projector.kms]\nlatency_ms = 3\n\n[projector]\nlatency_ms = 10.2\n");
-}
 
 class AppliedSettings : public testing::Test {
  protected:
@@ -76,6 +53,52 @@ TEST_F(AppliedSettings, AFileThatWouldBeInvalidStaysAsItWas) {
   ASSERT_FALSE(applied);
   EXPECT_THAT(applied.error().what, HasSubstr("latency_ms"));
   EXPECT_EQ(*config::read_text(file_), "name = \"mine\"\n");
+}
+
+TEST_F(AppliedSettings, AreWrittenIntoTheFormsThatThePersonUses) {
+  write("name = \"mine\"\r\nprojector = { rate_hz = 60 } # bright\r\n");
+  const std::vector<MeasuredSetting> settings{kLatency, {"projector.gamma", "1.80"}};
+  const auto applied = apply_settings(file_, settings);
+  ASSERT_TRUE(applied) << applied.error().what;
+  EXPECT_EQ(*config::read_text(file_),
+            "name = \"mine\"\r\nprojector = { rate_hz = 60, latency_ms = 10.2, gamma = 1.80 } # "
+            "bright\r\n");
+}
+
+TEST_F(AppliedSettings, EachRigOfTheProjectTakesThem) {
+  const std::vector<MeasuredSetting> settings{kLatency, {"projector.gamma", "1.80"}};
+  int rigs = 0;
+  const char* source = std::getenv("HANDCAST_SOURCE");
+  const auto folder = std::filesystem::path(source ? source : ".") / "config/rigs";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    ++rigs;
+    const auto before = *config::read_text(entry.path());
+    write(before);
+    const auto applied = apply_settings(file_, settings);
+    ASSERT_TRUE(applied) << applied.error().what;
+    const auto rig = config::load_rig(file_, {});
+    ASSERT_TRUE(rig) << rig.error().what;
+    EXPECT_EQ(rig->projector.latency_ms, 10.2);
+    EXPECT_EQ(rig->projector.gamma, 1.8);
+  }
+  EXPECT_GE(rigs, 6);
+}
+
+TEST_F(AppliedSettings, ThoseThatAreThereAlreadyLeaveTheFileAlone) {
+  write("[projector]\nlatency_ms = 10.2\n");
+  const std::vector<MeasuredSetting> settings{kLatency};
+  ASSERT_TRUE(apply_settings(file_, settings));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_.path()), {}), 1);
+}
+
+TEST_F(AppliedSettings, LeaveThePersonsFilesBesideItAlone) {
+  write("name = \"mine\"\n");
+  for (const char* name : {"rig.toml.new.toml", "rig.toml.tmp"})
+    std::ofstream(scratch_.path() / name) << "my own";
+  const std::vector<MeasuredSetting> settings{kLatency};
+  ASSERT_TRUE(apply_settings(file_, settings));
+  for (const char* name : {"rig.toml.new.toml", "rig.toml.tmp"})
+    EXPECT_EQ(*config::read_text(scratch_.path() / name), "my own");
 }
 
 }  // namespace
