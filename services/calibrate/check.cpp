@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/number_text.hpp"
 #include "services/calibrate/screen_views.hpp"
 
 namespace handcast::calibrate {
@@ -43,6 +44,19 @@ Off off_of(const calib::Calibration& used, const calib::DepthView& view) {
   return {median(off_px), median(depths_m), {median(right_px), median(down_px)}};
 }
 
+/// "0.3 px to the left, 1.2 px down", for what does not round to zero.
+std::string direction_of(const glm::dvec2& shift_px) {
+  const auto part = [](double px, const char* forward, const char* backward) {
+    const auto length = number_text(std::abs(px), 1);
+    return length == "0.0" ? std::string()
+                           : fmt::format("{} px {}", length, px > 0 ? forward : backward);
+  };
+  const auto across = part(shift_px.x, "to the right", "to the left"),
+             along = part(shift_px.y, "down", "up");
+  if (across.empty() && along.empty()) return "to no side";
+  return across + (across.empty() || along.empty() ? "" : ", ") + along;
+}
+
 }  // namespace
 
 Result<Outcome> check_screen(Desk& desk) {
@@ -61,11 +75,9 @@ Result<Outcome> check_screen(Desk& desk) {
     return fail(Errc::bad_data, "the board was never still in the projector's light");
   const auto off = off_of(desk.used, views->front());
   const double off_mm = off.median_px * desk.used.mm_per_projector_px(off.depth_m);
-  Outcome outcome{
-      fmt::format("at {:.2f} m the light is off by {:.1f} px ({:.1f} mm): {:+.1f} px to "
-                  "the right, {:+.1f} px down",
-                  off.depth_m, off.median_px, off_mm, off.shift_px.x, off.shift_px.y),
-      off.median_px <= kGood_px};
+  Outcome outcome{fmt::format("at {:.2f} m the light is off by {:.1f} px ({:.1f} mm): {}",
+                              off.depth_m, off.median_px, off_mm, direction_of(off.shift_px)),
+                  off.median_px <= kGood_px};
   if (!outcome.is_good)
     outcome.findings.push_back(
         "camera or projector have moved since they were calibrated: measure the step `screen` "

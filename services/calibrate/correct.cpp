@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "calib/drift/correction.hpp"
 #include "ipc/client/stream.hpp"
@@ -38,13 +39,23 @@ bool pressed_enter(Keys& keys) {
   return is_pressed;
 }
 
-/// Watches hands until the drift is known, Enter is pressed or the time is over.
-Result<calib::Drift> watch(const Options& options, const config::Rig& rig,
-                           const calib::Calibration& used, Keys& keys) {
+/// What a rig that is up says of hands.
+struct Streams {
+  client::Stream<msg::HandPoses> poses;
+  client::Stream<msg::Landmarks> landmarks;
+};
+
+Result<Streams> open_streams(const config::Rig& rig) {
   auto poses = client::open_stream<msg::HandPoses>(rig.name, "pose.hands");
   if (!poses) return tl::make_unexpected(poses.error());
   auto landmarks = client::open_stream<msg::Landmarks>(rig.name, "landmarks.hands");
   if (!landmarks) return tl::make_unexpected(landmarks.error());
+  return Streams{std::move(*poses), std::move(*landmarks)};
+}
+
+/// Watches hands until the drift is known, Enter is pressed or the time is over.
+Result<calib::Drift> watch(const Options& options, const config::Rig& rig,
+                           const calib::Calibration& used, Streams& streams, Keys& keys) {
   auto settings = rig.pose.drift;
   settings.watch = config::DriftWatch::always;
   pose::CalibrationWatch watch(settings, used);
@@ -52,10 +63,10 @@ Result<calib::Drift> watch(const Options& options, const config::Rig& rig,
   std::int64_t printed_ns = 0;
   while (!is_known(watch.drift()) && !end.passed() && !pressed_enter(keys)) {
     if (auto on = not_stopped(); !on) return tl::make_unexpected(on.error());
-    const auto seen = landmarks->next(Deadline::in(200ms));
+    const auto seen = streams.landmarks.next(Deadline::in(200ms));
     if (seen) watch.see(**seen);
     if (!seen && seen.error().code != Errc::timeout) return tl::make_unexpected(seen.error());
-    while (const auto sample = poses->next(Deadline::now())) watch.see(**sample);
+    while (const auto sample = streams.poses.next(Deadline::now())) watch.see(**sample);
     if (now_ns() - printed_ns < kPrintEvery_ns) continue;
     printed_ns = now_ns();
     fmt::print(stderr, "  {} of {} places: {}\n", watch.drift().places, kEnough,
@@ -94,11 +105,15 @@ Result<void> check_file(const config::Rig& rig) {
 Result<void> correct_tracker(const Options& options, const config::Rig& rig,
                              const calib::Calibration& used) {
   if (auto has_file = check_file(rig); !has_file) return has_file;
+  auto streams = open_streams(rig);
+  if (!streams)
+    return fail_in("--correct watches hands of a rig that is up: start it with `handcast up`",
+                   streams.error());
   fmt::print(stderr,
              "Hold an open hand still for a second; then at another place, turned otherwise, and "
              "so on, everywhere in the volume. Enter ends it.\n");
   Keys keys;
-  const auto drift = watch(options, rig, used, keys);
+  const auto drift = watch(options, rig, used, *streams, keys);
   if (!drift) return tl::make_unexpected(drift.error());
   auto corrected = used;
   const auto place = calib::corrected(used, *drift);

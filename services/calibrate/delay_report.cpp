@@ -6,14 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/number_text.hpp"
+
 namespace handcast::calibrate {
 namespace {
 
 constexpr double kNoticeable_ms = 0.3, kMuchUnseen_ms = 1;
 
 std::string measured(const calib::LightDelay& delay) {
-  return fmt::format("{:+.1f} ms ({:+.1f} to {:+.1f}, 95 %)", delay.delay_ms, delay.low_ms,
-                     delay.high_ms);
+  return fmt::format("{} ms ({} to {}, 95 %)", signed_text(delay.delay_ms, 1),
+                     signed_text(delay.low_ms, 1), signed_text(delay.high_ms, 1));
 }
 
 }  // namespace

@@ -38,6 +38,11 @@ void Progress::say(double share, const std::string& advice) {
              advice, is_terminal_ ? "\033[K" : "\n");
 }
 
+void Progress::note(const std::string& sentence) {
+  fmt::print(stderr, "{}  - {}\n", is_terminal_ ? "\r\033[K" : "", sentence);
+  printed_ns_ = 0;
+}
+
 Result<bool> Progress::goes_on() {
   if (auto runs = desk_.own_rig.check(); !runs) return tl::make_unexpected(runs.error());
   bool is_ended = end_.passed();

@@ -39,6 +39,8 @@ class Progress {
   void show(double share, const std::string& advice);
   /// The same in the terminal alone, while the projector shows something else.
   void say(double share, const std::string& advice);
+  /// A sentence on a line of its own in the terminal.
+  void note(const std::string& sentence);
   /// False if the step must end: Enter was pressed or its time is over. Looks after the rig.
   Result<bool> goes_on();
 

@@ -79,7 +79,7 @@ Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> 
   for (std::size_t i = 0; i < fit.views.size(); ++i)
     if (!fit.views[i].rejected.empty())
       outcome.findings.push_back(
-          fmt::format("image {} was left out: {}", i + 1, fit.views[i].rejected));
+          fmt::format("image {} was left out. {}", i + 1, fit.views[i].rejected));
   outcome.is_good = fit.held_out_px <= kGood_px && focal_error <= kGoodFocal;
   if (!outcome.is_good)
     outcome.findings.insert(outcome.findings.begin(),

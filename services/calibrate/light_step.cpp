@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "ipc/base/number_text.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "services/calibrate/delay_report.hpp"
@@ -100,10 +101,10 @@ Result<HandLight> watch(Desk& desk) {
 std::string made_of(const HandLight& light) {
   return fmt::format(
       "grey values of {} images: hand {}, finger tips {}, background {}; the projector's light "
-      "adds "
-      "{:.0f} to the hand; the hand's brightness varies by {:.1f} %",
+      "adds {} to the hand; the hand's brightness varies by {:.1f} %",
       light.images(), light.hand().percentile(0.5), light.tips().percentile(0.5),
-      light.background().percentile(0.5), std::max(0.0, light.leak()), 100 * light.flicker());
+      light.background().percentile(0.5), number_text(std::max(0.0, light.leak()), 0),
+      100 * light.flicker());
 }
 
 }  // namespace

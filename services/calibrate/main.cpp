@@ -160,18 +160,22 @@ Result<void> hand_over(const Options& options, std::span<const MeasuredSetting> 
   }
   fmt::print("settings for {}{}:\n", options.rig_file.string(),
              options.apply ? "" : ", which --apply writes there");
-  for (const auto& setting : settings) fmt::print("  {} = {}\n", setting.path, setting.value);
+  for (const auto& setting : settings) fmt::print("  {} = {}\n", setting.path, as_toml(setting));
   return applied;
 }
 
-/// Puts the calibration in its place.
-Result<void> finish(const Options& options, const config::Rig& rig, const Session& session) {
+/// Puts the calibration in its place. If the rig file does not name it yet, its name becomes one of
+/// the settings, relative to the rig file where that is short.
+Result<void> finish(const Options& options, const config::Rig& rig, const Session& session,
+                    std::vector<MeasuredSetting>& settings) {
   const auto finished = session.finish();
   if (!finished) return tl::make_unexpected(finished.error());
   fmt::print("{}\n", *finished);
-  if (std::filesystem::path(rig.calibration) != session.target())
-    fmt::print("name it in {}, above the first section:\n  calibration = \"{}\"\n",
-               options.rig_file.string(), session.target().filename().string());
+  if (std::filesystem::path(rig.calibration) == session.target()) return {};
+  const auto folder = std::filesystem::absolute(options.rig_file).parent_path();
+  const auto name =
+      session.target().parent_path() == folder ? session.target().filename() : session.target();
+  settings.insert(settings.begin(), {"calibration", name.string()});
   return {};
 }
 
@@ -206,7 +210,7 @@ Result<int> measure_all(const Options& options, const config::Rig& rig, const Ru
   }
   fmt::print("the report is {}\n", session.report().string());
   if (is_calibrated)
-    if (auto finished = finish(options, rig, session); !finished)
+    if (auto finished = finish(options, rig, session, settings); !finished)
       return tl::make_unexpected(finished.error());
   return hand_over(options, settings).map([] { return kExitDone; });
 }

@@ -43,7 +43,12 @@ Result<Size> parse_size(const std::string& flag, const std::string& text) {
 Result<void> check(const Options& options) {
   if (!options.board_pdf.empty()) return {};
   if (options.rig_file.empty())
-    return fail(Errc::bad_config, "name the rig file: handcast calibrate RIG.toml");
+    return fail(Errc::bad_config, fmt::format("name the rig file: handcast calibrate RIG.toml{}",
+                                              options.check             ? " --check"
+                                              : options.correct         ? " --correct"
+                                              : options.undo            ? " --undo"
+                                              : !options.points.empty() ? " --points FOLDER"
+                                                                        : ""));
   const int alone =
       int{options.check} + int{options.correct} + int{options.undo} + int{!options.points.empty()};
   if (alone > 1)
@@ -83,9 +88,11 @@ Result<Options> parse(int argc, char** argv) {
   const auto* most_s = app.add_option("--most-s", options.most_s, "How long a step may take")
                            ->check(CLI::Range(5, 3600))
                            ->capture_default_str();
-  app.add_flag("--apply", options.apply,
-               "Writes the settings that were measured (projector.latency_ms, projector.gamma) to "
-               "the rig file; the old file is kept");
+  app.add_flag(
+      "--apply", options.apply,
+      "Writes the settings that were measured (projector.latency_ms, projector.gamma), and "
+      "the name of a new calibration file, to the rig file, in which all else stays as it "
+      "is; the old file is kept");
   app.add_option("--photodiode", options.photodiode,
                  "An ALSA capture device with a photodiode in the projector's light: the step "
                  "light measures with it when the light comes, for a camera that does not see it");

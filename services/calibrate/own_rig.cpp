@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <fstream>
+#include <string_view>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -95,13 +96,16 @@ Result<void> OwnRig::wait_for_images(const std::string& name) {
                                          kLongest.count(), log_.string()));
 }
 
-/// The last line of the log that is not empty.
+/// Why the rig ended, as it says itself; else the last line of its log that is not empty.
 std::string OwnRig::last_words() const {
+  constexpr std::string_view kReason = "handcast: ";
   std::ifstream file(log_);
-  std::string line, last = "it said nothing";
-  while (std::getline(file, line))
+  std::string line, last = "it said nothing", reason;
+  while (std::getline(file, line)) {
+    if (line.starts_with(kReason)) reason = line.substr(kReason.size());
     if (!line.empty()) last = line;
-  return last;
+  }
+  return reason.empty() ? last : reason;
 }
 
 }  // namespace handcast::calibrate

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/number_text.hpp"
 #include "services/evaluation/twin/npy.hpp"
 
 namespace handcast::calibrate {
@@ -100,14 +101,14 @@ std::vector<std::string> describe_points(const calib::TrackerFit& fit) {
                   "{:.1f} px.",
                   word_of(fit.quality), 100 * fit.inlier_share, fit.inliers.median_px,
                   fit.held_out.median_px),
-      fmt::format("They allow a camera at ({:.1f}, {:.1f}, {:.1f}) mm of the tracker, +-{:.1f} mm "
+      fmt::format("They allow a camera at ({}, {}, {}) mm of the tracker, +-{:.1f} mm "
                   "to the right, +-{:.1f} mm down and +-{:.1f} mm forward (95 %).",
-                  place_mm.x, place_mm.y, place_mm.z, spread[0].high, spread[1].high,
-                  spread[2].high),
+                  number_text(place_mm.x, 1), number_text(place_mm.y, 1),
+                  number_text(place_mm.z, 1), spread[0].high, spread[1].high, spread[2].high),
       fmt::format("Its rotation is known to +-{:.2f}, +-{:.2f} and +-{:.2f} degrees, the offset of "
-                  "the clocks ({:+.1f} ms) to +-{:.1f} ms.",
-                  turn[0].high, turn[1].high, turn[2].high, ns_to_ms(fit.clock_offset_ns),
-                  fit.clock_offset_ms.high)};
+                  "the clocks ({} ms) to +-{:.1f} ms.",
+                  turn[0].high, turn[1].high, turn[2].high,
+                  signed_text(ns_to_ms(fit.clock_offset_ns), 1), fit.clock_offset_ms.high)};
   lines.insert(lines.end(), fit.findings.begin(), fit.findings.end());
   return lines;
 }

@@ -12,27 +12,36 @@
 namespace handcast::calibrate {
 namespace {
 
+/// As --set takes it: relative paths start elsewhere there.
+std::string as_assignment(const MeasuredSetting& setting, const std::filesystem::path& rig_file) {
+  const auto value =
+      config::names_a_file(setting.path)
+          ? (std::filesystem::absolute(rig_file).parent_path() / setting.value).string()
+          : setting.value;
+  return fmt::format("{}={}", setting.path, value);
+}
+
 void say_nothing(const std::string& /*renamed*/) {}
 
 /// The new text must be the rig that the old one is with --set: also where a file has a setting in
 /// an old form.
 Result<void> check_edit(const std::filesystem::path& rig_file, const std::string& before,
                         const std::string& after, const MeasuredSetting& setting) {
-  const auto expected = config::parse_rig(
-      before, rig_file, {fmt::format("{}={}", setting.path, setting.value)}, say_nothing);
+  const auto expected =
+      config::parse_rig(before, rig_file, {as_assignment(setting, rig_file)}, say_nothing);
   if (!expected) return tl::make_unexpected(expected.error());
   const auto rig = config::parse_rig(after, rig_file, {}, say_nothing);
   if (!rig) return tl::make_unexpected(rig.error());
   if (config::print_rig(*rig) == config::print_rig(*expected)) return {};
   return fail(Errc::bad_config,
               fmt::format("{}: more than {} would change; write by hand: {} = {}",
-                          rig_file.string(), setting.path, setting.path, setting.value));
+                          rig_file.string(), setting.path, setting.path, as_toml(setting)));
 }
 
 Result<std::string> edited(const std::filesystem::path& rig_file, std::string text,
                            std::span<const MeasuredSetting> settings) {
   for (const auto& setting : settings) {
-    auto after = config::with_value(text, setting.path, setting.value, rig_file.string());
+    auto after = config::with_value(text, setting.path, as_toml(setting), rig_file.string());
     if (!after) return after;
     if (auto good = check_edit(rig_file, text, *after, setting); !good)
       return tl::make_unexpected(good.error());
@@ -42,6 +51,16 @@ Result<std::string> edited(const std::filesystem::path& rig_file, std::string te
 }
 
 }  // namespace
+
+std::string as_toml(const MeasuredSetting& setting) {
+  if (!config::names_a_file(setting.path)) return setting.value;
+  std::string quoted = "\"";
+  for (const char c : setting.value) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
 
 Result<std::string> apply_settings(const std::filesystem::path& rig_file,
                                    std::span<const MeasuredSetting> settings) {

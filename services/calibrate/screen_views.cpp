@@ -41,19 +41,20 @@ ScreenViews::ScreenViews(Desk& desk, client::Stream<msg::CameraFrame> frames,
 
 Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
   std::vector<calib::DepthView> views;
-  Progress progress(desk_, "screen");
+  progress_.emplace(desk_, "screen");
+  of_each_ = 1 / static_cast<double>(wanted);
   std::string advice = "Hold the board still in the light";
   while (views.size() < wanted) {
-    if (const auto on = progress.goes_on(); !on || !*on) {
+    if (const auto on = progress_->goes_on(); !on || !*on) {
       if (!on) return tl::make_unexpected(on.error());
       break;
     }
-    progress.show(static_cast<double>(views.size()) / static_cast<double>(wanted), advice);
+    begun_ = of_each_ * static_cast<double>(views.size());
+    progress_->show(begun_, advice);
     const auto ready = is_ready();
     if (!ready) return tl::make_unexpected(ready.error());
     if (!*ready) continue;
-    auto view = measure();
-    if (!view && view.error().code == Errc::bad_data) view = measure();
+    auto view = measure_twice();
     if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
     if (!view) {
       advice = view.error().what;
@@ -65,7 +66,16 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
         "Now hold it nearer or farther, tilted, and more to the {} of the camera's image",
         seen_.emptiest());
   }
+  progress_.reset();
   return views;
+}
+
+/// All patterns once more if they could not be read.
+Result<calib::DepthView> ScreenViews::measure_twice() {
+  auto view = measure();
+  if (view || view.error().code != Errc::bad_data) return view;
+  progress_->note(fmt::format("{}; all patterns are shown again", view.error().what));
+  return measure();
 }
 
 /// True if the next image has the board, still and at a new place.
@@ -88,7 +98,13 @@ calib::GreyView ScreenViews::view_of(const PatternImages::Image& image) const {
 void ScreenViews::repeat(int pattern, const std::string& why) {
   ++repeated_;
   why_repeated_ = fmt::format("pattern {} of {}: {}", pattern + 1, code_.patterns(), why);
-  fmt::print(stderr, "\n  {}; it is shown again\n", why_repeated_);
+  progress_->note(why_repeated_ + "; it is shown again");
+}
+
+/// While the projector shows patterns, and no text.
+void ScreenViews::say_pattern(int pattern) {
+  const double shown = static_cast<double>(pattern) / code_.patterns();
+  progress_->say(begun_ + of_each_ * shown, "Hold still while the patterns are shown");
 }
 
 /// Shows a pattern, several times if its image does not come.
@@ -115,12 +131,15 @@ Result<void> ScreenViews::shoot_pair(int pattern, std::vector<PatternImages::Ima
       images.push_back(std::move(*inverse));
       return {};
     }
-    const auto why = fmt::format(
-        "its image and that of its inverse are off by {:.0f} % of the "
-        "light: the board moved, or the light flickers",
-        100 * misfit);
-    if (tries == kTries) return fail(Errc::bad_data, why);
-    repeat(pattern, why);
+    if (tries == kTries)
+      return fail(Errc::bad_data,
+                  fmt::format("Pattern {} of {} did not come out in {} tries: the board moved, or "
+                              "the light flickers; hold it still",
+                              pattern + 1, code_.patterns(), kTries));
+    repeat(pattern,
+           fmt::format("the board moved, or the light flickers (off by {:.1f} times the light, at "
+                       "most {:.1f})",
+                       misfit, calib::kMostPatternMisfit));
   }
 }
 
@@ -132,8 +151,10 @@ Result<std::vector<PatternImages::Image>> ScreenViews::shoot() {
     if (!image) return tl::make_unexpected(image.error());
     images.push_back(std::move(*image));
   }
-  for (int pattern = 2; pattern < code_.patterns(); pattern += 2)
+  for (int pattern = 2; pattern < code_.patterns(); pattern += 2) {
+    say_pattern(pattern);
     if (auto pair = shoot_pair(pattern, images); !pair) return tl::make_unexpected(pair.error());
+  }
   auto image = shoot_one(0);
   if (!image) return tl::make_unexpected(image.error());
   images.push_back(std::move(*image));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,10 +42,12 @@ class ScreenViews {
 
  private:
   Result<bool> is_ready();
+  Result<calib::DepthView> measure_twice();
   Result<PatternImages::Image> shoot_one(int pattern);
   Result<void> shoot_pair(int pattern, std::vector<PatternImages::Image>& images);
   Result<std::vector<PatternImages::Image>> shoot();
   void repeat(int pattern, const std::string& why);
+  void say_pattern(int pattern);
   calib::GreyView view_of(const PatternImages::Image& image) const;
   Result<calib::DepthView> measure();
   void darken_beside(const glm::dmat4& camera_from_board,
@@ -58,6 +61,8 @@ class ScreenViews {
   calib::AutoCapture capture_;
   calib::ImageFields seen_;
   LightSeen light_;
+  std::optional<Progress> progress_;  ///< of take()
+  double begun_ = 0, of_each_ = 1;    ///< share of the views that are there, and of each one
   int repeated_ = 0;
   std::string why_repeated_;
 };

@@ -14,7 +14,7 @@ namespace handcast::calibrate {
 /// A setting of the rig file that was measured.
 struct MeasuredSetting {
   std::string path;   ///< "projector.latency_ms"
-  std::string value;  ///< as --set takes it
+  std::string value;  ///< as --set takes it; a file relative to the rig file
 };
 
 /// What a step has found out.

@@ -8,6 +8,7 @@
 
 #include "calib/tracker/fit_tracker.hpp"
 #include "calib/tracker/volume_coverage.hpp"
+#include "ipc/base/number_text.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "services/calibrate/harvest.hpp"
@@ -123,9 +124,9 @@ Result<calib::TrackerFit> fit(Desk& desk) {
 std::string made_of(const calib::TrackerFit& fit) {
   return fmt::format(
       "{:.1f} px held out, {:.0f} % of the points fit, light repeatable within {:.1f} mm, clock "
-      "{:+.1f} ms",
+      "{} ms",
       fit.held_out.median_px, 100 * fit.inlier_share, 2 * fit.place_errors.front().light_mm,
-      1e-6 * static_cast<double>(fit.clock_offset_ns));
+      signed_text(ns_to_ms(fit.clock_offset_ns), 1));
 }
 
 }  // namespace

@@ -84,6 +84,16 @@ TEST_F(AppliedSettings, EachRigOfTheProjectTakesThem) {
   EXPECT_GE(rigs, 6);
 }
 
+TEST_F(AppliedSettings, TheNameOfACalibrationIsWrittenAboveTheFirstSection) {
+  write("# mine\n[camera]\nrate_hz = 100\n");
+  const std::vector<MeasuredSetting> settings{{"calibration", R"(rig "2"\.toml)"}, kLatency};
+  const auto applied = apply_settings(file_, settings);
+  ASSERT_TRUE(applied) << applied.error().what;
+  EXPECT_EQ(config::load_rig(file_, {})->calibration, scratch_.path() / R"(rig "2"\.toml)");
+  EXPECT_TRUE(config::read_text(file_)->ends_with(
+      "# mine\n[camera]\nrate_hz = 100\n\n[projector]\nlatency_ms = 10.2\n"));
+}
+
 TEST_F(AppliedSettings, ThoseThatAreThereAlreadyLeaveTheFileAlone) {
   write("[projector]\nlatency_ms = 10.2\n");
   const std::vector<MeasuredSetting> settings{kLatency};
