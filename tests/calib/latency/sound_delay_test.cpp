@@ -16,15 +16,16 @@ std::int64_t ns(double ms) { return static_cast<std::int64_t>(ms * 1e6); }
 
 /// What an input without a constant voltage records of a light that toggles.
 struct Recording {
-  explicit Recording(double delay_ms, float size = 0.1f, float noise = 0.002f, int seed = 1) {
+  explicit Recording(double delay_ms, float size = 0.1f, float noise = 0.002f, int seed = 1,
+                     double least_ms = 240, double most_ms = 260) {
     constexpr double kRate_hz = 48000, kLowest_hz = 5, kSeconds = 6;
     std::mt19937 random(static_cast<unsigned>(seed));
     std::normal_distribution<float> hiss(0, noise);
-    std::uniform_real_distribution<double> some(0, 20);
+    std::uniform_real_distribution<double> some(least_ms, most_ms);
     double at_ms = 1000;
     while (at_ms < 5000) {
       toggles.push_back({ns(at_ms), toggles.size() % 2 == 0});
-      at_ms += 240 + some(random);
+      at_ms += some(random);
     }
     clip.first_ns = 0;
     clip.period_ns = 1e9 / kRate_hz;
@@ -81,13 +82,43 @@ TEST(SoundDelay, APhotodiodeInTheDarkIsTold) {
   EXPECT_THAT(found.error().what, HasSubstr("does not see the light"));
 }
 
+/// Another lamp that flickers fast: there is a step of either direction near each change of the
+/// light, only at no certain time.
 TEST(SoundDelay, StepsWithoutAnyRelationToTheLightAreTold) {
-  Recording recording(7), other(7, 0.1f, 0.002f, 9);
-  for (std::size_t i = 0; i < other.toggles.size(); ++i)
-    other.toggles[i].begin_ns =
-        ns(1000 + 240.0 * static_cast<double>(i) + static_cast<double>(i * i % 7) * 40);
-  const auto found = fit_sound_delay(other.toggles, recording.clip);
-  ASSERT_FALSE(found);
+  for (int seed = 1; seed <= 20; ++seed) {
+    const Recording light(7, 0.1f, 0.002f, seed);
+    const Recording lamp(0, 0.1f, 0.002f, seed + 100, 30, 90);
+    const auto found = fit_sound_delay(light.toggles, lamp.clip);
+    ASSERT_FALSE(found) << "seed " << seed << ": " << found->delay_ms << " ms";
+    EXPECT_EQ(found.error().code, Errc::bad_data);
+    EXPECT_THAT(found.error().what, HasSubstr("ms apart from each other")) << "seed " << seed;
+  }
+}
+
+/// As slow as the light itself: half of its changes have no step.
+TEST(SoundDelay, ALampAsSlowAsTheLightIsNotTakenForIt) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    const Recording light(7, 0.1f, 0.002f, seed);
+    const Recording lamp(0, 0.1f, 0.002f, seed + 100, 150, 400);
+    const auto found = fit_sound_delay(light.toggles, lamp.clip);
+    ASSERT_FALSE(found) << "seed " << seed << ": " << found->delay_ms << " ms";
+    EXPECT_EQ(found.error().code, Errc::bad_data);
+  }
+}
+
+/// The middle of errors of 4 ms is known; with errors of 15 ms there is nothing to be known.
+TEST(SoundDelay, StepsAtUncertainTimesAreTakenUpToFiveMilliseconds) {
+  for (const double scatter_ms : {4.0, 15.0}) {
+    Recording recording(20);
+    for (std::size_t i = 0; i < recording.toggles.size(); ++i)
+      recording.toggles[i].begin_ns += ns(scatter_ms * (static_cast<double>(i / 2 % 3) - 1));
+    const auto found = fit_sound_delay(recording.toggles, recording.clip);
+    EXPECT_EQ(found.has_value(), scatter_ms < 5);
+    if (found)
+      EXPECT_LE(found->high_ms - found->low_ms, 2 * scatter_ms + 0.2);
+    else
+      EXPECT_THAT(found.error().what, HasSubstr("ms apart from each other"));
+  }
 }
 
 TEST(SoundDelay, AClipThatIsTooShortIsTold) {
