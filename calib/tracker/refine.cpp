@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
 #include <set>
 
 #include "calib/tracker/first_pose.hpp"
@@ -223,6 +224,25 @@ std::vector<Normal> normals_by_time(const Observations& o, const Refined& refine
     normals[bin].gradient += normal.gradient;
   }
   return normals;
+}
+
+std::array<std::vector<Measured>, 3> common_errors(const Observations& o, const Refined& refined) {
+  std::array<std::vector<Measured>, 3> errors;
+  if (refined.wander_m == 0) return errors;
+  for (const auto& moment : moments_of(o, refined, kTukey * refined.scale)) {
+    const Eigen::LDLT<Eigen::Matrix3d> solver(moment.normal.curvature.block<3, 3>(3, 3));
+    const bool is_known = solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 0;
+    const Eigen::Matrix3d covariance =
+        is_known
+            ? Eigen::Matrix3d(solver.solve(Eigen::Matrix3d::Identity()))
+            : Eigen::Matrix3d(Eigen::Matrix3d::Constant(std::numeric_limits<double>::infinity()));
+    const Eigen::Vector3d shift =
+        is_known ? Eigen::Vector3d(covariance * moment.normal.gradient.segment<3>(3))
+                 : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    for (int axis = 0; axis < 3; ++axis)
+      errors[static_cast<std::size_t>(axis)].push_back({shift[axis], covariance(axis, axis)});
+  }
+  return errors;
 }
 
 }  // namespace handcast::calib

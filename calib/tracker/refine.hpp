@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
+#include "calib/tracker/lasting.hpp"
 #include "calib/tracker/observations.hpp"
 
 namespace handcast::calib {
@@ -57,5 +59,11 @@ struct Normal {
 /// Of each `bin_s` of time. Their sum has no gradient at the solution.
 std::vector<Normal> normals_by_time(const Observations& observations, const Refined& refined,
                                     double bin_s);
+
+/// The tracker's common error as the sightings of each kWander_s show it by themselves: right,
+/// down, forward of the camera, in metres, relative to its mean. Empty if fewer than four points
+/// were seen.
+std::array<std::vector<Measured>, 3> common_errors(const Observations& observations,
+                                                   const Refined& refined);
 
 }  // namespace handcast::calib

@@ -67,14 +67,6 @@ Curvature bootstrap(const std::vector<Normal>& normals) {
   return covariance * static_cast<double>(blocks) / static_cast<double>(blocks - 1);
 }
 
-/// What the blocks do not see: the tracker's common error outlasts them, and its mean over a short
-/// recording is a shift of the pose. Its variance, if the correlation falls to 1/e in kLasting_s.
-double lasting_error_m2(const Observations& o, const Refined& refined) {
-  constexpr double kLasting_s = 1.5;
-  const double time_s = o.sightings.back().time_s - o.sightings.front().time_s;
-  return refined.wander_m * refined.wander_m * std::min(1., 2 * kLasting_s / time_s);
-}
-
 }  // namespace
 
 Interval Uncertainty::spread(int unknown, double factor) const {
@@ -99,7 +91,11 @@ Uncertainty uncertainty_of(const Observations& o, const Refined& refined) {
   const auto normals = normals_by_time(o, refined, kBin_s);
   Uncertainty uncertainty;
   uncertainty.covariance = bootstrap(normals);
-  uncertainty.covariance.diagonal().segment<3>(3).array() += lasting_error_m2(o, refined);
+  // What the blocks do not see: the tracker's common error outlasts them, and its mean over a short
+  // recording is a shift of the pose.
+  uncertainty.covariance.diagonal().segment<3>(3).array() +=
+      variance_of_mean(common_errors(o, refined), kWander_s,
+                       kBin_s * static_cast<double>(block_length(normals.size())));
   const std::size_t blocks = normals.size() / block_length(normals.size());
   uncertainty.width = students_t(static_cast<double>(blocks) - 1);
   for (const double factor : {0.5, 2.})

@@ -19,8 +19,8 @@ struct Uncertainty {
 
 /// Moving blocks with ends that wrap (Politis and Romano 1992) of an eighth of the time, at most
 /// 2.5 s; each resample is one Newton step from the estimate. The change by stricter and looser
-/// limits for outliers is added as variance, and so is that of the mean of the tracker's common
-/// error (Refined::wander_m), which lasts for 1.5 s.
+/// limits for outliers is added as variance, and so is what the blocks do not see of the mean of
+/// the tracker's common error, whose duration is estimated (variance_of_mean()).
 Uncertainty uncertainty_of(const Observations& observations, const Refined& refined);
 
 /// Distances of the sightings within kTukey scales to poses that were fitted (by one Newton step)
