@@ -28,8 +28,7 @@ bool is_standard_output(const struct stat& status) {
 Result<void> check_output(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return {};  // opening it says why
-  if (S_ISREG(status.st_mode) || S_ISCHR(status.st_mode) || is_standard_output(status))
-    return {};
+  if (S_ISREG(status.st_mode) || S_ISCHR(status.st_mode) || is_standard_output(status)) return {};
   return fail(Errc::bad_config, fmt::format("{}: cannot be written: it is {}, not a file",
                                             file.string(), kind_of(status.st_mode)));
 }

@@ -22,8 +22,7 @@ static bool has_truth(const config::Rig& rig) {
 static void save(const observer::LiveScore& scores, service::Context& context) {
   const auto folder = daemon::out_folder();
   if (!folder || scores.empty()) return;
-  const auto written =
-      write_whole(*folder / "observer.json", scores.to_json().dump(2) + "\n");
+  const auto written = write_whole(*folder / "observer.json", scores.to_json().dump(2) + "\n");
   if (!written) context.tolerate({Errc::bad_data, "observer: " + written.error().what});
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ipc/base/write_whole.hpp"
 #include "services/evaluation/report/report.hpp"
 
+#include "ipc/base/write_whole.hpp"
 
 namespace handcast::report {
 namespace fs = std::filesystem;
@@ -22,8 +22,7 @@ Result<Written> write_report(const fs::path& folder, const Imprint& imprint) {
   const auto inputs = read_inputs(folder);
   if (!inputs) return tl::make_unexpected(inputs.error());
   const Film film = make_film(*inputs, folder / "preview.mp4");
-  if (auto written =
-          write_whole(folder / "metrics.json", gather_metrics(*inputs).dump(2) + "\n");
+  if (auto written = write_whole(folder / "metrics.json", gather_metrics(*inputs).dump(2) + "\n");
       !written)
     return tl::make_unexpected(written.error());
   const fs::path page = folder / "report.html";
