@@ -64,7 +64,9 @@ Result<Outcome> check_screen(Desk& desk) {
   if (!patterns) return tl::make_unexpected(patterns.error());
   const auto delay = patterns->measure_delay_roughly();
   if (!delay && delay.error().code == Errc::bad_data)
-    return Outcome{"the projector's place was not checked", true, {delay.error().what}};
+    return Outcome{.made = "the projector's place was not checked",
+                   .findings = {delay.error().what},
+                   .is_checked = false};
   if (!delay) return tl::make_unexpected(delay.error());
   auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, "camera.frames");
   if (!frames) return tl::make_unexpected(frames.error());

@@ -106,9 +106,7 @@ Result<void> correct_tracker(const Options& options, const config::Rig& rig,
                              const calib::Calibration& used) {
   if (auto has_file = check_file(rig); !has_file) return has_file;
   auto streams = open_streams(rig);
-  if (!streams)
-    return fail_in("--correct watches hands of a rig that is up: start it with `handcast up`",
-                   streams.error());
+  if (!streams) return fail_in("--correct watches hands of a rig that is up", streams.error());
   fmt::print(stderr,
              "Hold an open hand still for a second; then at another place, turned otherwise, and "
              "so on, everywhere in the volume. Enter ends it.\n");

@@ -245,7 +245,9 @@ Result<int> check_rig(const Options& options, const config::Rig& rig, const Runn
     if (!outcome) return fail_in(config::word_of(check.step), outcome.error());
     print_outcome(*outcome);
     fmt::print("{}: {}\n", config::word_of(check.step),
-               outcome->is_good ? "as calibrated" : "has moved");
+               !outcome->is_checked ? "not checked"
+               : outcome->is_good   ? "as calibrated"
+                                    : "has moved");
     is_good = is_good && outcome->is_good;
   }
   return is_good ? kExitDone : kExitBadResult;

@@ -24,6 +24,7 @@ struct Outcome {
   std::vector<std::string> findings;  ///< what a person should know or do, most important first
   std::string pictures{};             ///< HTML for the report
   std::vector<MeasuredSetting> settings{};
+  bool is_checked = true;  ///< false: a check could not measure anything, and says why
 };
 
 /// One calibration of a rig, which may take several calls of the program: the folder with what was

@@ -9,6 +9,7 @@ namespace handcast::calibrate {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 
 Result<Options> parsed(std::vector<std::string> words) {
@@ -54,7 +55,9 @@ TEST(CalibrateOptions, StepsBoardAndSizesAreRead) {
 }
 
 TEST(CalibrateOptions, WhatIsWrongIsSaidInASentence) {
-  EXPECT_THAT(refusal({}), HasSubstr("name the rig file"));
+  EXPECT_THAT(refusal({}), EndsWith("name the rig file: handcast calibrate RIG.toml"));
+  EXPECT_THAT(refusal({"--undo"}), EndsWith("handcast calibrate RIG.toml --undo"));
+  EXPECT_THAT(refusal({"--check"}), EndsWith("handcast calibrate RIG.toml --check"));
   EXPECT_THAT(refusal({"rig.toml", "lense"}),
               HasSubstr("there are lens, lens2, pair, screen, tracker, light"));
   EXPECT_THAT(refusal({"rig.toml", "--camera", "1280"}), HasSubstr("--camera: '1280'"));
