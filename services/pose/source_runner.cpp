@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/pose/source_runner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <utility>
 
@@ -16,6 +20,10 @@ constexpr std::size_t kMostWaiting = 64;
 constexpr auto kTurn = 50ms;          ///< how long one call of a source may wait
 constexpr auto kOpenAgainEvery = 1s;  ///< a lost source
 
+std::chrono::steady_clock::time_point point(std::int64_t time_ns) {
+  return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time_ns));
+}
+
 }  // namespace
 
 void PairInbox::put(const PairSample& sample) {
@@ -28,58 +36,91 @@ void PairInbox::put(const PairSample& sample) {
 }
 
 std::optional<PairSample> PairInbox::take(Deadline deadline) {
-  const std::chrono::steady_clock::time_point until(std::chrono::nanoseconds(deadline.time_ns()));
   std::unique_lock lock(mutex_);
-  came_.wait_until(lock, until, [this] { return !samples_.empty(); });
+  came_.wait_until(lock, point(deadline.time_ns()), [this] { return !samples_.empty(); });
   if (samples_.empty()) return std::nullopt;
   const auto sample = samples_.front();
   samples_.pop_front();
   return sample;
 }
 
-SourceRunner::SourceRunner(From from, Open open, std::unique_ptr<WatchedSource> source,
-                           PairInbox& inbox)
-    : from_(from),
-      open_(std::move(open)),
-      source_(std::move(source)),
-      inbox_(inbox),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+/// What the thread of a runner does, and what it shares with others.
+class SourceRunner::Work {
+ public:
+  Work(From from, PairPart part, const Patience& patience, std::shared_ptr<PairInbox> inbox)
+      : from_(from), part_(std::move(part)), patience_(patience), inbox_(std::move(inbox)) {}
 
-void SourceRunner::see(const msg::Landmarks& landmarks, int view) {
-  {
-    const std::scoped_lock lock(mutex_);
-    seen_.at(static_cast<std::size_t>(view)) = landmarks;
-  }
-  changed_.notify_all();
-}
+  /// The thread.
+  void run(const std::stop_token& stop);
 
-std::string SourceRunner::trouble() const {
-  const std::scoped_lock lock(mutex_);
-  return trouble_;
-}
+  /// Any thread.
+  /// @{
+  std::optional<Result<SourceFacts>> opened(Deadline deadline);
+  bool await_end();
+  void see(const msg::Landmarks& landmarks, int view);
+  std::string trouble();
+  std::int64_t hung_ns() const;
+  /// @}
 
-void SourceRunner::run(const std::stop_token& stop) {
+ private:
+  void open(const std::stop_token& stop);
+  void sample_once();
+  void close();
+  bool show_landmarks(const std::stop_token& stop);
+  void say(std::string trouble);
+  /// From here to leave(), the thread is in a call that should end in this time.
+  void enter(std::int64_t patience_ns) { due_ns_ = now_ns() + patience_ns; }
+  void leave() { due_ns_ = 0; }
+
+  From from_;
+  PairPart part_;
+  Patience patience_;
+  std::shared_ptr<PairInbox> inbox_;
+  std::unique_ptr<WatchedSource> source_;
+  std::atomic<std::int64_t> due_ns_{0};  ///< when the call should end that runs; 0: none does
+  std::mutex mutex_;
+  std::condition_variable_any changed_;                         ///< new landmarks, an end
+  std::array<std::optional<msg::Landmarks>, kMostViews> seen_;  ///< by view
+  std::string trouble_;
+  std::optional<Result<SourceFacts>> opened_;  ///< the first attempt
+  bool has_ended_ = false;
+};
+
+void SourceRunner::Work::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (!source_)
-      reopen(stop);
+      open(stop);
     else if (show_landmarks(stop))
       sample_once();
   }
+  close();
+  const std::scoped_lock lock(mutex_);
+  has_ended_ = true;
+  changed_.notify_all();
 }
 
-void SourceRunner::reopen(const std::stop_token& stop) {
-  auto opened = open_();
-  if (opened) {
-    source_ = std::move(*opened);
-    return;
-  }
-  say(opened.error().what);
+void SourceRunner::Work::open(const std::stop_token& stop) {
+  enter(patience_.open_ns);
+  auto opened = part_.open();
+  leave();
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, stop, kOpenAgainEvery, [] { return false; });
+  trouble_ = opened ? "" : opened.error().what;
+  if (opened) source_ = std::move(*opened);
+  if (!opened_)
+    opened_ = opened ? Result<SourceFacts>({source_->views(), source_->conventions()})
+                     : tl::make_unexpected(opened.error());
+  changed_.notify_all();
+  if (!source_) changed_.wait_for(lock, stop, kOpenAgainEvery, [] { return false; });
+}
+
+void SourceRunner::Work::close() {
+  enter(patience_.call_ns);
+  source_.reset();
+  leave();
 }
 
 /// True if the source can be sampled now.
-bool SourceRunner::show_landmarks(const std::stop_token& stop) {
+bool SourceRunner::Work::show_landmarks(const std::stop_token& stop) {
   if (source_->views() == 0) return true;
   const auto has_come = [this] {
     return std::ranges::any_of(seen_, [](const auto& seen) { return seen.has_value(); });
@@ -95,16 +136,18 @@ bool SourceRunner::show_landmarks(const std::stop_token& stop) {
   return is_new || !source_->needs_landmarks();
 }
 
-void SourceRunner::sample_once() {
+void SourceRunner::Work::sample_once() {
   PairSample sample{.from = from_};
+  enter(patience_.call_ns);
   const auto sampled = source_->sample(sample.poses, Deadline::in(kTurn));
+  leave();
   if (!sampled) {
     say(sampled.error().what);
     const bool is_lost =
         sampled.error().code != Errc::timeout && sampled.error().code != Errc::bad_data;
     if (is_lost) {
       log::warning("{}; it is opened again", sampled.error().what);
-      source_.reset();
+      close();
     }
     return;
   }
@@ -113,12 +156,61 @@ void SourceRunner::sample_once() {
   sample.depends_on_calibration = source_->depends_on_calibration();
   sample.faults = source_->take_faults();
   say({});
-  inbox_.put(sample);
+  inbox_->put(sample);
 }
 
-void SourceRunner::say(std::string trouble) {
+void SourceRunner::Work::say(std::string trouble) {
   const std::scoped_lock lock(mutex_);
   trouble_ = std::move(trouble);
 }
+
+std::optional<Result<SourceFacts>> SourceRunner::Work::opened(Deadline deadline) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_until(lock, point(deadline.time_ns()), [this] { return opened_.has_value(); });
+  return opened_;
+}
+
+/// False if the thread is in a call that hangs.
+bool SourceRunner::Work::await_end() {
+  std::unique_lock lock(mutex_);
+  while (!changed_.wait_for(lock, kTurn, [this] { return has_ended_; }))
+    if (hung_ns() > 0) return false;
+  return true;
+}
+
+void SourceRunner::Work::see(const msg::Landmarks& landmarks, int view) {
+  const std::scoped_lock lock(mutex_);
+  seen_.at(static_cast<std::size_t>(view)) = landmarks;
+  changed_.notify_all();
+}
+
+std::string SourceRunner::Work::trouble() {
+  if (hung_ns() > 0)
+    return fmt::format("{}: its software hangs: a call does not return", part_.name);
+  const std::scoped_lock lock(mutex_);
+  return trouble_;
+}
+
+std::int64_t SourceRunner::Work::hung_ns() const {
+  const std::int64_t due_ns = due_ns_;
+  return due_ns == 0 ? 0 : std::max<std::int64_t>(now_ns() - due_ns, 0);
+}
+
+SourceRunner::SourceRunner(From from, PairPart part, const Patience& patience,
+                           std::shared_ptr<PairInbox> inbox)
+    : work_(std::make_shared<Work>(from, std::move(part), patience, std::move(inbox))),
+      thread_([work = work_](const std::stop_token& stop) { work->run(stop); }) {}
+
+SourceRunner::~SourceRunner() {
+  thread_.request_stop();
+  if (!work_->await_end()) thread_.detach();
+}
+
+std::optional<Result<SourceFacts>> SourceRunner::opened(Deadline deadline) const {
+  return work_->opened(deadline);
+}
+void SourceRunner::see(const msg::Landmarks& landmarks, int view) { work_->see(landmarks, view); }
+std::string SourceRunner::trouble() const { return work_->trouble(); }
+std::int64_t SourceRunner::hung_ns() const { return work_->hung_ns(); }
 
 }  // namespace handcast::pose

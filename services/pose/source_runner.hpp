@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -40,35 +39,48 @@ class PairInbox {
   std::deque<PairSample> samples_;
 };
 
-/// Samples one source of a pair on a thread of its own, and opens it again when it is lost.
+/// One source of a pair.
+struct PairPart {
+  std::string name;  ///< for people: "pose 'openxr'"
+  std::function<Result<std::unique_ptr<WatchedSource>>()> open;
+};
+
+/// How long a source may take, ns. One that takes longer hangs.
+struct Patience {
+  std::int64_t call_ns = 2'000'000'000;   ///< to sample, which should take 50 ms, or to be closed
+  std::int64_t open_ns = 10'000'000'000;  ///< to be opened
+};
+
+/// What is known of a source that has been opened.
+struct SourceFacts {
+  int views = 0;
+  joints::Conventions conventions;
+};
+
+/// Opens and samples one source of a pair on a thread of its own, and opens it again when it is
+/// lost. A call that never returns holds up this thread and nothing else.
 class SourceRunner {
  public:
-  /// Opens the source.
-  using Open = std::function<Result<std::unique_ptr<WatchedSource>>()>;
+  SourceRunner(From from, PairPart part, const Patience& patience,
+               std::shared_ptr<PairInbox> inbox);
+  /// Waits for the call that runs, but not for one that hangs: its thread is left behind.
+  ~SourceRunner();
+  SourceRunner(const SourceRunner&) = delete;
 
-  /// `source`: open, or null if it must be opened later. `inbox` must outlive the runner.
-  SourceRunner(From from, Open open, std::unique_ptr<WatchedSource> source, PairInbox& inbox);
-
+  /// How the first attempt to open the source ended; empty if it has not by the deadline. Any
+  /// thread.
+  std::optional<Result<SourceFacts>> opened(Deadline deadline) const;
   /// Passes the landmarks of a view to the source, if it takes them. Any thread.
   void see(const msg::Landmarks& landmarks, int view);
   /// Why there are no samples now; empty if there are. Any thread.
   std::string trouble() const;
+  /// How long the source has hung; 0: it does not. Any thread.
+  std::int64_t hung_ns() const;
 
  private:
-  void run(const std::stop_token& stop);
-  void reopen(const std::stop_token& stop);
-  void sample_once();
-  bool show_landmarks(const std::stop_token& stop);
-  void say(std::string trouble);
+  class Work;
 
-  From from_;
-  Open open_;
-  std::unique_ptr<WatchedSource> source_;
-  PairInbox& inbox_;
-  mutable std::mutex mutex_;
-  std::condition_variable_any changed_;                         ///< new landmarks, or the end
-  std::array<std::optional<msg::Landmarks>, kMostViews> seen_;  ///< by view
-  std::string trouble_;
+  std::shared_ptr<Work> work_;  ///< outlives the runner if the thread hangs
   std::jthread thread_;
 };
 

@@ -72,6 +72,38 @@ TEST_F(RigWithALeap, TheLandmarksTakeOverWhileItIsUnplugged) {
   expect_more_samples();
 }
 
+TEST_F(RigWithALeap, ALibraryThatHangsEndsItsServiceAndTheRestGoesOn) {
+  plug_in();
+  const auto rig = up_with({"--set", "pose.backend=leapc"});
+  wait_until_light();
+  expect_more_samples();
+  const auto before = service("pose")["pid"];
+  std::ofstream(plug()) << "hangs";
+  EXPECT_TRUE(says(*rig, "Ultraleap's library hangs")) << rig->log();
+  expect_more_light();
+  plug_in();
+  expect_more_samples();
+  EXPECT_NE(service("pose")["pid"], before);
+  std::ofstream(plug()) << "hangs";
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_EQ(rig->wait(), 0);
+  EXPECT_THAT(traces(), testing::IsEmpty());
+}
+
+TEST_F(RigWithALeap, TheLandmarksTakeOverWhileItHangs) {
+  plug_in();
+  const auto rig = up_with({"--set", "pose.backend=leapc", "--set", "pose.second=none"});
+  wait_until_light();
+  expect_more_samples();
+  std::ofstream(plug()) << "hangs";
+  EXPECT_TRUE(says(*rig, "the second source is used now")) << rig->log();
+  EXPECT_TRUE(says(*rig, "its software hangs")) << rig->log();
+  expect_more_samples();
+  plug_in();
+  EXPECT_TRUE(says(*rig, "the first source is used now")) << rig->log();
+  expect_more_samples();
+}
+
 TEST_F(RigWithALeap, CanBeSwappedForAnotherTrackerWhileItRuns) {
   plug_in();
   const auto rig = up_with({});

@@ -36,9 +36,12 @@ class RigWithARuntime : public SystemTest {
   void play(const std::string& fault) const {
     runtime_.play("motion " + runtime_.in_scratch("motion") + "\n" + fault);
   }
-  std::unique_ptr<Command> up_with(const std::string& backend) const {
-    return up({"--set", "twin.motion=builtin:still", "--set", "pose.backend=" + backend, "--set",
-               "pose.openxr.runtime=" + std::string(HANDCAST_TEST_RUNTIME_MANIFEST)});
+  std::unique_ptr<Command> up_with(const std::string& backend, const Arguments& more = {}) const {
+    Arguments all{"--set", "twin.motion=builtin:still",
+                  "--set", "pose.backend=" + backend,
+                  "--set", "pose.openxr.runtime=" + std::string(HANDCAST_TEST_RUNTIME_MANIFEST)};
+    all.insert(all.end(), more.begin(), more.end());
+    return up(all);
   }
   std::uint64_t poses() const {
     return status()["rings"]["pose.hands"]["count"].get<std::uint64_t>();
@@ -83,6 +86,57 @@ TEST_F(RigWithARuntime, AfterALossOfTheRuntimeTheTrackerComesBackWithoutAnyHelp)
   EXPECT_TRUE(eventually([&] { return pose_is("ready") && service("pose")["pid"] != before; }));
   expect_more_poses();
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
+}
+
+TEST_F(RigWithARuntime, ARuntimeThatHangsIsKilledWithItsServiceAndTheRestGoesOn) {
+  const auto rig = up_with("openxr");
+  wait_until_light();
+  const int before = service("pose")["pid"];
+  const int camera = service("camera")["pid"];
+  play("hangs");
+  EXPECT_TRUE(eventually([&] { return service("pose")["pid"] != before; }));
+  EXPECT_THAT(rig->log(), HasSubstr("pose has given no sign of life for "));
+  expect_more_light();
+  play("");
+  EXPECT_TRUE(eventually([&] { return pose_is("ready"); }));
+  expect_more_poses();
+  EXPECT_EQ(service("camera")["pid"], camera);
+  play("hangs");
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_EQ(rig->wait(), 0);
+  EXPECT_THAT(traces(), testing::IsEmpty());
+}
+
+TEST_F(RigWithARuntime, ARuntimeThatHangsAtTheStartDoesNotKeepTheRigFromStartingOrStopping) {
+  play("hangs_at_start");
+  const auto rig = up_with("openxr", {"--set", "supervisor.ready_s=2"});
+  EXPECT_TRUE(eventually([&] { return service("projector")["state"] == "ready"; })) << rig->log();
+  expect_more_light();
+  EXPECT_THAT(rig->log(), HasSubstr("pose was not ready within"));
+  play("");
+  EXPECT_TRUE(eventually([&] { return pose_is("ready"); })) << rig->log();
+  expect_more_poses();
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+}
+
+TEST_F(RigWithARuntime, WhileItHangsTheSecondSourceIsUsed) {
+  const auto rig = up_with("openxr", {"--set", "pose.second=none"});
+  wait_until_light();
+  expect_more_poses();
+  const int before = service("pose")["pid"];
+  play("hangs");
+  EXPECT_TRUE(
+      eventually([&] { return rig->log().find("its software hangs") != std::string::npos; }));
+  expect_more_poses();
+  expect_more_light();
+  EXPECT_EQ(service("pose")["pid"], before);
+  play("");
+  EXPECT_TRUE(eventually(
+      [&] { return rig->log().find("the first source is used now") != std::string::npos; }));
+  play("hangs");
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_EQ(rig->wait(), 0);
+  EXPECT_THAT(traces(), testing::IsEmpty());
 }
 
 TEST_F(RigWithARuntime, ItReplacesTheTwinsTrackerWhileTheLightGoesOnAndIsRecorded) {

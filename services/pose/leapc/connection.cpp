@@ -20,10 +20,12 @@ constexpr std::uint32_t kPoll_ms = 50;
 constexpr auto kPause = std::chrono::milliseconds(50);
 /// A connection without an answer for so long is made anew.
 constexpr std::int64_t kPatience_ns = 2'000'000'000;
+/// A turn takes 0.1 s. A library that needs longer than this hangs.
+constexpr std::int64_t kHang_ns = 2'000'000'000;
 /// A state that lasts for so long is logged.
 constexpr std::int64_t kLasting_ns = 500'000'000;
 /// A gap in the service's numbers that is longer is a new count.
-constexpr std::int64_t kLongestGap = 10'000;
+constexpr std::uint64_t kLongestGap = 10'000;
 constexpr std::array<std::uint32_t, 2> kConfigSizes{sizeof(ConnectionConfig),
                                                     offsetof(ConnectionConfig, tracking_origin)};
 
@@ -43,10 +45,12 @@ Connection::Connection(Library library, const config::Leapc& settings, std::uint
       clock_(library_.call, ms_to_ns(settings.age_ms)),
       devices_(library_.call, settings.device),
       next_id_(first_id),
+      turn_ns_(now_ns()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void Connection::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
+    turn_ns_ = now_ns();
     if (!handle_) connect();
     if (handle_)
       poll();
@@ -56,6 +60,8 @@ void Connection::run(const std::stop_token& stop) {
   }
   disconnect();
 }
+
+bool Connection::hangs() const { return now_ns() - turn_ns_ > kHang_ns; }
 
 /// Older versions know a smaller configuration.
 bool Connection::create() {
@@ -168,9 +174,10 @@ void Connection::track(const Message& message) {
 
 /// The service's number counts on ours, so that gaps are seen; it may begin anew.
 std::uint64_t Connection::next_id(std::int64_t frame) {
-  const std::int64_t gap = last_frame_ ? frame - *last_frame_ : 1;
-  last_frame_ = frame;
-  if (gap > 1 && gap < kLongestGap) next_id_ += static_cast<std::uint64_t>(gap - 1);
+  const auto number = static_cast<std::uint64_t>(frame);  // differences may not overflow
+  const std::uint64_t gap = last_frame_ ? number - *last_frame_ : 1;
+  last_frame_ = number;
+  if (gap > 1 && gap < kLongestGap) next_id_ += gap - 1;
   return next_id_++;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ class Connection {
   /// `first_id`: number of the first sample. `mailbox` must outlive it.
   Connection(Library library, const config::Leapc& settings, std::uint64_t first_id,
              Mailbox& mailbox);
+
+  /// True if a call of the library has not returned for 2 s. Any thread.
+  bool hangs() const;
 
  private:
   void run(const std::stop_token& stop);
@@ -49,8 +53,9 @@ class Connection {
   std::int64_t trouble_since_ns_ = 0;
   bool has_said_guess_ = false;
   std::uint64_t next_id_;
-  std::optional<std::int64_t> last_frame_;  ///< the service's number
+  std::optional<std::uint64_t> last_frame_;  ///< the service's number
   std::int64_t last_origin_ns_ = 0;
+  std::atomic<std::int64_t> turn_ns_;  ///< when the turn of the thread began
   std::jthread thread_;
 };
 

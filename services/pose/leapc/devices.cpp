@@ -45,7 +45,8 @@ void Devices::attached(ConnectionHandle connection, const DeviceEvent& event) {
     log::info("pose 'leapc': device {} is left alone; pose.leapc.device is {}", name, wanted_);
   } else {
     log::info("pose 'leapc': device {} is attached", name);
-    if (!wanted_.empty() && device.handle) call_.subscribe(connection, device.handle);
+    if (!wanted_.empty() && device.handle && call_.subscribe)
+      call_.subscribe(connection, device.handle);
   }
   const bool is_kept = !wanted_.empty() && is_wanted(device);
   if (device.handle && !is_kept) {

@@ -14,6 +14,15 @@ constexpr std::int64_t kOldest_ns = 1'000'000'000;
 constexpr std::int64_t kSlack_ns = 500'000;
 /// Further apart, the rebaser and the clocks themselves contradict each other.
 constexpr std::int64_t kAgree_ns = 2'000'000;
+/// Products with 1000 of what is less, and of differences, do not overflow.
+constexpr std::int64_t kFarthest_us = INT64_MAX / 4000;
+
+bool is_time(std::int64_t time_us) { return time_us > -kFarthest_us && time_us < kFarthest_us; }
+
+/// The age at a time of the service's clock. A stamp of no clock if that is no time.
+std::int64_t age_at_ns(std::int64_t now_us, std::int64_t stamp_us) {
+  return is_time(now_us) ? (now_us - stamp_us) * 1000 : -kOldest_ns;
+}
 
 }  // namespace
 
@@ -29,7 +38,7 @@ HostClock::~HostClock() {
 /// The rebaser maps our clock to the service's, so the age is computed by the service's clock.
 std::int64_t HostClock::rebased_age_ns(std::int64_t stamp_us, std::int64_t arrival_ns) {
   const std::int64_t now_us = call_.now_us();
-  const std::int64_t plain_ns = (now_us - stamp_us) * 1000;
+  const std::int64_t plain_ns = age_at_ns(now_us, stamp_us);
   if (!rebaser_) return plain_ns;
   const std::int64_t ours_us = arrival_ns / 1000;
   if (arrival_ns - updated_ns_ >= kUpdateEvery_ns) {
@@ -38,18 +47,17 @@ std::int64_t HostClock::rebased_age_ns(std::int64_t stamp_us, std::int64_t arriv
   }
   std::int64_t theirs_us = 0;
   if (call_.rebase(rebaser_, ours_us, &theirs_us) != kSuccess) return plain_ns;
-  const std::int64_t age_ns = (theirs_us - stamp_us) * 1000 + arrival_ns % 1000;
+  const std::int64_t age_ns = age_at_ns(theirs_us, stamp_us) + arrival_ns % 1000;
   return std::llabs(age_ns - plain_ns) < kAgree_ns ? age_ns : plain_ns;
 }
 
 std::int64_t HostClock::origin_ns(std::int64_t stamp_us, std::int64_t arrival_ns) {
-  constexpr std::int64_t kFarthest_us = INT64_MAX / 4000;  // products with 1000 do not overflow
-  const bool is_time = stamp_us > -kFarthest_us && stamp_us < kFarthest_us;
-  if (is_time) arrivals_.add(stamp_us * 1000, arrival_ns);
-  const std::int64_t age_ns = is_time ? rebased_age_ns(stamp_us, arrival_ns) : -kOldest_ns;
+  const bool has_time = is_time(stamp_us);
+  if (has_time) arrivals_.add(stamp_us * 1000, arrival_ns);
+  const std::int64_t age_ns = has_time ? rebased_age_ns(stamp_us, arrival_ns) : -kOldest_ns;
   is_guessed_ = age_ns < -kSlack_ns || age_ns > kOldest_ns;
   if (!is_guessed_) return age_ns < 0 ? arrival_ns : arrival_ns - age_ns;
-  if (!is_time) return arrival_ns - least_age_ns_;
+  if (!has_time) return arrival_ns - least_age_ns_;
   return arrivals_.earliest_arrival(stamp_us * 1000).ns - least_age_ns_;
 }
 

@@ -41,13 +41,7 @@ Result<void*> search(std::string& path) {
       return handle;
     }
   }
-  return fail(
-      Errc::bad_config,
-      fmt::format(
-          "Ultraleap's library is not installed; install their hand tracking software "
-          "(package ultraleap-hand-tracking-service), or name libLeapC.so in "
-          "pose.leapc.library; searched: {}",
-          join(std::vector<std::string_view>(kLibraryPlaces.begin(), kLibraryPlaces.end()), ", ")));
+  return fail(Errc::bad_config, "Ultraleap's library is not installed; " + std::string(kRemedy));
 }
 
 /// Looks up functions and remembers the names of those that are missing.

@@ -26,10 +26,15 @@ inline constexpr std::array<std::string_view, 7> kLibraryPlaces{
     "libLeapC.so.5",
     "libLeapC.so"};
 
+/// What to do if it is in none of these places.
+inline constexpr std::string_view kRemedy =
+    "install Ultraleap's hand tracking service (Gemini or later), or name libLeapC.so in "
+    "pose.leapc.library";
+
 /// Opens the library at `path`; empty: where Ultraleap's installers put it, and where the linker
 /// finds it. It stays in the process for good, because it has threads of its own. Errors
-/// (bad_config): it is not there (what to install, and where it was searched), it cannot be loaded,
-/// a function is missing, or it is older than version 5.
+/// (bad_config): it is not there (with kRemedy), it cannot be loaded, a function is missing, or it
+/// is older than version 5.
 Result<Library> open_library(const std::string& path);
 
 }  // namespace handcast::pose::leapc

@@ -35,7 +35,8 @@ std::optional<msg::HandPoses> Handover::push(From from, const msg::HandPoses& sa
   for (const auto side : kSides) learn(side);
   choose(arrival_ns);
   const bool is_newer = !has_published_ || sample.header.origin_ns > last_ns_;
-  if (from != in_use_ || !is_newer) return std::nullopt;
+  const bool stands_in = sample.count == 0 && is_silent(in_use_, arrival_ns);
+  if ((from != in_use_ && !stands_in) || !is_newer) return std::nullopt;
   auto published = blended(sample, is_usable);
   if (has_published_) published.header.frame_id = std::max(sample.header.frame_id, last_id_ + 1);
   last_id_ = published.header.frame_id;
@@ -47,6 +48,7 @@ std::optional<msg::HandPoses> Handover::push(From from, const msg::HandPoses& sa
 void Handover::note(From from, const msg::HandPoses& sample, std::int64_t arrival_ns,
                     bool is_usable) {
   Source& source = of(from);
+  source.heard_ns = arrival_ns;
   if (!is_good(from, arrival_ns)) source.since_ns.reset();
   if (!is_usable) {
     source.since_ns.reset();
@@ -62,6 +64,11 @@ void Handover::note(From from, const msg::HandPoses& sample, std::int64_t arriva
 bool Handover::is_good(From from, std::int64_t now_ns) const {
   const auto& good_ns = sources_[static_cast<std::size_t>(from)].good_ns;
   return good_ns && now_ns - *good_ns <= ms_to_ns(settings_.patience_ms);
+}
+
+bool Handover::is_silent(From from, std::int64_t now_ns) const {
+  const auto& heard_ns = sources_[static_cast<std::size_t>(from)].heard_ns;
+  return now_ns - heard_ns.value_or(*begun_ns_) > ms_to_ns(settings_.patience_ms);
 }
 
 void Handover::learn(msg::Side side) {

@@ -25,7 +25,9 @@ class Handover {
 
   /// Adds a sample that arrived at `arrival_ns`. `is_usable`: it has a hand that was measured.
   /// Returns what is to be published: empty if the other source is in use, or something newer was
-  /// published. Times and numbers of what is returned increase.
+  /// published. If the source in use is silent, what the other one says is published even if it has
+  /// no hand, so that readers see that a tracker works. Times and numbers of what is returned
+  /// increase.
   std::optional<msg::HandPoses> push(From from, const msg::HandPoses& sample,
                                      std::int64_t arrival_ns, bool is_usable);
 
@@ -35,6 +37,7 @@ class Handover {
  private:
   struct Source {
     std::array<RecentPoses, 2> hands;      ///< by side
+    std::optional<std::int64_t> heard_ns;  ///< arrival of the newest sample
     std::optional<std::int64_t> good_ns;   ///< arrival of the newest usable sample
     std::optional<std::int64_t> since_ns;  ///< how long they have been usable without a break
   };
@@ -52,6 +55,7 @@ class Handover {
 
   Source& of(From from) { return sources_[static_cast<std::size_t>(from)]; }
   bool is_good(From from, std::int64_t now_ns) const;
+  bool is_silent(From from, std::int64_t now_ns) const;
   void note(From from, const msg::HandPoses& sample, std::int64_t arrival_ns, bool is_usable);
   void learn(msg::Side side);
   void choose(std::int64_t now_ns);

@@ -11,26 +11,38 @@ namespace handcast::pose {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::AllOf;
 using testing::HasSubstr;
 
-/// A hand at a place, every 5 ms, until it is lost; it may need landmarks.
+/// A hand at a place, every 5 ms, until it is lost or hangs; it may need landmarks.
 struct Behaviour {
+  std::string name;
   float x_m = 0;
   bool needs_landmarks = false;
-  std::atomic<bool> is_lost{false}, is_absent{false};
-  std::atomic<int> opened{0}, seen{0};
+  std::atomic<bool> is_lost{false}, is_absent{false}, has_hand{true};
+  std::atomic<bool> hangs{false}, hangs_at_open{false};  ///< until it is false again
+  std::atomic<int> opened{0}, seen{0}, hanging{0};
 };
+
+/// A call that does not return for as long as it hangs.
+void hang(const std::atomic<bool>& hangs, std::atomic<int>& hanging) {
+  ++hanging;
+  while (hangs) sleep_until_ns(now_ns() + to_ns(1ms));
+  --hanging;
+}
 
 class StandIn final : public PoseSource {
  public:
   explicit StandIn(Behaviour& behaviour) : behaviour_(behaviour) {}
 
   Result<void> sample(msg::HandPoses& poses, Deadline) override {
-    if (behaviour_.is_lost) return fail(Errc::disconnected, "pose 'stand-in': it is gone");
+    if (behaviour_.is_lost)
+      return fail(Errc::disconnected, "pose '" + behaviour_.name + "': it is gone");
+    hang(behaviour_.hangs, behaviour_.hanging);
     if (!behaviour_.needs_landmarks) sleep_until_ns(now_ns() + to_ns(5ms));
     poses = {};
     poses.header = {number_++, now_ns(), 0};
-    poses.count = 1;
+    poses.count = behaviour_.has_hand ? 1 : 0;
     poses.hands[0].confidence = 1;
     for (auto& joint : poses.hands[0].joints)
       joint.position_m = {behaviour_.x_m, 1e-6f * static_cast<float>(number_ % 100), 0.3f};
@@ -44,12 +56,14 @@ class StandIn final : public PoseSource {
   std::uint64_t number_ = 0;
 };
 
-SourceRunner::Open opener(Behaviour& behaviour) {
-  return [&behaviour]() -> Result<std::unique_ptr<WatchedSource>> {
-    if (behaviour.is_absent) return fail(Errc::unavailable, "pose 'stand-in': it is not there");
-    ++behaviour.opened;
-    return std::make_unique<WatchedSource>("pose 'stand-in'", std::make_unique<StandIn>(behaviour));
-  };
+PairPart part(Behaviour& behaviour) {
+  const auto title = "pose '" + behaviour.name + "'";
+  return {title, [&behaviour, title]() -> Result<std::unique_ptr<WatchedSource>> {
+            hang(behaviour.hangs_at_open, behaviour.hanging);
+            if (behaviour.is_absent) return fail(Errc::unavailable, title + ": it is not there");
+            ++behaviour.opened;
+            return std::make_unique<WatchedSource>(title, std::make_unique<StandIn>(behaviour));
+          }};
 }
 
 /// Samples, with landmarks, until a hand is within 1 mm of x; false after 10 s.
@@ -68,11 +82,36 @@ bool reaches(PoseSource& source, float x_m) {
 class Pair : public testing::Test {
  protected:
   Pair() {
+    first_.name = "first one";
     first_.x_m = 0.1f;
+    second_.name = "second one";
     second_.x_m = 0.11f;
   }
+  /// The threads of sources that have hung use the behaviours until they have ended.
+  ~Pair() override {
+    for (auto* behaviour : {&first_, &second_}) behaviour->hangs = behaviour->hangs_at_open = false;
+    while (first_.hanging > 0 || second_.hanging > 0) sleep_until_ns(now_ns() + to_ns(1ms));
+    sleep_until_ns(now_ns() + to_ns(50ms));
+  }
+  PairParts parts() {
+    return {.first = part(first_),
+            .second = part(second_),
+            .patience = {.call_ns = to_ns(200ms), .open_ns = to_ns(200ms)},
+            .start_ns = to_ns(300ms),
+            .restart_ns = to_ns(500ms)};
+  }
   std::unique_ptr<PoseSource> open() {
-    return open_pair({.return_ms = 100, .blend_ms = 50}, {opener(first_), opener(second_)}).value();
+    return open_pair({.return_ms = 100, .blend_ms = 50}, parts()).value();
+  }
+  /// The first error that is no timeout, within 20 s.
+  static Error end_of(PoseSource& source) {
+    const auto until = Deadline::in(20s);
+    msg::HandPoses poses;
+    while (!until.passed())
+      if (const auto sampled = source.sample(poses, Deadline::in(50ms));
+          !sampled && sampled.error().code != Errc::timeout)
+        return sampled.error();
+    return {Errc::timeout, "there was no error"};
   }
 
   Behaviour first_, second_;
@@ -114,22 +153,89 @@ TEST_F(Pair, TheSecondMayBeMadeFromLandmarks) {
 
 TEST_F(Pair, IfBothAreAwayTheStartFailsAndTheTimeoutNamesBoth) {
   first_.is_absent = second_.is_absent = true;
-  const auto opened = open_pair({}, {opener(first_), opener(second_)});
+  const auto opened = open_pair({}, parts());
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, Errc::unavailable);
+  EXPECT_THAT(opened.error().what, HasSubstr("first one"));
   first_.is_absent = second_.is_absent = false;
   const auto source = open();
   first_.is_absent = second_.is_absent = true;
   first_.is_lost = second_.is_lost = true;
   msg::HandPoses poses;
+  const std::string both = "pose 'first one': it is not there; pose 'second one': it is not there";
   std::string said;
   const auto until = Deadline::in(10s);
-  while (said.find("; pose 'stand-in'") == std::string::npos && !until.passed())
+  while (said != both && !until.passed())
     if (const auto sampled = source->sample(poses, Deadline::in(50ms)); !sampled) {
       EXPECT_EQ(sampled.error().code, Errc::timeout);
       said = sampled.error().what;
     }
-  EXPECT_THAT(said, HasSubstr("stand-in'"));
+  EXPECT_EQ(said, both);
+}
+
+TEST_F(Pair, ASourceThatHangsIsReplacedAndUsedAgainWhenItsCallReturns) {
+  const auto source = open();
+  EXPECT_TRUE(reaches(*source, 0.1f));
+  testing::internal::CaptureStderr();
+  first_.hangs = true;
+  EXPECT_TRUE(reaches(*source, 0.11f));
+  const auto hung = Deadline::in(400ms);
+  msg::HandPoses poses;
+  while (!hung.passed()) EXPECT_TRUE(source->sample(poses, Deadline::in(5s)));
+  first_.hangs = false;
+  EXPECT_TRUE(reaches(*source, 0.1f));
+  EXPECT_EQ(first_.opened, 1);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("pose 'first one': its software hangs"));
+}
+
+TEST_F(Pair, ASourceThatHangsWhileItIsOpenedIsUsedLater) {
+  first_.hangs_at_open = true;
+  const auto source = open();
+  EXPECT_TRUE(reaches(*source, 0.11f));
+  first_.hangs_at_open = false;
+  EXPECT_TRUE(reaches(*source, 0.1f));
+}
+
+TEST_F(Pair, WhereTheFirstHangsAtTheStartTheSecondIsPublishedWithoutAHand) {
+  first_.hangs_at_open = true;
+  second_.has_hand = false;
+  const auto source = open();
+  msg::HandPoses poses;
+  EXPECT_TRUE(source->sample(poses, Deadline::in(10s))) << "readers see that a tracker works";
+  EXPECT_EQ(poses.count, 0u);
+}
+
+TEST_F(Pair, AHangAndASilentOtherSourceEndTheService) {
+  const auto source = open();
+  EXPECT_TRUE(reaches(*source, 0.1f));
+  second_.is_absent = second_.is_lost = true;
+  first_.hangs = true;
+  const auto end = end_of(*source);
+  EXPECT_EQ(end.code, Errc::unavailable);
+  EXPECT_THAT(end.what, AllOf(HasSubstr("'first one'"), HasSubstr("hangs")));
+}
+
+TEST_F(Pair, AHangThatLastsEndsTheServiceWhileNoHandIsInSight) {
+  const auto source = open();
+  EXPECT_TRUE(reaches(*source, 0.1f));
+  first_.hangs = true;
+  EXPECT_TRUE(reaches(*source, 0.11f));
+  const auto until = Deadline::in(3s);
+  msg::HandPoses poses;
+  while (!until.passed())
+    ASSERT_TRUE(source->sample(poses, Deadline::in(5s))) << "a hand is in sight";
+  second_.has_hand = false;
+  EXPECT_EQ(end_of(*source).code, Errc::unavailable);
+}
+
+TEST_F(Pair, AWrongSettingIsSaidAlthoughTheOtherSourceHangs) {
+  first_.hangs_at_open = true;
+  auto both = parts();
+  both.second.open = [] { return fail(Errc::bad_config, "pose 'second one': a wrong setting"); };
+  const auto opened = open_pair({}, both);
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().what, "pose 'second one': a wrong setting");
 }
 
 TEST(PairOfARig, ASecondSourceMustBeAnotherOne) {

@@ -9,8 +9,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <fstream>
 #include <limits>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -170,6 +172,12 @@ bool is_plugged_in() {
   return !file || ::access(file, F_OK) == 0;
 }
 
+bool plug_hangs() {
+  static const char* file = std::getenv(kFakeLeapPlug);
+  std::string word;
+  return file && std::ifstream(file) >> word && word == "hangs";
+}
+
 /// Waits for the next event until `until_ns`; false if there is none.
 bool next_event(Connection& connection, std::int64_t until_ns) {
   const auto wait = [&](std::int64_t to_ns) {
@@ -243,7 +251,8 @@ FAKE_EXPORT std::uint32_t LeapPollConnection(Connection* connection, std::uint32
     ++leap.concurrent_polls;
     return kConcurrent;
   }
-  if (leap.fault == FakeFault::stuck) std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  while (leap.fault == FakeFault::hangs || plug_hangs())
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   const bool is_there = next_event(*connection, ours_ns() + std::int64_t{timeout_ms} * 1'000'000);
   const Event& event = connection->event;
   std::uint32_t size = 20;

@@ -34,8 +34,8 @@ enum class FakeFault {
   stamps_ahead,     ///< of the future
   short_message,    ///< of an older layout
   long_message,     ///< of a later layout
-  stuck,            ///< a poll that takes 300 ms, whatever it was asked for
   refused_mode,     ///< the tracking mode is refused
+  hangs,            ///< a poll that does not return for as long as this is the fault
 };
 
 /// The controls of the library in this process. All members may be changed at any time.
@@ -64,7 +64,8 @@ struct FakeLeap {
 
 /// The name of the function of the library that returns its FakeLeap.
 inline constexpr const char* kFakeLeapSymbol = "fake_leap";
-/// The variable with the name of a file: the device is there while the file is.
+/// The variable with the name of a file: the device is there while the file is. While the file says
+/// "hangs", no poll returns.
 inline constexpr const char* kFakeLeapPlug = "HANDCAST_FAKE_LEAP";
 inline constexpr const char* kFakeSerial = "LP12345678901";  ///< of the device
 

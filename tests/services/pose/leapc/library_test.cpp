@@ -16,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string why_not(const std::string& path) {
   const auto library = open_library(path);
@@ -34,12 +35,11 @@ TEST(LeapcLibrary, AnAbsentOneIsNamedWithItsPath) {
   EXPECT_THAT(why_not("/nowhere/libLeapC.so"), HasSubstr("/nowhere/libLeapC.so: there is no such"));
 }
 
-TEST(LeapcLibrary, WithoutAPathItSaysWhatToInstallAndWhereItLooked) {
+TEST(LeapcLibrary, WithoutAPathItSaysWhatToInstallInOneShortSentence) {
   const auto library = open_library("");
   if (library) GTEST_SKIP() << "Ultraleap's library is installed: " << library->path;
   EXPECT_THAT(library.error().what,
-              AllOf(HasSubstr("install"), HasSubstr("pose.leapc.library"),
-                    HasSubstr("/usr/lib/ultraleap-hand-tracking-service/libLeapC.so.5")));
+              AllOf(HasSubstr("install"), HasSubstr("pose.leapc.library"), Not(HasSubstr("/usr"))));
 }
 
 TEST(LeapcLibrary, AnOldOneIsRefusedWithItsVersion) {

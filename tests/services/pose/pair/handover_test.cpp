@@ -136,6 +136,21 @@ TEST_F(Handovers, TheFirstSourceIsUsedAsLongAsItSeesAHand) {
   for (const auto& item : stream) ASSERT_EQ(item.from, From::first);
 }
 
+TEST_F(Handovers, ASecondSourceWithoutAHandStandsInForASilentFirstOne) {
+  Handover handover({.patience_ms = 60});
+  const auto push = [&](From from, std::int64_t at_ms) {
+    msg::HandPoses none;
+    none.header = {static_cast<std::uint64_t>(at_ms), at_ms * 1'000'000, 0};
+    return handover.push(from, none, at_ms * 1'000'000, false).has_value();
+  };
+  EXPECT_TRUE(push(From::first, 100));
+  EXPECT_FALSE(push(From::second, 150)) << "the first one speaks for itself";
+  EXPECT_TRUE(push(From::second, 170)) << "it is silent";
+  EXPECT_EQ(handover.in_use(), From::first);
+  EXPECT_TRUE(push(From::first, 180));
+  EXPECT_FALSE(push(From::second, 190));
+}
+
 TEST_F(Handovers, TimesAndNumbersIncreaseAcrossAllHandovers) {
   const auto stream = run({.return_ms = 100}, 6, [](double at_s, msg::HandPoses& poses) {
     if (at_s - std::floor(at_s) > 0.5) poses.count = 0;

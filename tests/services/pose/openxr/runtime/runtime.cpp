@@ -6,6 +6,7 @@
 #include <openxr/openxr_platform.h>
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -14,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "tests/services/pose/openxr/runtime/tracker.hpp"
 
@@ -52,6 +54,8 @@ std::int64_t monotonic_ns() {
   return now.tv_sec * 1'000'000'000 + now.tv_nsec;
 }
 
+void pause_a_little() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
+
 XrResult enumerate_extensions(const char*, std::uint32_t capacity, std::uint32_t* count,
                               XrExtensionProperties* properties) {
   *count = 0;
@@ -69,6 +73,7 @@ XrResult enumerate_extensions(const char*, std::uint32_t capacity, std::uint32_t
 
 XrResult create_instance(const XrInstanceCreateInfo*, XrInstance* instance) {
   if (script().crashes) std::abort();
+  while (script().hangs_at_start) pause_a_little();
   if (script().refuses) return XR_ERROR_RUNTIME_UNAVAILABLE;
   state = {};
   state.tracker = std::make_unique<Tracker>(script().motion.empty() ? swaying_hand()
@@ -187,6 +192,7 @@ void spoil(bool is_left, XrHandJointLocationEXT* joints) {
 
 XrResult locate_hand_joints(XrHandTrackerEXT tracker, const XrHandJointsLocateInfoEXT* info,
                             XrHandJointLocationsEXT* locations) {
+  while (script().hangs) pause_a_little();
   if (script().loses_session) return XR_ERROR_SESSION_LOST;
   if (script().refuses_times) return XR_ERROR_TIME_INVALID;
   if (locations->jointCount != msg::kJoints) return XR_ERROR_VALIDATION_FAILURE;

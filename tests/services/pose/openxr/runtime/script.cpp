@@ -15,6 +15,8 @@ namespace {
 
 const std::map<std::string, bool Script::*> kFlags{{"refuses", &Script::refuses},
                                                    {"crashes", &Script::crashes},
+                                                   {"hangs_at_start", &Script::hangs_at_start},
+                                                   {"hangs", &Script::hangs},
                                                    {"no_system", &Script::no_system},
                                                    {"no_hands", &Script::no_hands},
                                                    {"no_stage", &Script::no_stage},

@@ -21,9 +21,10 @@ enum class Times {
 /// What the runtime does. A line of the script is the name of a member, with a value if it is no
 /// flag: "lacks XR_MND_headless", "times holds", "rate_hz 90". It may change at any time.
 struct Script {
-  std::set<std::string> lacks;  ///< extensions
-  bool refuses = false;         ///< gives no instance: its service does not run
-  bool crashes = false;         ///< when an instance is created
+  std::set<std::string> lacks;                 ///< extensions
+  bool refuses = false;                        ///< gives no instance: its service does not run
+  bool crashes = false;                        ///< when an instance is created
+  bool hangs_at_start = false, hangs = false;  ///< the call of an instance, or for joints: no end
   bool no_system = false, no_hands = false, no_stage = false;
   bool never_ready = false;
   bool stops = false;  ///< stops the session for as long as this stands here
