@@ -65,6 +65,11 @@ Calibration with_id(Calibration calibration) {
 Result<Calibration> load_calibration(const std::filesystem::path& path) {
   if (path.empty()) return with_id(reference_rig());
   const auto source = config::read_file_or_frozen(path.string());
+  if (std::error_code unknown; !source && !std::filesystem::exists(path, unknown))
+    return fail(source.error().code,
+                source.error().what +
+                    "; a relative path of a calibration begins at the folder of the rig file: a "
+                    "rig file that is copied needs the calibration copied, or its whole path");
   if (!source) return tl::make_unexpected(source.error());
   const auto& name = source->path;
   const auto document = config::parse_document(source->text, name);

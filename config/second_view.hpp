@@ -6,6 +6,15 @@
 
 namespace handcast::config {
 
+/// Whether a camera delivers the images of two eyes, so that it needs no second service.
+inline bool has_two_eyes(const Camera& camera) { return camera.backend == "leap"; }
+
+/// Whether the rig has images of a second camera: from a service of its own, or from a camera that
+/// delivers those of two eyes.
+inline bool has_second_images(const Rig& rig) {
+  return rig.camera2.backend != "none" || has_two_eyes(rig.camera);
+}
+
 /// The rig as the services of the second view read it: [camera2] and [landmarks2] in the places of
 /// [camera] and [landmarks].
 inline Rig seen_by_second(Rig rig) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/wording.hpp"
 
 namespace handcast {
 
@@ -67,6 +68,12 @@ std::string& program() {
   return name;
 }
 
+using Wording = std::string (*)(std::string_view);
+Wording& wording_of() {
+  static Wording wording = printable;
+  return wording;
+}
+
 std::atomic<Level>& threshold() {
   static std::atomic<Level> level{level_from_environment()};
   return level;
@@ -76,6 +83,7 @@ std::atomic<Level>& threshold() {
 
 void set_program(std::string_view name) { program() = name; }
 void set_level(Level level) { threshold() = level; }
+void set_wording(std::string (*wording)(std::string_view sentence)) { wording_of() = wording; }
 
 std::optional<ParsedLine> parse(std::string_view line) {
   take_word(line);  // time
@@ -99,9 +107,9 @@ std::string for_journal(Level level, std::string text) {
 
 void write(Level level, std::string_view line) {
   if (level < threshold().load(std::memory_order_relaxed)) return;
-  const auto text =
-      for_journal(level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
-                                     kNames[static_cast<std::size_t>(level)], printable(line)));
+  const auto text = for_journal(
+      level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
+                         kNames[static_cast<std::size_t>(level)], printable(wording_of()(line))));
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 

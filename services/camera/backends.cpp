@@ -13,6 +13,8 @@ Result<std::unique_ptr<Camera>> open_aravis(const config::Rig&, const calib::Cal
 #ifdef HANDCAST_WITH_LIBUSB
 Result<std::unique_ptr<Camera>> open_leap(const config::Rig&, const calib::Calibration&,
                                           const std::int64_t& epoch_ns);
+Result<void> check_leap(const config::Rig&, const calib::Calibration&,
+                        const std::int64_t& epoch_ns);
 #endif
 Result<std::unique_ptr<Camera>> open_twin(const config::Rig&, const calib::Calibration&,
                                           const std::int64_t& epoch_ns);
@@ -50,7 +52,8 @@ static constexpr std::array kBackends{
                               "maker's software.",
                   .open = open_leap,
                   .reads = {"camera.leap", "camera.delivery_ms"},
-                  .exclusive = true},
+                  .exclusive = true,
+                  .check = check_leap},
 #endif
 };
 

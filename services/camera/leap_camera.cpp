@@ -7,6 +7,7 @@
 #include "ipc/base/log.hpp"
 #include "services/camera/camera.hpp"
 #include "services/camera/frame_size.hpp"
+#include "services/camera/leap/bring_up.hpp"
 #include "services/camera/leap/deinterleave.hpp"
 #include "services/camera/leap/keeper.hpp"
 
@@ -96,6 +97,12 @@ Result<std::unique_ptr<Camera>> open_leap(const config::Rig& rig,
   if (!session) return fail_in(kPlace, session.error());
   report(**session, settings.rate_hz);
   return std::make_unique<LeapCamera>(settings, calibration, std::move(*session), mailbox);
+}
+
+Result<void> check_leap(const config::Rig& rig, const calib::Calibration&, const std::int64_t&) {
+  const auto steps = leap::load_bring_up(rig.camera.leap.bring_up);
+  if (!steps) return fail_in("camera.leap.bring_up", steps.error());
+  return {};
 }
 
 }  // namespace handcast::camera

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
+#include "config/second_view.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "services/camera/camera.hpp"
 #include "services/camera/frame_size.hpp"
@@ -35,16 +36,22 @@ static Result<void> capture(camera::Camera& source, Slot& slot, std::optional<Sl
   return captured;
 }
 
-/// The ring of the other eye's images; empty if the camera has none. Errors: bad_config (a second
-/// camera publishes to that ring), those of the ring.
+/// Errors: bad_config (a second camera publishes to the ring of the other eye's images).
+static Result<void> check_other_eye(const config::Rig& rig) {
+  if (rig.camera2.backend == "none") return {};
+  return fail(Errc::bad_config,
+              "camera: it delivers the images of two cameras; set camera2.backend = \"none\" "
+              "instead of \"" +
+                  rig.camera2.backend + "\"");
+}
+
+/// The ring of the other eye's images; empty if the camera has none. Errors: those of
+/// check_other_eye() and of the ring.
 static Result<std::optional<Frames>> second_frames_of(const camera::Camera& source,
                                                       service::Context& context) {
   if (kIsSecondView || !source.has_second_image()) return std::nullopt;
-  if (const auto& second = context.rig().camera2.backend; second != "none")
-    return fail(Errc::bad_config,
-                "camera: it delivers the images of two cameras; set camera2.backend = \"none\" "
-                "instead of \"" +
-                    second + "\"");
+  if (auto is_free = check_other_eye(context.rig()); !is_free)
+    return tl::make_unexpected(is_free.error());
   return context.writer<msg::CameraFrame>("camera2.frames").map([](Frames&& frames) {
     return std::optional(std::move(frames));
   });
@@ -91,6 +98,8 @@ static Result<void> check_camera(const config::Rig& rig, const calib::Calibratio
   constexpr std::size_t kRoom = msg::kLargestCameraWidth_px * msg::kLargestCameraHeight_px;
   const auto& camera = calibration.camera;
   if (auto fits = camera::check_room(camera.width_px, camera.height_px, kRoom); !fits) return fits;
+  if (!kIsSecondView && config::has_two_eyes(rig.camera))
+    if (auto is_free = check_other_eye(rig); !is_free) return is_free;
   return service::check_backend("camera", rig.camera.backend, camera::camera_backends(), rig,
                                 calibration, now_ns());
 }

@@ -17,8 +17,12 @@ Result<std::unique_ptr<PoseSource>> open_none(const config::Rig&, const calib::C
                                               const std::int64_t& epoch_ns);
 Result<std::unique_ptr<PoseSource>> open_openxr(const config::Rig&, const calib::Calibration&,
                                                 const std::int64_t& epoch_ns);
+Result<void> check_openxr(const config::Rig&, const calib::Calibration&,
+                          const std::int64_t& epoch_ns);
 Result<std::unique_ptr<PoseSource>> open_leapc(const config::Rig&, const calib::Calibration&,
                                                const std::int64_t& epoch_ns);
+Result<void> check_leapc(const config::Rig&, const calib::Calibration&,
+                         const std::int64_t& epoch_ns);
 Result<std::unique_ptr<PoseSource>> open_stereo(const config::Rig&, const calib::Calibration&,
                                                 const std::int64_t& epoch_ns);
 
@@ -34,7 +38,8 @@ static constexpr std::array kBackends{
     PoseBackend{.name = "leapc",
                 .sentence = "A Leap Motion or Ultraleap device, by Ultraleap's service.",
                 .open = open_leapc,
-                .reads = {"pose.leapc"}},
+                .reads = {"pose.leapc"},
+                .check = check_leapc},
     PoseBackend{.name = "none",
                 .sentence = "No tracker: lifts the landmarks of the camera image to poses.",
                 .open = open_none,
@@ -44,24 +49,27 @@ static constexpr std::array kBackends{
                 .sentence = "The hand tracker of an OpenXR runtime.",
                 .open = open_openxr,
                 .reads = {"pose.openxr"},
-                .exclusive = true},
+                .exclusive = true,
+                .check = check_openxr},
 #endif
     PoseBackend{.name = "stereo",
                 .sentence = "A tracker of our own: makes poses from the landmarks of two cameras.",
                 .open = open_stereo,
-                .reads = {"pose.stereo", "hand"}},
+                .reads = {"pose.stereo", "hand", "camera.backend", "camera2.backend"}},
 };
 
 std::span<const PoseBackend> pose_backends() { return kBackends; }
 
 namespace {
 
+std::string title_of(const std::string& name) { return fmt::format("pose '{}'", name); }
+
 Result<std::unique_ptr<WatchedSource>> open_watched(const std::string& name, const config::Rig& rig,
                                                     const calib::Calibration& calibration,
                                                     std::int64_t epoch_ns) {
   auto source = service::open_backend("pose", name, pose_backends(), rig, calibration, epoch_ns);
   if (!source) return tl::make_unexpected(source.error());
-  return std::make_unique<WatchedSource>(fmt::format("pose '{}'", name), std::move(*source));
+  return std::make_unique<WatchedSource>(title_of(name), std::move(*source));
 }
 
 Result<void> check_second(const config::Pose& settings) {
@@ -84,7 +92,9 @@ Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
   };
   if (rig.pose.second.empty()) return opener(rig.pose.backend)();
   if (auto differs = check_second(rig.pose); !differs) return tl::make_unexpected(differs.error());
-  return open_pair(rig.pose.handover, {opener(rig.pose.backend), opener(rig.pose.second)});
+  const auto part = [&](const std::string& name) { return PairPart{title_of(name), opener(name)}; };
+  return open_pair(rig.pose.handover,
+                   {.first = part(rig.pose.backend), .second = part(rig.pose.second)});
 }
 
 bool is_exclusive(const config::Pose& settings) {

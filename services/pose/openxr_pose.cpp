@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "ipc/base/log.hpp"
+#include "services/pose/openxr/manifest.hpp"
 #include "services/pose/openxr/polls.hpp"
 #include "services/pose/openxr/sampler.hpp"
 #include "services/pose/openxr/session.hpp"
@@ -121,6 +122,14 @@ Result<std::unique_ptr<PoseSource>> open_openxr(const config::Rig& rig, const ca
   if (!begun && begun.error().code == Errc::disconnected)
     return fail_in("pose 'openxr'", begun.error());
   return source;
+}
+
+Result<void> check_openxr(const config::Rig& rig, const calib::Calibration&, const std::int64_t&) {
+  const auto runtime = openxr::find_runtime(rig.pose.openxr.runtime);
+  if (!runtime) return fail_in("pose 'openxr'", runtime.error());
+  if (auto loads = openxr::check_library(*runtime); !loads)
+    return fail_in("pose 'openxr'", loads.error());
+  return {};
 }
 
 }  // namespace handcast::pose

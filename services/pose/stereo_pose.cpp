@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <optional>
 
+#include "config/second_view.hpp"
 #include "services/pose/pose_source.hpp"
 #include "services/pose/stereo/pairing.hpp"
 #include "services/pose/stereo/stereo_tracker.hpp"
@@ -50,6 +50,11 @@ class StereoPose final : public PoseSource {
 Result<std::unique_ptr<PoseSource>> open_stereo(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
                                                 const std::int64_t&) {
+  if (!config::has_second_images(rig))
+    return fail(
+        Errc::bad_config,
+        "pose 'stereo': the rig has no second camera; set camera2.backend, or take a camera "
+        "with two eyes (camera.backend = \"leap\")");
   const auto views = stereo::views_of(calibration);
   if (!views) return fail_in("pose 'stereo'", views.error());
   auto tracker =

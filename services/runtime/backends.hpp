@@ -30,6 +30,10 @@ struct Backend {
   config::SettingList reads{};
   /// Only one process at a time can have it open (a device): a spare opens it in its turn.
   bool exclusive = false;
+  /// What `config --check` does instead of open(): it looks at the files that the back end needs
+  /// and leaves devices and services alone, which a running rig may use. Errors: those of open()
+  /// that a person must change. Null: it opens the back end, unless that is exclusive.
+  Result<void> (*check)(const Args&...) = nullptr;
 };
 
 /// The rows of a table without their code, in its order.
@@ -66,14 +70,15 @@ Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::stri
                                             join(names_of(table), ", ")));
 }
 
-/// Opens the back end called `name` and closes it again; one that only one process may open is left
-/// alone. Errors: those of open_backend().
+/// Checks the back end called `name`: see Backend::check. Errors: those of the check and of
+/// open_backend().
 template <class Interface, class... Args>
 Result<void> check_backend(std::string_view what, std::string_view name,
                            std::span<const Backend<Interface, Args...>> table,
                            const Args&... args) {
   for (const auto& row : table)
-    if (row.name == name && row.exclusive) return {};
+    if (row.name == name && (row.check || row.exclusive))
+      return row.check ? row.check(args...) : Result<void>();
   const auto opened = open_backend(what, name, table, args...);
   return opened ? Result<void>() : tl::make_unexpected(opened.error());
 }

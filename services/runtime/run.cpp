@@ -6,6 +6,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
+#include "ipc/base/wording.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
@@ -39,6 +40,16 @@ void print_answer(const daemon::ServiceDescription& description, CommandLine::Ta
   if (task == Task::describe) fmt::print("{}", daemon::print_description(complete(description)));
 }
 
+/// Stands for a calibration that cannot be loaded, so that the rest of the rig can be checked. It
+/// has two cameras.
+calib::Calibration stand_in() {
+  auto calibration = calib::reference_rig();
+  glm::dmat4 beside(1);
+  beside[3] = {0.1, 0, 0, 1};
+  calibration.camera2 = calib::SecondCamera{{}, calibration.camera, beside};
+  return calibration;
+}
+
 /// The calibration as this service has it. Errors: those of calib::load_calibration(); bad_config
 /// (a service of the second view, and there is no second camera).
 Result<calib::Calibration> load_calibration(const config::Rig& rig,
@@ -47,9 +58,7 @@ Result<calib::Calibration> load_calibration(const config::Rig& rig,
   if (!calibration || !description.is_second_view) return calibration;
   if (calibration->camera2) return calib::second_view(*calibration);
   return fail(Errc::bad_config,
-              fmt::format("{}: the calibration has no second camera; measure it with "
-                          "`handcast calibrate`",
-                          description.name));
+              "the calibration has no second camera; measure it with `handcast calibrate`");
 }
 
 int serve(const daemon::ServiceDescription& description, const CommandLine& line,
@@ -60,7 +69,10 @@ int serve(const daemon::ServiceDescription& description, const CommandLine& line
        must(apply_scheduling(config::process_of(rig, description.name), description.name)))
     log::warning("{}", note);
   auto calibration = must(load_calibration(rig, description));
-  if (description.is_second_view) rig = config::seen_by_second(std::move(rig));
+  if (description.is_second_view) {
+    rig = config::seen_by_second(std::move(rig));
+    log::set_wording(in_second_view);
+  }
   Context context(description, std::move(rig), calibration);
   body(context);
   log::info("stopped");
@@ -80,7 +92,11 @@ std::vector<Error> find_faults(const config::Rig& rig,
   const auto calibration = load_calibration(rig, description);
   if (!calibration) faults.push_back(calibration.error());
   const auto seen = description.is_second_view ? config::seen_by_second(rig) : rig;
-  if (check) note(check(seen, calibration.value_or(calib::reference_rig())));
+  if (!check) return faults;
+  auto checked = check(seen, calibration.value_or(stand_in()));
+  if (!checked && description.is_second_view)
+    checked = fail(checked.error().code, in_second_view(checked.error().what));
+  note(checked);
   return faults;
 }
 

@@ -14,6 +14,11 @@ namespace handcast::service {
 /// "camera.frames". Names of other services ("pose.hands") are the same in both views.
 std::string of_second_view(std::string_view name);
 
+/// A sentence of code that does not know that it serves the second view: "camera 'v4l2': ... (set
+/// camera.v4l2.device)" names the back end camera2 and camera2.v4l2.device. Only names of settings,
+/// sections and streams, and the service at the begin, are changed.
+std::string in_second_view(std::string_view sentence);
+
 /// The description of a service for the second view.
 daemon::ServiceDescription of_second_view(daemon::ServiceDescription description);
 

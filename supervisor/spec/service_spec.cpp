@@ -50,7 +50,7 @@ void add_second_view(const config::Rig& rig, std::vector<ServiceSpec>& services)
   const bool has_camera = rig.camera2.backend != "none";
   if (has_camera)
     services.push_back({"camera2", "camera2.frames", rig.camera2.backend, rig.camera2.rate_hz});
-  if (has_camera || rig.pose.backend == "stereo")
+  if (has_camera || rig.pose.backend == "stereo" || rig.pose.second == "stereo")
     services.push_back({"landmarks2",
                         "landmarks2.hands",
                         rig.landmarks2.backend,
@@ -87,6 +87,8 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
     services.push_back({"observer", "", "", rig.observer.rate_hz, "", {"projector"}});
   if (rig.supervisor.metrics_port > 0) services.push_back({"exporter", "", "", 0});
   for (auto& service : services) {
+    if (service.name == "landmarks") service.fallback = rig.landmarks.fallback;
+    if (service.name == "landmarks2") service.fallback = rig.landmarks2.fallback;
     service.process = config::process_of(rig, service.name);
     service.fingerprint = fingerprint_of(service.name, rig, catalogue);
   }

@@ -21,6 +21,8 @@ struct ServiceSpec {
   std::vector<std::string> needs{};
   config::Process process{};  ///< scheduling, memory and spare: [NAME.process]
   std::string fingerprint{};  ///< fingerprint of its settings: see fingerprint_of()
+  /// The back end that takes the place of `backend` if a file of that is missing; "" for none.
+  std::string fallback{};
   /// Its program has the task --safe, for a device that must not stay as a dead service left it.
   bool has_safe_state = false;
 };

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tracker `openxr` with the real loader and the runtime of the tests: how long after a runtime
 // has joints the sample is there, and whether a runtime should be asked for the pose at the light.
-//   bench_trackers_openxr [--seconds S] [--goals FILE]
+// A bare thread that sleeps and wakes beside it shows the share of the machine.
+//   bench_trackers_openxr [--seconds S] [--priority N] [--goals FILE]
 #include <fmt/format.h>
+#include <sched.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <glm/gtc/quaternion.hpp>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -166,13 +169,39 @@ void compare(const test::ScriptedRuntime& runtime, const test_runtime::Motion& m
              percentile(errors.at_light, 0.95), mean(errors.at_image));
 }
 
+/// A thread that wakes as often as a tracker has samples and notes how late it is, us.
+class BareThread {
+ public:
+  std::vector<double> end() {
+    thread_.request_stop();
+    thread_.join();
+    return late_us_;
+  }
+
+ private:
+  void run(const std::stop_token& stop) {
+    for (std::int64_t wake_ns = now_ns(); !stop.stop_requested();) {
+      wake_ns += seconds_to_ns(1 / kRate_hz);
+      sleep_until_ns(wake_ns);
+      late_us_.push_back(ns_to_us(now_ns() - wake_ns));
+    }
+  }
+  std::vector<double> late_us_;
+  std::jthread thread_{[this](const std::stop_token& stop) { run(stop); }};
+};
+
 std::vector<Goal> measure_delay(const test::ScriptedRuntime& runtime, double seconds) {
   std::vector<Goal> goals;
   for (const std::string times : {"predicts", "holds"}) {
     const config::OpenXr settings{.rate_hz = 120, .age_ms = kAge_ms};
+    BareThread bare;
     const auto added = added_us(play(runtime, times, settings, seconds), times, kAge_ms);
-    fmt::print("{:12} {} samples: added median {:.0f} us, p99 {:.0f} us\n", times, added.size(),
-               median(added), percentile(added, 0.99));
+    const auto late = bare.end();
+    fmt::print(
+        "{:12} {} samples: added median {:.0f} us, p99 {:.0f} us; a bare thread wakes late by "
+        "median {:.0f} us, p99 {:.0f} us\n",
+        times, added.size(), median(added), percentile(added, 0.99), median(late),
+        percentile(late, 0.99));
     goals.push_back(
         {"openxr, runtime that " + times + ": median added", median(added) / 1000, 0.3, "ms"});
   }
@@ -190,6 +219,10 @@ int main(int argc, char** argv) {
     const std::string option = argv[i];
     if (option == "--seconds") seconds = std::atof(argv[i + 1]);
     if (option == "--goals") goals_file = argv[i + 1];
+    if (option != "--priority") continue;
+    const sched_param parameters{.sched_priority = std::atoi(argv[i + 1])};
+    if (sched_setscheduler(0, SCHED_FIFO, &parameters) != 0)
+      fmt::print("real-time priority is denied\n");
   }
   const test::ScriptedRuntime runtime;
   std::vector<bench::Goal> goals;

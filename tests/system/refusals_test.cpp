@@ -124,6 +124,73 @@ TEST_F(Refusals, ConfigOpensWhatTheServicesOpen) {
   EXPECT_THAT(traces(), IsEmpty());
 }
 
+TEST_F(Refusals, ConfigLooksAtTheFilesOfTrackersAndCamerasWithoutOpeningThem) {
+  const auto refusal = [&](const std::string& toml) {
+    const auto outcome = handcast({"config", "--check", rig_file(toml)});
+    EXPECT_EQ(outcome.exit_code, 100) << toml;
+    return outcome.log;
+  };
+  std::ofstream(scratch_.path() / "odd.json") << "{}";
+  std::ofstream(scratch_.path() / "gone.json")
+      << R"({"runtime": {"name": "It", "library_path": "./libgone.so"}})";
+  std::ofstream(scratch_.path() / "odd.txt") << "dance\n";
+  const auto all = handcast({"config", "--reference"}).output;
+  const auto has = [&](const std::string& backend) {
+    return all.find("\n| `" + backend + "` |") != std::string::npos;
+  };
+  if (has("openxr")) {
+    const std::string rig = "[pose]\nbackend = \"openxr\"\n[pose.openxr]\nruntime = ";
+    EXPECT_THAT(refusal(rig + "\"nowhere.json\""), HasSubstr("nowhere.json'"));
+    EXPECT_THAT(refusal(rig + "\"odd.json\""), HasSubstr("odd.json' is no manifest"));
+    EXPECT_THAT(refusal(rig + "\"gone.json\""), HasSubstr("libgone.so"));
+    const Variable active("XR_RUNTIME_JSON", "/nowhere/active.json");
+    EXPECT_THAT(refusal("[pose]\nbackend = \"openxr\""), HasSubstr("/nowhere/active.json"));
+    EXPECT_THAT(refusal("[pose]\nsecond = \"openxr\""), HasSubstr("/nowhere/active.json"));
+  }
+  EXPECT_THAT(refusal("[pose]\nbackend = \"leapc\"\n[pose.leapc]\nlibrary = \"none.so\""),
+              HasSubstr("none.so: there is no such file"));
+  if (has("leap")) {
+    EXPECT_THAT(refusal("[camera]\nbackend = \"leap\"\n[camera.leap]\nbring_up = \"none.txt\""),
+                HasSubstr("camera.leap.bring_up: "));
+    EXPECT_THAT(refusal("[camera]\nbackend = \"leap\"\n[camera.leap]\nbring_up = \"odd.txt\""),
+                HasSubstr("'dance' is no step"));
+    EXPECT_THAT(refusal("[camera]\nbackend = \"leap\"\n[camera2]\nbackend = \"twin\""),
+                HasSubstr("set camera2.backend = \"none\""));
+  }
+}
+
+TEST_F(Refusals, ConfigNamesWhatATrackerOfTwoCamerasLacks) {
+  const auto stereo = std::filesystem::absolute("config/calibrations/stereo.toml").string();
+  const auto log_of = [&](const std::string& toml) {
+    return handcast({"config", "--check", rig_file(toml)}).log;
+  };
+  const std::string pose = "[pose]\nbackend = \"stereo\"\n",
+                    two = "[camera2]\nbackend = \"twin\"\n";
+  EXPECT_THAT(log_of("calibration = \"" + stereo + "\"\n" + pose),
+              HasSubstr("set camera2.backend"));
+  const auto one = log_of(pose + two);
+  EXPECT_THAT(one, HasSubstr("no second camera; add [camera2] and [camera2_from_camera]"));
+  EXPECT_EQ(one.find("no second camera"), one.rfind("no second camera")) << "once: " << one;
+  EXPECT_EQ(log_of("calibration = \"" + stereo + "\"\n" + pose + two), "");
+  const auto unloaded = log_of("calibration = \"none.toml\"\n" + pose + two);
+  EXPECT_THAT(unloaded, AllOf(HasSubstr("none.toml: cannot be read"),
+                              HasSubstr("begins at the folder of the rig file"),
+                              Not(HasSubstr("no second camera"))));
+}
+
+TEST_F(Refusals, AFaultOfTheSecondCameraNamesItsOwnSettings) {
+  const auto outcome = handcast(
+      {"config", "--check",
+       rig_file("calibration = \"" +
+                std::filesystem::absolute("config/calibrations/stereo.toml").string() +
+                "\"\n[camera2]\nbackend = \"replay\"\n" + "[landmarks2]\nfallback = \"none\"\n")});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log,
+              AllOf(HasSubstr("camera2 'replay': no recording is given; set "
+                              "camera2.replay.directory"),
+                    HasSubstr("landmarks2.fallback"), Not(HasSubstr("landmarks.fallback"))));
+}
+
 TEST_F(Refusals, ConfigNamesEachFaultOnce) {
   const auto outcome = handcast({"config", "--check", rig_file("calibration = \"none.toml\"")});
   const auto first = outcome.log.find("none.toml: cannot be read");

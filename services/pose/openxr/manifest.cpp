@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/pose/openxr/manifest.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-
-#include "ipc/base/join.hpp"
 
 namespace handcast::pose::openxr {
 namespace {
@@ -43,6 +44,10 @@ Result<Manifest> read(const std::string& file) {
   if (fs::file_size(file, unknown) > kLargest_bytes)
     return fail(Errc::bad_config, fmt::format("'{}' is too large for a manifest", file));
   std::ifstream stream(file);
+  if (!stream)
+    return fail(Errc::bad_config,
+                fmt::format("the manifest of an OpenXR runtime '{}' cannot be read: {}", file,
+                            std::strerror(errno)));
   const auto document = nlohmann::json::parse(stream, nullptr, false);
   const auto runtime =
       document.is_object() ? document.value("runtime", nlohmann::json()) : document;
@@ -88,14 +93,31 @@ Result<Manifest> find_runtime(const std::string& chosen) {
     return fail(Errc::unavailable,
                 fmt::format("there is no manifest of an OpenXR runtime at '{}'", chosen));
   }
-  const auto places = active_runtime_places();
-  for (const auto& place : places)
+  if (const auto active = variable("XR_RUNTIME_JSON"); !active.empty() && !is_file(active))
+    return fail(Errc::unavailable,
+                fmt::format("there is no manifest of an OpenXR runtime at '{}' (XR_RUNTIME_JSON); "
+                            "install the runtime, or clear this variable",
+                            active));
+  std::error_code unknown;
+  for (const auto& place : active_runtime_places()) {
     if (is_file(place)) return read(place);
+    if (fs::is_symlink(place, unknown))
+      return fail(Errc::unavailable,
+                  fmt::format("the active OpenXR runtime is gone: '{}' is a link to no file; "
+                              "install the runtime, or make another one active",
+                              place));
+  }
   return fail(Errc::unavailable,
-              fmt::format("no OpenXR runtime is active on this computer (looked at {}); install "
-                          "one with hand tracking, e.g. Monado, and make it active, or name its "
-                          "manifest in pose.openxr.runtime",
-                          join(places, ", ")));
+              "no OpenXR runtime is active on this computer; install one with hand tracking, e.g. "
+              "Monado, and make it active, or name its manifest in pose.openxr.runtime");
+}
+
+Result<void> check_library(const Manifest& runtime) {
+  if (::dlopen(runtime.library.c_str(), RTLD_LAZY | RTLD_LOCAL)) return {};
+  const char* why = ::dlerror();
+  return fail(Errc::unavailable,
+              fmt::format("the library of the OpenXR runtime '{}' cannot be loaded: {} ({})",
+                          runtime.name, why ? why : "unknown error", runtime.file));
 }
 
 }  // namespace handcast::pose::openxr

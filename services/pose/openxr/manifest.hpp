@@ -20,7 +20,11 @@ std::vector<std::string> active_runtime_places();
 
 /// The manifest in `chosen`, or, if that is empty, in the first of active_runtime_places() that
 /// exists. The runtime is not started. Errors: unavailable (no such file; the library is missing),
-/// bad_config (not a manifest).
+/// bad_config (not a manifest, or not readable).
 Result<Manifest> find_runtime(const std::string& chosen);
+
+/// Whether the library of a runtime can be loaded. It stays in the process, and is not started.
+/// Errors: unavailable (it cannot be).
+Result<void> check_library(const Manifest& runtime);
 
 }  // namespace handcast::pose::openxr

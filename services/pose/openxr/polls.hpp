@@ -10,7 +10,7 @@ namespace handcast::pose::openxr {
 class Polls {
  public:
   /// The period after which a runtime that repeats itself is asked again.
-  static constexpr std::int64_t kListen_ns = 400'000;
+  static constexpr std::int64_t kListen_ns = 200'000;
 
   /// The first poll is a period after `start_ns`.
   Polls(double rate_hz, std::int64_t start_ns);

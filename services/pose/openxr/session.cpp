@@ -10,29 +10,17 @@
 #include <cstring>
 #include <ctime>
 #include <optional>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "ipc/base/log.hpp"
+#include "services/pose/openxr/extensions.hpp"
 #include "services/pose/openxr/manifest.hpp"
+#include "services/pose/openxr/results.hpp"
 
 namespace handcast::pose::openxr {
 namespace {
 
 constexpr std::int64_t kLookEvery_ns = 2'000'000;  ///< for the events of a session that begins
-
-/// An extension that is needed, and what it is for.
-struct Need {
-  const char* extension;
-  const char* lack;  ///< the end of the sentence if a runtime does not have it
-};
-constexpr std::array<Need, 3> kNeeds{
-    Need{XR_EXT_HAND_TRACKING_EXTENSION_NAME, "has no hand tracking"},
-    Need{XR_MND_HEADLESS_EXTENSION_NAME,
-         "cannot be used by a program that draws nothing in it; use one that can, e.g. Monado"},
-    Need{XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME,
-         "does not say how its times and those of this computer belong together"}};
 
 /// Sets an environment variable for as long as it lives.
 class Variable {
@@ -48,38 +36,6 @@ class Variable {
   const char* name_;
   std::optional<std::string> before_;
 };
-
-/// The reaction to a result that is an error.
-Errc code_of(XrResult result) {
-  switch (result) {
-    case XR_ERROR_INSTANCE_LOST:
-    case XR_ERROR_SESSION_LOST:
-    case XR_ERROR_RUNTIME_FAILURE:
-    case XR_ERROR_HANDLE_INVALID:
-    case XR_SESSION_LOSS_PENDING:
-      return Errc::disconnected;
-    default:
-      return Errc::bad_data;
-  }
-}
-
-std::string word_of(XrResult result) {
-  switch (result) {
-#define HANDCAST_RESULT(name, value) \
-  case name:                         \
-    return #name;
-#include <openxr/openxr_reflection.h>
-    XR_LIST_ENUM_XrResult(HANDCAST_RESULT)
-#undef HANDCAST_RESULT
-        default : return fmt::format("result {}", static_cast<int>(result));
-  }
-}
-
-/// A text of the runtime, which need not end with a zero byte.
-template <std::size_t kSize>
-std::string text_of(const char (&text)[kSize]) {
-  return {text, strnlen(text, kSize)};
-}
 
 msg::Joint joint_of(const XrHandJointLocationEXT& location) {
   const auto& [turn, place] = location.pose;
@@ -98,29 +54,6 @@ Answer answer_of(bool is_active, const std::array<XrHandJointLocationEXT, msg::k
     answer.joints[j] = joint_of(all[j]);
   }
   return answer;
-}
-
-Result<void> check_extensions(const std::string& runtime) {
-  std::uint32_t count = 0;
-  std::vector<XrExtensionProperties> has;
-  auto result = xrEnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr);
-  if (XR_SUCCEEDED(result)) {
-    has.assign(count, {.type = XR_TYPE_EXTENSION_PROPERTIES});
-    result = xrEnumerateInstanceExtensionProperties(nullptr, count, &count, has.data());
-  }
-  if (XR_FAILED(result))
-    return fail(Errc::unavailable,
-                fmt::format("the OpenXR runtime '{}' cannot be loaded ({}); XR_LOADER_DEBUG=all "
-                            "shows why",
-                            runtime, word_of(result)));
-  for (const auto& need : kNeeds) {
-    bool is_there = false;
-    for (const auto& one : has) is_there |= text_of(one.extensionName) == need.extension;
-    if (!is_there)
-      return fail(Errc::bad_config, fmt::format("the OpenXR runtime '{}' {} (it lacks {})", runtime,
-                                                need.lack, need.extension));
-  }
-  return {};
 }
 
 class LoadedSession final : public Session {
@@ -200,11 +133,11 @@ class LoadedSession final : public Session {
   }
 
   Result<void> create_instance() {
-    std::array<const char*, kNeeds.size()> extensions{};
-    for (std::size_t i = 0; i < kNeeds.size(); ++i) extensions[i] = kNeeds[i].extension;
-    XrInstanceCreateInfo info{.type = XR_TYPE_INSTANCE_CREATE_INFO,
-                              .enabledExtensionCount = extensions.size(),
-                              .enabledExtensionNames = extensions.data()};
+    const auto extensions = needed_extensions();
+    XrInstanceCreateInfo info{
+        .type = XR_TYPE_INSTANCE_CREATE_INFO,
+        .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+        .enabledExtensionNames = extensions.data()};
     std::strcpy(info.applicationInfo.applicationName, "handcast");
     info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
     if (const auto result = xrCreateInstance(&info, &instance_); XR_FAILED(result)) {

@@ -81,6 +81,7 @@ class PoseContract : public testing::TestWithParam<PoseBackend> {
  protected:
   PoseContract() {
     rig_.pose.backend = GetParam().name;
+    rig_.camera2.backend = "twin";  // for stereo
     rig_.pose.replay.directory = scratch_.path();
     if (GetParam().name == "replay" && !twin::write_recording(scratch_.path(), recording_of(rig_)))
       throw std::runtime_error("the recording cannot be written");

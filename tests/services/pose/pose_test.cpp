@@ -44,15 +44,26 @@ TEST(TwinPose, ALostSampleIsDeliveredWithoutAHand) {
 TEST(StereoPose, NeedsASecondCameraInTheCalibration) {
   config::Rig rig;
   rig.pose.backend = "stereo";
+  rig.camera2.backend = "twin";
   const auto opened = open_pose_source(rig, calib::reference_rig(), 0);
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, Errc::bad_config);
   EXPECT_THAT(opened.error().what, testing::HasSubstr("[camera2_from_camera]"));
 }
 
+TEST(StereoPose, NeedsASecondCamera) {
+  config::Rig rig;
+  rig.pose.backend = "stereo";
+  EXPECT_THAT(check_pose_sources(rig, two_cameras()).error().what,
+              testing::HasSubstr("set camera2.backend"));
+  rig.camera.backend = "leap";  // which has two eyes
+  EXPECT_TRUE(check_pose_sources(rig, two_cameras()));
+}
+
 TEST(StereoPose, TheLandmarksOfOneViewWaitForThoseOfTheOther) {
   config::Rig rig;
   rig.pose.backend = "stereo";
+  rig.camera2.backend = "twin";
   rig.pose.stereo.wait_ms = 100;
   const auto source = open_pose_source(rig, two_cameras(), 0).value();
   const auto seen = twin::Twin::create(rig, two_cameras()).value()->detect(0, 0, 0).landmarks;

@@ -35,6 +35,23 @@ TEST(SecondViewNames, AreInTheWholeDescription) {
   EXPECT_TRUE(second.is_second_view);
 }
 
+TEST(SecondViewNames, AreInTheSentencesOfCodeThatDoesNotKnowIt) {
+  EXPECT_EQ(in_second_view("camera 'v4l2': no device (camera.v4l2.device, [camera.v4l2])"),
+            "camera2 'v4l2': no device (camera2.v4l2.device, [camera2.v4l2])");
+  EXPECT_EQ(in_second_view("camera: all slots of camera.frames are held"),
+            "camera2: all slots of camera2.frames are held");
+  EXPECT_EQ(in_second_view("landmarks.fallback: there is no back end; set landmarks.fallback."),
+            "landmarks2.fallback: there is no back end; set landmarks2.fallback.");
+}
+
+TEST(SecondViewNames, AreNotInPathsOrInOtherWords) {
+  for (const auto* sentence :
+       {"/srv/camera.toml: cannot be read", "'camera.rate_hz.png' is not a PNG",
+        "a/camera.rate_hz/x", "the camera 'A-2134' is gone", "camera2.rate_hz: 0",
+        "my_camera.rate_hz", "cameras: none", "camera.toml: odd", "twin.camera.rate_hz"})
+    EXPECT_EQ(in_second_view(sentence), sentence);
+}
+
 TEST(SecondViewRig, HasTheSecondSectionsInThePlacesOfTheFirst) {
   config::Rig rig;
   rig.camera.rate_hz = 500;

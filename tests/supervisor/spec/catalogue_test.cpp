@@ -147,6 +147,8 @@ TEST(BuiltCatalogue, ASecondCameraHasServicesOfItsOwn) {
   rig.pose.backend = "stereo";
   EXPECT_FALSE(has(rig, "camera2")) << "one camera may deliver the images of both";
   EXPECT_TRUE(has(rig, "landmarks2"));
+  std::swap(rig.pose.backend, rig.pose.second);
+  EXPECT_TRUE(has(rig, "landmarks2")) << "the second source takes them, too";
   rig.camera2.backend = "twin";
   EXPECT_TRUE(has(rig, "camera2"));
   const auto& camera2 = catalogue.at("camera2");

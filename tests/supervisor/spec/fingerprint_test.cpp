@@ -175,7 +175,8 @@ TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) 
 }
 
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
-  expect_reads("observer", {}, truth_and({"observer", "camera.backend", "pose.backend"}),
+  expect_reads("observer", {},
+               truth_and({"observer", "camera.backend", "camera2.backend", "pose.backend"}),
                {"observer.enabled", "observer.process.standby"});
 }
 
@@ -223,7 +224,8 @@ TEST(Fingerprint, TheServicesOfTheSecondViewDependOnItsSectionsAndNotOnTheFirsts
   expect_reads(
       "landmarks2", pair("replay", "handcast"), {"landmarks2", "pose.backend"},
       settings_in({"landmarks2.replay", "landmarks2.definition", "landmarks2.process.standby"}));
-  expect_reads("pose", pair("replay", "replay"), {"pose", "hand"},
+  expect_reads("pose", pair("replay", "replay"),
+               {"pose", "hand", "camera.backend", "camera2.backend"},
                settings_in({"pose.none", "pose.replay", "pose.leapc", "pose.openxr",
                             "pose.process.standby"}));
 }

@@ -57,7 +57,30 @@ TEST_F(Manifests, TheActiveOneIsFoundWhereTheLoaderLooks) {
   EXPECT_EQ(find_runtime("").value().name, "the chosen one");
 }
 
-TEST_F(Manifests, WithoutOneThePlacesAndTheRemedyAreNamed) {
+TEST_F(Manifests, AnActiveOneThatWasRemovedIsALinkToNothing) {
+  const Variable none("XR_RUNTIME_JSON", "");
+  const Variable home("XDG_CONFIG_HOME", scratch_.path() / "user");
+  const auto link = write("user/openxr/1/there", "");
+  std::filesystem::create_symlink("/nowhere/monado.json",
+                                  scratch_.path() / "user/openxr/1/active_runtime.json");
+  const auto found = find_runtime("");
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, Errc::unavailable);
+  EXPECT_THAT(found.error().what, HasSubstr("user/openxr/1/active_runtime.json' is a link to no"));
+}
+
+TEST_F(Manifests, WithoutAnyTheRemedyIsNamedInOneShortSentence) {
+  const Variable none("XR_RUNTIME_JSON", "");
+  const Variable home("XDG_CONFIG_HOME", scratch_.path() / "user");
+  const Variable dirs("XDG_CONFIG_DIRS", "/nowhere");
+  const auto found = find_runtime("");
+  if (found) GTEST_SKIP() << "this computer has one: " << found->file;
+  EXPECT_THAT(found.error().what, testing::AllOf(HasSubstr("no OpenXR runtime is active"),
+                                                 HasSubstr("pose.openxr.runtime"),
+                                                 testing::Not(HasSubstr("/nowhere"))));
+}
+
+TEST_F(Manifests, AVariableThatNamesNoneIsNamed) {
   const Variable none("XR_RUNTIME_JSON", "/nowhere/runtime.json");
   const auto found = find_runtime("");
   ASSERT_FALSE(found);
@@ -82,6 +105,28 @@ TEST_F(Manifests, ALibraryThatIsGoneMayComeBack) {
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, Errc::unavailable);
   EXPECT_THAT(found.error().what, HasSubstr("libgone.so"));
+}
+
+TEST_F(Manifests, OneThatCannotBeReadIsNamedWithTheReason) {
+  const auto file = write("a.json", R"({"runtime": {"library_path": "libx.so"}})");
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  if (std::ifstream(file)) GTEST_SKIP() << "this user may read everything";
+  const auto found = find_runtime(file);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, Errc::bad_config);
+  EXPECT_THAT(found.error().what, HasSubstr("a.json' cannot be read: Permission denied"));
+}
+
+TEST_F(Manifests, ALibraryThatCannotBeLoadedIsNamedWithItsManifest) {
+  const auto library = write("libtext.so", "this is no library");
+  for (const auto& named : {library, std::string("libnot_installed_anywhere.so")}) {
+    const auto loaded = check_library({.file = "it.json", .name = "It", .library = named});
+    ASSERT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().code, Errc::unavailable);
+    EXPECT_THAT(loaded.error().what,
+                testing::AllOf(HasSubstr(named), HasSubstr("'It'"), HasSubstr("(it.json)")));
+  }
+  EXPECT_TRUE(check_library({.file = "it.json", .name = "It", .library = "libc.so.6"}));
 }
 
 }  // namespace
