@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/log.hpp"
+#include "ipc/msg/detector_note.hpp"
 #include "ipc/msg/same_calibration.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
@@ -25,6 +26,7 @@ static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPo
 /// arrive during a detection are skipped.
 static void run_landmarks(service::Context& context) {
   const auto choice = landmarks::choose_detector(context.rig());
+  const msg::DetectorNote note{.is_fallback = !choice.why.empty()};
   if (!choice.why.empty()) log::warning("{}", choice.why);
   if (service::is_exclusive(choice.backend, landmarks::detector_backends())) context.stand_by();
   const auto detector =
@@ -58,8 +60,8 @@ static void run_landmarks(service::Context& context) {
     }
     found->calibration = (*frame)->calibration;
     hands.publish(*found);
-    context.mark(found->header,
-                 std::array{msg::StageMark{msg::Stage::detect, 0, begin_ns, now_ns()}});
+    context.mark(found->header, std::array{msg::StageMark{msg::Stage::detect, msg::detail_of(note),
+                                                          begin_ns, now_ns()}});
   }
 }
 

@@ -28,7 +28,11 @@ bool LogTail::read_from(int fd, const std::function<void(std::string_view)>& on_
 }
 
 void LogTail::finish_line(const std::function<void(std::string_view)>& on_line) {
-  on_line(unfinished_);
+  const auto logged = log::parse(unfinished_);
+  if (logged && logged->level == log::Level::error && logged->sentence == last_sentence())
+    on_line(unfinished_.substr(0, unfinished_.size() - logged->sentence.size()) + "as before");
+  else
+    on_line(unfinished_);
   lines_.push_back(std::move(unfinished_));
   unfinished_.clear();
   if (lines_.size() > kLines) lines_.pop_front();

@@ -21,7 +21,8 @@ class LogTail {
   /// The number of reads for a process that has ended; the capacity of the pipe limits it.
   static constexpr int kAllReads = std::numeric_limits<int>::max();
 
-  /// Appends bytes. Calls `on_line` for each line that they complete.
+  /// Appends bytes. Calls `on_line` for each line that they complete. An error that repeats the
+  /// line before it, as a service that is started again and again does, gets a short one.
   void append(std::string_view bytes, const std::function<void(std::string_view)>& on_line);
   /// Appends the bytes that a non-blocking descriptor has, in at most `most_reads` reads. Returns
   /// false at the end of the file.

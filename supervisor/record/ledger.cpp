@@ -79,12 +79,19 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
       const auto faults = msg::tracker_faults_in(mark.detail);
       for (std::size_t k = 0; k < faults.count.size(); ++k) tracker_faults_[k] += faults.count[k];
     }
+    if (mark.stage == msg::Stage::detect)
+      detectors_[std::string(service)] = msg::detector_note_in(mark.detail);
     if (mark.stage == msg::Stage::watch) tracker_drift_ = msg::drift_note_in(mark.detail);
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})
       if (const auto rung = msg::rung_in(mark.detail, side))
         ++rungs_[static_cast<std::size_t>(*rung)];
   }
+}
+
+msg::DetectorNote Ledger::detector(std::string_view service) const {
+  const auto found = detectors_.find(service);
+  return found == detectors_.end() ? msg::DetectorNote{} : found->second;
 }
 
 const FrameCount& Ledger::frames(std::string_view service) const {

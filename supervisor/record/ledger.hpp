@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "ipc/msg/detector_note.hpp"
 #include "ipc/msg/drift_note.hpp"
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
@@ -91,6 +92,8 @@ class Ledger {
   }
   /// Where the tracker seems to be, by its newest sample.
   const msg::DriftNote& tracker_drift() const { return tracker_drift_; }
+  /// What a service that detects landmarks said of itself last.
+  msg::DetectorNote detector(std::string_view service) const;
 
  private:
   std::map<std::string, FrameCount, std::less<>> frames_;
@@ -100,6 +103,7 @@ class Ledger {
   LossCount lost_images_;
   std::array<std::uint64_t, msg::kTrackerFaults> tracker_faults_{};
   msg::DriftNote tracker_drift_;
+  std::map<std::string, msg::DetectorNote, std::less<>> detectors_;  ///< by service
 };
 
 }  // namespace handcast::supervisor

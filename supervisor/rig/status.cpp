@@ -40,12 +40,24 @@ json reason_of(const Service& service) {
   }
 }
 
+bool is_on_fallback(const Service& service, const RigView& rig) {
+  const auto& spec = service.spec();
+  return rig.recorder.ledger().detector(spec.name).is_fallback && !spec.fallback.empty() &&
+         spec.backend != spec.fallback;
+}
+
+/// The back end that runs.
+const std::string& backend_of(const Service& service, const RigView& rig) {
+  return is_on_fallback(service, rig) ? service.spec().fallback : service.spec().backend;
+}
+
 json service_status(const Service& service, const RigView& rig) {
   const auto& exit = service.last_exit();
   json status{{"state", name_of(service.state())},
               {"pid", service.pid()},
               {"standby", service.spare_pid() != 0 ? json(service.spare_pid()) : json()},
-              {"backend", service.spec().backend},
+              {"backend", backend_of(service, rig)},
+              {"instead_of", is_on_fallback(service, rig) ? json(service.spec().backend) : json()},
               {"uptime_s", rounded(service.uptime_s(rig.now_ns))},
               {"restarts", service.restarts()},
               {"last_exit", exit ? json(exit->describe()) : json()},
@@ -217,6 +229,8 @@ std::string print_status(const json& status) {
                         text_of(service["restarts"]), text_of(service["last_exit"]));
     if (const auto trouble = print_trouble(service); !trouble.empty())
       text += fmt::format("  {}\n", trouble);
+    if (const auto asked = service.value("instead_of", json()); !asked.is_null())
+      text += fmt::format("  in place of '{}', a file of which is missing\n", text_of(asked));
     if (!service.contains("log")) continue;
     for (const auto& line : service["log"]) text += fmt::format("    {}\n", text_of(line));
   }
@@ -252,7 +266,8 @@ json live_report(const RigView& rig) {
   json report{{"rig", rig.name}, {"seconds", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))}};
   for (const auto& service : rig.services) {
     const auto& spec = service->spec();
-    report["services"][spec.name] = {{"restarts", service->restarts()}, {"backend", spec.backend}};
+    report["services"][spec.name] = {{"restarts", service->restarts()},
+                                     {"backend", backend_of(*service, rig)}};
     if (spec.stream.empty()) continue;
     const auto held_hz = rig.recorder.ledger().frames(spec.name).held_hz(rig.now_ns);
     report["rates"][spec.name] = {{"wanted_hz", wanted_hz(spec)}, {"held_hz", rounded(held_hz)}};

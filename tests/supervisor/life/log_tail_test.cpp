@@ -47,6 +47,21 @@ TEST(LogTail, TheLastSentenceIsWhatThePersonShouldRead) {
   EXPECT_EQ(tail.last_sentence(), "Segmentation fault in the driver");
 }
 
+TEST(LogTail, AnErrorThatIsRepeatedIsPrintedShortAndKeptWhole) {
+  std::vector<std::string> seen;
+  const auto note = [&](std::string_view line) { seen.emplace_back(line); };
+  LogTail tail;
+  tail.append("1.000 pose       error   there is no runtime\n", note);
+  tail.append("2.000 pose       error   there is no runtime\n", note);
+  tail.append("3.000 pose       error   there is no hand\n", note);
+  tail.append("4.000 pose       warning there is no hand\n", note);
+  EXPECT_THAT(seen, ElementsAre("1.000 pose       error   there is no runtime",
+                                "2.000 pose       error   as before",
+                                "3.000 pose       error   there is no hand",
+                                "4.000 pose       warning there is no hand"));
+  EXPECT_EQ(tail.last(3).front(), "2.000 pose       error   there is no runtime");
+}
+
 TEST(LogTail, OneThatWritesFasterThanItIsReadIsNotReadForEver) {
   int ends[2];
   ASSERT_EQ(pipe2(ends, O_NONBLOCK), 0);

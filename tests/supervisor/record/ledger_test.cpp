@@ -113,6 +113,23 @@ TEST(Ledger, FaultsOfTheTrackerAreCountedByKind) {
   EXPECT_EQ(counted(msg::TrackerFault::frozen), 2u) << "only a tracker has these faults";
 }
 
+TEST(Ledger, EachDetectorSaysWhetherItIsTheFallback) {
+  Ledger ledger;
+  auto marks = frame_at(kSecond_ns);
+  marks.marks[0].stage = msg::Stage::detect;
+  marks.marks[0].detail = msg::detail_of(msg::DetectorNote{.is_fallback = true});
+  ledger.add("landmarks2", marks);
+  EXPECT_TRUE(ledger.detector("landmarks2").is_fallback);
+  EXPECT_FALSE(ledger.detector("landmarks").is_fallback);
+  marks.marks[0].detail = 0;
+  ledger.add("landmarks2", marks);
+  EXPECT_FALSE(ledger.detector("landmarks2").is_fallback) << "started anew";
+  marks.marks[0].stage = msg::Stage::sample;
+  marks.marks[0].detail = 1;
+  ledger.add("landmarks2", marks);
+  EXPECT_FALSE(ledger.detector("landmarks2").is_fallback) << "only a detector says so";
+}
+
 TEST(Ledger, TheDriftOfTheTrackerIsThatOfItsNewestSample) {
   Ledger ledger;
   EXPECT_EQ(ledger.tracker_drift().places, 0u);

@@ -31,6 +31,12 @@ TEST(Status, AServiceThatIsWellHasOneLine) {
   EXPECT_THAT(print_with(service(json::object())), Not(HasSubstr("tried again")));
 }
 
+TEST(Status, ABackEndInPlaceOfAnotherIsToldWithIt) {
+  EXPECT_THAT(print_with(service({{"backend", "twin"}, {"instead_of", "mediapipe"}})),
+              HasSubstr("\n  in place of 'mediapipe', a file of which is missing\n"));
+  EXPECT_THAT(print_with(service({{"instead_of", nullptr}})), Not(HasSubstr("in place of")));
+}
+
 TEST(Status, SaysWhoKnowsWhenLightComes) {
   json status{
       {"rig", "desk"},
