@@ -75,14 +75,24 @@ std::vector<std::string> blind_spots() {
   return spots;
 }
 
+std::vector<std::string> missing_trackers() {
+  std::vector<std::string> sentences;
+  for (const auto& [backend, why] : absent_trackers())
+    sentences.push_back(fmt::format("{}: {}", backend, why));
+  return sentences;
+}
+
 std::string print(const std::vector<Attached>& attached,
-                  const std::vector<std::string>& blind_spots) {
+                  const std::vector<std::string>& blind_spots,
+                  const std::vector<std::string>& missing_trackers) {
   std::string text;
   for (std::size_t kind = 0; kind < kKindNames.size(); ++kind) {
     std::string devices;
     for (const auto& device : attached)
       if (static_cast<std::size_t>(device.kind) == kind) devices += print(device);
     text += fmt::format("{}\n{}", kKindNames[kind], devices.empty() ? "  none\n" : devices);
+    if (kind != static_cast<std::size_t>(Kind::tracker)) continue;
+    for (const auto& sentence : missing_trackers) text += fmt::format("  without {}\n", sentence);
   }
   for (const auto& spot : blind_spots) text += fmt::format("this build cannot see {}\n", spot);
   return text;

@@ -57,9 +57,13 @@ std::vector<Attached> all_attached();
 /// What this build cannot see, a sentence each.
 std::vector<std::string> blind_spots();
 
+/// The kinds of trackers that are not attached, a sentence each.
+std::vector<std::string> missing_trackers();
+
 /// The list for people, with what to paste into a rig file.
 std::string print(const std::vector<Attached>& attached,
-                  const std::vector<std::string>& blind_spots);
+                  const std::vector<std::string>& blind_spots,
+                  const std::vector<std::string>& missing_trackers = {});
 /// The same as JSON: an array of objects with the members of Attached.
 std::string to_json(const std::vector<Attached>& attached);
 

@@ -42,7 +42,8 @@ static int run_verb(int argc, char** argv) {
   }
   const auto attached = devices::all_attached();
   fmt::print("{}", as_json ? devices::to_json(attached)
-                           : printable(devices::print(attached, devices::blind_spots())));
+                           : printable(devices::print(attached, devices::blind_spots(),
+                                                      devices::missing_trackers())));
   return kExitDone;
 }
 

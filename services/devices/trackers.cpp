@@ -7,7 +7,6 @@
 #include <array>
 #include <fstream>
 
-#include "ipc/base/join.hpp"
 #include "services/pose/leapc/library.hpp"
 #include "services/pose/openxr/manifest.hpp"
 
@@ -42,9 +41,11 @@ std::optional<UsbTracker> tracker_at(const fs::path& device) {
                     .is_leap_v1 = is_v1};
 }
 
+std::string missing_library() { return "Ultraleap's library is missing; " + leapc_remedy(); }
+
 /// Why the back end `leapc` cannot be used now.
 std::string leapc_trouble(const std::optional<std::string>& library, bool has_device) {
-  if (!library) return "Ultraleap's library is missing; " + leapc_remedy();
+  if (!library) return missing_library();
   return has_device ? "" : "no device of Ultraleap is attached";
 }
 
@@ -122,12 +123,14 @@ std::optional<std::string> leapc_library(const fs::path& root) {
   return std::nullopt;
 }
 
-std::string leapc_remedy() {
-  const auto& places = pose::leapc::kLibraryPlaces;
-  return fmt::format(
-      "install Ultraleap's hand tracking service (Gemini or later, from Ultraleap's site), or set "
-      "pose.leapc.library; looked for {}",
-      join(std::vector<std::string_view>(places.begin(), places.end()), ", "));
+std::string leapc_remedy() { return std::string(pose::leapc::kRemedy); }
+
+std::vector<AbsentTracker> absent_trackers(const fs::path& root) {
+  std::vector<AbsentTracker> absent;
+  if (ultraleap(root).empty())
+    absent.push_back({"leapc", "no device of Ultraleap is attached, and " + missing_library()});
+  if (openxr().empty()) absent.push_back({"openxr", pose::openxr::find_runtime("").error().what});
+  return absent;
 }
 
 std::vector<Attached> trackers(const fs::path& root) {

@@ -22,8 +22,16 @@ std::vector<UsbTracker> usb_trackers(const std::filesystem::path& root = "/");
 /// Ultraleap's library for the back end `leapc`, in its usual places. It is not loaded. nullopt: it
 /// is in none of them.
 std::optional<std::string> leapc_library(const std::filesystem::path& root = "/");
-/// Where leapc_library() looks, and what to install.
+/// What to do if there is none.
 std::string leapc_remedy();
+
+/// A kind of tracker of which this computer has none.
+struct AbsentTracker {
+  std::string backend;  ///< the word of pose.backend
+  std::string why;      ///< what is missing, with the remedy
+};
+/// Those of which trackers() has no entry.
+std::vector<AbsentTracker> absent_trackers(const std::filesystem::path& root = "/");
 
 /// The entries of Kind::tracker: Ultraleap's devices or, without one, its library; the active
 /// OpenXR runtime, by its manifest.

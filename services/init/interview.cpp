@@ -8,6 +8,7 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/rig_name.hpp"
+#include "services/devices/trackers.hpp"
 
 namespace handcast::init {
 namespace {
@@ -47,11 +48,19 @@ std::vector<std::string_view> tracker_words(const std::vector<devices::Attached>
   return words;
 }
 
+/// Why this computer has no such tracker: ": no device ..."; "" for other words.
+std::string why_absent(const std::string& word) {
+  for (const auto& [backend, why] : devices::absent_trackers())
+    if (backend == word) return ": " + why;
+  return "";
+}
+
 Result<void> take_tracker(const std::string& answer, const std::vector<devices::Attached>& attached,
                           Plan& plan) {
   const auto words = tracker_words(attached);
   if (std::ranges::find(words, answer) == words.end())
-    return fail(Errc::bad_config, fmt::format("'{}' is not {}", answer, join(words, " or ")));
+    return fail(Errc::bad_config,
+                fmt::format("'{}' is not {}{}", answer, join(words, " or "), why_absent(answer)));
   if (answer == "twin" && plan.camera.is_device())
     return fail(Errc::bad_config,
                 "the twin's tracker does not see the hand in front of a real camera; take none");

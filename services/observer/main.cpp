@@ -15,7 +15,10 @@ using namespace std::chrono_literals;
 using service::must;
 
 static bool has_truth(const config::Rig& rig) {
-  return rig.camera.backend == "twin" && (rig.pose.backend == "twin" || rig.pose.backend == "none");
+  const auto& tracker = rig.pose.backend;
+  const bool is_twins = tracker == "twin" || tracker == "none" ||
+                        (tracker == "stereo" && rig.camera2.backend == "twin");
+  return rig.camera.backend == "twin" && is_twins;
 }
 
 /// Writes observer.json to the folder for kept files. Without one the scores are only logged.
@@ -47,7 +50,8 @@ static void run_observer(service::Context& context) {
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
   if (!has_truth(context.rig()))
     log::warning(
-        "nothing is scored: camera or tracker are not those of the twin, so there is no true hand "
+        "nothing is scored: cameras or tracker do not see the twin's hand, so there is no true "
+        "hand "
         "to compare with");
 
   observer::LiveScore scores;
@@ -83,7 +87,7 @@ static Result<void> check_observer(const config::Rig& rig, const calib::Calibrat
 /// The true hand comes from the twin's world, if there is one.
 static std::vector<std::string> settings() {
   const auto world = twin::kWorldSettings.paths();
-  std::vector<std::string> all{"observer", "camera.backend", "pose.backend"};
+  std::vector<std::string> all{"observer", "camera.backend", "camera2.backend", "pose.backend"};
   all.insert(all.end(), world.begin(), world.end());
   return all;
 }

@@ -64,6 +64,22 @@ TEST_F(Trackers, WithoutUltraleapsLibraryWhatToInstallIsSaid) {
   EXPECT_THAT(found()[0].trouble, HasSubstr("install Ultraleap's hand tracking service"));
 }
 
+TEST_F(Trackers, WhatIsMissingIsListedWithItsRemedy) {
+  const auto backends = [this] {
+    std::vector<std::string> names;
+    for (const auto& [backend, why] : absent_trackers(scratch_.path())) names.push_back(backend);
+    return names;
+  };
+  EXPECT_THAT(backends(), testing::ElementsAre("leapc", "openxr"));
+  const auto absent = absent_trackers(scratch_.path());
+  EXPECT_THAT(absent[0].why, HasSubstr("install Ultraleap's hand tracking service"));
+  EXPECT_THAT(absent[1].why, HasSubstr("OpenXR runtime"));
+  plug_in("1-4", "f182", "0003", "");
+  EXPECT_THAT(backends(), testing::ElementsAre("openxr")) << "it is listed with its trouble";
+  const auto text = print({}, {}, {"leapc: install it"});
+  EXPECT_THAT(text, HasSubstr("trackers\n  none\n  without leapc: install it\n"));
+}
+
 TEST_F(Trackers, ALibraryWithoutADeviceIsListedWithItsTrouble) {
   install_leapc();
   ASSERT_EQ(found().size(), 1u);

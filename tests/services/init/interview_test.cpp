@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "services/devices/trackers.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/init/some_devices.hpp"
 
@@ -119,6 +120,16 @@ TEST_F(Interview, ARealTrackerDoesNotSeeTheTwinsHand) {
   EXPECT_THAT(refusal_of(guess({tracker("openxr", "OpenXR runtime Monado")})),
               HasSubstr("--tracker: a real tracker does not see the twin's hand"));
   EXPECT_THAT(refusal_of(guess({})), HasSubstr("'openxr' is not none or twin"));
+}
+
+TEST_F(Interview, ATrackerThatIsNotThereIsRefusedWithItsRemedy) {
+  const auto absent = devices::absent_trackers();
+  if (std::ranges::find(absent, "leapc", &devices::AbsentTracker::backend) == absent.end())
+    GTEST_SKIP() << "Ultraleap's software is installed";
+  options_.flags = {.tracker = "leapc"};
+  EXPECT_THAT(refusal_of(guess({colour_webcam()})),
+              HasSubstr("'leapc' is not none or twin: no device of Ultraleap is attached, and "
+                        "Ultraleap's library is missing; install"));
 }
 
 TEST_F(Interview, ASettingThatCannotWorkIsRefusedWithItsFlag) {
