@@ -112,10 +112,9 @@ Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
   const bool has_tracker = rig.pose.backend != "none";
   // The poses of `stereo` are made from these landmarks, too, but of two views: good hints, once
   // the hands were found.
-  const bool finds_hands = !has_tracker || rig.pose.backend == "stereo";
-  HandFinder finder(
-      std::move(*model), settings.hands,
-      finds_hands ? HandFinder::WithoutPalms::by_brightness : HandFinder::WithoutPalms::not_at_all);
+  const bool lifts = !has_tracker || rig.pose.backend == "stereo" || rig.pose.second == "stereo";
+  HandFinder finder(std::move(*model), settings.hands,
+                    lifts ? HandFinder::Poses::of_landmarks : HandFinder::Poses::of_a_tracker);
   return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, converts,
                                            has_tracker);
 }

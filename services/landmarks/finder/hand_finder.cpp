@@ -49,12 +49,12 @@ Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, co
   image_ns_ = time_ns;
   const std::int64_t begin_ns = now_ns();
   found_.clear();
-  if (model_.palms || by_brightness_ || any(hints_px)) tracks_.drop_old(time_ns);
+  if (can_search() || any(hints_px)) tracks_.drop_old(time_ns);
   const bool scores_sides = model_.landmarks->traits().scores_sides;
   for (auto& candidate : tracks_.candidates(hints_px, *model_.landmarks)) {
     if (has_most()) break;
     if (is_found(candidate.side)) candidate.side = other(candidate.side);
-    const bool is_known = by_brightness_ && candidate.left_score >= 0;
+    const bool is_known = !has_tracker_ && candidate.left_score >= 0;
     const bool either = !candidate.hint_px && !candidate.is_followed && !scores_sides &&
                         found_.empty() && !is_known;
     const auto examined =
@@ -129,7 +129,7 @@ Result<LandmarkEstimate> HandFinder::run_model(renderer::GreyView image, const R
 Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCandidate& candidate,
                                         FoundHand& hand) {
   const float before = candidate.left_score < 0 ? hand.left_score : candidate.left_score;
-  if (by_brightness_ && !candidate.is_followed) return before;
+  if (!has_tracker_ && !candidate.is_followed) return before;
   if (!candidate.is_followed || candidate.hint_px || model_.landmarks->traits().scores_sides)
     return before + kLeftScoreShare * (hand.left_score - before);
   const float share = share_of_comparison(hand);
@@ -144,7 +144,7 @@ Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCand
 /// The weight of a comparison of sides in the mean; 0 if none is due. The first comparisons have
 /// equal weights, the start of the mean that of two.
 float HandFinder::share_of_comparison(FoundHand& hand) {
-  if (!by_brightness_) return ++since_side_ % kCompareSidesEvery == 0 ? kLeftScoreShare : 0.0f;
+  if (has_tracker_) return ++since_side_ % kCompareSidesEvery == 0 ? kLeftScoreShare : 0.0f;
   std::int64_t& compared_ns = compared_ns_[index_of(hand.side)];
   const std::int64_t since_ns = image_ns_ - compared_ns;
   if (since_ns < kCompareSidesEvery_ns) return 0;
@@ -177,9 +177,9 @@ void HandFinder::drop_duplicate(const Hints& hints_px) {
 /// one rarely, and not with a tracker of its own sensors, which would report it.
 bool HandFinder::search_is_due(const Hints& hints_px) {
   ++since_search_;
-  if (!model_.palms && !by_brightness_) return false;
+  if (!can_search()) return false;
   if (found_.empty()) return since_search_ >= kSearchEvery;
-  return (by_brightness_ || !any(hints_px)) && !has_most() && since_search_ >= kSearchForMoreEvery;
+  return (!has_tracker_ || !any(hints_px)) && !has_most() && since_search_ >= kSearchForMoreEvery;
 }
 
 Result<void> HandFinder::search(renderer::GreyView image) {

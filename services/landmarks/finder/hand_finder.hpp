@@ -12,8 +12,8 @@ namespace handcast::landmarks {
 
 /// Finds the hands in a sequence of images. It examines the place of a hand in the last image,
 /// moved on with the tracker; otherwise the place that the tracker reports; otherwise, every few
-/// images, the places that the palm network finds or, without one, the bright parts of the image.
-/// If neither is searched, it examines the last place of a hand. One thread, no allocation while
+/// images, the places that the palm network finds or, with neither one nor a tracker, the bright
+/// parts of the image. If neither is searched, it examines the last place of a hand. One thread, no allocation while
 /// hands are followed.
 class HandFinder {
  public:
@@ -22,18 +22,17 @@ class HandFinder {
   static constexpr float kLeastPresence = 0.5f, kLeastConfidence = 0.3f;
   /// @}
 
-  /// How to find hands that neither the tracker nor the last image shows, without a palm network.
-  enum class WithoutPalms {
-    not_at_all,
-    by_brightness,  ///< BrightHands: for rigs without a tracker
+  /// Where the poses of the rig, and with them the hints, come from.
+  enum class Poses {
+    of_a_tracker,
+    of_landmarks,  ///< Only images tell where a hand is at first, and which hand it is.
   };
 
   /// `most_hands`: 1 or 2.
-  HandFinder(OpenedModel model, int most_hands,
-             WithoutPalms without_palms = WithoutPalms::not_at_all)
+  HandFinder(OpenedModel model, int most_hands, Poses poses = Poses::of_a_tracker)
       : model_(std::move(model)),
         most_hands_(most_hands),
-        by_brightness_(!model_.palms && without_palms == WithoutPalms::by_brightness) {}
+        has_tracker_(poses == Poses::of_a_tracker) {}
 
   /// The hands in the image, valid until the next call. The side of a hand is the tracker's if the
   /// tracker has a hand there, otherwise the model's. Images must come in the order of their times.
@@ -57,6 +56,7 @@ class HandFinder {
   const Times& times() const { return times_; }
 
  private:
+  bool can_search() const { return model_.palms || !has_tracker_; }
   bool is_found(msg::Side side) const;
   bool has_most() const { return found_.size() >= static_cast<std::size_t>(most_hands_); }
   Result<void> examine(renderer::GreyView image, const HandCandidate& candidate);
@@ -80,7 +80,7 @@ class HandFinder {
 
   OpenedModel model_;
   int most_hands_;
-  bool by_brightness_;
+  bool has_tracker_;
   BrightHands bright_hands_;
   HandTracks tracks_;
   std::vector<FoundHand> found_;

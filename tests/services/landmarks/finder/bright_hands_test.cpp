@@ -33,7 +33,7 @@ class BrightHandFinder : public testing::Test {
   void forget() {
     auto model = open_landmark_model("handcast", {});
     ASSERT_TRUE(model) << model.error().what;
-    finder_.emplace(std::move(*model), 2, HandFinder::WithoutPalms::by_brightness);
+    finder_.emplace(std::move(*model), 2, HandFinder::Poses::of_landmarks);
   }
   std::vector<FoundHand> find(const test::Grey& image, std::int64_t step_ns = 5'000'000) {
     const auto found = finder_->find(image.view(), {}, time_ns_ += step_ns);
