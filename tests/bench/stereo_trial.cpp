@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/predict/pose_history.hpp"
 #include "services/evaluation/twin/twin.hpp"
 #include "services/pose/stereo/stereo_tracker.hpp"
 #include "tests/bench/seeing_eye.hpp"
@@ -60,9 +61,40 @@ void add_misses(const SeeingEye& eye, const msg::Landmarks& seen, std::vector<do
   for (const auto& miss : eye.compare(seen)) mm.push_back(miss.mm);
 }
 
-void compare_tracker(const twin::Twin& twin, double seconds, JointErrors& errors) {
-  for (std::uint64_t k = 0; ns_to_seconds(twin.tracker_time_ns(k)) < seconds; ++k)
-    compare(twin, twin.tracker_sample(k).poses, twin.tracker_time_ns(k), errors);
+/// The poses of a source as the predictor of the cascade has them later.
+class Later {
+ public:
+  explicit Later(const config::Predict& settings)
+      : histories_{PoseHistory(settings), PoseHistory(settings)} {}
+
+  /// Adds a sample; compares where its hands are predicted to be kLater_ns after it.
+  void add(const twin::Twin& twin, const msg::HandPoses& poses, std::vector<double>& errors_mm) {
+    const std::int64_t then_ns = poses.header.origin_ns + kLater_ns;
+    for (std::uint32_t h = 0; h < poses.count; ++h) {
+      auto& history = histories_[static_cast<std::size_t>(poses.hands[h].side)];
+      history.push(poses.header.origin_ns, poses.hands[h]);
+      const auto truth = twin.joints(poses.hands[h].side, then_ns);
+      const auto pose = history.at(then_ns);
+      if (!truth || !pose || !history.settled()) continue;
+      for (const int joint : msg::kJointOfLandmark)
+        errors_mm.push_back(error_mm(*truth, *pose, joint));
+    }
+  }
+
+ private:
+  using PoseHistory = renderer::PoseHistory;
+  static constexpr std::int64_t kLater_ns = 16'000'000;
+  std::array<PoseHistory, msg::kMaxHands> histories_;
+};
+
+void compare_tracker(const twin::Twin& twin, double seconds, const config::Predict& predict,
+                     JointErrors& errors) {
+  Later later(predict);
+  for (std::uint64_t k = 0; ns_to_seconds(twin.tracker_time_ns(k)) < seconds; ++k) {
+    const auto poses = twin.tracker_sample(k).poses;
+    compare(twin, poses, twin.tracker_time_ns(k), errors);
+    later.add(twin, poses, errors.later_mm);
+  }
 }
 
 }  // namespace
@@ -74,6 +106,7 @@ void JointErrors::add(const JointErrors& more) {
   append(all_mm, more.all_mm);
   append(open_mm, more.open_mm);
   append(folded_tips_mm, more.folded_tips_mm);
+  append(later_mm, more.later_mm);
   hands += more.hands;
   missing += more.missing;
 }
@@ -99,6 +132,7 @@ Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, double s
                                         glm::inverse(stereo.calibration.camera_from_tracker));
   if (!tracker) return tl::make_unexpected(tracker.error());
   StereoTrial trial;
+  Later later(rig.cascade.predict);
   const auto samples = static_cast<std::uint64_t>(seconds * stereo.rate_hz);
   for (std::uint64_t k = 0; k < samples; ++k) {
     const auto time_ns = seconds_to_ns(static_cast<double>(k + 1) / stereo.rate_hz);
@@ -114,8 +148,9 @@ Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, double s
     (*first)->tell(poses);
     (*second)->tell(poses);
     compare(**twin, poses, poses.header.origin_ns, trial.stereo);
+    later.add(**twin, poses, trial.stereo.later_mm);
   }
-  compare_tracker(**twin, seconds, trial.tracker);
+  compare_tracker(**twin, seconds, rig.cascade.predict, trial.tracker);
   return trial;
 }
 

@@ -14,7 +14,9 @@ struct JointErrors {
   std::vector<double> all_mm;          ///< of the 21 joints that have landmarks
   std::vector<double> open_mm;         ///< of these, on hands without a folded finger
   std::vector<double> folded_tips_mm;  ///< of the tips of folded fingers
-  int hands = 0, missing = 0;          ///< true hands at the times of samples; not reported ones
+  /// Of where the cascade predicts the joints to be 16 ms after a sample.
+  std::vector<double> later_mm;
+  int hands = 0, missing = 0;  ///< true hands at the times of samples; not reported ones
 
   /// Adds the errors of another run.
   void add(const JointErrors& more);

@@ -58,19 +58,21 @@ void print_row(const std::string& name, const StereoTrial& trial) {
                       : fmt::format("{:6.1f}{:6.1f}", mean(mm), percentile(mm, 0.95));
   };
   const auto& [stereo, tracker, work_us, landmarks_mm] = trial;
-  fmt::print("{:<17}{} |{} |{} |{:6.1f} |{} |{} |{:6.1f} |{:6.1f}{:6.1f}\n", name,
+  fmt::print("{:<17}{} |{} |{} |{:6.1f} |{} |{} |{} |{:6.1f} |{} |{:6.1f}{:6.1f}\n", name,
              part(stereo.all_mm), part(stereo.open_mm), part(stereo.folded_tips_mm),
-             100.0 * stereo.missing / std::max(stereo.hands, 1), part(landmarks_mm),
-             part(tracker.all_mm), 100.0 * tracker.missing / std::max(tracker.hands, 1),
+             100.0 * stereo.missing / std::max(stereo.hands, 1), part(stereo.later_mm),
+             part(landmarks_mm), part(tracker.all_mm),
+             100.0 * tracker.missing / std::max(tracker.hands, 1), part(tracker.later_mm),
              percentile(work_us, 0.5) / 1000, percentile(work_us, 0.99) / 1000);
   std::fflush(stdout);
 }
 
 Result<StereoTrial> run_rig(const StereoRig& stereo, const Options& options,
                             const config::Rig& rig) {
-  fmt::print("\n{}\n{:<17}{:>12} |{:>12} |{:>12} |{:>6} |{:>12} |{:>12} |{:>6} |{:>12}\n",
-             stereo.name, "mean, p95 in mm", "all joints", "open hands", "folded tips", "lost %",
-             "landmarks", "twin tracker", "lost %", "ms p50 p99");
+  fmt::print(
+      "\n{}\n{:<17}{:>12} |{:>12} |{:>12} |{:>6} |{:>12} |{:>12} |{:>12} |{:>6} |{:>12} |{:>12}\n",
+      stereo.name, "mean, p95 in mm", "all joints", "open hands", "folded tips", "lost %",
+      "16 ms later", "landmarks", "twin tracker", "lost %", "16 ms later", "ms p50 p99");
   auto names = motions(options);
   if (stereo.name == "gige")
     for (auto& name : recordings(options)) names.push_back(std::move(name));

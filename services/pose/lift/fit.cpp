@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "services/pose/lift/anatomy.hpp"
-#include "services/pose/lift/normal_equations.hpp"
+#include "services/pose/lift/levenberg_marquardt.hpp"
 
 namespace handcast::pose {
 namespace {
@@ -88,12 +89,11 @@ struct Problem {
   }
 };
 
-/// The step, shortened to what the linearisation is good for.
-Unknowns cautious(Unknowns step) {
-  for (int axis = 0; axis < 3; ++axis) step[axis] = std::clamp(step[axis], -0.8, 0.8);
-  step[kSizeUnknown] = std::clamp(step[kSizeUnknown], -0.3, 0.3);
-  for (int i = kFirstAngle; i < kUnknowns; ++i) step[i] = std::clamp(step[i], -0.6, 0.6);
-  return step;
+/// The longest step for which the linearisation is good. It is good for any shift in the image.
+double most_step(int unknown) {
+  if (unknown < kPlaceUnknown) return 0.8;
+  if (unknown < kSizeUnknown) return std::numeric_limits<double>::max();
+  return unknown == kSizeUnknown ? 0.3 : 0.6;
 }
 
 }  // namespace
@@ -126,27 +126,8 @@ Unknowns difference(const Posture& from, const Posture& to) {
 Fit fit_posture(const Skeleton& skeleton, const calib::CameraModel& camera, double distance_m,
                 const SeenHand& seen, const Prior& prior, const Posture& start, int steps) {
   const Problem problem{skeleton, camera, distance_m, seen, prior};
-  Fit fit{start, problem.at(start, nullptr), {}};
-  double damping = 1e-3;
-  for (int i = 0; i < steps; ++i) {
-    Equations equations;
-    problem.at(fit.posture, &equations);
-    const auto step = equations.step(damping);
-    const Posture next = step ? moved(fit.posture, cautious(*step)) : fit.posture;
-    const double cost = problem.at(next, nullptr);
-    if (!step || !(cost < fit.cost)) {
-      damping = std::max(10 * damping, 1e-3);
-      continue;
-    }
-    const bool is_done = fit.cost - cost < 1e-3 * fit.cost;
-    fit.posture = next, fit.cost = cost;
-    damping *= 0.2;
-    if (is_done) break;
-  }
-  Equations equations;
-  problem.at(fit.posture, &equations);
-  fit.variance = equations.variances().value_or(Unknowns{});
-  return fit;
+  const auto best = minimise<kUnknowns>(problem, start, steps, most_step);
+  return {best.state, best.cost, best.variance};
 }
 
 }  // namespace handcast::pose

@@ -25,6 +25,24 @@ bool sees_both(const SeenInViews& seen) {
   return std::ranges::all_of(seen, [](const auto& view) { return view.has_value(); });
 }
 
+/// True if both views see nearly the whole hand.
+bool sees_all(const SeenInViews& seen) {
+  constexpr auto kNearlyAll = msg::kLandmarks - 3;
+  return sees_both(seen) && std::ranges::all_of(seen, [](const auto& view) {
+           return std::ranges::count_if(view->sigma_px, [](double s) { return s > 0; }) >=
+                  kNearlyAll;
+         });
+}
+
+/// The share of the landmarks that a view sees at least.
+double seen_share(const Looks& looks) {
+  int seen = 0;
+  for (int i = 0; i < msg::kLandmarks; ++i)
+    seen += std::ranges::any_of(
+        looks, [i](const auto& look) { return look && look->hand.seen.sigma_px[i] > 0; });
+  return static_cast<double>(seen) / msg::kLandmarks;
+}
+
 /// Pairs of landmarks in a palm whose distance tells how far away it is.
 constexpr std::array<std::array<int, 2>, 4> kPalmBones{{{0, 5}, {0, 9}, {0, 17}, {5, 17}}};
 
@@ -103,15 +121,10 @@ bool StereoHand::is_followed(std::int64_t time_ns) const {
   return track_ && std::abs(time_ns - last_ns_) < kForget_ns;
 }
 
-Expected StereoHand::expected(std::int64_t time_ns) const {
+std::optional<PosedHand> StereoHand::expected(std::int64_t time_ns) const {
   if (!is_followed(time_ns)) return std::nullopt;
   const auto prior = track_->predicted(std::max(0.0, ns_to_seconds(time_ns - last_ns_)));
-  const PosedHand hand = posed(skeleton_, prior.mean);
-  std::array<Points, kViews> points;
-  for (int v = 0; v < kViews; ++v)
-    for (int i = 0; i < msg::kLandmarks; ++i)
-      points[v][i] = views_[v].project(hand.place_m[msg::kJointOfLandmark[i]]);
-  return points;
+  return posed(skeleton_, prior.mean);
 }
 
 /// The landmarks of all views, moved by the way that the hand is expected to go in the image
@@ -149,10 +162,18 @@ std::optional<msg::HandPose> StereoHand::follow(std::int64_t time_ns, const Look
   last_ns_ = time_ns;
   if (has_both || !goes_on) last_both_ns_ = time_ns;
   vote(looks, step_s);
-  const auto pose = pose_of(confidence_of(looks));
+  confidence_ = confidence_of(looks);
+  const auto pose = pose_of(track_->state(), confidence_);
   if (sigmas_ < kLost_sigmas && other_side_ < kOtherHand && all_finite(pose)) return pose;
   forget();
   return std::nullopt;
+}
+
+std::optional<msg::HandPose> StereoHand::predict(std::int64_t time_ns) const {
+  if (!is_followed(time_ns) || time_ns <= last_ns_) return std::nullopt;
+  const std::int64_t since_ns = time_ns - last_ns_;
+  const double left = 1 - static_cast<double>(since_ns) / static_cast<double>(kForget_ns);
+  return pose_of(track_->predicted(ns_to_seconds(since_ns)).mean, left * confidence_);
 }
 
 void StereoHand::forget() {
@@ -193,7 +214,7 @@ void StereoHand::go_on(const SeenInViews& seen, double step_s) {
   track_->correct(fit, step_s);
   is_whole_ = is_whole_ || sees_both(seen);
   sigmas_ += (fit.sigmas - sigmas_) * std::min(1.0, step_s / kSmooth_s);
-  if (++images_ % kTryEvery == 0 && sees_both(seen)) try_another(seen);
+  if (++images_ % kTryEvery == 0 && sees_all(seen)) try_another(seen);
 }
 
 /// Least squares may have ended in the wrong posture. In turn, another one is tried now and then,
@@ -233,11 +254,11 @@ double StereoHand::confidence_of(const Looks& looks) const {
   const double alone_share = static_cast<double>(last_ns_ - last_both_ns_) /
                              static_cast<double>(std::max<std::int64_t>(one_view_ns_, 1));
   const double alone = is_whole_ ? std::clamp(alone_share, 0.0, 1.0) : 1;
-  return presence / std::max(count, 1) * fits * (1 - (1 - kOneViewConfidence) * alone);
+  return presence / std::max(count, 1) * seen_share(looks) * fits *
+         (1 - (1 - kOneViewConfidence) * alone);
 }
 
-msg::HandPose StereoHand::pose_of(double confidence) const {
-  const HandState& state = track_->state();
+msg::HandPose StereoHand::pose_of(const HandState& state, double confidence) const {
   const PosedHand hand = posed(skeleton_, state);
   const double size = std::exp(state.posture.log_size);
   msg::HandPose pose{side_, static_cast<float>(confidence), {}};

@@ -31,14 +31,18 @@ class StereoHand {
   StereoHand(const renderer::HandMesh& hand, const config::PoseStereo& settings, const Views& views,
              const glm::dmat4& tracker_from_first);
 
-  /// Where the landmarks are expected in each view; empty if the hand is not followed at that time.
-  Expected expected(std::int64_t time_ns) const;
+  /// The joints that are expected, in the space of the first camera; empty if the hand is not
+  /// followed at that time.
+  std::optional<PosedHand> expected(std::int64_t time_ns) const;
 
   /// The pose in tracker space at `time_ns`, the time of the newest look. Looks at other times are
   /// moved there as the hand moves. Empty if no look can be used, the time is not later than that
   /// of the last pose, or no hand can have these landmarks. A hand that only one view has seen for
   /// longer than settings.one_view_s begins anew.
   std::optional<msg::HandPose> follow(std::int64_t time_ns, const Looks& looks);
+  /// The pose at `time_ns` of a hand that no view can see, as it is expected to go on. Its
+  /// confidence falls to 0 at kForget_ns after the last look; it is empty from then on.
+  std::optional<msg::HandPose> predict(std::int64_t time_ns) const;
 
   /// The model of this side.
   const Skeleton& skeleton() const { return skeleton_; }
@@ -52,7 +56,7 @@ class StereoHand {
   bool is_followed(std::int64_t time_ns) const;
   void vote(const Looks& looks, double step_s);
   double confidence_of(const Looks& looks) const;
-  msg::HandPose pose_of(double confidence) const;
+  msg::HandPose pose_of(const HandState& state, double confidence) const;
 
   Skeleton skeleton_;
   msg::Side side_;
@@ -63,6 +67,7 @@ class StereoHand {
   std::optional<HandTrack> track_;
   std::int64_t last_ns_ = 0;       ///< of the last fit
   std::int64_t last_both_ns_ = 0;  ///< of the last fit of both views, or of the first
+  double confidence_ = 0;          ///< of the last pose
   double sigmas_ = 1;              ///< residuals of the fits, smoothed
   double other_side_ = 0;          ///< share of the reports that take it for the other hand
   bool is_whole_ = false;          ///< both views have seen it since begin()

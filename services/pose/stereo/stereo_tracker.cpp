@@ -3,8 +3,15 @@
 
 #include <algorithm>
 
+#include "services/pose/stereo/cover.hpp"
+
 namespace handcast::pose::stereo {
 namespace {
+
+/// A hand of which a view cannot see so many landmarks goes on without looks.
+constexpr std::size_t kMostHidden = msg::kLandmarks / 4;
+/// The sigmas of what a view sees of a hand that is hidden but for a little are larger by so much.
+constexpr double kDoubt = 8;
 
 std::vector<ReportedHand> reports_of(const msg::Landmarks* landmarks) {
   std::vector<ReportedHand> reports;
@@ -16,6 +23,35 @@ std::vector<ReportedHand> reports_of(const msg::Landmarks* landmarks) {
       reports.push_back({hand.side, std::clamp<double>(hand.presence, 0, 1), *seen});
   }
   return reports;
+}
+
+using Places = std::array<std::optional<PosedHand>, msg::kMaxHands>;
+
+Expected projected(const Views& views, const std::optional<PosedHand>& hand) {
+  if (!hand) return std::nullopt;
+  std::array<Points, kViews> points;
+  for (int v = 0; v < kViews; ++v)
+    for (int i = 0; i < msg::kLandmarks; ++i)
+      points[v][i] = views[v].project(hand->place_m[msg::kJointOfLandmark[i]]);
+  return points;
+}
+
+/// Takes what the other hand hides out of the looks. True if it hides a large part from a view.
+bool hide(const Views& views, const std::optional<PosedHand>& hand,
+          const std::optional<PosedHand>& other, Looks& looks) {
+  if (!hand || !other) return false;
+  bool is_hidden = false;
+  for (int v = 0; v < kViews; ++v) {
+    const Hidden hidden = hidden_by(*other, *hand, views[v]);
+    is_hidden = is_hidden || hidden.count() > kMostHidden;
+    if (!looks[v]) continue;
+    auto& sigma_px = looks[v]->hand.seen.sigma_px;
+    const double doubt = 1 + kDoubt * static_cast<double>(hidden.count()) / msg::kLandmarks;
+    for (int i = 0; i < msg::kLandmarks; ++i) sigma_px[i] *= hidden[i] ? 0 : doubt;
+    if (std::ranges::count_if(sigma_px, [](double sigma) { return sigma > 0; }) < kFewestSeen)
+      looks[v].reset();
+  }
+  return is_hidden;
 }
 
 }  // namespace
@@ -37,7 +73,8 @@ Result<StereoTracker> StereoTracker::open(const config::Rig& rig, const Views& v
 }
 
 std::array<Expected, msg::kMaxHands> StereoTracker::expected(std::int64_t time_ns) const {
-  return {hands_[0].expected(time_ns), hands_[1].expected(time_ns)};
+  return {projected(views_, hands_[0].expected(time_ns)),
+          projected(views_, hands_[1].expected(time_ns))};
 }
 
 msg::HandPoses StereoTracker::sample(const Seen& seen) {
@@ -46,17 +83,21 @@ msg::HandPoses StereoTracker::sample(const Seen& seen) {
     if (landmarks)
       poses.header.origin_ns = std::max(poses.header.origin_ns, landmarks->header.origin_ns);
   poses.header.frame_id = samples_++;
+  const std::int64_t time_ns = poses.header.origin_ns;
   const Reports reports{reports_of(seen[0]), reports_of(seen[1])};
-  const Matches matches =
-      match(hands_[0].skeleton(), views_, reports, expected(poses.header.origin_ns));
+  const Places places{hands_[0].expected(time_ns), hands_[1].expected(time_ns)};
+  const Matches matches = match(hands_[0].skeleton(), views_, reports,
+                                {projected(views_, places[0]), projected(views_, places[1])});
   for (int side = 0; side < msg::kMaxHands; ++side) {
     Looks looks;
     for (int v = 0; v < kViews; ++v)
       if (matches[side][v] >= 0)
         looks[v] =
             Look{reports[v][static_cast<std::size_t>(matches[side][v])], seen[v]->header.origin_ns};
-    if (const auto pose = hands_[side].follow(poses.header.origin_ns, looks))
-      poses.hands[poses.count++] = *pose;
+    const bool hidden = hide(views_, places[side], places[1 - side], looks);
+    auto pose = hands_[side].follow(time_ns, looks);
+    if (!pose && hidden) pose = hands_[side].predict(time_ns);
+    if (pose) poses.hands[poses.count++] = *pose;
   }
   return poses;
 }
