@@ -6,6 +6,7 @@
 
 #include "services/pose/lift/anatomy.hpp"
 #include "services/pose/lift/levenberg_marquardt.hpp"
+#include "services/pose/stereo/likeness.hpp"
 
 namespace handcast::pose::stereo {
 namespace {
@@ -17,10 +18,6 @@ constexpr double kHuber = 3;  ///< beyond so many standard deviations, residuals
 /// The errors of handcast's network on the twin relative to its landmarks' sigmas, as read() has
 /// them: root mean square per axis 0.35 to 0.5.
 constexpr double kErrorPerSigma = 0.5;
-/// The correlation of a landmark's errors in two views of one direction, and the angle between
-/// views at which it has fallen to 1/e of that. Measured: 0.5 to 0.8 at 8 degrees, 0.2 to 0.6 at
-/// 22 degrees.
-constexpr double kMostAlike = 0.95, kAlike_rad = 0.3;
 
 /// The most columns of one landmark: place and rotation, angles, size, bones.
 constexpr int kMostColumns = kAnglesAt + kAngles + 1 + kAngles;
@@ -64,31 +61,13 @@ Moves moves_of(const PosedHand& hand, int landmark) {
   return moves;
 }
 
-/// How alike the pictures of the hand are in both views.
-struct Likeness {
-  double correlation = 0;  ///< of a landmark's errors
-  double c = 1, s = 0;     ///< turns the second view's image so that its axes are the first's
-
-  Likeness(const Views& views, const glm::dvec3& hand_m) {
-    const glm::dmat4& second_from_first = views[1].view_from_first;
-    const glm::dmat3 turn(second_from_first);
-    const glm::dvec3 centre_m = -glm::transpose(turn) * glm::dvec3(second_from_first[3]);
-    const double angle = std::acos(
-        std::clamp(glm::dot(glm::normalize(hand_m), glm::normalize(hand_m - centre_m)), -1.0, 1.0));
-    correlation = kMostAlike * std::exp(-angle / kAlike_rad);
-    const double roll = std::atan2(turn[0][1] - turn[1][0], turn[0][0] + turn[1][1]);
-    c = std::cos(roll), s = std::sin(roll);
-  }
-  glm::dvec2 turned(const glm::dvec2& v) const { return {c * v.x + s * v.y, c * v.y - s * v.x}; }
-};
-
 /// One evaluation of the problem at a state.
 struct Problem {
   const Skeleton& skeleton;
   const Views& views;
   const SeenInViews& seen;
   const HandPrior& prior;
-  Likeness likeness;
+  Likeness likeness;   ///< of the views of this hand
   double squares = 0;  ///< of the landmarks' residuals in sigmas, of the last evaluation
   int residuals = 0;
 
@@ -146,7 +125,7 @@ struct Problem {
     at_m.z = std::max(at_m.z, View::kNearest_m);
     const double scale = 1 / (kErrorPerSigma * seen[v]->sigma_px[i]);
     Sighted sighted{scale * (view.camera.project(at_m) - seen[v]->px[i]), {}, {}};
-    if (v == 1) sighted.miss = likeness.turned(sighted.miss);
+    if (v == 1) sighted.miss = likeness.as_first(sighted.miss);
     if (!equations) return sighted;
     const glm::dmat3 turn(view.view_from_first);
     for (int c = 0; c < moves.count; ++c) {
@@ -154,7 +133,7 @@ struct Problem {
       glm::dvec2 moved = glm::dvec2(view.camera.fx_px * (by.x - by.z * at_m.x / at_m.z),
                                     view.camera.fy_px * (by.y - by.z * at_m.y / at_m.z)) *
                          (scale / at_m.z);
-      if (v == 1) moved = likeness.turned(moved);
+      if (v == 1) moved = likeness.as_first(moved);
       sighted.across[c] = moved.x, sighted.down[c] = moved.y;
     }
     return sighted;
@@ -188,7 +167,7 @@ double most_step(int unknown) {
 HandFit fit_views(const Skeleton& skeleton, const Views& views, const SeenInViews& seen,
                   const HandPrior& prior, const HandState& start, int steps) {
   Problem problem{skeleton, views, seen, prior,
-                  Likeness(views, {start.posture.palm_m, start.depth_m})};
+                  likeness_of(views, {start.posture.palm_m, start.depth_m})};
   const auto best = minimise<kUnknowns>(problem, start, steps, most_step);
   return {best.state, best.cost, best.variance,
           std::sqrt(problem.squares / std::max(problem.residuals, 1))};

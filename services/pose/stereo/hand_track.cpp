@@ -11,7 +11,7 @@ namespace {
 struct Motion {
   double process, speed;
 };
-constexpr Motion kTurn{100, 8}, kPlace{4, 1}, kAngle{800, 10};
+constexpr Motion kTurn{100, 8}, kPlace{20, 1}, kAngle{800, 10};
 
 constexpr Motion motion_of(int unknown) {
   return unknown < kPlaceAt ? kTurn : unknown < kAnglesAt ? kPlace : kAngle;

@@ -33,15 +33,11 @@ TEST_F(CoverTest, HandsBesideEachOtherHideNothing) {
 }
 
 TEST_F(CoverTest, AViewFromTheSideMaySeeWhatTheOtherDoesNot) {
-  // The second camera is 0.3 m to the right: 0.2 m behind the front hand lies beside it there.
-  const PosedHand front = hand_at(0, 0.6), back = hand_at(0, 0.9);
+  // The second camera is 0.3 m to the right: what is 0.4 m behind the front hand lies beside it
+  // there.
+  const PosedHand front = hand_at(0, 0.6), back = hand_at(0, 1);
   EXPECT_GT(hidden_by(front, back, views_[0]).count(), 12u);
   EXPECT_LT(hidden_by(front, back, views_[1]).count(), 5u);
-}
-
-TEST_F(CoverTest, HandsThatTouchHideNothing) {
-  EXPECT_EQ(hidden_by(hand_at(0, 0.7), hand_at(0, 0.705), views_[0]).count(), 0u)
-      << "which one is in front is not known so exactly";
 }
 
 }  // namespace

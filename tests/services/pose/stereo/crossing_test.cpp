@@ -107,7 +107,7 @@ TEST_F(CrossingTest, AHandThatStaysHiddenLosesItsConfidenceAndThenItsPose) {
   }
   EXPECT_GT(samples, 10);
   EXPECT_EQ(falls, samples);
-  EXPECT_LT(before, 0.7f);
+  EXPECT_LT(before, 0.1f);
 }
 
 }  // namespace

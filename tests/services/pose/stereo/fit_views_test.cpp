@@ -6,6 +6,7 @@
 #include <random>
 
 #include "services/pose/stereo/hand_track.hpp"
+#include "services/pose/stereo/likeness.hpp"
 #include "tests/services/pose/stereo/two_views.hpp"
 
 namespace handcast::pose::stereo {
@@ -56,6 +57,20 @@ TEST(FitViews, ErrorsThatBothViewsShareDoNotSpoilTheDepth) {
     }
   }
   EXPECT_LT(std::sqrt(squares_mm2), 5);
+}
+
+TEST(FitViews, PicturesAreAlikeInViewsOfOneDirectionAndTurnWithTheCamera) {
+  Views views = near_views();
+  EXPECT_GT(likeness_of(views, {0, 0, 0.28}).correlation, 0.5);
+  EXPECT_GT(likeness_of(views, {0, 0, 2}).correlation, 0.85);
+  EXPECT_LT(likeness_of(views_of(two_cameras()).value(), {0, 0, 0.73}).correlation, 0.4);
+  // The second camera is turned by a quarter to the right: what is to the right there is down here.
+  glm::dmat4 roll(1);
+  roll[0] = {0, -1, 0, 0}, roll[1] = {1, 0, 0, 0};
+  views[1].view_from_first = roll * views[1].view_from_first;
+  const glm::dvec2 down = likeness_of(views, {0, 0, 0.28}).as_first({1, 0});
+  EXPECT_NEAR(down.x, 0, 1e-9);
+  EXPECT_NEAR(down.y, 1, 1e-9);
 }
 
 }  // namespace
