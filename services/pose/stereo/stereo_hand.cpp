@@ -25,6 +25,13 @@ bool sees_both(const SeenInViews& seen) {
   return std::ranges::all_of(seen, [](const auto& view) { return view.has_value(); });
 }
 
+SeenInViews seen_in(const Looks& looks) {
+  SeenInViews seen;
+  for (int v = 0; v < kViews; ++v)
+    if (looks[v]) seen[v] = looks[v]->hand.seen;
+  return seen;
+}
+
 /// True if both views see nearly the whole hand.
 bool sees_all(const SeenInViews& seen) {
   constexpr auto kNearlyAll = msg::kLandmarks - 3;
@@ -127,17 +134,21 @@ std::optional<PosedHand> StereoHand::expected(std::int64_t time_ns) const {
   return posed(skeleton_, prior.mean);
 }
 
-/// The landmarks of all views, moved by the way that the hand is expected to go in the image
-/// between their time and `time_ns`.
-SeenInViews StereoHand::moved_to(std::int64_t time_ns, const Looks& looks) const {
+/// The landmarks of all views, moved by the way that the hand goes in the image between their time
+/// and `time_ns`, when it is at `now`.
+SeenInViews StereoHand::moved_to(std::int64_t time_ns, const HandState& now,
+                                 const Looks& looks) const {
   SeenInViews seen;
   for (int v = 0; v < kViews; ++v) {
     if (!looks[v]) continue;
     seen[v] = looks[v]->hand.seen;
-    if (looks[v]->time_ns == time_ns || !is_followed(time_ns)) continue;
-    const auto then = track_->predicted(ns_to_seconds(looks[v]->time_ns - last_ns_));
-    const auto now = track_->predicted(ns_to_seconds(time_ns - last_ns_));
-    const PosedHand from = posed(skeleton_, then.mean), to = posed(skeleton_, now.mean);
+    if (looks[v]->time_ns == time_ns) continue;
+    const double share =
+        static_cast<double>(looks[v]->time_ns - last_ns_) / static_cast<double>(time_ns - last_ns_);
+    Unknowns way = difference(track_->state(), now);
+    for (double& step : way) step *= share;
+    const PosedHand from = posed(skeleton_, moved(track_->state(), way)),
+                    to = posed(skeleton_, now);
     for (int i = 0; i < msg::kLandmarks; ++i) {
       const int joint = msg::kJointOfLandmark[i];
       seen[v]->px[i] +=
@@ -149,15 +160,14 @@ SeenInViews StereoHand::moved_to(std::int64_t time_ns, const Looks& looks) const
 
 std::optional<msg::HandPose> StereoHand::follow(std::int64_t time_ns, const Looks& looks) {
   if (track_ && time_ns <= last_ns_) return std::nullopt;
-  const SeenInViews seen = moved_to(time_ns, looks);
-  const bool has_both = sees_both(seen);
-  if (!seen[0] && !seen[1]) return std::nullopt;
+  if (!looks[0] && !looks[1]) return std::nullopt;
+  const bool has_both = looks[0] && looks[1];
   const bool goes_on =
       is_followed(time_ns) && (has_both || time_ns - last_both_ns_ <= one_view_ns_);
   const double step_s = goes_on ? ns_to_seconds(time_ns - last_ns_) : 0;
   if (goes_on)
-    go_on(seen, step_s);
-  else if (!begin(seen))
+    go_on(time_ns, looks, step_s);
+  else if (!begin(seen_in(looks)))
     return std::nullopt;
   last_ns_ = time_ns;
   if (has_both || !goes_on) last_both_ns_ = time_ns;
@@ -208,9 +218,15 @@ bool StereoHand::begin(const SeenInViews& seen) {
   return true;
 }
 
-void StereoHand::go_on(const SeenInViews& seen, double step_s) {
+/// The motion between images of different times is known better once both have been fitted.
+void StereoHand::go_on(std::int64_t time_ns, const Looks& looks, double step_s) {
   const HandPrior prior = track_->predicted(step_s);
-  const HandFit fit = fit_views(skeleton_, views_, seen, prior, prior.mean, kSteps);
+  SeenInViews seen = moved_to(time_ns, prior.mean, looks);
+  HandFit fit = fit_views(skeleton_, views_, seen, prior, prior.mean, kSteps);
+  if (sees_both(seen) && looks[0]->time_ns != looks[1]->time_ns) {
+    seen = moved_to(time_ns, fit.state, looks);
+    fit = fit_views(skeleton_, views_, seen, prior, fit.state, kSteps);
+  }
   track_->correct(fit, step_s);
   is_whole_ = is_whole_ || sees_both(seen);
   sigmas_ += (fit.sigmas - sigmas_) * std::min(1.0, step_s / kSmooth_s);

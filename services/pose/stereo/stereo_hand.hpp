@@ -50,9 +50,9 @@ class StereoHand {
  private:
   void forget();
   bool begin(const SeenInViews& seen);
-  void go_on(const SeenInViews& seen, double step_s);
+  void go_on(std::int64_t time_ns, const Looks& looks, double step_s);
   void try_another(const SeenInViews& seen);
-  SeenInViews moved_to(std::int64_t time_ns, const Looks& looks) const;
+  SeenInViews moved_to(std::int64_t time_ns, const HandState& now, const Looks& looks) const;
   bool is_followed(std::int64_t time_ns) const;
   void vote(const Looks& looks, double step_s);
   double confidence_of(const Looks& looks) const;
