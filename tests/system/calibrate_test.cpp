@@ -33,12 +33,14 @@ class Calibrate : public SystemTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return handcast(arguments);
   }
-  /// What --apply has written to the rig file: 3 ms and a gamma as in sRGB were there before.
-  void expect_projector(double latency_ms, double gamma) const {
+  /// What --apply has written to the rig file: 3 ms and a gamma as in sRGB were there before. A
+  /// loaded machine stamps images and light some tenths of a millisecond late; how exact a delay
+  /// is, is measured by bench_calib_session.
+  void expect_projector(double latency_ms, double gamma, const Outcome& outcome) const {
     const auto rig = config::load_rig(rig_file(), {});
     ASSERT_TRUE(rig) << rig.error().what;
-    EXPECT_NEAR(rig->projector.latency_ms, latency_ms, 0.5);
-    EXPECT_NEAR(rig->projector.gamma, gamma, 0.1);
+    EXPECT_NEAR(rig->projector.latency_ms, latency_ms, 1) << outcome.output << outcome.log;
+    EXPECT_NEAR(rig->projector.gamma, gamma, 0.1) << outcome.output << outcome.log;
   }
   /// Files beside the rig file, and their times.
   std::vector<std::pair<fs::path, fs::file_time_type>> files() const {
@@ -74,9 +76,9 @@ TEST_F(Calibrate, TheTwinsProjectorIsFoundByStructuredLight) {
   std::ofstream(file) << calib::print_calibration(truth);
   const auto outcome = calibrate(
       {"screen", "--most-s", "150", "--apply", "--set", "twin.geometry.calibration=" + file,
-       "--set", "twin.prop.light_late_ms=1", "--set", "twin.prop.light_gamma=1.8"});
+       "--set", "twin.prop.light_late_ms=5", "--set", "twin.prop.light_gamma=1.8"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
-  expect_projector(4, 1.8);
+  expect_projector(8, 1.8, outcome);
   EXPECT_THAT(outcome.log, HasSubstr("5 places of the board"));
   const auto found = calib::load_calibration(scratch_.path() / "twin_calibration.toml");
   ASSERT_TRUE(found) << found.error().what;
