@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/inotify.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -16,7 +17,9 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "ipc/base/unique_fd.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast {
@@ -26,6 +29,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
+using testing::StartsWith;
 
 class WriteWhole : public testing::Test {
  protected:
@@ -41,6 +45,17 @@ class WriteWhole : public testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
   static void make(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+  /// The name under which the only new file is made while file_ is written; "" if there is none, or
+  /// more than one.
+  std::string name_while_written(const std::string& text) const {
+    const UniqueFd watch(::inotify_init1(IN_CLOEXEC | IN_NONBLOCK));
+    EXPECT_GE(::inotify_add_watch(watch.get(), folder_.c_str(), IN_CREATE), 0);
+    EXPECT_TRUE(write_whole(file_, text));
+    alignas(inotify_event) std::array<char, 4096> events{};
+    const auto length = ::read(watch.get(), events.data(), events.size());
+    const auto* event = reinterpret_cast<const inotify_event*>(events.data());
+    return length == static_cast<ssize_t>(sizeof(*event) + event->len) ? event->name : "";
+  }
   static fs::perms permissions_of(const fs::path& file) { return fs::status(file).permissions(); }
 
   test::Scratch scratch_;
@@ -58,6 +73,12 @@ class AsUser {
   }
   AsUser(const AsUser&) = delete;
   AsUser& operator=(const AsUser&) = delete;
+  /// If this user may write in the folder, a refusal is not that of a folder above it.
+  static void expect_that_it_may_write(const fs::path& folder) {
+    const auto may = write_whole(folder / "may", "x");
+    ASSERT_TRUE(may) << may.error().what;
+    fs::remove(folder / "may");
+  }
   ~AsUser() {
     if (is_root_ && ::seteuid(0) != 0) std::abort();
   }
@@ -108,12 +129,16 @@ TEST_F(WriteWhole, FilesOfThePersonBesideItStay) {
 }
 
 TEST_F(WriteWhole, AHiddenFileOfTheSameNameIsNotTouched) {
-  for (int i = 0; i < 200; ++i)
-    make(folder_ / fmt::format(".rig.toml.{}-{}", ::getpid(), i), "of an earlier process");
-  auto taken = files();
-  ASSERT_TRUE(write_whole(file_, "text"));
-  taken["rig.toml"] = "text";
-  EXPECT_EQ(files(), taken);
+  const auto hidden = fmt::format(".rig.toml.{}-", ::getpid());
+  const auto name = name_while_written("first");
+  ASSERT_THAT(name, StartsWith(hidden));
+  const int number = std::stoi(name.substr(hidden.size()));
+  for (const int next : {1, 2, 3})
+    make(folder_ / fmt::format("{}{}", hidden, number + next), "of an earlier process");
+  auto expected = files();
+  EXPECT_EQ(name_while_written("text"), fmt::format("{}{}", hidden, number + 4));
+  expected["rig.toml"] = "text";
+  EXPECT_EQ(files(), expected);
 }
 
 TEST_F(WriteWhole, PermissionsAreKeptAndNewFilesHaveTheUsualOnes) {
@@ -166,6 +191,7 @@ TEST_F(WriteWhole, InAFolderThatMayNotBeWrittenTheOldFileStays) {
   make(file_, "old");
   fs::permissions(file_, fs::perms::all);
   const AsUser user(folder_);
+  ASSERT_NO_FATAL_FAILURE(AsUser::expect_that_it_may_write(folder_));
   fs::permissions(folder_, static_cast<fs::perms>(0555));
   const auto refused = write_whole(file_, "new");
   const auto checked = check_writable(file_);
@@ -185,6 +211,7 @@ TEST_F(WriteWhole, AFileThatMayNotBeWrittenIsNotReplacedEither) {
   make(file_, "old");
   fs::permissions(file_, static_cast<fs::perms>(0444));
   const AsUser user(folder_);
+  ASSERT_NO_FATAL_FAILURE(AsUser::expect_that_it_may_write(folder_));
   const auto refused = write_whole(file_, "new");
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("Permission denied"));
