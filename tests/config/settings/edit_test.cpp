@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <ostream>
 #include <random>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "config/settings/document.hpp"
@@ -25,6 +28,19 @@ Result<std::string> edited(const std::string& text,
                            const std::string& path = "projector.latency_ms",
                            const std::string& value = "10.2") {
   return with_value(text, path, value, "rig.toml");
+}
+
+/// A setting of a document by the keys that lead to it; null if there is none.
+const Value* find(const Value& document, std::initializer_list<std::string_view> keys) {
+  const Value* value = &document;
+  for (const auto key : keys) {
+    const auto* table = std::get_if<Table>(&value->data);
+    if (table == nullptr) return nullptr;
+    const auto member = std::ranges::find(*table, key, &Member::name);
+    if (member == table->end()) return nullptr;
+    value = &member->value;
+  }
+  return value;
 }
 
 struct Shape {
@@ -225,6 +241,12 @@ TEST(EditPaths, OfAnyMixtureOfFormsEverythingElseStays) {
 
     const auto after = edited(text);
     ASSERT_TRUE(after) << text << after.error().what;
+    const auto document = parse_document(*after, "rig.toml");
+    ASSERT_TRUE(document) << document.error().what;
+    const auto* latency = find(*document, {"projector", "latency_ms"});
+    ASSERT_TRUE(latency) << text << "---\n" << *after;
+    ASSERT_TRUE(std::holds_alternative<double>(latency->data)) << *after;
+    EXPECT_EQ(std::get<double>(latency->data), 10.2) << *after;
     const auto same = [](auto a, auto a_end, auto b, auto b_end) {
       return static_cast<std::size_t>(std::mismatch(a, a_end, b, b_end).first - a);
     };
