@@ -69,13 +69,18 @@ class CrossingTest : public testing::Test {
   int missing_ = 0;
 };
 
+/// mm. The worst error is 17. With the hand in front in place of the hidden one, it is 114 if
+/// reports are matched without regard to where a hand is expected, and 150 if what is hidden is
+/// fitted, too. A hidden hand that is not predicted is missing in 27 samples.
+constexpr double kMost_mm = 30;
+
 TEST_F(CrossingTest, AHandBehindTheOtherIsPredictedWhileNoDetectorSeesIt) {
-  EXPECT_LT(worst_mm(2.5, Behind::nothing), 60) << "the other hand is 100 mm away";
+  EXPECT_LT(worst_mm(2.5, Behind::nothing), kMost_mm) << "the other hand is 100 mm away";
   EXPECT_EQ(missing_, 0);
 }
 
 TEST_F(CrossingTest, AHandBehindTheOtherIsNotWhereDetectorsTakeTheOtherForIt) {
-  EXPECT_LT(worst_mm(2.5, Behind::hand_in_front), 60) << "the other hand is 100 mm away";
+  EXPECT_LT(worst_mm(2.5, Behind::hand_in_front), kMost_mm) << "the other hand is 100 mm away";
   EXPECT_EQ(missing_, 0);
 }
 

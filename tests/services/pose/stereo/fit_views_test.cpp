@@ -56,7 +56,8 @@ TEST(FitViews, ErrorsThatBothViewsShareDoNotSpoilTheDepth) {
       squares_mm2 += off_mm * off_mm / (kRuns * msg::kLandmarks);
     }
   }
-  EXPECT_LT(std::sqrt(squares_mm2), 5);
+  // 4.0 mm; 5.4 mm if the errors of both views are taken for independent (correlation 0).
+  EXPECT_LT(std::sqrt(squares_mm2), 4.7);
 }
 
 TEST(FitViews, PicturesAreAlikeInViewsOfOneDirectionAndTurnWithTheCamera) {
