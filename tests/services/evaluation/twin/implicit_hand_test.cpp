@@ -112,19 +112,28 @@ TEST(ImplicitHand, FollowsTheBonesThatItsVerticesAreNearTo) {
   }
 }
 
-TEST(ImplicitHand, HasAnotherFormThanTheDrawnOne) {
+TEST(ImplicitHand, ItsSkinIsAtOtherDistancesFromTheJointsThanThatOfTheDrawnHand) {
   const HandMesh& hand = implicit_hand();
   const HandMesh drawn = *renderer::load_hand_or_default({}, Side::left);
-  EXPECT_NE(hand.vertex_count(), drawn.vertex_count());
-  // The distances of the skin from the joints differ by more than rounding.
+  // Of points of the triangles: other vertices on the same skin are no other hand.
   const auto nearest_m = [](const HandMesh& mesh, int joint) {
+    constexpr int kParts = 4;  // of a triangle's edge
+    const glm::vec3 from(mesh.rest[joint][3]);
     float nearest = 1;
-    for (const auto& p : mesh.positions)
-      nearest = std::min(nearest, glm::distance(p, glm::vec3(mesh.rest[joint][3])));
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const auto& corner = mesh.positions[a];
+      const auto along = (mesh.positions[b] - corner) / static_cast<float>(kParts),
+                 across = (mesh.positions[c] - corner) / static_cast<float>(kParts);
+      for (int i = 0; i <= kParts; ++i)
+        for (int j = 0; i + j <= kParts; ++j) {
+          const auto skin = corner + static_cast<float>(i) * along + static_cast<float>(j) * across;
+          nearest = std::min(nearest, glm::distance(skin, from));
+        }
+    }
     return nearest;
   };
   for (const int joint : {3, 8, 13, 18, 23})
-    EXPECT_GT(std::abs(nearest_m(hand, joint) / nearest_m(drawn, joint) - 1), 0.02f) << joint;
+    EXPECT_GT(std::abs(nearest_m(hand, joint) / nearest_m(drawn, joint) - 1), 0.05f) << joint;
 }
 
 }  // namespace
