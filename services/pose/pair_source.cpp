@@ -61,10 +61,11 @@ class PairSource final : public PoseSource {
   Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
     for (;;) {
       const auto sample = inbox_->take(deadline);
+      // A sample may have waited for long, if this was not called: what counts is that it is here.
+      if (sample) heard_ns_ = now_ns();
+      if (sample && sample->poses.count > 0) hand_ns_ = heard_ns_;
       if (auto usable = check_calls(); !usable) return usable;
       if (!sample) return fail(Errc::timeout, why_silent());
-      heard_ns_ = sample->arrival_ns;
-      if (sample->poses.count > 0) hand_ns_ = sample->arrival_ns;
       faults_ += sample->faults;
       const From before = handover_.in_use();
       const auto published =
@@ -128,8 +129,8 @@ class PairSource final : public PoseSource {
   bool depends_on_calibration_ = false;
   msg::TrackerFaults faults_;
   std::array<bool, 2> hangs_{};
-  std::int64_t heard_ns_ = 0;  ///< when the newest sample of either came
-  std::int64_t hand_ns_ = 0;   ///< when the newest with a hand came
+  std::int64_t heard_ns_ = 0;  ///< when the last sample of either was taken
+  std::int64_t hand_ns_ = 0;   ///< when the last with a hand was taken
   std::shared_ptr<PairInbox> inbox_ = std::make_shared<PairInbox>();
   std::unique_ptr<SourceRunner> first_, second_;
 };

@@ -22,7 +22,7 @@ struct Behaviour {
   bool needs_landmarks = false;
   std::atomic<bool> is_lost{false}, is_absent{false}, has_hand{true};
   std::atomic<bool> hangs{false}, hangs_at_open{false};  ///< until it is false again
-  std::atomic<int> opened{0}, seen{0};
+  std::atomic<int> period_ms{5}, opened{0}, seen{0};
 };
 
 /// A call that does not return for as long as it hangs.
@@ -38,7 +38,7 @@ class StandIn final : public PoseSource {
     if (behaviour_->is_lost)
       return fail(Errc::disconnected, "pose '" + behaviour_->name + "': it is gone");
     hang(behaviour_->hangs);
-    if (!behaviour_->needs_landmarks) sleep_until_ns(now_ns() + to_ns(5ms));
+    if (!behaviour_->needs_landmarks) sleep_until_ns(now_ns() + ms_to_ns(behaviour_->period_ms));
     poses = {};
     poses.header = {number_++, now_ns(), 0};
     poses.count = behaviour_->has_hand ? 1 : 0;
@@ -190,6 +190,21 @@ TEST_F(Pair, ASourceThatHangsIsReplacedAndUsedAgainWhenItsCallReturns) {
   first_->hangs = false;
   EXPECT_TRUE(reaches(*source, 0.1f));
   EXPECT_EQ(first_->opened, 1);
+}
+
+TEST_F(Pair, AfterAPauseOfTheCallerTheSamplesThatWaitAreUsedAlthoughOneSourceHangs) {
+  const auto source = open();
+  EXPECT_TRUE(reaches(*source, 0.1f));
+  first_->hangs = true;
+  EXPECT_TRUE(reaches(*source, 0.11f));
+  second_->period_ms = 60;  // those that are kept reach back to the begin of the pause
+  sleep_until_ns(now_ns() + to_ns(2600ms));
+  msg::HandPoses poses;
+  for (int i = 0; i < 5; ++i) {
+    const auto sampled = source->sample(poses, Deadline::in(5s));
+    ASSERT_TRUE(sampled) << sampled.error().what;
+    EXPECT_NEAR(poses.hands[0].joints[1].position_m[0], 0.11f, 1e-3f);
+  }
 }
 
 TEST_F(Pair, ASourceThatHangsWhileItIsOpenedIsUsedLater) {
