@@ -107,15 +107,17 @@ TEST(Leapc, ALibraryThatDoesNotReturnHoldsNobodyUp) {
   next_sample(*source);
   leap.fault = FakeFault::hangs;  // until the end of this test
   msg::HandPoses poses;
-  int timeouts = 0;
+  int errors = 0;
   for (int i = 0; i < 20; ++i) {
     const auto deadline = Deadline::in(5ms);
     const auto sampled = source->sample(poses, deadline);
     if (sampled) continue;  // it was waiting
-    EXPECT_GE(now_ns(), deadline.time_ns()) << "not before its deadline";
-    ++timeouts;
+    // On a machine so slow that the hang is noticed here, the error comes at once.
+    if (sampled.error().code == Errc::timeout)
+      EXPECT_GE(now_ns(), deadline.time_ns()) << "not before its deadline";
+    ++errors;
   }
-  EXPECT_GE(timeouts, 15) << "while the library does not return at all";
+  EXPECT_GE(errors, 15) << "while the library does not return at all";
   leap.fault = FakeFault::none;
 }
 

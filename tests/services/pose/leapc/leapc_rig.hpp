@@ -56,9 +56,9 @@ inline msg::HandPoses next_sample(PoseSource& source) {
   throw std::runtime_error("no sample");
 }
 
-/// Samples until an error of this code comes, for at most 5 s. Its sentence; "" if none came.
+/// Samples until an error of this code comes, for at most 20 s. Its sentence; "" if none came.
 inline std::string next_error(PoseSource& source, Errc code) {
-  const auto until = Deadline::in(5s);
+  const auto until = Deadline::in(20s);
   msg::HandPoses poses;
   while (!until.passed())
     if (const auto sampled = source.sample(poses, Deadline::in(100ms));
