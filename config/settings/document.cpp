@@ -38,24 +38,46 @@ Value convert(const toml::node& node, int line) {
   return {OtherValue{}, line};
 }
 
+bool are_three(std::string_view toml, std::size_t at, char quote) {
+  const auto three = toml.substr(at, 3);
+  return three.size() == 3 && three.find_first_not_of(quote) == std::string_view::npos;
+}
+
+/// The end of the string that begins at `begin`, which has one quote on each side, or three. One
+/// that is not closed ends with its line, or with the text if it has three quotes.
+std::size_t end_of_string(std::string_view toml, std::size_t begin) {
+  const char quote = toml[begin];
+  const bool is_long = are_three(toml, begin, quote);
+  for (std::size_t i = begin + (is_long ? 3 : 1); i < toml.size(); ++i) {
+    if (toml[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (!is_long && (toml[i] == quote || toml[i] == '\n')) {
+      return toml[i] == quote ? i + 1 : i;
+    } else if (is_long && are_three(toml, i, quote)) {
+      // The last two quotes of the string itself may stand before the three that close it.
+      return std::min(toml.find_first_not_of(quote, i), std::min(i + 5, toml.size()));
+    }
+  }
+  return toml.size();
+}
+
 /// The line of the first key with more than `most` dots, which toml++ and convert() would follow by
-/// recursion; 0 if there is none. Dots inside quotes do not count; other recursion is limited by
+/// recursion; 0 if there is none. Dots inside strings do not count; other recursion is limited by
 /// toml++ itself.
 int line_of_deep_key(std::string_view toml, int most) {
-  int line = 1, dots = 0;
-  char quote = 0;  // or '#', in a comment
-  for (std::size_t i = 0; i < toml.size(); ++i) {
+  constexpr std::string_view kBeforeKeys = "\n=,[{";
+  int dots = 0;
+  for (std::size_t i = 0; i < toml.size();) {
     const char c = toml[i];
-    if (c == '\n') ++line, dots = 0, quote = 0;
-    if (quote) {
-      if (c == quote && quote != '#') quote = 0;
-      if (c == '\\' && quote == '"') ++i;
-    } else if (c == '"' || c == '\'' || c == '#') {
-      quote = c;
-    } else if (c == '=' || c == ',' || c == '[' || c == '{') {
-      dots = 0;
-    } else if (c == '.' && ++dots > most) {
-      return line;
+    if (c == '"' || c == '\'') {
+      i = end_of_string(toml, i);
+    } else if (c == '#') {
+      i = std::min(toml.find('\n', i), toml.size());
+    } else {
+      if (kBeforeKeys.find(c) != std::string_view::npos) dots = 0;
+      if (c == '.' && ++dots > most)
+        return 1 + static_cast<int>(std::ranges::count(toml.substr(0, i), '\n'));
+      ++i;
     }
   }
   return 0;

@@ -125,5 +125,33 @@ TEST(Document, AKeyWithThousandsOfPartsIsRefusedAndDotsElsewhereAreNot) {
   EXPECT_TRUE(parse_document("a = [" + numbers + "]\n", "rig.toml"));
 }
 
+TEST(Document, AKeyWithThousandsOfPartsIsFoundBehindAStringOfThreeQuotes) {
+  std::string key = "a";
+  for (int i = 0; i < 20'000; ++i) key += ".a";
+  // An odd number of quotes inside, escaped ones, those beside the closing three, none at all.
+  for (const std::string text :
+       {"'''it's'''", "''''a'''", "'''a''''", "'''a'''''", "''''''", "\"\"\"\"a\"\"\"",
+        "\"\"\"\\\"\"\"\"", "\"\"\"a\\\"\"\"\"\"", "\"\"\"\"\"\"", "\"\"", "''", "'\'"}) {
+    EXPECT_TRUE(parse_document("x = " + text + "\n", "rig.toml")) << text;
+    const auto deep = parse_document("x = " + text + "\n" + key + " = 1\n", "rig.toml");
+    ASSERT_FALSE(deep) << text;
+    EXPECT_EQ(deep.error().what, "rig.toml:2: a key has more than 32 parts") << text;
+    EXPECT_FALSE(parse_document("x = { t = " + text + ", " + key + " = 1 }\n", "rig.toml")) << text;
+  }
+  EXPECT_EQ(parse_document("x = '''\n\n'''\n" + key + " = 1\n", "rig.toml").error().what,
+            "rig.toml:4: a key has more than 32 parts");
+}
+
+TEST(Document, DotsInsideAStringOfManyLinesArePartsOfNoKey) {
+  const std::string dots(100, '.');
+  for (const std::string quotes : {"'''", "\"\"\""}) {
+    const auto text =
+        quotes + "\n" + dots + " it's \"quoted" + dots + "\n# " + dots + "\n" + quotes;
+    const auto document = parse_document("a = " + text + "\nb = 1\n", "rig.toml");
+    ASSERT_TRUE(document) << document.error().what;
+    EXPECT_EQ(std::get<Table>(document->data)[1].value.line, 5);
+  }
+}
+
 }  // namespace
 }  // namespace handcast::config
