@@ -49,8 +49,10 @@ Result<Manifest> read(const std::string& file) {
                 fmt::format("the manifest of an OpenXR runtime '{}' cannot be read: {}", file,
                             std::strerror(errno)));
   const auto document = nlohmann::json::parse(stream, nullptr, false);
-  const auto runtime =
-      document.is_object() ? document.value("runtime", nlohmann::json()) : document;
+  // Not copied, because a copy follows the depth of the file by recursion.
+  const nlohmann::json none;
+  const auto inside = document.find("runtime");  // end() also if the document is no object
+  const auto& runtime = inside == document.end() ? none : *inside;
   const auto text = [&runtime](const char* member) {
     const auto found = runtime.find(member);
     return found != runtime.end() && found->is_string() ? found->get<std::string>() : "";

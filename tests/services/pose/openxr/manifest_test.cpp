@@ -99,6 +99,18 @@ TEST_F(Manifests, WhatIsNoManifestIsRefusedWithItsName) {
   }
 }
 
+TEST_F(Manifests, OneOfAnyDepthIsRefusedWithItsName) {
+  constexpr std::size_t kDepth = 480'000;  // just below the largest size of a manifest
+  const auto deep = std::string(kDepth, '[') + std::string(kDepth, ']');
+  for (const auto& text :
+       {R"({"runtime":)" + deep + "}", deep, R"({"runtime":{"library_path":)" + deep + "}}"}) {
+    const auto found = find_runtime(write("deep.json", text));
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, Errc::bad_config);
+    EXPECT_THAT(found.error().what, HasSubstr("deep.json' is no manifest"));
+  }
+}
+
 TEST_F(Manifests, ALibraryThatIsGoneMayComeBack) {
   const auto found = find_runtime(
       write("a.json", R"({"runtime": {"name": "Gone", "library_path": "./libgone.so"}})"));
