@@ -38,6 +38,7 @@ struct Target {
   fs::path file;                   ///< behind all links
   std::optional<struct stat> was;  ///< nothing if the file is new
   bool is_in_place = false;
+  bool is_loop = false;  ///< links that lead to each other, and to no file
 };
 
 /// A link of /proc leads to an open file, whatever its name is now; as /dev/stdout does.
@@ -57,6 +58,7 @@ Target target_of(const fs::path& file) {
     }
     target.file = folder_of(target.file) / fs::read_symlink(target.file, none);
   }
+  target.is_loop = fs::is_symlink(target.file, none);
   struct stat status {};
   if (::stat(target.file.c_str(), &status) == 0) {
     target.was = status;
@@ -75,7 +77,24 @@ int write_all(int fd, std::string_view bytes) {
   return 0;
 }
 
+/// The standard output or error of this process if that is this regular file; else -1.
+int standard_fd_of(const fs::path& file) {
+  struct stat wanted {
+  }, open{};
+  if (::stat(file.c_str(), &wanted) != 0 || !S_ISREG(wanted.st_mode)) return -1;
+  for (const int fd : {STDOUT_FILENO, STDERR_FILENO})
+    if (::fstat(fd, &open) == 0 && open.st_dev == wanted.st_dev && open.st_ino == wanted.st_ino)
+      return fd;
+  return -1;
+}
+
+/// 0, or errno.
 int write_in_place(const fs::path& file, std::string_view bytes) {
+  // Opening such a file again would lose what is in it, and put later output over these bytes.
+  if (const int fd = standard_fd_of(file); fd >= 0) {
+    std::fflush(fd == STDOUT_FILENO ? stdout : stderr);
+    return write_all(fd, bytes);
+  }
   const UniqueFd fd(::open(file.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
   return fd ? write_all(fd.get(), bytes) : errno;
 }
@@ -132,6 +151,7 @@ void sync_folder(const fs::path& folder) {
 
 /// 0, or errno.
 int replace(const Target& target, std::string_view bytes, Durable durable) {
+  if (target.is_loop) return ELOOP;
   if (target.was && ::faccessat(AT_FDCWD, target.file.c_str(), W_OK, AT_EACCESS) != 0)
     return errno;  // a folder that may be written would allow it nevertheless
   Beside beside(target.file);
@@ -161,7 +181,7 @@ Result<void> check_writable(const fs::path& file) {
   const auto may_write = [](const fs::path& path) {
     return ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0;
   };
-  const bool is_there = target.was || target.is_in_place;
+  const bool is_there = target.was || target.is_in_place || target.is_loop;
   if ((!is_there || may_write(target.file)) &&
       (target.is_in_place || may_write(folder_of(target.file))))
     return {};

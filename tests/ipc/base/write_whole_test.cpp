@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/write_whole.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/inotify.h>
@@ -187,6 +188,20 @@ TEST_F(WriteWhole, ALinkToNowhereMakesTheFile) {
   EXPECT_EQ(text_of(folder_ / "later"), "text");
 }
 
+TEST_F(WriteWhole, LinksThatLeadToEachOtherAreRefusedAndStay) {
+  fs::create_symlink(folder_ / "second", file_);
+  fs::create_symlink(file_, folder_ / "second");
+  const auto refused = write_whole(file_, "text");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("rig.toml' cannot be written: Too many levels"));
+  EXPECT_TRUE(fs::is_symlink(file_));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "second"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+  const auto checked = check_writable(file_);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().what, HasSubstr("rig.toml: cannot be written: Too many levels"));
+}
+
 TEST_F(WriteWhole, InAFolderThatMayNotBeWrittenTheOldFileStays) {
   make(file_, "old");
   fs::permissions(file_, fs::perms::all);
@@ -272,6 +287,25 @@ TEST_F(WriteWhole, AnOpenFileOfThisProcessIsWrittenInPlace) {
   EXPECT_EQ(std::fread(read.data(), 1, read.size(), open), 4u) << "the open file is another one";
   std::fclose(open);
   EXPECT_EQ(text_of(file_), "text");
+}
+
+TEST_F(WriteWhole, AFileThatIsTheStandardOutputKeepsWhatIsInItAndWhatFollows) {
+  for (const int flags : {O_WRONLY | O_APPEND, O_WRONLY}) {  // as >> and as (...) > of a shell
+    make(file_, "");
+    std::fflush(stdout);
+    const UniqueFd before(::dup(STDOUT_FILENO));
+    const UniqueFd log(::open(file_.c_str(), flags | O_CLOEXEC));
+    ASSERT_GE(::dup2(log.get(), STDOUT_FILENO), 0);
+    std::fputs("a log, ", stdout);
+    const auto by_number = write_whole("/proc/self/fd/1", "a text, ");
+    const auto by_name = write_whole(file_, "another, ");
+    std::fputs("the end", stdout);
+    std::fflush(stdout);
+    ASSERT_GE(::dup2(before.get(), STDOUT_FILENO), 0);
+    EXPECT_TRUE(by_number);
+    EXPECT_TRUE(by_name);
+    EXPECT_THAT(files(), ElementsAre(Pair("rig.toml", "a log, a text, another, the end")));
+  }
 }
 
 }  // namespace
