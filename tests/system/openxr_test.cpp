@@ -109,10 +109,11 @@ TEST_F(RigWithARuntime, ARuntimeThatHangsIsKilledWithItsServiceAndTheRestGoesOn)
 
 TEST_F(RigWithARuntime, ARuntimeThatHangsAtTheStartDoesNotKeepTheRigFromStartingOrStopping) {
   play("hangs_at_start");
-  const auto rig = up_with("openxr", {"--set", "supervisor.ready_s=2"});
+  const auto rig = up_with("openxr", {"--set", "supervisor.ready_s=15"});
   EXPECT_TRUE(eventually([&] { return service("projector")["state"] == "ready"; })) << rig->log();
   expect_more_light();
-  EXPECT_THAT(rig->log(), HasSubstr("pose was not ready within"));
+  EXPECT_TRUE(eventually(
+      [&] { return rig->log().find("pose was not ready within") != std::string::npos; }));
   play("");
   EXPECT_TRUE(eventually([&] { return pose_is("ready"); })) << rig->log();
   expect_more_poses();
@@ -120,7 +121,9 @@ TEST_F(RigWithARuntime, ARuntimeThatHangsAtTheStartDoesNotKeepTheRigFromStarting
 }
 
 TEST_F(RigWithARuntime, WhileItHangsTheSecondSourceIsUsed) {
-  const auto rig = up_with("openxr", {"--set", "pose.second=none"});
+  // A service that a busy machine keeps silent is not restarted.
+  const auto rig =
+      up_with("openxr", {"--set", "pose.second=none", "--set", "supervisor.silent_s=10"});
   wait_until_light();
   expect_more_poses();
   const int before = service("pose")["pid"];
