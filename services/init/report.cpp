@@ -49,9 +49,8 @@ std::vector<std::string> steps(const Plan& plan, const std::string& file) {
   std::vector<std::string> steps;
   if (plan.needs_calibration())
     steps.push_back(fmt::format(
-        "{}\n     and name its file in {}. Until then the light misses the hand, and `handcast "
-        "doctor` reports it.",
-        calibrate_command(plan, file), file));
+        "{}\n     Until then the light misses the hand, and `handcast doctor` reports it.",
+        calibrate_command(plan, file)));
   if (plan.controller)
     steps.push_back(
         "Read \"A DLP projector with a controller\" in docs/operating.md before the "

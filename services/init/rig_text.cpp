@@ -56,7 +56,7 @@ std::string calibration(const Plan& plan, const std::filesystem::path& file) {
   if (!plan.needs_calibration()) return {};
   return fmt::format(
       "\n# THIS IS MISSING. Without a calibration of camera and projector the light misses the "
-      "hand. Make it with\n"
+      "hand. This makes it, and names it in this file:\n"
       "#   {}\n"
       "# calibration = {}\n",
       calibrate_command(plan, file.filename()),
@@ -146,7 +146,8 @@ std::string tracker(const Plan& plan) {
       "# so the camera must see infrared light, and not the projector's (docs/operating.md, "
       "\"Without a hand tracker\").\n"
       "backend = \"none\"\n"
-      "# How far the hand is from the camera. 10 cm more or less do no harm.\n"
+      "# How far the hand is from the camera. What counts is that it is at the calibration's "
+      "distance.\n"
       "none.distance_m = {:g}\n"
       "# The person's hand from the wrist to the tip of the middle finger. 0: an average hand, "
       "whose size is learned.\n"
@@ -238,7 +239,7 @@ std::string observer(const Plan& plan) {
 std::string calibrate_command(const Plan& plan, const std::filesystem::path& file) {
   constexpr Size kUnknown{1024, 768};
   const auto size = showing_of(plan).size;
-  return fmt::format("handcast calibrate {} --camera {} --projector {}", file.string(),
+  return fmt::format("handcast calibrate {} --camera {} --projector {} --apply", file.string(),
                      text_of(images_of(plan)->size), text_of(size.width_px > 0 ? size : kUnknown));
 }
 
