@@ -44,7 +44,8 @@ struct TransformSection {
 template <class Visitor>
 void describe(Visitor& visitor, TransformSection& rows) {
   visitor.field("x", rows.x, between(-1e5, 1e5),
-                "Camera x (right) of the tracker's three axes and of its origin.");
+                "Camera x (right) of the three axes of the system that it comes from, and of its "
+                "origin.");
   visitor.field("y", rows.y, between(-1e5, 1e5), "Camera y (down) of these.");
   visitor.field("z", rows.z, between(-1e5, 1e5), "Camera z (forward) of these.");
 }
