@@ -67,14 +67,15 @@ constexpr std::array kVerbs{
               "  --system           a unit of the machine instead of one of this user\n"
               "  --user NAME        the user as which it runs; default: the one who calls sudo\n"
               "  --print            prints the unit and writes nothing\n"},
-    VerbEntry{"devices", "devices [--json]",
+    VerbEntry{"devices", "devices [--json] [--leap-calibration FILE]",
               "Lists what is attached, and what it would be called in a rig file.", nullptr,
               Group::set_up},
     VerbEntry{"init", "init [RIG.toml] [--yes] [--force] ...",
               "Asks what a rig is made of and writes its rig file.", nullptr, Group::set_up},
     VerbEntry{"calibrate", "calibrate RIG.toml [STEP...] [--check] [--print-board FILE.pdf] ...",
-              "Measures lens, projector and tracker of a rig and writes its calibration.", nullptr,
-              Group::set_up},
+              "Measures lenses, a second camera, projector and tracker of a rig and writes its "
+              "calibration.",
+              nullptr, Group::set_up},
     VerbEntry{"doctor", "doctor RIG.toml [--set path=value]... [--seconds N] [--json]",
               "Checks a rig, and the computer that runs it, before the show.", nullptr,
               Group::set_up},
