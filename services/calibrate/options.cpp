@@ -15,11 +15,10 @@ namespace handcast::calibrate {
 namespace {
 
 constexpr const char* kSummary =
-    "Measures the lens of the camera, the projector and the tracker's place of a rig, and the "
-    "second "
-    "camera of a rig with two, and writes its "
-    "calibration file. It starts the rig itself, says what to hold where, and can be left at any "
-    "time and called again: it goes on where it was left. The old calibration is kept.\n\n"
+    "Measures the lens of each camera, where the second one is, the projector, and the tracker's "
+    "place, and writes the rig's calibration file. It starts the rig itself, says what to hold "
+    "where, and can be left at any time and called again: it goes on where it was left. The old "
+    "calibration is kept.\n\n"
     "Print the board first: handcast calibrate --print-board board.pdf";
 
 constexpr double kCheck_s = 12;  ///< how long --check looks at the hand, and at the board
@@ -77,17 +76,20 @@ Result<Options> parse(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--print-board", options.board_pdf, "Writes the board as a PDF, and ends");
   app.add_option("--camera", camera,
-                 "Size of the camera's images, for a rig without a calibration");
+                 "Size of the camera's images, for a rig without a calibration, or for other "
+                 "devices than the calibrated ones");
   app.add_option("--camera2", camera2,
                  "Size of the second camera's images, if they are of another size than the first "
                  "one's and not calibrated");
   app.add_option("--projector", projector,
-                 "Size of the projector's image, for a rig without a calibration");
+                 "Size of the projector's image, for a rig without a calibration, or for other "
+                 "devices than the calibrated ones");
   app.add_option("--folder", options.folder,
                  "Where pictures, results and the report go; default: RIG.calibration");
-  const auto* most_s = app.add_option("--most-s", options.most_s, "How long a step may take")
-                           ->check(CLI::Range(5, 3600))
-                           ->capture_default_str();
+  const auto* most_s =
+      app.add_option("--most-s", options.most_s, "How long a step may take, s; with --check 12")
+          ->check(CLI::Range(5, 3600))
+          ->capture_default_str();
   app.add_flag(
       "--apply", options.apply,
       "Writes the settings that were measured (projector.latency_ms, projector.gamma), and "
