@@ -4,10 +4,14 @@
 namespace handcast::calib {
 namespace {
 
+/// A zero has no sign in a file.
+double plain(double value) { return value == 0 ? 0 : value; }
+
 template <class Matrix>
 std::vector<double> row_of(const Matrix& matrix, int row) {
   std::vector<double> values(Matrix::length());
-  for (int column = 0; column < Matrix::length(); ++column) values[column] = matrix[column][row];
+  for (int column = 0; column < Matrix::length(); ++column)
+    values[column] = plain(matrix[column][row]);
   return values;
 }
 
@@ -22,7 +26,7 @@ CameraSection to_section(const std::string& device, const CameraModel& c) {
           c.height_px,
           {c.fx_px, c.fy_px},
           {c.cx_px, c.cy_px},
-          {c.k1, c.k2, c.p1, c.p2, c.k3}};
+          {plain(c.k1), plain(c.k2), plain(c.p1), plain(c.p2), plain(c.k3)}};
 }
 
 TransformSection to_section(const glm::dmat4& transform) {
@@ -42,7 +46,7 @@ File to_file(const Calibration& calibration) {
            row_of(homography, 1),
            row_of(homography, 2),
            calibration.plane_m,
-           {e.x, e.y, e.z}},
+           {plain(e.x), plain(e.y), plain(e.z)}},
           calibration.made};
 }
 

@@ -200,6 +200,16 @@ TEST(CalibrationFile, ReadsBackAsItWasPrinted) {
   EXPECT_EQ(back->projector_from_camera, rig.projector_from_camera);
 }
 
+TEST(CalibrationFile, AZeroHasNoSign) {
+  auto rig = reference_rig();
+  rig.camera.k1 = -0.0;
+  rig.camera_from_tracker = glm::dmat4(-0.0);
+  rig.parallax = glm::dvec3(-0.0);
+  const auto text = print_calibration(rig);
+  EXPECT_EQ(text.find("-0,"), std::string::npos) << text;
+  EXPECT_EQ(text.find("-0]"), std::string::npos) << text;
+}
+
 TEST(CalibrationFile, KeepsTheNamesOfItsDevices) {
   auto rig = reference_rig();
   rig.camera_device = "23456789";
