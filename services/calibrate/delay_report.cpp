@@ -12,6 +12,7 @@ namespace handcast::calibrate {
 namespace {
 
 constexpr double kNoticeable_ms = 0.3, kMuchUnseen_ms = 1;
+constexpr double kPrinted_ms = 0.05;  ///< less is printed as 0.0
 
 std::string measured(const calib::LightDelay& delay) {
   return fmt::format("{} ms ({} to {}, 95 %)", signed_text(delay.delay_ms, 1),
@@ -23,7 +24,7 @@ std::string measured(const calib::LightDelay& delay) {
 void report_delay(const config::Rig& rig, const calib::LightDelay& delay, Outcome& outcome) {
   const auto& backend = rig.projector.backend;
   const double latency_ms = rig.projector.latency_ms + delay.delay_ms;
-  const bool is_known = delay.low_ms <= 0 && delay.high_ms >= 0;
+  const bool is_known = delay.low_ms < kPrinted_ms && delay.high_ms > -kPrinted_ms;
   if (is_known || std::abs(delay.delay_ms) < kNoticeable_ms) {
     outcome.findings.push_back(
         fmt::format("the light of '{}' comes when it is reported: {}", backend, measured(delay)));

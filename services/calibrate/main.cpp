@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "calib/board/board_pdf.hpp"
-#include "config/second_view.hpp"
 #include "config/settings/choice.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
@@ -16,13 +15,14 @@
 #include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/calibrate/check.hpp"
+#include "services/calibrate/check_steps.hpp"
 #include "services/calibrate/correct.hpp"
+#include "services/calibrate/hand_over.hpp"
 #include "services/calibrate/lens_step.hpp"
 #include "services/calibrate/light_step.hpp"
 #include "services/calibrate/own_devices.hpp"
 #include "services/calibrate/pair_step.hpp"
 #include "services/calibrate/points.hpp"
-#include "services/calibrate/rig_file_edit.hpp"
 #include "services/calibrate/rig_settings.hpp"
 #include "services/calibrate/screen_step.hpp"
 #include "services/calibrate/tracker_step.hpp"
@@ -69,13 +69,6 @@ constexpr const char* kReflectorInstruction =
     "in which the show takes place, nearer and farther, too, and turn the hand.";
 
 const StepEntry& entry_of(Step step) { return *std::ranges::find(kSteps, step, &StepEntry::step); }
-
-/// False for a step that measures what the rig does not have. Poses from two cameras are in the
-/// space of the first one: there is no tracker whose place could be wrong.
-bool has_need_of(const config::Rig& rig, Step step) {
-  if (step == Step::lens2 || step == Step::pair) return config::has_second_view(rig);
-  return step != Step::tracker || (rig.pose.backend != "none" && rig.pose.backend != "stereo");
-}
 
 /// The steps to do now.
 std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const Session& session) {
@@ -134,7 +127,7 @@ Result<Outcome> with_rig(const Options& options, const RunningAs& running,
 
 /// Does one step, and keeps what it has measured. False if the person has left the step out.
 Result<bool> do_step(const Options& options, const RunningAs& running, Session& session, Keys& keys,
-                     const StepEntry& entry, std::vector<MeasuredSetting>& settings) {
+                     const StepEntry& entry) {
   auto wanted = is_wanted(options, keys, entry);
   if (!wanted || !*wanted) return wanted;
   auto draft = session.draft();
@@ -142,77 +135,36 @@ Result<bool> do_step(const Options& options, const RunningAs& running, Session& 
       with_rig(options, running, session.report().parent_path(), draft, keys, entry);
   if (!outcome) return tl::make_unexpected(outcome.error());
   print_outcome(*outcome);
-  settings.insert(settings.end(), outcome->settings.begin(), outcome->settings.end());
   return session.keep(entry.step, *outcome, draft).map([] { return true; });
 }
 
-/// Prints the settings that were measured, or writes them to the rig file.
-Result<void> hand_over(const Options& options, std::span<const MeasuredSetting> settings) {
-  if (settings.empty()) return {};
-  Result<void> applied;
-  if (options.apply) {
-    const auto sentence = apply_settings(options.rig_file, settings);
-    if (sentence) {
-      fmt::print("{}\n", *sentence);
-      return {};
-    }
-    applied = tl::make_unexpected(sentence.error());
+/// Measures what is left, or was asked for. `done`: how many steps.
+Result<void> measure_steps(const Options& options, const RunningAs& running, Session& session,
+                           std::span<const Step> steps, int& done) {
+  Keys keys;
+  for (const Step step : steps) {
+    const auto kept = do_step(options, running, session, keys, entry_of(step));
+    if (!kept) return fail_in(config::word_of(step), kept.error());
+    done += *kept ? 1 : 0;
   }
-  fmt::print("settings for {}{}:\n", options.rig_file.string(),
-             options.apply ? "" : ", which --apply writes there");
-  for (const auto& setting : settings) fmt::print("  {} = {}\n", setting.path, as_toml(setting));
-  return applied;
-}
-
-/// Puts the calibration in its place. If the rig file does not name it yet, its name becomes one of
-/// the settings, relative to the rig file where that is short.
-Result<void> finish(const Options& options, const config::Rig& rig, const Session& session,
-                    std::vector<MeasuredSetting>& settings) {
-  const auto finished = session.finish();
-  if (!finished) return tl::make_unexpected(finished.error());
-  fmt::print("{}\n", *finished);
-  if (std::filesystem::path(rig.calibration) == session.target()) return {};
-  const auto folder = std::filesystem::absolute(options.rig_file).parent_path();
-  const auto name =
-      session.target().parent_path() == folder ? session.target().filename() : session.target();
-  settings.insert(settings.begin(), {"calibration", name.string()});
   return {};
 }
 
-/// Errors: bad_config (a step was asked for that needs a second camera).
-Result<void> check_steps(const Options& options, const config::Rig& rig) {
-  for (const Step step : options.steps)
-    if ((step == Step::lens2 || step == Step::pair) && !has_need_of(rig, step))
-      return fail(Errc::bad_config,
-                  fmt::format("{}: the rig has no second camera; set camera2.backend",
-                              config::word_of(step)));
-  return {};
-}
-
+/// What was measured, now or in an earlier call, gets its place even if a later step has failed.
 Result<int> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
                         Session& session) {
-  Keys keys;
   const auto steps = steps_of(options, rig, session);
   int done = 0;
-  bool is_calibrated = false;
-  std::vector<MeasuredSetting> settings;
-  for (const Step step : steps) {
-    const auto kept = do_step(options, running, session, keys, entry_of(step), settings);
-    if (!kept) return fail_in(config::word_of(step), kept.error());
-    if (!*kept) continue;
-    ++done;
-    is_calibrated = is_calibrated || step != Step::light;
-  }
-  if (done == 0) {
+  const auto measured = measure_steps(options, running, session, steps, done);
+  if (done > 0)
+    fmt::print("the report is {}\n", session.report().string());
+  else if (measured)
     fmt::print("{}\n", steps.empty() ? "nothing is left to be measured; --restart begins anew"
                                      : "nothing was measured");
-    return kExitDone;
-  }
-  fmt::print("the report is {}\n", session.report().string());
-  if (is_calibrated)
-    if (auto finished = finish(options, rig, session, settings); !finished)
-      return tl::make_unexpected(finished.error());
-  return hand_over(options, settings).map([] { return kExitDone; });
+  const auto handed_over = hand_over(options, rig, running.calibration, session);
+  if (measured) return handed_over.map([] { return kExitDone; });
+  if (!handed_over) complain(handed_over.error());
+  return tl::make_unexpected(measured.error());
 }
 
 /// A part of --check.

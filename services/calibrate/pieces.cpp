@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "config/settings/choice.hpp"
 #include "services/evaluation/page/document.hpp"
 #include "services/evaluation/page/html.hpp"
 
@@ -48,21 +49,23 @@ std::string piece_html(std::string_view step, const Outcome& outcome) {
   return html + outcome.pictures + "</section>\n";
 }
 
-std::string report_html(const std::string& rig, const calib::Calibration& draft,
-                        const std::string& pieces) {
-  const auto fact_of = [](std::string_view name, const std::string& made) {
-    return page::fact(name, made.empty() ? "not measured yet" : made);
+std::string report_html(const std::string& rig, std::span<const Step> steps,
+                        const calib::Calibration& draft, const std::string& pieces) {
+  std::string facts;
+  const auto add = [&](Step step, const std::string& made) {
+    if (!made.empty() || std::ranges::count(steps, step) > 0)
+      facts += page::fact(config::word_of(step), made.empty() ? "not measured yet" : made);
   };
-  return page::to_html(
-      {.title = "Calibration of " + rig,
-       .style = kStyle,
-       .facts =
-           fact_of("lens", draft.made.lens) +
-           (draft.camera2 ? fact_of("lens2", draft.made.lens2) + fact_of("pair", draft.made.pair)
-                          : std::string()) +
-           fact_of("screen", draft.made.screen) + fact_of("tracker", draft.made.tracker),
-       .header = {},
-       .body = pieces});
+  add(Step::lens, draft.made.lens);
+  add(Step::lens2, draft.made.lens2);
+  add(Step::pair, draft.made.pair);
+  add(Step::screen, draft.made.screen);
+  add(Step::tracker, draft.made.tracker);
+  return page::to_html({.title = "Calibration of " + rig,
+                        .style = kStyle,
+                        .facts = facts,
+                        .header = {},
+                        .body = pieces});
 }
 
 std::string errors_svg(const calib::ErrorVolume& errors, std::string_view caption) {

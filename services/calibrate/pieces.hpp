@@ -13,9 +13,9 @@ namespace handcast::calibrate {
 
 /// The section of a step.
 std::string piece_html(std::string_view step, const Outcome& outcome);
-/// The page. `pieces`: sections of the steps.
-std::string report_html(const std::string& rig, const calib::Calibration& draft,
-                        const std::string& pieces);
+/// The page. `steps`: those that the rig has need of. `pieces`: sections of the steps.
+std::string report_html(const std::string& rig, std::span<const Step> steps,
+                        const calib::Calibration& draft, const std::string& pieces);
 
 /// Pictures (SVG) of the camera's image, one for each depth, darker where the error is larger, and
 /// a caption. Below each are its depth and its largest error.

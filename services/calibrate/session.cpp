@@ -4,20 +4,27 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <ctime>
+#include <iterator>
 
 #include "calib/opencv_file.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
 #include "ipc/base/write_whole.hpp"
+#include "services/calibrate/check_steps.hpp"
 #include "services/calibrate/kept_file.hpp"
+#include "services/calibrate/kept_settings.hpp"
 #include "services/calibrate/pieces.hpp"
 
 namespace handcast::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kDraft = "draft.toml";
+constexpr const char* kPending = "pending";
 
 constexpr std::array kSteps{Step::lens,   Step::lens2,   Step::pair,
                             Step::screen, Step::tracker, Step::light};
@@ -106,9 +113,17 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
   Session session(fs::absolute(options.folder), target_of(options, rig), used);
   session.rig_name_ = rig.name;
   session.draft_.made = {};
-  const auto file = session.file("draft.toml");
-  if (options.restart || !fs::exists(file)) {
+  std::ranges::copy_if(kSteps, std::back_inserter(session.steps_),
+                       [&](Step step) { return has_need_of(rig, step); });
+  const auto file = session.file(kDraft);
+  const bool has_draft = fs::exists(file, error);
+  if (error)
+    return fail(Errc::bad_config, fmt::format("the folder '{}' cannot be read: {}",
+                                              options.folder.string(), error.message()));
+  if (options.restart || !has_draft) {
     for (const Step step : kSteps) session.forget(step);
+    fs::remove(file, error);
+    fs::remove(session.file(kPending), error);
     return session;
   }
   auto draft = calib::load_calibration(file);
@@ -135,7 +150,51 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
 bool Session::is_done(Step step) const {
   auto made = draft_.made;
   const auto* sentence = made_of(made, step);
-  return sentence ? !sentence->empty() : fs::exists(piece_of(step));
+  std::error_code unknown;
+  return sentence ? !sentence->empty() : fs::exists(piece_of(step), unknown);
+}
+
+bool Session::has_measured() const {
+  auto made = draft_.made;
+  return std::ranges::any_of(kSteps, [&](Step step) {
+    const auto* sentence = made_of(made, step);
+    return sentence && !sentence->empty();
+  });
+}
+
+bool Session::is_pending() const {
+  std::error_code unknown;
+  return has_measured() && (fs::exists(file(kPending), unknown) || !fs::exists(target_, unknown));
+}
+
+std::vector<MeasuredSetting> Session::settings() const {
+  std::vector<MeasuredSetting> all;
+  for (const Step step : kSteps) {
+    const auto settings = read_settings(settings_of(step));
+    all.insert(all.end(), settings.begin(), settings.end());
+  }
+  return all;
+}
+
+void Session::forget_settings() const {
+  std::error_code absent;
+  for (const Step step : kSteps) fs::remove(settings_of(step), absent);
+}
+
+fs::path Session::settings_of(Step step) const {
+  return file(fmt::format("{}.settings", config::word_of(step)));
+}
+
+Result<void> Session::keep_settings(Step step, const std::vector<MeasuredSetting>& settings) const {
+  for (const Step other : kSteps) {
+    auto older = read_settings(settings_of(other));
+    const auto outdated = std::erase_if(older, [&](const MeasuredSetting& old) {
+      return std::ranges::count(settings, old.path, &MeasuredSetting::path) > 0;
+    });
+    if (other == step || outdated == 0) continue;
+    if (auto written = write_settings(settings_of(other), older); !written) return written;
+  }
+  return write_settings(settings_of(step), settings);
 }
 
 fs::path Session::piece_of(Step step) const {
@@ -146,6 +205,7 @@ void Session::forget(Step step) {
   std::error_code absent;
   if (auto* made = made_of(draft_.made, step)) made->clear();
   fs::remove(piece_of(step), absent);
+  fs::remove(settings_of(step), absent);
 }
 
 Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calibration& measured) {
@@ -154,10 +214,13 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
                 "this is not good enough to be used, and was not kept; measure it again");
   draft_ = measured;
   for (const Step later : outdated_by(step)) forget(later);
-  if (auto* made = made_of(draft_.made, step))
+  auto kept = keep_settings(step, outcome.settings);
+  if (auto* made = made_of(draft_.made, step)) {
     *made = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
-  auto kept = write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
-  if (kept) kept = write_whole(file("draft.toml"), calib::print_calibration(draft_));
+    if (kept) kept = write_whole(file(kPending), "the draft is not in its place yet\n");
+  }
+  if (kept) kept = write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
+  if (kept) kept = write_whole(file(kDraft), calib::print_calibration(draft_));
   return kept ? write_report() : kept;
 }
 
@@ -165,16 +228,18 @@ Result<void> Session::write_report() const {
   std::string pieces;
   for (const Step step : kSteps)
     if (const auto piece = config::read_text(piece_of(step))) pieces += *piece;
-  return write_whole(report(), report_html(rig_name_, draft_, pieces));
+  return write_whole(report(), report_html(rig_name_, steps_, draft_, pieces));
 }
 
 Result<std::string> Session::finish() const {
   // A file that the services would refuse must not take the place of a good one.
-  if (const auto usable = calib::load_calibration(file("draft.toml")); !usable)
+  if (const auto usable = calib::load_calibration(file(kDraft)); !usable)
     return tl::make_unexpected(usable.error());
   const auto measured = without_guess(draft_, target_);
   auto sentence = write_and_keep(target_, calib::print_calibration(measured));
   if (!sentence) return sentence;
+  std::error_code absent;
+  fs::remove(file(kPending), absent);
   return write_whole(file("opencv.yml"), calib::print_opencv_file(measured)).map([&] {
     return *sentence;
   });

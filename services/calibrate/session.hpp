@@ -50,9 +50,18 @@ class Session {
 
   /// True if this step was done.
   bool is_done(Step step) const;
-  /// Makes what a step has measured the draft, keeps the step's outcome, and writes the report
-  /// anew. What was measured with an older lens is forgotten. Errors: bad_data (the outcome is not
-  /// good, and all stays as it is), unavailable (a file cannot be written).
+  /// True if a part of the calibration was measured.
+  bool has_measured() const;
+  /// True if the draft has what is not in target(): since keep() of a part of the calibration, or
+  /// because there is no such file, until finish().
+  bool is_pending() const;
+  /// The settings that the steps have measured; of one that two have measured, the newest.
+  std::vector<MeasuredSetting> settings() const;
+  /// To be called when they are in the rig file.
+  void forget_settings() const;
+  /// Makes what a step has measured the draft, keeps the step's outcome and settings, and writes
+  /// the report anew. What was measured with an older lens is forgotten. Errors: bad_data (the
+  /// outcome is not good, and all stays as it is), unavailable (a file cannot be written).
   Result<void> keep(Step step, const Outcome& outcome, const calib::Calibration& measured);
   /// Writes the draft to target(), and as opencv.yml to the session's folder for other programs;
   /// the file before it is kept with the time in its name. Returns a
@@ -63,10 +72,13 @@ class Session {
   Session(std::filesystem::path folder, std::filesystem::path target, calib::Calibration draft)
       : folder_(std::move(folder)), target_(std::move(target)), draft_(std::move(draft)) {}
   void forget(Step step);
+  Result<void> keep_settings(Step step, const std::vector<MeasuredSetting>& settings) const;
   Result<void> write_report() const;
   std::filesystem::path piece_of(Step step) const;
+  std::filesystem::path settings_of(Step step) const;
 
   std::filesystem::path folder_, target_;
+  std::vector<Step> steps_;  ///< that the rig has need of
   std::string rig_name_;
   calib::Calibration draft_;
 };

@@ -165,6 +165,96 @@ TEST_F(CalibrateSession, ADraftOfAnotherCameraIsRefused) {
   EXPECT_THAT(session.error().what, HasSubstr("--restart"));
 }
 
+TEST_F(CalibrateSession, WhatIsNotInItsPlaceYetIsPending) {
+  EXPECT_FALSE(open().is_pending());
+  { ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, used_)); }
+  EXPECT_TRUE(open().is_pending());
+  ASSERT_TRUE(open().finish());
+  EXPECT_FALSE(open().is_pending());
+  { ASSERT_TRUE(open().keep(Step::light, {"bright"}, used_)); }
+  EXPECT_FALSE(open().is_pending()) << "the light is no part of a calibration";
+  { ASSERT_TRUE(open().keep(Step::screen, {"5 places"}, open().draft())); }
+  EXPECT_TRUE(open().is_pending());
+  options_.restart = true;
+  EXPECT_FALSE(open().is_pending());
+  options_.restart = false;
+  EXPECT_FALSE(open().is_pending());
+  EXPECT_FALSE(open().is_done(Step::lens)) << "--restart has forgotten it";
+}
+
+TEST_F(CalibrateSession, ACalibrationThatIsNoLongerThereIsPending) {
+  auto session = open();
+  ASSERT_TRUE(session.keep(Step::lens, {"20 images"}, used_));
+  ASSERT_TRUE(session.finish());
+  fs::remove(session.target());
+  EXPECT_TRUE(open().is_pending());
+}
+
+TEST_F(CalibrateSession, SettingsAreKeptUntilTheyAreMeasuredAnewOrForgotten) {
+  const auto paths_of = [](const std::vector<MeasuredSetting>& settings) {
+    std::string text;
+    for (const auto& setting : settings) text += setting.path + "=" + setting.value + " ";
+    return text;
+  };
+  const auto with = [](std::vector<MeasuredSetting> settings) {
+    return Outcome{"measured", true, {}, "", std::move(settings)};
+  };
+  ASSERT_TRUE(open().keep(Step::light, with({{"projector.latency_ms", "3"}}), used_));
+  ASSERT_TRUE(open().keep(
+      Step::screen, with({{"projector.latency_ms", "8"}, {"projector.gamma", "1.80"}}), used_));
+  EXPECT_EQ(paths_of(open().settings()), "projector.latency_ms=8 projector.gamma=1.80 ");
+  ASSERT_TRUE(open().keep(Step::screen, with({{"projector.gamma", "1.90"}}), used_));
+  EXPECT_EQ(paths_of(open().settings()), "projector.gamma=1.90 ");
+  ASSERT_TRUE(open().keep(Step::lens, with({}), used_));
+  EXPECT_EQ(paths_of(open().settings()), "") << "the screen was forgotten with the old lens";
+  ASSERT_TRUE(open().keep(Step::light, with({{"projector.latency_ms", "3"}}), used_));
+  open().forget_settings();
+  EXPECT_EQ(paths_of(open().settings()), "");
+}
+
+TEST_F(CalibrateSession, AFileThatHoldsNoSettingsIsIgnoredWithASentence) {
+  const auto session = open();
+  const auto file = session.file("screen.settings");
+  const std::string good = "projector.gamma = 1.8\n";
+  for (const auto& bad : {std::string(), std::string("gamma"), std::string("a b = 1\n"),
+                          good + "projector.x = \"\n", good + "projector.x = nan\n",
+                          good + "projector.x = 1\n[camera]\n", good + std::string(3000, ' ')}) {
+    std::ofstream(file) << bad;
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(session.settings().empty()) << bad;
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("screen.settings holds no"));
+  }
+  std::ofstream(file) << good;
+  EXPECT_EQ(session.settings().size(), 1U);
+  fs::remove(file);
+  fs::create_directory(file);
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(session.settings().empty());
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("ignored"));
+}
+
+TEST_F(CalibrateSession, AFolderThatCannotBeReadIsNamed) {
+  const fs::path loop = scratch_.path() / "loop";
+  fs::create_symlink(loop, loop);
+  fs::create_directories(options_.folder);
+  fs::create_symlink(loop, options_.folder / "draft.toml");
+  const auto session = Session::open(options_, rig_, used_);
+  ASSERT_FALSE(session);
+  EXPECT_THAT(session.error().what, HasSubstr("rig.calibration"));
+}
+
+TEST_F(CalibrateSession, TheReportNamesNoStepThatTheRigHasNoNeedOf) {
+  const auto page_of = [&] {
+    EXPECT_TRUE(open().keep(Step::lens, {"20 images"}, used_));
+    return text_of(open().report());
+  };
+  EXPECT_THAT(page_of(), HasSubstr("tracker"));
+  EXPECT_THAT(page_of(), Not(HasSubstr("pair")));
+  rig_.pose.backend = "stereo";
+  EXPECT_THAT(page_of(), Not(HasSubstr("tracker")));
+  EXPECT_THAT(page_of(), HasSubstr("pair"));
+}
+
 TEST_F(CalibrateSession, TheDevicesAreNamedAndADraftOfOthersIsRefused) {
   used_.camera_device = "HD Webcam";
   auto session = open();

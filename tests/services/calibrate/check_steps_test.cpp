@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/check_steps.hpp"
+
+#include <gmock/gmock.h>
+
+namespace handcast::calibrate {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string refusal_of(const Options& options, const std::string& pose_backend) {
+  config::Rig rig;
+  rig.pose.backend = pose_backend;
+  const auto checked = check_steps(options, rig);
+  return checked ? "" : checked.error().what;
+}
+
+TEST(CheckSteps, ATrackerThatTheRigHasNotIsNotMeasured) {
+  Options tracker, correct;
+  tracker.steps = {Step::screen, Step::tracker};
+  correct.correct = true;
+  for (const auto& [options, asked] : {std::pair(tracker, "tracker: "), {correct, "--correct: "}}) {
+    EXPECT_THAT(refusal_of(options, "stereo"), HasSubstr(asked));
+    EXPECT_THAT(refusal_of(options, "stereo"), HasSubstr("measure `pair` (and `screen`) again"));
+    EXPECT_THAT(refusal_of(options, "none"), HasSubstr("no tracker to measure"));
+    EXPECT_THAT(refusal_of(options, "none"), Not(HasSubstr("pair")));
+    EXPECT_EQ(refusal_of(options, "twin"), "");
+  }
+}
+
+TEST(CheckSteps, ASecondCameraThatTheRigHasNotIsNotMeasured) {
+  Options options;
+  options.steps = {Step::pair};
+  EXPECT_THAT(refusal_of(options, "twin"), HasSubstr("pair: the rig has no second camera"));
+  EXPECT_EQ(refusal_of(options, "stereo"), "");
+}
+
+}  // namespace
+}  // namespace handcast::calibrate
