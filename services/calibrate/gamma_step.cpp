@@ -79,7 +79,7 @@ void report(const config::Projector& projector, std::span<const GreyStep> steps,
   outcome.pictures += gamma_svg(steps, brightest, fit, projector.gamma);
   const auto measured =
       fmt::format("level^{:.2f} ({:.2f} to {:.2f}, 95 %)", fit.gamma, fit.low, fit.high);
-  const bool is_right = fit.setting() == projector.gamma ||
+  const bool is_right = !is_clearly_worse(projector.gamma, steps, brightest, fit) ||
                         (projector.gamma > 0 && std::abs(fit.gamma - projector.gamma) < kSame);
   if (is_right) {
     outcome.findings.push_back(

@@ -122,6 +122,13 @@ Result<GammaFit> fit_gamma(std::span<const GreyStep> steps, double brightest) {
   return fit;
 }
 
+bool is_clearly_worse(double gamma_setting, std::span<const GreyStep> steps, double brightest,
+                      const GammaFit& fit) {
+  constexpr double kClearly = 1.5;
+  return misfit_of_gamma(steps, brightest, gamma_setting) >
+         kClearly * std::min(fit.misfit, fit.misfit_of_srgb);
+}
+
 std::string gamma_svg(std::span<const GreyStep> steps, double brightest, const GammaFit& fit,
                       double gamma_setting) {
   std::string dots;

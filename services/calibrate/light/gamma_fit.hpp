@@ -32,6 +32,11 @@ double share_of(double level, double brightest, double gamma_setting);
 /// levels; the light does not grow with the level; an exponent below 0.3 or above 5).
 Result<GammaFit> fit_gamma(std::span<const GreyStep> steps, double brightest);
 
+/// Whether a setting of projector.gamma explains the steps clearly worse than the fit does. An
+/// exponent near 2.2 and sRGB differ by less than a camera's noise.
+bool is_clearly_worse(double gamma_setting, std::span<const GreyStep> steps, double brightest,
+                      const GammaFit& fit);
+
 /// A picture (SVG) of the steps, of the fitted curve and of the one that the rig's setting
 /// `gamma_setting` stands for, and a caption.
 std::string gamma_svg(std::span<const GreyStep> steps, double brightest, const GammaFit& fit,

@@ -14,9 +14,10 @@ namespace {
 using testing::HasSubstr;
 
 /// Three rounds of steps whose light a projector with this setting makes.
-std::vector<GreyStep> steps(double gamma_setting, unsigned seed = 1, double brightest = 1) {
+std::vector<GreyStep> steps(double gamma_setting, unsigned seed = 1, double brightest = 1,
+                            double noise_sd = 0.006) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0, 0.006);
+  std::normal_distribution<double> noise(0, noise_sd);
   std::vector<GreyStep> taken;
   for (int round = 0; round < 3; ++round)
     for (int i = 1; i <= 8; ++i) {
@@ -41,6 +42,19 @@ TEST(GammaFit, SrgbIsToldFromAnExponent) {
   ASSERT_TRUE(as_in_srgb && power);
   EXPECT_EQ(as_in_srgb->setting(), 0);
   EXPECT_NEAR(power->setting(), 1.8, 0.05);
+}
+
+TEST(GammaFit, OnlyAClearMisfitIsAChange) {
+  const auto is_change = [](double setting, double truth, unsigned seed) {
+    const auto taken = steps(truth, seed, 1, 0.012);
+    return is_clearly_worse(setting, taken, 1, *fit_gamma(taken, 1));
+  };
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    EXPECT_FALSE(is_change(0, 2.2, seed)) << "sRGB and 2.2 are the same to a camera";
+    EXPECT_FALSE(is_change(2.2, 0, seed));
+    for (const double truth : {1.0, 1.8, 2.6}) EXPECT_TRUE(is_change(0, truth, seed)) << truth;
+    EXPECT_TRUE(is_change(2.2, 1, seed));
+  }
 }
 
 TEST(GammaFit, ADimmedProjectorHasTheSameExponent) {
