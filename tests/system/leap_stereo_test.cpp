@@ -31,13 +31,13 @@ constexpr int kImages = 120;
 
 /// Joints that have landmarks, against the truth.
 struct Errors {
-  std::vector<double> mm;
+  std::vector<double> mm, own_mm;  ///< of all hands; of those that are not exchanged
   int hands = 0, missing = 0;
   int exchanged = 0;  ///< taken for the other hand: the film has only one
 
-  double mean_mm() const {
-    return std::accumulate(mm.begin(), mm.end(), 0.0) /
-           std::max(static_cast<double>(mm.size()), 1.0);
+  static double mean(const std::vector<double>& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0) /
+           std::max(static_cast<double>(all.size()), 1.0);
   }
   double p95_mm() const {
     auto sorted = mm;
@@ -98,17 +98,20 @@ class LeapStereo : public SystemTest {
       if (!truth) continue;
       ++errors.hands;
       const auto* pose = poses.find(side);
-      if (!pose && poses.count == 1) pose = &poses.hands[0], ++errors.exchanged;
+      const bool is_exchanged = !pose && poses.count == 1;
+      if (is_exchanged) pose = &poses.hands[0], ++errors.exchanged;
       errors.missing += pose == nullptr;
       if (!pose) continue;
       for (const int joint : msg::kJointOfLandmark) {
         const auto& at = pose->joints[joint].position_m;
         errors.mm.push_back(
             1e3 * glm::distance(glm::dvec3((*truth)[joint][3]), glm::dvec3(at[0], at[1], at[2])));
+        if (!is_exchanged) errors.own_mm.push_back(errors.mm.back());
       }
     }
   }
-  /// The errors of so many poses in a row, all of images of one start of the stream.
+  /// The errors of so many poses in a row, all of images of one start of the stream; of fewer if
+  /// they take more than a minute.
   Errors watch(int count) {
     const Variable scope(control::kScopeVariable, scratch_.path().string());
     auto stream = client::open_stream<msg::HandPoses>("leap_stereo", "pose.hands");
@@ -116,24 +119,29 @@ class LeapStereo : public SystemTest {
     if (!stream) return errors;
     std::int64_t start_ns = 0;
     int seen = 0;
-    for (const auto until = Deadline::in(60s); seen < count && !until.passed();) {
+    for (auto until = Deadline::in(60s); seen < count && !until.passed();) {
       const auto poses = stream->next(Deadline::in(100ms));
       if (!poses) continue;
       // A controller that a busy machine keeps silent is opened again.
-      if (begun_ns() != start_ns) errors = {}, seen = 0, start_ns = begun_ns();
+      if (begun_ns() != start_ns)
+        errors = {}, seen = 0, start_ns = begun_ns(), until = Deadline::in(60s);
       compare(**poses, errors);
       ++seen;
     }
     return errors;
   }
 
-  static void expect_near(const Errors& errors) {
-    EXPECT_GE(errors.hands, 60);  // in a minute, on a machine that is very busy
+  void expect_near(int count) {
+    const auto errors = watch(count);
+    const double mean_mm = Errors::mean(errors.mm), own_mm = Errors::mean(errors.own_mm);
     std::printf("joints: mean %.1f mm, p95 %.1f mm; of %d hands %d missing, %d exchanged\n",
-                errors.mean_mm(), errors.p95_mm(), errors.hands, errors.missing, errors.exchanged);
+                mean_mm, errors.p95_mm(), errors.hands, errors.missing, errors.exchanged);
+    EXPECT_GE(errors.hands, count / 2) << "a machine that is very busy loses some";
     EXPECT_LT(errors.missing, errors.hands / 10);
-    // A hand that is found anew may be taken for the other one, whose fit is worse.
-    EXPECT_LT(errors.mean_mm(), errors.exchanged == 0 ? 10 : 25);
+    // A hand that is found anew may be taken for the other one for about 1 s. Its fit is worse.
+    EXPECT_LE(errors.exchanged, errors.hands / 2);
+    EXPECT_LT(own_mm, 10);
+    EXPECT_LT(mean_mm, 25);
   }
 
   static constexpr const char* kRig = "config/rigs/leap_stereo.toml";
@@ -147,7 +155,7 @@ TEST_F(LeapStereo, TheHandsAreWhereTheTwinHasThem) {
   wait_until_light();
   EXPECT_TRUE(eventually([&] { return service("landmarks2")["state"] == "ready"; }));
   watch(30);
-  expect_near(watch(150));
+  expect_near(150);
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
   EXPECT_EQ(rig->wait(), 0);
   EXPECT_THAT(traces(), testing::IsEmpty());
@@ -161,11 +169,12 @@ TEST_F(LeapStereo, TheHandsComeBackWithAControllerThatWasUnplugged) {
   device_->unplug();
   EXPECT_TRUE(eventually([&] { return rig->log().find("is unplugged") != std::string::npos; }));
   device_->plug_in();
+  // A hand that is found anew may be taken for the other one at first.
   EXPECT_TRUE(eventually([&] {
     const auto errors = watch(30);
-    return errors.hands > 0 && errors.missing == 0;
+    return errors.hands > 0 && errors.missing == 0 && errors.exchanged == 0;
   }));
-  expect_near(watch(60));
+  expect_near(150);
   EXPECT_EQ(service("camera")["pid"], camera) << "the service stays";
   expect_more_light();
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
