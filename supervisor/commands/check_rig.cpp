@@ -25,10 +25,11 @@
 namespace handcast::supervisor {
 namespace {
 
-/// What a program printed, and its exit code; -1 if a signal ended it.
+/// What a program printed, and how it ended.
 struct Outcome {
   std::string output;
-  int exit_code = -1;
+  int exit_code = -1;  ///< -1 if a signal ended it
+  int signal = 0;      ///< 0 if it ended itself
 };
 
 /// What comes until the end of the file; empty if that is later than the deadline.
@@ -78,6 +79,7 @@ Result<Outcome> run_and_read(const std::vector<std::string>& command, double pat
     return fail(Errc::bad_config, fmt::format("{}: its check did not end within {:g} s",
                                               command.front(), patience_s));
   if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
   return outcome;
 }
 
@@ -98,6 +100,11 @@ std::vector<std::string> ask(const std::string& service, const std::filesystem::
   if (!outcome) return {outcome.error().what};
   if (outcome->exit_code == kExitDone) return {};
   auto faults = lines_of(outcome->output);
+  if (outcome->signal != 0)
+    faults.push_back(
+        fmt::format("{}: its check was ended by a signal ({}); a library that the rig "
+                    "names may be broken",
+                    service, strsignal(outcome->signal)));
   if (faults.empty()) faults.push_back(service + ": its check failed without a reason");
   return faults;
 }
