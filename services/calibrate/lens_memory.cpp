@@ -5,9 +5,10 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 
-#include "config/settings/files.hpp"
+#include "ipc/base/input_file.hpp"
+#include "ipc/base/write_whole.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -32,14 +33,16 @@ Result<void> remember_lens(const std::filesystem::path& folder, const std::strin
     for (const double value : row) text += fmt::format("{} ", value);
     text += "\n";
   }
-  return config::write_whole(file_of(folder, step), text);
+  return write_whole(file_of(folder, step), text);
 }
 
 std::optional<calib::LensCovariance> recall_lens(const std::filesystem::path& folder,
                                                  const std::string& step,
                                                  const calib::CameraModel& camera) {
   constexpr double kSame = 1e-6;  // a draft is text
-  std::ifstream file(file_of(folder, step));
+  const auto text = read_input(file_of(folder, step), kMostText);
+  if (!text) return {};
+  std::istringstream file(*text);
   for (const double wanted : values_of(camera)) {
     double value = 0;
     if (!(file >> value) || std::abs(value - wanted) > kSame * (1 + std::abs(wanted))) return {};

@@ -23,19 +23,23 @@ constexpr const char* kSummary =
 
 constexpr double kCheck_s = 12;  ///< how long --check looks at the hand, and at the board
 
-/// "1024x768".
+/// "1024x768", of a size that a calibration file may have.
 Result<Size> parse_size(const std::string& flag, const std::string& text) {
+  constexpr int kLeast_px = 16, kMost_px = 8192;
+  const auto is_side = [](int side_px) { return side_px >= kLeast_px && side_px <= kMost_px; };
   Size size;
   const char *begin = text.data(), *end = begin + text.size();
   const auto width = std::from_chars(begin, end, size.width_px);
   const bool has_cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
   if (has_cross) {
     const auto height = std::from_chars(width.ptr + 1, end, size.height_px);
-    if (height.ec == std::errc() && height.ptr == end && size.width_px >= 16 &&
-        size.height_px >= 16)
+    if (height.ec == std::errc() && height.ptr == end && is_side(size.width_px) &&
+        is_side(size.height_px))
       return size;
   }
-  return fail(Errc::bad_config, fmt::format("{}: '{}' is not a size like 1024x768", flag, text));
+  return fail(Errc::bad_config,
+              fmt::format("{}: '{}' is not a size like 1024x768, with {} to {} px on a side", flag,
+                          text, kLeast_px, kMost_px));
 }
 
 /// What the program needs to run.

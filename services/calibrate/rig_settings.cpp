@@ -79,7 +79,7 @@ std::string other_devices(const calib::Calibration& calibration, const OwnDevice
   return {};
 }
 
-/// The names of devices as a part of a file's name: letters and digits.
+/// The names of devices as a part of a file's name: letters and digits; "new" if there are none.
 std::string slug_of(const OwnDevices& own) {
   std::string slug;
   for (const char c : own.camera + "_" + own.camera2 + "_" + own.projector) {
@@ -87,7 +87,7 @@ std::string slug_of(const OwnDevices& own) {
     if (is_plain || (!slug.empty() && slug.back() != '_')) slug += is_plain ? c : '_';
   }
   while (!slug.empty() && slug.back() == '_') slug.pop_back();
-  return slug;
+  return slug.empty() ? "new" : slug;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "services/calibrate/lens_memory.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/scratch.hpp"
 
@@ -30,6 +31,12 @@ TEST(LensMemory, KnowsNothingOfAnotherLens) {
   auto other = fit.camera;
   other.fx_px += 0.1;
   EXPECT_FALSE(recall_lens(scratch.path(), "lens", other));
+}
+
+TEST(LensMemory, APipeInItsPlaceIsNotWaitedFor) {
+  const test::Scratch scratch;
+  ASSERT_EQ(::mkfifo((scratch.path() / "lens.covariance").c_str(), 0600), 0);
+  EXPECT_FALSE(recall_lens(scratch.path(), "lens", calib::reference_rig().camera));
 }
 
 }  // namespace

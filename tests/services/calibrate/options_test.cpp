@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/calibrate/options.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <vector>
@@ -52,6 +53,16 @@ TEST(CalibrateOptions, StepsBoardAndSizesAreRead) {
   EXPECT_EQ(options->camera.height_px, 1024);
   EXPECT_EQ(options->camera2.width_px, 640);
   EXPECT_EQ(options->projector.width_px, 1920);
+}
+
+TEST(CalibrateOptions, SizesAreThoseOfACalibrationFile) {
+  for (const auto* size : {"16x16", "8192x8192"})
+    EXPECT_EQ(refusal({"rig.toml", "--camera", size, "--projector", size}), "") << size;
+  for (const auto* size : {"15x16", "16x15", "8193x16", "16x8193", "100000x100000", "-16x16"})
+    EXPECT_EQ(
+        refusal({"rig.toml", "--projector", size}),
+        fmt::format("--projector: '{}' is not a size like 1024x768, with 16 to 8192 px on a side",
+                    size));
 }
 
 TEST(CalibrateOptions, WhatIsWrongIsSaidInASentence) {

@@ -75,6 +75,10 @@ TEST_F(RigSettings, ACalibrationOfAnotherCameraLeadsToOneOfItsOwn) {
   ASSERT_TRUE(anew) << anew.error().what;
   EXPECT_EQ(anew->new_devices, "Other_Cam_2");
   EXPECT_EQ(anew->calibration.camera.width_px, 640);
+
+  const auto greek = rig_as_it_runs(options_, rig_, {"Κάμερα", "", {"Κάμερα"}, {}});
+  ASSERT_TRUE(greek) << greek.error().what;
+  EXPECT_EQ(greek->new_devices, "new") << "there is no letter for a file's name, but a device";
 }
 
 TEST_F(RigSettings, ASecondCameraThatIsNotCalibratedIsGuessedWithTheFirstAsItIs) {
