@@ -15,8 +15,9 @@ struct LeapCalibration {
 };
 
 /// Writes a calibration file with the lenses that the controller has measured itself. Errors:
-/// bad_config (the file exists or cannot be written, no such size or eye, not in this build), those
-/// of the controller.
+/// bad_config (the file exists or cannot be written, no such size or eye, lenses that no program
+/// would accept, not in this build), those of the controller. After an error the file is not there,
+/// unless it was before.
 Result<void> write_leap_calibration(const LeapCalibration& wanted);
 
 }  // namespace handcast::devices

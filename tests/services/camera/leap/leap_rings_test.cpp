@@ -103,12 +103,20 @@ TEST_F(LeapRings, EachEyeHasItsRingAndBothHaveTheSameTimes) {
 
 TEST_F(LeapRings, TheVerbWritesTheLensOfTheController) {
   const auto file = (std::filesystem::path(scratch_.path()) / "lens.toml").string();
-  const auto run = [&](const std::string& more) {
-    return std::system(
-        (program_of("handcast-devices") + " --leap-calibration " + file + more + " 2>/dev/null")
-            .c_str());
+  const auto run = [&](const std::string& more, const std::string& before = "") {
+    return std::system((before + program_of("handcast-devices") + " --leap-calibration " + file +
+                        more + " 2>/dev/null")
+                           .c_str());
   };
-  EXPECT_NE(run(" --size 5"), 0);
+  for (const auto* size : {"5", "15x15", "640x15", "15x480", "8193x480", "640x9999"}) {
+    EXPECT_NE(run(std::string(" --size ") + size), 0) << size;
+    EXPECT_FALSE(std::filesystem::exists(file)) << size;
+  }
+  ASSERT_EQ(run(" --size 16x16"), 0);
+  EXPECT_TRUE(calib::load_calibration(file)) << "the smallest";
+  std::filesystem::remove(file);
+  EXPECT_NE(run("", "trap '' XFSZ; ulimit -f 0; "), 0) << "as on a full disk";
+  EXPECT_FALSE(std::filesystem::exists(file)) << "nothing half-written is left";
   EXPECT_NE(run(" --leap LP0"), 0);
   ASSERT_EQ(run(" --eye right"), 0);
   const auto read = calib::load_calibration(file);
