@@ -63,7 +63,7 @@ void Terminal::press(std::string_view keys) const {
 
 int Terminal::wait() {
   if (pid_ <= 0) return exit_code_;
-  while (read_some()) continue;
+  if (!eventually([&] { return !read_some(); })) kill(pid_, SIGKILL);
   int status = 0;
   waitpid(pid_, &status, 0);
   pid_ = -1;

@@ -22,7 +22,9 @@ class Terminal {
   /// False after a minute, or if it has ended.
   bool says(std::string_view text);
   void press(std::string_view keys) const;
-  int wait();                                        ///< the exit code; reads until the end
+  /// Reads until the end. Returns the exit code, or 128 + the number of the signal. A command that
+  /// has not ended after a minute is killed.
+  int wait();
   const std::string& said() const { return said_; }  ///< so far
 
  private:
