@@ -57,8 +57,10 @@ Result<calib::Calibration> load_calibration(const config::Rig& rig,
   auto calibration = calib::load_calibration(rig.calibration, rig.projector.packing);
   if (!calibration || !description.is_second_view) return calibration;
   if (calibration->camera2) return calib::second_view(*calibration);
-  return fail(Errc::bad_config,
-              "the calibration has no second camera; measure it with `handcast calibrate`");
+  return fail(
+      Errc::bad_config,
+      "the calibration has no second camera ([camera2], [camera2_from_camera]); measure it with "
+      "`handcast calibrate`");
 }
 
 int serve(const daemon::ServiceDescription& description, const CommandLine& line,

@@ -169,7 +169,7 @@ TEST_F(Refusals, ConfigNamesWhatATrackerOfTwoCamerasLacks) {
   EXPECT_THAT(log_of("calibration = \"" + stereo + "\"\n" + pose),
               HasSubstr("set camera2.backend"));
   const auto one = log_of(pose + two);
-  EXPECT_THAT(one, HasSubstr("no second camera; add [camera2] and [camera2_from_camera]"));
+  EXPECT_THAT(one, HasSubstr("no second camera ([camera2], [camera2_from_camera])"));
   EXPECT_EQ(one.find("no second camera"), one.rfind("no second camera")) << "once: " << one;
   EXPECT_EQ(log_of("calibration = \"" + stereo + "\"\n" + pose + two), "");
   const auto unloaded = log_of("calibration = \"none.toml\"\n" + pose + two);

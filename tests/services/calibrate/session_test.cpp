@@ -171,7 +171,7 @@ TEST_F(CalibrateSession, WhatIsNotInItsPlaceYetIsPending) {
   EXPECT_TRUE(open().is_pending());
   ASSERT_TRUE(open().finish());
   EXPECT_FALSE(open().is_pending());
-  { ASSERT_TRUE(open().keep(Step::light, {"bright"}, used_)); }
+  { ASSERT_TRUE(open().keep(Step::light, {"bright"}, open().draft())); }
   EXPECT_FALSE(open().is_pending()) << "the light is no part of a calibration";
   { ASSERT_TRUE(open().keep(Step::screen, {"5 places"}, open().draft())); }
   EXPECT_TRUE(open().is_pending());
