@@ -84,6 +84,8 @@ void describe(Visitor& visitor, Made& made) {
   visitor.field("lens", made.lens, "The camera's lens.");
   visitor.field("screen", made.screen, "The projector.");
   visitor.field("tracker", made.tracker, "The tracker's place.");
+  visitor.field("lens2", made.lens2, "The second camera's lens.");
+  visitor.field("pair", made.pair, "The second camera's place.");
 }
 
 struct File {
