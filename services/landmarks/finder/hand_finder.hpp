@@ -13,8 +13,8 @@ namespace handcast::landmarks {
 /// Finds the hands in a sequence of images. It examines the place of a hand in the last image,
 /// moved on with the tracker; otherwise the place that the tracker reports; otherwise, every few
 /// images, the places that the palm network finds or, with neither one nor a tracker, the bright
-/// parts of the image. If neither is searched, it examines the last place of a hand. One thread, no allocation while
-/// hands are followed.
+/// parts of the image. If neither is searched, it examines the last place of a hand. One thread, no
+/// allocation while hands are followed.
 class HandFinder {
  public:
   /// A hand with a smaller presence, or a smaller mean confidence, is not reported.
