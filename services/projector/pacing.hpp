@@ -67,8 +67,6 @@ class Horizon {
   std::int64_t begin_ns(std::int64_t handed_ns) const {
     return handed_ns - software_.median_ns() - software_.median_ns() / 4 - kMargin_ns;
   }
-  /// The expected time from the begin of a frame until it is handed over.
-  std::int64_t software_ns() const { return software_.median_ns(); }
 
   /// Adds the times of a frame that was begun at `begin_ns`.
   void learn(std::int64_t begin_ns, const PresentTimes& times) {

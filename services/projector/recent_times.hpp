@@ -7,20 +7,14 @@
 
 namespace handcast::projector {
 
-/// The median and the upper quartile of the last 31 times, which a single slow frame does not
-/// change.
+/// The median of the last 31 times, which a single slow frame does not change.
 class RecentTimes {
  public:
   /// Starts as if all times so far had been `first_ns`.
-  explicit RecentTimes(std::int64_t first_ns) : median_ns_(first_ns), upper_quartile_ns_(first_ns) {
-    recent_ns_.fill(first_ns);
-  }
+  explicit RecentTimes(std::int64_t first_ns) : median_ns_(first_ns) { recent_ns_.fill(first_ns); }
 
-  /// The median, and the time that a quarter of the times exceed.
-  /// @{
+  /// The median.
   std::int64_t median_ns() const { return median_ns_; }
-  std::int64_t upper_quartile_ns() const { return upper_quartile_ns_; }
-  /// @}
   /// Adds a time.
   void add(std::int64_t time_ns) {
     recent_ns_[count_++ % recent_ns_.size()] = time_ns;
@@ -28,15 +22,12 @@ class RecentTimes {
     const auto middle = sorted.begin() + sorted.size() / 2;
     std::nth_element(sorted.begin(), middle, sorted.end());
     median_ns_ = *middle;
-    const auto upper = sorted.begin() + 3 * sorted.size() / 4;
-    std::nth_element(middle, upper, sorted.end());
-    upper_quartile_ns_ = *upper;
   }
 
  private:
   std::array<std::int64_t, 31> recent_ns_{};
   std::size_t count_ = 0;
-  std::int64_t median_ns_, upper_quartile_ns_;
+  std::int64_t median_ns_;
 };
 
 }  // namespace handcast::projector

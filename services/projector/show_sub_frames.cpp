@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/projector/show_sub_frames.hpp"
-
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <utility>
 
 #include "calib/sub_frames.hpp"
-#include "config/settings/choice.hpp"
 #include "renderer/output/packing.hpp"
 #include "services/projector/last_light.hpp"
 #include "services/projector/pacing.hpp"
+#include "services/projector/show.hpp"
 #include "services/projector/sub_frame_messages.hpp"
 #include "services/projector/sub_frame_plan.hpp"
 
@@ -33,7 +30,7 @@ renderer::LightTable unchanged() {
 /// Draws, packs and hands over one output frame after the other.
 class SubFrameLoop {
  public:
-  SubFrameLoop(service::Context& context, SubFrameShow show)
+  SubFrameLoop(service::Context& context, Show show)
       : context_(context),
         show_(std::move(show)),
         last_light_(context, show_.brightness),
@@ -118,7 +115,7 @@ class SubFrameLoop {
   const renderer::LightTable unchanged_ = unchanged();
 
   service::Context& context_;
-  SubFrameShow show_;
+  Show show_;
   LastLight last_light_;
   std::unique_ptr<renderer::Packer> packer_;
   SubFramePlan plan_;
@@ -128,7 +125,7 @@ class SubFrameLoop {
 
 }  // namespace
 
-void show_sub_frames(service::Context& context, SubFrameShow show) {
+void show_sub_frames(service::Context& context, Show show) {
   SubFrameLoop loop(context, std::move(show));
   context.ready();
   loop.run();

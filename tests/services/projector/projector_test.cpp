@@ -11,7 +11,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "services/projector/show_sub_frames.hpp"
 #include "tests/display_server.hpp"
 #ifdef HANDCAST_WITH_KMS
 #include "tests/renderer/kms/emulated_card.hpp"

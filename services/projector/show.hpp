@@ -11,8 +11,8 @@
 
 namespace handcast::projector {
 
-/// What a projector of sub-frames is driven with.
-struct SubFrameShow {
+/// What the service works with.
+struct Show {
   renderer::Pipeline& pipeline;
   Inputs& inputs;
   TestPictures& test_pictures;
@@ -21,9 +21,13 @@ struct SubFrameShow {
   ipc::Writer<msg::Projection> projections;
 };
 
-/// Draws the sub-frames of each output frame (SubFramePlan), packs them (renderer::Packer), hands
-/// the output frame over and publishes a message for each sub-frame, until the service ends. Calls
-/// context.ready().
-void show_sub_frames(service::Context& context, SubFrameShow show);
+/// Draws and presents one frame per projector period and publishes it, until the service ends.
+/// Calls context.ready().
+void show_frames(service::Context& context, Show show);
+
+/// The same with projector.packing: draws the sub-frames of each output frame (SubFramePlan),
+/// packs them (renderer::Packer), hands the output frame over and publishes a message for each
+/// sub-frame.
+void show_sub_frames(service::Context& context, Show show);
 
 }  // namespace handcast::projector

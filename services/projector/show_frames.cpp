@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/projector/last_light.hpp"
+#include "services/projector/pacing.hpp"
+#include "services/projector/publish.hpp"
+#include "services/projector/show.hpp"
+#include "services/projector/time_sheet.hpp"
+
+namespace handcast::projector {
+
+void show_frames(service::Context& context, Show show) {
+  using namespace std::chrono_literals;
+  const auto& settings = context.rig().projector;
+  Pacer pacer(settings.rate_hz);
+  Horizon horizon(settings);
+  LastLight last_light(context, show.brightness);
+
+  context.ready();
+  const auto running = [&] { return last_light.goes_on(); };
+  std::int64_t next_ns = pacer.next_ns(now_ns());
+  for (std::uint64_t frame_id = 0; sleep_while(running, next_ns); ++frame_id) {
+    const auto image_deadline = Deadline::at_ns(now_ns() + ms_to_ns(settings.frame_wait_ms));
+    if (const auto delivered = show.inputs.deliver(show.pipeline, image_deadline); !delivered)
+      context.tolerate(delivered.error());
+
+    const std::int64_t begin_ns = now_ns();
+    const std::int64_t target_ns = horizon.target_ns(begin_ns);
+    const auto* picture = show.test_pictures.at(begin_ns, target_ns);
+    auto frame =
+        picture ? *picture : show.pipeline.render(begin_ns, target_ns, show.inputs.image());
+    const std::int64_t drawn_ns = now_ns();
+    const auto times =
+        show.projector.present(frame, frame_id, show.brightness.at(drawn_ns), Deadline::in(50ms));
+    show.pipeline.read_back(frame);
+    next_ns =
+        times && times->next_ns != 0 ? horizon.begin_ns(times->next_ns) : pacer.next_ns(now_ns());
+    if (!times) {
+      context.tolerate(times.error());
+      continue;
+    }
+    last_light.presented();
+    horizon.learn(begin_ns, *times);
+    publish_projection(frame, frame_id, *times, show.projections);
+    context.mark({frame_id, frame.made_from.image_ns},
+                 time_sheet(frame.stages, begin_ns, drawn_ns, *times), frame.made_from);
+  }
+}
+
+}  // namespace handcast::projector
