@@ -10,7 +10,7 @@
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/rig/status.hpp"
+#include "supervisor/rig/status_text.hpp"
 #include "supervisor/succession/stop_rig.hpp"
 
 namespace handcast::supervisor {

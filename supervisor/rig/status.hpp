@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 
 #include "supervisor/record/recorder.hpp"
 #include "supervisor/rig/service_table.hpp"
@@ -22,8 +21,6 @@ struct RigView {
 
 /// The status of a rig, as `handcast status --json` prints it.
 nlohmann::json status_of(const RigView& rig);
-/// A status as `handcast status` prints it.
-std::string print_status(const nlohmann::json& status);
 /// One line of figures: "up 12 s  camera 240 Hz  pose 110 Hz  ...  restarts 0".
 std::string progress_line(const RigView& rig);
 /// The figures of a whole run (live.json).

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include "supervisor/spec/fingerprint.hpp"
 #include "tests/supervisor/spec/built_catalogue.hpp"
 
 namespace handcast::supervisor {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/rig/status.hpp"
+#include "supervisor/rig/status_text.hpp"
 
 #include <gmock/gmock.h>
 
@@ -19,34 +19,36 @@ json service(const json& more) {
   return status;
 }
 
-std::string print_with(const json& pose) {
-  return print_status({{"rig", "desk"},
-                       {"uptime_s", 7},
-                       {"services", {{"pose", pose}}},
-                       {"rings", json::object()},
-                       {"stage_us", json::object()}});
+json status_with(const json& more) {
+  json status{{"rig", "desk"},
+              {"uptime_s", 7},
+              {"services", json::object()},
+              {"rings", json::object()},
+              {"stage_us", json::object()}};
+  status.update(more);
+  return status;
 }
 
-TEST(Status, AServiceThatIsWellHasOneLine) {
+std::string print_with(const json& pose) {
+  return print_status(status_with({{"services", {{"pose", pose}}}}));
+}
+
+TEST(StatusText, AServiceThatIsWellHasOneLine) {
   EXPECT_THAT(print_with(service(json::object())), Not(HasSubstr("tried again")));
 }
 
-TEST(Status, ABackEndInPlaceOfAnotherIsToldWithIt) {
+TEST(StatusText, ABackEndInPlaceOfAnotherIsToldWithIt) {
   EXPECT_THAT(print_with(service({{"backend", "twin"}, {"instead_of", "mediapipe"}})),
               HasSubstr("\n  in place of 'mediapipe', a file of which is missing\n"));
   EXPECT_THAT(print_with(service({{"instead_of", nullptr}})), Not(HasSubstr("in place of")));
 }
 
-TEST(Status, SaysWhoKnowsWhenLightComes) {
-  json status{
-      {"rig", "desk"},
-      {"uptime_s", 7},
-      {"services", json::object()},
-      {"rings",
-       {{"projection.frames",
-         {{"wanted_hz", 60}, {"held_hz", 59.5}, {"newest_age_ms", 1}, {"count", 9}}}}},
-      {"stage_us", json::object()},
-      {"light", {{"times_by", "kernel"}, {"missed_refreshes", 12345678}, {"doubled_frames", 2}}}};
+TEST(StatusText, SaysWhoKnowsWhenLightComes) {
+  auto status = status_with(
+      {{"rings",
+        {{"projection.frames",
+          {{"wanted_hz", 60}, {"held_hz", 59.5}, {"newest_age_ms", 1}, {"count", 9}}}}},
+       {"light", {{"times_by", "kernel"}, {"missed_refreshes", 12345678}, {"doubled_frames", 2}}}});
   EXPECT_THAT(print_status(status),
               HasSubstr("light: 59.5 Hz of 60 Hz; 12345678 refreshes without a new frame, 2 frames "
                         "shown for several refreshes; times by the kernel\n"));
@@ -54,14 +56,10 @@ TEST(Status, SaysWhoKnowsWhenLightComes) {
   EXPECT_THAT(print_status(status), Not(HasSubstr("light:")));
 }
 
-TEST(Status, SaysWhatTheCameraLostAndNothingIfItLostNothing) {
-  json status{{"rig", "desk"},
-              {"uptime_s", 7},
-              {"services", json::object()},
-              {"rings", json::object()},
-              {"stage_us", json::object()},
-              {"lost_images",
-               {{"missing", 3}, {"incomplete", 2}, {"underrun", 1}, {"skipped", 5000000000}}}};
+TEST(StatusText, SaysWhatTheCameraLostAndNothingIfItLostNothing) {
+  auto status = status_with(
+      {{"lost_images",
+        {{"missing", 3}, {"incomplete", 2}, {"underrun", 1}, {"skipped", 5000000000}}}});
   EXPECT_THAT(
       print_status(status),
       HasSubstr("camera: 3 images never arrived, 2 were incomplete, 1 found no free buffer, "
@@ -70,25 +68,15 @@ TEST(Status, SaysWhatTheCameraLostAndNothingIfItLostNothing) {
   EXPECT_THAT(print_status(status), Not(HasSubstr("camera:")));
 }
 
-TEST(Status, SaysWhatTheTrackerDidWrongAndNothingIfItDidNothing) {
-  json status{{"rig", "desk"},
-              {"uptime_s", 7},
-              {"services", json::object()},
-              {"rings", json::object()},
-              {"stage_us", json::object()},
-              {"tracker_faults", {{"frozen", 1u}, {"jumped", 12u}, {"late", 0u}}}};
+TEST(StatusText, SaysWhatTheTrackerDidWrongAndNothingIfItDidNothing) {
+  auto status = status_with({{"tracker_faults", {{"frozen", 1u}, {"jumped", 12u}, {"late", 0u}}}});
   EXPECT_THAT(print_status(status), HasSubstr("tracker: frozen 1 time, jumped 12 times\n"));
   status["tracker_faults"] = {{"frozen", 0u}, {"jumped", "?"}};
   EXPECT_THAT(print_status(status), Not(HasSubstr("tracker:")));
 }
 
-TEST(Status, SaysWhetherTheTrackerIsWhereTheCalibrationSays) {
-  json status{{"rig", "desk"},
-              {"uptime_s", 7},
-              {"services", json::object()},
-              {"rings", json::object()},
-              {"stage_us", json::object()},
-              {"tracker_drift", nullptr}};
+TEST(StatusText, SaysWhetherTheTrackerIsWhereTheCalibrationSays) {
+  auto status = status_with({{"tracker_drift", nullptr}});
   EXPECT_THAT(print_status(status), Not(HasSubstr("tracker:")));
   status["tracker_drift"] = {
       {"moved", false}, {"places", 9}, {"across_mm", 0.8}, {"turn_deg", 0.21}};
@@ -99,7 +87,7 @@ TEST(Status, SaysWhetherTheTrackerIsWhereTheCalibrationSays) {
               AllOf(HasSubstr("it has moved by 0.8 mm and 0.21 degrees"), HasSubstr("--correct")));
 }
 
-TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {
+TEST(StatusText, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {
   const auto text = print_with(service({{"state", "degraded"},
                                         {"last_exit", "exit 111"},
                                         {"reason", "died 10 times within 60 s"},
@@ -108,25 +96,6 @@ TEST(Status, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWor
   EXPECT_THAT(text, AllOf(HasSubstr("degraded"), HasSubstr("exit 111"),
                           HasSubstr("died 10 times within 60 s; tried again in 4.2 s"),
                           HasSubstr("the tracker does not answer")));
-}
-
-TEST(Status, AServiceWhoseProgramIsMissingIsToldWithItsReason) {
-  auto loop = EventLoop::open().value();
-  Launch launch;
-  launch.program_folder = "/nowhere";
-  Services services;
-  services.push_back(std::make_unique<Service>(
-      ServiceSpec{.name = "pose", .stream = "", .backend = "twin", .wanted_hz = 0}, launch, loop,
-      [](Service&, Notice) {}));
-  services.front()->start();
-  const std::string name = "desk";
-  const Recorder recorder;
-  const auto status = status_of({name, services, recorder, 0, 1'000'000'000})["services"]["pose"];
-  EXPECT_EQ(status["state"], "failed");
-  EXPECT_EQ(status["last_exit"], "exit 100");
-  EXPECT_THAT(status["reason"].get<std::string>(), HasSubstr("/nowhere/handcast-pose"));
-  EXPECT_TRUE(status["retry_s"].is_null());
-  EXPECT_FALSE(status["log"].empty());
 }
 
 }  // namespace
