@@ -8,8 +8,8 @@
 #include <array>
 #include <utility>
 
-#include "ipc/base/join.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/suggest.hpp"
 #include "ipc/base/version.hpp"
 #include "supervisor/commands/verbs.hpp"
 
@@ -29,7 +29,10 @@ void print_overview() {
     for (const auto& verb : verbs())
       if (verb.group == group) fmt::print("  {:<14} {}\n", verb.name, verb.sentence);
   }
-  fmt::print("\n`handcast help VERB` prints the usage of a verb.\n");
+  fmt::print(
+      "\n`handcast help VERB` prints the usage of a verb. First steps, also without any device:\n"
+      "  handcast init        writes rig.toml for what is attached, or else for the digital twin\n"
+      "  handcast up rig.toml runs it; in a second terminal, `handcast preview` shows it\n");
 }
 
 /// Executes handcast-VERB in place of this process. Returns only if there is no such program.
@@ -42,8 +45,10 @@ int become_program(const std::string& verb, const Arguments& arguments) {
     pointers.push_back(nullptr);
     execv(program.c_str(), pointers.data());
   }
-  return complain(kExitUsage, fmt::format("there is no verb '{}'; there are: {}", verb,
-                                          join(verb_names(), ", ")));
+  const auto names = verb_names();
+  return complain(kExitUsage,
+                  fmt::format("there is no verb '{}'{}; `handcast help` lists the verbs", verb,
+                              suggest(verb, {names.begin(), names.end()})));
 }
 
 const VerbEntry* find_verb(const std::string& name) {

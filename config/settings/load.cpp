@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <tuple>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/suggest.hpp"
 
 namespace handcast::config {
 namespace {
@@ -215,21 +215,6 @@ std::optional<Value> read_assigned(std::string_view text, const Target& target) 
   return std::get<Table>(document->data).front().value;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 Error Faults::to_error() const { return {Errc::bad_config, join(sentences_, "\n")}; }
@@ -254,17 +239,6 @@ void apply_assignment(std::string_view assignment, const Listing& listing, Fault
   const auto value = read_assigned(text, setting->target);
   const auto complaint = value ? store(*value, *setting) : expected(*setting);
   if (!complaint.empty()) complain(complaint);
-}
-
-std::string suggest(std::string_view wrong, const std::vector<std::string_view>& known) {
-  std::string_view best;
-  std::size_t best_distance = std::max<std::size_t>(2, wrong.size() / 3) + 1;
-  for (const auto name : known) {
-    const auto distance = edit_distance(wrong, name);
-    if (distance < best_distance && distance < name.size())
-      std::tie(best, best_distance) = std::tuple(name, distance);
-  }
-  return best.empty() ? "" : fmt::format(" (did you mean '{}'?)", best);
 }
 
 }  // namespace handcast::config

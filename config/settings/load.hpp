@@ -33,7 +33,4 @@ void apply_document(const Value& document, std::string_view file, const Listing&
 /// quotes, a list needs no brackets. Errors are added to `faults`.
 void apply_assignment(std::string_view assignment, const Listing& listing, Faults& faults);
 
-/// E.g. " (did you mean 'rate_hz'?)"; empty if no known name is similar.
-std::string suggest(std::string_view wrong, const std::vector<std::string_view>& known);
-
 }  // namespace handcast::config

@@ -25,15 +25,7 @@ static int run_verb(int argc, char** argv) {
   app.add_option("--leap", leap.device, "Its serial number or USB port; default: the only one");
   app.add_option("--eye", leap.eye, "The first camera: left or right")->capture_default_str();
   app.add_option("--size", leap.size, "Size of its images")->capture_default_str();
-  const auto text = parse_options(app, argc, argv);
-  if (!text) {
-    fmt::print(stderr, "handcast devices: {}\n", text.error().what);
-    return kExitUsage;
-  }
-  if (!text->empty()) {
-    fmt::print("{}", *text);
-    return kExitDone;
-  }
+  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
   if (!leap.file.empty()) {
     const auto written = devices::write_leap_calibration(leap);
     if (written) return kExitDone;

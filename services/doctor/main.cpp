@@ -63,15 +63,7 @@ int run_verb(int argc, char** argv) {
       })
       ->capture_default_str();
   app.add_flag("--json", options.as_json, "The same as JSON");
-  const auto text = parse_options(app, argc, argv);
-  if (!text) {
-    fmt::print(stderr, "handcast doctor: {}\n", text.error().what);
-    return kExitUsage;
-  }
-  if (!text->empty()) {
-    fmt::print("{}", *text);
-    return kExitDone;
-  }
+  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
   const auto findings = examine(options);
   fmt::print("{}", options.as_json ? to_json(findings) : printable(print(findings)));
   return has_fault(findings) ? kExitBadResult : kExitDone;

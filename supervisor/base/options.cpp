@@ -6,7 +6,18 @@
 #include <algorithm>
 #include <charconv>
 
+#include "ipc/base/suggest.hpp"
+
 namespace handcast::supervisor {
+namespace {
+
+std::string similar(const std::string& option, const OptionTable& table) {
+  auto known = table.flags;
+  known.insert(known.end(), table.with_value.begin(), table.with_value.end());
+  return suggest(option, known);
+}
+
+}  // namespace
 
 Result<Options> sort_options(const std::vector<std::string>& arguments, const OptionTable& table) {
   const auto is_in = [](const auto& names, const std::string& name) {
@@ -21,16 +32,16 @@ Result<Options> sort_options(const std::vector<std::string>& arguments, const Op
     else if (is_in(table.flags, argument))
       options.values[argument].emplace_back();
     else if (!is_in(table.with_value, argument))
-      return fail(Errc::bad_data, fmt::format("unknown option '{}'", argument));
+      return fail(Errc::bad_data,
+                  fmt::format("unknown option '{}'{}", argument, similar(argument, table)));
     else if (i + 1 == arguments.size() || arguments[i + 1].empty())
       return fail(Errc::bad_data, fmt::format("{} needs a value", argument));
     else
       options.values[argument].push_back(arguments[++i]);
   }
-  if (options.words.size() < table.least_words)
-    return fail(Errc::bad_data,
-                fmt::format("{} of {} arguments given", options.words.size(), table.least_words));
-  if (options.words.size() > table.most_words)
+  if (options.words.size() < table.words.size())
+    return fail(Errc::bad_data, fmt::format("{} is missing", table.words[options.words.size()]));
+  if (options.words.size() > table.words.size() + table.more_words)
     return fail(Errc::bad_data, fmt::format("'{}' is one argument too many", options.words.back()));
   return options;
 }

@@ -33,10 +33,8 @@ struct Options {
 struct OptionTable {
   std::vector<std::string_view> with_value;  ///< options that are followed by a value
   std::vector<std::string_view> flags;       ///< options without a value
-  /// The permitted number of arguments that are not options.
-  /// @{
-  std::size_t least_words = 0, most_words = 0;
-  /// @}
+  std::vector<std::string_view> words{};     ///< names of the arguments that must be given
+  std::size_t more_words = 0;                ///< how many other arguments may follow them
 };
 
 /// Sorts the arguments of a verb. Errors: bad_data, with a sentence that names the argument.

@@ -28,8 +28,8 @@ int check(const config::Rig& rig, const std::string& file,
 int run_config(const Arguments& arguments) {
   const auto options = sort_options(arguments, {.with_value = {"--set"},
                                                 .flags = {"--print", "--check", "--reference"},
-                                                .least_words = 0,
-                                                .most_words = 1});
+                                                .words = {},
+                                                .more_words = 1});
   if (!options)
     return complain(kExitUsage, "config: " + options.error().what + "; `handcast help config`");
   if (options->has("--reference")) {

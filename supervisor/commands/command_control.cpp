@@ -64,17 +64,18 @@ std::string current_backend(const control::Request& request) {
       .value;
 }
 
-/// Runs a verb with `words` arguments: a service and a back end. Prints `done` on success, with {0}
-/// for the service and {1} for the back end.
-int ask_with_words(const char* verb, const Arguments& arguments, std::size_t words,
-                   control::Request request, const char* done) {
-  const auto options = sort_options(
-      arguments, {.with_value = {"--rig"}, .flags = {}, .least_words = words, .most_words = words});
+/// Runs a verb whose arguments are `words`: SERVICE, and perhaps BACKEND. Prints `done` on success,
+/// with {0} for the service and {1} for the back end.
+int ask_with_words(const char* verb, const Arguments& arguments,
+                   const std::vector<std::string_view>& words, control::Request request,
+                   const char* done) {
+  const auto options =
+      sort_options(arguments, {.with_value = {"--rig"}, .flags = {}, .words = words});
   if (!options)
     return complain(kExitUsage,
                     fmt::format("{0}: {1}; `handcast help {0}`", verb, options.error().what));
-  if (words > 0) request.service = options->words[0];
-  if (words > 1) request.backend = options->words[1];
+  request.service = options->words[0];
+  if (words.size() > 1) request.backend = options->words[1];
   const auto [exit_code, answer] = send(options->value("--rig"), request);
   if (exit_code != kExitDone) return exit_code;
   fmt::print("{}", fmt::format(fmt::runtime(done), request.service, current_backend(request)));
@@ -94,20 +95,16 @@ int run_down(const Arguments& arguments) {
   if (!rig) return complain(rig.error());
   const auto stopped = stop_rig(*rig);
   if (!stopped) return complain(stopped.error());
-  if (stopped->by_supervisor)
-    fmt::print("the rig has stopped\n");
-  else
-    fmt::print("rig '{}' had no supervisor that answered; processes ended: {}\n", *rig,
-               stopped->ended);
+  fmt::print("{}\n", describe(*stopped, *rig));
   return kExitDone;
 }
 int run_restart(const Arguments& arguments) {
-  return ask_with_words("restart", arguments, 1,
+  return ask_with_words("restart", arguments, {"SERVICE"},
                         {.verb = control::Verb::restart, .service = {}, .backend = {}},
                         "{0} is ready again");
 }
 int run_swap(const Arguments& arguments) {
-  return ask_with_words("swap", arguments, 2,
+  return ask_with_words("swap", arguments, {"SERVICE", "BACKEND"},
                         {.verb = control::Verb::swap, .service = {}, .backend = {}},
                         "{0} is ready with '{1}'");
 }

@@ -61,8 +61,7 @@ void print_next_steps(const UnitSpec& spec) {
 int run_install_units(const Arguments& arguments) {
   const auto options = sort_options(arguments, {.with_value = {"--set", "--out", "--user"},
                                                 .flags = {"--system", "--print"},
-                                                .least_words = 1,
-                                                .most_words = 1});
+                                                .words = {"RIG.toml"}});
   if (!options)
     return complain(kExitUsage,
                     "install-units: " + options.error().what + "; `handcast help install-units`");

@@ -77,8 +77,7 @@ int run(RunOptions options) {
 int run_up(const Arguments& arguments) {
   const auto options = sort_options(arguments, {.with_value = {"--set", "--seconds", "--out"},
                                                 .flags = {kNoKeeper, kKept},
-                                                .least_words = 1,
-                                                .most_words = 1});
+                                                .words = {"RIG.toml"}});
   if (!options) return complain(kExitUsage, "up: " + options.error().what + "; `handcast help up`");
   std::optional<double> seconds;
   if (options->has("--seconds")) {

@@ -90,6 +90,12 @@ Forced end_by_force(const std::string& name, const Process& supervisor, std::int
 
 }  // namespace
 
+std::string describe(const StopReport& report, const std::string& name) {
+  if (report.by_supervisor || report.ended == 0) return "the rig has stopped";
+  return fmt::format("rig '{}' had no supervisor that answered; processes ended: {}", name,
+                     report.ended);
+}
+
 Result<StopReport> stop_rig(const std::string& name) {
   const auto address = control::address_of(name);
   if (!address) return tl::make_unexpected(address.error());

@@ -3,12 +3,11 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <ctime>
 
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/version.hpp"
+#include "ipc/base/verb_options.hpp"
 #include "services/evaluation/chart/write.hpp"
 #include "services/evaluation/page/machine.hpp"
 
@@ -34,12 +33,7 @@ static int run_verb(int argc, char** argv) {
       ->default_val("out/charts");
   app.add_option("--title", order.imprint.title, "Heading of the page");
   app.add_option("--gnuplot", order.gnuplot, "The gnuplot program (default: gnuplot)");
-  app.set_version_flag("--version", fmt::format("handcast chart {}", version()));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? kExitDone : kExitUsage;
-  }
+  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
 
   const auto written = chart::write_charts(order);
   if (!written) {

@@ -2,11 +2,11 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <ctime>
 
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/verb_options.hpp"
 #include "services/evaluation/page/machine.hpp"
 #include "services/evaluation/report/report.hpp"
 
@@ -24,11 +24,7 @@ static int run_verb(int argc, char** argv) {
                  "frames/; the report is written to it")
       ->required();
   app.add_option("--title", imprint.title, "Heading of the page");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? kExitDone : kExitUsage;
-  }
+  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
 
   const auto written = report::write_report(folder, imprint);
   if (!written) {

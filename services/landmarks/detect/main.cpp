@@ -2,7 +2,6 @@
 // handcast detect: the landmark detector on pictures.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "config/settings/choice.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/version.hpp"
+#include "ipc/base/verb_options.hpp"
 #include "services/landmarks/detect/run.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 
@@ -86,12 +85,7 @@ static int run_verb(int argc, char** argv) {
       ->check(CLI::Range(1, 100000));
   app.add_flag("--json", options.json, "Prints JSON");
   app.add_flag("--quiet", options.quiet, "Prints no progress");
-  app.set_version_flag("--version", fmt::format("handcast detect {}", version()));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? kExitDone : kExitUsage;
-  }
+  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
   return detect::detect(options);
 }
 

@@ -100,12 +100,6 @@ TEST(Document, AnAssignedTextWithoutBracketsIsTheOnlyOneOfItsList) {
   }
 }
 
-TEST(Suggest, FindsTheNearestNameButNotAFarOne) {
-  EXPECT_EQ(suggest("rate", {"rate_hz", "age_ms"}), "");
-  EXPECT_EQ(suggest("rate_h", {"rate_hz", "age_ms"}), " (did you mean 'rate_hz'?)");
-  EXPECT_EQ(suggest("qqqqqqqq", {"rate_hz", "age_ms"}), "");
-}
-
 TEST(Document, AKeyWithThousandsOfPartsIsRefusedAndDotsElsewhereAreNot) {
   std::string key = "a";
   for (int i = 0; i < 40'000; ++i) key += ".a";

@@ -42,6 +42,13 @@ class StopRig : public Orphans {
   }
 };
 
+TEST(StopReport, ARigOfWhichNothingHadToBeEndedHasSimplyStopped) {
+  EXPECT_EQ(describe({.by_supervisor = true, .ended = 0}, "desk"), "the rig has stopped");
+  EXPECT_EQ(describe({.by_supervisor = false, .ended = 0}, "desk"), "the rig has stopped");
+  EXPECT_EQ(describe({.by_supervisor = false, .ended = 2}, "desk"),
+            "rig 'desk' had no supervisor that answered; processes ended: 2");
+}
+
 TEST_F(StopRig, ServicesWithoutASupervisorAreEnded) {
   service("exec sleep 1000");
   deaf_service();
