@@ -200,6 +200,10 @@ void RigRunner::come_up() {
   if (!inherited_ && !rig_.services.has_come_up(now_ns())) return;
   rig_.phase = Phase::up;
   log::info("rig '{}' is up", rig_.name);
+  if (has_terminal())
+    print_line(
+        "In another terminal, `handcast preview` shows it and `handcast status` its rates and "
+        "times. Ctrl-C stops it.");
   notify_systemd(fmt::format("READY=1\nSTATUS=rig '{}' is up", rig_.name));
 }
 

@@ -5,6 +5,9 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
+
+#include "ipc/base/join.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -71,6 +74,31 @@ std::string print_drift(const json& status) {
       off);
 }
 
+/// "98.9 us", "2.34 ms".
+std::string text_of_us(const json& value) {
+  constexpr double kMs = 1000;
+  if (!value.is_number() || value.get<double>() < kMs) return text_of(value, " us");
+  return fmt::format("{:.2f} ms", value.get<double>() / kMs);
+}
+
+/// Names the rings that hold much less than their rate, and who says why. "" if none does.
+std::string print_slow(const json& status) {
+  constexpr double kEnough = 0.9, kSettled_s = 10;  // the rates are means of some seconds
+  if (status.value("uptime_s", 0.0) < kSettled_s) return "";
+  std::vector<std::string> slow;
+  for (const auto& [name, ring] : status["rings"].items()) {
+    const auto wanted = ring.value("wanted_hz", json()), held = ring.value("held_hz", json());
+    if (wanted.is_number() && held.is_number() &&
+        held.get<double>() < kEnough * wanted.get<double>())
+      slow.push_back(name);
+  }
+  if (slow.empty()) return "";
+  return fmt::format(
+      "\nslow: {} {} less than 90 % of the wanted rate; `handcast doctor RIG.toml` says why. On a "
+      "computer that is too slow, lower camera.rate_hz and projector.rate_hz\n",
+      join(slow, ", "), slow.size() == 1 ? "holds" : "hold");
+}
+
 /// The trouble of a service: "died 10 times within 60 s; tried again in 4.2 s". "" if it has none.
 std::string print_trouble(const json& service) {
   std::string text =
@@ -112,8 +140,8 @@ std::string print_stages(const json& status) {
   auto text =
       fmt::format("\n{:<12} {:>12} {:>12} {:>10}   last 10 s\n", "stage", "p50", "p99", "count");
   for (const auto& [stage, times] : status["stage_us"].items())
-    text += fmt::format("{:<12} {:>12} {:>12} {:>10}\n", stage, text_of(times["p50"], " us"),
-                        text_of(times["p99"], " us"), text_of(times["count"]));
+    text += fmt::format("{:<12} {:>12} {:>12} {:>10}\n", stage, text_of_us(times["p50"]),
+                        text_of_us(times["p99"]), text_of(times["count"]));
   return text;
 }
 
@@ -126,8 +154,9 @@ std::string print_status(const json& status) {
     text +=
         "the keeper has died, so a dead supervisor would not be replaced; `handcast up` with the "
         "same arguments starts another keeper\n\n";
-  return text + print_services(status) + print_rings(status) + print_light(status) +
-         print_losses(status) + print_faults(status) + print_drift(status) + print_stages(status);
+  return text + print_services(status) + print_rings(status) + print_slow(status) +
+         print_light(status) + print_losses(status) + print_faults(status) + print_drift(status) +
+         print_stages(status);
 }
 
 }  // namespace handcast::supervisor

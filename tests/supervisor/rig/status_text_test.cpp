@@ -56,6 +56,29 @@ TEST(StatusText, SaysWhoKnowsWhenLightComes) {
   EXPECT_THAT(print_status(status), Not(HasSubstr("light:")));
 }
 
+TEST(StatusText, NamesTheRingsThatDoNotHoldTheirRate) {
+  const auto ring = [](const json& wanted, double held) {
+    return json{{"wanted_hz", wanted}, {"held_hz", held}, {"newest_age_ms", 1}, {"count", 9}};
+  };
+  auto status = status_with({{"uptime_s", 12},
+                             {"rings",
+                              {{"camera.frames", ring(525, 172)},
+                               {"landmarks.hands", ring(nullptr, 3)},
+                               {"pose.hands", ring(110, 100)},
+                               {"projection.frames", ring(946, 195)}}}});
+  EXPECT_THAT(print_status(status),
+              HasSubstr("slow: camera.frames, projection.frames hold less than 90 % of the wanted "
+                        "rate; `handcast doctor RIG.toml` says why"));
+  status["uptime_s"] = 3;
+  EXPECT_THAT(print_status(status), Not(HasSubstr("slow:"))) << "a rig that has just started";
+}
+
+TEST(StatusText, TimesOfAMillisecondAndMoreAreInMilliseconds) {
+  const auto text = print_status(
+      status_with({{"stage_us", {{"draw", {{"p50", 652.6}, {"p99", 9348.15}, {"count", 7}}}}}}));
+  EXPECT_THAT(text, AllOf(HasSubstr(" 652.6 us "), HasSubstr(" 9.35 ms "), Not(HasSubstr("9348"))));
+}
+
 TEST(StatusText, SaysWhatTheCameraLostAndNothingIfItLostNothing) {
   auto status = status_with(
       {{"lost_images",
