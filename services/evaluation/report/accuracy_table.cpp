@@ -156,8 +156,8 @@ std::string headline(const Inputs& inputs) {
         page::escape(run.sentence));
   }
   return "<div class=\"cards\">\n" + cards +
-         "</div>\n<p class=\"quiet\">Large figure: the interior error that 95 % of the points of "
-         "the skin do not exceed.</p>\n";
+         "</div>\n<p class=\"quiet\">Large figure: how far light is from its place on the skin, in "
+         "all but the worst 5 % of the points. A point without light counts as 20 mm.</p>\n";
 }
 
 std::string accuracy_table(const Inputs& inputs) {

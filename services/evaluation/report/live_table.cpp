@@ -61,6 +61,24 @@ std::string services_table(const Source& live) {
   return table + "</tbody></table></div>\n";
 }
 
+/// That the computer was too slow for the rates; "" if it was not.
+std::string slowness(const Source& live) {
+  constexpr double kEnough = 0.9;
+  double least = 1;
+  for (const auto* service : {"camera", "projector"}) {
+    const auto wanted_hz = rate_of(live, service, "wanted_hz"),
+               held_hz = rate_of(live, service, "held_hz");
+    if (wanted_hz && held_hz && *wanted_hz > 0) least = std::min(least, *held_hz / *wanted_hz);
+  }
+  if (least >= kEnough) return "";
+  return fmt::format(
+      "<p>This computer was too slow for the requested rates and held {:.0f} % of one of them. "
+      "Light "
+      "that comes late falls beside its place, so the figures of the live rig are worse than those "
+      "of the simulation, which assumes the full rates.</p>\n",
+      100 * least);
+}
+
 std::string score_sentence(const Source& observer) {
   if (!observer.content)
     return page::missing(fmt::format("The live light was not scored: {}.", observer.problem));
@@ -87,7 +105,7 @@ std::string live_table(const Inputs& inputs) {
            (inputs.observer.content ? score_sentence(inputs.observer) : "");
   return fmt::format("<p>The rig <b>{}</b> ran live for {} s, with one process per service.</p>\n",
                      text_at(*live.content, "rig"), page::figure(live.number("/seconds"), 1)) +
-         services_table(live) + score_sentence(inputs.observer);
+         services_table(live) + slowness(live) + score_sentence(inputs.observer);
 }
 
 }  // namespace handcast::report

@@ -29,18 +29,20 @@ std::set<std::string> bins_of(const Inputs& inputs) {
 
 /// A bar chart of the 95th percentile: a group of three bars per bin.
 std::string chart(const Inputs& inputs, const std::set<std::string>& bins) {
-  constexpr double kHeight = 150, kBar = 22, kGroup = 104, kTop = 18;
+  constexpr double kWidth = 840, kHeight = 170, kBar = 40, kGap = 4, kTop = 18;
   double highest = 0;
   for (const auto& bin : bins)
     for (const auto& run : inputs.runs)
       highest = std::max(highest, in_bin(run, bin, "/interior_mm/p95").value_or(0));
   if (highest <= 0) return "";
-  const double width = kGroup * static_cast<double>(bins.size());
+  const double group = kWidth / static_cast<double>(bins.size());
+  const double bars = kBar * static_cast<double>(inputs.runs.size()) +
+                      kGap * static_cast<double>(inputs.runs.size() - 1);
   std::string svg = fmt::format(
       "<svg viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"Interior error, p95 in mm, by "
       "speed\" style=\"max-width:{0}px\">\n",
-      width, kTop + kHeight + 26);
-  double left = 14;
+      kWidth, kTop + kHeight + 26);
+  double left = (group - bars) / 2;
   for (const auto& bin : bins) {
     double x = left;
     for (const auto& run : inputs.runs) {
@@ -52,13 +54,13 @@ std::string chart(const Inputs& inputs, const std::set<std::string>& bins) {
       if (value)
         svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{:.1f}</text>", x + kBar / 2,
                            kTop + kHeight - height - 4, *value);
-      x += kBar + 3;
+      x += kBar + kGap;
     }
     svg += fmt::format("<text class=\"axis\" x=\"{:.1f}\" y=\"{}\">{} m/s</text>\n",
-                       left + 1.5 * kBar + 3, kTop + kHeight + 17, page::escape(bin));
-    left += kGroup;
+                       left + bars / 2, kTop + kHeight + 17, page::escape(bin));
+    left += group;
   }
-  return svg + fmt::format("<line x1=\"0\" x2=\"{0}\" y1=\"{1}\" y2=\"{1}\"/></svg>\n", width,
+  return svg + fmt::format("<line x1=\"0\" x2=\"{0}\" y1=\"{1}\" y2=\"{1}\"/></svg>\n", kWidth,
                            kTop + kHeight);
 }
 

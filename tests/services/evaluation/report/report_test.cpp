@@ -62,6 +62,15 @@ TEST_F(Report, ShowsTheFiguresFilmTimesAndRates) {
   EXPECT_THAT(html, Not(HasSubstr("class=\"missing\"")));
 }
 
+TEST_F(Report, SaysIfTheComputerWasTooSlowForTheLiveRig) {
+  auto live = test::live_of();
+  test::write_json(folder() / "live.json", live);
+  EXPECT_THAT(page(), Not(HasSubstr("too slow")));
+  live["rates"]["projector"]["held_hz"] = 321.0;
+  test::write_json(folder() / "live.json", live);
+  EXPECT_THAT(page(), HasSubstr("too slow for the requested rates and held 34 % of one of them"));
+}
+
 TEST_F(Report, SaysWhichDetectorEachRunHadAndWhy) {
   test::write_demonstration(folder(), 1);
   const auto detector = [](bool used, const char* backend, const nlohmann::json& why) {
