@@ -34,7 +34,9 @@ static int run_verb(int argc, char** argv) {
   }
   if (::nice(10) == -1) fmt::print(stderr, "handcast preview: the priority cannot be lowered\n");
   const auto done = show(parsed->options);
-  return done ? kExitDone : complain(exit_code_of(done.error()), done.error().what);
+  if (!done) return complain(exit_code_of(done.error()), done.error().what);
+  if (!parsed->options.shot.empty()) fmt::print("wrote {}\n", parsed->options.shot);
+  return kExitDone;
 }
 
 int main(int argc, char** argv) {

@@ -98,6 +98,9 @@ handcast::Result<std::string> run(const Options& options) {
   if (!folder) return tl::make_unexpected(folder.error());
   auto model = landmarks::open_landmark_model(options.backend,
                                               {.executor = options.executor, .folder = *folder});
+  if (!model && options.backend == "mediapipe")
+    return fail(model.error().code,
+                model.error().what + "; `--backend handcast` needs no files of others");
   if (!model) return tl::make_unexpected(model.error());
   landmarks::HandFinder finder(std::move(*model), options.hands);
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;

@@ -10,8 +10,9 @@
 namespace handcast::preview {
 namespace {
 
-constexpr std::array<std::string_view, kRegions> kNames{
-    "A background", "B light beside the hand", "C hand without light", "D hand with light"};
+/// They say what is drawn, not what is lit: the fill, which comes after, darkens B and lights C.
+constexpr std::array<std::string_view, kRegions> kNames{"A background", "B drawn beside the hand",
+                                                        "C hand not drawn", "D hand drawn"};
 
 /// Share of the hand's pixels; "" without a hand. The background has none.
 std::string share_of(const Scene& scene, Region region) {
