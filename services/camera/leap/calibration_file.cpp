@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/leap/list.hpp"
+#include "services/camera/leap/calibration_file.hpp"
 
 #include "services/camera/leap/controller.hpp"
 #include "services/camera/leap/lens_fit.hpp"
 
 namespace handcast::camera::leap {
-
-std::vector<ListedController> list_controllers() {
-  std::vector<ListedController> controllers;
-  for (auto& port : controller_ports()) controllers.push_back({std::move(port)});
-  return controllers;
-}
 
 Result<std::string> calibration_file_from(const std::string& wanted, bool of_right_eye,
                                           int width_px, int height_px) {

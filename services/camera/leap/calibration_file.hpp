@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
-#include <vector>
 
 #include "ipc/base/result.hpp"
 
 namespace handcast::camera::leap {
-
-/// A Leap Motion Controller that is attached.
-struct ListedController {
-  std::string port;  ///< USB bus and ports: "1-2.3"; what camera.leap.device may be
-};
-
-/// All controllers that are attached. None is opened, so one that another program uses goes on.
-std::vector<ListedController> list_controllers();
 
 /// Reads the calibration of a controller and makes a calibration file of its left or right eye, for
 /// images of a size; see calibration_file_of(). `wanted`: camera.leap.device. Opens the controller

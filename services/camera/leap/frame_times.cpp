@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 
 namespace handcast::camera::leap {

@@ -2,7 +2,7 @@
 // A controller while all goes well, and what is refused.
 #include <fstream>
 
-#include "services/camera/leap/list.hpp"
+#include "services/camera/leap/calibration_file.hpp"
 #include "tests/services/camera/camera_contract.hpp"
 #include "tests/services/camera/leap/leap_test.hpp"
 
@@ -152,12 +152,7 @@ TEST_F(Leap, OldFirmwareIsBroughtUpByAFile) {
   expect_refused(Errc::bad_config, {"camera.leap.bring_up", ":1: `set`"});
 }
 
-TEST_F(Leap, AListOpensNoControllerAndACalibrationIsReadFromIt) {
-  device_->hold(true);
-  const auto listed = leap::list_controllers();
-  ASSERT_EQ(listed.size(), 1u);
-  EXPECT_EQ(listed[0].port, "1-2");
-  device_->hold(false);
+TEST_F(Leap, ACalibrationIsReadFromAController) {
   const auto text = leap::calibration_file_from("", false, 640, 240);
   ASSERT_TRUE(text) << text.error().what;
   EXPECT_THAT(*text, AllOf(HasSubstr("LP53304172541"), HasSubstr("left eye's")));
