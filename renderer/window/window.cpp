@@ -8,10 +8,9 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "renderer/output/edid.hpp"
 #include "renderer/window/blit.hpp"
+#include "renderer/window/glfw_library.hpp"
 #include "renderer/window/levels.hpp"
-#include "renderer/window/monitor.hpp"
 #include "renderer/window/share_group.hpp"
 #include "renderer/window/x11.hpp"
 
@@ -19,55 +18,6 @@ namespace handcast::renderer {
 namespace {
 
 constexpr std::int64_t kLookEvery_ns = 250'000'000;
-
-/// The reason of the last failure of GLFW.
-std::string& last_reason() {
-  static std::string reason = "no reason given";
-  return reason;
-}
-
-/// GLFW, which is initialised at most once at a time.
-class Library {
- public:
-  static Result<std::unique_ptr<Library>> open() {
-    glfwSetErrorCallback([](int, const char* sentence) { last_reason() = sentence; });
-    if (glfwInit() != GLFW_TRUE)
-      return fail(Errc::unavailable,
-                  fmt::format("no display can be opened ({}); DISPLAY must name an X server that "
-                              "this user may use",
-                              last_reason()));
-    return std::unique_ptr<Library>(new Library);
-  }
-  ~Library() { glfwTerminate(); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
-
- private:
-  Library() = default;
-};
-
-struct Connected {
-  std::vector<GLFWmonitor*> handles;
-  std::vector<Monitor> monitors;
-};
-
-Connected connected() {
-  int count = 0;
-  GLFWmonitor** handles = glfwGetMonitors(&count);
-  Connected found;
-  for (int i = 0; i < count; ++i) {
-    const GLFWvidmode* mode = glfwGetVideoMode(handles[i]);
-    if (mode == nullptr) continue;
-    found.handles.push_back(handles[i]);
-    found.monitors.push_back({.output = glfwGetMonitorName(handles[i]),
-                              .model = model_of(x11::edid_of(handles[i])),
-                              .width_px = mode->width,
-                              .height_px = mode->height,
-                              .rate_hz = static_cast<double>(mode->refreshRate),
-                              .is_primary = i == 0});  // GLFW lists the primary one first
-  }
-  return found;
-}
 
 /// The character, if it is one of ASCII.
 std::string text_of(unsigned codepoint) {
@@ -77,14 +27,14 @@ std::string text_of(unsigned codepoint) {
 }  // namespace
 
 Result<std::vector<Monitor>> list_monitors() {
-  const auto library = Library::open();
+  const auto library = GlfwLibrary::open();
   if (!library) return tl::make_unexpected(library.error());
-  return connected().monitors;
+  return (*library)->monitors().monitors;
 }
 
 class Window::Screen {
  public:
-  Screen(std::unique_ptr<Library> library, WindowSettings settings)
+  Screen(std::unique_ptr<GlfwLibrary> library, WindowSettings settings)
       : library_(std::move(library)), settings_(std::move(settings)) {}
   ~Screen() {
     if (window_ != nullptr) glfwMakeContextCurrent(window_);
@@ -113,6 +63,8 @@ class Window::Screen {
 
  private:
   Result<void> find_monitor();
+  Result<void> create_window();
+  void watch_monitors();
   void listen();
   void note(PointerEvent::Kind kind);
   void warm_up();
@@ -120,7 +72,7 @@ class Window::Screen {
   bool covers_monitor() const;
   void keep_in_front();
 
-  std::unique_ptr<Library> library_;
+  std::unique_ptr<GlfwLibrary> library_;
   WindowSettings settings_;
   GLFWwindow* window_ = nullptr;
   GLFWmonitor* monitor_ = nullptr;  ///< of a full-screen window, while it is plugged in
@@ -142,7 +94,7 @@ Window::Screen* Window::Screen::the_screen_ = nullptr;
 
 /// Finds the monitor of a full-screen window: the one in the settings, or the one it was on before.
 Result<void> Window::Screen::find_monitor() {
-  const auto [handles, monitors] = connected();
+  const auto [handles, monitors] = library_->monitors();
   const auto chosen = choose_monitor(
       monitors, settings_.monitor.empty() && found_ ? found_->output : settings_.monitor);
   if (!chosen) return tl::make_unexpected(chosen.error());
@@ -151,11 +103,8 @@ Result<void> Window::Screen::find_monitor() {
   return {};
 }
 
-Result<void> Window::Screen::create() {
-  if (settings_.full_screen)
-    if (auto found = find_monitor(); !found) return found;
-  x11::when_display_is_lost(settings_.when_display_is_lost);
-
+/// Creates the hidden window with its context.
+Result<void> Window::Screen::create_window() {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
@@ -173,7 +122,17 @@ Result<void> Window::Screen::create() {
                                nullptr, nullptr);
   }
   if (window_ == nullptr)
-    return fail(Errc::unavailable, fmt::format("no window can be opened: {}", last_reason()));
+    return fail(Errc::unavailable,
+                fmt::format("no window can be opened: {}", GlfwLibrary::last_reason()));
+  return {};
+}
+
+Result<void> Window::Screen::create() {
+  if (settings_.full_screen)
+    if (auto found = find_monitor(); !found) return found;
+  x11::when_display_is_lost(settings_.when_display_is_lost);
+
+  if (auto made = create_window(); !made) return made;
   if (settings_.full_screen) glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(settings_.vsync ? 1 : 0);
@@ -182,6 +141,12 @@ Result<void> Window::Screen::create() {
   warm_up();
 
   listen();
+  watch_monitors();
+  return {};
+}
+
+/// Hides the window while its monitor is unplugged.
+void Window::Screen::watch_monitors() {
   the_screen_ = this;
   glfwSetMonitorCallback([](GLFWmonitor* monitor, int event) {
     if (event != GLFW_DISCONNECTED || monitor != the_screen_->monitor_) return;
@@ -190,7 +155,6 @@ Result<void> Window::Screen::create() {
     glfwHideWindow(the_screen_->window_);  // GLFW would leave it on the operator's screen
     the_screen_->has_appeared_ = false;
   });
-  return {};
 }
 
 /// Takes the events of keyboard and mouse.
@@ -311,7 +275,7 @@ Window::Window(std::unique_ptr<Screen> screen) : screen_(std::move(screen)) {}
 Window::~Window() = default;
 
 Result<std::unique_ptr<Window>> Window::open(WindowSettings settings) {
-  auto library = Library::open();
+  auto library = GlfwLibrary::open();
   if (!library) return tl::make_unexpected(library.error());
   auto screen = std::make_unique<Screen>(std::move(*library), std::move(settings));
   if (auto created = screen->create(); !created) return tl::make_unexpected(created.error());
