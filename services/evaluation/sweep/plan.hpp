@@ -39,9 +39,8 @@ struct Variant {
 ///     warm_up_s = 0.5
 ///     draw_every = 24                  # draws and scores every 24th projector frame
 ///     joints_only = false              # true: draws nothing and scores only the 21 landmarks
-///     settings_from = "worlds/a.toml"  # settings of all runs that several plans share; the plan's
-///     own
-///                                      # settings and axes count more
+///     settings_from = "worlds/a.toml"  # settings of all runs that several plans share; those of
+///                                      # the plan itself and its axes count more
 ///     [settings]                       # of all runs
 ///     twin.tracker.age_ms = 15
 ///     [[variant]]                      # without any, the rig is the only variant
