@@ -9,7 +9,6 @@
 #include "renderer/window/window.hpp"
 #endif
 #ifdef HANDCAST_WITH_KMS
-#include "ipc/base/join.hpp"
 #include "renderer/kms/card.hpp"
 #endif
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 
 #include "services/evaluation/twin/metrics.hpp"

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "ipc/msg/owned.hpp"
 #include "renderer/content/picture.hpp"
 #include "services/evaluation/twin/messages.hpp"

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string_view>
 
 #include "services/recording/recording_reader.hpp"
 #include "services/runtime/loop.hpp"

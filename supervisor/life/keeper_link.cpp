@@ -9,9 +9,7 @@
 
 #include <charconv>
 #include <cstdlib>
-#include <cstring>
 #include <string_view>
-#include <utility>
 
 namespace handcast::supervisor {
 namespace {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/ring/ring_view.hpp"

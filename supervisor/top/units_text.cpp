@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "ipc/base/clock.hpp"
-
 namespace handcast::supervisor {
 namespace {
 

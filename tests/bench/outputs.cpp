@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "config/sections/sub_frames.hpp"

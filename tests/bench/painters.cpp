@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <cstring>
 
 #include "renderer/draw/cpu/cpu_painter.hpp"
 #include "renderer/draw/gl/gl_painter.hpp"

@@ -14,7 +14,6 @@
 #include <thread>
 #include <vector>
 
-#include "ipc/ring/writer.hpp"
 #include "renderer/pipeline/stage_clock.hpp"
 #include "services/runtime/context.hpp"
 #include "supervisor/record/history.hpp"

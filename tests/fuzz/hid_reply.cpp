@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a DLP controller sends: reports of any length, one after the other.
-#include <optional>
 
 #include "services/dlp/protocol/payload.hpp"
 #include "services/dlp/protocol/status.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tests/config/every_setting.hpp"

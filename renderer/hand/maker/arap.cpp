@@ -2,7 +2,6 @@
 #include "renderer/hand/maker/arap.hpp"
 
 #include <Eigen/SparseCholesky>
-#include <cmath>
 
 #include "renderer/hand/maker/cotangent.hpp"
 

@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "renderer/hand/hand_mesh.hpp"
 

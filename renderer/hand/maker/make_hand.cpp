@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <utility>
 
 #include "renderer/hand/maker/glove_fit.hpp"
 #include "renderer/hand/maker/skin_weights.hpp"

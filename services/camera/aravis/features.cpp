@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "ipc/base/join.hpp"

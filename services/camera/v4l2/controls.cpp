@@ -5,7 +5,6 @@
 #include <linux/videodev2.h>
 
 #include <algorithm>
-#include <cerrno>
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"

@@ -5,7 +5,6 @@
 #include <fstream>
 
 #include "services/camera/camera.hpp"
-#include "services/evaluation/twin/recording.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
 

@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <array>
-
 namespace handcast::record {
 namespace {
 

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/recording/about.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/recording/recordings.hpp"

@@ -6,7 +6,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "renderer/hand/maker/hand_shape.hpp"
 #include "renderer/skin/skinning.hpp"
 #include "tests/renderer/poses.hpp"
 

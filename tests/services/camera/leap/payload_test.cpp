@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "services/camera/leap/frame_assembler.hpp"
 #include "services/camera/leap/little_endian.hpp"
 

@@ -7,7 +7,6 @@
 #include "services/evaluation/chart/fault.hpp"
 #include "services/evaluation/chart/ladder.hpp"
 #include "services/evaluation/chart/stress.hpp"
-#include "services/evaluation/chart/svg.hpp"
 #include "services/evaluation/chart/write.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/evaluation/chart/sweeps.hpp"
