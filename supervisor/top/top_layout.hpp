@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <string>
 #include <vector>
 
+#include "supervisor/top/top_line.hpp"
 #include "supervisor/top/top_model.hpp"
 
 namespace handcast::supervisor {
-
-/// The style of a text. print() maps it to ANSI colours.
-enum class Style { plain, faint, strong, heading, good, warning, bad };
-
-/// A piece of a line in one style.
-struct Span {
-  std::string text;            ///< UTF-8, without control characters
-  Style style = Style::plain;  ///< style of the whole text
-};
-/// A line of the screen.
-using Line = std::vector<Span>;
 
 /// The options of a view.
 struct Page {
@@ -32,8 +21,5 @@ std::vector<Line> lay_out(const TopModel& model, const Page& page);
 /// from number `first` on (limited to the valid range), and a line with the keys.
 std::vector<Line> fit(const std::vector<Line>& lines, std::size_t columns, std::size_t rows,
                       std::size_t& first);
-
-/// The text of a line without a line break, with ANSI sequences if `with_colours`.
-std::string print(const Line& line, bool with_colours);
 
 }  // namespace handcast::supervisor

@@ -46,17 +46,6 @@ Span padded(Span span, std::size_t width, Table::Align align) {
 
 }  // namespace
 
-Line cut_to(Line line, std::size_t columns) {
-  Line kept;
-  for (auto& span : line) {
-    span.text = cut_to(span.text, columns);
-    columns -= columns_of(span.text);
-    kept.push_back(std::move(span));
-    if (columns == 0) break;
-  }
-  return kept;
-}
-
 std::vector<Line> lay_out(const Table& table, std::size_t columns) {
   std::vector<std::size_t> widths;
   for (std::size_t i = 0; i < table.columns.size(); ++i) widths.push_back(width_of(table, i));

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "supervisor/top/top_layout.hpp"
+#include "supervisor/top/top_line.hpp"
 
 namespace handcast::supervisor {
 
@@ -33,8 +33,5 @@ struct Table {
 
 /// The lines of a table on a screen with this number of columns.
 std::vector<Line> lay_out(const Table& table, std::size_t columns);
-
-/// The first `columns` columns of a line.
-Line cut_to(Line line, std::size_t columns);
 
 }  // namespace handcast::supervisor
