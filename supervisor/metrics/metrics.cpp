@@ -195,13 +195,30 @@ MetricFamily stages_of(const nlohmann::json& status) {
   return stages.family;
 }
 
-MetricFamily rungs_of(const nlohmann::json& status) {
-  auto rungs =
-      Family::counter("handcast_rung_hands_total", "Hands in drawn frames, by rung of the ladder.");
-  if (!status.contains("rungs")) return rungs.family;
-  for (const auto& [rung, hands] : status["rungs"].items())
-    if (hands.is_number()) rungs.add({{"rung", rung}}, hands.template get<double>());
-  return rungs.family;
+/// A family with a value for each number in an object of the status. `label` names its keys.
+MetricFamily by_key(const nlohmann::json& status, const char* object, Family family,
+                    const char* label) {
+  if (!status.contains(object)) return std::move(family.family);
+  for (const auto& [key, number] : status[object].items())
+    if (number.is_number()) family.add({{label, key}}, number.template get<double>());
+  return std::move(family.family);
+}
+
+std::vector<MetricFamily> families_by_key(const nlohmann::json& status) {
+  return {
+      by_key(status, "rungs",
+             Family::counter("handcast_rung_hands_total",
+                             "Hands in drawn frames, by rung of the ladder."),
+             "rung"),
+      by_key(status, "lost_images",
+             Family::counter("handcast_camera_lost_images_total",
+                             "Images of the camera that were lost, by reason."),
+             "reason"),
+      by_key(status, "tracker_faults",
+             Family::counter("handcast_tracker_faults_total",
+                             "What the tracker did wrong, by kind: how often it began."),
+             "kind"),
+  };
 }
 
 std::vector<MetricFamily> families_of_light(const nlohmann::json& status) {
@@ -222,24 +239,6 @@ std::vector<MetricFamily> families_of_light(const nlohmann::json& status) {
     doubled.add({}, light.value("doubled_frames", 0.0));
   }
   return {source.family, missed.family, doubled.family, wanted.family};
-}
-
-MetricFamily losses_of(const nlohmann::json& status) {
-  auto losses = Family::counter("handcast_camera_lost_images_total",
-                                "Images of the camera that were lost, by reason.");
-  if (!status.contains("lost_images")) return losses.family;
-  for (const auto& [reason, count] : status["lost_images"].items())
-    if (count.is_number()) losses.add({{"reason", reason}}, count.template get<double>());
-  return losses.family;
-}
-
-MetricFamily faults_of(const nlohmann::json& status) {
-  auto faults = Family::counter("handcast_tracker_faults_total",
-                                "What the tracker did wrong, by kind: how often it began.");
-  if (!status.contains("tracker_faults")) return faults.family;
-  for (const auto& [kind, count] : status["tracker_faults"].items())
-    if (count.is_number()) faults.add({{"kind", kind}}, count.template get<double>());
-  return faults.family;
 }
 
 std::vector<MetricFamily> families_of_drift(const nlohmann::json& status) {
@@ -264,10 +263,8 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   append(families, families_of(model.rings));
   append(families, families_of_readers(model.rings));
   families.push_back(stages_of(look.status));
-  families.push_back(rungs_of(look.status));
+  append(families, families_by_key(look.status));
   append(families, families_of_light(look.status));
-  families.push_back(losses_of(look.status));
-  families.push_back(faults_of(look.status));
   append(families, families_of_drift(look.status));
   std::erase_if(families, [](const auto& family) { return family.metric.empty(); });
   return families;
