@@ -51,8 +51,7 @@ static void run_observer(service::Context& context) {
   if (!has_truth(context.rig()))
     log::warning(
         "nothing is scored: cameras or tracker do not see the twin's hand, so there is no true "
-        "hand "
-        "to compare with");
+        "hand to compare with");
 
   observer::LiveScore scores;
   const auto period_ns = seconds_to_ns(1 / context.rig().observer.rate_hz);

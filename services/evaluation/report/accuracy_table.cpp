@@ -25,8 +25,7 @@ struct Metric {
 constexpr Metric kMetrics[] = {
     {"Interior error, mean", "mm", "/interior_mm/mean", 1, 2, Better::lower,
      "Distance on the skin between a point and the point whose picture falls on it, over all "
-     "visible "
-     "points; 20 mm where there is no light."},
+     "visible points; 20 mm where there is no light."},
     {"Interior error, p95", "mm", "/interior_mm/p95", 1, 2, Better::lower,
      "95 % of the points have a smaller error."},
     {"Interior error, p99", "mm", "/interior_mm/p99", 1, 2, Better::lower,
@@ -46,8 +45,7 @@ constexpr Metric kMetrics[] = {
      "Length of the edge of the light that runs across the hand instead of around it."},
     {"Jitter", "px RMS", "/jitter_px", 1, 3, Better::lower,
      "Trembling of the light on a slow hand in 1-30 Hz, where people see it. Measured if more than "
-     "60 "
-     "frames a second are scored."},
+     "60 frames a second are scored."},
     {"Fold-overs", "", "/foldovers", 1, 0, Better::lower,
      "Triangles of the drawn hand that the correction has turned over. There should be none."},
     {"Equivalent latency", "ms", "/equivalent_latency_ms", 1, 2, Better::nearer_zero,
@@ -147,9 +145,7 @@ std::string headline(const Inputs& inputs) {
     const auto percent = run.metrics.number("/coverage");
     cards += fmt::format(
         "<div class=\"card {0}\"><h3>{0}</h3><p class=\"big\">{1}<span class=\"unit\"> "
-        "mm</span></p><p>{2} mm mean, {3} % of the hand "
-        "lit</p>"
-        "<p class=\"quiet\">{4}</p></div>\n",
+        "mm</span></p><p>{2} mm mean, {3} % of the hand lit</p><p class=\"quiet\">{4}</p></div>\n",
         page::escape(run.name), page::figure(run.metrics.number("/interior_mm/p95"), 2),
         page::figure(run.metrics.number("/interior_mm/mean"), 2),
         page::figure(percent ? std::optional(*percent * 100) : std::nullopt, 1),
