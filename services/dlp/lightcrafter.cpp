@@ -3,18 +3,12 @@
 
 #include <algorithm>
 
-#include "ipc/base/join.hpp"
+#include "services/dlp/choose_device.hpp"
 #include "services/dlp/dlp_controller.hpp"
 #include "services/dlp/model.hpp"
 #include "services/dlp/protocol/payload.hpp"
 
 namespace handcast::dlp {
-
-Result<void> send_all(Link& link, const std::vector<Setting>& settings, Deadline deadline) {
-  for (const auto& [command, data] : settings)
-    if (auto sent = link.write(command, data, deadline); !sent) return sent;
-  return {};
-}
 
 namespace {
 
@@ -23,8 +17,6 @@ using protocol::Command;
 using protocol::Controller;
 using protocol::Status;
 
-constexpr std::uint16_t kVendor = 0x0451;  ///< Texas Instruments
-constexpr std::uint16_t kDlpc350 = 0x6401, kDlpc900 = 0xc900;
 constexpr std::uint8_t kNormalPower = 0, kPowerBits = 3;
 constexpr std::uint8_t kEnableBits = 0x0f;
 constexpr std::uint8_t kLeds = protocol::kRed | protocol::kGreen | protocol::kBlue;
@@ -33,9 +25,8 @@ class LightCrafter final : public DlpController {
  public:
   LightCrafter(std::unique_ptr<HidDevice> device, const HidInfo& info, const config::Rig& rig)
       : info_(info),
-        link_(std::move(device),
-              info.product_id == kDlpc900 ? Controller::dlpc900 : Controller::dlpc350),
-        model_(info.product_id == kDlpc900 ? make_dlpc900() : make_dlpc350()),
+        link_(std::move(device), *controller_of(info)),
+        model_(link_.controller() == Controller::dlpc900 ? make_dlpc900() : make_dlpc350()),
         dlp_(rig.dlp),
         currents_({dlp_.red, dlp_.green, dlp_.blue}),
         enables_(dlp_.limit > 0 ? protocol::enables_of(currents_) : 0),
@@ -171,7 +162,7 @@ Result<void> LightCrafter::start_sequence(Deadline deadline) {
   return {};
 }
 
-/// Returns what the light waits for.
+/// Returns what the light waits for; "" if it is on.
 Result<std::string> LightCrafter::light(bool signal, std::vector<std::string>& events,
                                         Deadline deadline) {
   const auto awake = is_awake(deadline);
@@ -213,41 +204,6 @@ Result<Health> LightCrafter::tend(Deadline deadline) {
   if (!waits_for) return tl::make_unexpected(waits_for.error());
   health.waits_for = std::move(*waits_for);
   return health;
-}
-
-std::string list_of(const std::vector<HidInfo>& devices) {
-  std::vector<std::string> texts;
-  texts.reserve(devices.size());
-  for (const auto& device : devices)
-    texts.push_back(fmt::format("'{}' ({})", device.serial, device.path));
-  return texts.empty() ? "none" : join(texts, ", ");
-}
-
-/// The device that dlp.device names. Errors: unavailable (it is not there), bad_config (several
-/// fit).
-Result<HidInfo> choose_device(const std::string& wanted) {
-  auto attached = list_hid_devices(kVendor);
-  std::erase_if(attached, [](const HidInfo& device) {
-    return device.product_id != kDlpc350 && device.product_id != kDlpc900;
-  });
-  std::vector<HidInfo> fitting;
-  for (const auto& device : attached)
-    if (wanted.empty() || wanted == device.serial || wanted == device.path)
-      fitting.push_back(device);
-  if (fitting.size() == 1) return fitting.front();
-  if (fitting.size() > 1)
-    return fail(Errc::bad_config,
-                fmt::format("dlp.device: several controllers are attached; set it "
-                            "to the serial number or path of one: {}",
-                            list_of(fitting)));
-  if (wanted.empty())
-    return fail(
-        Errc::unavailable,
-        "no DLPC350 or DLPC900 is attached; connect the projector's USB cable and switch it "
-        "on");
-  return fail(Errc::unavailable,
-              fmt::format("dlp.device: there is no controller '{}'; attached: {}", wanted,
-                          list_of(attached)));
 }
 
 }  // namespace

@@ -93,4 +93,10 @@ Result<void> Link::write(Command command, std::span<const std::uint8_t> data, De
               about(controller_, command) + ": it refuses this" + why_refused(deadline));
 }
 
+Result<void> send_all(Link& link, const std::vector<Setting>& settings, Deadline deadline) {
+  for (const auto& [command, data] : settings)
+    if (auto sent = link.write(command, data, deadline); !sent) return sent;
+  return {};
+}
+
 }  // namespace handcast::dlp

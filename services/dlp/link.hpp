@@ -3,11 +3,14 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
 #include "services/dlp/hid_device.hpp"
 #include "services/dlp/protocol/message.hpp"
+#include "services/dlp/sequence/encode.hpp"
 
 namespace handcast::dlp {
 
@@ -43,5 +46,8 @@ class Link {
   protocol::Controller controller_;
   std::uint8_t sequence_ = 0;
 };
+
+/// Sends commands until one fails.
+Result<void> send_all(Link& link, const std::vector<Setting>& settings, Deadline deadline);
 
 }  // namespace handcast::dlp

@@ -30,7 +30,4 @@ class Model {
 std::unique_ptr<Model> make_dlpc350();
 std::unique_ptr<Model> make_dlpc900();
 
-/// Sends commands until one fails.
-Result<void> send_all(Link& link, const std::vector<Setting>& settings, Deadline deadline);
-
 }  // namespace handcast::dlp
