@@ -7,7 +7,7 @@
 #include <charconv>
 #include <set>
 
-#include "services/evaluation/sweep/table.hpp"
+#include "services/evaluation/sweep/columns.hpp"
 
 namespace handcast::chart {
 namespace {

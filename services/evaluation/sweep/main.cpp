@@ -10,6 +10,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
+#include "services/evaluation/sweep/columns.hpp"
 #include "services/evaluation/sweep/merge.hpp"
 #include "services/evaluation/sweep/runner.hpp"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "ipc/base/join.hpp"
-#include "services/evaluation/sweep/table.hpp"
+#include "services/evaluation/sweep/columns.hpp"
 
 namespace handcast::sweep {
 namespace {

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "services/evaluation/simulate/score.hpp"
+#include "services/evaluation/sweep/columns.hpp"
 #include "services/evaluation/sweep/merge.hpp"
 #include "services/evaluation/sweep/progress.hpp"
 

@@ -2,12 +2,11 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "services/evaluation/sweep/runs.hpp"
+#include "ipc/base/result.hpp"
 
 namespace handcast::sweep {
 
@@ -30,21 +29,6 @@ struct Heading {
   /// Number of runs of the whole plan.
   std::size_t runs() const;
 };
-
-/// The heading of the results of a plan. `version` is that of the program.
-Heading heading_of(const Plan& plan, const Expansion& expansion, std::string_view version);
-
-/// The line of a run with the metrics of simulate::score().
-Row scored_row(const Plan& plan, const Run& run, const nlohmann::json& metrics);
-/// The line of a run that failed.
-Row failed_row(const Plan& plan, const Run& run, const std::string& error);
-
-/// True for a column of times measured on this machine, which differ when a run is repeated.
-bool is_machine_time(std::string_view column);
-/// The metric that is a word and not a number: the back end that has found the landmarks.
-inline constexpr std::string_view kDetector = "detector";
-/// True for a column of metrics. The columns between the variant and the metrics are axes.
-bool is_metric(std::string_view column);
 
 /// Prints a line with its line end. Cells with a comma or quote are quoted; line breaks become
 /// spaces.

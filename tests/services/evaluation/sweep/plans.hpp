@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "services/evaluation/sweep/columns.hpp"
 #include "services/evaluation/sweep/runs.hpp"
-#include "services/evaluation/sweep/table.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::sweep {
