@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
@@ -262,23 +261,6 @@ TEST(Board, AnUnusablePictureIsRefusedWithASentence) {
   ASSERT_FALSE(with_hands);
   EXPECT_EQ(with_hands.error().code, Errc::bad_config);
   EXPECT_THAT(with_hands.error().what, HasSubstr("twin.prop.kind"));
-}
-
-TEST(Board, DrawingTime) {
-  const auto rig = board_rig(0.3);
-  const auto twin = twin_with(rig, checkerboard(100));
-  const auto ms_per_frame = [&](auto&& draw) {
-    const std::clock_t begin = std::clock();
-    for (int place = 0; place < HeldBoard::kPlaces; ++place) draw(frame_at(rig, place));
-    return 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / HeldBoard::kPlaces;
-  };
-  Image<std::uint8_t> image(720, 540);
-  const auto light = spot(512, 384, 200);
-  const double dark_ms = ms_per_frame([&](auto k) { twin->camera_image(k, image.view()); });
-  const double lit_ms =
-      ms_per_frame([&](auto k) { twin->camera_image(k, light.light(), image.view()); });
-  std::printf("a frame with a board: %.2f ms, with the projector's light %.2f ms\n", dark_ms,
-              lit_ms);
 }
 
 }  // namespace

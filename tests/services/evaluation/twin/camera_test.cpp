@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "renderer/skin/skinning.hpp"
 #include "services/evaluation/twin/surface.hpp"
@@ -135,29 +133,6 @@ TEST(CameraImage, TwoHandsAreBothThere) {
   for (const Side side : {Side::left, Side::right}) {
     const auto palm = (*twin->landmarks(side, twin->camera_origin_ns(100)))[9];
     EXPECT_GT(image.at(static_cast<int>(palm.x), static_cast<int>(palm.y)), 100);
-  }
-}
-
-/// Writes pictures for inspection into the folder HANDCAST_PICTURES.
-TEST(CameraImage, Pictures) {
-  const char* folder = std::getenv("HANDCAST_PICTURES");
-  if (!folder) GTEST_SKIP() << "HANDCAST_PICTURES is not set";
-  std::vector<std::string> motions{"builtin:open_close", "builtin:wave",  "builtin:rotate",
-                                   "builtin:pinch",      "builtin:shake", "builtin:two_hands"};
-  if (std::filesystem::exists(outside_data() / "lmc"))
-    for (const char* name : {"translation", "rotation", "deformation", "all_5s"})
-      motions.push_back(outside_data() / "lmc" / name);
-  for (const auto& motion : motions) {
-    const auto twin = twin_of(rig_with(motion));
-    cv::Mat sheet(2 * 540, 3 * 720, CV_8U);
-    for (int i = 0; i < 6; ++i) {
-      const std::uint64_t k = 60 + 130 * static_cast<std::uint64_t>(i);
-      const auto image = picture(*twin, k);
-      const cv::Mat pixels(540, 720, CV_8U, const_cast<std::uint8_t*>(image.row(0)));
-      pixels.copyTo(sheet(cv::Rect(i % 3 * 720, i / 3 * 540, 720, 540)));
-    }
-    const auto name = std::filesystem::path(motion).filename().string();
-    cv::imwrite((std::filesystem::path(folder) / (name + ".png")).string(), sheet);
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 
 #include "services/evaluation/twin/point_spread.hpp"
 #include "tests/services/evaluation/twin/world.hpp"
@@ -218,32 +216,6 @@ TEST(ImageSetting, WithAllOfThemTwoTwinsStillAgree) {
   const auto first = scene(all, "builtin:wave"), second = scene(all, "builtin:wave");
   shot(*first, 7);  // what was drawn before must not matter
   EXPECT_EQ(shot(*first, 40).pixels(), shot(*second, 40).pixels());
-}
-
-/// Prints how long an image takes; asserts nothing, for the time is the machine's.
-TEST(ImageSetting, HowLongAnImageTakes) {
-  const auto ms_per_image = [](const config::TwinImage& settings) {
-    const auto twin = scene(settings, "builtin:wave");
-    shot(*twin, 0);
-    Image<std::uint8_t> image(720, 540);
-    const auto begin = std::chrono::steady_clock::now();
-    constexpr int kImages = 40;
-    for (std::uint64_t k = 1; k <= kImages; ++k) twin->camera_image(k, image.view());
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-               .count() /
-           kImages;
-  };
-  const double neutral_ms = ms_per_image({});
-  const double all_ms = ms_per_image({.spread_px = 2.1,
-                                      .subsurface_mm = 1.5,
-                                      .texture = 0.2,
-                                      .clutter = 0.04,
-                                      .sunlight = 0.04,
-                                      .table = 0.03,
-                                      .leak = 0.03,
-                                      .second_person = true,
-                                      .object = true});
-  std::printf("an image: %.2f ms with neutral settings, %.2f ms with all\n", neutral_ms, all_ms);
 }
 
 }  // namespace
