@@ -6,8 +6,8 @@
 
 namespace handcast {
 
-/// The number for a sentence, with so many decimal places; a value that rounds to zero has no sign:
-/// "0.0", not "-0.0".
+/// The number for a sentence, with that many decimal places; a value that rounds to zero has no
+/// sign: "0.0", not "-0.0".
 inline std::string number_text(double value, int places) {
   auto text = fmt::format("{:.{}f}", value, places);
   if (text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);

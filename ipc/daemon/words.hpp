@@ -14,8 +14,8 @@ struct Words {
 /// one.
 Words read_words(int ready_fd);
 
-/// Gives a spare its turn, through the supervisor's end of its standby descriptor. False: it could
-/// not be told.
+/// Gives a spare its turn, through the supervisor's end of its standby descriptor. False if it
+/// cannot be reached.
 bool give_turn(int standby_fd);
 
 }  // namespace handcast::daemon

@@ -26,7 +26,7 @@ class Dither {
   int thresholds() const { return planes_ * size() * size(); }
   /// The threshold 0..thresholds() - 1 of a pixel in a plane.
   int at(int plane, int x, int y) const;
-  /// The i of a plane without a pattern: so many planes are lit before this one if a light rises.
+  /// The rank of a plane without a pattern: the number of planes that a rising light lights first.
   int turn(int plane) const { return plane * stride_ % planes_; }
 
  private:

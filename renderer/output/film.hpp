@@ -15,7 +15,7 @@ namespace handcast::renderer {
 /// with which players jump, is written at the end. One thread.
 class Film {
  public:
-  /// A film has at most so many bytes: some readers take sizes for signed numbers.
+  /// Size of the largest film: some readers take sizes for signed numbers.
   static constexpr std::uint64_t kMostBytes = 2'000'000'000;
 
   /// Begins a film of pictures of this size in a new file. Errors: bad_config (the file exists or

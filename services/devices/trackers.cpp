@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The vendors of Leap Motion and of Ultraleap. The latter makes other devices, too, which are told
-/// apart by their own names.
+/// The vendors of Leap Motion and of Ultraleap. The latter makes other devices, too: their names
+/// distinguish them.
 constexpr std::string_view kLeapMotion = "f182", kUltraleap = "2936";
 
 /// Where the linker finds a library that is named without a folder.

@@ -28,7 +28,7 @@ class DlpController {
   /// What it is: "DLPC350 (serial 7), firmware 3.1.0".
   virtual Result<std::string> identify(Deadline deadline) = 0;
 
-  /// The safe state: LEDs off, sequence stopped, no currents. Does all that can be done, also if a
+  /// The safe state: LEDs off, sequence stopped, no currents. Does all that can be done, even if a
   /// part of it fails. Errors: unavailable, bad_data, disconnected; it may still light then.
   virtual Result<void> darken(Deadline deadline) = 0;
 

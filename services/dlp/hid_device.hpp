@@ -35,7 +35,7 @@ class HidDevice {
   ~HidDevice();
   HidDevice(const HidDevice&) = delete;
 
-  /// Sends a report. Errors: disconnected (also if it is not sent by the deadline).
+  /// Sends a report. Errors: disconnected (or not sent by the deadline).
   Result<void> write(const protocol::Report& report, Deadline deadline);
   /// Receives a report. Returns the number of its bytes. Errors: timeout, disconnected.
   Result<std::size_t> read(protocol::Report& report, Deadline deadline);

@@ -111,7 +111,7 @@ void Reload::apply(std::int64_t now) {
     } else if (contains(replaced_, spec.name)) {
       begun_[spec.name] = patience_until(now);
       service->hand_over();
-      service->update(spec);  // also if the replacement dies before it takes over
+      service->update(spec);  // even if the replacement dies before it takes over
     } else {
       service->update(spec);
     }

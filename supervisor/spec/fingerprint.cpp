@@ -85,7 +85,7 @@ std::string* backend_in(std::string_view service, const config::Listing& listing
   return word_of(service, "backend", listing);
 }
 
-/// The back end, a second one beside it and its fallback, as far as the service has them.
+/// The back end and, if the service has them, a second one beside it and its fallback.
 std::vector<std::string> backends_in(std::string_view service, const config::Listing& listing) {
   std::vector<std::string> names;
   for (const auto* name : {"backend", "second", "fallback"})

@@ -19,8 +19,8 @@ struct UnitSpec {
   std::vector<std::string> groups;  ///< further groups of a system unit
 };
 
-/// The groups to which devices of a rig belong (video, render, input, plugdev), as far as this
-/// machine has them.
+/// Those of the groups to which devices of a rig belong (video, render, input, plugdev) that this
+/// machine has.
 std::vector<std::string> device_groups();
 
 /// The name of the unit: "handcast-desk.service".

@@ -35,8 +35,8 @@ struct ProcessUsage {
   std::int64_t own_bytes() const { return resident_bytes - shared_bytes; }
 };
 
-/// Parses /proc/PID/stat or /proc/PID/statm into `usage`. Returns false if the text is invalid;
-/// read_stat() also if the process is dead.
+/// Parses /proc/PID/stat or /proc/PID/statm into `usage`. Returns false if the text is invalid, or
+/// (read_stat()) if the process is dead.
 /// @{
 bool read_stat(std::string_view text, std::int64_t ticks_per_second, ProcessUsage& usage);
 bool read_statm(std::string_view text, std::int64_t page_bytes, ProcessUsage& usage);

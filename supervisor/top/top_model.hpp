@@ -93,11 +93,11 @@ struct TopModel {
   double uptime_s = 0;               ///< time since the supervisor was started
   std::vector<ServiceRow> services;  ///< the services
   std::vector<RingRow> rings;        ///< the rings
-  /// The rungs of the hands that were drawn since the last look, cheapest first, without unused
-  /// rungs.
+  /// The rungs of the hands that were drawn since the last look, cheapest first. Unused ones are
+  /// left out.
   std::vector<RungShare> rungs;
-  /// The images that the camera lost since the last look, by reason, without those of which none
-  /// was lost.
+  /// The images that the camera lost since the last look, by reason. Reasons without a loss are
+  /// left out.
   std::vector<ReasonCount> lost_images;
 };
 

@@ -19,7 +19,7 @@ struct BringUpStep {
 /// Reads a sequence: one step per line, `#` begins a comment. Numbers are hexadecimal.
 ///
 ///     write TYPE REQUEST VALUE INDEX BYTE...     sends the bytes
-///     read TYPE REQUEST VALUE INDEX LENGTH       reads and ignores so many bytes
+///     read TYPE REQUEST VALUE INDEX LENGTH       reads LENGTH bytes and ignores them
 ///     set UNIT SELECTOR VALUE                    sets a control: 16 bits
 ///     pause MILLISECONDS                         decimal, at most 1000, before the next step
 ///

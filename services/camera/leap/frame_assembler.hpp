@@ -21,8 +21,8 @@ struct EndedFrame {
 
 /// Puts the payloads of a stream together to images. An image is whole if its bytes are exactly
 /// those of a frame and it ends with the mark of its end; everything else is torn. Payloads are
-/// told apart by the frame id and, because a loss can hide two changes of it, by their stamps. One
-/// thread.
+/// distinguished by the frame id and, because a loss can hide two changes of it, by their stamps.
+/// One thread.
 class FrameAssembler {
  public:
   /// `frame_bytes`: of an image. `split_ticks`: a stamp so much later than that of the payload

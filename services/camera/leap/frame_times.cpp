@@ -13,7 +13,7 @@ namespace {
 /// No image arrives before it was taken; two clocks, and a period that is not yet known well, may
 /// make it look so, but never by as much.
 constexpr double kLargestAdvance_ns = 5e8;
-/// After so many images whose stamps say something else than their arrivals, stamps are not read.
+/// Stamps are ignored after this many images whose stamps contradict their arrivals.
 constexpr int kMostBad = 20;
 /// Within a gap of fewer periods, arrivals without stamps tell nothing: they may come late.
 constexpr double kLateAtMost = 10;

@@ -68,7 +68,7 @@ void Keeper::watch() {
 }
 
 void Keeper::reopen() {
-  // The one that was lost, also if another one is attached meanwhile.
+  // The one that was lost, even if another one is attached meanwhile.
   auto session = Session::start(name_, settings_, calibration_, mailbox_, vain_starts_ > 0);
   if (!session) {
     say({session.error().code, fmt::format("{}: {}; it is opened again as soon as it answers",

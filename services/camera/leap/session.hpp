@@ -19,7 +19,7 @@ class Session {
   /// `wanted`: see open_controller(). `resets`: resets the device first, which helps some that have
   /// stopped. Takes about 0.1 s. Errors: those of open_controller(), mode_of(), transfers_of() and
   /// load_bring_up(); bad_config (the calibration was made with another camera); timeout and
-  /// bad_data (the controller does not do what it is told), disconnected.
+  /// bad_data (the controller does not do what it is asked), disconnected.
   static Result<std::unique_ptr<Session>> start(const std::string& wanted,
                                                 const config::Camera& settings,
                                                 const calib::Calibration& calibration,

@@ -17,7 +17,7 @@ namespace {
 
 /// 14 ms of images of 640x240 at 115 Hz.
 constexpr std::size_t kTransfers = 32;
-/// After so many transfers in a row that failed, the stream has ended.
+/// The stream has ended after this many failed transfers in a row.
 constexpr int kMostFailures = 50;
 /// From this number on, there is a pause before the next try.
 constexpr int kFailuresAtOnce = 4;

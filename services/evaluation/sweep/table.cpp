@@ -40,7 +40,8 @@ Result<void> check_row(const Row& row, const Heading& heading, const std::filesy
 
 std::string Heading::print() const { return stamp + "\n" + print_row(columns); }
 
-// 0 also above kMostRuns: no file of results holds so many, and memory is taken by the number.
+// 0 also above kMostRuns: no file of results holds more, and the number decides how much memory
+// is taken.
 std::size_t Heading::runs() const {
   constexpr std::size_t kMostRuns = 10'000'000;
   const auto at = stamp.find(" runs=");
