@@ -43,7 +43,7 @@ const std::array kMarkers{Marker{"camera", 525, {Stage::capture}},
                                  {Stage::predict, Stage::skin, Stage::correct, Stage::mask,
                                   Stage::draw, Stage::warp, Stage::fill, Stage::gpu_draw}}};
 
-constexpr int kMarkSlots = 254;  ///< as in supervisor/life/streams.cpp
+constexpr int kMarkSlots = 254;  ///< as in supervisor/spec/service_spec.cpp
 constexpr std::int64_t kPoll_ns = 50'000'000;
 
 ipc::Segment marks_ring(const std::string& service) {
