@@ -4,7 +4,7 @@
 
 #include "services/devices/attached.hpp"
 #ifdef HANDCAST_WITH_HIDAPI
-#include "services/dlp/hid_device.hpp"
+#include "services/dlp/choose_device.hpp"
 #endif
 
 namespace handcast::devices {
@@ -12,26 +12,21 @@ namespace handcast::devices {
 #ifdef HANDCAST_WITH_HIDAPI
 namespace {
 
-constexpr std::uint16_t kTexasInstruments = 0x0451;
-
-/// The controller with this USB product id; "" if it is none.
-std::string_view model_of(std::uint16_t product_id) {
-  if (product_id == 0x6401) return "DLPC350 (LightCrafter 4500)";
-  if (product_id == 0xc900) return "DLPC900 (LightCrafter 6500, 9000)";
-  return "";
+/// With the names under which its boards are sold.
+std::string_view model_of(dlp::protocol::Controller controller) {
+  return controller == dlp::protocol::Controller::dlpc350 ? "DLPC350 (LightCrafter 4500)"
+                                                          : "DLPC900 (LightCrafter 6500, 9000)";
 }
 
 }  // namespace
 
 std::vector<Attached> controllers() {
   std::vector<Attached> attached;
-  for (const auto& info : dlp::list_hid_devices(kTexasInstruments)) {
-    const auto model = model_of(info.product_id);
-    if (model.empty()) continue;
+  for (const auto& info : dlp::attached_controllers()) {
     const bool is_permitted = ::access(info.path.c_str(), R_OK | W_OK) == 0;
     attached.push_back(
         {.kind = Kind::controller,
-         .name = fmt::format("{}, serial number {}, {}", model,
+         .name = fmt::format("{}, serial number {}, {}", model_of(*dlp::controller_of(info)),
                              info.serial.empty() ? "unknown" : info.serial, info.path),
          .about = info.product,
          .settings = {{"dlp.backend", "lightcrafter"},

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <vector>
-
 #include "ipc/base/join.hpp"
 
 namespace handcast::dlp {
@@ -28,9 +26,14 @@ std::optional<protocol::Controller> controller_of(const HidInfo& device) {
   return std::nullopt;
 }
 
-Result<HidInfo> choose_device(const std::string& wanted) {
+std::vector<HidInfo> attached_controllers() {
   auto attached = list_hid_devices(kVendor);
   std::erase_if(attached, [](const HidInfo& device) { return !controller_of(device); });
+  return attached;
+}
+
+Result<HidInfo> choose_device(const std::string& wanted) {
+  const auto attached = attached_controllers();
   std::vector<HidInfo> fitting;
   for (const auto& device : attached)
     if (wanted.empty() || wanted == device.serial || wanted == device.path)
