@@ -28,7 +28,8 @@ constexpr std::array kVerbs{
               Group::run, kRig},
     VerbEntry{"status", "status [--json] [--rig NAME]", "Shows a rig's services, rates and times.",
               run_status, Group::look,
-              "  --json       the same as JSON\n  --rig NAME   which rig, if several are up\n"},
+              "  --json       the same as JSON\n"
+              "  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"restart", "restart SERVICE [--rig NAME]",
               "Replaces one service of a rig by a new process.", run_restart, Group::change, kRig},
     VerbEntry{"swap", "swap SERVICE BACKEND [--rig NAME]", "Gives one service another back end.",
@@ -38,8 +39,9 @@ constexpr std::array kVerbs{
               run_reload, Group::change, kRig},
     VerbEntry{"top", "top [--rig NAME] [--once] [--json]",
               "Watches rings and services in the terminal.", run_top, Group::look,
-              "  --once       prints one look and ends\n  --json       prints one look as JSON\n  "
-              "--rig NAME   which rig, if several are up\n"},
+              "  --once       prints one look and ends\n"
+              "  --json       prints one look as JSON\n"
+              "  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"preview", "preview [--rig NAME] [--shot FILE.png] [--after S] [--layers LIST]",
               "Shows what a rig sees and casts, in a window or as a picture.", nullptr,
               Group::look},
@@ -49,13 +51,15 @@ constexpr std::array kVerbs{
     VerbEntry{
         "latency", "latency [--seconds N] [--json] [--rig NAME]",
         "Shows the time that each step took, from exposure to light.", run_latency, Group::look,
-        "  --seconds N  of the last N seconds; default: all that is kept (supervisor.history_s)\n  "
-        "--json       the same as JSON\n  --rig NAME   which rig, if several are up\n"},
-    VerbEntry{"trace", "trace [--seconds N] -o FILE [--rig NAME]",
-              "Writes the last N seconds as a Perfetto trace.", run_trace, Group::look,
-              "  --seconds N  the last N seconds; default: all that is kept "
-              "(supervisor.history_s)\n  -o FILE      the file to write; ui.perfetto.dev opens "
-              "it\n  --rig NAME   which rig, if several are up\n"},
+        "  --seconds N  of the last N seconds; default: all that is kept (supervisor.history_s)\n"
+        "  --json       the same as JSON\n"
+        "  --rig NAME   which rig, if several are up\n"},
+    VerbEntry{
+        "trace", "trace [--seconds N] -o FILE [--rig NAME]",
+        "Writes the last N seconds as a Perfetto trace.", run_trace, Group::look,
+        "  --seconds N  the last N seconds; default: all that is kept (supervisor.history_s)\n"
+        "  -o FILE      the file to write; ui.perfetto.dev opens it\n"
+        "  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"install-units",
               "install-units RIG.toml [--set path=value]... [--out DIR] [--system [--user NAME]] "
               "[--print]",
