@@ -38,8 +38,7 @@ Finding calibration_of(const config::Rig& rig) {
 std::vector<Finding> examine_file(const Result<config::Rig>& rig) {
   if (!rig)
     return {{"rig file", Grade::fault, rig.error().what,
-             "`handcast config --reference` explains "
-             "all settings"}};
+             "`handcast config --reference` explains all settings"}};
   std::vector<Finding> findings{{"rig file", Grade::good, fmt::format("rig '{}'", rig->name), ""},
                                 calibration_of(*rig)};
   if (const auto calibration = calib::load_calibration(rig->calibration))

@@ -65,8 +65,7 @@ std::string print_drift(const json& status) {
                                text_of(drift.value("turn_deg", json())));
   if (!drift.value("moved", false))
     return fmt::format(
-        "\ntracker: where the calibration says, as far as {} places of still hands "
-        "tell ({})\n",
+        "\ntracker: where the calibration says, as far as {} places of still hands tell ({})\n",
         text_of(drift.value("places", json())), off);
   return fmt::format(
       "\ntracker: it has moved by {} since the calibration; fasten it, then `handcast calibrate "

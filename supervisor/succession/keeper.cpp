@@ -216,11 +216,10 @@ class Keeper {
   }
 
   int give_up() const {
-    print_line(
-        fmt::format("handcast: the supervisor died {} times within a minute and is not started "
-                    "again; its services continue to run: "
-                    "`handcast up` takes them over, `handcast down` stops them",
-                    SupervisorDeaths::kDeathsInAMinute));
+    print_line(fmt::format(
+        "handcast: the supervisor died {} times within a minute and is not started again; its "
+        "services continue to run: `handcast up` takes them over, `handcast down` stops them",
+        SupervisorDeaths::kDeathsInAMinute));
     return kExitRetry;
   }
 

@@ -179,9 +179,8 @@ Chart chart_b(const Results& results) {
   Chart chart{"chart_b",
               "B. Where methods fail",
               "One setting at a time is made worse; the others have their defaults. Points without "
-              "light count as 20 mm. The open "
-              "circle is the breakdown point, at which the harm is twice that of the mildest "
-              "stress.",
+              "light count as 20 mm. The open circle is the breakdown point, at which the harm is "
+              "twice that of the mildest stress.",
               {},
               {},
               {}};

@@ -164,8 +164,7 @@ Chart chart_c(const Results& results) {
   if (all.empty()) {
     chart.lacking =
         "needs runs with the rungs hold, predict, shift, similarity, fingers, landmarks and "
-        "register as variants: sweep "
-        "config/sweeps/ladder.toml";
+        "register as variants: sweep config/sweeps/ladder.toml";
     return chart;
   }
   std::vector<double> errors_mm;
