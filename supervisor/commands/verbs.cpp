@@ -32,8 +32,12 @@ constexpr std::array kVerbs{
               "  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"restart", "restart SERVICE [--rig NAME]",
               "Replaces one service of a rig by a new process.", run_restart, Group::change, kRig},
-    VerbEntry{"swap", "swap SERVICE BACKEND [--rig NAME]", "Gives one service another back end.",
-              run_swap, Group::change, kRig},
+    VerbEntry{
+        "swap", "swap SERVICE BACKEND [--rig NAME]", "Gives one service another back end.",
+        run_swap, Group::change,
+        "  SERVICE      as `handcast status` lists it\n"
+        "  BACKEND      config/REFERENCE.md lists them; a wrong word prints those of the service\n"
+        "  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"reload", "reload [--rig NAME]",
               "Applies a changed rig file: replaces only the services whose settings changed.",
               run_reload, Group::change, kRig},

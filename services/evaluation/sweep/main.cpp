@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdio>
 
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/verb_options.hpp"
 #include "ipc/base/version.hpp"
 #include "services/evaluation/sweep/columns.hpp"
 #include "services/evaluation/sweep/merge.hpp"
@@ -129,12 +129,8 @@ static int run_verb(int argc, char** argv) {
   app.add_flag("--fresh", line.fresh, "Discards the content of the file of results");
   app.add_flag("--merge", line.merge, "Merges the results of shards into one file");
   app.add_flag("--quiet", line.quiet, "Prints no progress");
-  app.set_version_flag("--version", fmt::format("handcast sweep {}", handcast::version()));
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? handcast::kExitDone : handcast::kExitUsage;
-  }
+  if (const auto code = handcast::answered(app, handcast::parse_options(app, argc, argv)))
+    return *code;
   if (line.merge) return merge_files(line);
   if (line.files.size() > 1)
     return complain(
