@@ -4,24 +4,20 @@
 
     results_table.py PART RESULTS.csv DOCUMENT.md [COMMAND [PEOPLE]]
 
-PART is a table of scripts/results (comparison, unseen, levers, fidelity, causes, motions, fast, no_tracker), or summary or
-unseen_summary: sentences about the results of comparison and unseen. They replace what stands between the lines
+PART is a table of scripts/results (comparison, unseen, levers, fidelity, causes, motions, fast, two_hands, jitter, no_tracker), or
+summary or unseen_summary: sentences about the results of comparison and unseen. They replace what stands between the lines
 "<!-- PART: begin -->" and "<!-- PART: end -->". COMMAND is named below the table as what has made it, and PEOPLE is the number of
 seeds that the protocol asks for: a table of fewer says so. scripts/results calls this program.
 """
 
-import collections
-import copy
-import csv
-import math
 import statistics
 import sys
 
-GOAL, GOAL_MM = 0.45, (1.8, 4.0)  # of the paper's error; mean and p95
-GOAL_COVERAGE, GOAL_SPILL = 0.99, 0.01
-# Student's t, two-sided 95 %, by degrees of freedom; the normal distribution's beyond.
-T95 = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131,
-       2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045]
+from sweep_runs import Runs, die, interval, listed
+
+# docs/method.md#goals. The first two are parts of the paper's error.
+GOAL, GOAL_FAST, GOAL_MM = 0.45, 0.5, (1.8, 4.0)
+GOAL_COVERAGE, GOAL_SPILL, GOAL_LATENCY_MS, GOAL_JITTER_PX, GOAL_TWO_HANDS = 0.99, 0.01, 6.6, 0.5, 1.1
 
 # A row of a table by variants: its label, and the variant to whose error its own is compared ("" for none).
 BY_VARIANT = {
@@ -47,6 +43,11 @@ BY_VARIANT = {
         "outline": ("+ outline of open hands", "paper"),
         "gate": ("+ gate: handcast", "paper"),
     },
+    "two_hands": {
+        "left": ("left hand alone", ""),
+        "right": ("right hand alone", ""),
+        "both": ("both", ""),
+    },
     "fidelity": {
         "paper": ("21 points, both hands", ""),
         "released_points": ("16 points", "paper"),
@@ -66,6 +67,8 @@ BY_VARIANT = {
         "perfect_sensors_our_mesh": ("perfect sensors, our own mesh", "all_errors"),
     },
 }
+JITTER = {variant: BY_VARIANT["comparison"][variant] for variant in
+          ("baseline", "paper", "paper_network", "handcast", "handcast_mediapipe")}
 # What has real detectors, on motions that nothing was tuned on: a table for each mesh.
 BY_VARIANT["unseen"] = {variant: row for variant, row in BY_VARIANT["comparison"].items() if not variant.endswith("_model")}
 # Tables by motion: the variants of the columns, and the one to whose error the last one's is compared.
@@ -74,110 +77,6 @@ BY_MOTION = {
     "fast": (["baseline", "paper", "handcast"], "paper"),
     "no_tracker": (["baseline", "handcast", "no_tracker"], "handcast"),
 }
-
-
-def die(message):
-    sys.exit(f"results_table.py: {message}")
-
-
-def mean_and_interval(values):
-    """The mean of independent values and half of its 95 % interval."""
-    freedom = len(values) - 1
-    t = T95[freedom - 1] if freedom <= len(T95) else 1.96
-    return statistics.fmean(values), t * statistics.stdev(values) / math.sqrt(len(values))
-
-
-def interval(values):
-    """The mean with its interval; of two values the mean with both, as an interval of two says nothing."""
-    if len(values) < 3:
-        return f"{statistics.fmean(values):.2f} ({', '.join(f'{value:.2f}' for value in values)})"
-    return "{:.2f} ± {:.2f}".format(*mean_and_interval(values))
-
-
-def listed(seeds):
-    """1, 2, 3, 7 as "1-3, 7"."""
-    spans = []
-    for seed in seeds:
-        if spans and seed == spans[-1][1] + 1:
-            spans[-1][1] = seed
-        else:
-            spans.append([seed, seed])
-    return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
-
-
-class Runs:
-    """The figures of a sweep, by variant, motion and seed; if the sweep has several meshes, a motion is a pair of both. Seeds of
-    which a run failed are left out, and variants that have no run at all."""
-
-    def __init__(self, path, wanted):
-        self.rows = collections.defaultdict(dict)
-        self.motions, self.meshes, self.errors = [], [], {}
-        with open(path, newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(line for line in file if not line.startswith("#")):
-                motion = row["twin.motion"].split("/")[-1].removeprefix("builtin:")
-                if mesh := row.get("twin.shape.mesh"):
-                    motion = (mesh, motion)
-                    if mesh not in self.meshes:
-                        self.meshes.append(mesh)
-                if motion not in self.motions:
-                    self.motions.append(motion)
-                self.rows[row["variant"], motion][int(row["twin.seed"])] = row
-                if not row["interior_mm_mean"]:
-                    self.errors.setdefault(row["variant"], row["error"])
-        if not self.motions:
-            die(f"{path} has no runs")
-        self.variants = [variant for variant in wanted if any(
-            row["interior_mm_mean"] for motion in self.motions for row in self.rows[variant, motion].values())]
-        self.absent = [variant for variant in wanted if variant not in self.variants]
-        seeds = {seed for runs in self.rows.values() for seed in runs}
-        self.seeds = sorted(seed for seed in seeds
-                            if all(self.rows[variant, motion].get(seed, {}).get("interior_mm_mean")
-                                   for variant in self.variants for motion in self.motions))
-        self.left_out = sorted(seeds - set(self.seeds))
-        if len(self.seeds) < 2:
-            die(f"{path} has fewer than two seeds with all runs")
-
-    def of_mesh(self, mesh):
-        """The same runs, of one mesh alone."""
-        part = copy.copy(self)
-        part.motions = [motion for motion in self.motions if motion[0] == mesh]
-        return part
-
-    def of(self, variant, motion, name):
-        """The figure `name` for each seed."""
-        return [float(self.rows[variant, motion][seed][name]) for seed in self.seeds]
-
-    def mean(self, variant, motion, name):
-        """The mean over the seeds, or over all motions and seeds if `motion` is None."""
-        motions = self.motions if motion is None else [motion]
-        return statistics.fmean(statistics.fmean(self.of(variant, each, name)) for each in motions)
-
-    def both(self, variant, motion, kind="interior"):
-        """Mean and p95 in mm."""
-        return f"{self.mean(variant, motion, kind + '_mm_mean'):.1f} / {self.mean(variant, motion, kind + '_mm_p95'):.1f}"
-
-    def ratios(self, variant, reference, motion):
-        """The ratio of the mean errors for each seed."""
-        return [ours / theirs for ours, theirs in zip(self.of(variant, motion, "interior_mm_mean"),
-                                                      self.of(reference, motion, "interior_mm_mean"))]
-
-    def ratios_of_all(self, variant, reference):
-        """The mean of these ratios over all motions, for each seed."""
-        return [statistics.fmean(of_seed) for of_seed in
-                zip(*(self.ratios(variant, reference, motion) for motion in self.motions))]
-
-    def cells(self, variant, reference):
-        """The ratios of all cells of motion and seed."""
-        return [ratio for motion in self.motions for ratio in self.ratios(variant, reference, motion)]
-
-    def detector(self, variant):
-        """The back ends that have found the landmarks, and their age."""
-        rows = [self.rows[variant, motion][seed] for motion in self.motions for seed in self.seeds]
-        ages = {f"{float(row['detector_age_ms']):g} ms" for row in rows}
-        return ", ".join(sorted({row["detector"] for row in rows}) + sorted(ages))
-
-    def has(self, variant):
-        return variant in self.variants
 
 
 def footer(runs, command, people):
@@ -245,21 +144,70 @@ def verdict(runs):
     yield ""
     mean, p95 = (runs.mean("handcast", None, f"interior_mm_{of}") for of in ("mean", "p95"))
     ratios = runs.ratios_of_all("handcast", "paper")
-    reached = statistics.fmean(ratios) <= GOAL
     yield (f"handcast to the paper's cascade as published: {interval(ratios)}; the goal of {GOAL} is "
-           f"{'reached' if reached else 'missed'}. {mean:.1f} / {p95:.1f} mm; the goal of {GOAL_MM[0]} / {GOAL_MM[1]} mm is "
-           f"{'reached' if mean <= GOAL_MM[0] and p95 <= GOAL_MM[1] else 'missed'}.")
+           f"{reached(statistics.fmean(ratios) <= GOAL)}. {mean:.1f} / {p95:.1f} mm; the goal of {GOAL_MM[0]} / {GOAL_MM[1]} mm is "
+           f"{reached(mean <= GOAL_MM[0] and p95 <= GOAL_MM[1])}.")
     pairs = [("handcast", "paper", "as published"), ("handcast", "paper_network", "with our network for both"),
              ("handcast_mediapipe", "paper_mediapipe", "with MediaPipe for both"),
              ("handcast_model", "paper_model", "with the model for both")]
     worse = [f"{words}, in {lost_cells(runs, ours, theirs)}" for ours, theirs, words in pairs
              if runs.has(ours) and runs.has(theirs)]
     yield "handcast is worse than the paper's cascade: " + "; ".join(worse) + "."
+    yield light_verdict(runs)
+
+
+def light_verdict(runs):
+    """What the light of handcast says about the goals of coverage and spill."""
     light = [(coverage, spill) for motion in runs.motions
              for coverage, spill in zip(runs.of("handcast", motion, "coverage"), runs.of("handcast", motion, "spill"))]
-    yield (f"Coverage of handcast is below the goal of {100 * GOAL_COVERAGE:.0f} % in {sum(c < GOAL_COVERAGE for c, _ in light)} of "
-           f"{len(light)} runs (least {100 * min(c for c, _ in light):.1f} %), its spill above the goal of {100 * GOAL_SPILL:.0f} % in "
-           f"{sum(s > GOAL_SPILL for _, s in light)} (most {100 * max(s for _, s in light):.1f} %).")
+    return (f"Coverage of handcast is below the goal of {100 * GOAL_COVERAGE:.0f} % in {sum(c < GOAL_COVERAGE for c, _ in light)} of "
+            f"{len(light)} runs (least {100 * min(c for c, _ in light):.1f} %), its spill above the goal of {100 * GOAL_SPILL:.0f} % in "
+            f"{sum(s > GOAL_SPILL for _, s in light)} (most {100 * max(s for _, s in light):.1f} %).")
+
+
+def reached(is_reached):
+    return "reached" if is_reached else "missed"
+
+
+def verdict_of_motions(runs):
+    """Where handcast is worse than the paper's cascade, and what its light says."""
+    yield ""
+    yield f"handcast is worse than the paper's cascade in {lost_cells(runs, 'handcast', 'paper')}."
+    yield light_verdict(runs)
+
+
+def verdict_of_fast(runs):
+    """What motions three times as fast say about the goals."""
+    ratios = runs.ratios_of_all("handcast", "paper")
+    delays = [delay for motion in runs.motions for delay in runs.of("handcast", motion, "equivalent_latency_ms")]
+    late = sum(abs(delay) > GOAL_LATENCY_MS for delay in delays)
+    yield from verdict_of_motions(runs)
+    yield (f"handcast to the paper's cascade: {interval(ratios)}; the goal of {GOAL_FAST} is "
+           f"{reached(statistics.fmean(ratios) <= GOAL_FAST)}. The equivalent latency of handcast is {statistics.median(delays):.1f} ms in the "
+           f"median ({min(delays):.1f} to {max(delays):.1f}); the goal of {GOAL_LATENCY_MS} ms is missed in {late} of {len(delays)} runs.")
+
+
+def verdict_of_two_hands(runs):
+    """How much worse two hands are than the same hands alone."""
+    motion = runs.motions[0]
+    ratios = [2 * both / (left + right) for left, right, both in
+              zip(*(runs.of(variant, motion, "interior_mm_mean") for variant in ("left", "right", "both")))]
+    yield ""
+    yield (f"Both hands to the mean of each alone: {interval(ratios)}; the goal of {GOAL_TWO_HANDS} is "
+           f"{reached(statistics.fmean(ratios) <= GOAL_TWO_HANDS)}.")
+
+
+def table_of_jitter(runs):
+    """A row for each variant, and what handcast says about the goal."""
+    motion = runs.motions[0]
+    yield "| | detector | the light, px RMS | the corrected landmarks, camera px |"
+    yield "|---|---|---|---|"
+    for variant in runs.variants:
+        detector = "" if variant == "baseline" else runs.detector(variant)
+        yield (f"| {JITTER[variant][0]} | {detector} | {interval(runs.of(variant, motion, 'jitter_px'))} | "
+               f"{interval(runs.of(variant, motion, 'landmark_jitter_px'))} |")
+    yield ""
+    yield (f"The goal of {GOAL_JITTER_PX} px is {reached(runs.mean('handcast', motion, 'jitter_px') <= GOAL_JITTER_PX)} with our network.")
 
 
 def summary(runs):
@@ -294,6 +242,10 @@ def unseen_tables(runs):
     yield from verdict(runs)
 
 
+# What is said below a table.
+VERDICTS = {"comparison": verdict, "two_hands": verdict_of_two_hands, "motions": verdict_of_motions, "fast": verdict_of_fast}
+
+
 def lines_of(part, path, command, people):
     if part == "unseen_summary":
         runs = Runs(path, ["paper", "paper_network", "handcast"])
@@ -312,13 +264,18 @@ def lines_of(part, path, command, people):
                 if not runs.has(variant):
                     die(f"{path} has no runs of {variant}")
         lines = list(unseen_tables(runs) if part == "unseen" else table_by_variant(part, runs))
-        if part == "comparison":
-            lines += verdict(runs)
+        if part in VERDICTS:
+            lines += VERDICTS[part](runs)
     elif part in BY_MOTION:
         runs = Runs(path, BY_MOTION[part][0])
         lines = list(table_by_motion(part, runs))
+        if part in VERDICTS:
+            lines += VERDICTS[part](runs)
+    elif part == "jitter":
+        runs = Runs(path, JITTER)
+        lines = list(table_of_jitter(runs))
     else:
-        die(f"there is no table '{part}'; there are: {', '.join([*BY_VARIANT, *BY_MOTION, 'summary', 'unseen_summary'])}")
+        die(f"there is no table '{part}'; there are: {', '.join([*BY_VARIANT, *BY_MOTION, 'jitter', 'summary', 'unseen_summary'])}")
     return lines + list(footer(runs, command, people))
 
 

@@ -89,6 +89,25 @@ results "baseline handcast no_tracker" 4 6 >"$work/results.csv"
 "$table" no_tracker "$work/results.csv" "$work/document.md"
 says '| wave | 10.0 / 20.0 | 5.0 / 20.0 | 5.0 / 20.0 | 1.00 (1.00, 1.00) | 99.0 / 0.5 |' || fail "the row of a motion is wrong"
 
+document fast
+results "baseline paper handcast" 4 7 | sed -e '1s/$/,equivalent_latency_ms/; 2,$s/$/,-1/; /^handcast,.*,2,/s/-1$/-7/' >"$work/results.csv"
+"$table" fast "$work/results.csv" "$work/document.md"
+says "to the paper's cascade: 0.55 (0.40, 0.70); the goal of 0.5 is missed" || fail "the verdict on fast motions is wrong"
+says 'is -4.0 ms in the median (-7.0 to -1.0); the goal of 6.6 ms is missed in 1 of 2 runs' || fail "a late hand is not reported"
+says 'in 0 of 2 cells of motion and seed (largest ratio 0.70)' || fail "the cells of fast motions are wrong"
+
+document two_hands
+results "left right both" 5 7 | sed '/^both/s/,10,20,/,12,20,/' >"$work/results.csv"
+"$table" two_hands "$work/results.csv" "$work/document.md"
+says 'each alone: 1.20 (1.20, 1.20); the goal of 1.1 is missed' || fail "the price of a second hand is wrong"
+
+document jitter
+results "baseline paper paper_network handcast handcast_mediapipe" 5 7 |
+  sed -e '1s/$/,jitter_px,landmark_jitter_px/; 2,$s/$/,1.5,0.25/; /^handcast,/s/1.5,0.25$/0.4,0.2/' >"$work/results.csv"
+"$table" jitter "$work/results.csv" "$work/document.md"
+says '| \*\*handcast\*\* | mediapipe, 16.2 ms | 0.40 (0.40, 0.40) | 0.20 (0.20, 0.20) |' || fail "the row of the jitter is wrong"
+says 'The goal of 0.5 px is reached with our network' || fail "the verdict on the jitter is wrong"
+
 results "$comparison" 5 >"$work/results.csv"
 document comparison
 ! "$table" comparison "$work/results.csv" "$work/document.md" 2>/dev/null || fail "one seed has no interval"
@@ -97,7 +116,7 @@ results "$comparison" 5 7 >"$work/results.csv"
 ! "$table" comparison "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a document without the marks is not refused"
 ! "$table" levels "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a table that does not exist is not refused"
 
-for part in comparison unseen levers fidelity causes motions fast no_tracker; do
+for part in comparison unseen levers fidelity causes motions fast two_hands jitter no_tracker; do
   grep -q "<!-- $part: begin -->" "$1/docs/results.md" || fail "docs/results.md has no place for $part"
   [ -e "$1/config/sweeps/$part.toml" ] || fail "there is no plan config/sweeps/$part.toml"
 done

@@ -270,8 +270,8 @@ TEST(Shards, AreWrittenAsIndexAndCount) {
 
 TEST(ShippedPlans, AreWithoutFault) {
   for (const char* name :
-       {"causes", "comparison", "detectors", "failures", "fast", "fidelity", "filters", "ladder",
-        "levers", "motions", "no_tracker", "stress", "times"}) {
+       {"causes", "comparison", "detectors", "failures", "fast", "fidelity", "filters", "jitter",
+        "ladder", "levers", "motions", "no_tracker", "stress", "times", "two_hands", "unseen"}) {
     const auto plan = load_plan(source_root() / "config/sweeps" / (std::string(name) + ".toml"));
     ASSERT_TRUE(plan) << plan.error().what;
     const auto expansion = expand(*plan);

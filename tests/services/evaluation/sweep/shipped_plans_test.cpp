@@ -113,6 +113,13 @@ TEST(ShippedPlans, TheUnseenMotionsAreScoredWithTheRigsOfTheComparison) {
         << name;
 }
 
+TEST(ShippedPlans, JitterIsMeasuredOnTheRigsOfTheComparison) {
+  std::map<std::string, config::Rig> compared;
+  for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
+  for (const auto& [name, rig] : rigs_of("jitter"))
+    EXPECT_THAT(config::differences(rig, compared.at(name)), testing::IsEmpty()) << name;
+}
+
 /// The values of a setting in the grid of a shipped plan.
 std::set<std::string> values_in(const std::string& plan_name, const std::string& setting) {
   const auto plan = load_plan(source_root() / "config/sweeps" / (plan_name + ".toml"));
@@ -128,7 +135,7 @@ std::set<std::string> values_in(const std::string& plan_name, const std::string&
 
 TEST(ShippedPlans, TheTablesOfAccuracyAreOfACarefulInstallation) {
   const auto careful = rigs_of("comparison").front().second;
-  for (const auto* name : {"levers", "fidelity", "motions", "fast", "unseen"})
+  for (const auto* name : {"levers", "fidelity", "motions", "fast", "two_hands", "jitter", "unseen"})
     for (const auto& [variant, rig] : rigs_of(name)) {
       EXPECT_EQ(rig.twin.shape.roll_deg, careful.twin.shape.roll_deg) << name << " " << variant;
       EXPECT_THAT(differences_in(rig, careful, {"twin.geometry.", "twin.tracker.", "twin.image."}),

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The runs of a sweep, and means with intervals over its seeds, for results_table.py."""
+
+import collections
+import copy
+import csv
+import math
+import statistics
+import sys
+
+# Student's t, two-sided 95 %, by degrees of freedom; the normal distribution's beyond.
+T95 = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131,
+       2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045]
+
+
+def die(message):
+    sys.exit(f"results_table.py: {message}")
+
+
+def mean_and_interval(values):
+    """The mean of independent values and half of its 95 % interval."""
+    freedom = len(values) - 1
+    t = T95[freedom - 1] if freedom <= len(T95) else 1.96
+    return statistics.fmean(values), t * statistics.stdev(values) / math.sqrt(len(values))
+
+
+def interval(values):
+    """The mean with its interval; of two values the mean with both, as an interval of two says nothing."""
+    if len(values) < 3:
+        return f"{statistics.fmean(values):.2f} ({', '.join(f'{value:.2f}' for value in values)})"
+    return "{:.2f} ± {:.2f}".format(*mean_and_interval(values))
+
+
+def listed(seeds):
+    """1, 2, 3, 7 as "1-3, 7"."""
+    spans = []
+    for seed in seeds:
+        if spans and seed == spans[-1][1] + 1:
+            spans[-1][1] = seed
+        else:
+            spans.append([seed, seed])
+    return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
+
+
+class Runs:
+    """The figures of a sweep, by variant, motion and seed; if the sweep has several meshes, a motion is a pair of both. Seeds of
+    which a run failed are left out, and variants that have no run at all."""
+
+    def __init__(self, path, wanted):
+        self.rows = collections.defaultdict(dict)
+        self.motions, self.meshes, self.errors = [], [], {}
+        with open(path, newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(line for line in file if not line.startswith("#")):
+                motion = row["twin.motion"].split("/")[-1].removeprefix("builtin:")
+                if mesh := row.get("twin.shape.mesh"):
+                    motion = (mesh, motion)
+                    if mesh not in self.meshes:
+                        self.meshes.append(mesh)
+                if motion not in self.motions:
+                    self.motions.append(motion)
+                self.rows[row["variant"], motion][int(row["twin.seed"])] = row
+                if not row["interior_mm_mean"]:
+                    self.errors.setdefault(row["variant"], row["error"])
+        if not self.motions:
+            die(f"{path} has no runs")
+        self.variants = [variant for variant in wanted if any(
+            row["interior_mm_mean"] for motion in self.motions for row in self.rows[variant, motion].values())]
+        self.absent = [variant for variant in wanted if variant not in self.variants]
+        seeds = {seed for runs in self.rows.values() for seed in runs}
+        self.seeds = sorted(seed for seed in seeds
+                            if all(self.rows[variant, motion].get(seed, {}).get("interior_mm_mean")
+                                   for variant in self.variants for motion in self.motions))
+        self.left_out = sorted(seeds - set(self.seeds))
+        if len(self.seeds) < 2:
+            die(f"{path} has fewer than two seeds with all runs")
+
+    def of_mesh(self, mesh):
+        """The same runs, of one mesh alone."""
+        part = copy.copy(self)
+        part.motions = [motion for motion in self.motions if motion[0] == mesh]
+        return part
+
+    def of(self, variant, motion, name):
+        """The figure `name` for each seed."""
+        return [float(self.rows[variant, motion][seed][name]) for seed in self.seeds]
+
+    def mean(self, variant, motion, name):
+        """The mean over the seeds, or over all motions and seeds if `motion` is None."""
+        motions = self.motions if motion is None else [motion]
+        return statistics.fmean(statistics.fmean(self.of(variant, each, name)) for each in motions)
+
+    def both(self, variant, motion, kind="interior"):
+        """Mean and p95 in mm."""
+        return f"{self.mean(variant, motion, kind + '_mm_mean'):.1f} / {self.mean(variant, motion, kind + '_mm_p95'):.1f}"
+
+    def ratios(self, variant, reference, motion):
+        """The ratio of the mean errors for each seed."""
+        return [ours / theirs for ours, theirs in zip(self.of(variant, motion, "interior_mm_mean"),
+                                                      self.of(reference, motion, "interior_mm_mean"))]
+
+    def ratios_of_all(self, variant, reference):
+        """The mean of these ratios over all motions, for each seed."""
+        return [statistics.fmean(of_seed) for of_seed in
+                zip(*(self.ratios(variant, reference, motion) for motion in self.motions))]
+
+    def cells(self, variant, reference):
+        """The ratios of all cells of motion and seed."""
+        return [ratio for motion in self.motions for ratio in self.ratios(variant, reference, motion)]
+
+    def detector(self, variant):
+        """The back ends that have found the landmarks, and their age."""
+        rows = [self.rows[variant, motion][seed] for motion in self.motions for seed in self.seeds]
+        ages = {f"{float(row['detector_age_ms']):g} ms" for row in rows}
+        return ", ".join(sorted({row["detector"] for row in rows}) + sorted(ages))
+
+    def has(self, variant):
+        return variant in self.variants
