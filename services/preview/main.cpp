@@ -35,7 +35,7 @@ static int run_verb(int argc, char** argv) {
   if (::nice(10) == -1) fmt::print(stderr, "handcast preview: the priority cannot be lowered\n");
   const auto done = show(parsed->options);
   if (!done) return complain(exit_code_of(done.error()), done.error().what);
-  if (!parsed->options.shot.empty()) fmt::print("wrote {}\n", parsed->options.shot);
+  if (!parsed->options.shot.empty()) fmt::print("wrote {}\n", parsed->options.shot.string());
   return kExitDone;
 }
 
