@@ -26,8 +26,8 @@ inline std::string spoken_range(const std::string& range, std::string_view betwe
 class VerbHelp : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override {
-    if (option->get_type_size() == 0 || option->get_positional()) return "";
     const auto kind = option->get_type_name();
+    if (kind.empty() || option->get_positional()) return "";  // a flag has no kind
     const auto begin = kind.find('{'), end = kind.rfind('}');
     if (begin != std::string::npos && end != std::string::npos)
       return " " + words_of(kind.substr(begin + 1, end - begin - 1));

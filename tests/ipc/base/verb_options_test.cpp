@@ -49,9 +49,11 @@ TEST(VerbOptions, AProgramRunsOnlyIfNothingWasToBeAnswered) {
 }
 
 TEST(VerbOptions, HelpSaysRangesAndDefaultsInWords) {
-  EXPECT_THAT(told({"--help"}), AllOf(HasSubstr("--after N"), HasSubstr("--side left|right"),
-                                      HasSubstr("(0.1 to 3600; default: 2)"),
-                                      Not(HasSubstr("FLOAT")), Not(HasSubstr("TEXT"))));
+  EXPECT_THAT(told({"--help"}),
+              AllOf(HasSubstr("--after N"), HasSubstr("--side left|right"),
+                    HasSubstr("--shot VALUE"), HasSubstr("--version "),
+                    Not(HasSubstr("--version VALUE")), HasSubstr("(0.1 to 3600; default: 2)"),
+                    Not(HasSubstr("FLOAT")), Not(HasSubstr("TEXT"))));
 }
 
 }  // namespace
