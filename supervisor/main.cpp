@@ -8,6 +8,7 @@
 #include <array>
 #include <utility>
 
+#include "ipc/base/join.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/suggest.hpp"
 #include "ipc/base/version.hpp"
@@ -46,9 +47,10 @@ int become_program(const std::string& verb, const Arguments& arguments) {
     execv(program.c_str(), pointers.data());
   }
   const auto names = verb_names();
+  const auto nearest = suggest(verb, {names.begin(), names.end()});
   return complain(kExitUsage,
-                  fmt::format("there is no verb '{}'{}; `handcast help` lists the verbs", verb,
-                              suggest(verb, {names.begin(), names.end()})));
+                  fmt::format("there is no verb '{}'{}", verb,
+                              nearest.empty() ? "; there are: " + join(names, ", ") : nearest));
 }
 
 const VerbEntry* find_verb(const std::string& name) {
