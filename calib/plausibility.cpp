@@ -68,6 +68,22 @@ std::string fault_of_homography(const Calibration& calibration) {
   return {};
 }
 
+/// A projector lights what is a little nearer or farther than the plane of the homography, too.
+void check_parallax(const Calibration& calibration, std::string_view file, config::Faults& faults) {
+  for (const double share : {0.85, 1.15}) {
+    auto other = calibration;
+    other.projector_from_camera = calibration.homography_at(share * calibration.plane_m);
+    const bool is_regular = std::abs(glm::determinant(other.projector_from_camera)) > 1e-9;
+    if (is_regular && fault_of_homography(other).empty()) continue;
+    faults.add(
+        fmt::format("{}: projector.parallax: at {:.2f} m, where the plane of the homography "
+                    "is at {:.2f} m, the light would miss the camera's image. Is it in "
+                    "pixels times metres?",
+                    file, share * calibration.plane_m, calibration.plane_m));
+    return;
+  }
+}
+
 void check_size(std::string_view what, double width_px, double height_px, std::string_view file,
                 config::Faults& faults) {
   if (width_px * height_px > kMostArea_px2)
@@ -126,7 +142,26 @@ void check_camera(std::string_view what, const CameraModel& camera, std::string_
                     file, what));
 }
 
-/// Two cameras at one place see no depth.
+/// True if the second camera sees a part of what the first one sees within some metres.
+bool see_the_same(const CameraModel& first, const SecondCamera& second) {
+  constexpr int kSteps = 8;
+  for (const double depth_m : {0.15, 0.25, 0.4, 0.6, 0.9, 1.4, 2.0, 3.0, 5.0})
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; j <= kSteps; ++j) {
+        const glm::dvec2 px(j * (first.width_px - 1) / kSteps, i * (first.height_px - 1) / kSteps);
+        const glm::dvec3 m((px.x - first.cx_px) / first.fx_px * depth_m,
+                           (px.y - first.cy_px) / first.fy_px * depth_m, depth_m);
+        const glm::dvec3 there(second.from_camera * glm::dvec4(m, 1));
+        if (!(there.z > 0)) continue;
+        const auto seen = second.camera.project(there);
+        if (seen.x >= 0 && seen.y >= 0 && seen.x < second.camera.width_px &&
+            seen.y < second.camera.height_px)
+          return true;
+      }
+  return false;
+}
+
+/// Two cameras at one place see no depth, and those that see nothing in common see no hand.
 void check_pair(const Calibration& calibration, std::string_view file, config::Faults& faults) {
   constexpr double kLeastApart_m = 0.005;
   const auto& second = *calibration.camera2;
@@ -137,6 +172,11 @@ void check_pair(const Calibration& calibration, std::string_view file, config::F
         fmt::format("{}: camera2_from_camera: the cameras are less than {} mm apart, and see no "
                     "depth. Is it in metres?",
                     file, 1e3 * kLeastApart_m));
+  else if (faults.empty() && !see_the_same(calibration.camera, second))
+    faults.add(fmt::format(
+        "{}: camera2_from_camera: the second camera looks away: it sees nothing of what "
+        "the first one sees. Is it the inverse, camera_from_camera2?",
+        file));
 }
 
 }  // namespace
@@ -153,6 +193,8 @@ void check_plausible(const Calibration& calibration, std::string_view file,
         "{}: projector: the rows x, y, w of the homography are linearly dependent", file));
   else if (const auto fault = fault_of_homography(calibration); !fault.empty())
     faults.add(fmt::format("{}: projector: {}", file, fault));
+  else
+    check_parallax(calibration, file, faults);
 }
 
 }  // namespace handcast::calib

@@ -144,8 +144,8 @@ Result<LightDelay> fit_light_delay(std::span<const Toggle> toggles,
                                    std::span<const Brightness> images) {
   std::vector<Curve> curves;
   if (images.empty() || toggles.size() < kLeastToggles)
-    return fail(Errc::bad_data, fmt::format("{} changes of the light and {} images are too few",
-                                            toggles.size(), images.size()));
+    return fail(Errc::unavailable, fmt::format("{} changes of the light and {} images are too few",
+                                               toggles.size(), images.size()));
   const double contrast = contrast_of(images);
   if (!(contrast >= kLeastContrast))
     return fail(Errc::bad_data,
@@ -156,15 +156,19 @@ Result<LightDelay> fit_light_delay(std::span<const Toggle> toggles,
     if (const auto near = around(toggles, i, images); toggles[i].is_sure && near.size() >= 2)
       curves.push_back(curve_of(toggles[i], near, contrast));
   if (curves.size() < kLeastToggles)
-    return fail(Errc::bad_data, "the light changed when the camera sent no images");
+    return fail(Errc::unavailable,
+                fmt::format("only {} of {} changes of the light were seen with their images: the "
+                            "computer is too busy, or the camera too slow",
+                            curves.size(), toggles.size()));
   auto delay = with_interval(curves, contrast);
   const double error_ms = median_error_ms(images);
   delay.low_ms -= error_ms;
   delay.high_ms += error_ms;
   if (std::abs(delay.delay_ms) > kLongestDelay_ms - 1)
-    return fail(Errc::bad_data, fmt::format("the light comes more than {:g} ms from the time that "
-                                            "the projector reports",
-                                            kLongestDelay_ms));
+    return fail(Errc::bad_config,
+                fmt::format("the light comes more than {:g} ms from the time that "
+                            "the projector reports: correct projector.latency_ms",
+                            kLongestDelay_ms));
   return delay;
 }
 

@@ -40,9 +40,9 @@ inline constexpr double kLongestDelay_ms = 250;
 /// toggle, for delays in steps of 0.1 ms (least squares). The interval is that of 400 resamples of
 /// the toggles (Efron & Tibshirani 1993, percentiles), widened to all delays that explain the
 /// images equally well, and by the median error of the images' times. Toggles must be in order of
-/// time and more than two images apart, the images in order of time. Errors: bad_data (fewer than 6
-/// toggles with images; the camera does not see the light; the delay is longer than
-/// kLongestDelay_ms).
+/// time and more than two images apart, the images in order of time. Errors: bad_data (the camera
+/// does not see the light), unavailable (fewer than 6 toggles with images), bad_config (the delay
+/// is longer than kLongestDelay_ms).
 Result<LightDelay> fit_light_delay(std::span<const Toggle> toggles,
                                    std::span<const Brightness> images);
 

@@ -9,8 +9,12 @@ namespace handcast::calibrate {
 /// space of the first one: there is no tracker whose place could be wrong.
 bool has_need_of(const config::Rig& rig, Step step);
 
-/// Errors: bad_config (a step, or --correct, was asked for that needs a second camera or a tracker
-/// which the rig does not have).
+/// The option that compares something with the calibration in use; null if there is none.
+const char* what_compares(const Options& options);
+
+/// Errors: bad_config (a step, --correct, --reflector or --camera2 was asked for, which needs a
+/// second camera or a tracker that the rig does not have; what_compares(), and the rig names no
+/// calibration).
 Result<void> check_steps(const Options& options, const config::Rig& rig);
 
 }  // namespace handcast::calibrate

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "ipc/base/clock.hpp"
 
@@ -22,6 +27,13 @@ class Harvest {
     if (share > share_) waited_ns_ = 0;
     share_ = share;
     return share < 1 && (share < kEnough || waited_ns_ < seconds_to_ns(kNothingNew_s));
+  }
+  /// What to do next, and when it ends. `place`: where the hand was not yet.
+  std::string advice(const std::string& place) const {
+    if (share_ < kEnough) return place;
+    const double left_s = std::max(0.0, kNothingNew_s - ns_to_seconds(waited_ns_));
+    return fmt::format("Enough was seen; it ends in {:.0f} s. Better still: {}", std::ceil(left_s),
+                       place);
   }
 
  private:

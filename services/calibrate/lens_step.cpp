@@ -10,7 +10,7 @@
 #include "calib/lens/coverage.hpp"
 #include "calib/lens/lens_fit.hpp"
 #include "services/calibrate/lens_memory.hpp"
-#include "services/calibrate/pieces.hpp"
+#include "services/calibrate/pictures.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -47,9 +47,8 @@ Result<std::vector<calib::BoardView>> take_views(Desk& desk, const Ring& ring,
       break;
     }
     const double views_share = static_cast<double>(views.size()) / kEnoughViews;
-    progress.show(
-        std::min({0.99, coverage.share(), views_share}),
-        views.empty() ? "Hold the board still in front of the camera" : coverage.advice());
+    progress.show(std::min({0.99, coverage.share(), views_share}),
+                  lens_advice(views.size(), kEnoughViews, coverage.advice()));
     const auto frame = frames->latest(Deadline::in(200ms));
     if (!frame && frame.error().code != Errc::timeout) return tl::make_unexpected(frame.error());
     if (!frame) continue;
@@ -65,9 +64,15 @@ std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardV
   std::vector<glm::dvec2> dots;
   for (const auto& view : views)
     dots.insert(dots.end(), view.image_px.begin(), view.image_px.end());
-  return dots_svg(
-      fit.camera.width_px, fit.camera.height_px, dots,
-      fmt::format("Where the board was seen: {} corners in {} images.", dots.size(), views.size()));
+  std::vector<Bar> errors;
+  for (const auto& view : fit.views) errors.push_back({view.rms_px, !view.rejected.empty()});
+  return dots_svg(fit.camera.width_px, fit.camera.height_px, dots,
+                  fmt::format("Where the board was seen: {} corners in {} images. White parts are "
+                              "extrapolated.",
+                              dots.size(), views.size())) +
+         bars_svg(errors, "px",
+                  "How far the corners of each image are from where the lens has them, root mean "
+                  "square. Those in the other colour were left out.");
 }
 
 Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
@@ -85,6 +90,12 @@ Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> 
     outcome.findings.insert(outcome.findings.begin(),
                             "this lens is not well known yet: is the board flat, and was it held "
                             "near and far, in all corners, and tilted?");
+  outcome.meaning = fmt::format(
+      "Held out: how far corners are from where a fit that has not seen their image expects them; "
+      "good is at most {} px. +-: with 95 % probability the focal length is within; good is at "
+      "most "
+      "{:g} %",
+      kGood_px, 100 * kGoodFocal);
   outcome.pictures = pictures_of(fit, views);
   return outcome;
 }
@@ -102,6 +113,16 @@ Result<Outcome> measure(Desk& desk, const Ring& ring, calib::CameraModel& camera
 }
 
 }  // namespace
+
+std::string lens_advice(std::size_t views, std::size_t wanted, const std::string& place) {
+  if (views == 0) return "Hold the board still in front of the camera";
+  if (place.empty())
+    return views + 1 >= wanted
+               ? "Almost done: one more image, at another place"
+               : fmt::format("All places were seen: {} more images, tilted and at other places",
+                             wanted - views);
+  return views >= wanted ? "Almost done: " + place : place;
+}
 
 Result<Outcome> measure_lens(Desk& desk) { return measure(desk, kFirst, desk.draft.camera); }
 

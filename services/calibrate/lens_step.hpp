@@ -14,6 +14,10 @@ Result<Outcome> measure_lens(Desk& desk);
 /// one camera).
 Result<Outcome> measure_second_lens(Desk& desk);
 
+/// What to do next. `wanted`: images that are enough; `place`: where the board was not seen yet, or
+/// how it was not tilted; empty if it was everywhere.
+std::string lens_advice(std::size_t views, std::size_t wanted, const std::string& place);
+
 /// The image of a frame. Valid as long as the frame.
 inline calib::GreyView view_of(const msg::CameraFrame& frame) {
   const auto width = static_cast<int>(frame.width_px);

@@ -132,6 +132,9 @@ Result<Outcome> measure_light(Desk& desk) {
         "background would be " +
         std::to_string(threshold_between(*light)));
   outcome.findings.insert(outcome.findings.begin(), advice.begin(), advice.end());
+  outcome.meaning =
+      "Grey values are medians of 0 (black) to 255 (saturated). The projector's light: full light "
+      "less none on the hand, which a filter before the camera should keep near 0";
   outcome.pictures = histogram_svg(*light);
   return outcome;
 }

@@ -10,6 +10,7 @@
 #include "calib/board/board_name.hpp"
 #include "config/settings/choice.hpp"
 #include "ipc/base/verb_options.hpp"
+#include "services/calibrate/combinations.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -21,7 +22,7 @@ constexpr const char* kSummary =
     "calibration is kept.\n\n"
     "Print the board first: handcast calibrate --print-board board.pdf";
 
-constexpr double kCheck_s = 12;  ///< how long --check looks at the hand, and at the board
+constexpr double kCheck_s = 10;  ///< how long --check looks at the hand, and at the board
 
 /// "1024x768", of a size that a calibration file may have.
 Result<Size> parse_size(const std::string& flag, const std::string& text) {
@@ -42,25 +43,15 @@ Result<Size> parse_size(const std::string& flag, const std::string& text) {
                           text, kLeast_px, kMost_px));
 }
 
-/// What the program needs to run.
-Result<void> check(const Options& options) {
-  if (!options.board_pdf.empty()) return {};
-  if (options.rig_file.empty())
-    return fail(Errc::bad_config, fmt::format("name the rig file: handcast calibrate RIG.toml{}",
-                                              options.check             ? " --check"
-                                              : options.correct         ? " --correct"
-                                              : options.undo            ? " --undo"
-                                              : !options.points.empty() ? " --points FOLDER"
-                                                                        : ""));
-  const int alone =
-      int{options.check} + int{options.correct} + int{options.undo} + int{!options.points.empty()};
-  if (alone > 1)
-    return fail(Errc::bad_config,
-                "--check, --points, --correct and --undo do different things; choose one");
-  if (alone == 1 && !options.steps.empty())
-    return fail(Errc::bad_config,
-                "--check, --points, --correct and --undo measure no single steps; leave them out");
-  return {};
+/// Error bad_config: no rig file, although one is needed.
+Result<void> check_rig_file(const Options& options) {
+  if (!options.board_pdf.empty() || !options.rig_file.empty()) return {};
+  return fail(Errc::bad_config, fmt::format("name the rig file: handcast calibrate RIG.toml{}",
+                                            options.check             ? " --check"
+                                            : options.correct         ? " --correct"
+                                            : options.undo            ? " --undo"
+                                            : !options.points.empty() ? " --points FOLDER"
+                                                                      : ""));
 }
 
 }  // namespace
@@ -76,22 +67,29 @@ Result<Options> parse(int argc, char** argv) {
                  "default: all that are left");
   app.add_option("--set", options.settings, "path=value: a setting that overrides the file's")
       ->allow_extra_args(false);
-  app.add_option("--board", board, "The board: KIND:COLUMNSxROWS:MM, the size of a square in mm")
+  app.add_option("--board", board,
+                 "The board that you have: KIND:COLUMNSxROWS:MM; charuco, checkerboard or circles, "
+                 "how many squares or circles, and the side of a square in mm (measure it)")
       ->capture_default_str();
-  app.add_option("--print-board", options.board_pdf, "Writes the board as a PDF, and ends");
+  app.add_option("--print-board", options.board_pdf,
+                 "Writes the board to this file as a PDF to be printed, and ends");
   app.add_option("--camera", camera,
-                 "Size of the camera's images, for a rig without a calibration, or for other "
-                 "devices than the calibrated ones");
-  app.add_option("--camera2", camera2,
-                 "Size of the second camera's images, if they are of another size than the first "
-                 "one's and not calibrated");
+                 "Size of the camera's images, e.g. 1280x1024: only for a rig without a "
+                 "calibration, or for other devices than the calibrated ones");
+  app.add_option(
+      "--camera2", camera2,
+      "Size of the second camera's images, e.g. 640x480: only if it is not calibrated yet "
+      "and not that of the first camera");
   app.add_option("--projector", projector,
-                 "Size of the projector's image, for a rig without a calibration, or for other "
-                 "devices than the calibrated ones");
+                 "Size of the projector's image, e.g. 1920x1080: only for a rig without a "
+                 "calibration, or for other devices than the calibrated ones");
   app.add_option("--folder", options.folder,
                  "Where pictures, results and the report go; default: RIG.calibration");
   const auto* most_s =
-      app.add_option("--most-s", options.most_s, "How long a step may take, s; with --check 12")
+      app.add_option("--most-s", options.most_s,
+                     "Ends a step after so many seconds, even if it is not done, with what was "
+                     "seen; more time for a slow hand or a dark room. With --check, 10 for each "
+                     "part")
           ->check(CLI::Range(5, 3600))
           ->capture_default_str();
   app.add_flag(
@@ -102,10 +100,13 @@ Result<Options> parse(int argc, char** argv) {
   app.add_option("--photodiode", options.photodiode,
                  "An ALSA capture device with a photodiode in the projector's light: the step "
                  "light measures with it when the light comes, for a camera that does not see it");
-  app.add_flag("--yes", options.yes, "Starts each step without waiting for a key");
-  app.add_flag("--restart", options.restart, "Forgets what was measured before");
-  app.add_flag("--check", options.check,
-               "Measures today's error of the calibration in 30 s, and changes nothing");
+  app.add_flag("--yes", options.yes, "Starts each step at once, without waiting for Enter");
+  app.add_flag("--restart", options.restart,
+               "Forgets what was measured in this folder, and measures all steps again");
+  app.add_flag(
+      "--check", options.check,
+      "Says in half a minute whether camera, tracker, projector or second camera have moved "
+      "since they were calibrated, and changes nothing; the rig may be up");
   app.add_option("--reflector", options.reflector_mm,
                  "Measures the tracker by a retro-reflector of this diameter, mm, on the tip of an "
                  "index finger, in place of the landmarks of a hand")
@@ -113,9 +114,12 @@ Result<Options> parse(int argc, char** argv) {
   app.add_option("--points", options.points,
                  "Says how good recorded points of a reflector are, and ends: a folder with "
                  "2dpoints.npy (px), 3dpoints.npy (mm) and perhaps timestamps.npy (us)");
-  app.add_flag("--correct", options.correct,
-               "Corrects a tracker that has moved a little, by still hands, while the rig is up");
-  app.add_flag("--undo", options.undo, "Takes back the last change of the calibration file");
+  app.add_flag(
+      "--correct", options.correct,
+      "Corrects a tracker that has moved a little, by hands that are held still, while the "
+      "rig is up; asks before it writes");
+  app.add_flag("--undo", options.undo,
+               "Puts back the calibration file that was there before the last change");
   auto text = parse_options(app, argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   if (!(options.text = std::move(*text)).empty()) return options;
@@ -142,7 +146,9 @@ Result<Options> parse(int argc, char** argv) {
   }
   if (options.folder.empty() && !options.rig_file.empty())
     options.folder = std::filesystem::path(options.rig_file).replace_extension(".calibration");
-  return check(options).map([&] { return options; });
+  auto fits = check_combination(app, options);
+  if (fits) fits = check_rig_file(options);
+  return fits.map([&] { return options; });
 }
 
 }  // namespace handcast::calibrate

@@ -66,8 +66,18 @@ Result<OwnRig> OwnRig::start(const std::filesystem::path& rig_file, const std::s
   return rig;
 }
 
+Result<OwnRig> OwnRig::beside(const std::string& name) {
+  if (auto streams = client::stream_names(name); !streams)
+    return tl::make_unexpected(streams.error());
+  OwnRig rig(0, {});
+  rig.is_other_ = true;
+  return rig;
+}
+
 OwnRig::OwnRig(OwnRig&& other) noexcept
-    : child_(std::exchange(other.child_, 0)), log_(std::move(other.log_)) {}
+    : child_(std::exchange(other.child_, 0)),
+      is_other_(other.is_other_),
+      log_(std::move(other.log_)) {}
 
 void OwnRig::stop() {
   const auto child = std::exchange(child_, 0);
@@ -78,6 +88,7 @@ void OwnRig::stop() {
 
 Result<void> OwnRig::check() {
   if (auto on = not_stopped(); !on) return on;
+  if (is_other_) return {};  // the streams tell if it ends
   if (::waitpid(child_, nullptr, WNOHANG) == 0) return {};
   child_ = 0;
   return fail(Errc::unavailable, "the rig has ended: " + last_words());

@@ -10,7 +10,8 @@
 
 namespace handcast::calibrate {
 
-/// A rig that runs as long as this object: `handcast up` as a child process. One thread.
+/// The rig that is measured: `handcast up` as a child process, which runs as long as this object,
+/// or one that was up before and goes on. One thread.
 class OwnRig {
  public:
   /// Starts the rig of a file with settings of --set, and waits until its camera has sent an image.
@@ -19,14 +20,16 @@ class OwnRig {
   static Result<OwnRig> start(const std::filesystem::path& rig_file, const std::string& name,
                               const std::vector<std::string>& settings,
                               const std::filesystem::path& log);
+  /// A rig that is up, and goes on when this object ends. Errors: those of client::stream_names().
+  static Result<OwnRig> beside(const std::string& name);
   OwnRig(OwnRig&& other) noexcept;
   OwnRig& operator=(OwnRig&&) = delete;
   ~OwnRig() { stop(); }
 
-  /// Stops the rig and waits until it is down.
+  /// Stops a rig that was started and waits until it is down.
   void stop();
 
-  /// Error unavailable if the rig has ended, or this program was asked to stop.
+  /// Error unavailable if a rig that was started has ended, or this program was asked to stop.
   Result<void> check();
 
  private:
@@ -34,7 +37,8 @@ class OwnRig {
   Result<void> wait_for_images(const std::string& name);
   std::string last_words() const;
 
-  pid_t child_;  ///< 0: none
+  pid_t child_;            ///< 0: none
+  bool is_other_ = false;  ///< it was up before
   std::filesystem::path log_;
 };
 

@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <span>
+#include <vector>
 
 #include "services/calibrate/lens_memory.hpp"
 #include "services/calibrate/pair_views.hpp"
-#include "services/calibrate/pieces.hpp"
+#include "services/calibrate/pictures.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -41,6 +42,15 @@ std::string picture_of(const calib::CameraModel& camera, std::span<const calib::
                               dots.size(), views.size()));
 }
 
+std::string errors_of(const calib::PairFit& fit) {
+  std::vector<Bar> errors;
+  for (const auto& view : fit.views) errors.push_back({view.rms_px, !view.rejected.empty()});
+  return bars_svg(
+      errors, "px",
+      "How far the corners of each view are from where the fit has them in both images, "
+      "root mean square. Views without a bar were left out.");
+}
+
 std::string half_widths(const std::array<calib::Spread, 3>& spreads, const char* unit) {
   const auto half = [](const calib::Spread& spread) { return (spread.high - spread.low) / 2; };
   return fmt::format("{:.2f} {:.2f} {:.2f} {}", half(spreads[0]), half(spreads[1]),
@@ -63,6 +73,11 @@ void describe(const calib::PairFit& fit, Outcome& outcome) {
       "95 % intervals of the second camera right, down and forward of the first: +- {}; "
       "of its rotation about these: +- {}",
       half_widths(fit.place_mm, "mm"), half_widths(fit.turn_deg, "degrees")));
+  outcome.meaning = fmt::format(
+      "Held out: of views that the fit has not seen; good are at most {} px and {} mm. The middle "
+      "of "
+      "the volume: 95 % of the fits have it within this; good is at most {} mm",
+      kGood_px, kGood_mm, kGoodMiddle_mm);
   outcome.is_good =
       fit.held_out_px <= kGood_px && fit.held_out_mm <= kGood_mm && fit.middle_mm <= kGoodMiddle_mm;
   if (!outcome.is_good)
@@ -87,7 +102,8 @@ Result<Outcome> measure_pair(Desk& desk) {
   second->from_camera = fit->second_from_first;
   describe(*fit, outcome);
   outcome.pictures = picture_of(desk.draft.camera, *views, &calib::PairView::first, "first") +
-                     picture_of(second->camera, *views, &calib::PairView::second, "second");
+                     picture_of(second->camera, *views, &calib::PairView::second, "second") +
+                     errors_of(*fit);
   return outcome;
 }
 

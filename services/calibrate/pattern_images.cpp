@@ -66,15 +66,24 @@ Result<calib::LightDelay> PatternImages::measure_delay_roughly() {
   return measure_delay(kFirstToggles);
 }
 
+/// For how long a change must be held to be seen.
+double PatternImages::hold_s_of(const calib::LightDelay& delay) const {
+  const double longest_s = 1e-3 * std::max(std::abs(delay.low_ms), std::abs(delay.high_ms));
+  return std::max(kLeastHold_s, 2.5 * longest_s + 4 / desk_.rig.camera.rate_hz);
+}
+
 Result<calib::LightDelay> PatternImages::measure_delay(std::size_t most_toggles) {
   Watched watched;
   if (auto done = toggle(kFirstToggles, kFirstHold_s, watched); !done)
     return tl::make_unexpected(done.error());
   auto delay = calib::fit_light_delay(watched.toggles, watched.images);
-  while (delay && delay->high_ms - delay->low_ms > kGoodInterval_ms &&
-         watched.toggles.size() < most_toggles) {
-    const double longest_s = 1e-3 * std::max(std::abs(delay->low_ms), std::abs(delay->high_ms));
-    const double hold_s = std::max(kLeastHold_s, 2.5 * longest_s + 4 / desk_.rig.camera.rate_hz);
+  // Of a busy computer, more changes are needed until enough were seen.
+  const auto needs_more = [&] {
+    return delay ? delay->high_ms - delay->low_ms > kGoodInterval_ms
+                 : delay.error().code == Errc::unavailable;
+  };
+  while (needs_more() && watched.toggles.size() < (delay ? most_toggles : kMostToggles)) {
+    const double hold_s = delay ? hold_s_of(*delay) : kFirstHold_s;
     if (auto done = toggle(kMoreToggles, hold_s, watched); !done)
       return tl::make_unexpected(done.error());
     delay = calib::fit_light_delay(watched.toggles, watched.images);

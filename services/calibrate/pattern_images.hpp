@@ -19,8 +19,8 @@ class PatternImages {
   static Result<PatternImages> open(Desk& desk);
 
   /// Measures by a light that toggles how much later than reported it comes, which image() needs.
-  /// Takes 4 to 15 s: until the interval is narrow. Errors: those of calib::fit_light_delay(), and
-  /// of the streams.
+  /// Takes 4 to 15 s: until the interval is narrow, or enough was seen. Errors: those of
+  /// calib::fit_light_delay(), and of the streams.
   Result<calib::LightDelay> measure_delay();
   /// The same in 4 s, for image() alone.
   Result<calib::LightDelay> measure_delay_roughly();
@@ -41,6 +41,7 @@ class PatternImages {
       : desk_(desk), frames_(std::move(frames)) {}
   void fill(std::uint8_t level, std::uint8_t* levels) const;
   Result<void> toggle(int count, double hold_s, Watched& watched);
+  double hold_s_of(const calib::LightDelay& delay) const;
   Result<calib::LightDelay> measure_delay(std::size_t most_toggles);
 
   Desk& desk_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "config/settings/choice.hpp"
 #include "services/evaluation/page/document.hpp"
@@ -13,80 +14,105 @@ namespace handcast::calibrate {
 namespace {
 
 constexpr const char* kStyle =
-    "svg{border:1px solid currentColor;max-width:100%;height:auto}"
-    "svg circle,svg rect,svg text{fill:currentColor}";
+    "svg{max-width:100%;height:auto;background:var(--panel);border:1px solid var(--line)}"
+    "svg.image{border-color:var(--quiet)}"
+    "svg text{fill:currentColor}svg circle,svg rect{fill:var(--ours)}"
+    "svg rect.out,svg .second{fill:var(--cascade)}svg .third{fill:var(--baseline)}"
+    ".pictures{display:flex;flex-wrap:wrap;gap:1.2rem 2rem;align-items:flex-start}"
+    "figure{margin:0;flex:0 1 auto;max-width:min(100%,460px)}figure.broad{max-width:100%}"
+    "figcaption{font-size:.85rem;color:var(--quiet);margin-top:.3rem}"
+    ".verdict{font-size:1.1rem;border-left:4px solid var(--ours);padding-left:.8rem}"
+    ".verdict.open{border-color:var(--cascade)}"
+    "code{background:var(--panel);border:1px solid var(--line);border-radius:3px;padding:0 .25em;"
+    "overflow-wrap:anywhere}"
+    "header dl{display:block}header dl div{margin-top:.5rem}h2 .quiet{font-weight:400}"
+    "ul{padding-left:1.2rem}";
 
-constexpr int kCell_px = 10, kGap_px = 20, kText_px = 24;  ///< of the pictures of errors
+const char* title_of(Step step) {
+  switch (step) {
+    case Step::lens:
+      return "Lens of the camera";
+    case Step::lens2:
+      return "Lens of the second camera";
+    case Step::pair:
+      return "Place of the second camera";
+    case Step::screen:
+      return "Projector";
+    case Step::tracker:
+      return "Place of the tracker";
+    case Step::light:
+      return "Light on the hand";
+  }
+  return "";
+}
 
-/// One depth of errors_svg(). `largest_px`: what is drawn darkest.
-std::string depth_svg(const calib::ErrorVolume& errors, std::size_t depth, double largest_px) {
-  constexpr double kInvisible = 0.005;
-  std::string svg;
-  double largest_here_px = 0;
-  for (int row = 0; row < errors.rows; ++row)
-    for (int column = 0; column < errors.columns; ++column) {
-      const double error_px = errors.at(depth, row, column);
-      largest_here_px = std::max(largest_here_px, error_px);
-      if (const double shade = error_px / std::max(largest_px, 1e-9); shade > kInvisible)
-        svg += fmt::format("<rect x='{}' y='{}' width='{}' height='{}' fill-opacity='{:.2f}'/>",
-                           column * kCell_px, row * kCell_px, kCell_px, kCell_px, shade);
-    }
-  return svg + fmt::format("<text x='2' y='{}' font-size='14'>{:.2f} m: up to {:.1f} px</text>",
-                           errors.rows * kCell_px + 17, errors.depths_m[depth], largest_here_px);
+std::string with_plus_minus(std::string text) {
+  constexpr std::string_view kTyped = "+-", kPrinted = "±";
+  for (auto at = text.find(kTyped); at != std::string::npos; at = text.find(kTyped, at))
+    text.replace(at, kTyped.size(), kPrinted);
+  return text;
+}
+
+/// A part of a sentence as a whole one.
+std::string sentence(std::string text) {
+  if (text.empty()) return text;
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  if (text.back() != '.') text += '.';
+  return page::escape(with_plus_minus(std::move(text)));
+}
+
+std::string verdict_html(const std::string& rig_file, std::span<const Reported> steps) {
+  std::string missing;
+  for (const auto& reported : steps)
+    if (!reported.is_done)
+      missing += fmt::format("{}<code>{}</code>", missing.empty() ? "" : ", ",
+                             config::word_of(reported.step));
+  const auto file = page::escape(rig_file);
+  if (!missing.empty())
+    return fmt::format(
+        "<p class='verdict open'>Not measured yet: {}. Go on with <code>handcast calibrate "
+        "{}</code>.</p>",
+        missing, file);
+  return fmt::format(
+      "<p class='verdict'>All steps are measured. <code>handcast doctor {0}</code> says whether "
+      "the "
+      "rig is ready; <code>handcast calibrate {0} --check</code> says at any time whether "
+      "something "
+      "has moved.</p>",
+      file);
 }
 
 }  // namespace
 
-std::string piece_html(std::string_view step, const Outcome& outcome) {
-  auto html =
-      fmt::format("<section><h2>{}</h2><p>{}</p>", page::escape(step), page::escape(outcome.made));
+std::string piece_html(Step step, const Outcome& outcome) {
+  auto html = fmt::format("<section><h2>{} <span class='quiet'>{}</span></h2><p>{}</p>",
+                          title_of(step), config::word_of(step), sentence(outcome.made));
   if (!outcome.findings.empty()) {
     html += "<ul>";
     for (const auto& finding : outcome.findings)
-      html += fmt::format("<li>{}</li>", page::escape(finding));
+      html += fmt::format("<li>{}</li>", sentence(finding));
     html += "</ul>";
   }
-  return html + outcome.pictures + "</section>\n";
+  if (!outcome.meaning.empty())
+    html += fmt::format("<p class='quiet'>{}</p>", sentence(outcome.meaning));
+  if (!outcome.pictures.empty())
+    html += fmt::format("<div class='pictures'>{}</div>", outcome.pictures);
+  return html + "</section>\n";
 }
 
-std::string report_html(const std::string& rig, std::span<const Step> steps,
-                        const calib::Calibration& draft, const std::string& pieces) {
+std::string report_html(const std::string& rig, const std::string& rig_file,
+                        std::span<const Reported> steps, const std::string& pieces) {
   std::string facts;
-  const auto add = [&](Step step, const std::string& made) {
-    if (!made.empty() || std::ranges::count(steps, step) > 0)
-      facts += page::fact(config::word_of(step), made.empty() ? "not measured yet" : made);
-  };
-  add(Step::lens, draft.made.lens);
-  add(Step::lens2, draft.made.lens2);
-  add(Step::pair, draft.made.pair);
-  add(Step::screen, draft.made.screen);
-  add(Step::tracker, draft.made.tracker);
+  for (const auto& [step, made, is_done] : steps)
+    facts += page::fact(fmt::format("{} ({})", title_of(step), config::word_of(step)),
+                        !made.empty() ? with_plus_minus(made)
+                        : is_done     ? "measured, see below"
+                                      : "not measured yet");
   return page::to_html({.title = "Calibration of " + rig,
                         .style = kStyle,
-                        .facts = facts,
-                        .header = {},
+                        .facts = {},
+                        .header = verdict_html(rig_file, steps) + "<dl>" + facts + "</dl>\n",
                         .body = pieces});
-}
-
-std::string errors_svg(const calib::ErrorVolume& errors, std::string_view caption) {
-  const int width_px = errors.columns * kCell_px + kGap_px, height_px = errors.rows * kCell_px;
-  const double largest_px = errors.error_px.empty() ? 0 : std::ranges::max(errors.error_px);
-  const auto depths = static_cast<int>(errors.depths_m.size());
-  auto svg = fmt::format("<figure><svg width='{0}' viewBox='0 0 {0} {1}'>", depths * width_px,
-                         height_px + kText_px);
-  for (int depth = 0; depth < depths; ++depth)
-    svg += fmt::format("<g transform='translate({} 0)'>{}</g>", depth * width_px,
-                       depth_svg(errors, static_cast<std::size_t>(depth), largest_px));
-  return svg + fmt::format("</svg><figcaption>{}</figcaption></figure>", page::escape(caption));
-}
-
-std::string dots_svg(int width_px, int height_px, std::span<const glm::dvec2> dots_px,
-                     std::string_view caption) {
-  auto svg =
-      fmt::format("<figure><svg width='{0}' viewBox='-0.5 -0.5 {0} {1}'>", width_px, height_px);
-  for (const auto& px : dots_px)
-    svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='1.5'/>", px.x, px.y);
-  return svg + fmt::format("</svg><figcaption>{}</figcaption></figure>", page::escape(caption));
 }
 
 }  // namespace handcast::calibrate

@@ -72,8 +72,8 @@ Result<Seen> watch(Desk& desk) {
       if (!on) return tl::make_unexpected(on.error());
       break;
     }
-    progress.show(coverage.share(),
-                  sees ? coverage.advice() : std::string(calib::advice_on(seen.last_fault)));
+    progress.show(coverage.share(), sees ? harvest.advice(coverage.advice())
+                                         : std::string(calib::advice_on(seen.last_fault)));
     const auto frame = frames->latest(Deadline::in(200ms));
     if (!frame && frame.error().code != Errc::timeout) return tl::make_unexpected(frame.error());
     if (frame) add_sighting(camera, **frame, desk.options.reflector_mm, coverage, seen);

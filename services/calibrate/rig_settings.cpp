@@ -9,6 +9,7 @@
 #include "calib/board/board_name.hpp"
 #include "config/second_view.hpp"
 #include "ipc/base/write_whole.hpp"
+#include "services/calibrate/check_steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -50,8 +51,9 @@ calib::SecondCamera guessed_second(const Options& options, const calib::CameraMo
 
 /// Writes a calibration to the session's folder, for the services.
 Result<RunningAs> run_with(const Options& options, calib::Calibration calibration,
-                           std::string new_devices) {
-  RunningAs running{std::move(calibration), options.settings, std::move(new_devices)};
+                           bool is_second_guessed, std::string new_devices) {
+  RunningAs running{std::move(calibration), options.settings, std::move(new_devices),
+                    is_second_guessed};
   const auto file = std::filesystem::absolute(options.folder) / "rough.toml";
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
@@ -90,6 +92,18 @@ std::string slug_of(const OwnDevices& own) {
   return slug.empty() ? "new" : slug;
 }
 
+/// Error bad_config: a size was given which has no effect.
+Result<void> check_size(const char* flag, Size given, Size in_use) {
+  if (given.width_px == 0 ||
+      (given.width_px == in_use.width_px && given.height_px == in_use.height_px))
+    return {};
+  return fail(
+      Errc::bad_config,
+      fmt::format("{} {}x{} has no effect: the calibration that the rig names has {}x{}; "
+                  "for images of another size take `calibration` out of the rig file",
+                  flag, given.width_px, given.height_px, in_use.width_px, in_use.height_px));
+}
+
 }  // namespace
 
 Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
@@ -103,7 +117,7 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
     others = other_devices(*calibration, own);
     const bool lacks_second = config::has_second_view(rig) && !calibration->camera2;
     if (lacks_second) calibration->camera2 = guessed_second(options, calibration->camera);
-    if (others.empty() && lacks_second) return run_with(options, std::move(*calibration), {});
+    if (others.empty() && lacks_second) return run_with(options, std::move(*calibration), true, {});
     if (others.empty()) return RunningAs{std::move(*calibration), options.settings, {}};
     if (!has_sizes)
       return fail(
@@ -120,7 +134,31 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
                 "--camera and --projector, e.g. --camera 1280x1024 --projector 1920x1080");
   auto rough = from_sizes(options.camera, options.projector);
   if (config::has_second_view(rig)) rough.camera2 = guessed_second(options, rough.camera);
-  return run_with(options, std::move(rough), others.empty() ? std::string() : slug_of(own));
+  return run_with(options, std::move(rough), false, others.empty() ? std::string() : slug_of(own));
+}
+
+Result<void> check_known(const Options& options, const RunningAs& running) {
+  const auto* asked = what_compares(options);
+  if (asked && !running.new_devices.empty())
+    return fail(Errc::bad_config,
+                fmt::format("{} needs a calibration of the devices that the rig has now", asked));
+  if (asked && options.points.empty() && running.is_second_guessed)
+    return fail(Errc::bad_config,
+                fmt::format("{}: the second camera is not calibrated yet; measure it first: "
+                            "handcast calibrate {} lens2 pair",
+                            asked, options.rig_file.string()));
+  auto same =
+      check_size("--camera", options.camera,
+                 {running.calibration.camera.width_px, running.calibration.camera.height_px});
+  if (same)
+    same = check_size(
+        "--projector", options.projector,
+        {running.calibration.projector_width_px, running.calibration.projector_height_px});
+  if (same && running.calibration.camera2)
+    same = check_size("--camera2", options.camera2,
+                      {running.calibration.camera2->camera.width_px,
+                       running.calibration.camera2->camera.height_px});
+  return same;
 }
 
 std::vector<std::string> twin_scene(Step step, const Options& options) {

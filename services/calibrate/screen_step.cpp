@@ -10,7 +10,7 @@
 #include "services/calibrate/by_hand.hpp"
 #include "services/calibrate/delay_report.hpp"
 #include "services/calibrate/gamma_step.hpp"
-#include "services/calibrate/pieces.hpp"
+#include "services/calibrate/pictures.hpp"
 #include "services/calibrate/screen_views.hpp"
 
 namespace handcast::calibrate {
@@ -94,9 +94,15 @@ Result<Outcome> fit_views(Desk& desk, std::span<const calib::DepthView> views) {
   desk.draft.plane_m = fit->model.plane_m;
   const double held_out_px =
       fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median;
-  return Outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views.size(),
-                             held_out_px, place_of(*fit)),
-                 held_out_px <= kGood_px, fit->findings, pictures_of(desk, views, *fit)};
+  Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views.size(),
+                              held_out_px, place_of(*fit)),
+                  held_out_px <= kGood_px, fit->findings, pictures_of(desk, views, *fit)};
+  outcome.meaning = fmt::format(
+      "Held out: how far the light is from where a fit that has not seen it expects it, in pixels "
+      "of "
+      "the projector, median; good is at most {} px",
+      kGood_px);
+  return outcome;
 }
 
 }  // namespace

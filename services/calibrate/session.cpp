@@ -112,6 +112,7 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
                                               options.folder.string(), error.message()));
   Session session(fs::absolute(options.folder), target_of(options, rig), used);
   session.rig_name_ = rig.name;
+  session.rig_file_ = options.rig_file.string();
   session.draft_.made = {};
   std::ranges::copy_if(kSteps, std::back_inserter(session.steps_),
                        [&](Step step) { return has_need_of(rig, step); });
@@ -219,7 +220,7 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
     *made = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
     if (kept) kept = write_whole(file(kPending), "the draft is not in its place yet\n");
   }
-  if (kept) kept = write_whole(piece_of(step), piece_html(config::word_of(step), outcome));
+  if (kept) kept = write_whole(piece_of(step), piece_html(step, outcome));
   if (kept) kept = write_whole(file(kDraft), calib::print_calibration(draft_));
   return kept ? write_report() : kept;
 }
@@ -228,7 +229,13 @@ Result<void> Session::write_report() const {
   std::string pieces;
   for (const Step step : kSteps)
     if (const auto piece = config::read_text(piece_of(step))) pieces += *piece;
-  return write_whole(report(), report_html(rig_name_, steps_, draft_, pieces));
+  auto made = draft_.made;
+  std::vector<Reported> reported;
+  for (const Step step : steps_) {
+    const auto* sentence = made_of(made, step);
+    reported.push_back({step, sentence ? *sentence : std::string(), is_done(step)});
+  }
+  return write_whole(report(), report_html(rig_name_, rig_file_, reported, pieces));
 }
 
 Result<std::string> Session::finish() const {

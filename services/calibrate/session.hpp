@@ -25,6 +25,7 @@ struct Outcome {
   std::string pictures{};             ///< HTML for the report
   std::vector<MeasuredSetting> settings{};
   bool is_checked = true;  ///< false: a check could not measure anything, and says why
+  std::string meaning{};   ///< for the report: what the figures of `made` are, and which are good
 };
 
 /// One calibration of a rig, which may take several calls of the program: the folder with what was
@@ -79,7 +80,7 @@ class Session {
 
   std::filesystem::path folder_, target_;
   std::vector<Step> steps_;  ///< that the rig has need of
-  std::string rig_name_;
+  std::string rig_name_, rig_file_;
   calib::Calibration draft_;
 };
 

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "ipc/msg/largest_images.hpp"
-#include "renderer/content/lettering.hpp"
+#include "services/calibrate/text_page.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -16,19 +16,6 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kRepeatEvery_ns = 250'000'000;
 constexpr std::size_t kPeriods = 31;  ///< whose median is the rhythm of the frames
-constexpr int kLinesOnScreen = 12;    ///< height of the screen in lines of text
-
-/// Copies a line of text into a picture, its middle at `x`, its top at `y`; what does not fit is
-/// cut off.
-void put_line(const renderer::Image<std::uint8_t>& line, int x, int y,
-              renderer::Image<std::uint8_t>& picture) {
-  const int left = x - line.width() / 2;
-  for (int row = 0; row < line.height(); ++row)
-    for (int column = 0; column < line.width(); ++column)
-      if (const int px = left + column, py = y + row;
-          px >= 0 && px < picture.width() && py >= 0 && py < picture.height())
-        picture.at(px, py) = line.at(column, row);
-}
 
 std::int64_t median_of(const std::deque<std::int64_t>& times_ns) {
   if (times_ns.empty()) return 0;
@@ -69,15 +56,7 @@ void TestScreen::show(const std::function<void(std::uint8_t* levels)>& draw) {
 
 void TestScreen::show_text(const std::vector<std::string>& lines) {
   if (lines == text_) return keep();
-  const int height = this->height_px() / kLinesOnScreen;
-  std::ranges::fill(picture_.pixels(), std::uint8_t{0});
-  int y = (height_px() - static_cast<int>(lines.size() + 1) * height) / 2;
-  for (const auto& line : lines) {
-    const bool is_first = &line == &lines.front();
-    put_line(renderer::lettering(line, is_first ? height : height * 2 / 3), width_px() / 2, y,
-             picture_);
-    y += is_first ? height * 3 / 2 : height;
-  }
+  draw_text(lines, picture_);
   text_ = lines;
   ++number_;
   publish();

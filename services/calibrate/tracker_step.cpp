@@ -12,7 +12,7 @@
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "services/calibrate/harvest.hpp"
-#include "services/calibrate/pieces.hpp"
+#include "services/calibrate/pictures.hpp"
 #include "services/calibrate/reflector_fit.hpp"
 
 namespace handcast::calibrate {
@@ -65,6 +65,22 @@ void cover(const Seen& seen, calib::VolumeCoverage& coverage) {
   coverage.add(hand);
 }
 
+/// When camera and tracker have last seen a hand.
+struct Noticed {
+  std::int64_t landmarks_ns = now_ns(), pose_ns = now_ns();
+
+  /// Says which of them sees no hand; else `otherwise`.
+  std::string advice(const std::string& otherwise) const {
+    constexpr std::int64_t kMissing_ns = 2'000'000'000;
+    const bool camera = now_ns() - landmarks_ns < kMissing_ns,
+               tracker = now_ns() - pose_ns < kMissing_ns;
+    if (camera && tracker) return otherwise;
+    if (camera) return "The tracker sees no hand: move it into the tracker's view, too";
+    if (tracker) return "The camera sees no hand: move it to the middle of the camera's image";
+    return "Neither camera nor tracker sees a hand: hold it in the middle of the image";
+  }
+};
+
 /// Watches a hand until it was everywhere that it can reach, Enter is pressed, or the time is over.
 Result<SeenBySide> watch(Desk& desk) {
   auto poses = client::open_stream<msg::HandPoses>(desk.rig.name, "pose.hands");
@@ -73,6 +89,7 @@ Result<SeenBySide> watch(Desk& desk) {
   if (!landmarks) return tl::make_unexpected(landmarks.error());
   calib::VolumeCoverage coverage(desk.draft.camera, kNear_m, kFar_m);
   Harvest harvest;
+  Noticed noticed;
   bool sees_hand = false;
   SeenBySide seen;
   Progress progress(desk, "tracker");
@@ -81,9 +98,10 @@ Result<SeenBySide> watch(Desk& desk) {
       if (!on) return tl::make_unexpected(on.error());
       break;
     }
-    progress.show(coverage.share(), coverage.advice());
+    progress.show(coverage.share(), noticed.advice(harvest.advice(coverage.advice())));
     const auto found = landmarks->next(Deadline::in(200ms));
     sees_hand = found && (*found)->count > 0;
+    if (sees_hand) noticed.landmarks_ns = now_ns();
     if (found)
       for (std::uint32_t h = 0; h < std::min((*found)->count, std::uint32_t{msg::kMaxHands}); ++h) {
         const auto& hand = (*found)->hands[h];
@@ -97,6 +115,7 @@ Result<SeenBySide> watch(Desk& desk) {
         const auto& hand = (*sample)->hands[h];
         if (hand.side > msg::Side::right) continue;  // damaged
         auto& of_side = seen[static_cast<std::size_t>(hand.side)];
+        noticed.pose_ns = now_ns();
         of_side.samples.push_back(sample_of((*sample)->header.origin_ns, hand));
         cover(of_side, coverage);
       }
@@ -109,7 +128,8 @@ const Seen& most_seen(const SeenBySide& seen) {
   return seen[0].sightings.size() >= seen[1].sightings.size() ? seen[0] : seen[1];
 }
 
-Result<calib::TrackerFit> fit(Desk& desk) {
+/// `seen_px` gets where the hand was seen.
+Result<calib::TrackerFit> fit(Desk& desk, std::vector<glm::dvec2>& seen_px) {
   if (desk.options.reflector_mm > 0) return fit_by_reflector(desk);
   const auto seen = watch(desk);
   if (!seen) return tl::make_unexpected(seen.error());
@@ -118,7 +138,28 @@ Result<calib::TrackerFit> fit(Desk& desk) {
     return fail(Errc::bad_data,
                 "the tracker has seen no hand; `handcast status` shows whether it "
                 "runs, and the hand must be in its view too");
+  for (const auto& sighting : hand.sightings) seen_px.push_back(sighting.undistorted_px);
   return calib::fit_tracker(desk.draft.camera, hand.samples, hand.sightings);
+}
+
+/// How well light is placed in the middle and at the corners of the volume.
+std::string errors_table(const calib::TrackerFit& fit) {
+  std::string rows;
+  for (const auto& error : fit.place_errors)
+    rows += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.1f}</td><td>{:.1f}</td></tr>",
+        &error == &fit.place_errors.front() ? "middle" : "corner",
+        number_text(1e3 * error.place_m.x, 0), number_text(1e3 * error.place_m.y, 0),
+        error.place_m.z, 2 * error.light_mm, 2 * error.whole_mm);
+  return "<figure class='broad'><div class='wide'><table><thead><tr><th>place in the volume</th>"
+         "<th>right, mm</th><th>down, mm</th><th>far, m</th><th>light within, mm</th><th>in space "
+         "within, mm</th></tr></thead><tbody>" +
+         rows +
+         "</tbody></table></div><figcaption>What the fit does not know, two standard deviations: "
+         "how "
+         "far light lands beside its target, and how far off the place is in space. Places are "
+         "those "
+         "of the camera's axes.</figcaption></figure>";
 }
 
 std::string made_of(const calib::TrackerFit& fit) {
@@ -132,10 +173,25 @@ std::string made_of(const calib::TrackerFit& fit) {
 }  // namespace
 
 Result<Outcome> measure_tracker(Desk& desk) {
-  const auto found = fit(desk);
+  std::vector<glm::dvec2> seen_px;
+  const auto found = fit(desk, seen_px);
   if (!found) return tl::make_unexpected(found.error());
   desk.draft.camera_from_tracker = found->camera_from_tracker;
-  return Outcome{made_of(*found), found->quality != calib::Quality::poor, found->findings};
+  Outcome outcome{made_of(*found), found->quality != calib::Quality::poor, found->findings};
+  outcome.meaning =
+      "Held out: how far landmarks are from the tracker's joints in a part of the time that the "
+      "fit "
+      "has not seen, median; good is at most 3 px. Repeatable: how far light lands beside its "
+      "target "
+      "because of what the fit does not know, two standard deviations; good is at most 2 mm. "
+      "Clock: "
+      "how much the tracker's is ahead of the camera's";
+  const auto& camera = desk.draft.camera;
+  if (!seen_px.empty())
+    outcome.pictures = dots_svg(camera.width_px, camera.height_px, seen_px,
+                                "Where the hand was seen, near and far.");
+  outcome.pictures += errors_table(*found);
+  return outcome;
 }
 
 /// The tracker has moved if it is off by more than this and by more than twice what the fit does
@@ -145,7 +201,8 @@ constexpr double kMovedAcross_mm = 2.5, kMovedAlong_mm = 6;
 /// @}
 
 Result<Outcome> check_tracker(Desk& desk) {
-  const auto found = fit(desk);
+  std::vector<glm::dvec2> seen_px;
+  const auto found = fit(desk, seen_px);
   if (!found) return tl::make_unexpected(found.error());
   const auto& middle = found->place_errors.front();
   const glm::dvec4 place = glm::inverse(found->camera_from_tracker) * glm::dvec4(middle.place_m, 1);

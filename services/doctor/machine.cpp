@@ -49,9 +49,13 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
 Finding cores() {
   const unsigned count = std::max(std::thread::hardware_concurrency(), 1u);
   if (count >= kCores) return {"cores", Grade::good, fmt::format("{} cores", count), ""};
-  return {"cores", Grade::advice,
-          fmt::format("{} cores; camera, tracker, detector and projector want one each", count),
-          "lower projector.rate_hz and camera.rate_hz until `handcast status` shows them held"};
+  return {
+      "cores", Grade::advice,
+      fmt::format("this computer has {} processor cores; camera, tracker, detector and projector "
+                  "work best with one each, which makes {}",
+                  count, kCores),
+      "if `handcast status` shows rates that are not held, lower projector.rate_hz and "
+      "camera.rate_hz"};
 }
 
 Finding governor(const fs::path& root) {

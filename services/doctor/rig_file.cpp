@@ -6,10 +6,30 @@
 #include <utility>
 
 #include "calib/calibration.hpp"
+#include "config/second_view.hpp"
 #include "services/doctor/display.hpp"
 
 namespace handcast::doctor {
 namespace {
+
+/// Of a rig with two cameras, whose calibration can be read.
+Finding second_camera_of(const calib::Calibration& calibration) {
+  if (!calibration.camera2)
+    return {"calibration", Grade::fault, "the second camera is not calibrated",
+            "`handcast calibrate RIG.toml lens2 pair`"};
+  const auto& camera = calibration.camera;
+  const auto& second = *calibration.camera2;
+  const auto& made = calibration.made.pair;
+  return {"calibration", Grade::good,
+          fmt::format("camera {} x {} px, second camera {} x {} px, {:.0f} mm from it ({}), "
+                      "projector {} x {} px",
+                      camera.width_px, camera.height_px, second.camera.width_px,
+                      second.camera.height_px, 1e3 * glm::length(glm::dvec3(second.from_camera[3])),
+                      made.empty() ? "it is not said when that was measured"
+                                   : "measured " + made.substr(0, made.find(':')),
+                      calibration.projector_width_px, calibration.projector_height_px),
+          ""};
+}
 
 Finding calibration_of(const config::Rig& rig) {
   const bool is_real = rig.camera.backend != "twin" && rig.camera.backend != "replay";
@@ -26,6 +46,7 @@ Finding calibration_of(const config::Rig& rig) {
     return {"calibration", Grade::advice,
             "it does not name its camera, so that another one would not be noticed",
             "set [camera] device in it, as `handcast devices` lists the camera"};
+  if (config::has_second_view(rig)) return second_camera_of(*calibration);
   return {"calibration", Grade::good,
           fmt::format("camera {} x {} px, projector {} x {} px", calibration->camera.width_px,
                       calibration->camera.height_px, calibration->projector_width_px,

@@ -7,6 +7,7 @@
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "ipc/base/wording.hpp"
+#include "ipc/daemon/check_word.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
@@ -23,7 +24,7 @@ void print_help(const daemon::ServiceDescription& description) {
       "  --config FILE      the rig file\n"
       "  --set path=value   a setting that overrides that of the file; may be repeated\n"
       "  --check            opens what the rig names (files, models, calibration), prints what is\n"
-      "                     wrong, and ends\n"
+      "                     wrong, or 'checked', and ends\n"
       "  --backends         prints the back ends of this build, one per line\n"
       "  --describe         prints its rings, settings and back ends as JSON\n"
       "  --version, --help\n\n"
@@ -102,13 +103,14 @@ std::vector<Error> find_faults(const config::Rig& rig,
   return faults;
 }
 
-/// Prints the faults, one sentence per line.
+/// Prints the faults, one sentence per line; the last word if there are none.
 int examine(const daemon::ServiceDescription& description, const CommandLine& line,
             const Check& check) {
   log::set_level(log::Level::error);
   const auto rig = config::load_rig(line.config_file, line.settings);
   const auto faults = rig ? find_faults(*rig, description, check) : std::vector{rig.error()};
   for (const auto& fault : faults) fmt::print("{}\n", printable(fault.what));
+  if (faults.empty()) fmt::print("{}", daemon::kCheckedWord);
   return faults.empty() ? kExitDone : exit_code_of(faults.front());
 }
 

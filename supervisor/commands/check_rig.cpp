@@ -19,6 +19,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/unique_fd.hpp"
+#include "ipc/daemon/check_word.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/spec/service_spec.hpp"
 
@@ -98,7 +99,11 @@ std::vector<std::string> ask(const std::string& service, const std::filesystem::
   for (const auto& setting : settings) command.insert(command.end(), {"--set", setting});
   const auto outcome = run_and_read(command, patience_s);
   if (!outcome) return {outcome.error().what};
-  if (outcome->exit_code == kExitDone) return {};
+  const bool is_whole = outcome->output.ends_with(daemon::kCheckedWord);
+  if (outcome->exit_code == kExitDone && is_whole) return {};
+  if (outcome->exit_code == kExitDone)
+    return {service +
+            ": its check ended before it was done; a library that the rig names may be broken"};
   auto faults = lines_of(outcome->output);
   if (outcome->signal != 0)
     faults.push_back(

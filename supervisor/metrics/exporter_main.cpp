@@ -11,6 +11,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
+#include "ipc/daemon/check_word.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/description.hpp"
 #include "ipc/daemon/stop_signal.hpp"
@@ -109,7 +110,10 @@ int run_exporter(int argc, char** argv) {
   if (options->has("--version")) fmt::print("handcast-exporter {}\n", version());
   if (options->has("--help") || options->has("--version") || options->has("--describe"))
     return kExitDone;
-  if (options->has("--config") && options->has("--check")) return kExitDone;  // it opens nothing
+  if (options->has("--config") && options->has("--check")) {  // it opens nothing
+    fmt::print("{}", daemon::kCheckedWord);
+    return kExitDone;
+  }
   if (options->has("--config")) return serve(*options);
   log::error("--config FILE, the rig file, is needed");
   return kExitUsage;

@@ -361,6 +361,20 @@ TEST(CalibrationFile, RefusesAHomographyThatNoCoaxialRigHas) {
   }
 }
 
+TEST(CalibrationFile, RefusesAParallaxThatNoProjectorHas) {
+  for (const char* parallax : {"[1e6, 0, 0]", "[0, -1e5, 0]", "[0, 0, 50]", "[20000, 0, 0]"}) {
+    const auto rig =
+        load_calibration(reference_with(std::string("[projector]\nparallax = ") + parallax));
+    ASSERT_FALSE(rig) << parallax;
+    EXPECT_THAT(rig.error().what, HasSubstr("projector.parallax: at 0.")) << parallax;
+  }
+  // A projector 0.6 m beside the camera, or above it, and one farther back.
+  for (const char* parallax : {"[1000, 0, 0]", "[-1000, 0, 0]", "[0, 1000, 0]", "[150, 100, 0.3]"})
+    EXPECT_TRUE(
+        load_calibration(reference_with(std::string("[projector]\nparallax = ") + parallax)))
+        << parallax;
+}
+
 TEST(CalibrationFile, AcceptsAMirrorAndAScreenThatCoversAPart) {
   for (const char* rows : {"x = [-1.42, 0, 1023]\ny = [0, 1.42, 0]\nw = [0, 0, 1]",
                            "x = [0.7, 0, 500]\ny = [0, 0.7, 300]\nw = [0, 0, 1]",
@@ -448,6 +462,11 @@ TEST(SecondCamera, IsRefusedIfItCannotBe) {
   rig = two_cameras();
   rig.camera2->camera.fx_px = 5;
   EXPECT_THAT(refusal(rig), HasSubstr("camera2.focal_px"));
+  rig = two_cameras();
+  rig.camera2->from_camera[0] = {-1, 0, 0, 0};
+  rig.camera2->from_camera[2] = {0, 0, -1, 0};
+  EXPECT_THAT(refusal(rig), HasSubstr("camera2_from_camera: the second camera looks away"));
+  EXPECT_EQ(refusal(two_cameras()), "");
   const auto half = load_calibration(
       file_with(print_calibration(reference_rig()) + "[camera2]\nwidth_px = 720\n"));
   ASSERT_FALSE(half);

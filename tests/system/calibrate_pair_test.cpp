@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 
 #include "calib/calibration.hpp"
@@ -57,12 +58,72 @@ TEST_F(CalibratePair, TheTwinsSecondCameraIsFoundAndWrittenAndTakenBack) {
       << "the error of a principal point turns a camera";
   std::ifstream report(scratch_.path() / "stereo.calibration" / "report.html");
   const std::string page((std::istreambuf_iterator<char>(report)), {});
-  EXPECT_THAT(page, HasSubstr("<h2>pair</h2>"));
+  EXPECT_THAT(page, HasSubstr("<h2>Place of the second camera"));
   EXPECT_THAT(page, HasSubstr("Where the second camera saw the board"));
 
   const auto undone = calibrate_pair({"--undo"});
   ASSERT_EQ(undone.exit_code, 0) << undone.log;
   EXPECT_FALSE(calib::load_calibration(scratch_.path() / "own.toml")->camera2);
+}
+
+/// An installed rig, whose second camera may have moved: it is where truth.toml says.
+class CheckOfAPair : public CalibratePair {
+ protected:
+  CheckOfAPair() {
+    auto own = truth_;
+    own.camera2->camera.fx_px = own.camera2->camera.fy_px = 1150;
+    write("own.toml", calib::print_calibration(own));
+  }
+  /// `moved`: from where the second camera was to where it is, in its own axes.
+  void move_second(const glm::dmat4& moved) const {
+    auto now = truth_;
+    now.camera2->from_camera = moved * now.camera2->from_camera;
+    write("truth.toml", calib::print_calibration(now));
+  }
+  Outcome check() const { return calibrate_pair({"--check", "--yes", "--most-s", "40"}); }
+};
+
+TEST_F(CheckOfAPair, ASecondCameraThatWasBumpedIsFoundAndAnotherIsNotAccused) {
+  const auto good = check();
+  EXPECT_EQ(good.exit_code, 0) << good.log;
+  EXPECT_THAT(good.output, HasSubstr("pair: as calibrated"));
+  EXPECT_THAT(good.output, HasSubstr("screen: as calibrated"));
+  move_second(glm::rotate(glm::dmat4(1), 0.01, {1, 0, 0}));  // 0.6 degrees
+  const auto bumped = check();
+  EXPECT_EQ(bumped.exit_code, 1) << bumped.log;
+  EXPECT_THAT(bumped.output, HasSubstr("pair: has moved"));
+  EXPECT_THAT(bumped.output, HasSubstr("screen: as calibrated"));
+  EXPECT_THAT(bumped.log, HasSubstr("measure the step `pair` again"));
+}
+
+TEST_F(CheckOfAPair, OneThatLooksAwayIsFoundByWhatItShouldSee) {
+  // 0.6 rad: it sees a part of what the first one sees, but not the board.
+  move_second(glm::rotate(glm::dmat4(1), 0.6, {0, 1, 0}));
+  const auto away = check();
+  EXPECT_EQ(away.exit_code, 1) << away.log;
+  EXPECT_THAT(away.output, HasSubstr("pair: has moved"));
+  EXPECT_THAT(away.log, HasSubstr("looks elsewhere, or is covered"));
+}
+
+TEST_F(CheckOfAPair, WorksBesideARigThatIsUpAndLeavesItUp) {
+  std::ofstream(scratch_.path() / "stereo.toml", std::ios::app)
+      << "[twin.prop]\nkind = \"board\"\nviews = \"both\"\nhold_s = 8\n"
+         "[twin.image]\nleak = 1\ngain = 80\n";
+  Command rig(scratch_.path(),
+              {"up", scratch_.path() / "stereo.toml", "--set", "projector.rate_hz=57"});
+  ASSERT_TRUE(eventually([&] { return !status().is_null() && light() > 0; })) << rig.log();
+  const auto refused = calibrate_pair({"pair", "--yes"});
+  EXPECT_EQ(refused.exit_code, 100);
+  EXPECT_THAT(refused.log, HasSubstr("stop it with `handcast down`"));
+  EXPECT_THAT(calibrate_pair({"--check", "--set", "twin.prop.hold_s=1"}).log,
+              HasSubstr("--set cannot change it"));
+  const auto checked = check();
+  EXPECT_EQ(checked.exit_code, 0) << checked.log;
+  EXPECT_THAT(checked.output, HasSubstr("pair: as calibrated"));
+  EXPECT_THAT(checked.output, HasSubstr("screen: as calibrated"));
+  expect_more_light();
+  write("own.toml", calib::print_calibration(truth_));
+  EXPECT_THAT(check().log, HasSubstr("`handcast reload` first"));
 }
 
 TEST_F(CalibratePair, ARigWithOneCameraHasNoPlaceOfASecond) {

@@ -160,6 +160,18 @@ TEST_F(Refusals, ConfigLooksAtTheFilesOfTrackersAndCamerasWithoutOpeningThem) {
   }
 }
 
+TEST_F(Refusals, ALibraryThatEndsTheCheckDoesNotPassIt) {
+  const auto reference = handcast({"config", "--reference"}).output;
+  if (reference.find("\n| `openxr` |") == std::string::npos) GTEST_SKIP() << "without OpenXR";
+  std::ofstream(scratch_.path() / "quits.json")
+      << R"({"runtime": {"name": "It", "library_path": ")" << QUITTING_LIBRARY << R"("}})";
+  const auto outcome =
+      handcast({"config", "--check",
+                rig_file("[pose]\nbackend = \"openxr\"\n[pose.openxr]\nruntime = \"quits.json\"")});
+  EXPECT_EQ(outcome.exit_code, 100);
+  EXPECT_THAT(outcome.log, HasSubstr("pose: its check ended before it was done"));
+}
+
 TEST_F(Refusals, ConfigNamesWhatATrackerOfTwoCamerasLacks) {
   const auto stereo = std::filesystem::absolute("config/calibrations/stereo.toml").string();
   const auto log_of = [&](const std::string& toml) {

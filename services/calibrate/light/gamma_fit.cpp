@@ -136,10 +136,15 @@ std::string gamma_svg(std::span<const GreyStep> steps, double brightest, const G
     dots += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2'/>", step.level * kSide_px,
                         (1 - step.share) * kSide_px);
   return fmt::format(
-      "<figure><svg width='{0}' viewBox='-2 -2 {0} {0}'>{1}{2}{3}</svg><figcaption>The light "
-      "(upwards, as a share of the brightest) by the level that the projector was given. Line: "
-      "the curve that fits. Dashes: the rig's setting.</figcaption></figure>",
-      kSide_px + 4, curve_svg(brightest, fit.setting(), "stroke-width='1.5'"),
+      "<figure><svg width='{2}' viewBox='-34 -12 {2} {1}'>"
+      "<path d='M0 0V{0}H{0}' fill='none' stroke='currentColor' stroke-opacity='0.4'/>"
+      "<g font-size='12'><text x='-30' y='4'>100 %</text><text x='-12' y='{0}'>0</text>"
+      "<text x='0' y='{3}'>0</text><text x='{0}' y='{3}' text-anchor='end'>level 255</text></g>"
+      "{4}{5}{6}</svg><figcaption>The light, as a share of the brightest, by the level that the "
+      "projector was given. Dots: measured. Line: the curve that fits. Dashes: the rig's setting."
+      "</figcaption></figure>",
+      kSide_px, kSide_px + 36, kSide_px + 46, kSide_px + 16,
+      curve_svg(brightest, fit.setting(), "stroke-width='1.5'"),
       curve_svg(brightest, gamma_setting, "stroke-dasharray='4 4'"), dots);
 }
 

@@ -72,7 +72,7 @@ void count_background(const calib::GreyView& image, const Points& points, GreyCo
     }
 }
 
-std::string bars_svg(const GreyCount& count, double opacity) {
+std::string bars_svg(const GreyCount& count, std::string_view colour) {
   constexpr int kHeight_px = 120;
   std::uint64_t most = 1;
   for (int grey = 0; grey < 256; ++grey) most = std::max(most, count.of(grey));
@@ -81,8 +81,8 @@ std::string bars_svg(const GreyCount& count, double opacity) {
     if (count.of(grey) > 0) {
       const double height =
           kHeight_px * static_cast<double>(count.of(grey)) / static_cast<double>(most);
-      bars += fmt::format("<rect x='{}' y='{:.1f}' width='2' height='{:.1f}' fill-opacity='{}'/>",
-                          2 * grey, kHeight_px - height, height, opacity);
+      bars += fmt::format("<rect class='{}' x='{}' y='{:.1f}' width='2' height='{:.1f}'/>", colour,
+                          2 * grey, kHeight_px - height, height);
     }
   return bars;
 }
@@ -222,17 +222,24 @@ int threshold_between(const HandLight& light) {
 
 std::string histogram_svg(const HandLight& light) {
   const int threshold = threshold_between(light);
-  std::string svg = "<figure><svg width='512' viewBox='0 0 512 142'>";
-  svg +=
-      bars_svg(light.background(), 0.25) + bars_svg(light.hand(), 0.5) + bars_svg(light.tips(), 1);
+  std::string svg =
+      "<figure class='broad'><svg width='512' viewBox='-4 -24 520 168'><g font-size='13'>"
+      "<rect class='third' x='0' y='-18' width='10' height='10'/><text x='15' y='-9'>background"
+      "</text><rect class='second' x='110' y='-18' width='10' height='10'/><text x='125' y='-9'>"
+      "hand</text><rect x='180' y='-18' width='10' height='10'/><text x='195' y='-9'>its finger "
+      "tips</text><text x='0' y='138'>0</text><text x='510' y='138' text-anchor='end'>grey value "
+      "255</text></g>";
+  svg += bars_svg(light.background(), "third") + bars_svg(light.hand(), "second") +
+         bars_svg(light.tips(), "first");
   svg += fmt::format(
       "<line x1='{0}' y1='0' x2='{0}' y2='120' stroke='currentColor' "
-      "stroke-dasharray='3 3'/><text x='{0}' y='138' font-size='14'>{1}</text>",
+      "stroke-dasharray='3 3'/><text x='{0}' y='138' font-size='13' "
+      "text-anchor='middle'>{1}</text>",
       2 * threshold, threshold);
   return svg +
-         "</svg><figcaption>Grey values 0 to 255 of the background (pale), the hand (darker) and "
-         "its finger tips (darkest), each scaled to its most frequent value. Dashes: a threshold "
-         "between them.</figcaption></figure>";
+         "</svg><figcaption>Grey values 0 to 255 of the background, the hand and its finger tips, "
+         "each scaled to its most frequent value. Dashes: a threshold between background and hand."
+         "</figcaption></figure>";
 }
 
 }  // namespace handcast::calibrate

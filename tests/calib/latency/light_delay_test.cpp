@@ -130,13 +130,16 @@ TEST(LightDelay, ACameraBehindAnInfraredFilterIsTold) {
   const auto found = fit_light_delay(scene.toggles, scene.images);
   ASSERT_FALSE(found);
   EXPECT_THAT(found.error().what, HasSubstr("does not see the projector's light"));
+  EXPECT_EQ(found.error().code, Errc::bad_data);
 }
 
-TEST(LightDelay, TooFewTogglesOrImagesAreAnError) {
-  EXPECT_FALSE(fit_light_delay({}, {}));
+TEST(LightDelay, TooFewTogglesOrImagesAreNoCameraBehindAFilter) {
   const Scene few(5, 1, 4), scene(5);
-  EXPECT_FALSE(fit_light_delay(few.toggles, few.images));
-  EXPECT_FALSE(fit_light_delay(scene.toggles, std::span(scene.images).first(40)));
+  for (const auto& found : {fit_light_delay({}, {}), fit_light_delay(few.toggles, few.images),
+                            fit_light_delay(scene.toggles, std::span(scene.images).first(40))}) {
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, Errc::unavailable) << found.error().what;
+  }
 }
 
 }  // namespace

@@ -34,6 +34,28 @@ TEST(CalibrateOptions, WhatDoesSomethingElseStandsAlone) {
   EXPECT_THAT(refusal({"rig.toml", "tracker", "--points", "data"}), HasSubstr("no single steps"));
 }
 
+TEST(CalibrateOptions, AnOptionWithoutEffectIsRefused) {
+  for (const auto& [words, sentence] :
+       {std::pair(std::vector<std::string>{"rig.toml", "--undo", "--apply"},
+                  "--undo does not take --apply; leave it out"),
+        {{"rig.toml", "--check", "--apply"}, "--check does not take --apply; leave it out"},
+        {{"rig.toml", "--correct", "--reflector", "8"}, "--correct does not take --reflector"},
+        {{"rig.toml", "--check", "--restart"}, "--check does not take --restart"},
+        {{"rig.toml", "--check", "--camera", "64x64"}, "--check does not take --camera"},
+        {{"rig.toml", "--points", "data", "--board", "charuco:11x8:20"},
+         "--points does not take --board"},
+        {{"rig.toml", "--undo", "--folder", "f"}, "--undo does not take --folder"},
+        {{"--print-board", "b.pdf", "--check"}, "different things; choose one"},
+        {{"rig.toml", "lens", "--reflector", "8"}, "--reflector belongs to the step `tracker`"},
+        {{"rig.toml", "lens", "--photodiode", "hw:1"}, "--photodiode belongs to the step `light`"}})
+    EXPECT_THAT(refusal(words), HasSubstr(sentence)) << words[1];
+  EXPECT_EQ(refusal({"rig.toml", "--check", "--set", "a=1", "--yes", "--most-s", "9", "--reflector",
+                     "8", "--board", "charuco:11x8:20"}),
+            "");
+  EXPECT_EQ(refusal({"rig.toml", "--correct", "--set", "a=1", "--yes", "--most-s", "9"}), "");
+  EXPECT_EQ(refusal({"rig.toml", "--photodiode", "hw:1", "--reflector", "8", "--apply"}), "");
+}
+
 TEST(CalibrateOptions, ARigFileIsEnough) {
   const auto options = parsed({"show/rig.toml"});
   ASSERT_TRUE(options) << options.error().what;

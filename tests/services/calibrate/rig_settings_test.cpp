@@ -126,5 +126,44 @@ TEST_F(RigSettings, TheTwinShowsWhatAStepNeeds) {
   EXPECT_THAT(twin_scene(Step::tracker, Options{}), testing::Not(Contains(HasSubstr("twin.prop"))));
 }
 
+TEST_F(RigSettings, NothingIsComparedWithAGuessedSecondCamera) {
+  rig_.camera.backend = rig_.camera2.backend = "twin";
+  rig_.pose.backend = "stereo";
+  const auto running = rig_as_it_runs(options_, rig_);
+  ASSERT_TRUE(running) << running.error().what;
+  ASSERT_TRUE(running->is_second_guessed);
+  EXPECT_TRUE(check_known(options_, *running)) << "a step measures it";
+  options_.rig_file = "rig.toml";
+  for (auto* compares : {&options_.check, &options_.correct}) {
+    *compares = true;
+    const auto known = check_known(options_, *running);
+    ASSERT_FALSE(known);
+    EXPECT_THAT(known.error().what, HasSubstr("the second camera is not calibrated yet"));
+    EXPECT_THAT(known.error().what, HasSubstr("handcast calibrate rig.toml lens2 pair"));
+    *compares = false;
+  }
+}
+
+TEST_F(RigSettings, NothingIsComparedWithACalibrationOfOtherDevices) {
+  RunningAs running{calib::reference_rig(), {}, "Other_Cam"};
+  EXPECT_TRUE(check_known(options_, running));
+  for (auto* compares : {&options_.check, &options_.correct}) {
+    *compares = true;
+    EXPECT_THAT(check_known(options_, running).error().what,
+                HasSubstr("needs a calibration of the devices that the rig has now"));
+    *compares = false;
+  }
+}
+
+TEST_F(RigSettings, ASizeThatWouldHaveNoEffectIsRefused) {
+  const RunningAs running{calib::reference_rig(), {}};
+  options_.camera = {720, 540};
+  EXPECT_TRUE(check_known(options_, running));
+  options_.camera = {640, 480};
+  EXPECT_THAT(check_known(options_, running).error().what,
+              HasSubstr("--camera 640x480 has no effect: the calibration that the rig names has "
+                        "720x540"));
+}
+
 }  // namespace
 }  // namespace handcast::calibrate

@@ -76,7 +76,7 @@ TEST_F(CalibrateSession, TheSecondCamerasPlaceStandsOnBothLensesAndTheScreenOnTh
   auto session = open();
   for (const Step step : {Step::lens, Step::lens2, Step::pair, Step::screen})
     ASSERT_TRUE(session.keep(step, {"measured"}, session.draft()));
-  EXPECT_THAT(text_of(session.report()), HasSubstr("<h2>pair</h2>"));
+  EXPECT_THAT(text_of(session.report()), HasSubstr("<h2>Place of the second camera"));
   ASSERT_TRUE(session.keep(Step::lens2, {"again"}, session.draft()));
   EXPECT_FALSE(session.is_done(Step::pair));
   EXPECT_TRUE(session.is_done(Step::screen));
@@ -120,7 +120,7 @@ TEST_F(CalibrateSession, TheReportHasTheFindingsOfEachStep) {
   auto session = open();
   ASSERT_TRUE(session.keep(Step::lens, {"20 images", true, {"tilt <more>"}, "<svg></svg>"}, used_));
   const auto page = text_of(session.report());
-  EXPECT_THAT(page, HasSubstr("tilt &lt;more&gt;"));
+  EXPECT_THAT(page, HasSubstr("Tilt &lt;more&gt;"));
   EXPECT_THAT(page, HasSubstr("<svg></svg>"));
   EXPECT_THAT(page, HasSubstr("not measured yet"));
 }

@@ -171,6 +171,28 @@ TEST(RigFile, ACalibrationThatDoesNotNameItsCameraGetsAdvice) {
   EXPECT_EQ(finding_of(examine_file(rig), "calibration").grade, Grade::good);
 }
 
+TEST(RigFile, OfTwoCamerasTheSecondOneIsNamed) {
+  const test::Scratch scratch;
+  config::Rig rig;
+  rig.camera2.backend = "twin";
+  rig.calibration = scratch.path() / "calibration.toml";
+  auto calibration = calib::reference_rig();
+  std::ofstream(rig.calibration) << calib::print_calibration(calibration);
+  auto finding = finding_of(examine_file(rig), "calibration");
+  EXPECT_EQ(finding.grade, Grade::fault);
+  EXPECT_THAT(finding.sentence, HasSubstr("the second camera is not calibrated"));
+  EXPECT_THAT(finding.remedy, HasSubstr("lens2 pair"));
+  calibration.camera2 = calib::SecondCamera{{}, calibration.camera, glm::dmat4(1)};
+  calibration.camera2->camera.width_px = 640;
+  calibration.camera2->from_camera[3].x = -0.25;
+  calibration.made.pair = "2026-01-02: 15 views";
+  std::ofstream(rig.calibration) << calib::print_calibration(calibration);
+  finding = finding_of(examine_file(rig), "calibration");
+  EXPECT_EQ(finding.grade, Grade::good);
+  EXPECT_THAT(finding.sentence, HasSubstr("second camera 640 x 540 px, 250 mm from it (measured "
+                                          "2026-01-02)"));
+}
+
 TEST(Display, IsJudgedByTheCalibrationAndTheRate) {
   const auto calibration = calib::reference_rig();
   config::Projector projector;

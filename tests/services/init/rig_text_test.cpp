@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "config/rig.hpp"
+#include "services/calibrate/options.hpp"
 #include "services/doctor/rig_file.hpp"
 #include "services/init/report.hpp"
 #include "tests/scratch.hpp"
@@ -99,6 +102,25 @@ TEST_F(RigText, ForEveryCombinationOfDevicesIsARigThatTheDoctorPasses) {
                   some.empty() ? doctor::Grade::good : doctor::Grade::fault)
             << "a real camera without a calibration";
       }
+}
+
+TEST_F(RigText, TheCommandThatIsPrintedMeasuresTheseDevicesAndAppliesTheResult) {
+  const auto plan = plan_of({colour_webcam(), connector("HDMI-A-1", "EPSON PJ")});
+  const auto command = calibrate_command(plan, "my_rig.toml");
+  EXPECT_THAT(report(plan, "my_rig.toml"), HasSubstr(command));
+  std::istringstream text(command);
+  std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
+  ASSERT_GT(words.size(), 2u);
+  EXPECT_EQ(words[0] + " " + words[1], "handcast calibrate");
+  std::vector<char*> arguments;
+  for (std::size_t i = 1; i < words.size(); ++i) arguments.push_back(words[i].data());
+  const auto options = calibrate::parse(static_cast<int>(arguments.size()), arguments.data());
+  ASSERT_TRUE(options) << options.error().what;
+  EXPECT_EQ(options->rig_file, "my_rig.toml");
+  EXPECT_TRUE(options->apply) << "else the rig file would not name the calibration";
+  EXPECT_EQ(options->camera.width_px, colour_webcam().modes[0].width_px);
+  EXPECT_EQ(options->projector.width_px, 1280);
+  EXPECT_EQ(options->projector.height_px, 800);
 }
 
 TEST_F(RigText, WithACalibrationTheDoctorFindsNoFault) {

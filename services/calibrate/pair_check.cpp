@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/calibrate/pair_check.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "services/calibrate/pair_views.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+/// A camera has moved if a board is off by more than this. A pair that was just calibrated is right
+/// within 0.8 px and 3 mm.
+/// @{
+constexpr double kMoved_px = 1.5, kMovedAcross_mm = 2.5, kMovedAlong_mm = 6;
+/// @}
+constexpr int kPlainlyMissing = 5;  ///< images; in one or two the board may have been blurred
+
+}  // namespace
+
+Outcome judge_pair(const calib::PairOff& off) {
+  const double across_mm = 1e3 * std::hypot(off.off_m.x, off.off_m.y),
+               along_mm = 1e3 * std::abs(off.off_m.z);
+  Outcome outcome{
+      fmt::format("at {:.2f} m what both cameras see is off by {:.1f} mm across and {:.1f} mm "
+                  "along the first camera's axis, and by {:.1f} px from epipolar lines",
+                  off.depth_m, across_mm, along_mm, off.off_line_px),
+      off.off_line_px <= kMoved_px && across_mm <= kMovedAcross_mm && along_mm <= kMovedAlong_mm};
+  if (!outcome.is_good)
+    outcome.findings.push_back(
+        "one of the two cameras has moved since they were calibrated: measure the step `pair` "
+        "again; if it was the first camera, also `screen`");
+  return outcome;
+}
+
+Result<Outcome> check_pair(Desk& desk) {
+  const auto seen = look_at_pair(desk);
+  if (!seen) return tl::make_unexpected(seen.error());
+  if (seen->views.empty() && seen->missing >= kPlainlyMissing)
+    return Outcome{"the second camera does not see the board where it should by the calibration",
+                   false,
+                   {"the second camera looks elsewhere, or is covered, dark or out of focus: look "
+                    "at it, and measure the step `pair` again if it has moved"}};
+  const auto& second = *desk.used.camera2;
+  const auto off = calib::pair_off(seen->views, desk.used.camera, second);
+  if (!off)
+    return fail(Errc::bad_data,
+                "the board was never still where both cameras see it; hold it nearer to the middle "
+                "of both images");
+  return judge_pair(*off);
+}
+
+}  // namespace handcast::calibrate
