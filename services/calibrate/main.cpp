@@ -98,6 +98,8 @@ Result<int> run(Options options) {
   const bool measures_steps = !options.check && !options.correct && options.points.empty();
   if (measures_steps)
     if (auto down = check_down(*rig); !down) return tl::make_unexpected(down.error());
+  if (rig->camera.backend != "twin")
+    fmt::print(stderr, "looking for the devices of {}\n", printable(options.rig_file.string()));
   const auto own = own_devices(*rig);
   const auto running = rig_as_it_runs(options, *rig, own);
   if (!running) return tl::make_unexpected(running.error());

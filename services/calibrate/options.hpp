@@ -31,10 +31,10 @@ struct Options {
   Size camera, camera2, projector;  ///< of a rig without a calibration
   std::filesystem::path folder;     ///< of the session; default: next to the rig file
   std::filesystem::path board_pdf;  ///< where the board is to be written, and nothing else is done
-  double most_s = 180;              ///< how long a step may take
+  double most_s = 180;              ///< how long a step, or a part of --check, may take
   bool yes = false;                 ///< starts each step without a key
   bool restart = false;             ///< forgets what was measured before
-  bool check = false;               ///< measures today's error and changes nothing
+  bool check = false;               ///< measures today's error; nothing is changed
   /// Diameter of the reflector on an index finger tip; 0: the tracker is measured by a hand's
   /// landmarks.
   double reflector_mm = 0;

@@ -161,7 +161,7 @@ Result<void> check_known(const Options& options, const RunningAs& running) {
   return same;
 }
 
-std::vector<std::string> twin_scene(Step step, const Options& options) {
+std::vector<std::string> twin_scene(Step step, const Options& options, double camera_hz) {
   // Whole pictures at 946 Hz take a core. 57 Hz keeps step with no usual rate of a camera.
   std::vector<std::string> settings{"projector.rate_hz=57"};
   if (step == Step::tracker) {
@@ -179,7 +179,9 @@ std::vector<std::string> twin_scene(Step step, const Options& options) {
   }
   settings.emplace_back("twin.prop.kind=board");
   settings.push_back("twin.prop.board=" + calib::print_board_name(options.board));
-  settings.push_back(fmt::format("twin.prop.hold_s={}", step == Step::screen ? 8 : 1));
+  // All patterns must be seen while it is still.
+  const double lit_s = std::clamp(4 + 160 / camera_hz, 8.0, 60.0);
+  settings.push_back(fmt::format("twin.prop.hold_s={:.1f}", step == Step::screen ? lit_s : 1));
   if (step == Step::lens2) settings.emplace_back("twin.prop.views=second");
   if (step == Step::pair) settings.emplace_back("twin.prop.views=both");
   if (step == Step::screen)

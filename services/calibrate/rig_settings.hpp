@@ -34,7 +34,7 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
 Result<void> check_known(const Options& options, const RunningAs& running);
 
 /// The settings (for --set) with which the twin shows what a step needs, at a rate that leaves a
-/// small computer time for it.
-std::vector<std::string> twin_scene(Step step, const Options& options);
+/// small computer time for it. The board is held longer for a slow camera.
+std::vector<std::string> twin_scene(Step step, const Options& options, double camera_hz);
 
 }  // namespace handcast::calibrate

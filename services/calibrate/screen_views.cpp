@@ -44,6 +44,7 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
   progress_.emplace(desk_, "screen");
   of_each_ = 1 / static_cast<double>(wanted);
   std::string advice = "Hold the board still in the light";
+  std::string failed = "the board was never still in the projector's light";
   while (views.size() < wanted) {
     if (const auto on = progress_->goes_on(); !on || !*on) {
       if (!on) return tl::make_unexpected(on.error());
@@ -57,7 +58,7 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
     auto view = measure_twice();
     if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
     if (!view) {
-      advice = view.error().what;
+      advice = failed = view.error().what;
       continue;
     }
     for (const auto& point : view->points) seen_.add(point.camera_px);
@@ -67,6 +68,7 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
         seen_.emptiest());
   }
   progress_.reset();
+  if (views.empty()) return fail(Errc::bad_data, failed);
   return views;
 }
 

@@ -29,7 +29,8 @@ class ScreenViews {
   static constexpr std::size_t kWanted = 5;  ///< views that are enough
 
   /// Takes a view of each place at which the board is held still, until there are `wanted`, Enter
-  /// is pressed or the time is over. Errors: those of the streams and of the rig.
+  /// is pressed or the time is over. Errors: bad_data (there is none, with the reason), those of
+  /// the streams and of the rig.
   Result<std::vector<calib::DepthView>> take(std::size_t wanted = kWanted);
   /// Where in the camera's image the views are.
   const calib::ImageFields& seen() const { return seen_; }

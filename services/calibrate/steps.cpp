@@ -92,7 +92,8 @@ Result<Outcome> with_rig(const Options& options, const RunningAs& running,
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
   std::vector<std::string> settings;
-  if (rig->camera.backend == "twin" && !is_up) settings = twin_scene(entry.step, options);
+  if (rig->camera.backend == "twin" && !is_up)
+    settings = twin_scene(entry.step, options, rig->camera.rate_hz);
   // What the person sets comes later, and wins.
   settings.insert(settings.end(), running.settings.begin(), running.settings.end());
   const auto as_it_runs = config::load_rig(options.rig_file, settings);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A newcomer's session of `handcast calibrate` on the twin, which holds boards and hands: in a
 // terminal of its own, in which Enter is pressed some seconds after each instruction. Counts
-// commands, keys and edits, and the time to a rig without faults.
+// commands and keys, and the time to a rig without faults.
 //   bench_calib_session [--reading S] [--goals FILE]
 #include <fmt/format.h>
 #include <poll.h>
@@ -29,10 +29,10 @@ namespace fs = std::filesystem;
 
 /// What the person has done.
 struct Session {
-  int commands = 0, keys = 0, edits = 0;
+  int commands = 0, keys = 0;
   std::string said;  ///< by the last command
   int exit_code = 0;
-  int actions() const { return commands + keys + edits; }
+  int actions() const { return commands + keys; }
 };
 
 /// Runs a command in a terminal and presses Enter `reading_s` after each prompt.
@@ -75,14 +75,6 @@ void run(const std::vector<std::string>& words, double reading_s, Session& sessi
   session.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
-/// Names the new calibration in the rig file, as the program says.
-void name_calibration(const fs::path& rig, Session& session) {
-  ++session.edits;
-  std::ifstream old(rig);
-  std::string text((std::istreambuf_iterator<char>(old)), {});
-  std::ofstream(rig) << "calibration = \"twin_calibration.toml\"\n" << text;
-}
-
 std::vector<Goal> measure(double reading_s) {
   const test::Scratch scratch;
   setenv("HANDCAST_SCOPE", scratch.path().c_str(), 1);
@@ -99,11 +91,10 @@ std::vector<Goal> measure(double reading_s) {
   run({handcast, "calibrate", "--print-board", scratch.path() / "board.pdf"}, reading_s, session);
   run({handcast, "calibrate", rig, "--apply"}, reading_s, session);
   const int calibrated = session.exit_code;
-  name_calibration(rig, session);
   run({handcast, "doctor", rig}, reading_s, session);
   const double minutes = ns_to_seconds(now_ns() - begin_ns) / 60;
-  fmt::print("{} commands, {} keys, {} edits; exit codes: calibrate {}, doctor {}\n",
-             session.commands, session.keys, session.edits, calibrated, session.exit_code);
+  fmt::print("{} commands, {} keys; exit codes: calibrate {}, doctor {}\n", session.commands,
+             session.keys, calibrated, session.exit_code);
   goals.push_back({"a newcomer's session on the twin", minutes, 10, "minutes"});
   goals.push_back({"actions of it", static_cast<double>(session.actions()), 25, ""});
   goals.push_back(
