@@ -34,6 +34,9 @@ struct Cell {
   int column = kDark, row = kDark;
 };
 
+/// As std::hypot(), which is ten times as slow since it cares for numbers that overflow.
+double length(double a, double b) { return std::sqrt(a * a + b * b); }
+
 /// Where an edge lies between a pixel and its neighbour.
 struct Crossing {
   double share;   ///< of the way
@@ -127,8 +130,8 @@ double GrayDecoder::noise(int x, int y) const {
     const int behind = grey(0, left, upper), here = grey(0, x, y), ahead = grey(0, right, lower);
     return std::max(std::abs(here - behind), std::abs(ahead - here));
   };
-  const double printed = std::hypot(step(1, 0), step(0, 1));
-  return std::hypot(result_.noise, kTremor_px * std::max(0., printed - 3 * result_.noise));
+  const double printed = length(step(1, 0), step(0, 1));
+  return length(result_.noise, kTremor_px * std::max(0., printed - 3 * result_.noise));
 }
 
 /// At most one bit of each coordinate may be unsure: on an edge, either side is right.
@@ -169,7 +172,7 @@ Crossing GrayDecoder::crossing(std::size_t bit, int x, int y, int dx, int dy) co
   const double rise = from - to;
   const double sigma_px =
       std::numbers::sqrt2 / (rise * rise) *
-      std::hypot(to * noise(x, y) / light, from * noise(x + dx, y + dy) / next_light);
+      length(to * noise(x, y) / light, from * noise(x + dx, y + dy) / next_light);
   return {from / rise, 1 / (kEdgeSigma_px * kEdgeSigma_px + sigma_px * sigma_px)};
 }
 

@@ -102,7 +102,7 @@ Result<Options> parse(int argc, char** argv) {
                  "light measures with it when the light comes, for a camera that does not see it");
   app.add_flag("--yes", options.yes, "Starts each step at once, without waiting for Enter");
   app.add_flag("--restart", options.restart,
-               "Forgets what was measured in this folder, and measures all steps again");
+               "Forgets what was measured in this folder before it measures");
   app.add_flag(
       "--check", options.check,
       "Says in half a minute whether camera, tracker, projector or second camera have moved "

@@ -19,13 +19,13 @@ constexpr const char* kStyle =
     "svg text{fill:currentColor}svg circle,svg rect{fill:var(--ours)}"
     "svg rect.out,svg .second{fill:var(--cascade)}svg .third{fill:var(--baseline)}"
     ".pictures{display:flex;flex-wrap:wrap;gap:1.2rem 2rem;align-items:flex-start}"
-    "figure{margin:0;flex:0 1 auto;max-width:min(100%,460px)}figure.broad{max-width:100%}"
+    "figure{margin:0;flex:0 1 auto;max-width:min(100%,448px)}figure.broad{max-width:100%}"
     "figcaption{font-size:.85rem;color:var(--quiet);margin-top:.3rem}"
     ".verdict{font-size:1.1rem;border-left:4px solid var(--ours);padding-left:.8rem}"
     ".verdict.open{border-color:var(--cascade)}"
     "code{background:var(--panel);border:1px solid var(--line);border-radius:3px;padding:0 .25em;"
     "overflow-wrap:anywhere}"
-    "header dl{display:block}header dl div{margin-top:.5rem}h2 .quiet{font-weight:400}"
+    "header dl{display:block;margin-top:1rem}header dl div{margin-top:.5rem}h2 .quiet{font-weight:400}"
     "ul{padding-left:1.2rem}";
 
 const char* title_of(Step step) {

@@ -151,9 +151,9 @@ std::string errors_table(const calib::TrackerFit& fit) {
         &error == &fit.place_errors.front() ? "middle" : "corner",
         number_text(1e3 * error.place_m.x, 0), number_text(1e3 * error.place_m.y, 0),
         error.place_m.z, 2 * error.light_mm, 2 * error.whole_mm);
-  return "<figure class='broad'><div class='wide'><table><thead><tr><th>place in the volume</th>"
-         "<th>right, mm</th><th>down, mm</th><th>far, m</th><th>light within, mm</th><th>in space "
-         "within, mm</th></tr></thead><tbody>" +
+  return "<figure class='broad'><div class='wide'><table><thead><tr><th>place</th><th>right mm</th>"
+         "<th>down mm</th><th>far m</th><th>light ± mm</th><th>space ± mm</th></tr></thead>"
+         "<tbody>" +
          rows +
          "</tbody></table></div><figcaption>What the fit does not know, two standard deviations: "
          "how "
