@@ -187,6 +187,17 @@ def verdict_of_fast(runs):
            f"median ({min(delays):.1f} to {max(delays):.1f}); the goal of {GOAL_LATENCY_MS} ms is missed in {late} of {len(delays)} runs.")
 
 
+def verdict_of_causes(runs):
+    """What perfect sensors would bring, and what the calibration costs in coverage."""
+    mean, p95 = (runs.mean("perfect_sensors", None, f"interior_mm_{of}") for of in ("mean", "p95"))
+    better = "would reach it" if mean <= GOAL_MM[0] and p95 <= GOAL_MM[1] else "do not reach it: the shape of another person's hand costs more"
+    coverage = [f"{100 * runs.mean(variant, None, 'coverage'):.1f} % with {words}" for variant, words in
+                (("all_errors", "all errors"), ("right_calibration", "a right calibration"), ("perfect_sensors", "perfect sensors"))]
+    yield ""
+    yield (f"The goal is {GOAL_MM[0]} / {GOAL_MM[1]} mm. Perfect sensors alone ({mean:.1f} / {p95:.1f} mm) {better}. Coverage: "
+           f"{', '.join(coverage)}; the goal is {100 * GOAL_COVERAGE:.0f} %.")
+
+
 def verdict_of_two_hands(runs):
     """How much worse two hands are than the same hands alone."""
     motion = runs.motions[0]
@@ -243,7 +254,7 @@ def unseen_tables(runs):
 
 
 # What is said below a table.
-VERDICTS = {"comparison": verdict, "two_hands": verdict_of_two_hands, "motions": verdict_of_motions, "fast": verdict_of_fast}
+VERDICTS = {"comparison": verdict, "causes": verdict_of_causes, "two_hands": verdict_of_two_hands, "motions": verdict_of_motions, "fast": verdict_of_fast}
 
 
 def lines_of(part, path, command, people):
