@@ -217,7 +217,13 @@ std::optional<Value> read_assigned(std::string_view text, const Target& target) 
 
 }  // namespace
 
-Error Faults::to_error() const { return {Errc::bad_config, join(sentences_, "\n")}; }
+Error Faults::to_error() const {
+  constexpr std::size_t kMost = 100;  // a file of another kind is not printed back whole
+  if (sentences_.size() <= kMost) return {Errc::bad_config, join(sentences_, "\n")};
+  const std::vector first(sentences_.begin(), sentences_.begin() + kMost);
+  return {Errc::bad_config,
+          fmt::format("{}\nand {} more errors", join(first, "\n"), sentences_.size() - kMost)};
+}
 
 void apply_document(const Value& document, std::string_view file, const Listing& listing,
                     Faults& faults) {

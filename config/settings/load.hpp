@@ -17,7 +17,8 @@ class Faults {
   void add(std::string sentence) { sentences_.push_back(std::move(sentence)); }
   /// True if there is no error.
   bool empty() const { return sentences_.empty(); }
-  /// All errors as one (bad_config), with one line each.
+  /// All errors as one (bad_config), with one line each; of more than 100, the first 100 and the
+  /// number of the others.
   Error to_error() const;
 
  private:

@@ -24,6 +24,12 @@ tl::unexpected<Error> unreadable(const std::filesystem::path& file, int error) {
               fmt::format("{}: cannot be read: {}", file.string(), std::strerror(error)));
 }
 
+tl::unexpected<Error> too_large(const std::filesystem::path& file, std::uint64_t size,
+                                std::uint64_t most_bytes) {
+  return fail(Errc::bad_config, fmt::format("{}: has {} MB; at most {} MB are read", file.string(),
+                                            size >> 20, most_bytes >> 20));
+}
+
 Result<std::uint64_t> size_of_regular(int fd, const std::filesystem::path& file,
                                       std::uint64_t most_bytes) {
   struct stat status {};
@@ -32,9 +38,7 @@ Result<std::uint64_t> size_of_regular(int fd, const std::filesystem::path& file,
     return fail(Errc::bad_config, fmt::format("{}: cannot be read: it is {}, not a file",
                                               file.string(), kind_of(status.st_mode)));
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size > most_bytes)
-    return fail(Errc::bad_config, fmt::format("{}: has {} MB; at most {} MB are read",
-                                              file.string(), size >> 20, most_bytes >> 20));
+  if (size > most_bytes) return too_large(file, size, most_bytes);
   return size;
 }
 
@@ -59,14 +63,18 @@ Result<std::string> read_input(const std::filesystem::path& file, std::uint64_t 
   if (!fd) return tl::make_unexpected(fd.error());
   const auto size = size_of_regular(fd->get(), file, most_bytes);
   if (!size) return tl::make_unexpected(size.error());
-  std::string bytes(*size, '\0');
+  // Files of /proc and of some network file systems have more bytes than their size says.
+  constexpr std::size_t kMore = 4096;
+  std::string bytes(*size + kMore, '\0');
   std::size_t count = 0;
-  while (count < bytes.size()) {  // a file that is cut meanwhile ends the loop, too
+  for (;;) {  // a file that is cut meanwhile ends the loop, too
     const auto got = ::read(fd->get(), bytes.data() + count, bytes.size() - count);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return unreadable(file, errno);
     if (got == 0) break;
     count += static_cast<std::size_t>(got);
+    if (count > most_bytes) return too_large(file, count, most_bytes);
+    if (count == bytes.size()) bytes.resize(2 * count);
   }
   bytes.resize(count);
   return bytes;

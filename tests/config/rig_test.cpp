@@ -69,6 +69,15 @@ TEST(Rig, AFileSaysAllItsFaultsAtOnceInTheOrderOfItsLines) {
           "/rigs/test.toml:10: observer.enabled: must be true or false, not a whole number"));
 }
 
+TEST(Rig, AFileOfAnotherKindIsNotPrintedBackWhole) {
+  std::string lines;
+  for (int i = 0; i < 5000; ++i) lines += "k" + std::to_string(i) + " = 1\n";
+  const auto faults = faults_of(lines);
+  ASSERT_EQ(faults.size(), 101u);
+  EXPECT_THAT(faults[99], HasSubstr("test.toml:100: k99: there is no such setting"));
+  EXPECT_EQ(faults.back(), "and 4900 more errors");
+}
+
 TEST(Rig, AnUnknownSectionIsOneFaultWithASuggestion) {
   EXPECT_THAT(
       faults_of("[camrea]\nrate_hz = 1\nexposure_ms = 2\n"),

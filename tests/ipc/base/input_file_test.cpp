@@ -44,6 +44,15 @@ TEST_F(InputFile, WithOneByteTooManyIsRefused) {
   EXPECT_EQ(read_input(scratch_.path() / "file", 6).value(), "123456");
 }
 
+// Files of /proc are regular and have a size of 0.
+TEST_F(InputFile, IsReadToItsEndAndNotToItsSize) {
+  const auto limits = read_input("/proc/self/limits", 1 << 20);
+  ASSERT_TRUE(limits) << limits.error().what;
+  EXPECT_THAT(*limits, HasSubstr("Max open files"));
+  EXPECT_THAT(refusal("/proc/self/limits", 5), HasSubstr("at most 0 MB are read"));
+  EXPECT_EQ(refusal("/proc/self/mem"), "/proc/self/mem: cannot be read: Input/output error");
+}
+
 TEST_F(InputFile, ThatIsNoFileIsRefusedAtOnceAndNeverWaitedFor) {
   ASSERT_EQ(mkfifo((scratch_.path() / "pipe").c_str(), 0600), 0);
   EXPECT_THAT(refusal(scratch_.path() / "pipe"), HasSubstr("it is a pipe, not a file"));
