@@ -24,7 +24,7 @@ Result<UniqueFd> claim(const control::RigAddress& address, const std::string& ri
   UniqueFd listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* where = reinterpret_cast<const sockaddr*>(&address.socket);
   if (listener && bind(listener.get(), where, address.size) == 0 &&
-      ::listen(listener.get(), 16) == 0)
+      ::listen(listener.get(), SOMAXCONN) == 0)
     return listener;
   if (!listener || errno != EADDRINUSE)
     return fail(Errc::unavailable,

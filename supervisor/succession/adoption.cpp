@@ -167,8 +167,11 @@ Result<ipc::Segment> make_ring(const ipc::RingSpec& spec) {
   if (!made) return tl::make_unexpected(made.error());
   UniqueFd fd(fcntl(made->fd(), F_DUPFD_CLOEXEC, kFirstNumber));
   if (!fd)
-    return fail(Errc::unavailable,
-                fmt::format("no descriptor from {} on: {}", kFirstNumber, std::strerror(errno)));
+    return fail(
+        Errc::unavailable,
+        fmt::format("no file descriptor from {} on is free; a rig needs a limit of at least "
+                    "{} (ulimit -n)",
+                    kFirstNumber, 2 * kFirstNumber));
   return ipc::Segment::open(std::move(fd));
 }
 

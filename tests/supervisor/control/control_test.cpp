@@ -170,6 +170,24 @@ TEST_F(Control, ClientsThatAskNothingDoNotShutOthersOut) {
   EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));
 }
 
+TEST_F(Control, ManyThatComeAtOnceAreAllAnswered) {
+  serve([](const Request&, const ControlServer::Reply& reply) { reply(success()); });
+  const auto address = address_of("desk").value();
+  const auto line = print_request(Request{}) + "\n";
+  std::vector<UniqueFd> clients;
+  for (int i = 0; i < 120; ++i) {  // the loop does not turn yet
+    auto socket = connect_to(address);
+    ASSERT_TRUE(socket) << i << ": " << socket.error().what;
+    ASSERT_EQ(send(socket->get(), line.data(), line.size(), 0), std::ssize(line));
+    clients.push_back(std::move(*socket));
+  }
+  EXPECT_TRUE(while_it_turns([] { return ask("desk", {}); }));  // the last one
+  for (const auto& client : clients) {
+    char first = 0;
+    EXPECT_EQ(recv(client.get(), &first, 1, MSG_DONTWAIT), 1);
+  }
+}
+
 TEST_F(Control, AClientThatWaitsForItsAnswerIsKeptWhenOthersComeIn) {
   std::optional<ControlServer::Reply> down;
   std::atomic<bool> is_waiting = false;

@@ -246,6 +246,7 @@ TEST_F(BareRig, AReloadThatCannotBeAppliedChangesNothing) {
     const auto refused = reload();
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().what, HasSubstr("ring marks.observer"));
+    EXPECT_THAT(refused.error().what, HasSubstr("a limit of at least 200 (ulimit -n)"));
   }
   EXPECT_TRUE(applied() == before);
   EXPECT_FALSE(services().contains("observer"));
