@@ -3,7 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,28 +23,32 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// In the child: only calls that are safe after a fork of a program with threads.
+[[noreturn]] void become(char* const* arguments, const char* log, pid_t parent) {
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  const int output = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  const bool in_place = nothing >= 0 && output >= 0 && ::dup2(nothing, STDIN_FILENO) >= 0 &&
+                        ::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(output, STDERR_FILENO) >= 0;
+  ::setpgid(0, 0);
+  // A session that is killed must not leave a rig that casts light.
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (in_place && ::getppid() == parent) ::execv(arguments[0], arguments);
+  ::_exit(127);
+}
+
 /// Starts a program whose output goes to `log`, in a process group of its own: Ctrl-C reaches only
-/// this program, which then stops the rig. -1 if it cannot be started.
+/// this program, which then stops the rig. It ends with the thread that calls this. -1 if it cannot
+/// be started.
 pid_t spawn(std::vector<std::string> words, const std::filesystem::path& log) {
+  if (::access(words.front().c_str(), X_OK) != 0) return -1;
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                   0644);
-  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  pid_t child = -1;
-  const int failed =
-      posix_spawn(&child, arguments.front(), &files, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  return failed ? -1 : child;
+  const pid_t self = ::getpid();
+  const pid_t child = ::fork();
+  if (child == 0) become(arguments.data(), log.c_str(), self);
+  return child;
 }
 
 }  // namespace

@@ -128,7 +128,9 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
     return session;
   }
   auto draft = calib::load_calibration(file);
-  if (!draft) return tl::make_unexpected(draft.error());
+  if (!draft)
+    return fail(draft.error().code,
+                fmt::format("{}; --restart forgets what was measured before", draft.error().what));
   if (!has_size_of(draft->camera, used.camera))
     return fail(Errc::bad_config,
                 fmt::format("what was measured before, in {}, has images of {}x{} px, and the rig "
@@ -220,8 +222,9 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
     *made = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
     if (kept) kept = write_whole(file(kPending), "the draft is not in its place yet\n");
   }
-  if (kept) kept = write_whole(piece_of(step), piece_html(step, outcome));
+  // The measurement before its pictures, for which a disk may have no room.
   if (kept) kept = write_whole(file(kDraft), calib::print_calibration(draft_));
+  if (kept) kept = write_whole(piece_of(step), piece_html(step, outcome));
   return kept ? write_report() : kept;
 }
 

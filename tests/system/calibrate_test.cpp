@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `handcast calibrate` measures the twin, whose truth is known.
 #include <gmock/gmock.h>
+#include <signal.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -140,6 +141,17 @@ TEST_F(Calibrate, ARigThatCannotStartIsToldInASentence) {
   EXPECT_NE(outcome.exit_code, 0);
   EXPECT_THAT(outcome.log, HasSubstr("camera.rate_hz"));
   EXPECT_FALSE(fs::exists(scratch_.path() / "twin_calibration.toml"));
+}
+
+TEST_F(Calibrate, ASessionThatIsKilledTakesItsRigWithIt) {
+  const Command session(scratch_.path(),
+                        {"calibrate", rig_file(), "lens", "--yes", "--most-s", "300"});
+  ASSERT_TRUE(eventually([&] { return session.log().find("lens:") != std::string::npos; }))
+      << session.log();
+  ASSERT_TRUE(eventually([&] { return processes_of(scratch_.path()).size() > 5; }))
+      << session.log();
+  session.signal(SIGKILL);
+  EXPECT_TRUE(eventually([&] { return processes_of(scratch_.path()).empty(); }));
 }
 
 TEST_F(Calibrate, TheBoardIsPrinted) {

@@ -60,6 +60,25 @@ TEST_F(CalibrateSession, AMeasurementThatIsNotGoodChangesNothing) {
   EXPECT_EQ(text_of(session.report()), report);
 }
 
+TEST_F(CalibrateSession, AMeasurementIsKeptAlthoughItsPicturesCannotBeWritten) {
+  fs::create_directories(options_.folder / "lens.html" / "a folder in its place");
+  const auto kept = open().keep(Step::lens, {"20 images"}, with_focal_length(1200));
+  ASSERT_FALSE(kept);
+  EXPECT_THAT(kept.error().what, HasSubstr("lens.html"));
+  EXPECT_EQ(open().draft().camera.fx_px, 1200);
+}
+
+TEST_F(CalibrateSession, ADamagedDraftIsRefusedWithTheWayOut) {
+  fs::create_directories(options_.folder);
+  std::ofstream(options_.folder / "draft.toml") << "not a calibration";
+  const auto session = Session::open(options_, rig_, used_);
+  ASSERT_FALSE(session);
+  EXPECT_THAT(session.error().what, HasSubstr("draft.toml"));
+  EXPECT_THAT(session.error().what, HasSubstr("--restart"));
+  options_.restart = true;
+  EXPECT_TRUE(Session::open(options_, rig_, used_));
+}
+
 TEST_F(CalibrateSession, ANewLensForgetsWhatWasMeasuredWithTheOld) {
   auto session = open();
   ASSERT_TRUE(session.keep(Step::lens, {"one"}, used_));
