@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <algorithm>
+
 #include "tests/system/running_rig.hpp"
 #include "tests/system/variable.hpp"
 
@@ -86,7 +88,11 @@ TEST_F(ControlLoss, ASupervisorThatIsKilledWhileTheRigStopsIsNotReplaced) {
   const auto supervisor = rig->supervisor();
   for (const auto pid : services) kill(pid, SIGSTOP);
   rig->signal(SIGTERM);
-  usleep(300'000);
+  ASSERT_TRUE(eventually([&] {
+    auto now = status();
+    return std::ranges::any_of(
+        kServices, [&](const auto& name) { return now["services"][name]["state"] == "stopping"; });
+  }));
   kill(supervisor, SIGKILL);
   EXPECT_EQ(rig->wait(), 1);
   expect_darkness(services);

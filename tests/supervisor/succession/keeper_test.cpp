@@ -55,6 +55,19 @@ class KeeperTest : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
+  /// Sends a signal to the keeper, and waits until it has taken it: two that wait would be one.
+  void send(int number) const {
+    kill(keeper_, number);
+    EXPECT_TRUE(eventually([&] { return !is_pending(number); }));
+  }
+  bool is_pending(int number) const {
+    std::ifstream file("/proc/" + std::to_string(keeper_) + "/status");
+    for (std::string word; file >> word;)
+      if (std::uint64_t signals = 0; word == "ShdPnd:" && file >> std::hex >> signals)
+        return signals >> (number - 1) & 1;
+    return false;
+  }
+
   std::filesystem::path notes_file() const { return scratch_.path() / "notes"; }
   std::vector<std::string> notes() const {
     std::vector<std::string> lines;
@@ -233,10 +246,7 @@ TEST_F(KeeperTest, ASupervisorThatDiesWhileTheRigStopsHasNoSuccessor) {
 TEST_F(KeeperTest, AStopBeforeTheFirstBeatEndsASupervisorThatHangsForGood) {
   keep_script("echo life >> $NOTES; trap '' TERM INT; while :; do sleep 0.1; done");
   ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
-  for (int i = 0; i < 3; ++i) {
-    kill(keeper_, SIGINT);
-    usleep(150'000);
-  }
+  for (int i = 0; i < 3; ++i) send(SIGINT);
   EXPECT_EQ(wait(), kExitBadResult);
   EXPECT_THAT(notes(), ElementsAre("life"));
 }
@@ -249,9 +259,8 @@ TEST_F(KeeperTest, TheThirdStopSignalKillsASupervisorThatDoesNotStop) {
               "/usr/bin/perl");
   ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
   for (int i = 0; i < 3; ++i) {
-    usleep(150'000);
     ASSERT_EQ(waitpid(keeper_, nullptr, WNOHANG), 0);
-    kill(keeper_, SIGINT);
+    send(SIGINT);
   }
   EXPECT_EQ(wait(), kExitBadResult);
 }

@@ -75,10 +75,11 @@ TEST_F(Leap, TheOriginIsTheMiddleOfTheExposure) {
     off_ms.push_back(ns_to_ms(frame().header.origin_ns - (begun_ns - 1'500'000)));
     EXPECT_LE(frame().header.origin_ns, now_ns());
   }
-  std::ranges::nth_element(off_ms, off_ms.begin() + 150);
-  std::printf("median of the origins' errors: %.2f ms\n", off_ms[150]);
-  EXPECT_GT(off_ms[150], -1) << "ms";
-  EXPECT_LT(off_ms[150], 2) << "ms; the emulated transfers take about 1 ms";
+  // Not the median: a loaded machine sends and receives most of them late, and none early.
+  std::ranges::nth_element(off_ms, off_ms.begin() + 30);
+  std::printf("tenth percentile of the origins' errors: %.2f ms\n", off_ms[30]);
+  EXPECT_GT(off_ms[30], -1) << "ms";
+  EXPECT_LT(off_ms[30], 2) << "ms; the emulated transfers take about 1 ms";
   EXPECT_GT(frame().origin_error_ns, 0);
 }
 

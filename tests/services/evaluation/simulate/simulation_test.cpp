@@ -141,7 +141,8 @@ TEST(TwinFeed, MessagesArriveInOrderAndAtTheirAge) {
 TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
   const test::Scratch folder;
   Options options = options_of("twin", 0.5);
-  add_settings(options, {"twin.detector.dropout=0.6"});
+  add_settings(options,
+               {"twin.detector.dropout=0.6", "camera.rate_hz=100"});  // writes fewer images
   options.draw_every = 64;
   options.record_directory = folder.path().string();
   for (int seed = 1; seed <= 3; ++seed) {  // the first detection without a hand varies
@@ -206,6 +207,7 @@ TEST(Simulation, ANameThatIsNotUtf8IsWrittenAllTheSame) {
   const test::Scratch folder;
   auto recorded = short_run(), options = short_run();
   recorded.record_directory = (folder.path() / "caf\xe9").string();
+  add_settings(recorded, {"camera.rate_hz=30"});  // writes fewer images
   ASSERT_TRUE(run(recorded));
   add_settings(options, {"twin.motion=" + recorded.record_directory});
   options.json_file = (folder.path() / "metrics.json").string();

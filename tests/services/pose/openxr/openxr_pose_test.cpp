@@ -194,20 +194,21 @@ TEST_F(OpenXrPose, ASampleIsTakenOnlyIfItsArrivalWasSeen) {
   for (const auto* times : {"holds", "interpolates"}) {
     open_it("rate_hz 100\nage_ms 5\nnoise_mm 0\ntimes " + std::string(times),
             {.rate_hz = 50, .age_ms = 5});
-    std::vector<double> off_ms;
+    std::vector<double> ahead_ms;
     std::optional<std::int64_t> first_ns;
-    double first_s = 0;
     for (int i = 0; i < 10; ++i) {
       const auto poses = sample();
       // The place in the sway tells when it was measured.
       const double second =
           std::asin(poses.hands[0].joints[1].position_m[0] / 0.05) * 1.5 / 6.2831853;
-      if (!first_ns) first_ns = poses.header.origin_ns, first_s = second;
-      off_ms.push_back(
-          std::abs(ns_to_ms(poses.header.origin_ns - *first_ns) - 1e3 * (second - first_s)));
+      if (!first_ns) first_ns = poses.header.origin_ns;
+      ahead_ms.push_back(ns_to_ms(poses.header.origin_ns - *first_ns) - 1e3 * second);
     }
-    std::ranges::sort(off_ms);
-    EXPECT_LT(off_ms[5], 1.5) << times;
+    // Beside the middle one: a machine that wakes late stamps some of them, or the first,
+    // otherwise.
+    std::ranges::sort(ahead_ms);
+    EXPECT_LT(ahead_ms[7] - ahead_ms[4], 1.5) << times;
+    EXPECT_LT(ahead_ms[4] - ahead_ms[2], 1.5) << times;
   }
 }
 
