@@ -25,7 +25,8 @@ constexpr const char* kStyle =
     ".verdict.open{border-color:var(--cascade)}"
     "code{background:var(--panel);border:1px solid var(--line);border-radius:3px;padding:0 .25em;"
     "overflow-wrap:anywhere}"
-    "header dl{display:block;margin-top:1rem}header dl div{margin-top:.5rem}h2 .quiet{font-weight:400}"
+    "header dl{display:block;margin-top:1rem}header dl div{margin-top:.5rem}h2 "
+    ".quiet{font-weight:400}"
     "ul{padding-left:1.2rem}";
 
 const char* title_of(Step step) {
