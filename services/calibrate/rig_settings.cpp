@@ -180,7 +180,7 @@ std::vector<std::string> twin_scene(Step step, const Options& options, double ca
   settings.emplace_back("twin.prop.kind=board");
   settings.push_back("twin.prop.board=" + calib::print_board_name(options.board));
   // All patterns must be seen while it is still.
-  const double lit_s = std::clamp(4 + 160 / camera_hz, 8.0, 60.0);
+  const double lit_s = std::clamp(6 + 240 / camera_hz, 8.0, 60.0);
   settings.push_back(fmt::format("twin.prop.hold_s={:.1f}", step == Step::screen ? lit_s : 1));
   if (step == Step::lens2) settings.emplace_back("twin.prop.views=second");
   if (step == Step::pair) settings.emplace_back("twin.prop.views=both");

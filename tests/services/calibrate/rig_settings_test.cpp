@@ -122,7 +122,7 @@ TEST_F(RigSettings, TheTwinShowsWhatAStepNeeds) {
   EXPECT_THAT(settings, Contains("twin.prop.board=charuco:11x8:20"));
   EXPECT_THAT(settings, Contains("twin.image.leak=1"));
   EXPECT_THAT(settings, Contains("twin.prop.hold_s=8.0"));
-  EXPECT_THAT(twin_scene(Step::screen, Options{}, 16), Contains("twin.prop.hold_s=14.0"))
+  EXPECT_THAT(twin_scene(Step::screen, Options{}, 16), Contains("twin.prop.hold_s=21.0"))
       << "a slow camera needs longer for all patterns";
   EXPECT_THAT(twin_scene(Step::pair, Options{}, 120), Contains("twin.prop.views=both"));
   EXPECT_THAT(twin_scene(Step::lens2, Options{}, 120), Contains("twin.prop.views=second"));
