@@ -21,7 +21,8 @@ Result<Options> parse(int argc, char** argv) {
                  "twin");
   app.add_option("--tracker", flags.tracker,
                  "none, or one that `handcast devices` lists: leapc, openxr; or twin (with the "
-                 "camera twin)");
+                 "camera twin). For two cameras in place of a tracker copy config/rigs/stereo.toml "
+                 "or leap_stereo.toml");
   app.add_option("--distance", flags.distance,
                  "Without a tracker: metres from the camera to the hand");
   app.add_option("--calibration", flags.calibration,

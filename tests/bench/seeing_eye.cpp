@@ -35,6 +35,7 @@ SeeingEye::SeeingEye(const calib::Calibration& seen, int rows_per_row, const con
                      const twin::Twin& twin, std::unique_ptr<landmarks::Detector> detector)
     : twin_(twin),
       calibration_(seen),
+      rig_(rig),
       scene_(rig.twin.image, rig.twin.seed, sensor_of(seen, rows_per_row)),
       exposure_ns_(ms_to_ns(rig.camera.exposure_ms)),
       detector_(std::move(detector)),
@@ -45,6 +46,14 @@ SeeingEye::SeeingEye(const calib::Calibration& seen, int rows_per_row, const con
     if (twin.joints(side, 0)) scene_.set_hand(side, twin.true_hand(side));
   frame_->width_px = static_cast<std::uint32_t>(seen.camera.width_px);
   frame_->height_px = static_cast<std::uint32_t>(seen.camera.height_px);
+}
+
+Result<void> SeeingEye::forget() {
+  auto detector = landmarks::open_detector(rig_, calibration_, 0);
+  if (!detector) return tl::make_unexpected(detector.error());
+  detector_ = std::move(*detector);
+  hints_ = landmarks::TrackerHints(calibration_);
+  return {};
 }
 
 Result<msg::Landmarks> SeeingEye::look(std::uint64_t k, std::int64_t time_ns, bool hints) {

@@ -32,6 +32,8 @@ class SeeingEye {
 
   /// What the poses predict, for the detector.
   void tell(const msg::HandPoses& poses) { hints_.push(poses); }
+  /// The detector begins anew. Errors: those of open_detector().
+  Result<void> forget();
   /// Draws image `k` at `time_ns` and finds landmarks in it. `hints`: with those of tell().
   Result<msg::Landmarks> look(std::uint64_t k, std::int64_t time_ns, bool hints);
   /// The landmarks of hands that are there.
@@ -44,6 +46,7 @@ class SeeingEye {
 
   const twin::Twin& twin_;
   calib::Calibration calibration_;
+  config::Rig rig_;
   twin::CameraScene scene_;
   std::int64_t exposure_ns_;
   std::unique_ptr<landmarks::Detector> detector_;

@@ -57,6 +57,43 @@ void compare(const twin::Twin& twin, const msg::HandPoses& poses, std::int64_t t
   }
 }
 
+constexpr int kPalmJoint = 0;
+
+/// The pose is where the other hand is.
+bool is_exchanged(const twin::Twin& twin, const msg::HandPose& pose, std::int64_t time_ns) {
+  constexpr double kFar_mm = 1e4;
+  const auto far_mm = [&](msg::Side side) {
+    const auto truth = twin.joints(side, time_ns);
+    return truth ? error_mm(*truth, pose, kPalmJoint) : kFar_mm;
+  };
+  const auto other = pose.side == msg::Side::left ? msg::Side::right : msg::Side::left;
+  return far_mm(other) < far_mm(pose.side);
+}
+
+/// Counts exchanged hands, and the samples in a row that have one.
+class Exchanges {
+ public:
+  void add(const twin::Twin& twin, const msg::HandPoses& poses, JointErrors& errors) {
+    const std::int64_t time_ns = poses.header.origin_ns;
+    int exchanged = 0;
+    for (std::uint32_t h = 0; h < poses.count; ++h)
+      exchanged += is_exchanged(twin, poses.hands[h], time_ns);
+    errors.poses += static_cast<int>(poses.count);
+    errors.exchanged += exchanged;
+    if (exchanged > 0 && !is_on_) is_on_ = true, began_ns_ = time_ns;
+    if (exchanged > 0) last_ns_ = time_ns;
+    if (exchanged == 0 && poses.count > 0) end(errors);
+  }
+  void end(JointErrors& errors) {
+    if (is_on_) errors.exchanges_s.push_back(ns_to_seconds(last_ns_ - began_ns_));
+    is_on_ = false;
+  }
+
+ private:
+  bool is_on_ = false;
+  std::int64_t began_ns_ = 0, last_ns_ = 0;
+};
+
 void add_misses(const SeeingEye& eye, const msg::Landmarks& seen, std::vector<double>& mm) {
   for (const auto& miss : eye.compare(seen)) mm.push_back(miss.mm);
 }
@@ -109,10 +146,13 @@ void JointErrors::add(const JointErrors& more) {
   append(later_mm, more.later_mm);
   hands += more.hands;
   missing += more.missing;
+  append(exchanges_s, more.exchanges_s);
+  poses += more.poses;
+  exchanged += more.exchanged;
 }
 
-Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, double seconds,
-                              bool hints) {
+Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, const TrialPlan& plan) {
+  const auto& [seconds, hints, anew_s] = plan;
   rig.twin.image.gain = stereo.gain;
   rig.landmarks.backend = "handcast";
   rig.pose.backend = hints ? "stereo" : "none";
@@ -131,11 +171,21 @@ Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, double s
       pose::stereo::StereoTracker::open(rig, pose::stereo::views_of(stereo.calibration).value(),
                                         glm::inverse(stereo.calibration.camera_from_tracker));
   if (!tracker) return tl::make_unexpected(tracker.error());
+  const auto unused = *tracker;
   StereoTrial trial;
   Later later(rig.cascade.predict);
+  Exchanges exchanges;
+  std::int64_t begun_ns = 0;
   const auto samples = static_cast<std::uint64_t>(seconds * stereo.rate_hz);
   for (std::uint64_t k = 0; k < samples; ++k) {
     const auto time_ns = seconds_to_ns(static_cast<double>(k + 1) / stereo.rate_hz);
+    if (anew_s > 0 && time_ns - begun_ns >= seconds_to_ns(anew_s)) {
+      begun_ns = time_ns;
+      *tracker = unused;
+      for (auto* eye : {&*first, &*second})
+        if (auto forgot = (*eye)->forget(); !forgot) return tl::make_unexpected(forgot.error());
+      exchanges.end(trial.stereo);
+    }
     const auto here = (*first)->look(k, time_ns, hints);
     const auto there = (*second)->look(k, time_ns + ms_to_ns(stereo.second_later_ms), hints);
     if (!here) return tl::make_unexpected(here.error());
@@ -149,7 +199,9 @@ Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, double s
     (*second)->tell(poses);
     compare(**twin, poses, poses.header.origin_ns, trial.stereo);
     later.add(**twin, poses, trial.stereo.later_mm);
+    exchanges.add(**twin, poses, trial.stereo);
   }
+  exchanges.end(trial.stereo);
   compare_tracker(**twin, seconds, rig.cascade.predict, trial.tracker);
   return trial;
 }

@@ -2,11 +2,14 @@
 // How far the joints of pose.backend = "stereo" are from the true ones, per motion, with the real
 // network on the twin's images of two cameras; beside them the twin's model of a tracker.
 //   bench_trackers_stereo [RIG.toml] [--set PATH=VALUE]... [--tune] [--no-hints] [--seconds S]
-//                         [--seed N] [--only leap|gige] [--motion NAME] [--goals FILE]
+//                         [--seed N] [--only leap|gige] [--motion NAME] [--anew S] [--goals FILE]
 // The default rig is config/rigs/twin.toml. --tune: the motions and the seed that settings were
 // chosen on. --no-hints: the network does not get what the poses predict.
+// --anew: detectors and tracker forget all every S seconds, as after a cable was pulled; exchanged
+// hands are those that are taken for the other one.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -20,8 +23,8 @@ namespace {
 struct Options {
   std::string rig = "config/rigs/twin.toml", goals, only, motion;
   std::vector<std::string> settings;
-  bool tune = false, hints = true;
-  double seconds = 4;
+  bool tune = false;
+  TrialPlan plan;
   int seed = 0;
 };
 
@@ -58,21 +61,26 @@ void print_row(const std::string& name, const StereoTrial& trial) {
                       : fmt::format("{:6.1f}{:6.1f}", mean(mm), percentile(mm, 0.95));
   };
   const auto& [stereo, tracker, work_us, landmarks_mm] = trial;
-  fmt::print("{:<17}{} |{} |{} |{:6.1f} |{} |{} |{} |{:6.1f} |{} |{:6.1f}{:6.1f}\n", name,
-             part(stereo.all_mm), part(stereo.open_mm), part(stereo.folded_tips_mm),
-             100.0 * stereo.missing / std::max(stereo.hands, 1), part(stereo.later_mm),
-             part(landmarks_mm), part(tracker.all_mm),
-             100.0 * tracker.missing / std::max(tracker.hands, 1), part(tracker.later_mm),
-             percentile(work_us, 0.5) / 1000, percentile(work_us, 0.99) / 1000);
+  const auto longest_s = stereo.exchanges_s.empty() ? 0 : std::ranges::max(stereo.exchanges_s);
+  fmt::print(
+      "{:<17}{} |{} |{} |{:6.1f} |{:6.1f}{:4}{:6.2f} |{} |{} |{} |{:6.1f} |{} |{:6.1f}{:6.1f}\n",
+      name, part(stereo.all_mm), part(stereo.open_mm), part(stereo.folded_tips_mm),
+      100.0 * stereo.missing / std::max(stereo.hands, 1),
+      100.0 * stereo.exchanged / std::max(stereo.poses, 1), stereo.exchanges_s.size(), longest_s,
+      part(stereo.later_mm), part(landmarks_mm), part(tracker.all_mm),
+      100.0 * tracker.missing / std::max(tracker.hands, 1), part(tracker.later_mm),
+      percentile(work_us, 0.5) / 1000, percentile(work_us, 0.99) / 1000);
   std::fflush(stdout);
 }
 
 Result<StereoTrial> run_rig(const StereoRig& stereo, const Options& options,
                             const config::Rig& rig) {
   fmt::print(
-      "\n{}\n{:<17}{:>12} |{:>12} |{:>12} |{:>6} |{:>12} |{:>12} |{:>12} |{:>6} |{:>12} |{:>12}\n",
+      "\n{}\n{:<17}{:>12} |{:>12} |{:>12} |{:>6} |{:>16} |{:>12} |{:>12} |{:>12} |{:>6} |{:>12} "
+      "|{:>12}\n",
       stereo.name, "mean, p95 in mm", "all joints", "open hands", "folded tips", "lost %",
-      "16 ms later", "landmarks", "twin tracker", "lost %", "16 ms later", "ms p50 p99");
+      "exchanged %, n, s", "16 ms later", "landmarks", "twin tracker", "lost %", "16 ms later",
+      "ms p50 p99");
   auto names = motions(options);
   if (stereo.name == "gige")
     for (auto& name : recordings(options)) names.push_back(std::move(name));
@@ -80,7 +88,7 @@ Result<StereoTrial> run_rig(const StereoRig& stereo, const Options& options,
   for (const auto& name : names) {
     auto moved = rig;
     moved.twin.motion = name;
-    const auto trial = run_trial(stereo, moved, options.seconds, options.hints);
+    const auto trial = run_trial(stereo, moved, options.plan);
     if (!trial) return tl::make_unexpected(trial.error());
     print_row(name.substr(name.find_last_of(":/") + 1), *trial);
     all.stereo.add(trial->stereo);
@@ -135,11 +143,13 @@ int main(int argc, char** argv) {
     if (word == "--tune") {
       options.tune = true;
     } else if (word == "--no-hints") {
-      options.hints = false;
+      options.plan.hints = false;
     } else if (word == "--set" && has_next) {
       options.settings.emplace_back(argv[++i]);
     } else if (word == "--seconds" && has_next) {
-      options.seconds = std::atof(argv[++i]);
+      options.plan.seconds = std::atof(argv[++i]);
+    } else if (word == "--anew" && has_next) {
+      options.plan.anew_s = std::atof(argv[++i]);
     } else if (word == "--seed" && has_next) {
       options.seed = std::atoi(argv[++i]);
     } else if (word == "--only" && has_next) {

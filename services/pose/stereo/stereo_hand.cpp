@@ -6,39 +6,24 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/pose/lift/starts.hpp"
-#include "services/pose/stereo/triangulate.hpp"
+#include "services/pose/stereo/first_fit.hpp"
 
 namespace handcast::pose::stereo {
 namespace {
 
-constexpr int kFirstSteps = 20, kSteps = 4;
+constexpr int kAnewSteps = 20, kSteps = 4;
 constexpr int kTryEvery = 8, kTrials = 2;
 constexpr double kClearlyBetter = 0.8;
-constexpr double kSmooth_s = 0.1, kVotes_s = 1;
-/// A hand is found anew if its landmarks are off by so many sigmas, or if nearly all reports take
-/// it for the other one.
-constexpr double kLost_sigmas = 6, kOtherHand = 0.9;
+constexpr double kSmooth_s = 0.1;
+constexpr double kLost_sigmas = 6;  ///< off by so many, a hand is found anew
 /// The least confidence of a hand that only one view sees.
 constexpr double kOneViewConfidence = 0.5;
-
-bool sees_both(const SeenInViews& seen) {
-  return std::ranges::all_of(seen, [](const auto& view) { return view.has_value(); });
-}
 
 SeenInViews seen_in(const Looks& looks) {
   SeenInViews seen;
   for (int v = 0; v < kViews; ++v)
     if (looks[v]) seen[v] = looks[v]->hand.seen;
   return seen;
-}
-
-/// True if both views see nearly the whole hand.
-bool sees_all(const SeenInViews& seen) {
-  constexpr auto kNearlyAll = msg::kLandmarks - 3;
-  return sees_both(seen) && std::ranges::all_of(seen, [](const auto& view) {
-           return std::ranges::count_if(view->sigma_px, [](double s) { return s > 0; }) >=
-                  kNearlyAll;
-         });
 }
 
 /// The share of the landmarks that a view sees at least.
@@ -48,51 +33,6 @@ double seen_share(const Looks& looks) {
     seen += std::ranges::any_of(
         looks, [i](const auto& look) { return look && look->hand.seen.sigma_px[i] > 0; });
   return static_cast<double>(seen) / msg::kLandmarks;
-}
-
-/// Pairs of landmarks in a palm whose distance tells how far away it is.
-constexpr std::array<std::array<int, 2>, 4> kPalmBones{{{0, 5}, {0, 9}, {0, 17}, {5, 17}}};
-
-/// Distance of the hand from a view that alone sees it, by its size: that of the bone that is least
-/// foreshortened.
-double depth_by_size(const Skeleton& skeleton, const View& view, const SeenHand& seen,
-                     double log_size) {
-  double depth_m = 10;
-  const double focal_px = std::min(view.camera.fx_px, view.camera.fy_px);
-  for (const auto& [a, b] : kPalmBones) {
-    const double model_m = glm::distance(skeleton.at_rest_m(msg::kJointOfLandmark[a]),
-                                         skeleton.at_rest_m(msg::kJointOfLandmark[b])),
-                 seen_px = glm::distance(seen.px[a], seen.px[b]);
-    depth_m = std::min(depth_m, focal_px * model_m * std::exp(log_size) / std::max(seen_px, 1.0));
-  }
-  return std::max(depth_m, 2 * View::kNearest_m);
-}
-
-/// Distance of the hand from the first camera: the mean of its triangulated landmarks, by their
-/// variance. Empty if none can be triangulated.
-std::optional<double> triangulated_depth(const Views& views, const SeenInViews& seen) {
-  double sum = 0, weights = 0;
-  for (int i = 0; i < msg::kLandmarks; ++i) {
-    if (!(seen[0]->sigma_px[i] > 0) || !(seen[1]->sigma_px[i] > 0)) continue;
-    const std::array sights{Sight{&views[0], seen[0]->px[i], seen[0]->sigma_px[i]},
-                            Sight{&views[1], seen[1]->px[i], seen[1]->sigma_px[i]}};
-    const auto point = triangulate(sights);
-    if (!point) continue;
-    const double weight = 1 / point->covariance_m2[2][2];
-    sum += weight * point->place_m.z;
-    weights += weight;
-  }
-  if (!(weights > 0)) return std::nullopt;
-  return sum / weights;
-}
-
-/// A posture in the space of a view, `depth_m` in front of it, as a state.
-HandState state_of(const View& view, Posture posture, double depth_m, const HandState& bones) {
-  const glm::dmat4 first_from_view = glm::inverse(view.view_from_first);
-  const glm::dvec3 palm_m(first_from_view * glm::dvec4(posture.palm_m, depth_m, 1));
-  posture.turn = glm::normalize(glm::quat_cast(glm::dmat3(first_from_view)) * posture.turn);
-  posture.palm_m = glm::dvec2(palm_m);
-  return {posture, palm_m.z, bones.log_bone};
 }
 
 /// A posture in which least squares may begin, too.
@@ -171,10 +111,9 @@ std::optional<msg::HandPose> StereoHand::follow(std::int64_t time_ns, const Look
     return std::nullopt;
   last_ns_ = time_ns;
   if (has_both || !goes_on) last_both_ns_ = time_ns;
-  vote(looks, step_s);
   confidence_ = confidence_of(looks);
   const auto pose = pose_of(track_->state(), confidence_);
-  if (sigmas_ < kLost_sigmas && other_side_ < kOtherHand && all_finite(pose)) return pose;
+  if (sigmas_ < kLost_sigmas && all_finite(pose)) return pose;
   forget();
   return std::nullopt;
 }
@@ -186,32 +125,29 @@ std::optional<msg::HandPose> StereoHand::predict(std::int64_t time_ns) const {
   return pose_of(track_->predicted(ns_to_seconds(since_ns)).mean, left * confidence_);
 }
 
+std::optional<double> StereoHand::cost_anew(const Looks& looks) const {
+  const SeenInViews seen = seen_in(looks);
+  if (!sees_all(seen)) return std::nullopt;
+  const auto anew = first_fit(skeleton_, views_, seen, people_);
+  if (!anew) return std::nullopt;
+  if (!track_) return anew->cost;
+  const HandFit here = fit_views(skeleton_, views_, seen, people_, track_->state(), kAnewSteps);
+  return std::min(anew->cost, here.cost);
+}
+
 void StereoHand::forget() {
   track_.reset();
   sigmas_ = 1;
-  other_side_ = 0;
 }
 
 /// A hand that one view alone sees begins at the distance at which its size is usual. Its pose is
 /// the hint by which the detector of the other view finds it.
 bool StereoHand::begin(const SeenInViews& seen) {
   const HandPrior prior = track_ ? track_->bones() : people_;
-  const double log_size = prior.mean.posture.log_size;
-  const int from = seen[0] ? 0 : 1;
-  const auto depth_m = sees_both(seen)
-                           ? triangulated_depth(views_, seen)
-                           : depth_by_size(skeleton_, views_[from], *seen[from], log_size);
-  if (!depth_m) return false;
-  std::optional<HandFit> best;
-  for (const Posture& posture :
-       starts_for(skeleton_, views_[from].camera, *depth_m, *seen[from], log_size)) {
-    const HandState start = state_of(views_[from], posture, *depth_m, prior.mean);
-    const HandFit fit = fit_views(skeleton_, views_, seen, prior, start, kFirstSteps);
-    if (!best || fit.cost < best->cost) best = fit;
-  }
+  const auto best = first_fit(skeleton_, views_, seen, prior);
+  if (!best) return false;
   track_.emplace(*best);
   sigmas_ = best->sigmas;
-  other_side_ = 0;
   is_whole_ = sees_both(seen);
   images_ = 0;
   better_ = {};
@@ -240,7 +176,7 @@ void StereoHand::try_another(const SeenInViews& seen) {
   const HandPrior prior = track_->bones();
   const auto fitted = [&](const Posture& posture) {
     const HandState start{posture, state.depth_m, state.log_bone};
-    return fit_views(skeleton_, views_, seen, prior, start, kFirstSteps);
+    return fit_views(skeleton_, views_, seen, prior, start, kAnewSteps);
   };
   const HandFit here = fitted(state.posture);
   const int which = images_ / kTryEvery % kAlternatives;
@@ -249,14 +185,6 @@ void StereoHand::try_another(const SeenInViews& seen) {
   if (better_[which] < kTrials) return;
   track_->jump(there);
   better_ = {};
-}
-
-void StereoHand::vote(const Looks& looks, double step_s) {
-  for (const auto& look : looks) {
-    if (!look) continue;
-    const double other = look->hand.side == side_ ? 0 : 1;
-    other_side_ += (other - other_side_) * std::min(1.0, step_s / kVotes_s);
-  }
 }
 
 /// The detectors' presence, less if the landmarks fit the hand badly or only one view has seen it

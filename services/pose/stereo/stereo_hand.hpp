@@ -44,17 +44,21 @@ class StereoHand {
   /// confidence falls to 0 at kForget_ns after the last look; it is empty from then on.
   std::optional<msg::HandPose> predict(std::int64_t time_ns) const;
 
+  /// How badly these looks fit a hand of this side of which nothing is known, as HandFit::cost; not
+  /// worse than as the hand is followed. Empty if not both views see nearly all of it.
+  std::optional<double> cost_anew(const Looks& looks) const;
+  /// Follows the hand no longer.
+  void forget();
+
   /// The model of this side.
   const Skeleton& skeleton() const { return skeleton_; }
 
  private:
-  void forget();
   bool begin(const SeenInViews& seen);
   void go_on(std::int64_t time_ns, const Looks& looks, double step_s);
   void try_another(const SeenInViews& seen);
   SeenInViews moved_to(std::int64_t time_ns, const HandState& now, const Looks& looks) const;
   bool is_followed(std::int64_t time_ns) const;
-  void vote(const Looks& looks, double step_s);
   double confidence_of(const Looks& looks) const;
   msg::HandPose pose_of(const HandState& state, double confidence) const;
 
@@ -69,7 +73,6 @@ class StereoHand {
   std::int64_t last_both_ns_ = 0;  ///< of the last fit of both views, or of the first
   double confidence_ = 0;          ///< of the last pose
   double sigmas_ = 1;              ///< residuals of the fits, smoothed
-  double other_side_ = 0;          ///< share of the reports that take it for the other hand
   bool is_whole_ = false;          ///< both views have seen it since begin()
   int images_ = 0;                 ///< since begin()
   /// For each alternative: trials in a row in which it was better.

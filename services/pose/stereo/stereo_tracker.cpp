@@ -2,6 +2,7 @@
 #include "services/pose/stereo/stereo_tracker.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/pose/stereo/cover.hpp"
 
@@ -12,6 +13,8 @@ namespace {
 constexpr std::size_t kMostHidden = msg::kLandmarks / 4;
 /// The sigmas of what a view sees of a hand that is hidden but for a little are larger by so much.
 constexpr double kDoubt = 8;
+/// From this log of the odds on, hands are taken for the other ones.
+constexpr double kSureOfOther = 2.5;
 
 std::vector<ReportedHand> reports_of(const msg::Landmarks* landmarks) {
   std::vector<ReportedHand> reports;
@@ -88,18 +91,48 @@ msg::HandPoses StereoTracker::sample(const Seen& seen) {
   const Places places{hands_[0].expected(time_ns), hands_[1].expected(time_ns)};
   const Matches matches = match(hands_[0].skeleton(), views_, reports,
                                 {projected(views_, places[0]), projected(views_, places[1])});
-  for (int side = 0; side < msg::kMaxHands; ++side) {
-    Looks looks;
+  HandLooks looks;
+  for (int side = 0; side < msg::kMaxHands; ++side)
     for (int v = 0; v < kViews; ++v)
       if (matches[side][v] >= 0)
-        looks[v] =
+        looks[side][v] =
             Look{reports[v][static_cast<std::size_t>(matches[side][v])], seen[v]->header.origin_ns};
-    const bool hidden = hide(views_, places[side], places[1 - side], looks);
-    auto pose = hands_[side].follow(time_ns, looks);
-    if (!pose && hidden) pose = hands_[side].predict(time_ns);
+  std::array<bool, msg::kMaxHands> hidden{};
+  for (int side = 0; side < msg::kMaxHands; ++side)
+    hidden[side] = hide(views_, places[side], places[1 - side], looks[side]);
+  if (settle_sides(time_ns, looks))
+    for (auto& hand : hands_) hand.forget();
+  for (int side = 0; side < msg::kMaxHands; ++side) {
+    auto pose = hands_[side].follow(time_ns, looks[side]);
+    if (!pose && hidden[side]) pose = hands_[side].predict(time_ns);
     if (pose) poses.hands[poses.count++] = *pose;
   }
   return poses;
+}
+
+/// Exchanges the looks of hands that are taken for each other, or gives those of one to the other.
+/// True if it has.
+bool StereoTracker::settle_sides(std::int64_t time_ns, HandLooks& looks) {
+  double log_odds = 0;
+  for (int side = 0; side < msg::kMaxHands; ++side) {
+    auto& evidence = evidence_[side];
+    if (!hands_[side].expected(time_ns)) evidence.forget();
+    int looked = 0, votes = 0;
+    for (const auto& look : looks[side])
+      if (look) ++looked, votes += static_cast<int>(look->hand.side) == side ? -1 : 1;
+    if (looked > 0 && evidence.is_due(time_ns)) {
+      const auto cost = hands_[side].cost_anew(looks[side]),
+                 cost_of_other = hands_[1 - side].cost_anew(looks[side]);
+      // Of a part of a hand, only the detectors say which hand it is.
+      const bool is_whole = cost && cost_of_other;
+      evidence.compare(time_ns, is_whole ? *cost : 0, is_whole ? *cost_of_other : 0, votes);
+    }
+    log_odds += evidence.log_odds();
+  }
+  if (log_odds < kSureOfOther) return false;
+  std::swap(looks[0], looks[1]);
+  for (auto& evidence : evidence_) evidence.forget();
+  return true;
 }
 
 }  // namespace handcast::pose::stereo

@@ -6,6 +6,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "services/pose/stereo/pairing.hpp"
+#include "services/pose/stereo/side_evidence.hpp"
 #include "services/pose/stereo/stereo_hand.hpp"
 
 namespace handcast::pose::stereo {
@@ -34,8 +35,12 @@ class StereoTracker {
   explicit StereoTracker(const Views& views, const std::array<StereoHand, msg::kMaxHands>& hands)
       : views_(views), hands_(hands) {}
 
+  using HandLooks = std::array<Looks, msg::kMaxHands>;  ///< by msg::Side
+  bool settle_sides(std::int64_t time_ns, HandLooks& looks);
+
   Views views_;
-  std::array<StereoHand, msg::kMaxHands> hands_;  ///< by msg::Side
+  std::array<StereoHand, msg::kMaxHands> hands_;       ///< by msg::Side
+  std::array<SideEvidence, msg::kMaxHands> evidence_;  ///< that they are the other ones
   std::uint64_t samples_ = 0;
 };
 

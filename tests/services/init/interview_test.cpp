@@ -142,6 +142,7 @@ TEST_F(Interview, ASettingThatCannotWorkIsRefusedWithItsFlag) {
   EXPECT_THAT(refused({.tracker = "twin"}),
               HasSubstr("--tracker: the twin's tracker does not see"));
   EXPECT_THAT(refused({.tracker = "leap"}), HasSubstr("--tracker: 'leap' is not none or twin"));
+  EXPECT_THAT(refused({.tracker = "stereo"}), HasSubstr("copy config/rigs/stereo.toml"));
   for (const auto* distance : {"far", "0", "11", "nan", "0,7", "70 cm", "-1"})
     EXPECT_THAT(refused({.distance = distance}), HasSubstr("--distance: ")) << distance;
   EXPECT_EQ(refused({.distance = "0.7 m"}), "none");

@@ -29,10 +29,11 @@ class HandcastHandFinder : public testing::Test {
  protected:
   HandcastHandFinder() { open("", 2); }
   /// `folder`: of the palm network; empty: without it.
-  void open(const std::filesystem::path& folder, int most_hands) {
+  void open(const std::filesystem::path& folder, int most_hands,
+            HandFinder::Poses poses = HandFinder::Poses::of_a_tracker) {
     auto model = open_landmark_model("handcast", {.folder = folder});
     ASSERT_TRUE(model) << model.error().what;
-    finder_.emplace(std::move(*model), most_hands);
+    finder_.emplace(std::move(*model), most_hands, poses);
   }
   std::vector<FoundHand> find(const test::Grey& image, const Hints& hints = {},
                               std::int64_t step_ns = kFrame_ns) {
@@ -163,6 +164,20 @@ TEST_F(HandcastHandFinder, AHandThatWasTakenForTheOtherSideIsSetRight) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].side, msg::Side::left);
   EXPECT_LT(distance_px(found[0].points_px, trial(199).truth_px), 12);
+}
+
+TEST_F(HandcastHandFinder,
+       WherePosesComeFromLandmarksAWrongSideIsSetRightSoonAlsoWithAPalmNetwork) {
+  for (const auto& folder : {std::filesystem::path(), test::models()}) {
+    open(folder, 1, HandFinder::Poses::of_landmarks);
+    const Trial first = trial(100);
+    auto found = find(first.image, {std::nullopt, first.tracker_px});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].side, msg::Side::right) << "that of the hint";
+    for (int i = 1; i < 40; ++i) found = find(trial(100 + i).image);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].side, msg::Side::left) << "palm network: " << folder;
+  }
 }
 
 TEST_F(HandcastHandFinder, HintsThatAreNoNumbersAreNoHints) {

@@ -173,6 +173,52 @@ TEST(Stereo, AHandThatBeganAsTheWrongOneIsCorrected) {
   EXPECT_EQ(poses.hands[0].side, msg::Side::left);
 }
 
+TEST(Stereo, AHandThatBothDetectorsTakeForTheOtherIsKnownByItsShape) {
+  for (const auto* motion : {"wave", "open_close", "rotate"}) {
+    TwoViews world(with_noise(1), motion);
+    int exchanged = 0;
+    for (int i = 0; i < 250; ++i) {
+      auto here = world.seen(0, i * kStep_ns), there = world.seen(1, i * kStep_ns);
+      here.hands[0].side = there.hands[0].side = msg::Side::right;
+      const auto poses = world.tracker().sample({&here, &there});
+      ASSERT_EQ(poses.count, 1u) << motion << i;
+      exchanged += poses.hands[0].side == msg::Side::right;
+      if (i >= 100) {
+        EXPECT_EQ(poses.hands[0].side, msg::Side::left) << motion << i;
+      }
+    }
+    EXPECT_LT(exchanged, 60) << motion;
+  }
+}
+
+TEST(Stereo, WhichHandOneViewAloneSeesItsDetectorSays) {
+  auto rig = with_noise(1);
+  rig.pose.stereo.one_view_s = 0.1;
+  TwoViews world(rig, "wave");
+  msg::HandPoses poses;
+  for (int i = 0; i < 600; ++i) {
+    auto here = world.seen(0, i * kStep_ns);
+    if (i < 20) here.hands[0].side = msg::Side::right;
+    poses = world.tracker().sample({&here, nullptr});
+  }
+  ASSERT_EQ(poses.count, 1u);
+  EXPECT_EQ(poses.hands[0].side, msg::Side::left);
+}
+
+TEST(Stereo, TwoHandsThatBothDetectorsExchangeAreKnownByTheirShapes) {
+  TwoViews world(with_noise(1), "two_hands");
+  for (int i = 0; i < 200; ++i) {
+    auto here = world.seen(0, i * kStep_ns), there = world.seen(1, i * kStep_ns);
+    for (auto* seen : {&here, &there}) std::swap(seen->hands[0].side, seen->hands[1].side);
+    const auto poses = world.tracker().sample({&here, &there});
+    ASSERT_EQ(poses.count, 2u) << i;
+    for (const auto& pose : poses.hands)
+      if (i >= 100) {
+        EXPECT_LT(world.error_mm(pose, poses.header.origin_ns), 30) << i;
+      }
+  }
+}
+
 TEST(Stereo, AHandThatReturnsElsewhereIsFoundAtOnce) {
   TwoViews world(with_noise(1), "wave");
   follow(world, 100);

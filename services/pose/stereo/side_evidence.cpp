@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/stereo/side_evidence.hpp"
+
+#include <algorithm>
+
+#include "ipc/base/clock.hpp"
+
+namespace handcast::pose::stereo {
+namespace {
+
+/// Images within this time have the same errors.
+constexpr double kErrorsLast_s = 0.4;
+/// From comparison to comparison, until the side is sure and then.
+constexpr std::int64_t kOften_ns = 50'000'000, kRarely_ns = 400'000'000;
+constexpr double kSure = 4, kMost = 8;
+/// Of one comparison. Landmarks are less independent than their costs say: these differ by 13 to
+/// 130 between a hand and its mirror image, by 6 to 19 if the network took it for the other one.
+constexpr double kOfCosts = 0.5, kMostOfCosts = 4, kOfVote = 0.5;
+/// Landmarks that fit neither hand say nothing; usual are 10 to 40.
+constexpr double kFitsNeither = 60;
+
+}  // namespace
+
+bool SideEvidence::is_due(std::int64_t time_ns) const {
+  const auto every_ns = log_odds_ > -kSure ? kOften_ns : kRarely_ns;
+  return !compared_ns_ || time_ns - *compared_ns_ >= every_ns;
+}
+
+void SideEvidence::compare(std::int64_t time_ns, double cost, double cost_of_other,
+                           int votes_for_other) {
+  const double since_s = compared_ns_ ? ns_to_seconds(time_ns - *compared_ns_) : kErrorsLast_s;
+  compared_ns_ = time_ns;
+  if (std::min(cost, cost_of_other) > kFitsNeither) return;
+  const double share = is_known_ ? std::clamp(since_s / kErrorsLast_s, 0.0, 1.0) : 1;
+  const double costs = std::clamp(kOfCosts * (cost - cost_of_other), -kMostOfCosts, kMostOfCosts);
+  log_odds_ = std::clamp(log_odds_ + share * (costs + kOfVote * votes_for_other), -kMost, kMost);
+  is_known_ = true;
+}
+
+}  // namespace handcast::pose::stereo

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/pose/stereo/side_evidence.hpp"
+
+#include <gtest/gtest.h>
+
+namespace handcast::pose::stereo {
+namespace {
+
+constexpr std::int64_t kStep_ns = 50'000'000;
+
+/// After so many comparisons of these costs and votes.
+double log_odds_after(int comparisons, double cost, double cost_of_other, int votes) {
+  SideEvidence evidence;
+  for (int i = 0; i < comparisons; ++i) evidence.compare(i * kStep_ns, cost, cost_of_other, votes);
+  return evidence.log_odds();
+}
+
+TEST(SideEvidence, OneComparisonThatIsClearIsEnoughIfTheDetectorsDisagree) {
+  EXPECT_GE(log_odds_after(1, 35, 23, 0), 3.5);
+  EXPECT_LE(log_odds_after(1, 23, 35, 0), -3.5);
+}
+
+TEST(SideEvidence, AgainstBothDetectorsItMustBeClearer) {
+  EXPECT_LT(log_odds_after(1, 23, 20, -2), 1);
+  EXPECT_GE(log_odds_after(1, 35, 20, -2), 2.5);
+}
+
+TEST(SideEvidence, ImagesInAShortTimeCountAsOne) {
+  const double one = log_odds_after(1, 22, 20, 0);
+  EXPECT_LT(log_odds_after(2, 22, 20, 0), 1.2 * one);
+  EXPECT_GE(log_odds_after(9, 22, 20, 0), 1.9 * one);
+}
+
+TEST(SideEvidence, LandmarksThatFitNeitherHandSayNothing) {
+  EXPECT_EQ(log_odds_after(20, 179, 147, 0), 0);
+}
+
+TEST(SideEvidence, WhatIsSureIsComparedRarelyAndStillCorrected) {
+  SideEvidence evidence;
+  EXPECT_TRUE(evidence.is_due(0));
+  evidence.compare(0, 20, 22, 0);
+  EXPECT_FALSE(evidence.is_due(kStep_ns / 2));
+  EXPECT_TRUE(evidence.is_due(kStep_ns));
+  for (int i = 1; i < 100; ++i) evidence.compare(i * kStep_ns, 20, 40, -2);
+  EXPECT_FALSE(evidence.is_due(100 * kStep_ns));
+  int wrong = 0;
+  for (; evidence.log_odds() < 3.5; ++wrong) evidence.compare((100 + wrong) * kStep_ns, 40, 20, 2);
+  EXPECT_LT(wrong, 30);
+}
+
+}  // namespace
+}  // namespace handcast::pose::stereo
