@@ -19,6 +19,12 @@ constexpr double kOfCosts = 0.5, kMostOfCosts = 4, kOfVote = 0.5;
 /// Landmarks that fit neither hand say nothing; usual are 10 to 40.
 constexpr double kFitsNeither = 60;
 
+/// What an image adds to one of `before`, as a share; 0 if there is none.
+double share_since(const std::optional<std::int64_t>& before, std::int64_t time_ns) {
+  if (!before) return 0;
+  return std::clamp(ns_to_seconds(time_ns - *before) / kErrorsLast_s, 0.0, 1.0);
+}
+
 }  // namespace
 
 bool SideEvidence::is_due(std::int64_t time_ns) const {
@@ -28,13 +34,21 @@ bool SideEvidence::is_due(std::int64_t time_ns) const {
 
 void SideEvidence::compare(std::int64_t time_ns, double cost, double cost_of_other,
                            int votes_for_other) {
-  const double since_s = compared_ns_ ? ns_to_seconds(time_ns - *compared_ns_) : kErrorsLast_s;
+  const double share = is_known_ ? share_since(compared_ns_, time_ns) : 1;
   compared_ns_ = time_ns;
   if (std::min(cost, cost_of_other) > kFitsNeither) return;
-  const double share = is_known_ ? std::clamp(since_s / kErrorsLast_s, 0.0, 1.0) : 1;
   const double costs = std::clamp(kOfCosts * (cost - cost_of_other), -kMostOfCosts, kMostOfCosts);
-  log_odds_ = std::clamp(log_odds_ + share * (costs + kOfVote * votes_for_other), -kMost, kMost);
+  add(share * (costs + kOfVote * votes_for_other));
   is_known_ = true;
+}
+
+void SideEvidence::vote(std::int64_t time_ns, int votes_for_other) {
+  add(share_since(voted_ns_, time_ns) * kOfVote * votes_for_other);
+  voted_ns_ = time_ns;
+}
+
+void SideEvidence::add(double log_odds) {
+  log_odds_ = std::clamp(log_odds_ + log_odds, -kMost, kMost);
 }
 
 }  // namespace handcast::pose::stereo

@@ -15,6 +15,9 @@ class SideEvidence {
   /// one, and how many more detectors take it for the other one than for this one. Images in a
   /// short time have the same errors and count as one.
   void compare(std::int64_t time_ns, double cost, double cost_of_other, int votes_for_other);
+  /// Takes the detectors' votes alone, of a hand that cannot be compared. A comparison is due
+  /// still.
+  void vote(std::int64_t time_ns, int votes_for_other);
   /// Nothing is known.
   void forget() { *this = {}; }
 
@@ -22,9 +25,12 @@ class SideEvidence {
   double log_odds() const { return log_odds_; }
 
  private:
+  void add(double log_odds);
+
   double log_odds_ = 0;
-  std::optional<std::int64_t> compared_ns_;  ///< time of the last comparison
-  bool is_known_ = false;                    ///< log_odds_ has a comparison
+  /// Times of the last comparison and of the last vote().
+  std::optional<std::int64_t> compared_ns_, voted_ns_;
+  bool is_known_ = false;  ///< log_odds_ has a comparison
 };
 
 }  // namespace handcast::pose::stereo

@@ -123,9 +123,10 @@ bool StereoTracker::settle_sides(std::int64_t time_ns, HandLooks& looks) {
     if (looked > 0 && evidence.is_due(time_ns)) {
       const auto cost = hands_[side].cost_anew(looks[side]),
                  cost_of_other = hands_[1 - side].cost_anew(looks[side]);
-      // Of a part of a hand, only the detectors say which hand it is.
-      const bool is_whole = cost && cost_of_other;
-      evidence.compare(time_ns, is_whole ? *cost : 0, is_whole ? *cost_of_other : 0, votes);
+      if (cost && cost_of_other)
+        evidence.compare(time_ns, *cost, *cost_of_other, votes);
+      else
+        evidence.vote(time_ns, votes);
     }
     log_odds += evidence.log_odds();
   }

@@ -35,6 +35,26 @@ TEST(SideEvidence, LandmarksThatFitNeitherHandSayNothing) {
   EXPECT_EQ(log_odds_after(20, 179, 147, 0), 0);
 }
 
+TEST(SideEvidence, VotesOfAHandThatIsPartlySeenDoNotDelayTheFirstComparison) {
+  SideEvidence evidence;
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(evidence.is_due(i * 8'000'000));
+    evidence.vote(i * 8'000'000, -1);
+  }
+  evidence.compare(80'000'000, 35, 23, 0);
+  EXPECT_GE(evidence.log_odds(), 3);
+}
+
+TEST(SideEvidence, VotesAloneDecideInSeconds) {
+  SideEvidence evidence;
+  int images = 0;
+  for (; evidence.log_odds() < 2.5; ++images) {
+    ASSERT_LT(images, 1000);
+    evidence.vote(images * 8'000'000, 1);
+  }
+  EXPECT_GT(images, 100);
+}
+
 TEST(SideEvidence, WhatIsSureIsComparedRarelyAndStillCorrected) {
   SideEvidence evidence;
   EXPECT_TRUE(evidence.is_due(0));
