@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"table", [](config::TwinImage& i) { i.table = 0.3; }, 0.95, 2},
                     Case{"texture", [](config::TwinImage& i) { i.texture = 0.5; }, 0.95, 2},
                     Case{"object", [](config::TwinImage& i) { i.object = true; }, 0.9, 18.5}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace
 }  // namespace handcast::renderer

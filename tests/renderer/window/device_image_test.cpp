@@ -69,7 +69,7 @@ TEST_F(DeviceImageTest, IsShownAsWriteLightWouldWriteIt) {
     show(table(gamma));
     Texture expected(kWidth, kHeight, 0xff000000u);
     write_light(painter_->colour(), kRegion, table(gamma), expected.view());
-    for (const auto [x, y] :
+    for (const auto& [x, y] :
          {std::pair{100, 50}, {299, 149}, {150, 70}, {280, 51}, {99, 50}, {300, 149}, {150, 200}})
       EXPECT_EQ(handcast::test::pixel(kLeft + x, y), expected.at(x, y))
           << x << ' ' << y << ", " << gamma;
