@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "services/camera/camera.hpp"
+#include "services/evaluation/twin/recording.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
 
