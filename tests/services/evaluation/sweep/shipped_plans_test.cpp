@@ -135,7 +135,8 @@ std::set<std::string> values_in(const std::string& plan_name, const std::string&
 
 TEST(ShippedPlans, TheTablesOfAccuracyAreOfACarefulInstallation) {
   const auto careful = rigs_of("comparison").front().second;
-  for (const auto* name : {"levers", "fidelity", "motions", "fast", "two_hands", "jitter", "unseen"})
+  for (const auto* name :
+       {"levers", "fidelity", "motions", "fast", "two_hands", "jitter", "unseen"})
     for (const auto& [variant, rig] : rigs_of(name)) {
       EXPECT_EQ(rig.twin.shape.roll_deg, careful.twin.shape.roll_deg) << name << " " << variant;
       EXPECT_THAT(differences_in(rig, careful, {"twin.geometry.", "twin.tracker.", "twin.image."}),
