@@ -48,9 +48,8 @@ int become_program(const std::string& verb, const Arguments& arguments) {
   }
   const auto names = verb_names();
   const auto nearest = suggest(verb, {names.begin(), names.end()});
-  return complain(kExitUsage,
-                  fmt::format("there is no verb '{}'{}", verb,
-                              nearest.empty() ? "; there are: " + join(names, ", ") : nearest));
+  return complain(kExitUsage, fmt::format("there is no verb '{}'{}; there are: {}", verb, nearest,
+                                          join(names, ", ")));
 }
 
 const VerbEntry* find_verb(const std::string& name) {

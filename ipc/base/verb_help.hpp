@@ -37,6 +37,7 @@ class VerbHelp : public CLI::Formatter {
 
   std::string make_option_desc(const CLI::Option* option) const override {
     std::vector<std::string> parts;
+    if (option->get_required() && !option->get_positional()) parts.emplace_back("required");
     if (auto range = range_of(*option); !range.empty()) parts.push_back(std::move(range));
     const auto usual = option->get_default_str();
     const bool said = option->get_description().find("default:") != std::string::npos;

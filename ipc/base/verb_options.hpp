@@ -20,7 +20,8 @@ namespace handcast {
 
 /// What is wrong with an argument that no option and no positional takes.
 inline std::string not_taken(const CLI::App& app) {
-  const auto rest = app.remaining();
+  auto rest = app.remaining();
+  std::erase(rest, "--");
   const auto wrong = std::ranges::find_if(rest, [](const auto& word) { return word[0] == '-'; });
   if (wrong == rest.end())
     return rest.empty() ? "an argument is empty"
@@ -29,7 +30,7 @@ inline std::string not_taken(const CLI::App& app) {
   for (const auto* option : app.get_options())
     for (const auto& name : option->get_lnames()) names.push_back("--" + name);
   return fmt::format("unknown option '{}'{}", *wrong,
-                     suggest(*wrong, {names.begin(), names.end()}));
+                     suggest(wrong->substr(0, wrong->find('=')), {names.begin(), names.end()}));
 }
 
 /// CLI11's sentence about a value, "--after: Value x not in range 0.1 to 3600" or "--shot: 1
@@ -43,9 +44,13 @@ inline std::string about_value(std::string_view sentence) {
   if (colon == sentence.npos || range == sentence.npos ||
       !sentence.substr(colon).starts_with(kValue))
     return std::string(sentence);
-  const auto value = sentence.substr(colon + kValue.size(), range - colon - kValue.size());
-  return fmt::format("{}: '{}' is not a number in the range {}", sentence.substr(0, colon), value,
-                     spoken_range(std::string(sentence.substr(range + kRange.size())), " to "));
+  const auto value = sentence.substr(colon + kValue.size(), range - colon - kValue.size()),
+             limits = sentence.substr(range + kRange.size());
+  // CLI11 prints the limits of whole numbers without a point.
+  const bool is_whole = limits.find('.') == limits.npos;
+  return fmt::format("{}: '{}' is not a {} in the range {}", sentence.substr(0, colon), value,
+                     is_whole ? "whole number" : "number",
+                     spoken_range(std::string(limits), " to "));
 }
 
 /// Parses the command line of a program, whose options `app` has; adds --version. Returns the text
@@ -69,6 +74,12 @@ inline Result<std::string> parse_options(CLI::App& app, int argc, char** argv) {
     return std::string(call.what());
   } catch (const CLI::ExtrasError&) {
     return refuse(not_taken(app));
+  } catch (const CLI::RequiredError& problem) {
+    // A mistyped option is why it is missing, or the better hint.
+    const auto rest = app.remaining();
+    const bool is_mistyped = std::ranges::any_of(
+        rest, [](const auto& word) { return word.size() > 1 && word[0] == '-' && word != "--"; });
+    return refuse(is_mistyped ? not_taken(app) : problem.what());
   } catch (const CLI::ParseError& problem) {
     return refuse(about_value(problem.what()));
   }

@@ -68,12 +68,21 @@ json service_status(const Service& service, const RigView& rig) {
   return status;
 }
 
+/// False if less than the wanted rate is no fault: the service has just started or is not well,
+/// plays a recording at its own times, or draws once for several sub-frames.
+bool is_held_to_its_rate(const Service& service, std::int64_t now_ns) {
+  constexpr double kSettled_s = 10;  // the held rate is the mean of some seconds
+  return service.state() == State::ready && service.uptime_s(now_ns) >= kSettled_s &&
+         service.spec().backend != "replay" && !service.spec().counts_sub_frames;
+}
+
 // Services publish stage marks for each message, so the rates of the rings are counted from the
 // marks.
 json ring_status(const Service& service, const RigView& rig) {
   const auto& frames = rig.recorder.ledger().frames(service.spec().name);
   return {{"wanted_hz", wanted_hz(service.spec())},
           {"held_hz", rounded(frames.recent_hz(rig.now_ns))},
+          {"is_held_to_it", is_held_to_its_rate(service, rig.now_ns)},
           {"count", frames.total()},
           {"newest_age_ms", or_null(frames.newest_age_ms(rig.now_ns))}};
 }

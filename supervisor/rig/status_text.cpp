@@ -80,21 +80,20 @@ std::string text_of_us(const json& value) {
   return fmt::format("{:.2f} ms", value.get<double>() / kMs);
 }
 
-/// Names the rings that hold much less than their rate, and who says why. "" if none does.
+/// Names the rings that hold much less than their rate, and what to do. "" if none does.
 std::string print_slow(const json& status) {
-  constexpr double kEnough = 0.9, kSettled_s = 10;  // the rates are means of some seconds
-  if (status.value("uptime_s", 0.0) < kSettled_s) return "";
+  constexpr double kEnough = 0.9;
   std::vector<std::string> slow;
   for (const auto& [name, ring] : status["rings"].items()) {
     const auto wanted = ring.value("wanted_hz", json()), held = ring.value("held_hz", json());
-    if (wanted.is_number() && held.is_number() &&
+    if (ring.value("is_held_to_it", false) && wanted.is_number() && held.is_number() &&
         held.get<double>() < kEnough * wanted.get<double>())
       slow.push_back(name);
   }
   if (slow.empty()) return "";
   return fmt::format(
-      "\nslow: {} {} less than 90 % of the wanted rate; `handcast doctor RIG.toml` says why. On a "
-      "computer that is too slow, lower camera.rate_hz and projector.rate_hz\n",
+      "\nslow: {} {} less than 90 % of the wanted rate; `handcast latency` shows where the "
+      "time goes. On a computer that is too slow, lower camera.rate_hz and projector.rate_hz\n",
       join(slow, ", "), slow.size() == 1 ? "holds" : "hold");
 }
 

@@ -79,6 +79,7 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
                       rig.projector.rate_hz,
                       "",
                       {"camera", "pose", "landmarks"}});
+  services.back().counts_sub_frames = rig.projector.packing != config::Packing::none;
   if (rig.dlp.backend != "none") {
     services.push_back({"dlp", "", rig.dlp.backend, 0});
     services.back().has_safe_state = true;

@@ -23,6 +23,8 @@ struct ServiceSpec {
   std::string fingerprint{};  ///< fingerprint of its settings: see fingerprint_of()
   /// The back end that takes the place of `backend` if a file of that is missing; "" for none.
   std::string fallback{};
+  /// wanted_hz counts sub-frames, of which one drawing may light several.
+  bool counts_sub_frames = false;
   /// Its program has the task --safe, for a device that must not stay as a dead service left it.
   bool has_safe_state = false;
 };

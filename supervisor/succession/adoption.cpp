@@ -169,9 +169,9 @@ Result<ipc::Segment> make_ring(const ipc::RingSpec& spec) {
   if (!fd)
     return fail(
         Errc::unavailable,
-        fmt::format("no file descriptor from {} on is free; a rig needs a limit of at least "
+        fmt::format("no file descriptor from {} on is free ({}); a rig needs a limit of at least "
                     "{} (ulimit -n)",
-                    kFirstNumber, 2 * kFirstNumber));
+                    kFirstNumber, std::strerror(errno), 2 * kFirstNumber));
   return ipc::Segment::open(std::move(fd));
 }
 
