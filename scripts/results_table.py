@@ -211,12 +211,12 @@ def verdict_of_two_hands(runs):
 def table_of_jitter(runs):
     """A row for each variant, and what handcast says about the goal."""
     motion = runs.motions[0]
-    yield "| | detector | the light, px RMS | the corrected landmarks, camera px |"
+    yield "| | detector | the light, px RMS | each person |"
     yield "|---|---|---|---|"
     for variant in runs.variants:
         detector = "" if variant == "baseline" else runs.detector(variant)
         yield (f"| {JITTER[variant][0]} | {detector} | {interval(runs.of(variant, motion, 'jitter_px'))} | "
-               f"{interval(runs.of(variant, motion, 'landmark_jitter_px'))} |")
+               f"{', '.join(f'{px:.2f}' for px in runs.of(variant, motion, 'jitter_px'))} |")
     if not all(runs.has(variant) for variant in NEEDED["jitter"]):
         return
     yield ""
