@@ -11,26 +11,34 @@ namespace handcast::calibrate {
 namespace {
 
 /// A camera has moved if a board is off by more than this. A pair that was just calibrated is right
-/// within 0.8 px and 3 mm.
+/// within 0.8 px and 3 mm. Far away, or with cameras close together, kMovedAlong_mm is less than
+/// images tell: there, it must also be kMoved_px.
 /// @{
-constexpr double kMoved_px = 1.5, kMovedAcross_mm = 2.5, kMovedAlong_mm = 6;
+constexpr double kMoved_px = 1.5, kMovedAcross_mm = 3, kMovedAlong_mm = 6;
 /// @}
 constexpr int kPlainlyMissing = 5;  ///< images; in one or two the board may have been blurred
 
 }  // namespace
 
-Outcome judge_pair(const calib::PairOff& off) {
-  const double across_mm = 1e3 * std::hypot(off.off_m.x, off.off_m.y),
-               along_mm = 1e3 * std::abs(off.off_m.z);
+Outcome judge_pair(const calib::PairOff& off, double square_mm) {
+  const double across_mm = 1e3 * glm::length(off.across_m), along_mm = 1e3 * std::abs(off.along_m);
+  const bool is_on_lines = off.off_line_px <= kMoved_px,
+             is_as_far = along_mm <= kMovedAlong_mm || std::abs(off.parallax_px) <= kMoved_px;
   Outcome outcome{
       fmt::format("at {:.2f} m what both cameras see is off by {:.1f} mm across and {:.1f} mm "
-                  "along the first camera's axis, and by {:.1f} px from epipolar lines",
+                  "along the first camera's rays, and by {:.1f} px from epipolar lines",
                   off.depth_m, across_mm, along_mm, off.off_line_px),
-      off.off_line_px <= kMoved_px && across_mm <= kMovedAcross_mm && along_mm <= kMovedAlong_mm};
-  if (!outcome.is_good)
-    outcome.findings.push_back(
-        "one of the two cameras has moved since they were calibrated: measure the step `pair` "
-        "again; if it was the first camera, also `screen`");
+      is_on_lines && across_mm <= kMovedAcross_mm && is_as_far};
+  if (outcome.is_good) return outcome;
+  outcome.findings.push_back(
+      "one of the two cameras has moved since they were calibrated: measure the step `pair` "
+      "again; if it was the first camera, also `screen`");
+  // Epipolar lines do not depend on the size of the board.
+  if (is_on_lines)
+    outcome.findings.push_back(fmt::format(
+        "or the squares of this board are not {:g} mm; name the board of the calibration with "
+        "--board",
+        square_mm));
   return outcome;
 }
 
@@ -48,7 +56,7 @@ Result<Outcome> check_pair(Desk& desk) {
     return fail(Errc::bad_data,
                 "the board was never still where both cameras see it; hold it nearer to the middle "
                 "of both images");
-  return judge_pair(*off);
+  return judge_pair(*off, desk.options.board.square_mm);
 }
 
 }  // namespace handcast::calibrate

@@ -12,7 +12,7 @@ namespace handcast::calibrate {
 /// look_at_pair().
 Result<Outcome> check_pair(Desk& desk);
 
-/// The verdict of check_pair(), without its images.
-Outcome judge_pair(const calib::PairOff& off);
+/// The verdict of check_pair(), without its images. `square_mm`: of the board, as the person says.
+Outcome judge_pair(const calib::PairOff& off, double square_mm);
 
 }  // namespace handcast::calibrate

@@ -112,8 +112,7 @@ class PairViews {
   bool is_deep() const { return farthest_m_ >= kDepthRange * nearest_m_; }
   /// The first camera sees a still board, and the second one does not.
   void note_missing(const calib::BoardView& view) {
-    constexpr double kWhole = 0.9;
-    if (calib::share_in_second(view, camera_, second_camera_) > kWhole) ++missing_;
+    if (calib::is_whole_in_second(view, camera_, second_camera_)) ++missing_;
   }
   void note_distance(const calib::BoardView& view) {
     const auto pose = calib::board_pose(camera_, view);
