@@ -67,8 +67,8 @@ std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardV
   std::vector<Bar> errors;
   for (const auto& view : fit.views) errors.push_back({view.rms_px, !view.rejected.empty()});
   return dots_svg(fit.camera.width_px, fit.camera.height_px, dots,
-                  fmt::format("Where the board was seen: {} corners in {} images. White parts are "
-                              "extrapolated.",
+                  fmt::format("Where the board was seen: {} corners in {} images. Parts without "
+                              "dots are extrapolated.",
                               dots.size(), views.size())) +
          bars_svg(errors, "px",
                   "How far the corners of each image are from where the lens has them, root mean "

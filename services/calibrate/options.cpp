@@ -56,6 +56,10 @@ Result<void> check_rig_file(const Options& options) {
 
 }  // namespace
 
+std::filesystem::path default_folder(const std::filesystem::path& rig_file) {
+  return std::filesystem::path(rig_file).replace_extension(".calibration");
+}
+
 Result<Options> parse(int argc, char** argv) {
   CLI::App app(kSummary, "handcast calibrate");
   Options options;
@@ -145,7 +149,7 @@ Result<Options> parse(int argc, char** argv) {
     *size = *read;
   }
   if (options.folder.empty() && !options.rig_file.empty())
-    options.folder = std::filesystem::path(options.rig_file).replace_extension(".calibration");
+    options.folder = default_folder(options.rig_file);
   auto fits = check_combination(app, options);
   if (fits) fits = check_rig_file(options);
   return fits.map([&] { return options; });

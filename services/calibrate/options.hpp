@@ -46,6 +46,9 @@ struct Options {
   std::string text{};            ///< that --help or --version asks for; "" if the program shall run
 };
 
+/// The folder of a session that was not named.
+std::filesystem::path default_folder(const std::filesystem::path& rig_file);
+
 /// Errors: bad_config.
 Result<Options> parse(int argc, char** argv);
 

@@ -54,33 +54,44 @@ std::string with_plus_minus(std::string text) {
   return text;
 }
 
+/// True if a sentence begins with the name of a setting, such as projector.gamma.
+bool begins_with_setting(std::string_view text) {
+  const auto word = text.substr(0, text.find_first_of(" :,"));
+  const auto dot = word.find('.');
+  return dot != std::string_view::npos && dot + 1 < word.size();
+}
+
 /// A part of a sentence as a whole one.
 std::string sentence(std::string text) {
   if (text.empty()) return text;
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  if (text.back() != '.') text += '.';
+  if (!begins_with_setting(text))
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  if (std::string_view(".?!").find(text.back()) == std::string_view::npos) text += '.';
   return page::escape(with_plus_minus(std::move(text)));
 }
 
-std::string verdict_html(const std::string& rig_file, std::span<const Reported> steps) {
+std::string verdict_html(const NamedFiles& command, std::span<const Reported> steps) {
   std::string missing;
   for (const auto& reported : steps)
     if (!reported.is_done)
       missing += fmt::format("{}<code>{}</code>", missing.empty() ? "" : ", ",
                              config::word_of(reported.step));
-  const auto file = page::escape(rig_file);
+  const auto option = [](const char* name, const std::string& value) {
+    return value.empty() ? value : fmt::format(" {} {}", name, page::escape(value));
+  };
+  const auto file = page::escape(command.rig_file), board = option("--board", command.board);
   if (!missing.empty())
     return fmt::format(
         "<p class='verdict open'>Not measured yet: {}. Go on with <code>handcast calibrate "
-        "{}</code>.</p>",
-        missing, file);
+        "{}{}{}</code>.</p>",
+        missing, file, board, option("--folder", command.folder));
   return fmt::format(
       "<p class='verdict'>All steps are measured. <code>handcast doctor {0}</code> says whether "
       "the "
-      "rig is ready; <code>handcast calibrate {0} --check</code> says at any time whether "
+      "rig is ready; <code>handcast calibrate {0} --check{1}</code> says at any time whether "
       "something "
       "has moved.</p>",
-      file);
+      file, board);
 }
 
 }  // namespace
@@ -101,7 +112,7 @@ std::string piece_html(Step step, const Outcome& outcome) {
   return html + "</section>\n";
 }
 
-std::string report_html(const std::string& rig, const std::string& rig_file,
+std::string report_html(const std::string& rig, const NamedFiles& command,
                         std::span<const Reported> steps, const std::string& pieces) {
   std::string facts;
   for (const auto& [step, made, is_done] : steps)
@@ -112,7 +123,7 @@ std::string report_html(const std::string& rig, const std::string& rig_file,
   return page::to_html({.title = "Calibration of " + rig,
                         .style = kStyle,
                         .facts = {},
-                        .header = verdict_html(rig_file, steps) + "<dl>" + facts + "</dl>\n",
+                        .header = verdict_html(command, steps) + "<dl>" + facts + "</dl>\n",
                         .body = pieces});
 }
 

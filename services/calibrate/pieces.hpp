@@ -18,8 +18,8 @@ struct Reported {
   bool is_done = false;
 };
 /// The page: whether all is measured and what to do next, one line for each step, and `pieces`, the
-/// sections of the steps. `rig_file`: as the person named it.
-std::string report_html(const std::string& rig, const std::string& rig_file,
+/// sections of the steps. `command`: for the commands in it.
+std::string report_html(const std::string& rig, const NamedFiles& command,
                         std::span<const Reported> steps, const std::string& pieces);
 
 }  // namespace handcast::calibrate

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <iterator>
 
+#include "calib/board/board_name.hpp"
 #include "calib/opencv_file.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
@@ -79,6 +80,13 @@ Result<void> adopt_devices(const calib::Calibration& used, calib::Calibration& d
   return same ? adopt("projector", used.projector_device, draft.projector_device) : same;
 }
 
+NamedFiles named_by(const Options& options) {
+  NamedFiles command{options.rig_file.string(), calib::print_board_name(options.board), {}};
+  if (command.board == calib::print_board_name(calib::Board{})) command.board.clear();
+  if (options.folder != default_folder(options.rig_file)) command.folder = options.folder.string();
+  return command;
+}
+
 bool has_size_of(const calib::CameraModel& one, const calib::CameraModel& other) {
   return one.width_px == other.width_px && one.height_px == other.height_px;
 }
@@ -112,7 +120,7 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
                                               options.folder.string(), error.message()));
   Session session(fs::absolute(options.folder), target_of(options, rig), used);
   session.rig_name_ = rig.name;
-  session.rig_file_ = options.rig_file.string();
+  session.command_ = named_by(options);
   session.draft_.made = {};
   std::ranges::copy_if(kSteps, std::back_inserter(session.steps_),
                        [&](Step step) { return has_need_of(rig, step); });
@@ -224,6 +232,8 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
   }
   // The measurement before its pictures, for which a disk may have no room.
   if (kept) kept = write_whole(file(kDraft), calib::print_calibration(draft_));
+  std::error_code absent;
+  if (kept) fs::remove(piece_of(step), absent);  // old figures must not stand under the new ones
   if (kept) kept = write_whole(piece_of(step), piece_html(step, outcome));
   return kept ? write_report() : kept;
 }
@@ -238,7 +248,7 @@ Result<void> Session::write_report() const {
     const auto* sentence = made_of(made, step);
     reported.push_back({step, sentence ? *sentence : std::string(), is_done(step)});
   }
-  return write_whole(report(), report_html(rig_name_, rig_file_, reported, pieces));
+  return write_whole(report(), report_html(rig_name_, command_, reported, pieces));
 }
 
 Result<std::string> Session::finish() const {

@@ -28,6 +28,13 @@ struct Outcome {
   std::string meaning{};   ///< for the report: what the figures of `made` are, and which are good
 };
 
+/// What a command must name to go on with a session.
+struct NamedFiles {
+  std::string rig_file;
+  std::string board;   ///< empty: the usual one
+  std::string folder;  ///< empty: the one beside the rig file
+};
+
 /// One calibration of a rig, which may take several calls of the program: the folder with what was
 /// measured so far (draft.toml, a piece of the report for each step), and the calibration file that
 /// it becomes. One thread.
@@ -80,7 +87,8 @@ class Session {
 
   std::filesystem::path folder_, target_;
   std::vector<Step> steps_;  ///< that the rig has need of
-  std::string rig_name_, rig_file_;
+  std::string rig_name_;
+  NamedFiles command_;  ///< that goes on with this session
   calib::Calibration draft_;
 };
 

@@ -17,16 +17,37 @@ TEST(CalibrationReport, TheVerdictComesFirstAndSaysWhatIsMissing) {
   const std::vector<Reported> steps{{Step::lens, "2026-01-01: 15 images", true},
                                     {Step::screen, "", false},
                                     {Step::light, "", true}};
-  const auto page = report_html("show", "my <rig>.toml", steps, "<section>S</section>");
+  const auto page = report_html("show", {"my <rig>.toml"}, steps, "<section>S</section>");
   EXPECT_THAT(page, HasSubstr("Not measured yet: <code>screen</code>. Go on with <code>handcast "
                               "calibrate my &lt;rig&gt;.toml</code>"));
   EXPECT_THAT(page, HasSubstr("<dt>Projector (screen)</dt><dd>not measured yet</dd>"));
   EXPECT_THAT(page, HasSubstr("<dt>Light on the hand (light)</dt><dd>measured, see below</dd>"));
   EXPECT_LT(page.find("Not measured yet"), page.find("<dt>Lens of the camera"));
   EXPECT_LT(page.find("<dt>Lens of the camera"), page.find("<section>S"));
-  const auto whole = report_html("show", "rig.toml", std::span(steps).first(1), "");
+  const auto whole = report_html("show", {"rig.toml"}, std::span(steps).first(1), "");
   EXPECT_THAT(whole, HasSubstr("All steps are measured"));
   EXPECT_THAT(whole, HasSubstr("handcast calibrate rig.toml --check"));
+}
+
+TEST(CalibrationReport, ItsCommandsNameTheBoardAndTheFolderOfTheSession) {
+  const std::vector<Reported> steps{{Step::lens, "", false}};
+  const NamedFiles command{"rig.toml", "charuco:11x8:25", "a <folder>"};
+  EXPECT_THAT(report_html("show", command, steps, ""),
+              HasSubstr("<code>handcast calibrate rig.toml --board charuco:11x8:25 --folder a "
+                        "&lt;folder&gt;</code>"));
+  const auto whole = report_html("show", command, {}, "");
+  EXPECT_THAT(whole, HasSubstr("<code>handcast calibrate rig.toml --check --board "
+                               "charuco:11x8:25</code>"));
+  EXPECT_THAT(whole, HasSubstr("<code>handcast doctor rig.toml</code>"));
+}
+
+TEST(CalibrationReport, NamesOfSettingsStayAsTheyAreAndAnEndIsNoTwoEnds) {
+  const auto html = piece_html(
+      Step::screen,
+      {"5 places", true, {"projector.gamma was 2.2", "was the board still?", "look. At it"}});
+  EXPECT_THAT(html, HasSubstr("<li>projector.gamma was 2.2.</li>"));
+  EXPECT_THAT(html, HasSubstr("<li>Was the board still?</li>"));
+  EXPECT_THAT(html, HasSubstr("<li>Look. At it.</li>"));
 }
 
 TEST(CalibrationReport, APieceHasWholeSentencesAndSaysWhatIsGood) {

@@ -2,8 +2,10 @@
 #include "services/calibrate/session.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -16,6 +18,26 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
+
+/// As on a full disk, writing fails in the middle of a file.
+class SmallFiles {
+ public:
+  explicit SmallFiles(rlim_t most_bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{most_bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  SmallFiles(const SmallFiles&) = delete;
+  SmallFiles& operator=(const SmallFiles&) = delete;
+  ~SmallFiles() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+
+ private:
+  void (*signal_)(int);
+  rlimit before_{};
+};
 
 class CalibrateSession : public testing::Test {
  protected:
@@ -66,6 +88,36 @@ TEST_F(CalibrateSession, AMeasurementIsKeptAlthoughItsPicturesCannotBeWritten) {
   ASSERT_FALSE(kept);
   EXPECT_THAT(kept.error().what, HasSubstr("lens.html"));
   EXPECT_EQ(open().draft().camera.fx_px, 1200);
+}
+
+TEST_F(CalibrateSession, OldFiguresDoNotStandUnderANewMeasurement) {
+  ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, with_focal_length(1200)));
+  Outcome large{"30 images"};
+  large.pictures.assign(1'000'000, ' ');
+  {
+    const SmallFiles full(100'000);
+    EXPECT_FALSE(open().keep(Step::lens, large, with_focal_length(1300)));
+  }
+  EXPECT_EQ(open().draft().camera.fx_px, 1300);
+  auto session = open();
+  ASSERT_TRUE(session.keep(Step::light, {"bright"}, session.draft()));
+  EXPECT_THAT(text_of(session.report()), HasSubstr("30 images"));
+  EXPECT_THAT(text_of(session.report()), Not(HasSubstr("20 images")));
+}
+
+TEST_F(CalibrateSession, TheReportGoesOnWithItsBoardAndItsFolder) {
+  const auto command_of = [&] {
+    auto session = open();
+    EXPECT_TRUE(session.keep(Step::lens, {"20 images"}, used_));
+    const auto page = text_of(session.report());
+    const auto at = page.find("Go on with");
+    return page.substr(at, page.find("</p>", at) - at);
+  };
+  EXPECT_THAT(command_of(), HasSubstr("rig.toml</code>"));
+  options_.board.square_mm = 25;
+  options_.folder = scratch_.path() / "other";
+  EXPECT_THAT(command_of(), HasSubstr("rig.toml --board charuco:11x8:25 --folder " +
+                                      options_.folder.string() + "</code>"));
 }
 
 TEST_F(CalibrateSession, ADamagedDraftIsRefusedWithTheWayOut) {
