@@ -57,6 +57,8 @@ Result<void> measure_steps(const Options& options, const RunningAs& running, Ses
 Result<int> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
                         Session& session) {
   const auto steps = steps_of(options, rig, session);
+  if (!steps.empty())
+    if (auto down = check_down(rig); !down) return tl::make_unexpected(down.error());
   int done = 0;
   const auto measured = measure_steps(options, running, session, steps, done);
   if (done > 0)
@@ -82,7 +84,7 @@ Result<int> print_board(const Options& options) {
 void name_anew(Options& options, config::Rig& rig, const std::string& devices) {
   const std::filesystem::path old(rig.calibration);
   rig.calibration = (old.parent_path() / (old.stem().string() + "." + devices + ".toml")).string();
-  if (options.folder == std::filesystem::path(options.rig_file).replace_extension(".calibration"))
+  if (options.folder == default_folder(options.rig_file))
     options.folder.replace_extension(devices + ".calibration");
 }
 
@@ -95,8 +97,8 @@ Result<int> run(Options options) {
   if (options.undo) return undo(*rig).map(done);
   if (auto possible = check_steps(options, *rig); !possible)
     return tl::make_unexpected(possible.error());
-  const bool measures_steps = !options.check && !options.correct && options.points.empty();
-  if (measures_steps)
+  // Before anything is forgotten. Without these, nothing may be left to be measured.
+  if (options.restart || !options.steps.empty())
     if (auto down = check_down(*rig); !down) return tl::make_unexpected(down.error());
   if (rig->camera.backend != "twin")
     fmt::print(stderr, "looking for the devices of {}\n", printable(options.rig_file.string()));

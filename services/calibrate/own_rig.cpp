@@ -29,6 +29,8 @@ using namespace std::chrono_literals;
   const int output = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
   const bool in_place = nothing >= 0 && output >= 0 && ::dup2(nothing, STDIN_FILENO) >= 0 &&
                         ::dup2(output, STDOUT_FILENO) >= 0 && ::dup2(output, STDERR_FILENO) >= 0;
+  for (const int fd : {nothing, output})
+    if (fd > STDERR_FILENO) ::close(fd);
   ::setpgid(0, 0);
   // A session that is killed must not leave a rig that casts light.
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,17 @@ class Calibrate : public SystemTest {
         files.emplace_back(entry.path(), entry.last_write_time());
     std::ranges::sort(files);
     return files;
+  }
+  /// The numbers under which the processes of this test have a file open.
+  std::set<std::string> descriptors_of(const std::string& name) const {
+    std::set<std::string> numbers;
+    std::error_code gone;
+    for (const auto pid : processes_of(scratch_.path()))
+      for (fs::directory_iterator fd("/proc/" + std::to_string(pid) + "/fd", gone), end; fd != end;
+           fd.increment(gone))
+        if (fs::read_symlink(fd->path(), gone).filename() == name)
+          numbers.insert(fd->path().filename());
+    return numbers;
   }
 };
 
@@ -125,6 +137,29 @@ TEST_F(Calibrate, TheCheckTellsAProjectorThatHasMovedAndChangesNothing) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(Calibrate, WhatWasMeasuredIsHandedOverBesideARigThatIsUp) {
+  const fs::path folder = scratch_.path() / "twin.calibration";
+  fs::create_directories(folder);
+  auto draft = calib::reference_rig();
+  draft.made.lens = draft.made.screen = draft.made.tracker = "measured";
+  std::ofstream(folder / "draft.toml") << calib::print_calibration(draft);
+  std::ofstream(folder / "light.html") << "measured";
+  std::ofstream(folder / "screen.settings") << "projector.latency_ms = 4\n";
+  const auto rig = up();
+  wait_until_light();
+  EXPECT_THAT(calibrate({"lens"}).log, HasSubstr("stop it with `handcast down`"));
+  EXPECT_THAT(calibrate({"--restart"}).log, HasSubstr("stop it with `handcast down`"));
+  const auto outcome = calibrate({"--apply"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.log;
+  EXPECT_THAT(outcome.output, HasSubstr("nothing is left to be measured"));
+  EXPECT_TRUE(fs::exists(scratch_.path() / "twin_calibration.toml"));
+  const auto applied = config::load_rig(rig_file(), {});
+  ASSERT_TRUE(applied) << applied.error().what;
+  EXPECT_EQ(applied->projector.latency_ms, 4);
+  fs::remove(folder / "light.html");
+  EXPECT_THAT(calibrate({}).log, HasSubstr("stop it with `handcast down`"));
+}
+
 TEST_F(Calibrate, TheLightOnAStillHandIsJudged) {
   const auto outcome = calibrate({"light", "--most-s", "60"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
@@ -150,6 +185,7 @@ TEST_F(Calibrate, ASessionThatIsKilledTakesItsRigWithIt) {
       << session.log();
   ASSERT_TRUE(eventually([&] { return processes_of(scratch_.path()).size() > 5; }))
       << session.log();
+  EXPECT_EQ(descriptors_of("lens.log"), (std::set<std::string>{"1", "2"}));
   session.signal(SIGKILL);
   EXPECT_TRUE(eventually([&] { return processes_of(scratch_.path()).empty(); }));
 }
