@@ -119,6 +119,11 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
     if (lacks_second) calibration->camera2 = guessed_second(options, calibration->camera);
     if (others.empty() && lacks_second) return run_with(options, std::move(*calibration), true, {});
     if (others.empty()) return RunningAs{std::move(*calibration), options.settings, {}};
+    if (const auto* asked = what_compares(options))
+      return fail(Errc::bad_config,
+                  fmt::format("{} was made with {}; {} needs a calibration of the "
+                              "devices that the rig has now",
+                              rig.calibration, others, asked));
     if (!has_sizes)
       return fail(
           Errc::bad_config,
@@ -139,9 +144,6 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
 
 Result<void> check_known(const Options& options, const RunningAs& running) {
   const auto* asked = what_compares(options);
-  if (asked && !running.new_devices.empty())
-    return fail(Errc::bad_config,
-                fmt::format("{} needs a calibration of the devices that the rig has now", asked));
   if (asked && options.points.empty() && running.is_second_guessed)
     return fail(Errc::bad_config,
                 fmt::format("{}: the second camera is not calibrated yet; measure it first: "

@@ -24,11 +24,12 @@ struct RunningAs {
 /// is that of other devices than `own`, with one that has only the sizes of the images
 /// (options.camera, options.projector) and is written to the session's folder. If only the second
 /// camera of two is not calibrated, with a guess of that one. Errors: bad_config (the sizes are
-/// missing), those of calib::load_calibration().
+/// missing; --check, --correct or --points, and the calibration is that of other devices), those of
+/// calib::load_calibration().
 Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
                                  const OwnDevices& own = {});
 
-/// Errors: bad_config (--check, --correct or --points, and what they compare with is a guess; a
+/// Errors: bad_config (--check, --correct or --points, and the second camera is a guess; a
 /// size of --camera, --camera2 or --projector is not that of the calibration in use, and has no
 /// effect).
 Result<void> check_known(const Options& options, const RunningAs& running);

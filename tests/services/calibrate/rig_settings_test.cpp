@@ -149,14 +149,26 @@ TEST_F(RigSettings, NothingIsComparedWithAGuessedSecondCamera) {
 }
 
 TEST_F(RigSettings, NothingIsComparedWithACalibrationOfOtherDevices) {
-  RunningAs running{calib::reference_rig(), {}, "Other_Cam"};
-  EXPECT_TRUE(check_known(options_, running));
-  for (auto* compares : {&options_.check, &options_.correct}) {
-    *compares = true;
-    EXPECT_THAT(check_known(options_, running).error().what,
-                HasSubstr("needs a calibration of the devices that the rig has now"));
-    *compares = false;
-  }
+  auto first = calib::reference_rig();
+  first.camera_device = "usb-1.2";
+  rig_.calibration = scratch_.path() / "first.toml";
+  std::ofstream(rig_.calibration) << calib::print_calibration(first);
+  rig_.camera.backend = "v4l2";
+  const OwnDevices other{"Other Cam", "", {"Other Cam"}, {}};
+  const auto refused = [&] { return rig_as_it_runs(options_, rig_, other).error().what; };
+  const auto says = [](const std::string& asked) {
+    return HasSubstr(
+        "first.toml was made with the camera 'usb-1.2', and the rig has 'Other Cam'; " + asked +
+        " needs a calibration of the devices that the rig has now");
+  };
+  options_.check = true;
+  EXPECT_THAT(refused(), says("--check")) << "which takes no sizes";
+  options_.check = false;
+  options_.correct = true;
+  EXPECT_THAT(refused(), says("--correct"));
+  options_.correct = false;
+  options_.points = "points";
+  EXPECT_THAT(refused(), says("--points"));
 }
 
 TEST_F(RigSettings, ASizeThatWouldHaveNoEffectIsRefused) {
