@@ -12,11 +12,8 @@
 namespace handcast::doctor {
 namespace {
 
-/// Of a rig with two cameras, whose calibration can be read.
+/// Of a rig with two cameras, which the calibration has.
 Finding second_camera_of(const calib::Calibration& calibration) {
-  if (!calibration.camera2)
-    return {"calibration", Grade::fault, "the second camera is not calibrated",
-            "`handcast calibrate RIG.toml lens2 pair`"};
   const auto& camera = calibration.camera;
   const auto& second = *calibration.camera2;
   const auto& made = calibration.made.pair;
@@ -42,11 +39,15 @@ Finding calibration_of(const config::Rig& rig) {
   const auto calibration = calib::load_calibration(rig.calibration);
   if (!calibration)
     return {"calibration", Grade::fault, calibration.error().what, "`handcast config --check`"};
+  const bool has_second = config::has_second_view(rig);
+  if (has_second && !calibration->camera2)
+    return {"calibration", Grade::fault, "the second camera is not calibrated",
+            "`handcast calibrate RIG.toml lens2 pair`"};
   if (is_real && calibration->camera_device.empty())
     return {"calibration", Grade::advice,
             "it does not name its camera, so that another one would not be noticed",
             "set [camera] device in it, as `handcast devices` lists the camera"};
-  if (config::has_second_view(rig)) return second_camera_of(*calibration);
+  if (has_second) return second_camera_of(*calibration);
   return {"calibration", Grade::good,
           fmt::format("camera {} x {} px, projector {} x {} px", calibration->camera.width_px,
                       calibration->camera.height_px, calibration->projector_width_px,

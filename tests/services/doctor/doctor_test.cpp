@@ -182,6 +182,9 @@ TEST(RigFile, OfTwoCamerasTheSecondOneIsNamed) {
   EXPECT_EQ(finding.grade, Grade::fault);
   EXPECT_THAT(finding.sentence, HasSubstr("the second camera is not calibrated"));
   EXPECT_THAT(finding.remedy, HasSubstr("lens2 pair"));
+  rig.camera.backend = "v4l2";  // whose name is not known, which is less
+  EXPECT_EQ(finding_of(examine_file(rig), "calibration").grade, Grade::fault);
+  rig.camera.backend = "twin";
   calibration.camera2 = calib::SecondCamera{{}, calibration.camera, glm::dmat4(1)};
   calibration.camera2->camera.width_px = 640;
   calibration.camera2->from_camera[3].x = -0.25;
