@@ -69,23 +69,22 @@ TEST_F(Adoption, AKilledSupervisorIsReplacedWhileServicesAndLightGoOn) {
   const auto before = light.look();
   const auto camera_epoch = frames.epoch();
 
-  // Other processes take light from both; a supervisor that takes some with it does so every time.
+  // Other processes take light from both; the more rounds are summed, the less that matters.
+  constexpr int kFewest = 3, kMost = 12;
   std::uint64_t quiet = 0, disturbed = 0;
-  for (int series = 0; series < 4 && disturbed * 10 <= quiet * 9; ++series) {
-    quiet = disturbed = 0;
-    for (int round = 0; round < 3; ++round) {
-      ASSERT_TRUE(eventually([&] { return rig->supervisor() > 0; }));
-      const auto start = light.sequence();
-      usleep(1'500'000);
-      const auto middle = light.sequence();
-      ASSERT_EQ(kill(rig->supervisor(), SIGKILL), 0);
-      usleep(1'500'000);
-      quiet += middle - start;
-      disturbed += light.sequence() - middle;
-    }
+  int rounds = 0;
+  for (; rounds < kFewest || (rounds < kMost && disturbed * 10 <= quiet * 9); ++rounds) {
+    ASSERT_TRUE(eventually([&] { return rig->supervisor() > 0; }));
+    const auto start = light.sequence();
+    usleep(1'500'000);
+    const auto middle = light.sequence();
+    ASSERT_EQ(kill(rig->supervisor(), SIGKILL), 0);
+    usleep(1'500'000);
+    quiet += middle - start;
+    disturbed += light.sequence() - middle;
   }
-  std::printf("frames in 4.5 s: %lu left alone, %lu while the supervisor was killed three times\n",
-              quiet, disturbed);
+  std::printf("frames in %.1f s: %lu left alone, %lu while the supervisor was killed %d times\n",
+              1.5 * rounds, quiet, disturbed, rounds);
   EXPECT_GT(quiet, 0u);
   EXPECT_GT(disturbed * 10, quiet * 9);
 
