@@ -19,10 +19,11 @@ class PatternImages {
   static Result<PatternImages> open(Desk& desk);
 
   /// Measures by a light that toggles how much later than reported it comes, which image() needs.
-  /// Takes 4 to 15 s: until the interval is narrow, or enough was seen. Errors: those of
-  /// calib::fit_light_delay(), and of the streams.
+  /// Takes 4 to 15 s: until the interval is narrow, or enough was seen; up to 19 s on a computer
+  /// that is too busy to see each change. Errors: those of calib::fit_light_delay(), and of the
+  /// streams.
   Result<calib::LightDelay> measure_delay();
-  /// The same in 4 s, for image() alone.
+  /// The same for image() alone: in 4 s, or up to 19 s on a busy computer.
   Result<calib::LightDelay> measure_delay_roughly();
   /// Shows a picture and returns the first image that was exposed in its light only. Errors:
   /// timeout, and those of the streams.
