@@ -18,8 +18,8 @@ class SideEvidence {
   /// Takes the detectors' votes alone, of a hand that cannot be compared. A comparison is due
   /// still.
   void vote(std::int64_t time_ns, int votes_for_other);
-  /// Nothing is known.
-  void forget() { *this = {}; }
+  /// Nothing is known; the next comparison is due when it was.
+  void forget();
 
   /// Above 0: it is rather the other hand.
   double log_odds() const { return log_odds_; }

@@ -111,26 +111,29 @@ msg::HandPoses StereoTracker::sample(const Seen& seen) {
 }
 
 /// Exchanges the looks of hands that are taken for each other, or gives those of one to the other.
-/// True if it has.
+/// True if it has. Compares one hand at most, in turn: a comparison takes milliseconds.
 bool StereoTracker::settle_sides(std::int64_t time_ns, HandLooks& looks) {
   double log_odds = 0;
-  for (int side = 0; side < msg::kMaxHands; ++side) {
+  bool has_compared = false;
+  for (int i = 0; i < msg::kMaxHands; ++i) {
+    const int side = static_cast<int>((samples_ + static_cast<unsigned>(i)) % msg::kMaxHands);
     auto& evidence = evidence_[side];
     if (!hands_[side].expected(time_ns)) evidence.forget();
     int looked = 0, votes = 0;
     for (const auto& look : looks[side])
       if (look) ++looked, votes += static_cast<int>(look->hand.side) == side ? -1 : 1;
-    if (looked > 0 && evidence.is_due(time_ns)) {
+    if (looked > 0 && !has_compared && evidence.is_due(time_ns)) {
       const auto cost = hands_[side].cost_anew(looks[side]),
                  cost_of_other = hands_[1 - side].cost_anew(looks[side]);
-      if (cost && cost_of_other)
-        evidence.compare(time_ns, *cost, *cost_of_other, votes);
+      has_compared = cost && cost_of_other;
+      if (has_compared)
+        evidence.compare(time_ns, *cost, *cost_of_other, votes), ++comparisons_;
       else
         evidence.vote(time_ns, votes);
     }
     log_odds += evidence.log_odds();
   }
-  if (log_odds < kSureOfOther) return false;
+  if (!(log_odds >= kSureOfOther)) return false;
   std::swap(looks[0], looks[1]);
   for (auto& evidence : evidence_) evidence.forget();
   return true;

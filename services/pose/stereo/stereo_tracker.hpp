@@ -31,6 +31,9 @@ class StereoTracker {
   /// Where the hands are expected in a view at `time_ns`, by msg::Side: hints for a detector.
   std::array<Expected, msg::kMaxHands> expected(std::int64_t time_ns) const;
 
+  /// How often a hand has been compared with the models of both sides.
+  std::uint64_t comparisons() const { return comparisons_; }
+
  private:
   explicit StereoTracker(const Views& views, const std::array<StereoHand, msg::kMaxHands>& hands)
       : views_(views), hands_(hands) {}
@@ -41,7 +44,7 @@ class StereoTracker {
   Views views_;
   std::array<StereoHand, msg::kMaxHands> hands_;       ///< by msg::Side
   std::array<SideEvidence, msg::kMaxHands> evidence_;  ///< that they are the other ones
-  std::uint64_t samples_ = 0;
+  std::uint64_t samples_ = 0, comparisons_ = 0;
 };
 
 }  // namespace handcast::pose::stereo

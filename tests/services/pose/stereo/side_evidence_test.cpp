@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace handcast::pose::stereo {
 namespace {
 
@@ -64,8 +66,27 @@ TEST(SideEvidence, WhatIsSureIsComparedRarelyAndStillCorrected) {
   for (int i = 1; i < 100; ++i) evidence.compare(i * kStep_ns, 20, 40, -2);
   EXPECT_FALSE(evidence.is_due(100 * kStep_ns));
   int wrong = 0;
-  for (; evidence.log_odds() < 3.5; ++wrong) evidence.compare((100 + wrong) * kStep_ns, 40, 20, 2);
-  EXPECT_LT(wrong, 30);
+  for (; evidence.log_odds() < 3.5; ++wrong) {
+    ASSERT_LT(wrong, 30);
+    evidence.compare((100 + wrong) * kStep_ns, 40, 20, 2);
+  }
+}
+
+TEST(SideEvidence, WhatIsForgottenIsNotComparedAtOnceAgainButCountsWholeThen) {
+  SideEvidence evidence;
+  evidence.compare(0, 20, 35, 0);
+  evidence.forget();
+  EXPECT_EQ(evidence.log_odds(), 0);
+  EXPECT_FALSE(evidence.is_due(kStep_ns / 2));
+  EXPECT_TRUE(evidence.is_due(kStep_ns));
+  EXPECT_TRUE(evidence.is_due(-kStep_ns)) << "a clock that began anew";
+  evidence.compare(kStep_ns, 35, 23, 0);
+  EXPECT_GE(evidence.log_odds(), 3.5);
+}
+
+TEST(SideEvidence, CostsThatAreNoNumbersSayNothing) {
+  EXPECT_EQ(log_odds_after(3, NAN, 20, 0), 0);
+  EXPECT_EQ(log_odds_after(3, 20, NAN, 0), 0);
 }
 
 }  // namespace
