@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "ipc/client/stream.hpp"
 #include "ipc/control/control_client.hpp"
@@ -103,15 +102,6 @@ std::vector<Finding> services_in(const json& status) {
   return findings;
 }
 
-Finding rate_of(const json& status, const char* ring, const char* check, const char* setting) {
-  const auto entry = ring_in(status, ring);
-  const double wanted_hz = number_in(entry, "wanted_hz"), held_hz = number_in(entry, "held_hz");
-  const auto sentence = fmt::format("{:.1f} Hz of {:.1f} Hz", held_hz, wanted_hz);
-  if (held_hz >= kHeld * wanted_hz && held_hz > 0) return {check, Grade::good, sentence, ""};
-  return {check, Grade::fault, sentence,
-          fmt::format("lower {}, or find what is slow with `handcast latency`", setting)};
-}
-
 Finding clock_of(const Seen& seen) {
   if (seen.images == 0)
     return {"camera clock", Grade::fault, "no image came", "`handcast status`, and its log"};
@@ -175,6 +165,15 @@ Finding light_of(const json& status) {
 
 }  // namespace
 
+Finding judge_rate(const json& ring, const char* check, const char* setting) {
+  const double wanted_hz = number_in(ring, "wanted_hz"), held_hz = number_in(ring, "held_hz");
+  const auto sentence = fmt::format("{:.1f} Hz of {:.1f} Hz", held_hz, wanted_hz);
+  const bool is_enough = held_hz >= kHeld * wanted_hz || !ring.value("is_held_to_it", true);
+  if (is_enough && held_hz > 0) return {check, Grade::good, sentence, ""};
+  return {check, Grade::fault, sentence,
+          fmt::format("lower {}, or find what is slow with `handcast latency`", setting)};
+}
+
 Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds) {
   const auto seen = watch(rig, seconds);
   if (!seen) return tl::make_unexpected(seen.error());
@@ -182,8 +181,9 @@ Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds
   if (!answer) return tl::make_unexpected(answer.error());
   const auto& status = answer->contains("status") ? (*answer)["status"] : *answer;
   auto findings = services_in(status);
-  findings.push_back(rate_of(status, "camera.frames", "camera rate", "camera.rate_hz"));
-  findings.push_back(rate_of(status, "projection.frames", "projector rate", "projector.rate_hz"));
+  findings.push_back(judge_rate(ring_in(status, "camera.frames"), "camera rate", "camera.rate_hz"));
+  findings.push_back(
+      judge_rate(ring_in(status, "projection.frames"), "projector rate", "projector.rate_hz"));
   findings.push_back(clock_of(*seen));
   findings.push_back(losses_in(status, *seen));
   findings.push_back(hands_in(*seen));

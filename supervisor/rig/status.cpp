@@ -68,12 +68,17 @@ json service_status(const Service& service, const RigView& rig) {
   return status;
 }
 
-/// False if less than the wanted rate is no fault: the service has just started or is not well,
-/// plays a recording at its own times, or draws once for several sub-frames.
-bool is_held_to_its_rate(const Service& service, std::int64_t now_ns) {
-  constexpr double kSettled_s = 10;  // the held rate is the mean of some seconds
-  return service.state() == State::ready && service.uptime_s(now_ns) >= kSettled_s &&
-         service.spec().backend != "replay" && !service.spec().counts_sub_frames;
+/// False if less than the wanted rate is no fault: the service plays a recording at its own times,
+/// or draws once for several sub-frames.
+bool is_held_to_its_rate(const ServiceSpec& spec) {
+  return spec.backend != "replay" && !spec.counts_sub_frames;
+}
+
+/// False if the service is not well or so new that its held rate, a mean of some seconds, is not
+/// yet its own.
+bool is_settled(const Service& service, std::int64_t now_ns) {
+  constexpr double kSettled_s = 10;
+  return service.state() == State::ready && service.uptime_s(now_ns) >= kSettled_s;
 }
 
 // Services publish stage marks for each message, so the rates of the rings are counted from the
@@ -82,7 +87,8 @@ json ring_status(const Service& service, const RigView& rig) {
   const auto& frames = rig.recorder.ledger().frames(service.spec().name);
   return {{"wanted_hz", wanted_hz(service.spec())},
           {"held_hz", rounded(frames.recent_hz(rig.now_ns))},
-          {"is_held_to_it", is_held_to_its_rate(service, rig.now_ns)},
+          {"is_held_to_it", is_held_to_its_rate(service.spec())},
+          {"is_settled", is_settled(service, rig.now_ns)},
           {"count", frames.total()},
           {"newest_age_ms", or_null(frames.newest_age_ms(rig.now_ns))}};
 }
@@ -168,7 +174,8 @@ json live_report(const RigView& rig) {
   for (const auto& service : rig.services) {
     const auto& spec = service->spec();
     report["services"][spec.name] = {{"restarts", service->restarts()},
-                                     {"backend", backend_of(*service, rig)}};
+                                     {"backend", backend_of(*service, rig)},
+                                     {"is_held_to_its_rate", is_held_to_its_rate(spec)}};
     if (spec.stream.empty()) continue;
     const auto held_hz = rig.recorder.ledger().frames(spec.name).held_hz(rig.now_ns);
     report["rates"][spec.name] = {{"wanted_hz", wanted_hz(spec)}, {"held_hz", rounded(held_hz)}};

@@ -86,7 +86,8 @@ std::string print_slow(const json& status) {
   std::vector<std::string> slow;
   for (const auto& [name, ring] : status["rings"].items()) {
     const auto wanted = ring.value("wanted_hz", json()), held = ring.value("held_hz", json());
-    if (ring.value("is_held_to_it", false) && wanted.is_number() && held.is_number() &&
+    const bool is_judged = ring.value("is_held_to_it", false) && ring.value("is_settled", false);
+    if (is_judged && wanted.is_number() && held.is_number() &&
         held.get<double>() < kEnough * wanted.get<double>())
       slow.push_back(name);
   }

@@ -68,14 +68,17 @@ std::string slowness(const Source& live) {
   for (const auto* service : {"camera", "projector"}) {
     const auto wanted_hz = rate_of(live, service, "wanted_hz"),
                held_hz = rate_of(live, service, "held_hz");
-    if (wanted_hz && held_hz && *wanted_hz > 0) least = std::min(least, *held_hz / *wanted_hz);
+    const auto judged =
+        json::json_pointer("/services") / std::string(service) / std::string("is_held_to_its_rate");
+    const bool is_judged = !live.content->contains(judged) || live.content->at(judged) != false;
+    if (is_judged && wanted_hz && held_hz && *wanted_hz > 0)
+      least = std::min(least, *held_hz / *wanted_hz);
   }
   if (least >= kEnough) return "";
   return fmt::format(
       "<p>This computer was too slow for the requested rates and held {:.0f} % of one of them. "
-      "Light "
-      "that comes late falls beside its place, so the figures of the live rig are worse than those "
-      "of the simulation, which assumes the full rates.</p>\n",
+      "Light that comes late falls beside its place, so the figures of the live rig are worse than "
+      "those of the simulation, which assumes the full rates.</p>\n",
       100 * least);
 }
 

@@ -7,6 +7,7 @@
 
 #include "services/doctor/display.hpp"
 #include "services/doctor/images.hpp"
+#include "services/doctor/live.hpp"
 #include "services/doctor/machine.hpp"
 #include "services/doctor/rig_file.hpp"
 #include "services/doctor/start_check.hpp"
@@ -248,6 +249,16 @@ TEST(Findings, ArePrintedWithTheirRemediesAndCounted) {
   EXPECT_EQ(json[1]["grade"], "fault");
   EXPECT_TRUE(has_fault(findings));
   EXPECT_FALSE(has_fault({findings[0]}));
+}
+
+TEST(JudgeRate, LessThanTheWantedRateIsAFaultUnlessTheServiceIsNotHeldToIt) {
+  nlohmann::json ring{{"wanted_hz", 525}, {"held_hz", 172}, {"is_held_to_it", true}};
+  const auto grade = [&] { return judge_rate(ring, "camera rate", "camera.rate_hz").grade; };
+  EXPECT_EQ(grade(), Grade::fault);
+  ring["is_held_to_it"] = false;
+  EXPECT_EQ(grade(), Grade::good) << "a recording has its own times";
+  ring["held_hz"] = 0;
+  EXPECT_EQ(grade(), Grade::fault) << "nothing comes";
 }
 
 }  // namespace

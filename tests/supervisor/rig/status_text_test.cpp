@@ -58,11 +58,8 @@ TEST(StatusText, SaysWhoKnowsWhenLightComes) {
 
 TEST(StatusText, NamesTheRingsThatDoNotHoldTheirRate) {
   const auto ring = [](const json& wanted, double held) {
-    return json{{"wanted_hz", wanted},
-                {"held_hz", held},
-                {"is_held_to_it", true},
-                {"newest_age_ms", 1},
-                {"count", 9}};
+    return json{{"wanted_hz", wanted}, {"held_hz", held},    {"is_held_to_it", true},
+                {"is_settled", true},  {"newest_age_ms", 1}, {"count", 9}};
   };
   auto status = status_with({{"rings",
                               {{"camera.frames", ring(525, 172)},
@@ -74,6 +71,8 @@ TEST(StatusText, NamesTheRingsThatDoNotHoldTheirRate) {
                         "rate; `handcast latency` shows where the time goes"));
   status["rings"]["camera.frames"]["is_held_to_it"] = false;
   EXPECT_THAT(print_status(status), HasSubstr("slow: projection.frames holds less"));
+  status["rings"]["projection.frames"]["is_settled"] = false;
+  EXPECT_THAT(print_status(status), Not(HasSubstr("slow:"))) << "a service that has just started";
 }
 
 TEST(StatusText, TimesOfAMillisecondAndMoreAreInMilliseconds) {

@@ -69,6 +69,9 @@ TEST_F(Report, SaysIfTheComputerWasTooSlowForTheLiveRig) {
   live["rates"]["projector"]["held_hz"] = 321.0;
   test::write_json(folder() / "live.json", live);
   EXPECT_THAT(page(), HasSubstr("too slow for the requested rates and held 34 % of one of them"));
+  live["services"]["projector"]["is_held_to_its_rate"] = false;
+  test::write_json(folder() / "live.json", live);
+  EXPECT_THAT(page(), Not(HasSubstr("too slow"))) << "sub-frames";
 }
 
 TEST_F(Report, SaysWhichDetectorEachRunHadAndWhy) {
