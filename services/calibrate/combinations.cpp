@@ -2,7 +2,6 @@
 #include "services/calibrate/combinations.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

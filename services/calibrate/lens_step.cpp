@@ -93,8 +93,7 @@ Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> 
   outcome.meaning = fmt::format(
       "Held out: how far corners are from where a fit that has not seen their image expects them; "
       "good is at most {} px. +-: with 95 % probability the focal length is within; good is at "
-      "most "
-      "{:g} %",
+      "most {:g} %",
       kGood_px, 100 * kGoodFocal);
   outcome.pictures = pictures_of(fit, views);
   return outcome;

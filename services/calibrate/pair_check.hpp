@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <optional>
-
 #include "calib/pair/pair_off.hpp"
 #include "services/calibrate/desk.hpp"
 

@@ -75,8 +75,7 @@ void describe(const calib::PairFit& fit, Outcome& outcome) {
       half_widths(fit.place_mm, "mm"), half_widths(fit.turn_deg, "degrees")));
   outcome.meaning = fmt::format(
       "Held out: of views that the fit has not seen; good are at most {} px and {} mm. The middle "
-      "of "
-      "the volume: 95 % of the fits have it within this; good is at most {} mm",
+      "of the volume: 95 % of the fits have it within this; good is at most {} mm",
       kGood_px, kGood_mm, kGoodMiddle_mm);
   outcome.is_good =
       fit.held_out_px <= kGood_px && fit.held_out_mm <= kGood_mm && fit.middle_mm <= kGoodMiddle_mm;

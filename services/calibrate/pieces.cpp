@@ -87,10 +87,8 @@ std::string verdict_html(const NamedFiles& command, std::span<const Reported> st
         missing, file, board, option("--folder", command.folder));
   return fmt::format(
       "<p class='verdict'>All steps are measured. <code>handcast doctor {0}</code> says whether "
-      "the "
-      "rig is ready; <code>handcast calibrate {0} --check{1}</code> says at any time whether "
-      "something "
-      "has moved.</p>",
+      "the rig is ready; <code>handcast calibrate {0} --check{1}</code> says at any time whether "
+      "something has moved.</p>",
       file, board);
 }
 

@@ -99,8 +99,7 @@ Result<Outcome> fit_views(Desk& desk, std::span<const calib::DepthView> views) {
                   held_out_px <= kGood_px, fit->findings, pictures_of(desk, views, *fit)};
   outcome.meaning = fmt::format(
       "Held out: how far the light is from where a fit that has not seen it expects it, in pixels "
-      "of "
-      "the projector, median; good is at most {} px",
+      "of the projector, median; good is at most {} px",
       kGood_px);
   return outcome;
 }

@@ -47,8 +47,7 @@ Result<HidInfo> choose_device(const std::string& wanted) {
   if (wanted.empty())
     return fail(
         Errc::unavailable,
-        "no DLPC350 or DLPC900 is attached; connect the projector's USB cable and switch it "
-        "on");
+        "no DLPC350 or DLPC900 is attached; connect the projector's USB cable and switch it on");
   return fail(Errc::unavailable,
               fmt::format("dlp.device: there is no controller '{}'; attached: {}", wanted,
                           list_of(attached)));

@@ -72,7 +72,7 @@ void count_background(const calib::GreyView& image, const Points& points, GreyCo
     }
 }
 
-std::string bars_svg(const GreyCount& count, std::string_view colour) {
+std::string histogram_bars(const GreyCount& count, std::string_view colour) {
   constexpr int kHeight_px = 120;
   std::uint64_t most = 1;
   for (int grey = 0; grey < 256; ++grey) most = std::max(most, count.of(grey));
@@ -229,8 +229,8 @@ std::string histogram_svg(const HandLight& light) {
       "hand</text><rect x='180' y='-18' width='10' height='10'/><text x='195' y='-9'>its finger "
       "tips</text><text x='0' y='138'>0</text><text x='510' y='138' text-anchor='end'>grey value "
       "255</text></g>";
-  svg += bars_svg(light.background(), "third") + bars_svg(light.hand(), "second") +
-         bars_svg(light.tips(), "first");
+  svg += histogram_bars(light.background(), "third") + histogram_bars(light.hand(), "second") +
+         histogram_bars(light.tips(), "first");
   svg += fmt::format(
       "<line x1='{0}' y1='0' x2='{0}' y2='120' stroke='currentColor' "
       "stroke-dasharray='3 3'/><text x='{0}' y='138' font-size='13' "
