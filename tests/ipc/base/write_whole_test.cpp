@@ -5,12 +5,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/inotify.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -22,6 +20,7 @@
 
 #include "ipc/base/unique_fd.hpp"
 #include "tests/scratch.hpp"
+#include "tests/small_files.hpp"
 
 namespace handcast {
 namespace {
@@ -86,26 +85,6 @@ class AsUser {
 
  private:
   const bool is_root_ = ::geteuid() == 0;
-};
-
-/// As on a full disk, writing fails in the middle of a file.
-class SmallFiles {
- public:
-  explicit SmallFiles(rlim_t most_bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit small{most_bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &small);
-  }
-  SmallFiles(const SmallFiles&) = delete;
-  SmallFiles& operator=(const SmallFiles&) = delete;
-  ~SmallFiles() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, signal_);
-  }
-
- private:
-  void (*signal_)(int);
-  rlimit before_{};
 };
 
 TEST_F(WriteWhole, AReaderKeepsTheOldFileAndNothingIsLeftBeside) {
@@ -238,7 +217,7 @@ TEST_F(WriteWhole, OnAFullDiskTheOldFileStaysAndNothingElse) {
   make(file_, "old");
   Result<void> written;
   {
-    const SmallFiles full(1000);
+    const test::SmallFiles full(1000);
     written = write_whole(file_, std::string(5000, 'x'));
   }
   ASSERT_FALSE(written);

@@ -2,15 +2,14 @@
 #include "services/calibrate/session.hpp"
 
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include "config/settings/files.hpp"
 #include "tests/scratch.hpp"
+#include "tests/small_files.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -18,26 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-
-/// As on a full disk, writing fails in the middle of a file.
-class SmallFiles {
- public:
-  explicit SmallFiles(rlim_t most_bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit small{most_bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &small);
-  }
-  SmallFiles(const SmallFiles&) = delete;
-  SmallFiles& operator=(const SmallFiles&) = delete;
-  ~SmallFiles() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, signal_);
-  }
-
- private:
-  void (*signal_)(int);
-  rlimit before_{};
-};
 
 class CalibrateSession : public testing::Test {
  protected:
@@ -95,7 +74,7 @@ TEST_F(CalibrateSession, OldFiguresDoNotStandUnderANewMeasurement) {
   Outcome large{"30 images"};
   large.pictures.assign(1'000'000, ' ');
   {
-    const SmallFiles full(100'000);
+    const test::SmallFiles full(100'000);
     EXPECT_FALSE(open().keep(Step::lens, large, with_focal_length(1300)));
   }
   EXPECT_EQ(open().draft().camera.fx_px, 1300);
