@@ -61,8 +61,7 @@ void describe(const calib::PairFit& fit, Outcome& outcome) {
   const auto& apart = fit.apart_mm;
   outcome.made = fmt::format(
       "{} views, {:.2f} px from epipolar lines and {:.1f} mm on the board held out; the cameras "
-      "are "
-      "{:.1f} mm apart +- {:.1f}; the middle of the volume is known to {:.1f} mm",
+      "are {:.1f} mm apart +- {:.1f}; the middle of the volume is known to {:.1f} mm",
       fit.views.size(), fit.held_out_px, fit.held_out_mm, (apart.low + apart.high) / 2,
       (apart.high - apart.low) / 2, fit.middle_mm);
   for (std::size_t i = 0; i < fit.views.size(); ++i)

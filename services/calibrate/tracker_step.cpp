@@ -156,10 +156,8 @@ std::string errors_table(const calib::TrackerFit& fit) {
          "<tbody>" +
          rows +
          "</tbody></table></div><figcaption>What the fit does not know, two standard deviations: "
-         "how "
-         "far light lands beside its target, and how far off the place is in space. Places are "
-         "those "
-         "of the camera's axes.</figcaption></figure>";
+         "how far light lands beside its target, and how far off the place is in space. Places are "
+         "those of the camera's axes.</figcaption></figure>";
 }
 
 std::string made_of(const calib::TrackerFit& fit) {
@@ -180,12 +178,9 @@ Result<Outcome> measure_tracker(Desk& desk) {
   Outcome outcome{made_of(*found), found->quality != calib::Quality::poor, found->findings};
   outcome.meaning =
       "Held out: how far landmarks are from the tracker's joints in a part of the time that the "
-      "fit "
-      "has not seen, median; good is at most 3 px. Repeatable: how far light lands beside its "
-      "target "
-      "because of what the fit does not know, two standard deviations; good is at most 2 mm. "
-      "Clock: "
-      "how much the tracker's is ahead of the camera's";
+      "fit has not seen, median; good is at most 3 px. Repeatable: how far light lands beside its "
+      "target because of what the fit does not know, two standard deviations; good is at most "
+      "2 mm. Clock: how much the tracker's is ahead of the camera's";
   const auto& camera = desk.draft.camera;
   if (!seen_px.empty())
     outcome.pictures = dots_svg(camera.width_px, camera.height_px, seen_px,

@@ -52,8 +52,7 @@ std::vector<std::string_view> tracker_words(const std::vector<devices::Attached>
 std::string why_absent(const std::string& word) {
   if (word == "stereo")
     return ": for two cameras in place of a tracker copy config/rigs/stereo.toml, for both eyes of "
-           "a "
-           "Leap controller config/rigs/leap_stereo.toml, and the calibration that it names";
+           "a Leap controller config/rigs/leap_stereo.toml, and the calibration that it names";
   for (const auto& [backend, why] : devices::absent_trackers())
     if (backend == word) return ": " + why;
   return "";
