@@ -56,7 +56,7 @@ TEST_P(Pixels, TheEightHighestBitsBecomeTheGreyImage) {
 }
 
 TEST(PixelPairs, TheEightHighestBitsBecomeTheGreyImage) {
-  for (const auto [format, bits] :
+  for (const auto& [format, bits] :
        {std::pair{PixelFormat::mono10_packed, 10}, {PixelFormat::mono12_packed, 12}})
     for (const std::size_t count : {1, 2, 5, 8}) {
       std::vector<int> pixels;

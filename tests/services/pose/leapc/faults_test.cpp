@@ -113,8 +113,9 @@ TEST(Leapc, ALibraryThatDoesNotReturnHoldsNobodyUp) {
     const auto sampled = source->sample(poses, deadline);
     if (sampled) continue;  // it was waiting
     // On a machine so slow that the hang is noticed here, the error comes at once.
-    if (sampled.error().code == Errc::timeout)
+    if (sampled.error().code == Errc::timeout) {
       EXPECT_GE(now_ns(), deadline.time_ns()) << "not before its deadline";
+    }
     ++errors;
   }
   EXPECT_GE(errors, 15) << "while the library does not return at all";
