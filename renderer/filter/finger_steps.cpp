@@ -62,15 +62,20 @@ FingerSteps::Verdicts FingerSteps::judge(std::int64_t origin_ns, const msg::Hand
     const auto step_px = distance_px(seen, expected, finger),
                common_px = distance_px(seen, common, finger),
                alone_px = distance_px(seen, alone, finger);
+    const bool is_trackers = !held_since_ns && step_px && alone_px && *step_px > kStep_px &&
+                             *alone_px < kExplained * *step_px;
+    if (is_trackers) {
+      verdict = Verdict::anew;
+      continue;
+    }
     if (!step_px || !common_px || *step_px < kStep_px + kSigmas * sigma_px(seen, finger)) {
       held_since_ns.reset();
       continue;
     }
     const bool is_nearer = *common_px < kNearer * apart_px(expected, common, finger);
-    const bool is_trackers = !held_since_ns && alone_px && *alone_px < kExplained * *step_px;
     if (is_nearer) {
       verdict = Verdict::anew;
-    } else if (!is_trackers) {
+    } else {
       if (!held_since_ns) held_since_ns = origin_ns;
       verdict = origin_ns - *held_since_ns < kPatience_ns ? Verdict::hold : Verdict::anew;
     }

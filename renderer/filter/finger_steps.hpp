@@ -23,8 +23,8 @@ class FingerSteps {
 
   /// `seen`: the landmarks of an image. `expected`: the same by the offsets so far; `common`: by
   /// the offset that the hand has as a whole; `alone`: by the landmarks' own motion. A step that
-  /// the landmarks' own motion explains is the tracker's, and usual. One towards the common offset
-  /// begins anew; one away from it does so after it has lasted 500 ms.
+  /// the landmarks' own motion explains is the tracker's, whose finger has snapped, and begins
+  /// anew. So does one towards the common offset, and one away from it after it has lasted 500 ms.
   Verdicts judge(std::int64_t origin_ns, const msg::HandLandmarks& seen,
                  const ExpectedPoints& expected, const ExpectedPoints& common,
                  const ExpectedPoints& alone);

@@ -8,6 +8,8 @@
 
 #include "ipc/base/clock.hpp"
 #include "renderer/base/noise.hpp"
+#include "renderer/predict/joint_math.hpp"
+#include "renderer/predict/joint_steps.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -16,34 +18,10 @@ using msg::Joint;
 
 /// Two samples closer than this give a velocity that is mostly noise.
 constexpr std::int64_t kShortestBase_ns = 6'000'000;
+/// Two samples this far apart give a velocity with less noise, and an older one.
+constexpr std::int64_t kLongBase_ns = 30'000'000;
 /// Window over which the speed and the mean of a joint are taken.
 constexpr std::int64_t kStillWindow_ns = 50'000'000;
-/// A rotation counts as the movement of skin at this distance from the joint.
-constexpr float kTurnLever_m = 0.05f;
-/// An orientation is extrapolated by at most this angle.
-constexpr float kMostTurn_rad = 1.0f;
-
-glm::vec3 position(const Joint& joint) {
-  return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};
-}
-
-glm::quat orientation(const Joint& joint) {
-  const auto& [x, y, z, w] = joint.orientation_xyzw;
-  return {w, x, y, z};
-}
-
-void place(Joint& joint, const glm::vec3& at, const glm::quat& turned) {
-  joint.position_m = {at.x, at.y, at.z};
-  joint.orientation_xyzw = {turned.x, turned.y, turned.z, turned.w};
-}
-
-glm::quat on_side_of(const glm::quat& reference, const glm::quat& q) {
-  return glm::dot(reference, q) < 0 ? -q : q;
-}
-
-glm::quat blend(const glm::quat& a, const glm::quat& b, float t) {
-  return glm::normalize(a * (1 - t) + on_side_of(a, b) * t);
-}
 
 msg::HandPose between(const msg::HandPose& before, const msg::HandPose& after, float t) {
   msg::HandPose pose = after;
@@ -53,24 +31,6 @@ msg::HandPose between(const msg::HandPose& before, const msg::HandPose& after, f
           blend(orientation(a), orientation(b), t));
   }
   return pose;
-}
-
-/// Angle between `a` and `b`, radians. From the chord: the arc cosine is inaccurate for small
-/// angles.
-float angle_between(const glm::quat& a, const glm::quat& b) {
-  const glm::quat chord = on_side_of(a, b) - a;
-  return 4 * std::asin(std::min(1.0f, 0.5f * glm::length(chord)));
-}
-
-/// `newest` rotated further by `share` times the rotation from `earlier` to `newest`.
-glm::quat turned_on(const glm::quat& earlier, const glm::quat& newest, float share) {
-  const glm::quat turn = on_side_of({1, 0, 0, 0}, newest * glm::conjugate(earlier));
-  const glm::vec3 sine_axis{turn.x, turn.y, turn.z};
-  const float sine = glm::length(sine_axis);
-  if (sine < 1e-7f) return newest;
-  const float angle =
-      std::clamp(2 * std::atan2(sine, turn.w) * share, -kMostTurn_rad, kMostTurn_rad);
-  return glm::normalize(glm::angleAxis(angle, sine_axis / sine) * newest);
 }
 
 bool is_finite(const msg::HandPose& pose) {
@@ -118,7 +78,7 @@ PoseHistory::PoseHistory(const config::Predict& settings, std::int64_t span_ns)
 PoseHistory::Pushed PoseHistory::push(std::int64_t origin_ns, const msg::HandPose& pose) {
   if (!is_finite(pose) || origin_ns < begins_ns_) return Pushed::not_measured;
   if (!samples_.empty() && origin_ns > newest_ns()) {
-    if (Continuity::frozen(earlier_than(samples_.back()), samples_.back(), pose))
+    if (Continuity::frozen(earlier_than(samples_.back(), kShortestBase_ns), samples_.back(), pose))
       return Pushed::not_measured;
     if (breaks({origin_ns, pose})) return Pushed::begins_anew;
   }
@@ -137,7 +97,8 @@ PoseHistory::Pushed PoseHistory::push(std::int64_t origin_ns, const msg::HandPos
 }
 
 bool PoseHistory::breaks(const Sample& sample) {
-  if (!continuity_.broken(earlier_than(samples_.back()), samples_.back(), sample)) return false;
+  if (!continuity_.broken(earlier_than(samples_.back(), kShortestBase_ns), samples_.back(), sample))
+    return false;
   samples_.assign(1, sample);
   begins_ns_ = sample.origin_ns;
   since_jump_ = 1;
@@ -190,9 +151,10 @@ std::optional<msg::HandPose> PoseHistory::at(std::int64_t time_ns, std::int64_t 
   return between(before->pose, after->pose, static_cast<float>(t));
 }
 
-const PoseHistory::Sample* PoseHistory::earlier_than(const Sample& sample) const {
+const PoseHistory::Sample* PoseHistory::earlier_than(const Sample& sample,
+                                                     std::int64_t by_ns) const {
   for (auto earlier = samples_.rbegin(); earlier != samples_.rend(); ++earlier)
-    if (sample.origin_ns - earlier->origin_ns >= kShortestBase_ns) return &*earlier;
+    if (sample.origin_ns - earlier->origin_ns >= by_ns) return &*earlier;
   return nullptr;
 }
 
@@ -202,8 +164,9 @@ const PoseHistory::Sample* PoseHistory::earlier_than(const Sample& sample) const
 std::array<glm::vec3, msg::kJoints> PoseHistory::bends_m(const Sample& newest, const Sample& base,
                                                          std::int64_t ahead_ns) const {
   std::array<glm::vec3, msg::kJoints> bends{};
-  const Sample* first =
-      settings_.method == config::PredictMethod::acceleration ? earlier_than(base) : nullptr;
+  const Sample* first = settings_.method == config::PredictMethod::acceleration
+                            ? earlier_than(base, kShortestBase_ns)
+                            : nullptr;
   if (!first) return bends;
   const auto first_s = static_cast<float>(ns_to_seconds(base.origin_ns - first->origin_ns));
   const auto second_s = static_cast<float>(ns_to_seconds(newest.origin_ns - base.origin_ns));
@@ -219,23 +182,30 @@ std::array<glm::vec3, msg::kJoints> PoseHistory::bends_m(const Sample& newest, c
 msg::HandPose PoseHistory::predicted(std::int64_t time_ns) const {
   const Sample& newest = samples_.back();
   if (settings_.method == config::PredictMethod::hold) return newest.pose;
-  const Sample* base = earlier_than(newest);
+  const Sample* base = earlier_than(newest, kShortestBase_ns);
   if (!base) return newest.pose;
 
   const std::int64_t ahead_ns = std::min(time_ns - newest.origin_ns, ms_to_ns(settings_.limit_ms));
-  const auto share = static_cast<float>(static_cast<double>(ahead_ns) /
-                                        static_cast<double>(newest.origin_ns - base->origin_ns));
+  const Sample* long_base = settings_.method == config::PredictMethod::acceleration
+                                ? earlier_than(newest, kLongBase_ns)
+                                : nullptr;
+  const auto since = [&](const Sample& sample) {
+    return PoseBefore{sample.pose,
+                      static_cast<float>(ns_to_seconds(newest.origin_ns - sample.origin_ns))};
+  };
+  const auto steps = steps_ahead(newest.pose, since(*base), since(long_base ? *long_base : *base),
+                                 static_cast<float>(ns_to_seconds(ahead_ns)));
   const auto still_m_s = static_cast<float>(settings_.still_mm_s * 1e-3);
   const auto bends = bends_m(newest, *base, ahead_ns);
   msg::HandPose pose = newest.pose;
   for (int j = 0; j < msg::kJoints; ++j) {
-    const Joint &a = base->pose.joints[j], &b = newest.pose.joints[j];
+    const JointStep& step = steps[j];
     const Stillness& recent = stillness_[j];
     const float moving =
         still_m_s > 0 ? glm::smoothstep(still_m_s, 2 * still_m_s, recent.speed_m_s) : 1.0f;
-    const glm::vec3 moved = position(b) + share * (position(b) - position(a)) + bends[j];
+    const glm::vec3 moved = position(newest.pose.joints[j]) + step.moved_m + step.belief * bends[j];
     place(pose.joints[j], glm::mix(recent.mean_m, moved, moving),
-          blend(recent.mean_turn, turned_on(orientation(a), orientation(b), share), moving));
+          blend(recent.mean_turn, step.turned, moving));
   }
   return pose;
 }

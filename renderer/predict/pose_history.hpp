@@ -55,9 +55,9 @@ class PoseHistory {
   /// - velocity: the constant velocity of the two newest samples. A joint that was slower than
   ///   still_mm_s over the last 50 ms rests at its mean over them instead, so that a still hand is
   ///   drawn without the noise of the samples; up to twice that speed the two are blended.
-  /// - acceleration: the same with the acceleration of the three newest samples, as far as it
-  ///   exceeds the noise of the tracker (share_beyond_noise()): that of the whole hand, whose mean
-  ///   has less noise, plus that of each joint relative to the hand.
+  /// - acceleration: the same with the velocity of steps_ahead() and the acceleration of the three
+  ///   newest samples, as far as it exceeds the noise of the tracker (share_beyond_noise()): that
+  ///   of the whole hand, whose mean has less noise, plus that of each joint relative to the hand.
   std::optional<msg::HandPose> at(std::int64_t time_ns, std::int64_t lost_ns = 200'000'000) const;
 
  private:
@@ -74,9 +74,8 @@ class PoseHistory {
   Stillness stillness(int joint) const;
   void judge_stillness();
   msg::HandPose predicted(std::int64_t time_ns) const;
-  /// The newest sample that is long enough before `sample` for a velocity; nullptr if there is
-  /// none.
-  const Sample* earlier_than(const Sample& sample) const;
+  /// The newest sample that is at least `by_ns` before `sample`; nullptr if there is none.
+  const Sample* earlier_than(const Sample& sample, std::int64_t by_ns) const;
   std::array<glm::vec3, msg::kJoints> bends_m(const Sample& newest, const Sample& base,
                                               std::int64_t ahead_ns) const;
 

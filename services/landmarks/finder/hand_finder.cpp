@@ -68,12 +68,14 @@ Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, co
   }
   settle_sides(hints_px);
   tracks_.remember(found_, hints_px, *model_.landmarks, time_ns);
+  steady_hints_.remember(found_, hints_px, time_ns);
   times_.all_ns = now_ns() - begin_ns;
   return std::span<const FoundHand>(found_);
 }
 
 void HandFinder::forget() {
   tracks_.clear();
+  steady_hints_.forget();
   since_search_ = kLongAgo;
 }
 
@@ -102,11 +104,13 @@ Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& 
 Result<LandmarkEstimate> HandFinder::estimate(renderer::GreyView image,
                                               const HandCandidate& candidate, Region& region) {
   LandmarkEstimate last;
+  auto hint_px = candidate.hint_px;
+  if (hint_px) hint_px = steady_hints_.steadied(candidate.side, *hint_px);
   const int passes = candidate.is_followed ? 1 : model_.landmarks->traits().passes_at_first;
   for (int i = 0; i < passes; ++i) {
     region = i == 0 ? candidate.region : model_.landmarks->region_around(last.points_px);
     if (!(region.size_px >= kLeastRegion_px) || !touches(region, image)) return LandmarkEstimate{};
-    auto next = run_model(image, region, candidate.side, candidate.hint_px);
+    auto next = run_model(image, region, candidate.side, hint_px);
     if (!next) return next;
     last = *next;
   }

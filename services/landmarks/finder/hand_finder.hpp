@@ -6,6 +6,7 @@
 
 #include "services/landmarks/finder/bright_hands.hpp"
 #include "services/landmarks/finder/hand_tracks.hpp"
+#include "services/landmarks/finder/steady_hints.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 
 namespace handcast::landmarks {
@@ -83,6 +84,7 @@ class HandFinder {
   bool has_tracker_;
   BrightHands bright_hands_;
   HandTracks tracks_;
+  SteadyHints steady_hints_;
   std::vector<FoundHand> found_;
   int since_search_ = kLongAgo, since_side_ = 0;  ///< images
   std::int64_t image_ns_ = 0;

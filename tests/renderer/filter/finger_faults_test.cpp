@@ -65,11 +65,13 @@ TEST(FingerSteps, AFingerThatComesBackToTheHandBeginsAnewAtOnce) {
   EXPECT_EQ(steps.judge(0, seen_at(hand()), wrong, hand(), wrong)[kIndex], Verdict::anew);
 }
 
-TEST(FingerSteps, AStepOfTheTrackerIsUsual) {
+TEST(FingerSteps, AfterAStepOfTheTrackerAFingerBeginsAnewAtOnce) {
   FingerSteps steps;
   const auto by_tracker = moved(hand(), kIndex, 20);
-  EXPECT_EQ(steps.judge(0, seen_at(hand()), by_tracker, by_tracker, hand())[kIndex],
-            Verdict::usual);
+  // Also of an unsure finger: a sigma is how far the landmarks are off, not how much they move.
+  const auto verdicts = steps.judge(0, seen_at(hand(), 7), by_tracker, by_tracker, hand());
+  EXPECT_EQ(verdicts[kIndex], Verdict::anew);
+  EXPECT_EQ(verdicts[kMiddle], Verdict::usual);
 }
 
 TEST(FingerSteps, AnUnsureFingerMayStep) {
