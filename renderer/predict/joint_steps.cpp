@@ -2,6 +2,7 @@
 #include "renderer/predict/joint_steps.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "renderer/base/noise.hpp"
 #include "renderer/predict/joint_math.hpp"
@@ -9,28 +10,39 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kPalm = 0;  ///< joint
-/// A difference of the two velocities that is noise.
-constexpr float kNoise_m_s = 0.1f;
+/// The joints that fingers do not move: palm, wrist, and both ends of the metacarpals.
+constexpr std::array kPalmJoints{0, 1, 6, 7, 11, 12, 16, 17, 21, 22};
+/// Differences of the two velocities that are noise.
+constexpr float kHandNoise_m_s = 0.02f;   ///< of the palm, the mean of its joints
+constexpr float kJointNoise_m_s = 0.06f;  ///< of one joint relative to it, or at kTurnLever_m
 /// From the first difference of a finger's two velocities on it is doubted, from the second on not
 /// believed: with samples 9 and 30 ms old, accelerations of 60 and 130 m/s^2; a tapping finger has
 /// 20.
 constexpr float kDoubted_m_s = 0.7f, kImpossible_m_s = 1.5f;
 
-/// The motion of one joint by the velocity since an earlier sample.
-struct Velocity {
-  glm::vec3 m_s{0};
-  glm::quat turned{1, 0, 0, 0};
+/// The velocities of one joint.
+struct Motion {
+  glm::vec3 smooth_m_s{0};            ///< since the older sample
+  glm::vec3 change_m_s{0};            ///< from it to the one since the recent sample
+  glm::quat smooth_turn{1, 0, 0, 0};  ///< the orientation ahead by each of them
+  glm::quat recent_turn{1, 0, 0, 0};
 };
 
-Velocity velocity(const msg::HandPose& newest, const PoseBefore& before, int joint, float ahead_s) {
-  const msg::Joint &now = newest.joints[joint], &then = before.pose.joints[joint];
-  return {(position(now) - position(then)) / before.since_s,
-          turned_on(orientation(then), orientation(now), ahead_s / before.since_s)};
+Motion motion_of(int joint, const msg::HandPose& newest, const PoseBefore& recent,
+                 const PoseBefore& older, float ahead_s) {
+  const msg::Joint& now = newest.joints[joint];
+  const auto m_s = [&](const PoseBefore& before) {
+    return (position(now) - position(before.pose.joints[joint])) / before.since_s;
+  };
+  const auto turn = [&](const PoseBefore& before) {
+    return turned_on(orientation(before.pose.joints[joint]), orientation(now),
+                     ahead_s / before.since_s);
+  };
+  return {m_s(older), m_s(recent) - m_s(older), turn(older), turn(recent)};
 }
 
-float share_of_recent(float difference_m_s) {
-  return share_beyond_noise(difference_m_s * difference_m_s, kNoise_m_s);
+float share_of(glm::vec3 change_m_s, float noise_m_s) {
+  return share_beyond_noise(glm::dot(change_m_s, change_m_s), noise_m_s);
 }
 
 }  // namespace
@@ -38,23 +50,31 @@ float share_of_recent(float difference_m_s) {
 std::array<JointStep, msg::kJoints> steps_ahead(const msg::HandPose& newest,
                                                 const PoseBefore& recent, const PoseBefore& older,
                                                 float ahead_s) {
-  std::array<JointStep, msg::kJoints> steps;
+  std::array<Motion, msg::kJoints> motions;
+  for (int j = 0; j < msg::kJoints; ++j) motions[j] = motion_of(j, newest, recent, older, ahead_s);
   glm::vec3 palm_m_s{0}, palm_change_m_s{0};
+  for (const int j : kPalmJoints) {
+    palm_m_s += motions[j].smooth_m_s / static_cast<float>(kPalmJoints.size());
+    palm_change_m_s += motions[j].change_m_s / static_cast<float>(kPalmJoints.size());
+  }
+  const glm::vec3 believed_change_m_s = palm_change_m_s * share_of(palm_change_m_s, kHandNoise_m_s);
+  std::array<JointStep, msg::kJoints> steps;
   for (int j = 0; j < msg::kJoints; ++j) {
-    const Velocity fresh = velocity(newest, recent, j, ahead_s),
-                   smooth = velocity(newest, older, j, ahead_s);
-    const glm::vec3 change_m_s = fresh.m_s - smooth.m_s;
-    const float turn_m_s =
-        kTurnLever_m * angle_between(fresh.turned, smooth.turned) / std::max(ahead_s, 1e-6f);
-    const glm::vec3 m_s = glm::mix(smooth.m_s, fresh.m_s, share_of_recent(glm::length(change_m_s)));
-    if (j == kPalm) palm_m_s = m_s, palm_change_m_s = change_m_s;
-    const float beyond_palm_m_s = std::max(glm::distance(change_m_s, palm_change_m_s), turn_m_s);
+    const Motion& motion = motions[j];
+    const glm::vec3 own_m_s = motion.change_m_s - palm_change_m_s;
+    const glm::vec3 turn_m_s(kTurnLever_m * angle_between(motion.smooth_turn, motion.recent_turn) /
+                                 std::max(ahead_s, 1e-6f),
+                             0, 0);
+    const glm::vec3 m_s =
+        motion.smooth_m_s + believed_change_m_s + own_m_s * share_of(own_m_s, kJointNoise_m_s);
     JointStep& step = steps[j];
-    step.belief =
-        j == kPalm ? 1 : 1 - glm::smoothstep(kDoubted_m_s, kImpossible_m_s, beyond_palm_m_s);
-    step.moved_m = ahead_s * glm::mix(palm_m_s, m_s, step.belief);
-    step.turned = blend(orientation(newest.joints[j]),
-                        blend(smooth.turned, fresh.turned, share_of_recent(turn_m_s)), step.belief);
+    step.belief = 1 - glm::smoothstep(kDoubted_m_s, kImpossible_m_s,
+                                      std::max(glm::length(own_m_s), turn_m_s.x));
+    step.moved_m = ahead_s * glm::mix(palm_m_s + believed_change_m_s, m_s, step.belief);
+    step.turned =
+        blend(orientation(newest.joints[j]),
+              blend(motion.smooth_turn, motion.recent_turn, share_of(turn_m_s, kJointNoise_m_s)),
+              step.belief);
   }
   return steps;
 }
