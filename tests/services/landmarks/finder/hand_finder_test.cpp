@@ -8,7 +8,8 @@
 namespace handcast::landmarks {
 namespace {
 
-/// Records its arguments and always estimates a hand, 10 px right of the region's centre.
+/// Records its arguments and always estimates a hand: `found_px`, or, if it is empty, all points 10
+/// px right of the region's centre.
 class RecordingModel final : public LandmarkModel {
  public:
   struct Call {
@@ -16,7 +17,8 @@ class RecordingModel final : public LandmarkModel {
     msg::Side side;
     std::optional<Points> tracker_px;
   };
-  explicit RecordingModel(std::vector<Call>& calls) : calls_(calls) {}
+  explicit RecordingModel(std::vector<Call>& calls, std::optional<Points> found_px = {})
+      : calls_(calls), found_px_(found_px) {}
   Traits traits() const override { return {.passes_at_first = 2, .reads_tracker = true}; }
   Region region_around(const Points& points_px) const override {
     return {centre_of(points_px), 100, 0};
@@ -27,11 +29,13 @@ class RecordingModel final : public LandmarkModel {
     calls_.push_back({region, side, tracker_px});
     LandmarkEstimate estimate{.presence = 1};
     estimate.points_px.fill(region.centre_px + glm::vec2(10, 0));
+    if (found_px_) estimate.points_px = *found_px_;
     return estimate;
   }
 
  private:
   std::vector<Call>& calls_;
+  std::optional<Points> found_px_;
 };
 
 TEST(HandFinder, GivesTheModelEachHandsSideAndItsJointsOfTheTracker) {
@@ -53,6 +57,25 @@ TEST(HandFinder, GivesTheModelEachHandsSideAndItsJointsOfTheTracker) {
   ASSERT_EQ(calls.size(), 2u) << "once a hand that is followed";
   for (const auto& call : calls)
     EXPECT_EQ(call.tracker_px.has_value(), call.side == msg::Side::right);
+}
+
+TEST(HandFinder, AJointThatTremblesOverARestingHandIsSteadyForTheModel) {
+  Points hand_px;
+  for (std::size_t i = 0; i < hand_px.size(); ++i)
+    hand_px[i] = {300 + 10 * static_cast<float>(i % 5), 300 - 10 * static_cast<float>(i)};
+  std::vector<RecordingModel::Call> calls;
+  HandFinder finder({std::make_unique<RecordingModel>(calls, hand_px), std::nullopt}, 1);
+  const test::Grey image(720, 540, 0);
+  Points trembled_px = hand_px;
+  trembled_px[8].x += 8;
+  for (int i = 0; i <= 200; ++i)
+    ASSERT_TRUE(
+        finder.find(image.view(), {i < 200 ? hand_px : trembled_px, std::nullopt}, i * 5'000'000));
+  calls.clear();
+  ASSERT_TRUE(finder.find(image.view(), {trembled_px, std::nullopt}, 201 * 5'000'000));
+  ASSERT_EQ(calls.size(), 1u);
+  ASSERT_TRUE(calls[0].tracker_px);
+  EXPECT_NEAR((*calls[0].tracker_px)[8].x, hand_px[8].x, 0.2f);
 }
 
 }  // namespace
