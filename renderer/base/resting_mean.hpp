@@ -14,7 +14,12 @@ class RestingMean {
   /// Adds the vector `value` that was found when its point was at `at_px`, and returns the mean. A
   /// time before that of the last call counts as the same time.
   glm::vec2 add(std::int64_t time_ns, glm::vec2 value, glm::vec2 at_px) {
-    if (!known_) *this = RestingMean(time_ns, value, at_px);
+    if (!known_) {
+      known_ = true;
+      since_ns_ = newest_ns_ = time_ns;
+      mean_ = value;
+      at_px_ = at_px;
+    }
     const float step_s = seconds(time_ns - newest_ns_);
     newest_ns_ = std::max(newest_ns_, time_ns);
     const glm::vec2 moved = (at_px - at_px_) / kMoved_px;
@@ -26,16 +31,13 @@ class RestingMean {
     return mean_;
   }
   /// Drops all vectors.
-  void forget() { known_ = false; }
-  RestingMean() = default;
+  void forget() { *this = RestingMean(); }
 
  private:
   static constexpr float kResting_s = 2;  ///< window of a point at rest
   /// A point this far from its own mean has half the window.
   static constexpr float kMoved_px = 1;
 
-  RestingMean(std::int64_t time_ns, glm::vec2 value, glm::vec2 at_px)
-      : known_(true), since_ns_(time_ns), newest_ns_(time_ns), mean_(value), at_px_(at_px) {}
   static float seconds(std::int64_t ns) {
     return 1e-9f * static_cast<float>(std::max<std::int64_t>(ns, 0));
   }

@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/predict/joint_math.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -20,11 +21,6 @@ constexpr float kFastest_m_s = 5;       ///< largest speed of a hand whose veloc
 constexpr float kResting_m_s = 20e-3f;
 constexpr float kLearning = 0.1f;  ///< share of a new sample in the means
 constexpr int kFewestJoints = 4;   ///< the joints of one finger
-
-glm::vec3 position(const msg::HandPose& pose, int joint) {
-  const auto& [x, y, z] = pose.joints[joint].position_m;
-  return {x, y, z};
-}
 
 float seconds_between(const Continuity::Sample& a, const Continuity::Sample& b) {
   return static_cast<float>(ns_to_seconds(b.origin_ns - a.origin_ns));
@@ -54,10 +50,10 @@ bool Continuity::broken(const Sample* before, const Sample& last, const Sample& 
   int beyond = 0;
   float sum_m2 = 0;
   for (int j = 0; j < msg::kJoints; ++j) {
-    const glm::vec3 here = position(last.pose, j);
+    const glm::vec3 here = position(last.pose.joints[j]);
     const glm::vec3 moved =
-        before ? (here - position(before->pose, j)) * (step_s / before_s) : glm::vec3(0);
-    const glm::vec3 missed = position(next.pose, j) - here - moved;
+        before ? (here - position(before->pose.joints[j])) * (step_s / before_s) : glm::vec3(0);
+    const glm::vec3 missed = position(next.pose.joints[j]) - here - moved;
     sum_m2 += glm::dot(missed, missed);
     beyond += glm::length(missed) > limit_m;
   }
@@ -73,7 +69,8 @@ bool Continuity::frozen(const Sample* before, const Sample& last, const msg::Han
     if (next.joints[j].position_m != last.pose.joints[j].position_m) return false;
     if (next.joints[j].orientation_xyzw != last.pose.joints[j].orientation_xyzw) return false;
     if (before)
-      moved_m = std::max(moved_m, glm::distance(position(last.pose, j), position(before->pose, j)));
+      moved_m = std::max(
+          moved_m, glm::distance(position(last.pose.joints[j]), position(before->pose.joints[j])));
   }
   return before && moved_m > kResting_m_s * seconds_between(*before, last);
 }

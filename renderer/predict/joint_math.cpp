@@ -5,8 +5,11 @@
 #include <cmath>
 
 namespace handcast::renderer {
+namespace {
 
 constexpr float kMostTurn_rad = 1.0f;
+
+}  // namespace
 
 glm::vec3 position(const msg::Joint& joint) {
   return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};

@@ -11,7 +11,9 @@ namespace handcast::renderer {
 /// A rotation counts as the movement of skin at this distance from the joint.
 inline constexpr float kTurnLever_m = 0.05f;
 
+/// The position in m.
 glm::vec3 position(const msg::Joint& joint);
+/// The orientation, a unit quaternion.
 glm::quat orientation(const msg::Joint& joint);
 /// Sets the position and the orientation.
 void place(msg::Joint& joint, const glm::vec3& at, const glm::quat& turned);

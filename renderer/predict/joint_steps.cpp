@@ -15,9 +15,8 @@ constexpr std::array kPalmJoints{0, 1, 6, 7, 11, 12, 16, 17, 21, 22};
 /// Differences of the two velocities that are noise.
 constexpr float kHandNoise_m_s = 0.02f;   ///< of the palm, the mean of its joints
 constexpr float kJointNoise_m_s = 0.06f;  ///< of one joint relative to it, or at kTurnLever_m
-/// From the first difference of a finger's two velocities on it is doubted, from the second on not
-/// believed: with samples 9 and 30 ms old, accelerations of 60 and 130 m/s^2; a tapping finger has
-/// 20.
+/// A finger whose two velocities differ by more than the first is doubted, by more than the second
+/// not believed: with samples that are 9 and 36 ms old, accelerations of 50 and 110 m/s^2.
 constexpr float kDoubted_m_s = 0.7f, kImpossible_m_s = 1.5f;
 
 /// The velocities of one joint.
@@ -41,10 +40,6 @@ Motion motion_of(int joint, const msg::HandPose& newest, const PoseBefore& recen
   return {m_s(older), m_s(recent) - m_s(older), turn(older), turn(recent)};
 }
 
-float share_of(glm::vec3 change_m_s, float noise_m_s) {
-  return share_beyond_noise(glm::dot(change_m_s, change_m_s), noise_m_s);
-}
-
 }  // namespace
 
 std::array<JointStep, msg::kJoints> steps_ahead(const msg::HandPose& newest,
@@ -57,24 +52,25 @@ std::array<JointStep, msg::kJoints> steps_ahead(const msg::HandPose& newest,
     palm_m_s += motions[j].smooth_m_s / static_cast<float>(kPalmJoints.size());
     palm_change_m_s += motions[j].change_m_s / static_cast<float>(kPalmJoints.size());
   }
-  const glm::vec3 believed_change_m_s = palm_change_m_s * share_of(palm_change_m_s, kHandNoise_m_s);
+  const glm::vec3 believed_change_m_s =
+      palm_change_m_s *
+      share_beyond_noise(glm::dot(palm_change_m_s, palm_change_m_s), kHandNoise_m_s);
   std::array<JointStep, msg::kJoints> steps;
   for (int j = 0; j < msg::kJoints; ++j) {
     const Motion& motion = motions[j];
     const glm::vec3 own_m_s = motion.change_m_s - palm_change_m_s;
-    const glm::vec3 turn_m_s(kTurnLever_m * angle_between(motion.smooth_turn, motion.recent_turn) /
-                                 std::max(ahead_s, 1e-6f),
-                             0, 0);
-    const glm::vec3 m_s =
-        motion.smooth_m_s + believed_change_m_s + own_m_s * share_of(own_m_s, kJointNoise_m_s);
+    const float turn_m_s = kTurnLever_m * angle_between(motion.smooth_turn, motion.recent_turn) /
+                           std::max(ahead_s, 1e-6f);
+    const glm::vec3 m_s = motion.smooth_m_s + believed_change_m_s +
+                          own_m_s * share_beyond_noise(glm::dot(own_m_s, own_m_s), kJointNoise_m_s);
     JointStep& step = steps[j];
     step.belief = 1 - glm::smoothstep(kDoubted_m_s, kImpossible_m_s,
-                                      std::max(glm::length(own_m_s), turn_m_s.x));
+                                      std::max(glm::length(own_m_s), turn_m_s));
     step.moved_m = ahead_s * glm::mix(palm_m_s + believed_change_m_s, m_s, step.belief);
-    step.turned =
-        blend(orientation(newest.joints[j]),
-              blend(motion.smooth_turn, motion.recent_turn, share_of(turn_m_s, kJointNoise_m_s)),
-              step.belief);
+    step.turned = blend(orientation(newest.joints[j]),
+                        blend(motion.smooth_turn, motion.recent_turn,
+                              share_beyond_noise(turn_m_s * turn_m_s, kJointNoise_m_s)),
+                        step.belief);
   }
   return steps;
 }

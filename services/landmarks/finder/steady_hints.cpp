@@ -6,7 +6,7 @@
 namespace handcast::landmarks {
 namespace {
 
-/// A hint is moved by at most this many palm lengths: a tracker that moves farther away may be
+/// A joint that is farther off than this many palm lengths is left where it is: the tracker may be
 /// right, and what was found may not be a hand.
 constexpr float kMost = 0.15f;
 

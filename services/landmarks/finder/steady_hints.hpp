@@ -14,8 +14,8 @@ namespace handcast::landmarks {
 /// One thread.
 class SteadyHints {
  public:
-  /// The hint of a hand in the next image, less the part of its distance from the landmarks that
-  /// they did not have on the average when the last image was examined.
+  /// The hint of a hand in the next image, moved so that each joint is as far from its landmark as
+  /// it was on the average, judged by the last image.
   Points steadied(msg::Side side, Points hint_px) const;
   /// Learns from the hands that were found in an image. `hints_px`: those of the tracker.
   void remember(std::span<const FoundHand> found, const Hints& hints_px, std::int64_t time_ns);

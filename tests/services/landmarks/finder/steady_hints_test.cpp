@@ -33,7 +33,7 @@ void remember(SteadyHints& hints, int image, const Points& found, const Points& 
   hints.remember(std::vector{hand}, {hint, std::nullopt}, image * kImage_ns);
 }
 
-/// The tracker's tip was 6 px off for a second, and then 10 px more.
+/// The tracker's tip was 6 px off for a second, and then `step_px` more.
 SteadyHints after_a_step(float step_px) {
   SteadyHints hints;
   int image = 0;
