@@ -20,10 +20,10 @@ cmake_path(SET HANDCAST_INSTALL_SHAREDIR NORMALIZE "${CMAKE_INSTALL_BINDIR}/../s
 set(HANDCAST_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
 # A compiler cache is faster for repeated builds, precompiled headers for a single build. They do not
-# work together.
+# work together. Clones in all folders share the cache.
 find_program(CCACHE ccache)
 if(CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
   option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" OFF)
 else()
   option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" ON)
