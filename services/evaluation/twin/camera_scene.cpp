@@ -8,6 +8,7 @@
 #include "renderer/base/clones.hpp"
 #include "services/evaluation/twin/background.hpp"
 #include "services/evaluation/twin/bystander.hpp"
+#include "services/evaluation/twin/grey_surface.hpp"
 #include "services/evaluation/twin/lamp.hpp"
 #include "services/evaluation/twin/skin_pattern.hpp"
 #include "services/evaluation/twin/table_mirror.hpp"
@@ -34,8 +35,8 @@ CameraScene::CameraScene(const config::TwinImage& settings, int seed,
       background_(make_background(settings, camera_, Random(seed, Stream::image_clutter))),
       sensor_(settings, seed, camera_.width_px),
       table_spread_(settings.table > 0 ? kTableBlur_px : 0),
-      inverse_depth_(camera_.width_px, camera_.height_px),
-      instant_(camera_.width_px, camera_.height_px),
+      inverse_depth_(camera_.width_px + kSpare_px, camera_.height_px),
+      instant_(camera_.width_px + kSpare_px, camera_.height_px),
       sum_(camera_.width_px, camera_.height_px) {
   if (settings_.face) face_ = make_face(camera_);
   if (settings_.object) object_ = make_held_object();
@@ -170,19 +171,9 @@ void CameraScene::draw_shots(std::size_t first, std::size_t last, float front,
                              const renderer::Rect& region) {
   for (int y = region.y0; y < region.y1; ++y)
     std::fill_n(inverse_depth_.row(y) + region.x0, region.width(), 0.0f);
-  const auto depth = inverse_depth_.view();
-  const auto out = instant_.view();
-  for (std::size_t s = first; s < last; ++s) {
-    const Shot& shot = shots_[s];
-    for (const auto& triangle : *shot.triangles) {
-      const float ga = shot.grey[triangle[0]], gb = shot.grey[triangle[1]],
-                  gc = shot.grey[triangle[2]];
-      draw_triangle(shot.screen, triangle, front, region, depth,
-                    [&](int x, int y, float a, float b, float c) {
-                      out.at(x, y) = a * ga + b * gb + c * gc;
-                    });
-    }
-  }
+  for (std::size_t s = first; s < last; ++s)
+    draw_grey(shots_[s].screen, shots_[s].grey, *shots_[s].triangles, front, region,
+              inverse_depth_.view(), instant_.view());
 }
 
 /// Draws the hands as the glossy table shows them into mirror_image_; returns their bounds.

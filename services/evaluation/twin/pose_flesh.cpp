@@ -4,45 +4,54 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
+#include "renderer/base/clones.hpp"
 #include "renderer/skin/skinning.hpp"
 #include "services/evaluation/twin/true_hand.hpp"
 
 namespace handcast::twin {
 namespace {
 
-/// A rigid motion as a unit dual quaternion.
-struct DualQuaternion {
-  glm::quat real, dual;
-};
+/// A rigid motion as a unit dual quaternion: w, x, y, z of the real part and of the dual one.
+using DualQuaternion = std::array<float, 8>;
+
+glm::quat real_of(const DualQuaternion& q) { return {q[0], q[1], q[2], q[3]}; }
+glm::quat dual_of(const DualQuaternion& q) { return {q[4], q[5], q[6], q[7]}; }
 
 DualQuaternion motion_of(const glm::mat4& moved, const glm::mat4& rest) {
   const glm::quat turn = glm::normalize(glm::quat_cast(glm::mat3(moved)) *
                                         glm::conjugate(glm::quat_cast(glm::mat3(rest))));
   const glm::vec3 shift = glm::vec3(moved[3]) - turn * glm::vec3(rest[3]);
-  return {turn, glm::quat(0, shift.x, shift.y, shift.z) * turn * 0.5f};
+  const glm::quat dual = glm::quat(0, shift.x, shift.y, shift.z) * turn * 0.5f;
+  return {turn.w, turn.x, turn.y, turn.z, dual.w, dual.x, dual.y, dual.z};
 }
 
 /// Dual-quaternion blending (Kavan et al. 2007, "Skinning with Dual Quaternions", section 4).
+HANDCAST_CLONES
 void pose_by_dual_quaternions(const renderer::HandMesh& mesh, const JointFrames& joints,
                               std::span<glm::vec3> positions, std::span<glm::vec3> normals) {
   std::array<DualQuaternion, msg::kJoints> motion;
   for (int j = 0; j < msg::kJoints; ++j) motion[j] = motion_of(joints[j], mesh.rest[j]);
+  // -1: the quaternions of two joints lie on opposite hemispheres.
+  std::array<std::array<float, msg::kJoints>, msg::kJoints> sign;
+  for (int i = 0; i < msg::kJoints; ++i)
+    for (int j = 0; j < msg::kJoints; ++j)
+      sign[i][j] = glm::dot(real_of(motion[i]), real_of(motion[j])) < 0 ? -1.0f : 1.0f;
+
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const auto strongest = static_cast<std::size_t>(std::ranges::max_element(mesh.weights[v]) -
-                                                    mesh.weights[v].begin());
-    const glm::quat& pivot = motion[mesh.joints[v][strongest]].real;
-    glm::quat real(0, 0, 0, 0), dual(0, 0, 0, 0);
-    for (std::size_t k = 0; k < 4; ++k) {
-      const DualQuaternion& each = motion[mesh.joints[v][k]];
-      const float weight =
-          glm::dot(each.real, pivot) < 0 ? -mesh.weights[v][k] : mesh.weights[v][k];
-      real += weight * each.real;
-      dual += weight * each.dual;
+    const auto& weights = mesh.weights[v];
+    const auto strongest =
+        static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
+    const auto& signs = sign[mesh.joints[v][strongest]];
+    DualQuaternion sum{};
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const auto joint = mesh.joints[v][k];
+      const float weight = signs[joint] * weights[k];
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * motion[joint][i];
     }
-    const float length = glm::length(real);
-    real /= length;
-    dual /= length;
-    const glm::quat shift = dual * glm::conjugate(real) * 2.0f;
+    const float scale = 1 / glm::length(real_of(sum));
+    for (float& part : sum) part *= scale;
+    const glm::quat real = real_of(sum);
+    const glm::quat shift = dual_of(sum) * glm::conjugate(real) * 2.0f;
     positions[v] = real * mesh.positions[v] + glm::vec3(shift.x, shift.y, shift.z);
     if (!normals.empty()) normals[v] = real * mesh.normals[v];
   }

@@ -60,6 +60,14 @@ inline glm::vec3 barycentrics(const ScreenVertices& v, const std::array<std::uin
   return {1 - b - c, b, c};
 }
 
+/// The least barycentric coordinate of a pixel in a triangle: it leaves no gap between adjacent
+/// ones.
+inline constexpr float kOutside = -1e-5f;
+/// Twice the area up to which a triangle is not drawn, square pixels.
+inline constexpr float kFlat_px2 = 1e-9f;
+/// By how much a triangle's pixels may lie outside its corners, px.
+inline constexpr float kBeyond_px = 1e-3f;
+
 /// One barycentric coordinate along a row of pixels: `at0 + step x`.
 struct EdgeRow {
   float at0;   ///< value at x = 0
@@ -67,7 +75,6 @@ struct EdgeRow {
 
   /// Reduces [first, last] to the pixels at which the coordinate is not negative.
   void cut(float& first, float& last) const {
-    constexpr float kOutside = -1e-5f;  // leaves no gap between adjacent triangles
     const float margin = at0 - kOutside;
     if (step > 0) {
       first = std::max(first, -margin / step);
@@ -100,12 +107,13 @@ void draw_triangle(const ScreenVertices& v, const std::array<std::uint16_t, 3>& 
   const float ax = v.x[i], ay = v.y[i];
   const float bx = v.x[j] - ax, by = v.y[j] - ay, cx = v.x[k] - ax, cy = v.y[k] - ay;
   const float area = bx * cy - by * cx;
-  if (area * front <= 1e-9f) return;
+  if (area * front <= kFlat_px2) return;
   const int y0 = std::max(clip.y0, static_cast<int>(std::ceil(ay + std::min({0.0f, by, cy}))));
   const int y1 = std::min(clip.y1 - 1, static_cast<int>(std::floor(ay + std::max({0.0f, by, cy}))));
-  const float left = std::max(static_cast<float>(clip.x0), ax + std::min({0.0f, bx, cx}) - 1e-3f);
+  const float left =
+      std::max(static_cast<float>(clip.x0), ax + std::min({0.0f, bx, cx}) - kBeyond_px);
   const float right =
-      std::min(static_cast<float>(clip.x1 - 1), ax + std::max({0.0f, bx, cx}) + 1e-3f);
+      std::min(static_cast<float>(clip.x1 - 1), ax + std::max({0.0f, bx, cx}) + kBeyond_px);
   const float scale = 1 / area;
   const float b_step = cy * scale, c_step = -by * scale;
   const float depth_a = v.inverse_depth[i], depth_b = v.inverse_depth[j] - depth_a,
