@@ -36,6 +36,11 @@ void print_overview() {
       "  handcast up rig.toml runs it; in a second terminal, `handcast preview` shows it\n");
 }
 
+const VerbEntry* find_verb(const std::string& name) {
+  const auto found = std::ranges::find(verbs(), name, &VerbEntry::name);
+  return found == verbs().end() ? nullptr : &*found;
+}
+
 /// Executes handcast-VERB in place of this process. Returns only if there is no such program.
 int become_program(const std::string& verb, const Arguments& arguments) {
   const bool plain = verb.find('/') == std::string::npos;
@@ -46,15 +51,15 @@ int become_program(const std::string& verb, const Arguments& arguments) {
     pointers.push_back(nullptr);
     execv(program.c_str(), pointers.data());
   }
+  if (find_verb(verb))
+    return complain(
+        kExitConfig,
+        fmt::format("the program of this verb, {}, is missing; `scripts/build` builds all",
+                    program));
   const auto names = verb_names();
   const auto nearest = suggest(verb, {names.begin(), names.end()});
   return complain(kExitUsage, fmt::format("there is no verb '{}'{}; there are: {}", verb, nearest,
                                           join(names, ", ")));
-}
-
-const VerbEntry* find_verb(const std::string& name) {
-  const auto found = std::ranges::find(verbs(), name, &VerbEntry::name);
-  return found == verbs().end() ? nullptr : &*found;
 }
 
 int help(const Arguments& arguments) {

@@ -41,6 +41,16 @@ std::string print_pauses(const nlohmann::json& answer) {
   return parts.empty() ? "" : "; paused for: " + join(parts, ", ");
 }
 
+/// The back ends that `handcast swap` has set, in an answer: "; camera keeps 'file' (`handcast swap
+/// camera twin` returns to the rig file's)". "" if there are none.
+std::string print_swaps(const nlohmann::json& answer) {
+  std::string text;
+  for (const auto& [name, swap] : answer.value("swapped", nlohmann::json::object()).items())
+    text += fmt::format("; {0} keeps '{1}' (`handcast swap {0} {2}` returns to the rig file's)",
+                        name, swap.value("backend", ""), swap.value("in_file", ""));
+  return text;
+}
+
 /// The answer to a reload as text: "reloaded: camera, landmarks restarted; pose, projector
 /// untouched; paused for: camera 2 ms, landmarks 8 ms".
 std::string print_reload(const nlohmann::json& answer) {
@@ -50,9 +60,10 @@ std::string print_reload(const nlohmann::json& answer) {
       parts.push_back(join(names, ", ") + " " + what);
   const bool acted = !parts.empty() && (parts.size() > 1 ||
                                         answer.value("untouched", nlohmann::json::array()).empty());
-  return acted || answer.value("changed", false)
-             ? "reloaded: " + join(parts, "; ") + print_pauses(answer)
-             : "nothing changed";
+  const auto done = acted || answer.value("changed", false)
+                        ? "reloaded: " + join(parts, "; ") + print_pauses(answer)
+                        : "nothing changed";
+  return done + print_swaps(answer);
 }
 
 /// The present name of the back end. Reports the use of an old name.

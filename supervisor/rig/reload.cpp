@@ -11,6 +11,7 @@
 #include "ipc/control/control_message.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/spec/catalogue.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
@@ -174,13 +175,16 @@ nlohmann::json Reload::answer() const {
   answer["started"] = plan_.started;
   answer["stopped"] = plan_.stopped;
   answer["untouched"] = nlohmann::json::array();
-  answer["pauses_ms"] = nlohmann::json::object();
+  answer["pauses_ms"] = answer["swapped"] = nlohmann::json::object();
   for (const auto& service : rig_->services.all()) {
     const auto& name = service->spec().name;
     const bool is_restarted = contains(plan_.restarted, name);
     if (!is_restarted && !contains(plan_.started, name)) answer["untouched"].push_back(name);
     const auto pause_ms = is_restarted ? service->pause_ms() : std::nullopt;
     if (pause_ms) answer["pauses_ms"][name] = *pause_ms;
+    const auto& backend = service->spec().backend;
+    if (const auto in_file = backend_of(name, rig_->config); backend != in_file)
+      answer["swapped"][name] = {{"backend", backend}, {"in_file", in_file}};
   }
   return answer;
 }

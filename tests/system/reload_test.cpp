@@ -184,7 +184,10 @@ TEST_F(Reload, ASwappedBackEndStaysUntilTheFileNamesAnother) {
   write_rig_with(kCalm, kNoObserver);
   const auto rig = up_with_the_file();
   ASSERT_EQ(handcast({"swap", "projector", "file"}).exit_code, 0);
-  EXPECT_EQ(handcast({"reload"}).output, "nothing changed\n");
+  EXPECT_EQ(
+      handcast({"reload"}).output,
+      "nothing changed; projector keeps 'file' (`handcast swap projector twin` returns to the "
+      "rig file's)\n");
   write_rig_with("rate_hz = 50", kNoObserver);
   const auto before = processes();
   EXPECT_EQ(handcast({"reload"}).exit_code, 0);

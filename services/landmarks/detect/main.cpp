@@ -67,7 +67,7 @@ static int run_verb(int argc, char** argv) {
   app.add_option_function<std::string>(
          "--backend", [&](const std::string& name) { detect::set_backend(options, name); },
          detect::backend_help())
-      ->default_str(options.backend);
+      ->default_str("mediapipe, or handcast without its files");
   app.add_option_function<std::string>(
          "--executor",
          [&](const std::string& word) {

@@ -14,7 +14,7 @@ struct Options {
   std::vector<std::filesystem::path> images;  ///< the pictures
   std::vector<std::filesystem::path> joints;  ///< --joints: one per image, or none
   msg::Side joints_side = msg::Side::left;    ///< --side: of the hand in `joints`
-  std::string backend = "mediapipe";          ///< the landmark model; the default needs no tracker
+  std::string backend;  ///< the landmark model; empty: MediaPipe, or ours if its files are missing
   config::Executor executor = config::Executor::onednn;  ///< the library that runs the networks
   std::string models;                 ///< folder of the networks' files; empty: see models_folder()
   std::filesystem::path output = "";  ///< --out: folder for drawings; empty: no drawings

@@ -85,6 +85,21 @@ handcast::Result<Result> detect_in(landmarks::HandFinder& finder, const Options&
   return result;
 }
 
+/// Opens the landmark model. Without a choice it is MediaPipe, whose palm network finds hands that
+/// no tracker has seen, or, if its files are not where they are looked for, our own.
+handcast::Result<landmarks::OpenedModel> open_model(const Options& options) {
+  const auto folder = landmarks::models_folder(options.models);
+  if (!folder) return tl::make_unexpected(folder.error());
+  const landmarks::ModelOptions settings{.executor = options.executor, .folder = *folder};
+  if (!options.backend.empty()) return landmarks::open_landmark_model(options.backend, settings);
+  auto mediapipe = landmarks::open_landmark_model("mediapipe", settings);
+  if (mediapipe || !options.models.empty()) return mediapipe;
+  if (!options.quiet)
+    fmt::print(stderr, "handcast detect: with handcast's own network, because {}\n",
+               mediapipe.error().what);
+  return landmarks::open_landmark_model("handcast", settings);
+}
+
 }  // namespace
 
 handcast::Result<std::string> run(const Options& options) {
@@ -94,13 +109,7 @@ handcast::Result<std::string> run(const Options& options) {
         fmt::format(
             "{} pictures, but {} files of joints; give one --joints per picture, in the same order",
             options.images.size(), options.joints.size()));
-  const auto folder = landmarks::models_folder(options.models);
-  if (!folder) return tl::make_unexpected(folder.error());
-  auto model = landmarks::open_landmark_model(options.backend,
-                                              {.executor = options.executor, .folder = *folder});
-  if (!model && options.backend == "mediapipe")
-    return fail(model.error().code,
-                model.error().what + "; `--backend handcast` needs no files of others");
+  auto model = open_model(options);
   if (!model) return tl::make_unexpected(model.error());
   landmarks::HandFinder finder(std::move(*model), options.hands);
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;

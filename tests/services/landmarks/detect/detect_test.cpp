@@ -150,6 +150,23 @@ TEST_F(Detect, HandcastsModelNeedsNoFileFromOutsideIfThereIsATracker) {
   EXPECT_THAT(*text, HasSubstr("6_camera.png: 1 hand, "));
 }
 
+TEST_F(Detect, WithoutAChoiceAndMediapipesFilesItTakesHandcastsModelAndSaysSo) {
+  const auto before = std::getenv("HANDCAST_MODELS");
+  const std::string models = before ? before : "";
+  setenv("HANDCAST_MODELS", scratch_.path().c_str(), 1);
+  options_.models.clear();
+  options_.quiet = false;
+  options_.joints = joints_;
+  testing::internal::CaptureStderr();
+  const auto text = run(options_);
+  EXPECT_THAT(
+      testing::internal::GetCapturedStderr(),
+      testing::AllOf(HasSubstr("with handcast's own network, because "), HasSubstr("is missing")));
+  ASSERT_TRUE(text) << text.error().what;
+  EXPECT_THAT(*text, HasSubstr("1_camera.png: 1 hand, "));
+  before ? setenv("HANDCAST_MODELS", models.c_str(), 1) : unsetenv("HANDCAST_MODELS");
+}
+
 TEST(DetectOptions, AnOldNameOfABackEndIsTheCurrentOneAndMayNameTheExecutor) {
   using config::Executor;
   const auto set = [](const std::string& name) {
