@@ -45,7 +45,8 @@ std::string print_pauses(const nlohmann::json& answer) {
 /// camera twin` returns to the rig file's)". "" if there are none.
 std::string print_swaps(const nlohmann::json& answer) {
   std::string text;
-  for (const auto& [name, swap] : answer.value("swapped", nlohmann::json::object()).items())
+  const auto swaps = answer.value("swapped", nlohmann::json::object());
+  for (const auto& [name, swap] : swaps.items())
     text += fmt::format("; {0} keeps '{1}' (`handcast swap {0} {2}` returns to the rig file's)",
                         name, swap.value("backend", ""), swap.value("in_file", ""));
   return text;

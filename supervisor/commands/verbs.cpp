@@ -24,6 +24,16 @@ constexpr std::array kVerbs{
         "                     observer.json with the scores, pictures\n"
         "  --no-keeper        without the process that replaces a dead supervisor; systemd does\n"
         "                     that for a unit of install-units\n"},
+    VerbEntry{
+        "play", "play DIR [--set path=value]... [--seconds N] [--out DIR]",
+        "Runs a recorded rig with the recording in place of its sensors.", run_play, Group::run,
+        "  DIR                a folder of `handcast record`; played in a loop, with the rig's\n"
+        "                     settings and calibration. Streams that were not recorded come\n"
+        "                     from the rig's own sensors\n"
+        "  --set path=value   as for `handcast up`: projector.backend=file where there is no\n"
+        "                     projector\n"
+        "  --seconds N        stops after N seconds\n"
+        "  --out DIR          as for `handcast up`\n"},
     VerbEntry{"down", "down [--rig NAME]", "Stops a rig and waits until it has stopped.", run_down,
               Group::run, kRig},
     VerbEntry{"status", "status [--json] [--rig NAME]", "Shows a rig's services, rates and times.",

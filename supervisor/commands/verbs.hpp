@@ -38,6 +38,7 @@ std::filesystem::path program_folder();
 /// Runs a verb. Returns an exit code (ipc/base/exit_code.hpp).
 /// @{
 int run_up(const Arguments& arguments);
+int run_play(const Arguments& arguments);
 int run_config(const Arguments& arguments);
 int run_down(const Arguments& arguments);
 int run_status(const Arguments& arguments);

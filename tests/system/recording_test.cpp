@@ -36,15 +36,6 @@ class Recording : public SystemTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return handcast(arguments);
   }
-  /// A rig whose sensors play a recording.
-  std::unique_ptr<Command> up_with(const std::string& name) const {
-    Arguments settings;
-    for (const std::string sensor : {"camera", "pose", "landmarks"}) {
-      settings.insert(settings.end(), {"--set", sensor + ".backend=replay"});
-      settings.insert(settings.end(), {"--set", sensor + ".replay.directory=" + in_scratch(name)});
-    }
-    return up(settings);
-  }
   template <class T>
   std::map<std::uint64_t, Recorded<T>> read(const std::string& name, const char* stream) const {
     std::map<std::uint64_t, Recorded<T>> all;
@@ -93,7 +84,7 @@ TEST_F(Recording, PlayedAndRecordedAgainItIsTheSame) {
     EXPECT_THAT(outcome.output, HasSubstr("projection.frames"));
     EXPECT_EQ(handcast({"down"}).exit_code, 0);
   }
-  const auto rig = up_with("first");
+  const Command rig(scratch_.path(), {"play", in_scratch("first")});
   ASSERT_TRUE(eventually([&] { return !status().is_null(); }));
   ASSERT_EQ(record("second", {"--seconds", "6", "--rings", "camera,pose,landmarks"}).exit_code, 0);
   std::int64_t shift_ns = 0;
@@ -198,6 +189,9 @@ TEST_F(Recording, WhatCannotBeDoneIsASentence) {
   EXPECT_EQ(taken.exit_code, 100);
   EXPECT_THAT(taken.log, HasSubstr("not empty"));
   EXPECT_EQ(record("a", {"--seconds", "x"}).exit_code, 2);
+  const auto played = handcast({"play", in_scratch("mine")});
+  EXPECT_EQ(played.exit_code, 100);
+  EXPECT_THAT(played.log, HasSubstr("mine/rig.toml is missing"));
 }
 
 }  // namespace

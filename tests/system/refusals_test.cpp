@@ -85,7 +85,7 @@ TEST_F(Refusals, ASecondRigOfTheSameNameIsRefusedAndTheFirstGoesOn) {
 TEST_F(Refusals, AnUnknownVerbIsAnsweredWithTheKnownOnes) {
   const auto outcome = handcast({"levitate"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.log, AllOf(HasSubstr("'levitate'"), HasSubstr("up, down, status")));
+  EXPECT_THAT(outcome.log, AllOf(HasSubstr("'levitate'"), HasSubstr("up, play, down, status")));
   EXPECT_THAT(handcast({"statsu"}).log, HasSubstr("'statsu' (did you mean 'status'?)"));
   EXPECT_EQ(handcast({"up"}).exit_code, 2);
   EXPECT_EQ(handcast({"up", "rig.toml", "--seconds", "soon"}).exit_code, 2);
