@@ -11,6 +11,7 @@
 #include "services/landmarks/detect/run.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/pictures.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::detect {
 namespace {
@@ -151,9 +152,7 @@ TEST_F(Detect, HandcastsModelNeedsNoFileFromOutsideIfThereIsATracker) {
 }
 
 TEST_F(Detect, WithoutAChoiceAndMediapipesFilesItTakesHandcastsModelAndSaysSo) {
-  const auto before = std::getenv("HANDCAST_MODELS");
-  const std::string models = before ? before : "";
-  setenv("HANDCAST_MODELS", scratch_.path().c_str(), 1);
+  const system_test::Variable no_files("HANDCAST_MODELS", scratch_.path().string());
   options_.models.clear();
   options_.quiet = false;
   options_.joints = joints_;
@@ -164,7 +163,6 @@ TEST_F(Detect, WithoutAChoiceAndMediapipesFilesItTakesHandcastsModelAndSaysSo) {
       testing::AllOf(HasSubstr("with handcast's own network, because "), HasSubstr("is missing")));
   ASSERT_TRUE(text) << text.error().what;
   EXPECT_THAT(*text, HasSubstr("1_camera.png: 1 hand, "));
-  before ? setenv("HANDCAST_MODELS", models.c_str(), 1) : unsetenv("HANDCAST_MODELS");
 }
 
 TEST(DetectOptions, AnOldNameOfABackEndIsTheCurrentOneAndMayNameTheExecutor) {
