@@ -31,7 +31,7 @@ endif()
 
 # g++ 12 at -O3 reports overflows of std::string that do not exist.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-  add_compile_options(-Wall -Wextra -Wno-missing-field-initializers)
+  add_compile_options(-Wall -Wextra -Wno-missing-field-initializers -Wno-unknown-pragmas)
 else()
   add_compile_options(-Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict
     -Wno-array-bounds)
@@ -60,10 +60,10 @@ function(handcast_precompile target)
     add_library(${from} OBJECT ${CMAKE_BINARY_DIR}/${from}.cpp)
     target_compile_options(${from} PRIVATE ${ARG_OPTIONS})
     # Its flags must be those of its users, or the compiler does not use it.
-    target_link_libraries(${from} PRIVATE fmt::fmt $<$<BOOL:${ARG_TEST}>:GTest::gmock>)
+    target_link_libraries(${from} PRIVATE fmt::fmt Threads::Threads $<$<BOOL:${ARG_TEST}>:GTest::gmock>)
     target_precompile_headers(${from} PRIVATE ${headers})
   endif()
-  target_link_libraries(${target} PRIVATE fmt::fmt)
+  target_link_libraries(${target} PRIVATE fmt::fmt Threads::Threads)
   target_precompile_headers(${target} REUSE_FROM ${from})
 endfunction()
 

@@ -114,13 +114,12 @@ TEST_P(CameraContract, ADeadlineInThePastIsATimeoutNotAHang) {
 TEST_P(CameraContract, FramesNobodyFetchedAreSkippedNotQueued) {
   ASSERT_TRUE(capture(Deadline::in(5s)));
   const auto first = frame().header;
-  const std::int64_t away_until_ns = now_ns() + to_ns(100ms);
+  const std::int64_t away_until_ns = now_ns() + to_ns(300ms);
   sleep_until_ns(away_until_ns);
   ASSERT_TRUE(capture(Deadline::in(5s)));
   EXPECT_GE(frame().header.frame_id, first.frame_id + 10);
-  // Leap: an image is on its way for a period of 8.7 ms.
-  const auto oldest_ns = GetParam().name == "leap" ? to_ns(30ms) : to_ns(20ms);
-  EXPECT_GE(frame().header.origin_ns, away_until_ns - oldest_ns);
+  // From a queue it would be 300 ms old. On a busy machine a controller's image is on its way for 60 ms.
+  EXPECT_GE(frame().header.origin_ns, away_until_ns - to_ns(150ms));
 }
 
 TEST_P(CameraContract, AnImageThatDoesNotFitIsRefusedNotWritten) {
