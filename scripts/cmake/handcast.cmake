@@ -29,6 +29,9 @@ else()
   option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" ON)
 endif()
 
+# GLib's headers (Aravis) bring it to some targets; clang refuses a precompiled header that was made without it.
+add_compile_options(-pthread)
+
 # g++ 12 at -O3 reports overflows of std::string that do not exist.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   add_compile_options(-Wall -Wextra -Wno-missing-field-initializers -Wno-unknown-pragmas)
@@ -60,10 +63,10 @@ function(handcast_precompile target)
     add_library(${from} OBJECT ${CMAKE_BINARY_DIR}/${from}.cpp)
     target_compile_options(${from} PRIVATE ${ARG_OPTIONS})
     # Its flags must be those of its users, or the compiler does not use it.
-    target_link_libraries(${from} PRIVATE fmt::fmt Threads::Threads $<$<BOOL:${ARG_TEST}>:GTest::gmock>)
+    target_link_libraries(${from} PRIVATE fmt::fmt $<$<BOOL:${ARG_TEST}>:GTest::gmock>)
     target_precompile_headers(${from} PRIVATE ${headers})
   endif()
-  target_link_libraries(${target} PRIVATE fmt::fmt Threads::Threads)
+  target_link_libraries(${target} PRIVATE fmt::fmt)
   target_precompile_headers(${target} REUSE_FROM ${from})
 endfunction()
 
