@@ -38,7 +38,7 @@ class RigJudge final : public Judge {
     for (std::size_t h = 0; h < score.hands.size(); ++h) score.hands[h].side = seen(h).side;
     count_pixels(area, light, score);
     score_interior(area, light, score);
-    std::erase_if(score.hands, [](const FrameScore::Hand& hand) { return hand.hand_px == 0; });
+    leave_out_hidden(score);
     return score;
   }
 
@@ -52,8 +52,15 @@ class RigJudge final : public Judge {
     return area.within(alpha_.width(), alpha_.height());
   }
 
+  /// A hand outside the image is not scored; the light meant for it is.
+  static void leave_out_hidden(FrameScore& score) {
+    const auto is_hidden = [](const FrameScore::Hand& hand) { return hand.hand_px == 0; };
+    for (const auto& hand : score.hands)
+      if (is_hidden(hand)) score.stray_px += hand.spill_px;
+    std::erase_if(score.hands, is_hidden);
+  }
+
   void count_pixels(const Rect& area, const JudgedLight& light, FrameScore& score) const {
-    if (score.hands.empty()) return;
     for (std::size_t h = 0; h < score.hands.size(); ++h)
       count_hand(h, light.least_alpha(seen(h).side), score.hands[h]);
     count_spill(area, score);
@@ -78,16 +85,21 @@ class RigJudge final : public Judge {
       }
   }
 
-  /// Counts the light beside hands and arms by blocks, for the hand nearest to the block's centre.
+  /// Counts the light beside hands and arms by blocks, for the hand nearest to the block's centre, if there is a hand.
   void count_spill(const Rect& area, FrameScore& score) const {
     constexpr int kBlock = 16;
     for (int top = area.y0; top < area.y1; top += kBlock)
       for (int left = area.x0; left < area.x1; left += kBlock) {
         const Rect block{left, top, std::min(left + kBlock, area.x1),
                          std::min(top + kBlock, area.y1)};
-        if (const int spill_px = spill_in(block); spill_px > 0)
+        const int spill_px = spill_in(block);
+        if (spill_px == 0) continue;
+        if (score.hands.empty()) {
+          score.stray_px += spill_px;
+        } else {
           score.hands[nearest_hand((block.x0 + block.x1) / 2, (block.y0 + block.y1) / 2)]
               .spill_px += spill_px;
+        }
       }
   }
 

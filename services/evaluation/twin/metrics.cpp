@@ -99,6 +99,8 @@ void Metrics::Bin::write(nlohmann::json& json) const {
 
 void Metrics::add(const FrameScore& score) {
   ++frames_;
+  all_.spill_px += score.stray_px;
+  all_.union_px += score.stray_px;
   for (const auto& hand : score.hands) {
     const auto speed =
         std::lower_bound(kSpeedSteps_m_s.begin(), kSpeedSteps_m_s.end(), hand.speed_m_s) -

@@ -116,7 +116,9 @@ TEST(ShippedPlans, TheUnseenMotionsAreScoredWithTheRigsOfTheComparison) {
 TEST(ShippedPlans, JitterIsMeasuredOnTheRigsOfTheComparison) {
   std::map<std::string, config::Rig> compared;
   for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
-  for (const auto& [name, rig] : rigs_of("jitter"))
+  const auto still = rigs_of("jitter");
+  EXPECT_EQ(still.size(), 5u);
+  for (const auto& [name, rig] : still)
     EXPECT_THAT(config::differences(rig, compared.at(name)), testing::IsEmpty()) << name;
 }
 

@@ -122,7 +122,9 @@ TEST_P(JudgeOf, PerfectLightHasNoError) {
 TEST_P(JudgeOf, LightBesideItsPlaceIsThatFarOff) {
   auto light = light_of(*twin_, kLit_ns, {3, 4});
   const double mm_per_px = calib::reference_rig().mm_per_projector_px(0.73);
-  for (const auto& hand : judge_->score(*light).hands) {
+  const auto score = judge_->score(*light);
+  ASSERT_FALSE(score.hands.empty());
+  for (const auto& hand : score.hands) {
     EXPECT_NEAR(mean_of(hand.interior_px), 5, 0.1);
     EXPECT_GT(mean_of(hand.interior_mm), 5 * mm_per_px * 0.95) << "the hand is about 0.73 m away";
     EXPECT_LT(mean_of(hand.interior_mm), 5 * mm_per_px * 1.6) << "its surface is slanted";
@@ -196,6 +198,7 @@ TEST(Judge, EachHandAnswersForItself) {
   light->hands[1].presence = 0.4f;
   const auto score = Judge::create(*twin, 4)->score(*light);
   ASSERT_EQ(score.hands.size(), 2u);
+  EXPECT_GT(score.hands[0].interior_px.size(), 500u);
   EXPECT_LT(mean_of(score.hands[0].interior_px), 0.05);
   EXPECT_LT(score.hands[0].spill_px, 20);
   EXPECT_GE(score.hands[1].spill_px, 100);
@@ -207,7 +210,9 @@ TEST(Judge, LightOfTheOtherHandIsMissingLight) {
   const auto twin = twin_of(rig_with("builtin:two_hands"));
   auto light = light_of(*twin, kLit_ns);
   std::swap(light->hands[0].side, light->hands[1].side);
-  for (const auto& hand : Judge::create(*twin, 4)->score(*light).hands) {
+  const auto score = Judge::create(*twin, 4)->score(*light);
+  ASSERT_EQ(score.hands.size(), 2u);
+  for (const auto& hand : score.hands) {
     EXPECT_TRUE(hand.interior_px.empty());
     EXPECT_GT(hand.missing_px.size(), 500u);
   }
@@ -218,8 +223,10 @@ TEST(Judge, ScoresOtherFleshByWhatItsTextureMeans) {
   rig.twin.shape.bone_width_spread = 0.2;
   const auto twin = twin_of(rig);
   auto light = light_of(*twin, kLit_ns);
-  for (const auto& hand : Judge::create(*twin, 4)->score(*light).hands)
-    EXPECT_LT(mean_of(hand.interior_px), 0.05) << "light drawn with the true flesh";
+  const auto score = Judge::create(*twin, 4)->score(*light);
+  ASSERT_EQ(score.hands.size(), 1u);
+  EXPECT_GT(score.hands[0].interior_px.size(), 500u);
+  EXPECT_LT(mean_of(score.hands[0].interior_px), 0.05) << "light drawn with the true flesh";
 }
 
 TEST(Judge, LightOnTheForearmIsNeitherCoverageNorSpill) {
@@ -240,6 +247,25 @@ TEST(Judge, LightOnTheForearmIsNeitherCoverageNorSpill) {
   const auto on_hand = score_with_patch(-60);
   EXPECT_EQ(on_hand.lit_px, 400);
   EXPECT_EQ(on_hand.seam_px, 80) << "the edge of a 20 x 20 patch";
+}
+
+TEST(Judge, LightWithoutAHandIsSpill) {
+  auto rig = rig_with("builtin:enter_leave");
+  const auto twin = twin_of(rig);
+  const auto judge = Judge::create(*twin, 4);
+  bool was_away = false;
+  for (std::int64_t lit_ns = 0; lit_ns < 10'000'000'000 && !was_away; lit_ns += 100'000'000) {
+    if (twin->joints(Side::left, lit_ns) || twin->joints(Side::right, lit_ns)) continue;
+    was_away = true;
+    Projected light;
+    light->lit_ns = lit_ns;
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 30; ++x) light.light(500 + x, 300 + y);
+    const auto score = judge->score(*light);
+    EXPECT_TRUE(score.hands.empty());
+    EXPECT_EQ(score.stray_px, 600);
+  }
+  EXPECT_TRUE(was_away);
 }
 
 TEST(Judge, OnlyTheRegionOfTheProjectionIsRead) {

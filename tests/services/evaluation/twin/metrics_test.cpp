@@ -35,6 +35,19 @@ TEST(Metrics, TheRungsAreSharesOfTheHandsThatWereDrawn) {
   EXPECT_DOUBLE_EQ(rungs["register"], 0);
 }
 
+TEST(Metrics, LightWithoutAHandCountsAsSpill) {
+  Metrics metrics;
+  FrameScore with_hand, without;
+  with_hand.hands = {hand_at(0.05, 1)};
+  without.stray_px = 150;
+  metrics.add(with_hand);
+  metrics.add(without);
+  const auto json = metrics.to_json();
+  EXPECT_DOUBLE_EQ(json["spill"], 0.2);
+  EXPECT_DOUBLE_EQ(json["iou"], 0.75);
+  EXPECT_DOUBLE_EQ(json["coverage"], 0.9);
+}
+
 TEST(Metrics, EveryFigureComesOutUnderItsName) {
   Metrics metrics;
   FrameScore score;
