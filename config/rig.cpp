@@ -32,14 +32,14 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "content.left",
                                        "content.right",
                                        "twin.motion",
+                                       "twin.shape.mesh",
                                        "twin.geometry.calibration"};
 
-/// Makes relative paths absolute; "", "builtin:…" and a frozen file are not paths.
+/// Makes relative paths absolute.
 void resolve_paths(const Listing& listing, const std::filesystem::path& folder) {
   for (const auto path : kPaths) {
     auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
-    if (text.empty() || text.starts_with("builtin:") || text.starts_with(kFrozen)) continue;
-    text = (folder / text).lexically_normal().string();
+    if (is_path(path, text)) text = (folder / text).lexically_normal().string();
   }
 }
 
@@ -82,6 +82,12 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
 
 bool names_a_file(std::string_view setting) {
   return std::ranges::find(kPaths, setting) != std::end(kPaths);
+}
+
+bool is_path(std::string_view setting, std::string_view value) {
+  if (!names_a_file(setting) || value.empty()) return false;
+  if (setting == "twin.shape.mesh" && value.find_first_of("./") == value.npos) return false;
+  return !value.starts_with("builtin:") && !value.starts_with(kFrozen);
 }
 
 Process process_of(const Rig& rig, std::string_view service) {

@@ -89,8 +89,11 @@ Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file
 /// The rig as a commented TOML file with all settings, which load_rig() reads back.
 std::string print_rig(const Rig& rig);
 
-/// True if the value of this setting ("twin.motion") is a path, which load_rig() makes absolute.
+/// True if the value of this setting ("twin.motion") may be a path.
 bool names_a_file(std::string_view setting);
+/// True if this value of the setting is a path, which load_rig() makes absolute, and not "", a word
+/// ("builtin:wave", "webxr") or a frozen file.
+bool is_path(std::string_view setting, std::string_view value);
 
 /// The text of config/REFERENCE.md, generated from the declarations of the settings.
 std::string print_reference();

@@ -15,6 +15,7 @@ inline constexpr std::uint64_t kMostPicture = 64 << 20;  ///< PNG, JPEG
 inline constexpr std::uint64_t kMostMesh = 256 << 20;    ///< glTF and its buffers
 inline constexpr std::uint64_t kMostModel = 512 << 20;   ///< ONNX
 inline constexpr std::uint64_t kMostArray = 256 << 20;   ///< .npy
+inline constexpr std::uint64_t kMostResults = 1 << 30;   ///< CSV of a sweep: two million runs
 
 /// Opens a file that comes from outside (rig, recording, picture, model) for reading; every such
 /// file is opened here. Never blocks: a pipe, device, socket or folder is refused. Errors:

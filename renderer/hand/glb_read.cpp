@@ -200,6 +200,7 @@ void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive,
   const auto weights = reader.read<float>(attribute(primitive, "WEIGHTS_0"), 4, "weights");
   if (joints.size() != weights.size())
     return reader.complain("its joint indices and weights differ in number");
+  std::size_t loose = 0;  // vertices without a weight go with the wrist
   for (std::size_t v = 0; v < joints.size(); v += 4) {
     std::array<std::uint8_t, 4> joint{};
     std::array<float, 4> weight{};
@@ -211,11 +212,15 @@ void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive,
       joint[k] = ours[joints[v + k]];
       sum += weight[k] = weights[v + k];
     }
+    loose += sum <= 0;
     if (sum <= 0) joint = {1, 0, 0, 0}, weight = {sum = 1, 0, 0, 0};
     for (float& w : weight) w /= sum;
     hand.joints.push_back(joint);
     hand.weights.push_back(weight);
   }
+  constexpr std::size_t kFewest = 20;
+  if (const auto count = weights.size() / 4; loose * kFewest > count)
+    reader.complain(fmt::format("{} of its {} vertices are not bound to a joint", loose, count));
 }
 
 void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, std::size_t first,

@@ -62,10 +62,25 @@ std::string fault_of_texture(const HandMesh& hand) {
       layers, kMostLayers);
 }
 
+/// The bones within thumb and fingers have a length and so a direction.
+std::string fault_of_bones(const HandMesh& hand) {
+  constexpr float kShortest_m = 0.001f;
+  for (std::size_t joint = 0; joint < hand.rest.size(); ++joint) {
+    const auto name = kJointNames[joint];
+    if (!name.ends_with("-intermediate") && !name.ends_with("-distal")) continue;
+    const auto parent = static_cast<std::size_t>(kJointParent[joint]);
+    const float length_m =
+        glm::distance(glm::vec3(hand.rest[joint][3]), glm::vec3(hand.rest[parent][3]));
+    if (length_m < kShortest_m)
+      return fmt::format("its joints {} and {} lie in one place", kJointNames[parent], name);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string fault_of_mesh(const HandMesh& hand) {
-  for (auto* fault_of : {fault_of_size, fault_of_surface, fault_of_texture})
+  for (auto* fault_of : {fault_of_size, fault_of_bones, fault_of_surface, fault_of_texture})
     if (auto fault = fault_of(hand); !fault.empty()) return fault;
   return {};
 }

@@ -2,9 +2,12 @@
 // `handcast play`: a recorded rig with the recording in place of its sensors.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <string_view>
 
+#include "config/rig.hpp"
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
 
@@ -12,6 +15,9 @@ namespace handcast::supervisor {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Back ends of camera and tracker that open no device.
+constexpr std::array<std::string_view, 4> kWithoutDevice{"twin", "replay", "none", "stereo"};
 
 bool has_messages(const fs::path& folder, const std::string& stream) {
   std::error_code error;
@@ -40,6 +46,31 @@ Arguments settings_for(const fs::path& folder) {
   return settings;
 }
 
+/// A sentence if a device of the rig would run beside the recording and nobody has asked for it.
+/// Empty also if the rig cannot be read: run_up() says why.
+std::string live_device(const fs::path& folder, const fs::path& rig_file,
+                        const Arguments& settings) {
+  const auto rig = config::load_rig(rig_file, settings);
+  if (!rig) return {};
+  const auto is_live = [&](const std::string& sensor, const std::string& backend) {
+    const bool is_asked_for = std::ranges::any_of(settings, [&](const std::string& setting) {
+      return setting.starts_with(sensor + ".backend=");
+    });
+    return !is_asked_for && std::ranges::find(kWithoutDevice, backend) == kWithoutDevice.end();
+  };
+  const auto sentence = [&](const std::string& sensor, const std::string& stream,
+                            const std::string& backend) {
+    return fmt::format(
+        "{} holds no messages of {}, so the device of the rig ({}.backend = \"{}\") "
+        "would run; if that is meant, add --set {}.backend={}",
+        folder.string(), stream, sensor, backend, sensor, backend);
+  };
+  if (is_live("camera", rig->camera.backend))
+    return sentence("camera", "camera.frames", rig->camera.backend);
+  if (is_live("pose", rig->pose.backend)) return sentence("pose", "pose.hands", rig->pose.backend);
+  return {};
+}
+
 }  // namespace
 
 int run_play(const Arguments& arguments) {
@@ -56,10 +87,14 @@ int run_play(const Arguments& arguments) {
                                 "other recordings are named in a rig file, as in "
                                 "config/rigs/replay.toml",
                                 rig.string(), folder.string()));
+  auto settings = settings_for(folder);
+  const auto own = options->all("--set");  // after those, so that they count
+  settings.insert(settings.end(), own.begin(), own.end());
+  if (const auto device = live_device(folder, rig, settings); !device.empty())
+    return complain(kExitConfig, "play: " + device);
   Arguments up{rig.string()};
-  for (const auto& setting : settings_for(folder)) up.insert(up.end(), {"--set", setting});
-  // After those, so that the user's count.
-  for (const auto* option : {"--set", "--seconds", "--out"})
+  for (const auto& setting : settings) up.insert(up.end(), {"--set", setting});
+  for (const auto* option : {"--seconds", "--out"})
     for (const auto& value : options->all(option)) up.insert(up.end(), {option, value});
   return run_up(up);
 }

@@ -62,18 +62,17 @@ constexpr std::array kVerbs{
     VerbEntry{"record", "record DIR [--rig NAME] [--seconds N] [--rings LIST] [--npy]",
               "Writes all rings of a rig to a folder, which the back ends `replay` play.", nullptr,
               Group::look},
-    VerbEntry{
-        "latency", "latency [--seconds N] [--json] [--rig NAME]",
-        "Shows the time that each step took, from exposure to light.", run_latency, Group::look,
-        "  --seconds N  of the last N seconds; default: all that is kept (supervisor.history_s)\n"
-        "  --json       the same as JSON\n"
-        "  --rig NAME   which rig, if several are up\n"},
-    VerbEntry{
-        "trace", "trace [--seconds N] -o FILE [--rig NAME]",
-        "Writes the last N seconds as a Perfetto trace.", run_trace, Group::look,
-        "  --seconds N  the last N seconds; default: all that is kept (supervisor.history_s)\n"
-        "  -o FILE      the file to write; ui.perfetto.dev opens it\n"
-        "  --rig NAME   which rig, if several are up\n"},
+    VerbEntry{"latency", "latency [--seconds N] [--json] [--rig NAME]",
+              "Shows the time that each step took, from exposure to light.", run_latency,
+              Group::look,
+              "  --seconds N  of the last N seconds (default 10); supervisor.history_s are kept\n"
+              "  --json       the same as JSON\n"
+              "  --rig NAME   which rig, if several are up\n"},
+    VerbEntry{"trace", "trace [--seconds N] -o FILE [--rig NAME]",
+              "Writes the last N seconds as a Perfetto trace.", run_trace, Group::look,
+              "  --seconds N  the last N seconds (default 10); supervisor.history_s are kept\n"
+              "  -o FILE      the file to write; ui.perfetto.dev opens it\n"
+              "  --rig NAME   which rig, if several are up\n"},
     VerbEntry{"install-units",
               "install-units RIG.toml [--set path=value]... [--out DIR] [--system [--user NAME]] "
               "[--print]",

@@ -192,6 +192,10 @@ TEST_F(Recording, WhatCannotBeDoneIsASentence) {
   const auto played = handcast({"play", in_scratch("mine")});
   EXPECT_EQ(played.exit_code, 100);
   EXPECT_THAT(played.log, HasSubstr("mine/rig.toml is missing"));
+  std::ofstream(in_scratch("mine/rig.toml")) << "name = \"mine\"\ncamera.backend = \"v4l2\"\n";
+  const auto live = handcast({"play", in_scratch("mine")});
+  EXPECT_EQ(live.exit_code, 100);
+  EXPECT_THAT(live.log, HasSubstr("(camera.backend = \"v4l2\") would run"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <string_view>
@@ -64,6 +65,8 @@ Setter number_into(T& target, std::string_view option, double min, double max) {
   return [&target, option, min, max](std::string_view value) -> Result<void> {
     const auto parsed = number(option, value, min, max);
     if (!parsed) return tl::make_unexpected(parsed.error());
+    if (std::is_integral_v<T> && *parsed != std::floor(*parsed))
+      return fail(Errc::bad_config, fmt::format("{}: '{}' is not a whole number", option, value));
     target = static_cast<T>(*parsed);
     return {};
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/simulate/recorder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -14,8 +16,11 @@ constexpr std::int64_t kStep_ns = 100'000;  ///< shorter than the period of any 
 
 Result<void> prepare(const std::filesystem::path& folder) {
   std::error_code failed;
-  // If this fails, writing the first picture fails too.
   std::filesystem::create_directories(folder / "camera", failed);
+  if (failed)
+    return fail(Errc::bad_config,
+                fmt::format("{}: the folder of the recording cannot be created: {}",
+                            (folder / "camera").string(), failed.message()));
   if (auto removed = twin::remove_recording(folder); !removed) return removed;
   return remove_numbered_pngs(folder / "camera");
 }
@@ -26,8 +31,15 @@ RecordingFeed::RecordingFeed(std::unique_ptr<SensorFeed> source, const calib::Ca
                              std::filesystem::path folder)
     : source_(std::move(source)),
       folder_(std::move(folder)),
-      image_(camera.width_px, camera.height_px),
-      pictures_(prepare(folder_)) {}
+      image_(camera.width_px, camera.height_px) {}
+
+Result<std::unique_ptr<RecordingFeed>> RecordingFeed::create(std::unique_ptr<SensorFeed> source,
+                                                             const calib::CameraModel& camera,
+                                                             std::filesystem::path folder) {
+  if (auto prepared = prepare(folder); !prepared) return tl::make_unexpected(prepared.error());
+  return std::unique_ptr<RecordingFeed>(
+      new RecordingFeed(std::move(source), camera, std::move(folder)));
+}
 
 std::vector<SensorEvent> RecordingFeed::until(std::int64_t now_ns) {
   auto events = source_->until(now_ns);

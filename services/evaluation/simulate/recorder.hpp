@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,10 +23,11 @@ namespace handcast::simulate {
 /// other hands than most are left out.
 class RecordingFeed : public SensorFeed {
  public:
-  /// Removes an earlier recording from `folder`. Errors of this and of writing pictures are
-  /// returned by save().
-  RecordingFeed(std::unique_ptr<SensorFeed> source, const calib::CameraModel& camera,
-                std::filesystem::path folder);
+  /// Creates `folder`, or removes an earlier recording from it. Errors: bad_config. Those of
+  /// writing pictures are returned by save().
+  static Result<std::unique_ptr<RecordingFeed>> create(std::unique_ptr<SensorFeed> source,
+                                                       const calib::CameraModel& camera,
+                                                       std::filesystem::path folder);
 
   std::vector<SensorEvent> until(std::int64_t now_ns) override;
   std::optional<Exposure> newest_exposure(std::int64_t now_ns) override {
@@ -33,11 +35,13 @@ class RecordingFeed : public SensorFeed {
   }
   void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override;
 
-  /// Writes the messages and the time stamps. Errors: bad_config (a picture cannot be written or
-  /// removed), unavailable (another file), bad_data (fewer than two samples of a hand).
+  /// Writes the messages and the time stamps. Errors: bad_config (a picture cannot be
+  /// written), unavailable (another file), bad_data (fewer than two samples of a hand).
   Result<void> save() const;
 
  private:
+  RecordingFeed(std::unique_ptr<SensorFeed> source, const calib::CameraModel& camera,
+                std::filesystem::path folder);
   void keep(const msg::HandPoses& poses) { poses_.push_back(poses); }
   void keep(const msg::Landmarks& landmarks) { landmarks_.push_back(landmarks); }
   void keep_images(std::int64_t now_ns);
@@ -50,7 +54,7 @@ class RecordingFeed : public SensorFeed {
   renderer::Image<std::uint8_t> image_;  ///< that of newest_
   std::int64_t asked_ns_ = -1;           ///< camera frames are written up to this time
   std::vector<std::int64_t> image_times_us_;
-  Result<void> pictures_;  ///< first error of removing or writing a picture
+  Result<void> pictures_;  ///< first error of writing a picture
 };
 
 }  // namespace handcast::simulate

@@ -96,16 +96,12 @@ void print_summary(const nlohmann::json& json, const config::Rig& rig, const Opt
 
 /// Why the metrics say nothing about the rig. Empty if they do.
 std::string fault_of(const nlohmann::json& json, const Options& options) {
-  const auto has = [&](const char* pointer) {
-    const nlohmann::json::json_pointer place(pointer);
-    return json.contains(place) && json[place].is_number();
-  };
-  if (options.draw_every == 0)
-    return has("/landmark_mm/mean") ? "" : "no hand was tracked: there is nothing to score";
-  if (!has("/coverage"))
-    return "no true hand was in the image of the projector: there is nothing to score";
+  if (auto why = why_nothing_was_scored(json, options); !why.empty() || options.draw_every == 0)
+    return why;
   if (json["coverage"] == 0) return "no light fell on a hand: coverage is 0";
-  return has("/interior_mm/mean") ? "" : "no landing of the light could be compared with a hand";
+  return json["interior_mm"]["mean"].is_number()
+             ? ""
+             : "no landing of the light could be compared with a hand";
 }
 
 }  // namespace

@@ -22,6 +22,29 @@
 namespace handcast::simulate {
 namespace {
 
+/// Earlier pictures and recordings are replaced, but not the motion that is played, nor the images
+/// of a recording by those of --frames.
+Result<void> check_recordings_are_spared(const Options& options, const config::Rig& rig) {
+  namespace fs = std::filesystem;
+  std::error_code unknown;
+  if (const fs::path folder(options.record_directory);
+      !folder.empty() && fs::equivalent(folder, rig.twin.motion, unknown))
+    return fail(Errc::bad_config,
+                fmt::format("--record {}: this is the recording that is played (twin.motion); "
+                            "name another folder",
+                            folder.string()));
+  if (options.frames_directory.empty()) return {};
+  const auto folder = fs::absolute(options.frames_directory, unknown);
+  const auto beside = (folder / "..").lexically_normal();
+  for (const char* times : {"timestamps.npy", "camera_timestamps.npy"})
+    if (fs::exists(beside / times, unknown))
+      return fail(Errc::bad_config,
+                  fmt::format("--frames {}: {} holds a recording, whose images it "
+                              "would remove; name another folder",
+                              options.frames_directory, beside.string()));
+  return {};
+}
+
 /// The metrics and files that are made from the ticks of one run.
 class Products {
  public:
@@ -173,12 +196,26 @@ nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig) {
 
 }  // namespace
 
+std::string why_nothing_was_scored(const nlohmann::json& metrics, const Options& options) {
+  const auto has = [&](const char* pointer) {
+    const nlohmann::json::json_pointer place(pointer);
+    return metrics.contains(place) && metrics[place].is_number();
+  };
+  if (options.draw_every == 0)
+    return has("/landmark_mm/mean") ? "" : "no hand was tracked: there is nothing to score";
+  return has("/coverage")
+             ? ""
+             : "no true hand was in the image of the projector: there is nothing to score";
+}
+
 double simulated_s(const config::Rig& rig, const Options& options) {
   return (fault_time(rig.twin) ? 2 : 1) * (options.warm_up_s + options.seconds);
 }
 
 Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration,
                              const Options& options, const OnProgress& on_progress) {
+  if (auto spared = check_recordings_are_spared(options, rig); !spared)
+    return tl::make_unexpected(spared.error());
   auto parts = open_virtual_rig(rig, calibration);
   if (!parts) return tl::make_unexpected(parts.error());
   const auto& twin = *parts->twin;
@@ -191,10 +228,11 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
                      from(seconds_to_ns(options.warm_up_s), tally), parts->lifter, parts->second);
   RecordingFeed* recording = nullptr;
   if (!options.record_directory.empty()) {
-    auto recorder = std::make_unique<RecordingFeed>(std::move(feed), calibration.camera,
-                                                    options.record_directory);
-    recording = recorder.get();
-    feed = std::move(recorder);
+    auto recorder =
+        RecordingFeed::create(std::move(feed), calibration.camera, options.record_directory);
+    if (!recorder) return tl::make_unexpected(recorder.error());
+    recording = recorder->get();
+    feed = std::move(*recorder);
   }
   CountingFeed counted(std::move(feed));
   Simulation simulation(rig, calibration, *parts->pipeline, counted, options.draw_every);

@@ -22,6 +22,9 @@ namespace handcast::simulate {
 Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration,
                              const Options& options, const OnProgress& on_progress = {});
 
+/// Why metrics of score() say nothing: no hand was there to be scored. Empty if they do.
+std::string why_nothing_was_scored(const nlohmann::json& metrics, const Options& options);
+
 /// The virtual time that score() will simulate: the last value of `on_progress`.
 double simulated_s(const config::Rig& rig, const Options& options);
 

@@ -79,7 +79,7 @@ std::string print_figure(const nlohmann::json& json, const nlohmann::json::json_
 }  // namespace
 
 Heading heading_of(const Plan& plan, const Expansion& expansion, std::string_view version) {
-  Heading heading{fmt::format("# handcast sweep version={} fingerprint={} runs={} plan={}", version,
+  Heading heading{fmt::format("{}version={} fingerprint={} runs={} plan={}", kStampStart, version,
                               expansion.fingerprint, expansion.runs.size(), plan.name),
                   {"index", "variant"}};
   for (const auto& path : plan.axes()) heading.columns.push_back(path);

@@ -75,6 +75,10 @@ int report(const Plan& plan, const Outcome& outcome, const std::filesystem::path
              plan.name, outcome.scored, outcome.failed, outcome.kept, outcome.absent, outcome.left,
              file.string());
   if (outcome.left > 0) return kExitStopped;
+  if (outcome.absent > 0 && outcome.scored + outcome.failed + outcome.kept == 0) {
+    fmt::print(stderr, "handcast sweep: all runs were left out: nothing was measured\n");
+    return kExitBadResult;
+  }
   return outcome.failed > 0 ? kExitBadResult : kExitDone;
 }
 

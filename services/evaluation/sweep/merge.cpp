@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "ipc/base/join.hpp"
 #include "services/evaluation/sweep/columns.hpp"
+#include "services/evaluation/sweep/results.hpp"
 
 namespace handcast::sweep {
 namespace {
@@ -38,6 +40,31 @@ Result<void> take(const Table& table, const std::string& file,
     if (Table::failed(source.row) || source.file == file) source = {row, file};
   }
   return {};
+}
+
+/// Checks that no result is lost if `whole` replaces the file: it is empty or holds results of the
+/// same sweep, whose scored runs are in `rows`.
+Result<void> check_replaceable(const std::filesystem::path& file, const Table& whole,
+                               const std::map<std::size_t, Source>& rows) {
+  std::error_code absent;
+  if (!std::filesystem::exists(file, absent)) return {};
+  const auto before = read_table(file);
+  const bool is_empty = before && before->heading.stamp.empty() && before->torn.empty();
+  if (is_empty) return {};
+  if (!before || before->heading != whole.heading)
+    return fail(Errc::bad_config, fmt::format("{}: the file does not hold results of this sweep; "
+                                              "give another file with -o",
+                                              file.string()));
+  std::vector<std::size_t> lost;
+  for (const auto& row : before->rows)
+    if (!Table::failed(row) && !rows.contains(Table::index_of(row)))
+      lost.push_back(Table::index_of(row));
+  if (lost.empty()) return {};
+  std::ranges::sort(lost);
+  return fail(Errc::bad_config,
+              fmt::format("{}: the file holds runs that no merged file has ({}); merge it, too, or "
+                          "give another file with -o",
+                          file.string(), print_indices(lost)));
 }
 
 }  // namespace
@@ -73,6 +100,10 @@ Result<Merged> merge(const std::vector<std::filesystem::path>& files,
     whole.rows.push_back(found->second.row);
   }
   merged.rows = whole.rows.size();
+  auto lock = lock_results(into);
+  if (!lock) return tl::make_unexpected(lock.error());
+  if (auto spared = check_replaceable(into, whole, rows); !spared)
+    return tl::make_unexpected(spared.error());
   if (auto written = write_table(into, whole); !written)
     return tl::make_unexpected(written.error());
   return merged;

@@ -66,7 +66,19 @@ namespace {
 
 using config::Value;
 
-/// The value as in "path=value": text without quotes.
+constexpr int kMostParts = 32;  ///< of a path; the reader of TOML allows no more either
+
+/// A text as TOML.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+/// The value as in "path=value": text without quotes, except in a list.
 std::string print(const Value& value) {
   if (const auto* flag = std::get_if<bool>(&value.data)) return *flag ? "true" : "false";
   if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *whole);
@@ -74,7 +86,10 @@ std::string print(const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value.data)) return *text;
   std::vector<std::string> texts;
   if (const auto* array = std::get_if<config::Array>(&value.data))
-    for (const auto& element : *array) texts.push_back(print(element));
+    for (const auto& element : *array) {
+      const auto* text = std::get_if<std::string>(&element.data);
+      texts.push_back(text ? quoted(*text) : print(element));
+    }
   return fmt::format("[{}]", join(texts, ", "));
 }
 
@@ -153,11 +168,18 @@ class Reader {
     if (!section) return flat;
     if (const auto* table = std::get_if<config::Table>(&section->data)) {
       flatten(*table, "", flat);
+      std::erase_if(flat, [&](const config::Member& member) { return is_too_deep(member); });
     } else {
       complain(section->line, name,
                fmt::format("must be a section, not {}", config::kind_of(*section)));
     }
     return flat;
+  }
+
+  bool is_too_deep(const config::Member& member) {
+    if (std::ranges::count(member.name, '.') < kMostParts) return false;
+    complain(member.value.line, member.name.substr(0, 60) + "...", "there is no such setting");
+    return true;
   }
 
   Choice choice(const std::string& path, const Value& value) {
@@ -166,8 +188,8 @@ class Reader {
                             config::log_renamed);
     config::apply_document(document, file_.string(), listing_, faults_);
     const auto text = print(value);
-    const bool file = config::names_a_file(path) && !text.empty() && !text.starts_with("builtin:");
-    return {text, file ? (folder_ / text).lexically_normal().string() : text, value.line};
+    const bool is_path = config::is_path(path, text);
+    return {text, is_path ? (folder_ / text).lexically_normal().string() : text, value.line};
   }
 
   std::vector<Axis> fixed(const Value* settings) {
@@ -198,6 +220,7 @@ class Reader {
     const auto* listed = section("grid");
     const auto* array = listed ? std::get_if<config::Array>(&listed->data) : nullptr;
     if (!array) return {grid(listed)};
+    if (array->empty()) complain(listed->line, "grid", "is an empty list: there is nothing to run");
     std::vector<Grid> read;
     for (const auto& element : *array) read.push_back(grid(&element));
     return read;
@@ -229,6 +252,8 @@ class Reader {
       plan.variants.push_back({file.stem().string(), file, rig_text(file, 1), {}});
       return;
     }
+    if (array->empty())
+      complain(listed->line, "variant", "is an empty list: there is nothing to run");
     const auto elements = *array;
     for (const auto& element : elements) {
       if (!std::holds_alternative<config::Table>(element.data)) {

@@ -4,15 +4,26 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 namespace handcast::sweep {
+namespace {
 
-Result<std::unique_ptr<Results>> Results::open(const std::filesystem::path& file,
-                                               const Heading& heading, bool fresh) {
+/// True if a file is empty or begins as the results of a sweep do, so that --fresh may discard it.
+bool may_be_discarded(int fd) {
+  std::string start(kStampStart.size(), '\0');
+  const auto read = pread(fd, start.data(), start.size(), 0);
+  return read >= 0 &&
+         kStampStart.starts_with(std::string_view(start.data(), static_cast<std::size_t>(read)));
+}
+
+}  // namespace
+
+Result<UniqueFd> lock_results(const std::filesystem::path& file) {
   std::error_code ignored;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
   UniqueFd fd(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
@@ -21,7 +32,19 @@ Result<std::unique_ptr<Results>> Results::open(const std::filesystem::path& file
   if (flock(fd.get(), LOCK_EX | LOCK_NB) != 0)
     return fail(Errc::unavailable,
                 fmt::format("{}: another sweep is writing this file", file.string()));
-  auto results = std::unique_ptr<Results>(new Results(file, std::move(fd)));
+  return fd;
+}
+
+Result<std::unique_ptr<Results>> Results::open(const std::filesystem::path& file,
+                                               const Heading& heading, bool fresh) {
+  auto fd = lock_results(file);
+  if (!fd) return tl::make_unexpected(fd.error());
+  auto results = std::unique_ptr<Results>(new Results(file, std::move(*fd)));
+  if (fresh && !may_be_discarded(results->fd_.get()))
+    return fail(Errc::bad_config,
+                fmt::format("{}: the file does not hold results of a sweep and is left as it is; "
+                            "give another file with -o",
+                            file.string()));
   if (fresh && ftruncate(results->fd_.get(), 0) != 0)
     return fail(Errc::bad_config, fmt::format("{}: {}", file.string(), std::strerror(errno)));
   if (auto ready = results->go_on(heading); !ready) return tl::make_unexpected(ready.error());
@@ -32,7 +55,8 @@ Result<void> Results::go_on(const Heading& heading) {
   const auto table = read_table(file_);
   if (!table)
     return fail(Errc::bad_config,
-                table.error().what + "; give another file with -o, or overwrite it with --fresh");
+                table.error().what + "; give another file with -o" +
+                    (may_be_discarded(fd_.get()) ? ", or overwrite it with --fresh" : ""));
   const bool no_columns = table->heading.columns.empty() && table->rows.empty();
   const bool begun = !table->heading.stamp.empty();
   if (begun &&
@@ -58,11 +82,25 @@ Result<void> Results::go_on(const Heading& heading) {
 
 Result<void> Results::append(const Row& row) {
   const std::lock_guard lock(mutex_);
+  if (state_) state_ = check_in_place();
   if (state_) state_ = write(print_row(row));
   return state_;
 }
 
+/// The open file must still be the one of that name: rows of another would be lost.
+Result<void> Results::check_in_place() const {
+  struct stat opened {
+  }, named{};
+  if (fstat(fd_.get(), &opened) == 0 && stat(file_.c_str(), &named) == 0 &&
+      opened.st_dev == named.st_dev && opened.st_ino == named.st_ino)
+    return {};
+  return fail(Errc::unavailable,
+              fmt::format("{}: another program removed or replaced the file during the sweep",
+                          file_.string()));
+}
+
 Result<void> Results::sort() {
+  if (auto in_place = check_in_place(); !in_place) return in_place;
   auto table = read_table(file_);
   if (!table) return tl::make_unexpected(table.error());
   return write_table(file_, *table);

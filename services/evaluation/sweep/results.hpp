@@ -10,13 +10,17 @@
 
 namespace handcast::sweep {
 
+/// Opens a file of results, or creates it, and locks it as long as the descriptor is open. Errors:
+/// bad_config (it cannot be written), unavailable (another process has locked it).
+Result<UniqueFd> lock_results(const std::filesystem::path& file);
+
 /// The output file of a sweep: a complete line per finished run. An interrupted sweep continues in
 /// the same file and repeats the runs that failed. The file is locked: one process at a time.
 class Results {
  public:
-  /// Opens the file, or creates it and its folder. If `fresh`, its content is discarded. Errors:
-  /// bad_config (the file cannot be written, or does not hold results of `heading`), unavailable
-  /// (another process is writing it).
+  /// Opens the file, or creates it and its folder. If `fresh`, results that it holds are discarded.
+  /// Errors: bad_config (the file cannot be written, or does not hold results of `heading`, or, if
+  /// `fresh`, of a sweep), unavailable (another process is writing it).
   static Result<std::unique_ptr<Results>> open(const std::filesystem::path& file,
                                                const Heading& heading, bool fresh);
 
@@ -24,7 +28,7 @@ class Results {
   const std::set<std::size_t>& done() const { return done_; }
 
   /// Appends a line. Thread-safe. Errors: unavailable (e.g. the disk is full); then all later calls
-  /// fail too.
+  /// fail too, and if the file was replaced.
   Result<void> append(const Row& row);
 
   /// Sorts the lines by run and keeps the newest of each run. Must be the last call. Errors: those
@@ -35,6 +39,7 @@ class Results {
   Results(std::filesystem::path file, UniqueFd fd) : file_(std::move(file)), fd_(std::move(fd)) {}
   Result<void> go_on(const Heading& heading);
   Result<void> write(const std::string& text);
+  Result<void> check_in_place() const;
 
   std::filesystem::path file_;
   UniqueFd fd_;  ///< in append mode, and locked

@@ -30,12 +30,18 @@ Result<nlohmann::json> score(const Plan& plan, const Run& run) try {
   if (!rig) return tl::make_unexpected(rig.error());
   const auto calibration = calib::load_calibration(rig->calibration, rig->projector.packing);
   if (!calibration) return tl::make_unexpected(calibration.error());
-  return simulate::score(*rig, *calibration, options_of(plan));
+  const auto options = options_of(plan);
+  auto metrics = simulate::score(*rig, *calibration, options);
+  if (!metrics) return metrics;
+  if (auto why = simulate::why_nothing_was_scored(*metrics, options); !why.empty())
+    return fail(Errc::bad_config, std::move(why));
+  return metrics;
 } catch (const std::exception& problem) {
   return fail(Errc::unavailable, problem.what());
 }
 
-/// The runs of the shard that must be done. Prints those whose motion is absent, a line per folder.
+/// The runs of the shard that must be done. Prints those whose motion or hand is absent, a line for
+/// each.
 std::vector<const Run*> to_do(const Plan& plan, const std::vector<Run>& runs, const Work& work,
                               const Results& results, Outcome& outcome) {
   std::vector<const Run*> todo;

@@ -10,6 +10,7 @@
 
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
+#include "services/evaluation/twin/flesh_model.hpp"
 
 namespace handcast::sweep {
 namespace {
@@ -120,6 +121,8 @@ std::string describe_run(const Plan& plan, const Run& run) {
 }
 
 std::optional<std::string> why_absent(const config::Rig& rig) {
+  if (rig.twin.shape.mesh == "webxr" && twin::webxr_hand_file().empty())
+    return "twin.shape.mesh: WebXR's hand is not installed (`scripts/setup --hands`)";
   const auto& motion = rig.twin.motion;
   std::error_code unknown;
   const auto kind = std::filesystem::status(motion, unknown).type();

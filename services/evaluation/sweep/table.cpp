@@ -7,7 +7,7 @@
 #include <charconv>
 #include <map>
 
-#include "config/settings/files.hpp"
+#include "ipc/base/input_file.hpp"
 #include "ipc/base/write_whole.hpp"
 
 namespace handcast::sweep {
@@ -80,7 +80,7 @@ Row parse_row(std::string_view line) {
 std::size_t Table::index_of(const Row& row) { return std::stoul(row.front()); }
 
 Result<Table> read_table(const std::filesystem::path& file) {
-  const auto text = config::read_text(file);
+  const auto text = read_input(file, kMostResults);
   if (!text) return tl::make_unexpected(text.error());
   Table table;
   std::size_t line = 1;
@@ -98,8 +98,7 @@ Result<Table> read_table(const std::filesystem::path& file) {
     }
   }
   table.torn = text->substr(table.whole_bytes);
-  if (line > 1 &&
-      (!table.heading.stamp.starts_with("# handcast sweep ") || table.heading.runs() == 0))
+  if (line > 1 && (!table.heading.stamp.starts_with(kStampStart) || table.heading.runs() == 0))
     return fail(Errc::bad_data,
                 fmt::format("{}: the file does not hold results of a sweep", file.string()));
   return table;

@@ -10,6 +10,9 @@
 
 namespace handcast::sweep {
 
+/// With this each file of results begins.
+inline constexpr std::string_view kStampStart = "# handcast sweep ";
+
 /// The cells of one line of the CSV: index, variant, axes (empty if not in the run's grid), metrics
 /// (empty if not measured), error.
 using Row = std::vector<std::string>;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/twin/flesh_model.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <utility>
 
@@ -26,6 +28,17 @@ FleshModel of_side(renderer::HandMesh left, renderer::Side side) {
   return {side == renderer::Side::left ? std::move(left) : mirrored(std::move(left)), false};
 }
 
+/// True if a tip lies on the joint before it, as load_hand() places one that is missing.
+bool lacks_tips(const renderer::HandMesh& hand) {
+  for (std::size_t joint = 0; joint < hand.rest.size(); ++joint) {
+    if (!renderer::kJointNames[joint].ends_with("-tip")) continue;
+    const auto before = static_cast<std::size_t>(renderer::kJointParent[joint]);
+    if (glm::distance(glm::vec3(hand.rest[joint][3]), glm::vec3(hand.rest[before][3])) < 1e-3f)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::filesystem::path webxr_hand_file() {
@@ -45,6 +58,11 @@ Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::Han
   }
   auto left = renderer::load_hand(file, renderer::Side::left);
   if (!left) return tl::make_unexpected(left.error());
+  if (lacks_tips(*left))
+    return fail(Errc::bad_config,
+                fmt::format("twin.shape.mesh: {} has no joints at the finger tips, so that the "
+                            "lengths of its last phalanges are unknown",
+                            file.string()));
   return of_side(std::move(*left), drawn.side);
 }
 

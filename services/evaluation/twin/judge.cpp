@@ -85,7 +85,8 @@ class RigJudge final : public Judge {
       }
   }
 
-  /// Counts the light beside hands and arms by blocks, for the hand nearest to the block's centre, if there is a hand.
+  /// Counts the light beside hands and arms by blocks, for the hand nearest to the block's centre,
+  /// if there is a hand.
   void count_spill(const Rect& area, FrameScore& score) const {
     constexpr int kBlock = 16;
     for (int top = area.y0; top < area.y1; top += kBlock)

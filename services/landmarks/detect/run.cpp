@@ -30,8 +30,9 @@ Times median_of(std::vector<Times>& runs) {
   return median;
 }
 
-/// The files of the pictures' drawings, all different.
-std::vector<fs::path> drawings_of(const Options& options) {
+/// The files of the pictures' drawings, all different. Errors: bad_config (one of them is a picture
+/// that is read).
+handcast::Result<std::vector<fs::path>> drawings_of(const Options& options) {
   std::vector<fs::path> drawings;
   std::set<std::string> taken;
   for (const auto& image : options.images) {
@@ -40,6 +41,13 @@ std::vector<fs::path> drawings_of(const Options& options) {
     for (int number = 2; !taken.insert(name).second; ++number)
       name = fmt::format("{}_{}.png", stem, number);
     drawings.push_back(options.output / name);
+    std::error_code absent;
+    for (const auto& read : options.images)
+      if (!options.output.empty() && fs::equivalent(drawings.back(), read, absent))
+        return fail(Errc::bad_config,
+                    fmt::format("--out {}: the drawing would replace the picture {}; name another "
+                                "folder",
+                                options.output.string(), read.string()));
   }
   return drawings;
 }
@@ -109,18 +117,19 @@ handcast::Result<std::string> run(const Options& options) {
         fmt::format(
             "{} pictures, but {} files of joints; give one --joints per picture, in the same order",
             options.images.size(), options.joints.size()));
+  const auto drawings = drawings_of(options);
+  if (!drawings) return tl::make_unexpected(drawings.error());
   auto model = open_model(options);
   if (!model) return tl::make_unexpected(model.error());
   landmarks::HandFinder finder(std::move(*model), options.hands);
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
-  const auto drawings = drawings_of(options);
   std::vector<Result> results;
   std::string text;
   for (std::size_t i = 0; i < options.images.size(); ++i) {
     if (shows_progress)
       fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(),
                  options.images[i].filename().string());
-    auto result = detect_in(finder, options, i, drawings[i]);
+    auto result = detect_in(finder, options, i, (*drawings)[i]);
     if (!result) return fail_in(options.images[i].string(), result.error());
     if (!options.json) text += print_text(*result);
     results.push_back(std::move(*result));

@@ -171,6 +171,23 @@ TEST_F(HandFile, AMeshThatIsNotInMetresIsRefused) {
   }
 }
 
+TEST_F(HandFile, JointsInOnePlaceAreRefused) {
+  HandMesh hand = mean_hand(Side::left);
+  constexpr int kIndexIntermediate = 8;
+  hand.rest[kIndexIntermediate][3] = hand.rest[kIndexIntermediate - 1][3];
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(
+      refusal(path("odd.glb")),
+      HasSubstr("index-finger-phalanx-proximal and index-finger-phalanx-intermediate lie in one"));
+}
+
+TEST_F(HandFile, VerticesWithoutAJointAreRefused) {
+  HandMesh hand = mean_hand(Side::left);
+  for (auto& weight : hand.weights) weight = {};
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("vertices are not bound to a joint"));
+}
+
 TEST_F(HandFile, TrianglesThatWouldTakeForeverToDrawAreRefused) {
   HandMesh hand = mean_hand(Side::left);
   std::array<std::uint16_t, 3> large{};

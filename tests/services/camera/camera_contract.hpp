@@ -118,7 +118,8 @@ TEST_P(CameraContract, FramesNobodyFetchedAreSkippedNotQueued) {
   sleep_until_ns(away_until_ns);
   ASSERT_TRUE(capture(Deadline::in(5s)));
   EXPECT_GE(frame().header.frame_id, first.frame_id + 10);
-  // From a queue it would be 300 ms old. On a busy machine a controller's image is on its way for 60 ms.
+  // From a queue it would be 300 ms old. On a busy machine a controller's image is on its way for
+  // 60 ms.
   EXPECT_GE(frame().header.origin_ns, away_until_ns - to_ns(150ms));
 }
 

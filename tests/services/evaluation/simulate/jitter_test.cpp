@@ -42,7 +42,8 @@ TEST(Jitter, AWobbleThatPeopleSeeIsReadInFull) {
 TEST(Jitter, WhatIsSlowerOrFasterThanTremblingIsNotJitter) {
   EXPECT_LT(*jitter_of(946, 10, wobble(0.1)), 0.1);
   EXPECT_LT(*jitter_of(946, 5, wobble(200)), 0.1);
-  // The rates of the paper's detector, the tracker and our network, as config/sweeps/jitter.toml samples them.
+  // The rates of the paper's detector, the tracker and our network, as config/sweeps/jitter.toml
+  // samples them.
   for (const double hz : {61.7, 110.6, 200.0})
     EXPECT_LT(*jitter_of(946.0 / 3, 5, wobble(hz)), 0.3) << hz << " Hz";
   EXPECT_EQ(*jitter_of(118, 2, [](double) { return glm::dvec2(7, -3); }), 0)

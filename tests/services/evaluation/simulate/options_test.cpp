@@ -34,6 +34,12 @@ TEST(SimulateOptions, ANumberOutOfRangeSaysTheRange) {
   EXPECT_THAT(options.error().what, HasSubstr("'soon' is not a number from"));
 }
 
+TEST(SimulateOptions, ACountIsAWholeNumber) {
+  const auto options = parse({"rig.toml", "--draw-every", "0.4"});
+  ASSERT_FALSE(options);
+  EXPECT_THAT(options.error().what, HasSubstr("--draw-every: '0.4' is not a whole number"));
+}
+
 TEST(SimulateOptions, WithoutARigItSaysWhatToType) {
   const auto options = parse({});
   ASSERT_FALSE(options);

@@ -43,7 +43,7 @@ class Recorder : public testing::Test {
   Recorder() {
     auto feed = std::make_unique<MadeUpFeed>();
     feed_ = feed.get();
-    recorder_ = std::make_unique<RecordingFeed>(std::move(feed), kCamera, folder_.path());
+    recorder_ = *RecordingFeed::create(std::move(feed), kCamera, folder_.path());
   }
 
   /// Adds a message of poses and one of landmarks, both sampled at `ms`.
@@ -154,8 +154,7 @@ TEST_F(Recorder, RemovesAnEarlierRecordingAndNothingElse) {
                           "camera/000001.jpg", "000001.png", "notes.npy"})
     std::ofstream(folder_.path() / own) << "mine";
   EXPECT_GT(files_in(folder_.path()).size(), 15u);
-  recorder_ =
-      std::make_unique<RecordingFeed>(std::make_unique<MadeUpFeed>(), kCamera, folder_.path());
+  recorder_ = *RecordingFeed::create(std::make_unique<MadeUpFeed>(), kCamera, folder_.path());
   EXPECT_THAT(
       files_in(folder_.path()),
       testing::UnorderedElementsAre("camera/0001.png", "camera/1000000.png", "camera/00000a.png",
@@ -173,6 +172,28 @@ TEST(Frames, OfAnEarlierRunAreRemovedAndOtherFilesLeft) {
   ASSERT_TRUE(done) << done.error().what;
   EXPECT_THAT(files_in(folder.path()), testing::UnorderedElementsAre("000000.png", "hand.png"));
   EXPECT_GT(std::filesystem::file_size(folder.path() / "000000.png"), 100u);
+}
+
+TEST(Recording, IsNotReplacedWhileItIsPlayed) {
+  const test::Scratch folder;
+  Options options = options_of("baseline", 0.1);
+  add_settings(options, {"camera.rate_hz=100"});
+  options.draw_every = 0;
+  options.record_directory = folder.path().string();
+  ASSERT_TRUE(run(options));
+  const auto recorded = files_in(folder.path());
+  auto again = options_of("baseline", 0.1);
+  add_settings(again, {"twin.motion=" + folder.path().string()});
+  auto same = again, pictures = again;
+  same.record_directory = (folder.path() / ".").string();
+  pictures.frames_directory = (folder.path() / "camera").string();
+  for (const auto& refused : {same, pictures}) {
+    const auto done = run(refused);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().code, Errc::bad_config);
+    EXPECT_THAT(done.error().what, testing::HasSubstr("name another folder"));
+    EXPECT_EQ(files_in(folder.path()), recorded);
+  }
 }
 
 TEST(Recording, OfARigThatLooksAtNoImageHoldsThemAllTheSame) {

@@ -156,14 +156,14 @@ TEST(Recording, LandmarksSurviveDetectionsThatFoundNothing) {
   }
 }
 
-TEST(Recording, APictureThatCannotBeWrittenIsSaid) {
+TEST(Recording, AFolderThatCannotBeCreatedIsSaidBeforeTheRun) {
   const test::Scratch folder;
   std::ofstream(folder.path() / "camera") << "a file instead of the folder of the pictures";
-  Options options = options_of("twin", 0.1);
+  Options options = options_of("twin", 1000);
   options.record_directory = folder.path().string();
   const auto done = run(options);
   ASSERT_FALSE(done);
-  EXPECT_THAT(done.error().what, testing::HasSubstr("cannot be written"));
+  EXPECT_THAT(done.error().what, testing::HasSubstr("cannot be created"));
 }
 
 Options short_run() {

@@ -123,6 +123,34 @@ TEST(Plan, AWrongSharedSettingIsNamedWithItsOwnFileAndLine) {
   EXPECT_THAT(with("nowhere.toml"), HasSubstr((folder.path() / "nowhere.toml").string()));
 }
 
+TEST(Plan, AHandsMeshIsAFileOfThePlansFolderOrAWord) {
+  for (const auto& [written, read] : {std::pair{"webxr", "webxr"}, {"my.glb", "/plans/my.glb"}}) {
+    const auto plan = plan_of(fmt::format("[grid]\ntwin.shape.mesh = [\"{}\"]\n", written));
+    ASSERT_TRUE(plan) << plan.error().what;
+    EXPECT_EQ(rig_of(*plan, expand(*plan)->runs[0])->twin.shape.mesh, read);
+  }
+}
+
+TEST(Plan, AListOfTextsKeepsItsQuotes) {
+  const auto plan = plan_of("[settings]\ncamera.v4l2.controls = [\"gain=1\", \"exposure=2\"]\n");
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto rig = rig_of(*plan, expand(*plan)->runs[0]);
+  ASSERT_TRUE(rig) << rig.error().what;
+  EXPECT_THAT(rig->camera.v4l2.controls, ElementsAre("gain=1", "exposure=2"));
+}
+
+TEST(Plan, EmptyListsAndPathsWithoutEndAreRefused) {
+  std::string deep = "a";
+  for (int i = 0; i < 100'000; ++i) deep += ".a";
+  for (const auto& [text, why] : {std::pair{std::string("grid = []\n"), "nothing to run"},
+                                  {"variant = []\n", "nothing to run"},
+                                  {"[settings]\n\"" + deep + "\" = 1\n", "no such setting"}}) {
+    const auto plan = plan_of(text);
+    ASSERT_FALSE(plan);
+    EXPECT_THAT(plan.error().what, HasSubstr(why));
+  }
+}
+
 TEST(Plan, SeveralGridsAreRunOneAfterTheOther) {
   const auto plan = plan_of(
       "[[grid]]\ntwin.tracker.age_ms = [5, 40]\n[[grid]]\ntwin.speed = [2]\ntwin.tracker.dropout = "

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "services/evaluation/sweep/merge.hpp"
@@ -199,6 +200,52 @@ TEST_F(ResultsTest, FilesOfTwoPlansAreNotMerged) {
   const auto refused = merge({mine, other}, file("merged.csv"));
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, HasSubstr("different plans"));
+}
+
+TEST_F(ResultsTest, FreshDiscardsResultsAndNothingElse) {
+  written("old.csv", {row(1, 1)});
+  ASSERT_TRUE(Results::open(file("old.csv"), heading_, true));
+  EXPECT_TRUE(read_table(file("old.csv"))->rows.empty());
+  std::ofstream(file("notes.txt")) << "my notes";
+  const auto refused = Results::open(file("notes.txt"), heading_, true);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("is left as it is"));
+  EXPECT_EQ(text_of(file("notes.txt")), "my notes");
+}
+
+TEST_F(ResultsTest, AFileThatIsReplacedDuringTheSweepIsSaid) {
+  auto results = Results::open(file("a.csv"), heading_, false);
+  ASSERT_TRUE((*results)->append(row(0, 1)));
+  std::filesystem::rename(file("a.csv"), file("b.csv"));
+  std::ofstream(file("a.csv")) << "another";
+  for (const auto& done : {(*results)->append(row(1, 1)), (*results)->sort()}) {
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().code, Errc::unavailable);
+    EXPECT_THAT(done.error().what, HasSubstr("replaced the file"));
+  }
+  EXPECT_EQ(text_of(file("a.csv")), "another");
+}
+
+TEST_F(ResultsTest, AMergeLosesNoRunOfTheFileThatItReplaces) {
+  const auto fuller = written("all.csv", {row(0, 1), row(3, 1), row(4, 1)});
+  const auto before = text_of(fuller);
+  const auto shard = written("shard.csv", {row(0, 1)});
+  const auto refused = merge({shard}, fuller);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("no merged file has (3-4)"));
+  std::ofstream(file("notes.txt")) << "my notes";
+  EXPECT_FALSE(merge({shard}, file("notes.txt")));
+  EXPECT_EQ(text_of(fuller), before);
+  EXPECT_EQ(text_of(file("notes.txt")), "my notes");
+  EXPECT_TRUE(merge({shard, fuller}, fuller));
+}
+
+TEST_F(ResultsTest, AFileThatASweepWritesIsNotMergedInto) {
+  const auto shard = written("shard.csv", {row(0, 1)});
+  const auto sweep = Results::open(file("all.csv"), heading_, false);
+  const auto refused = merge({shard}, file("all.csv"));
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("another sweep is writing"));
 }
 
 }  // namespace

@@ -104,6 +104,15 @@ TEST_F(SweepTest, ARunThatThrowsIsALineAndTheOthersGoOn) {
   EXPECT_THAT(read_table(file("a.csv"))->rows[0].back(), HasSubstr(motion.string()));
 }
 
+TEST_F(SweepTest, ARunWithoutAHandHasFailed) {
+  const auto outcome = sweep(
+      "joints_only = true\nseconds = 0.1\nsettings.twin.hands = \"right\"\n[grid]\ntwin.motion = "
+      "[\"builtin:still\"]\n",
+      "a.csv");
+  EXPECT_EQ(outcome.failed, 1u);
+  EXPECT_THAT(read_table(file("a.csv"))->rows[0].back(), HasSubstr("there is nothing to score"));
+}
+
 TEST_F(SweepTest, AMotionThatIsNotThereIsLeftOut) {
   testing::internal::CaptureStderr();
   const auto outcome = sweep(

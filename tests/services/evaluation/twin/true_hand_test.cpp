@@ -5,8 +5,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
+#include "renderer/hand/maker/glb_write.hpp"
 #include "services/evaluation/twin/flesh_model.hpp"
 #include "services/evaluation/twin/surface.hpp"
+#include "tests/scratch.hpp"
 #include "tests/services/evaluation/twin/world.hpp"
 
 namespace handcast::twin {
@@ -120,6 +122,17 @@ TEST(TrueHand, PeopleDifferInWhatTheSettingsName) {
   EXPECT_EQ(of(taper).width[7], 1) << "a finger tapers from its root";
   EXPECT_NE(of(taper).width[kIndexTip], 1);
   EXPECT_NE(of(roll).roll_rad[1], of(roll).roll_rad[2]);
+}
+
+TEST(TrueHand, AModelWithoutTipsIsRefused) {
+  const test::Scratch folder;
+  HandMesh hand = drawn_hand();
+  hand.rest[kIndexTip] = hand.rest[kIndexDistal];
+  ASSERT_TRUE(renderer::save_hand(hand, folder.path() / "hand.glb"));
+  const auto model = load_flesh_model((folder.path() / "hand.glb").string(), drawn_hand());
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().code, Errc::bad_config);
+  EXPECT_THAT(model.error().what, testing::HasSubstr("no joints at the finger tips"));
 }
 
 /// Tests of every mesh that is not the drawn one.

@@ -98,6 +98,20 @@ TEST_F(Detect, ANumberedDrawingIsNotDrawnOverByAPictureOfThatName) {
   EXPECT_EQ(std::distance(fs::directory_iterator(options_.output), {}), 3);
 }
 
+TEST_F(Detect, APictureIsNotReplacedByItsDrawing) {
+  const auto picture = scratch_.path() / "hand.png";
+  fs::copy_file(options_.images[0], picture);
+  const auto bytes = fs::file_size(picture);
+  options_.images = {picture};
+  options_.joints.resize(1);
+  options_.output = scratch_.path() / ".";
+  const auto text = run(options_);
+  ASSERT_FALSE(text);
+  EXPECT_EQ(text.error().code, Errc::bad_config);
+  EXPECT_THAT(text.error().what, HasSubstr("would replace the picture"));
+  EXPECT_EQ(fs::file_size(picture), bytes);
+}
+
 TEST_F(Detect, ANameThatIsNotUtf8IsPrintedAsJsonAllTheSame) {
   fs::copy_file(options_.images[0], scratch_.path() / "caf\xe9.png");
   options_.images = {scratch_.path() / "caf\xe9.png"};
