@@ -160,9 +160,11 @@ struct Content {
 
 template <class Visitor>
 void describe(Visitor& visitor, Content& content) {
-  visitor.field("left", content.left,
-                "The picture on the left hand: a PNG file in the texture layout of the hand, or "
-                "builtin:atlas, builtin:checker, builtin:skeleton, builtin:white.");
+  visitor.field(
+      "left", content.left,
+      "The picture on the left hand: a PNG or JPEG file in the layout that `handcast template` "
+      "writes, or "
+      "builtin:atlas, builtin:checker, builtin:skeleton, builtin:white.");
   visitor.field("right", content.right, "The same for the right hand.");
   visitor.field(
       "shading", content.shading, between(0, 1),

@@ -13,9 +13,10 @@ install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
+install(DIRECTORY config/rigs DESTINATION ${CMAKE_INSTALL_DOCDIR}/config)
 foreach(file
-    config/REFERENCE.md config/assets/preview.png config/assets/readme.png ipc/ring/README.md
-    services/landmarks/training/MODEL_CARD.md
+    config/REFERENCE.md config/assets/leap/bring_up.txt config/assets/preview.png config/assets/readme.png ipc/ring/README.md
+    renderer/README.md scripts/read_recording.py services/landmarks/training/MODEL_CARD.md
     tests/client/CMakeLists.txt tests/client/read_projections.cpp)
   cmake_path(GET file PARENT_PATH folder)
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})

@@ -33,7 +33,7 @@ Finding calibration_of(const config::Rig& rig) {
   if (rig.calibration.empty() && is_real)
     return {"calibration", Grade::fault,
             "a real camera with the calibration of the reference rig: the light will miss the hand",
-            "make one with `handcast calibrate`"};
+            "make one with `handcast calibrate RIG.toml --camera WxH --projector WxH --apply`"};
   if (rig.calibration.empty())
     return {"calibration", Grade::good, "that of the reference rig, which the twin has", ""};
   const auto calibration = calib::load_calibration(rig.calibration);

@@ -106,6 +106,9 @@ constexpr std::array kVerbs{
         "  --check      what `handcast up` would refuse: settings, back ends, and the files that\n"
         "               the services open; devices, outputs and ports are not opened\n"
         "  --reference  the page config/REFERENCE.md\n"},
+    VerbEntry{"template", "template DIR [--rig RIG.toml] [--width PX]",
+              "Writes templates for the pictures that are cast on the hands.", nullptr,
+              Group::set_up},
     VerbEntry{"simulate", "simulate ...", "Scores a rig in virtual time against its digital twin.",
               nullptr, Group::score},
     VerbEntry{"sweep", "sweep ...",

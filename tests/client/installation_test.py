@@ -27,7 +27,7 @@ PATIENCE_S = 60  # ends what hangs
 PROGRAMS = {"handcast", "handcast-camera", "handcast-camera2", "handcast-pose", "handcast-landmarks", "handcast-landmarks2",
             "handcast-projector", "handcast-observer", "handcast-simulate", "handcast-sweep",
             "handcast-detect", "handcast-report", "handcast-chart", "handcast-devices",
-            "handcast-doctor", "handcast-init", "handcast-record", "handcast-calibrate"}
+            "handcast-doctor", "handcast-init", "handcast-record", "handcast-calibrate", "handcast-template"}
 OPTIONAL = {"handcast-dlp", "handcast-exporter", "handcast-preview"}
 LINE = re.compile(r"frame (\d+) for ([\d.]+) ms:(?: image ([\d.]+) ms)?"
                   r"(?: pose ([\d.]+) ms)?(?: landmarks ([\d.]+) ms)? old")

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/picture/template.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "renderer/content/chart_map.hpp"
+#include "renderer/content/picture.hpp"
+#include "renderer/content/textures.hpp"
+
+namespace handcast::picture {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint8_t kPaper = 255, kBorder = 0, kBone = 150;
+constexpr int kBorder_px = 2;
+
+/// True if the texel and its right or lower neighbour, on one chart, belong to different bones.
+bool is_between_bones(const renderer::ChartMap& charts, int x, int y, int width, int height) {
+  const auto& here = charts.at(x, y);
+  const auto differs = [&](int to_x, int to_y) {
+    if (to_x >= width || to_y >= height) return false;
+    const auto& there = charts.at(to_x, to_y);
+    return there.chart == here.chart && there.joint != here.joint;
+  };
+  return differs(x + 1, y) || differs(x, y + 1);
+}
+
+struct Hand {
+  renderer::Side side;
+  const char* name;
+  const std::string& file;
+};
+
+/// The two pictures of a hand and their files.
+Result<void> write_hand(const Hand& hand, const fs::path& folder, int width_px,
+                        std::vector<fs::path>& written) {
+  const auto mesh = renderer::load_hand_or_default(hand.file, hand.side);
+  if (!mesh) return tl::make_unexpected(mesh.error());
+  const auto atlas = renderer::load_content("builtin:atlas", *mesh);
+  if (!atlas) return tl::make_unexpected(atlas.error());
+  const auto coloured = folder / fmt::format("{}.png", hand.name);
+  if (auto saved = renderer::write_png(coloured, atlas->view()); !saved) return saved;
+  written.push_back(coloured);
+  const auto lines = folder / fmt::format("{}_lines.png", hand.name);
+  if (auto saved = renderer::write_png(lines, line_drawing(*mesh, width_px)); !saved) return saved;
+  written.push_back(lines);
+  return {};
+}
+
+/// Checks that no file would be replaced: people paint on them.
+Result<void> check_nothing_is_there(const fs::path& folder) {
+  std::error_code unknown;
+  for (const char* name : {"left.png", "left_lines.png", "right.png", "right_lines.png"})
+    if (fs::exists(folder / name, unknown))
+      return fail(Errc::bad_config,
+                  fmt::format("{} exists and is left as it is; name another folder",
+                              (folder / name).string()));
+  return {};
+}
+
+}  // namespace
+
+renderer::Image<std::uint8_t> line_drawing(const renderer::HandMesh& hand, int width_px) {
+  const int height_px = width_px / kProportionWidth * kProportionHeight;
+  const renderer::ChartMap charts(hand, width_px, height_px);
+  renderer::Image<std::uint8_t> drawing(width_px, height_px, kPaper);
+  for (int y = 0; y < height_px; ++y)
+    for (int x = 0; x < width_px; ++x) {
+      const auto& texel = charts.at(x, y);
+      if (texel.chart == 0) continue;
+      if (texel.edge_px <= kBorder_px)
+        drawing.at(x, y) = kBorder;
+      else if (is_between_bones(charts, x, y, width_px, height_px))
+        drawing.at(x, y) = kBone;
+    }
+  return drawing;
+}
+
+Result<std::vector<fs::path>> write_templates(const config::Hand& hands, const fs::path& folder,
+                                              int width_px) {
+  if (auto free = check_nothing_is_there(folder); !free) return tl::make_unexpected(free.error());
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed)
+    return fail(Errc::bad_config, fmt::format("the folder {} cannot be created: {}",
+                                              folder.string(), failed.message()));
+  std::vector<fs::path> written;
+  for (const Hand& hand : {Hand{renderer::Side::left, "left", hands.left},
+                           Hand{renderer::Side::right, "right", hands.right}})
+    if (auto done = write_hand(hand, folder, width_px, written); !done)
+      return tl::make_unexpected(done.error());
+  return written;
+}
+
+}  // namespace handcast::picture
