@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <map>
 #include <string_view>
 
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
+#include "ipc/base/input_file.hpp"
 #include "services/evaluation/twin/flesh_model.hpp"
 
 namespace handcast::sweep {
@@ -31,16 +33,40 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325u;
 };
 
-/// The settings of a rig with the absolute paths made relative to `folder`.
-std::string without_machine(config::Rig rig, const std::filesystem::path& folder) {
+/// Hashes of the files that rigs name; each file is read once. Folders (recordings, networks) and
+/// what cannot be read have none: the run itself reports the reason.
+class Contents {
+ public:
+  const std::string& of(const std::string& file) {
+    const auto [known, is_new] = hashes_.try_emplace(file);
+    std::error_code absent;
+    if (!is_new || !std::filesystem::is_regular_file(file, absent)) return known->second;
+    if (const auto bytes = read_input(file, kMostMesh)) {
+      Hash hash;
+      hash.add(*bytes);
+      known->second = hash.print();
+    }
+    return known->second;
+  }
+
+ private:
+  std::map<std::string, std::string> hashes_;
+};
+
+/// The settings of a rig with the absolute paths made relative to `folder`, and what is in the
+/// files.
+std::string without_machine(config::Rig rig, const std::filesystem::path& folder,
+                            Contents& contents) {
+  std::string hashes;
   for (const auto& section : config::list_settings(rig))
     for (const auto& setting : section.settings) {
       if (!config::names_a_file(setting.path)) continue;
       auto& text = *std::get<std::string*>(setting.target);
-      if (std::filesystem::path(text).is_absolute())
-        text = std::filesystem::path(text).lexically_relative(folder).string();
+      if (!std::filesystem::path(text).is_absolute()) continue;
+      hashes += contents.of(text) + '\n';
+      text = std::filesystem::path(text).lexically_relative(folder).string();
     }
-  return config::print_rig(rig);
+  return config::print_rig(rig) + hashes;
 }
 
 /// Advances to the next combination; returns false after the last.
@@ -96,13 +122,14 @@ Result<Expansion> expand(const Plan& plan) {
   const auto folder = std::filesystem::absolute(plan.file).parent_path().lexically_normal();
   Hash hash;
   hash.add(fmt::format("{} {} {}", plan.seconds, plan.warm_up_s, plan.draw_every));
+  Contents contents;
   config::Faults faults;
   std::vector<std::string> known;
   for (const auto& run : *runs) {
     const auto rig = rig_of(plan, run);
     if (rig) {
       hash.add(describe_run(plan, run));
-      hash.add(without_machine(*rig, folder));
+      hash.add(without_machine(*rig, folder, contents));
     } else if (std::ranges::find(known, rig.error().what) == known.end()) {
       known.push_back(rig.error().what);
       faults.add(fmt::format("{}: run {} ({}): {}", plan.file.string(), run.index,

@@ -267,6 +267,15 @@ TEST(Fingerprint, ChangesWithTheRigFile) {
   EXPECT_NE(before, fingerprint_of("rig = \"rig.toml\"\n", scratch.path() / "plan.toml"));
 }
 
+TEST(Fingerprint, ChangesWithTheFilesThatTheRigNames) {
+  const test::Scratch scratch;
+  write_text(scratch.path() / "rig.toml", "calibration = \"rig.cal\"\n");
+  write_text(scratch.path() / "rig.cal", "one");
+  const auto before = fingerprint_of("rig = \"rig.toml\"\n", scratch.path() / "plan.toml");
+  write_text(scratch.path() / "rig.cal", "another");
+  EXPECT_NE(before, fingerprint_of("rig = \"rig.toml\"\n", scratch.path() / "plan.toml"));
+}
+
 TEST(Fingerprint, IsTheSameWhereverThePlanLies) {
   const test::Scratch here, there;
   for (const auto* folder : {&here, &there})
