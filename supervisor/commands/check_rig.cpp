@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,6 +19,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/daemon/check_word.hpp"
+#include "supervisor/base/spawn.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/spec/service_spec.hpp"
 
@@ -55,26 +55,19 @@ Result<Outcome> run_and_read(const std::vector<std::string>& command, double pat
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return fail(Errc::unavailable, std::strerror(errno));
   const UniqueFd output(ends[0]);
   UniqueFd input(ends[1]);
-  std::vector<char*> words;
-  words.reserve(command.size() + 1);
-  for (const auto& word : command) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, input.get(), STDOUT_FILENO);
-  pid_t pid = 0;
-  const int error = posix_spawn(&pid, words[0], &actions, nullptr, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0)
-    return fail(Errc::bad_config,
-                fmt::format("{}: cannot be started: {}", command.front(), std::strerror(error)));
+  SpawnFiles files;
+  files.give(input.get(), STDOUT_FILENO);
+  const auto pid = spawn(command, files);
+  if (!pid)
+    return fail(Errc::bad_config, fmt::format("{}: cannot be started: {}", command.front(),
+                                              std::strerror(pid.error())));
   input.reset();
   const auto printed =
       read_all(output.get(), Deadline::in(std::chrono::nanoseconds(seconds_to_ns(patience_s))));
-  if (!printed) kill(pid, SIGKILL);
+  if (!printed) kill(*pid, SIGKILL);
   Outcome outcome{printed.value_or("")};
   int status = 0;
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  while (waitpid(*pid, &status, 0) < 0 && errno == EINTR) {
   }
   if (!printed)
     return fail(Errc::bad_config, fmt::format("{}: its check did not end within {:g} s",

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/words.hpp"
 #include "supervisor/base/pidfd.hpp"
+#include "supervisor/base/spawn.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -102,24 +102,14 @@ Result<Plan> make_plan(const ChildSpec& spec) {
   return plan;
 }
 
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  pointers.reserve(texts.size() + 1);
-  for (auto& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
 /// The file actions and attributes of posix_spawn().
 class SpawnActions {
  public:
   explicit SpawnActions(const Plan& plan) {
-    posix_spawn_file_actions_init(&files_);
-    posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&files_, plan.log.write.get(), STDERR_FILENO);
-    for (const int fd : plan.inherited)
-      posix_spawn_file_actions_adddup2(&files_, fd, fd);  // onto itself: clears FD_CLOEXEC
+    files_.close_input();
+    files_.give(plan.log.write.get(), STDOUT_FILENO);
+    files_.give(plan.log.write.get(), STDERR_FILENO);
+    for (const int fd : plan.inherited) files_.inherit(fd);
 
     sigset_t none, stops;
     sigemptyset(&none);
@@ -131,17 +121,14 @@ class SpawnActions {
     posix_spawnattr_setflags(&attributes_,
                              POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   }
-  ~SpawnActions() {
-    posix_spawn_file_actions_destroy(&files_);
-    posix_spawnattr_destroy(&attributes_);
-  }
+  ~SpawnActions() { posix_spawnattr_destroy(&attributes_); }
   SpawnActions(const SpawnActions&) = delete;
 
-  const posix_spawn_file_actions_t* files() const { return &files_; }
+  const posix_spawn_file_actions_t* files() const { return files_.get(); }
   const posix_spawnattr_t* attributes() const { return &attributes_; }
 
  private:
-  posix_spawn_file_actions_t files_;
+  SpawnFiles files_;
   posix_spawnattr_t attributes_;
 };
 
