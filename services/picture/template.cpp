@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 
 #include "renderer/content/chart_map.hpp"
 #include "renderer/content/picture.hpp"
@@ -15,17 +15,19 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint8_t kPaper = 255, kBorder = 0, kBone = 150;
-constexpr int kBorder_px = 2;
+constexpr int kBorder_px = 2, kPxPerLine = 1400;
 
-/// True if the texel and its right or lower neighbour, on one chart, belong to different bones.
-bool is_between_bones(const renderer::ChartMap& charts, int x, int y, int width, int height) {
+/// True if the texel and another to the right of it or below, on one chart, belong to different
+/// bones: a line of `line_px`.
+bool is_between_bones(const renderer::ChartMap& charts, int x, int y, int width, int height,
+                      int line_px) {
   const auto& here = charts.at(x, y);
   const auto differs = [&](int to_x, int to_y) {
     if (to_x >= width || to_y >= height) return false;
     const auto& there = charts.at(to_x, to_y);
     return there.chart == here.chart && there.joint != here.joint;
   };
-  return differs(x + 1, y) || differs(x, y + 1);
+  return differs(x + line_px, y) || differs(x, y + line_px);
 }
 
 struct Hand {
@@ -65,6 +67,7 @@ Result<void> check_nothing_is_there(const fs::path& folder) {
 
 renderer::Image<std::uint8_t> line_drawing(const renderer::HandMesh& hand, int width_px) {
   const int height_px = width_px / kProportionWidth * kProportionHeight;
+  const int line_px = std::max(1, width_px / kPxPerLine);
   const renderer::ChartMap charts(hand, width_px, height_px);
   renderer::Image<std::uint8_t> drawing(width_px, height_px, kPaper);
   for (int y = 0; y < height_px; ++y)
@@ -73,7 +76,7 @@ renderer::Image<std::uint8_t> line_drawing(const renderer::HandMesh& hand, int w
       if (texel.chart == 0) continue;
       if (texel.edge_px <= kBorder_px)
         drawing.at(x, y) = kBorder;
-      else if (is_between_bones(charts, x, y, width_px, height_px))
+      else if (is_between_bones(charts, x, y, width_px, height_px, line_px))
         drawing.at(x, y) = kBone;
     }
   return drawing;
