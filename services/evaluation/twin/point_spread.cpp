@@ -2,7 +2,6 @@
 #include "services/evaluation/twin/point_spread.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "renderer/base/clones.hpp"
@@ -10,28 +9,8 @@
 namespace handcast::twin {
 namespace {
 
-constexpr int kBlock = 16;  ///< pixels whose sums stay in registers
-
-/// to[x] = sum over i of half[i] * (before[i][x] + after[i][x]) for i > 0, and half[0] *
-/// before[0][x].
-HANDCAST_CLONES void convolve(const std::vector<const float*>& before,
-                              const std::vector<const float*>& after,
-                              const std::vector<float>& half, float* to, int count) {
-  int x = 0;
-  for (; x + kBlock <= count; x += kBlock) {
-    std::array<float, kBlock> sum;
-    for (int k = 0; k < kBlock; ++k) sum[k] = half[0] * before[0][x + k];
-    for (std::size_t i = 1; i < half.size(); ++i) {
-      const float weight = half[i], *const left = before[i] + x, *const right = after[i] + x;
-      for (int k = 0; k < kBlock; ++k) sum[k] += weight * (left[k] + right[k]);
-    }
-    std::copy_n(sum.begin(), kBlock, to + x);
-  }
-  for (; x < count; ++x) {
-    float sum = half[0] * before[0][x];
-    for (std::size_t i = 1; i < half.size(); ++i) sum += half[i] * (before[i][x] + after[i][x]);
-    to[x] = sum;
-  }
+HANDCAST_CLONES void add_scaled(const float* from, float weight, float* to, int count) {
+  for (int x = 0; x < count; ++x) to[x] += weight * from[x];
 }
 
 }  // namespace
@@ -45,8 +24,6 @@ PointSpread::PointSpread(double sigma_px) {
     sum += 2 * double(half_.back());
   }
   for (float& weight : half_) weight /= static_cast<float>(sum);
-  before_.resize(half_.size());
-  after_.resize(half_.size());
 }
 
 void PointSpread::spread_rows(renderer::View<float> image, const renderer::Rect& region) {
@@ -57,11 +34,10 @@ void PointSpread::spread_rows(renderer::View<float> image, const renderer::Rect&
     std::copy_n(pixels, width, row_.begin() + reach);
     std::fill_n(row_.begin(), reach, pixels[0]);
     std::fill_n(row_.end() - reach, reach, pixels[width - 1]);
-    for (int i = 0; i <= reach; ++i) {
-      before_[static_cast<std::size_t>(i)] = row_.data() + reach - i;
-      after_[static_cast<std::size_t>(i)] = row_.data() + reach + i;
-    }
-    convolve(before_, after_, half_, pixels, width);
+    std::fill_n(pixels, width, 0.0f);
+    for (int i = -reach; i <= reach; ++i)
+      add_scaled(row_.data() + reach + i, half_[static_cast<std::size_t>(std::abs(i))], pixels,
+                 width);
   }
 }
 
@@ -73,14 +49,10 @@ void PointSpread::spread_columns(renderer::View<float> image, const renderer::Re
     std::copy_n(image.row(y) + region.x0, width, rows_.row(y) + region.x0);
   for (int y = region.y0; y < region.y1; ++y) {
     float* pixels = image.row(y) + region.x0;
-    const auto row_at = [&](int at) {
-      return rows_.row(std::clamp(at, region.y0, region.y1 - 1)) + region.x0;
-    };
-    for (int i = 0; i <= reach; ++i) {
-      before_[static_cast<std::size_t>(i)] = row_at(y - i);
-      after_[static_cast<std::size_t>(i)] = row_at(y + i);
-    }
-    convolve(before_, after_, half_, pixels, width);
+    std::fill_n(pixels, width, 0.0f);
+    for (int i = -reach; i <= reach; ++i)
+      add_scaled(rows_.row(std::clamp(y + i, region.y0, region.y1 - 1)) + region.x0,
+                 half_[static_cast<std::size_t>(std::abs(i))], pixels, width);
   }
 }
 

@@ -22,8 +22,7 @@ class PointSpread {
   void spread_rows(renderer::View<float> image, const renderer::Rect& region);
   void spread_columns(renderer::View<float> image, const renderer::Rect& region);
 
-  std::vector<float> half_;                   ///< weights from the centre outwards
-  std::vector<const float*> before_, after_;  ///< what lies so far on either side
+  std::vector<float> half_;  ///< weights from the centre outwards
   std::vector<float> row_;
   renderer::Image<float> rows_;
 };
