@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "config/settings/quoted.hpp"
 #include "ipc/base/join.hpp"
 
 namespace handcast::config {
@@ -15,21 +16,7 @@ std::string print(int whole) { return fmt::format("{}", whole); }
 /// The shortest text that reads back as the same number.
 std::string print(double number) { return fmt::format("{}", number); }
 
-std::string print(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (code < 0x20 || code == 0x7f) {
-      quoted += fmt::format("\\u{:04X}", code);
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + '"';
-}
+std::string print(const std::string& text) { return config::quoted(text); }
 
 template <class T>
 std::string print(const std::vector<T>& elements) {

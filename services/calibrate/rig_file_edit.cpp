@@ -6,6 +6,7 @@
 #include "config/rig.hpp"
 #include "config/settings/edit.hpp"
 #include "config/settings/files.hpp"
+#include "config/settings/quoted.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "services/calibrate/kept_file.hpp"
 
@@ -53,13 +54,7 @@ Result<std::string> edited(const std::filesystem::path& rig_file, std::string te
 }  // namespace
 
 std::string as_toml(const MeasuredSetting& setting) {
-  if (!config::names_a_file(setting.path)) return setting.value;
-  std::string quoted = "\"";
-  for (const char c : setting.value) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
+  return config::names_a_file(setting.path) ? config::quoted(setting.value) : setting.value;
 }
 
 Result<std::string> apply_settings(const std::filesystem::path& rig_file,

@@ -2,9 +2,11 @@
 // handcast template: the layout of the pictures that are cast, to paint on.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "config/settings/quoted.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/verb_options.hpp"
@@ -30,10 +32,12 @@ int write(const std::string& folder, const std::string& rig_file,
   const auto written = write_templates(rig->hand, folder, width_px);
   if (!written) return complain(written.error());
   for (const auto& file : *written) fmt::print("{}\n", file.string());
+  const auto named = [](const std::filesystem::path& file) {
+    return config::quoted(std::filesystem::absolute(file).string());
+  };
   fmt::print(
-      "Paint on them, and name the pictures in the rig file:\n\n[content]\nleft = \"{}\"\n"
-      "right = \"{}\"\n",
-      (*written)[0].string(), (*written)[2].string());
+      "Paint on them, and name the pictures in the rig file:\n\n[content]\nleft = {}\nright = {}\n",
+      named((*written)[0]), named((*written)[2]));
   return kExitDone;
 }
 

@@ -10,6 +10,7 @@
 #include "config/settings/document.hpp"
 #include "config/settings/files.hpp"
 #include "config/settings/load.hpp"
+#include "config/settings/quoted.hpp"
 #include "ipc/base/join.hpp"
 
 namespace handcast::sweep {
@@ -68,16 +69,6 @@ using config::Value;
 
 constexpr int kMostParts = 32;  ///< of a path; the reader of TOML allows no more either
 
-/// A text as TOML.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
 /// The value as in "path=value": text without quotes, except in a list.
 std::string print(const Value& value) {
   if (const auto* flag = std::get_if<bool>(&value.data)) return *flag ? "true" : "false";
@@ -88,7 +79,7 @@ std::string print(const Value& value) {
   if (const auto* array = std::get_if<config::Array>(&value.data))
     for (const auto& element : *array) {
       const auto* text = std::get_if<std::string>(&element.data);
-      texts.push_back(text ? quoted(*text) : print(element));
+      texts.push_back(text ? config::quoted(*text) : print(element));
     }
   return fmt::format("[{}]", join(texts, ", "));
 }

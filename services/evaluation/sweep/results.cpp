@@ -89,8 +89,8 @@ Result<void> Results::append(const Row& row) {
 
 /// The open file must still be the one of that name: rows of another would be lost.
 Result<void> Results::check_in_place() const {
-  struct stat opened {
-  }, named{};
+  struct stat opened = {};
+  struct stat named = {};
   if (fstat(fd_.get(), &opened) == 0 && stat(file_.c_str(), &named) == 0 &&
       opened.st_dev == named.st_dev && opened.st_ino == named.st_ino)
     return {};
