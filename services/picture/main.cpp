@@ -60,7 +60,9 @@ static int run_verb(int argc, char** argv) {
       ->check(CLI::Range(256, 8192))
       ->capture_default_str();
   if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
-  return picture::write(folder, rig, settings, width_px / 8 * 8);
+  if (width_px % picture::kProportionWidth != 0)
+    return picture::complain({Errc::bad_config, "--width must be a multiple of 8"});
+  return picture::write(folder, rig, settings, width_px);
 }
 
 int main(int argc, char** argv) {

@@ -30,26 +30,20 @@ bool is_between_bones(const renderer::ChartMap& charts, int x, int y, int width,
   return differs(x + line_px, y) || differs(x, y + line_px);
 }
 
-struct Hand {
-  renderer::Side side;
-  const char* name;
-  const std::string& file;
+/// The pictures of a hand.
+struct Pictures {
+  const char* side;
+  renderer::Texture coloured;
+  renderer::Image<std::uint8_t> lines;
 };
 
-/// The two pictures of a hand and their files.
-Result<void> write_hand(const Hand& hand, const fs::path& folder, int width_px,
-                        std::vector<fs::path>& written) {
-  const auto mesh = renderer::load_hand_or_default(hand.file, hand.side);
-  if (!mesh) return tl::make_unexpected(mesh.error());
-  const auto atlas = renderer::load_content("builtin:atlas", *mesh);
+Result<Pictures> pictures_of(renderer::Side side, const std::string& file, int width_px) {
+  const auto hand = renderer::load_hand_or_default(file, side);
+  if (!hand) return tl::make_unexpected(hand.error());
+  auto atlas = renderer::load_content("builtin:atlas", *hand);
   if (!atlas) return tl::make_unexpected(atlas.error());
-  const auto coloured = folder / fmt::format("{}.png", hand.name);
-  if (auto saved = renderer::write_png(coloured, atlas->view()); !saved) return saved;
-  written.push_back(coloured);
-  const auto lines = folder / fmt::format("{}_lines.png", hand.name);
-  if (auto saved = renderer::write_png(lines, line_drawing(*mesh, width_px)); !saved) return saved;
-  written.push_back(lines);
-  return {};
+  return Pictures{side == renderer::Side::left ? "left" : "right", std::move(*atlas),
+                  line_drawing(*hand, width_px)};
 }
 
 /// Checks that no file would be replaced: people paint on them.
@@ -85,16 +79,27 @@ renderer::Image<std::uint8_t> line_drawing(const renderer::HandMesh& hand, int w
 Result<std::vector<fs::path>> write_templates(const config::Hand& hands, const fs::path& folder,
                                               int width_px) {
   if (auto free = check_nothing_is_there(folder); !free) return tl::make_unexpected(free.error());
+  std::vector<Pictures> hands_pictures;
+  for (const auto side : {renderer::Side::left, renderer::Side::right}) {
+    auto pictures =
+        pictures_of(side, side == renderer::Side::left ? hands.left : hands.right, width_px);
+    if (!pictures) return tl::make_unexpected(pictures.error());
+    hands_pictures.push_back(std::move(*pictures));
+  }
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed)
     return fail(Errc::bad_config, fmt::format("the folder {} cannot be created: {}",
                                               folder.string(), failed.message()));
   std::vector<fs::path> written;
-  for (const Hand& hand : {Hand{renderer::Side::left, "left", hands.left},
-                           Hand{renderer::Side::right, "right", hands.right}})
-    if (auto done = write_hand(hand, folder, width_px, written); !done)
-      return tl::make_unexpected(done.error());
+  for (const auto& [side, coloured, lines] : hands_pictures) {
+    written.push_back(folder / fmt::format("{}.png", side));
+    if (auto saved = renderer::write_png(written.back(), coloured.view()); !saved)
+      return tl::make_unexpected(saved.error());
+    written.push_back(folder / fmt::format("{}_lines.png", side));
+    if (auto saved = renderer::write_png(written.back(), lines); !saved)
+      return tl::make_unexpected(saved.error());
+  }
   return written;
 }
 

@@ -10,8 +10,8 @@
 
 namespace handcast::supervisor {
 
-/// The descriptors that a program has beside the three standard ones. exec closes all others of
-/// this process, which all have FD_CLOEXEC.
+/// The descriptors with which a program starts. It has the three standard ones of this process
+/// where nothing else is said; exec closes all others, which have FD_CLOEXEC.
 class SpawnFiles {
  public:
   SpawnFiles() { posix_spawn_file_actions_init(&actions_); }

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Back ends of camera and tracker that open no device.
-constexpr std::array<std::string_view, 4> kWithoutDevice{"twin", "replay", "none", "stereo"};
+constexpr std::array<std::string_view, 5> kWithoutDevice{"", "twin", "replay", "none", "stereo"};
 
 bool has_messages(const fs::path& folder, const std::string& stream) {
   std::error_code error;
@@ -46,28 +46,28 @@ Arguments settings_for(const fs::path& folder) {
   return settings;
 }
 
-/// A sentence if a device of the rig would run beside the recording and nobody has asked for it.
+/// A sentence if a sensor of the rig would run beside the recording and nobody has asked for it.
 /// Empty also if the rig cannot be read: run_up() says why.
 std::string live_device(const fs::path& folder, const fs::path& rig_file,
                         const Arguments& settings) {
   const auto rig = config::load_rig(rig_file, settings);
   if (!rig) return {};
-  const auto is_live = [&](const std::string& sensor, const std::string& backend) {
-    const bool is_asked_for = std::ranges::any_of(settings, [&](const std::string& setting) {
-      return setting.starts_with(sensor + ".backend=");
-    });
-    return !is_asked_for && std::ranges::find(kWithoutDevice, backend) == kWithoutDevice.end();
+  struct Sensor {
+    std::string setting, backend, stream;
   };
-  const auto sentence = [&](const std::string& sensor, const std::string& stream,
-                            const std::string& backend) {
-    return fmt::format(
-        "{} holds no messages of {}, so the device of the rig ({}.backend = \"{}\") "
-        "would run; if that is meant, add --set {}.backend={}",
-        folder.string(), stream, sensor, backend, sensor, backend);
-  };
-  if (is_live("camera", rig->camera.backend))
-    return sentence("camera", "camera.frames", rig->camera.backend);
-  if (is_live("pose", rig->pose.backend)) return sentence("pose", "pose.hands", rig->pose.backend);
+  for (const auto& [setting, backend, stream] :
+       {Sensor{"camera.backend", rig->camera.backend, "camera.frames"},
+        Sensor{"camera2.backend", rig->camera2.backend, "camera2.frames"},
+        Sensor{"pose.backend", rig->pose.backend, "pose.hands"},
+        Sensor{"pose.second", rig->pose.second, "pose.hands"}}) {
+    const bool is_asked_for = std::ranges::any_of(
+        settings, [&](const std::string& given) { return given.starts_with(setting + "="); });
+    if (!is_asked_for && std::ranges::find(kWithoutDevice, backend) == kWithoutDevice.end())
+      return fmt::format(
+          "{} holds no messages of {}, so the device of the rig ({} = \"{}\") would "
+          "run; if that is meant, add --set {}={}",
+          folder.string(), stream, setting, backend, setting, backend);
+  }
   return {};
 }
 

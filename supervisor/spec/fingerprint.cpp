@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "config/settings/files.hpp"
 #include "config/settings/settings.hpp"
+#include "ipc/base/input_file.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 /// Sections (with those inside them) and single settings.
 using Paths = std::vector<std::string>;
 
-/// Files that are small and may change under their names: their content counts, too.
+/// Files that may change under their names: their content counts, too.
 const Paths kFiles{"calibration", "hand.left", "hand.right", "content.left", "content.right"};
 
 /// What only the supervisor reads.
@@ -70,7 +70,7 @@ std::string content_of(const config::Setting& setting) {
   const auto& file = *std::get<std::string*>(setting.target);
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return {};
-  return config::read_text(file).value_or("");
+  return read_input(file, kMostMesh).value_or("");
 }
 
 /// The word of SERVICE.NAME; null if there is no such setting.

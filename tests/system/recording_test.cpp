@@ -192,10 +192,13 @@ TEST_F(Recording, WhatCannotBeDoneIsASentence) {
   const auto played = handcast({"play", in_scratch("mine")});
   EXPECT_EQ(played.exit_code, 100);
   EXPECT_THAT(played.log, HasSubstr("mine/rig.toml is missing"));
-  std::ofstream(in_scratch("mine/rig.toml")) << "name = \"mine\"\ncamera.backend = \"v4l2\"\n";
-  const auto live = handcast({"play", in_scratch("mine")});
-  EXPECT_EQ(live.exit_code, 100);
-  EXPECT_THAT(live.log, HasSubstr("(camera.backend = \"v4l2\") would run"));
+  for (const std::string sensor : {"camera.backend = \"v4l2\"", "camera2.backend = \"v4l2\"",
+                                   "pose.backend = \"leapc\"", "pose.second = \"leapc\""}) {
+    std::ofstream(in_scratch("mine/rig.toml")) << "name = \"mine\"\n" << sensor << "\n";
+    const auto live = handcast({"play", in_scratch("mine")});
+    EXPECT_EQ(live.exit_code, 100);
+    EXPECT_THAT(live.log, HasSubstr("(" + sensor + ") would run"));
+  }
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ namespace handcast::simulate {
 /// other hands than most are left out.
 class RecordingFeed : public SensorFeed {
  public:
-  /// Creates `folder`, or removes an earlier recording from it. Errors: bad_config. Those of
-  /// writing pictures are returned by save().
+  /// Creates `folder`, or removes an earlier recording from it. Errors: bad_config, unavailable.
+  /// Those of writing pictures are returned by save().
   static Result<std::unique_ptr<RecordingFeed>> create(std::unique_ptr<SensorFeed> source,
                                                        const calib::CameraModel& camera,
                                                        std::filesystem::path folder);

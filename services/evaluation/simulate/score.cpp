@@ -31,17 +31,22 @@ Result<void> check_recordings_are_spared(const Options& options, const config::R
       !folder.empty() && fs::equivalent(folder, rig.twin.motion, unknown))
     return fail(Errc::bad_config,
                 fmt::format("--record {}: this is the recording that is played (twin.motion); "
-                            "name another folder",
+                            "name another one",
                             folder.string()));
   if (options.frames_directory.empty()) return {};
-  const auto folder = fs::absolute(options.frames_directory, unknown);
-  const auto beside = (folder / "..").lexically_normal();
-  for (const char* times : {"timestamps.npy", "camera_timestamps.npy"})
-    if (fs::exists(beside / times, unknown))
-      return fail(Errc::bad_config,
-                  fmt::format("--frames {}: {} holds a recording, whose images it "
-                              "would remove; name another folder",
-                              options.frames_directory, beside.string()));
+  const auto folder = fs::weakly_canonical(options.frames_directory, unknown);
+  const auto recorded =
+      fs::weakly_canonical(fs::path(options.record_directory) / "camera", unknown);
+  const auto holds = [&](const char* times) {
+    return fs::exists(folder.parent_path() / times, unknown);
+  };
+  const bool is_of_recording =
+      folder.filename() == "camera" && (holds("timestamps.npy") || holds("camera_timestamps.npy"));
+  if (is_of_recording || (!options.record_directory.empty() && folder == recorded))
+    return fail(Errc::bad_config,
+                fmt::format("--frames {}: this is the folder of the images of a recording; name "
+                            "another one",
+                            options.frames_directory));
   return {};
 }
 

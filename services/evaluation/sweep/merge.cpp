@@ -49,8 +49,7 @@ Result<void> check_replaceable(const std::filesystem::path& file, const Table& w
   std::error_code absent;
   if (!std::filesystem::exists(file, absent)) return {};
   const auto before = read_table(file);
-  const bool is_empty = before && before->heading.stamp.empty() && before->torn.empty();
-  if (is_empty) return {};
+  if (before && before->is_cut_off_in(whole.heading)) return {};
   if (!before || before->heading != whole.heading)
     return fail(Errc::bad_config, fmt::format("{}: the file does not hold results of this sweep; "
                                               "give another file with -o",

@@ -17,8 +17,9 @@ struct Merged {
 
 /// Merges the results of shards into one file, in the order of the runs: the file that one machine
 /// would have written. If two files have the same run, they must agree except for machine times; if
-/// the run failed in one of them, the other is used. Errors: bad_config (a file cannot be read),
-/// bad_data (the files are of different plans, or disagree), those of write_whole().
+/// the run failed in one of them, the other is used. Errors: bad_config (a file cannot be read;
+/// `into` holds something else, or runs that no file has), bad_data (the files are of different
+/// plans, or disagree), unavailable (a sweep is writing `into`), those of write_whole().
 Result<Merged> merge(const std::vector<std::filesystem::path>& files,
                      const std::filesystem::path& into);
 

@@ -27,12 +27,12 @@ class Results {
   /// The runs that the file holds without an error. Does not change after open().
   const std::set<std::size_t>& done() const { return done_; }
 
-  /// Appends a line. Thread-safe. Errors: unavailable (e.g. the disk is full); then all later calls
-  /// fail too, and if the file was replaced.
+  /// Appends a line. Thread-safe. Errors: unavailable (e.g. the disk is full, or the file was
+  /// replaced); then all later calls fail, too.
   Result<void> append(const Row& row);
 
-  /// Sorts the lines by run and keeps the newest of each run. Must be the last call. Errors: those
-  /// of read_table and write_table.
+  /// Sorts the lines by run and keeps the newest of each run. Must be the last call. Errors:
+  /// unavailable (the file was replaced), those of read_table and write_table.
   Result<void> sort();
 
  private:

@@ -20,7 +20,7 @@ struct Outcome {
   std::size_t scored = 0;  ///< runs that were scored
   std::size_t failed = 0;  ///< runs that ended with an error
   std::size_t kept = 0;    ///< runs that an earlier sweep had scored
-  std::size_t absent = 0;  ///< runs whose motion is not on this machine
+  std::size_t absent = 0;  ///< runs whose motion or hand is not on this machine
   std::size_t left = 0;    ///< runs that were not begun because of `stop`
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <map>
@@ -19,6 +20,16 @@ namespace {
 
 constexpr std::size_t kMostRuns = 1'000'000;
 
+/// The files whose content decides the results. (Libraries and recordings' folders are not read
+/// here.)
+constexpr std::array<std::string_view, 7> kRead{"calibration",
+                                                "hand.left",
+                                                "hand.right",
+                                                "content.left",
+                                                "content.right",
+                                                "twin.shape.mesh",
+                                                "twin.geometry.calibration"};
+
 /// FNV-1a, 64 bits.
 class Hash {
  public:
@@ -33,8 +44,8 @@ class Hash {
   std::uint64_t state_ = 0xcbf29ce484222325u;
 };
 
-/// Hashes of the files that rigs name; each file is read once. Folders (recordings, networks) and
-/// what cannot be read have none: the run itself reports the reason.
+/// Hashes of files, of which each is read once. What cannot be read has none: the run itself
+/// reports the reason.
 class Contents {
  public:
   const std::string& of(const std::string& file) {
@@ -63,7 +74,7 @@ std::string without_machine(config::Rig rig, const std::filesystem::path& folder
       if (!config::names_a_file(setting.path)) continue;
       auto& text = *std::get<std::string*>(setting.target);
       if (!std::filesystem::path(text).is_absolute()) continue;
-      hashes += contents.of(text) + '\n';
+      if (std::ranges::find(kRead, setting.path) != kRead.end()) hashes += contents.of(text) + '\n';
       text = std::filesystem::path(text).lexically_relative(folder).string();
     }
   return config::print_rig(rig) + hashes;

@@ -25,8 +25,9 @@ struct Run {
 /// All runs of a plan.
 struct Expansion {
   std::vector<Run> runs;  ///< in the order of their index
-  /// Hexadecimal hash of all runs: rig files, settings and times. Paths enter relative to the plan,
-  /// so that it is the same on all machines.
+  /// Hexadecimal hash of all runs: rig files, settings, times, and the contents of calibrations,
+  /// hands and pictures that rigs name. Paths enter relative to the plan, so that it is the same on
+  /// all machines.
   std::string fingerprint;
 };
 
@@ -40,8 +41,8 @@ Result<config::Rig> rig_of(const Plan& plan, const Run& run);
 /// Prints the variant and the axes of a run: "one_euro, twin.speed=2".
 std::string describe_run(const Plan& plan, const Run& run);
 
-/// The reason why this machine cannot do a run, i.e. that the folder of its motion does not exist;
-/// empty if it can.
+/// The reason why this machine cannot do a run, i.e. that the folder of its motion does not
+/// exist, or WebXR's hand is not installed; empty if it can.
 std::optional<std::string> why_absent(const config::Rig& rig);
 
 /// One part of a sweep on several machines: the runs whose index is `index` modulo `count`.

@@ -77,6 +77,11 @@ Row parse_row(std::string_view line) {
   return row;
 }
 
+bool Table::is_cut_off_in(const Heading& begun) const {
+  const auto first = heading.stamp.empty() ? std::string() : heading.stamp + "\n";
+  return heading.columns.empty() && begun.print().starts_with(first + torn);
+}
+
 std::size_t Table::index_of(const Row& row) { return std::stoul(row.front()); }
 
 Result<Table> read_table(const std::filesystem::path& file) {

@@ -46,6 +46,8 @@ struct Table {
   std::string torn;             ///< text after the last complete line
   std::size_t whole_bytes = 0;  ///< size of all complete lines
 
+  /// True if the file is empty or was cut off while this heading was written.
+  bool is_cut_off_in(const Heading& begun) const;
   /// The index of the run of a row.
   static std::size_t index_of(const Row& row);
   /// True if the row has an error.

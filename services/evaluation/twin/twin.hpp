@@ -129,7 +129,7 @@ struct FrameScore {
     std::array<Part, kParts> parts;  ///< for the jitter of the light
   };
   std::vector<Hand> hands;  ///< the visible hands
-  int stray_px = 0;         ///< lit pixels while no hand is visible: spill of no hand
+  int stray_px = 0;         ///< lit pixels beside hands and arms that belong to no visible hand
 };
 
 /// Scores projections against the truth. Reuses its buffers: not thread-safe.

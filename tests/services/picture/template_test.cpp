@@ -64,10 +64,11 @@ TEST(Template, WhatHasBeenPaintedIsNotReplaced) {
 TEST(Template, AHandOrAFolderThatCannotBeUsedIsNamed) {
   const test::Scratch scratch;
   config::Hand hands;
-  hands.left = (scratch.path() / "nowhere.glb").string();
-  const auto no_hand = write_templates(hands, scratch.path(), 512);
+  hands.right = (scratch.path() / "nowhere.glb").string();
+  const auto no_hand = write_templates(hands, scratch.path() / "new", 512);
   ASSERT_FALSE(no_hand);
   EXPECT_THAT(no_hand.error().what, HasSubstr("nowhere.glb"));
+  EXPECT_FALSE(std::filesystem::exists(scratch.path() / "new")) << "nor the left hand's files";
   std::ofstream(scratch.path() / "file") << "";
   const auto no_folder = write_templates({}, scratch.path() / "file" / "folder", 512);
   ASSERT_FALSE(no_folder);

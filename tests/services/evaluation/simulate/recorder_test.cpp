@@ -184,16 +184,23 @@ TEST(Recording, IsNotReplacedWhileItIsPlayed) {
   const auto recorded = files_in(folder.path());
   auto again = options_of("baseline", 0.1);
   add_settings(again, {"twin.motion=" + folder.path().string()});
-  auto same = again, pictures = again;
+  auto same = again, pictures = again, linked = again, both = options_of("baseline", 0.1);
   same.record_directory = (folder.path() / ".").string();
   pictures.frames_directory = (folder.path() / "camera").string();
-  for (const auto& refused : {same, pictures}) {
+  const test::Scratch elsewhere;
+  std::filesystem::create_directory_symlink(folder.path() / "camera", elsewhere.path() / "link");
+  linked.frames_directory = (elsewhere.path() / "link").string();
+  both.record_directory = (elsewhere.path() / "new").string();
+  both.frames_directory = (elsewhere.path() / "new" / "camera").string();
+  for (const auto& refused : {same, pictures, linked, both}) {
     const auto done = run(refused);
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().code, Errc::bad_config);
-    EXPECT_THAT(done.error().what, testing::HasSubstr("name another folder"));
+    EXPECT_THAT(done.error().what, testing::HasSubstr("name another one"));
     EXPECT_EQ(files_in(folder.path()), recorded);
   }
+  again.frames_directory = (folder.path() / "frames").string();
+  for (int time = 0; time < 2; ++time) EXPECT_TRUE(run(again)) << "beside the recording, twice";
 }
 
 TEST(Recording, OfARigThatLooksAtNoImageHoldsThemAllTheSame) {

@@ -238,6 +238,11 @@ TEST_F(ResultsTest, AMergeLosesNoRunOfTheFileThatItReplaces) {
   EXPECT_EQ(text_of(fuller), before);
   EXPECT_EQ(text_of(file("notes.txt")), "my notes");
   EXPECT_TRUE(merge({shard, fuller}, fuller));
+  for (const std::size_t bytes : {std::size_t{10}, heading_.stamp.size() + 20}) {
+    std::ofstream(file("cut.csv")) << heading_.print().substr(0, bytes);
+    EXPECT_TRUE(merge({shard}, file("cut.csv"))) << "it holds no run";
+    std::filesystem::remove(file("cut.csv"));
+  }
 }
 
 TEST_F(ResultsTest, AFileThatASweepWritesIsNotMergedInto) {
