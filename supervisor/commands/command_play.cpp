@@ -55,18 +55,18 @@ std::string live_device(const fs::path& folder, const fs::path& rig_file,
   struct Sensor {
     std::string setting, backend, stream;
   };
-  for (const auto& [setting, backend, stream] :
-       {Sensor{"camera.backend", rig->camera.backend, "camera.frames"},
-        Sensor{"camera2.backend", rig->camera2.backend, "camera2.frames"},
-        Sensor{"pose.backend", rig->pose.backend, "pose.hands"},
-        Sensor{"pose.second", rig->pose.second, "pose.hands"}}) {
-    const bool is_asked_for = std::ranges::any_of(
-        settings, [&](const std::string& given) { return given.starts_with(setting + "="); });
-    if (!is_asked_for && std::ranges::find(kWithoutDevice, backend) == kWithoutDevice.end())
+  for (const Sensor& sensor : {Sensor{"camera.backend", rig->camera.backend, "camera.frames"},
+                               Sensor{"camera2.backend", rig->camera2.backend, "camera2.frames"},
+                               Sensor{"pose.backend", rig->pose.backend, "pose.hands"},
+                               Sensor{"pose.second", rig->pose.second, "pose.hands"}}) {
+    const bool is_asked_for = std::ranges::any_of(settings, [&](const std::string& given) {
+      return given.starts_with(sensor.setting + "=");
+    });
+    if (!is_asked_for && std::ranges::find(kWithoutDevice, sensor.backend) == kWithoutDevice.end())
       return fmt::format(
-          "{} holds no messages of {}, so the device of the rig ({} = \"{}\") would "
-          "run; if that is meant, add --set {}={}",
-          folder.string(), stream, setting, backend, setting, backend);
+          "{0} holds no messages of {1}, so the device of the rig ({2} = \"{3}\") would "
+          "run; if that is meant, add --set {2}={3}",
+          folder.string(), sensor.stream, sensor.setting, sensor.backend);
   }
   return {};
 }
