@@ -86,6 +86,14 @@ class TheInstalledTree(unittest.TestCase):
                      "share/doc/handcast/config/REFERENCE.md", "share/doc/handcast/LICENSE"):
             self.assertTrue((tree / file).is_file(), file)
 
+    def test_holds_every_file_that_its_documents_link_to(self):
+        pages = sorted((tree / "share/doc/handcast").rglob("*.md"))
+        self.assertGreater(len(pages), 10)
+        absent = [f"{page.name}: {link}" for page in pages
+                  for link in re.findall(r"\]\(([^)\s#]+)[^)]*\)", page.read_text(encoding="utf-8"))
+                  if "://" not in link and not (page.parent / link).exists()]
+        self.assertEqual(absent, [])
+
     def test_does_not_name_the_place_it_was_built_or_installed_in(self):
         places = [str(place).encode() for place in (build, REPOSITORY, scratch / "installed")]
         for file in filter(pathlib.Path.is_file, tree.rglob("*")):
