@@ -57,11 +57,6 @@ class Products {
                                                   const calib::Calibration& calibration,
                                                   const twin::Twin& twin) {
     auto products = std::unique_ptr<Products>(new Products(options, rig, calibration, twin));
-    if (!options.trace_file.empty()) {
-      auto trace = Trace::open(options.trace_file);
-      if (!trace) return tl::make_unexpected(trace.error());
-      products->trace_ = std::move(*trace);
-    }
     if (!options.frames_directory.empty()) {
       std::error_code failed;
       std::filesystem::create_directories(options.frames_directory, failed);
@@ -71,6 +66,12 @@ class Products {
       if (auto removed = remove_numbered_pngs(options.frames_directory); !removed)
         return tl::make_unexpected(removed.error());
       products->photographer_.emplace(twin, calibration);
+    }
+    // Last, because it empties the file.
+    if (!options.trace_file.empty()) {
+      auto trace = Trace::open(options.trace_file);
+      if (!trace) return tl::make_unexpected(trace.error());
+      products->trace_ = std::move(*trace);
     }
     return products;
   }

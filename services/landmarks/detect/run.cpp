@@ -130,7 +130,11 @@ handcast::Result<std::string> run(const Options& options) {
       fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(),
                  options.images[i].filename().string());
     auto result = detect_in(finder, options, i, (*drawings)[i]);
-    if (!result) return fail_in(options.images[i].string(), result.error());
+    if (!result) {
+      // What was found so far is not lost.
+      if (!results.empty()) fmt::print("{}", options.json ? print_json(results) : text);
+      return fail_in(options.images[i].string(), result.error());
+    }
     if (!options.json) text += print_text(*result);
     results.push_back(std::move(*result));
   }

@@ -131,6 +131,17 @@ TEST_F(Detect, JointsMayBe21PointsInPixels) {
   EXPECT_EQ((*read)[20], capture->tracker_px[20]);
 }
 
+TEST_F(Detect, WhatWasFoundBeforeABadPictureIsPrinted) {
+  options_.images.insert(options_.images.begin() + 1, scratch_.path() / "nowhere.png");
+  options_.joints.clear();
+  testing::internal::CaptureStdout();
+  const auto text = run(options_);
+  const auto printed = testing::internal::GetCapturedStdout();
+  ASSERT_FALSE(text);
+  EXPECT_THAT(text.error().what, HasSubstr("nowhere.png"));
+  EXPECT_THAT(printed, HasSubstr("1_camera.png: 1 hand"));
+}
+
 TEST_F(Detect, SaysWhatItCannotUse) {
   const auto refused = [&](const Options& options) {
     const auto text = run(options);
