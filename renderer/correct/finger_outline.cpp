@@ -185,13 +185,18 @@ void FingerOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> ver
       const float moved_px = glm::distance(landmarks_px[end], last_px_[end]);
       const auto& drawn = all_drawn[f][b];
       if (!is_measured || !drawn || !(moved_px <= kFastest_px_s * step_s)) continue;
-      if (const auto seen = across(finger, bone, *drawn, landmarks_px, mask))
-        bone.across_px.add(*seen + glm::mix(finger.across[bone.first],
-                                            finger.across[bone.first + 1], bone.station),
-                           part);
+      // From the drawing without displacement, too, it must not be far: a drawing that does not
+      // follow its displacement would let it grow from frame to frame.
+      const auto add = [&](Lasting& average, const std::optional<float>& seen_px,
+                           float moved_by_px) {
+        if (seen_px && std::abs(*seen_px + moved_by_px) < kFarthest * radius_px_)
+          average.add(*seen_px + moved_by_px, part);
+      };
+      add(bone.across_px, across(finger, bone, *drawn, landmarks_px, mask),
+          glm::mix(finger.across[bone.first], finger.across[bone.first + 1], bone.station));
       if (bone.first + 1 < kMostBones) continue;
-      if (const auto seen = along(finger, *drawn, vertices_px, landmarks_px, mask))
-        finger.along_px.add(*seen + finger.along.back(), part);
+      add(finger.along_px, along(finger, *drawn, vertices_px, landmarks_px, mask),
+          finger.along.back());
     }
     solve_across(finger);
     solve_along(finger);

@@ -130,6 +130,16 @@ TEST_F(FingerOutlineTest, WhatMovesFastIsNotMeasured) {
   EXPECT_LT(std::abs(displacement(kIndex + 3, px).x), 1);
 }
 
+TEST_F(FingerOutlineTest, ADrawingThatDoesNotFollowIsNotDisplacedFartherAndFarther) {
+  for (const glm::vec2 tip_px : {glm::vec2(0, -9), glm::vec2(0, 9), glm::vec2(9, 0)}) {
+    outline_ = FingerOutline(hand_.mesh);
+    const auto mask = mask_at(displaced(kMiddle, tip_px));
+    for (int i = 0; i < 1000; ++i, time_ns_ += kFrame_ns)
+      outline_.measure(time_ns_, hand_.vertices_px, hand_.landmarks_px, mask.view());
+    EXPECT_LT(glm::length(displacement(kMiddle + 3)), 20) << tip_px.x << ' ' << tip_px.y;
+  }
+}
+
 TEST_F(FingerOutlineTest, TheLightDoesNotJump) {
   const auto mask = mask_at(displaced(kIndex, {9, 0}));
   look_at(mask_at(hand_.landmarks_px), 50);
