@@ -134,7 +134,9 @@ TEST(Plan, AHandsMeshIsAFileOfThePlansFolderOrAWord) {
 TEST(Plan, AListOfTextsKeepsItsQuotes) {
   const auto plan = plan_of("[settings]\ncamera.v4l2.controls = [\"gain=1\", \"exposure=2\"]\n");
   ASSERT_TRUE(plan) << plan.error().what;
-  const auto rig = rig_of(*plan, expand(*plan)->runs[0]);
+  const auto expansion = expand(*plan);
+  ASSERT_TRUE(expansion) << expansion.error().what;
+  const auto rig = rig_of(*plan, expansion->runs[0]);
   ASSERT_TRUE(rig) << rig.error().what;
   EXPECT_THAT(rig->camera.v4l2.controls, ElementsAre("gain=1", "exposure=2"));
 }
