@@ -12,6 +12,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "tests/emulation/glib_loop.hpp"
+
 namespace handcast::test {
 namespace {
 
@@ -73,32 +75,24 @@ gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, void*) {
 struct EmulatedHid::Testbed {
   UMockdevTestbed* testbed = umockdev_testbed_new();
   UMockdevIoctlBase* ioctls = umockdev_ioctl_base_new();
-  GMainContext* context = g_main_context_new();
-  GMainLoop* loop = g_main_loop_new(context, FALSE);
-  std::thread thread;
+  GlibLoop loop;
 
   explicit Testbed(const std::string& description) {
     g_signal_connect(ioctls, "handle-ioctl", G_CALLBACK(on_ioctl), nullptr);
-    g_main_context_push_thread_default(context);
     GError* error = nullptr;
-    const bool made = umockdev_testbed_attach_ioctl(testbed, kNode, ioctls, &error) &&
-                      umockdev_testbed_add_from_string(testbed, description.c_str(), &error);
-    g_main_context_pop_thread_default(context);
-    if (!made) throw std::runtime_error(error->message);
-    thread = std::thread([this] {
-      g_main_context_push_thread_default(context);
-      g_main_loop_run(loop);
-      g_main_context_pop_thread_default(context);
+    bool is_made = false;
+    loop.with([&] {
+      is_made = umockdev_testbed_attach_ioctl(testbed, kNode, ioctls, &error) &&
+                umockdev_testbed_add_from_string(testbed, description.c_str(), &error);
     });
+    if (!is_made) throw std::runtime_error(error->message);
+    loop.start();
   }
   ~Testbed() {
-    g_main_loop_quit(loop);
-    thread.join();
+    loop.stop();
     umockdev_testbed_detach_ioctl(testbed, kNode, nullptr);
     g_object_unref(ioctls);
     g_object_unref(testbed);
-    g_main_loop_unref(loop);
-    g_main_context_unref(context);
   }
 };
 

@@ -11,9 +11,9 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
-#include <thread>
 
 #include "ipc/base/clock.hpp"
+#include "tests/emulation/glib_loop.hpp"
 
 namespace handcast::test {
 namespace {
@@ -89,37 +89,29 @@ struct EmulatedLeap::Usbfs {
   EmulatedLeap& device;
   UMockdevTestbed* testbed = umockdev_testbed_new();
   UMockdevIoctlBase* ioctls = umockdev_ioctl_base_new();
-  GMainContext* context = g_main_context_new();
-  GMainLoop* loop = g_main_loop_new(context, FALSE);
+  GlibLoop loop;
   GSource* timer = g_timeout_source_new(1);
   std::deque<Urb> waiting, silent, done;  ///< for images, for a control without answer, to be taken
   std::vector<UMockdevIoctlClient*> held;  ///< owned: they ask for a transfer that is done
   bool is_halted = false, is_gone = false, is_held = false;
   Counts counts;
-  std::thread thread;
 };
 
 EmulatedLeap::Usbfs::Usbfs(EmulatedLeap& owner) : device(owner) {
   g_signal_connect(ioctls, "handle-ioctl", G_CALLBACK(ioctl_of), this);
   g_signal_connect(ioctls, "client-vanished", G_CALLBACK(vanished), this);
   g_source_set_callback(timer, tick, this, nullptr);
-  g_source_attach(timer, context);
-  g_main_context_push_thread_default(context);
+  g_source_attach(timer, loop.context());
   GError* error = nullptr;
-  const bool made = umockdev_testbed_attach_ioctl(testbed, kNode, ioctls, &error);
-  g_main_context_pop_thread_default(context);
-  if (!made) throw std::runtime_error(error->message);
+  bool is_made = false;
+  loop.with([&] { is_made = umockdev_testbed_attach_ioctl(testbed, kNode, ioctls, &error); });
+  if (!is_made) throw std::runtime_error(error->message);
   add();
-  thread = std::thread([this] {
-    g_main_context_push_thread_default(context);
-    g_main_loop_run(loop);
-    g_main_context_pop_thread_default(context);
-  });
+  loop.start();
 }
 
 EmulatedLeap::Usbfs::~Usbfs() {
-  g_main_loop_quit(loop);
-  thread.join();
+  loop.stop();
   for (auto* urbs : {&waiting, &silent, &done})
     for (const auto& urb : *urbs) umockdev_ioctl_data_unref(urb.data);
   umockdev_testbed_detach_ioctl(testbed, kNode, nullptr);
@@ -127,8 +119,6 @@ EmulatedLeap::Usbfs::~Usbfs() {
   g_source_unref(timer);
   g_object_unref(ioctls);
   g_object_unref(testbed);
-  g_main_loop_unref(loop);
-  g_main_context_unref(context);
 }
 
 void EmulatedLeap::Usbfs::add() const {
