@@ -16,8 +16,10 @@ constexpr std::int64_t kBins = 80;
 constexpr double kLargestDrift = 500e-6;
 /// The slope of a shorter time is not known better than 0.
 constexpr double kShortest_s = 1;
-/// Drift that must be expected while the slope is unknown.
+/// The drift that is expected where the slope is not known.
 constexpr double kUsualDrift = 50e-6;
+/// The delays of so many points in a row are those of one busy time.
+constexpr double kBusyPoints = 10;
 /// An item that comes so much too early shows that a clock was set.
 constexpr double kClockWasSet_s = 0.005;
 
@@ -68,16 +70,22 @@ void ClockMap::fit() {
   } else {
     touch_from_below();
   }
-  std::vector<double> above_s;
-  for (const auto& point : points_) above_s.push_back(point.delay_s - line_at(point.device_s));
-  const auto middle = above_s.begin() + static_cast<std::ptrdiff_t>((above_s.size() - 1) / 2);
-  std::nth_element(above_s.begin(), middle, above_s.end());
-  spread_s_ = 2 * std::max(*middle, 0.) + (span_s < kShortest_s ? kUsualDrift * kShortest_s : 0);
+  spread_s_ = 2 * median_distance_s() + (span_s < kShortest_s ? kUsualDrift * kShortest_s : 0);
 }
 
-/// The slope is that of the half of the points that lie lowest (least trimmed squares, in three
+double ClockMap::median_distance_s() const {
+  std::vector<double> distances_s;
+  for (const auto& point : points_)
+    distances_s.push_back(std::abs(point.delay_s - line_at(point.device_s)));
+  const auto middle = distances_s.begin() + static_cast<std::ptrdiff_t>((points_.size() - 1) / 2);
+  std::nth_element(distances_s.begin(), middle, distances_s.end());
+  return *middle;
+}
+
+/// The slope is that of the half of the points that lie lowest (least trimmed squares, in a few
 /// rounds): the edge of the lower hull would follow two fast images that are close together. The
-/// line then goes down until it touches the lowest point.
+/// usual drift is its prior, which counts where the points scatter, because most of them waited on
+/// a busy machine. The line then goes down until it touches the lowest point.
 void ClockMap::touch_from_below() {
   std::vector<Point> lowest(points_.begin(), points_.end());
   for (int round = 0; round < 3; ++round) {
@@ -90,14 +98,17 @@ void ClockMap::touch_from_below() {
         lowest, lowest.begin() + static_cast<std::ptrdiff_t>(lowest.size() / 2), {}, above);
     lowest.resize(lowest.size() / 2 + 1);
   }
+  const double scatter = median_distance_s() / kUsualDrift;
+  const double square = fit_line(lowest);
+  if (square > 0) slope_ *= square / (square + kBusyPoints * scatter * scatter);
   double under_s = 0;
   for (const auto& point : points_)
     under_s = std::min(under_s, point.delay_s - line_at(point.device_s));
   height_s_ += under_s;
 }
 
-/// Least squares.
-void ClockMap::fit_line(const std::vector<Point>& points) {
+/// Least squares. Returns the sum of the squares of the points' times about their mean.
+double ClockMap::fit_line(const std::vector<Point>& points) {
   const auto count = static_cast<double>(points.size());
   middle_s_ = height_s_ = 0;
   for (const auto& point : points) {
@@ -110,6 +121,7 @@ void ClockMap::fit_line(const std::vector<Point>& points) {
     square += (point.device_s - middle_s_) * (point.device_s - middle_s_);
   }
   slope_ = square > 0 ? std::clamp(product / square, -kLargestDrift, kLargestDrift) : 0;
+  return square;
 }
 
 }  // namespace handcast::calib

@@ -44,7 +44,8 @@ class ClockMap {
   bool keep(const Point& point);
   void fit();
   void touch_from_below();
-  void fit_line(const std::vector<Point>& points);
+  double median_distance_s() const;
+  double fit_line(const std::vector<Point>& points);
 
   std::deque<Point> points_;  ///< of the last 8 s, in the order of time
   std::int64_t first_device_ns_ = 0, first_delay_ns_ = 0, last_device_ns_ = 0;
