@@ -16,6 +16,9 @@ constexpr float kLargestSigma_px = 1e3;  ///< limit of the values accepted from 
 /// open_close, wave and fist of the twin.
 constexpr float kLeastSpread_px = 7;
 constexpr float kLeastSpread_px2 = kLeastSpread_px * kLeastSpread_px;
+/// An offset this far from the shared one has half the weight in it (Cauchy's weights): a finger
+/// that the tracker has wrong does not move the others.
+constexpr float kFar_px = 15;
 
 float given_sigma_px(const msg::Landmark& point) {
   return point.sigma_px > 0 ? std::min(point.sigma_px, kLargestSigma_px) : 0.0f;
@@ -32,8 +35,8 @@ struct Part {
 constexpr std::array<Part, 6> kParts{
     {{0, 1}, {1, 4}, {5, 4}, {9, 4}, {13, 4}, {17, 4}}};  // the wrist, the fingers
 
-/// The offsets of the whole hand: the weighted similarity of P onto P + offset, minus P. At least
-/// one offset must be known.
+/// The offsets of the whole hand: the weighted similarity of P onto P + offset, minus P, in one
+/// round of reweighting. At least one offset must be known.
 LandmarkPoints shared_offsets(const std::array<glm::vec2, kLandmarks>& offsets_px,
                               const std::array<bool, kLandmarks>& known,
                               const std::array<float, kLandmarks>& sigma_px,
@@ -45,7 +48,12 @@ LandmarkPoints shared_offsets(const std::array<glm::vec2, kLandmarks>& offsets_p
     weight[i] = share_of(kLeastSpread_px2, sigma_px[i]);
     seen[i] += offsets_px[i];
   }
-  const Similarity hand = fit_similarity(tracker, seen, weight);
+  Similarity hand = fit_similarity(tracker, seen, weight);
+  for (int i = 0; i < kLandmarks; ++i) {
+    const glm::vec2 off = seen[i] - hand(tracker[i]);
+    weight[i] *= share_of(kFar_px * kFar_px, glm::length(off));
+  }
+  hand = fit_similarity(tracker, seen, weight);
   LandmarkPoints shared;
   for (int i = 0; i < kLandmarks; ++i) shared[i] = hand(tracker[i]) - tracker[i];
   return shared;

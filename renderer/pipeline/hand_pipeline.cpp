@@ -38,6 +38,7 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
     : side_(side),
       settings_(settings),
       calibration_(calibration),
+      snaps_(calibration),
       track_(settings.predict, calibration),
       landmarks_(filter_of(settings), std::move(oracle)),
       ladder_(settings),
@@ -68,8 +69,11 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
-  landmarks_.tracker_sample(now_ns, track_.push(now_ns, origin_ns, pose));
-  surface_.learn(origin_ns, pose);
+  const auto held = settings_.predict.method == config::PredictMethod::acceleration
+                        ? snaps_.held(origin_ns, pose, landmarks_.moved_px())
+                        : pose;
+  landmarks_.tracker_sample(now_ns, track_.push(now_ns, origin_ns, held));
+  surface_.learn(origin_ns, held);
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
@@ -82,6 +86,7 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
   has_sigmas_ =
       std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
   const auto as_tracked = definitions_.as_tracked(seen);
+  snaps_.detection(origin_ns, as_tracked);
   if (!landmarks_.is_alone()) ladder_.detection(track_, origin_ns, as_tracked);
   landmarks_.detection(now_ns, origin_ns, as_tracked, track_);
 }

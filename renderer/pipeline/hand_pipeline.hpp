@@ -17,6 +17,7 @@
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/pipeline/frame.hpp"
+#include "renderer/predict/finger_snaps.hpp"
 #include "renderer/predict/hand_track.hpp"
 #include "renderer/predict/presence.hpp"
 #include "renderer/register/late_registration.hpp"
@@ -129,6 +130,7 @@ class HandPipeline {
   config::Cascade settings_;
   calib::Calibration calibration_;
 
+  FingerSnaps snaps_;
   HandTrack track_;
   LandmarkTrack landmarks_;
   Presence presence_;

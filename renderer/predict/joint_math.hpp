@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -8,6 +9,8 @@
 /// Places and turns of joints, for the parts of the prediction. Functions without state.
 namespace handcast::renderer {
 
+/// The joints that fingers do not move: palm, wrist, and both ends of the metacarpals.
+inline constexpr std::array kPalmJoints{0, 1, 6, 7, 11, 12, 16, 17, 21, 22};
 /// A rotation counts as the movement of skin at this distance from the joint.
 inline constexpr float kTurnLever_m = 0.05f;
 

@@ -10,8 +10,6 @@
 namespace handcast::renderer {
 namespace {
 
-/// The joints that fingers do not move: palm, wrist, and both ends of the metacarpals.
-constexpr std::array kPalmJoints{0, 1, 6, 7, 11, 12, 16, 17, 21, 22};
 /// Differences of the two velocities that are noise.
 constexpr float kHandNoise_m_s = 0.02f;   ///< of the palm, the mean of its joints
 constexpr float kJointNoise_m_s = 0.06f;  ///< of one joint relative to it, or at kTurnLever_m

@@ -43,7 +43,7 @@ bool is_finite(const msg::HandPose& pose) {
 }
 
 // Accelerations caused by tracker noise.
-constexpr float kHandNoise_m_s2 = 10;   ///< of the mean of all joints
+constexpr float kHandNoise_m_s2 = 10;   ///< of the palm, the mean of its joints
 constexpr float kJointNoise_m_s2 = 40;  ///< of one joint relative to that mean
 /// The acceleration displaces a joint by at most this much.
 constexpr float kMostBend_m = 0.02f;
@@ -58,15 +58,15 @@ std::array<glm::vec3, msg::kJoints> accelerations(const msg::HandPose& a, const 
                                                   const msg::HandPose& c, float first_s,
                                                   float second_s) {
   std::array<glm::vec3, msg::kJoints> result;
-  glm::vec3 mean{0};
   for (int j = 0; j < msg::kJoints; ++j) {
     const glm::vec3 before = (position(b.joints[j]) - position(a.joints[j])) / first_s;
     const glm::vec3 after = (position(c.joints[j]) - position(b.joints[j])) / second_s;
     result[j] = (after - before) * (2 / (first_s + second_s));
-    mean += result[j] / static_cast<float>(msg::kJoints);
   }
-  const glm::vec3 whole_hand = beyond_noise(mean, kHandNoise_m_s2);
-  for (glm::vec3& joint : result) joint = whole_hand + beyond_noise(joint - mean, kJointNoise_m_s2);
+  glm::vec3 palm{0};
+  for (const int j : kPalmJoints) palm += result[j] / static_cast<float>(kPalmJoints.size());
+  const glm::vec3 believed = beyond_noise(palm, kHandNoise_m_s2);
+  for (glm::vec3& joint : result) joint = believed + beyond_noise(joint - palm, kJointNoise_m_s2);
   return result;
 }
 

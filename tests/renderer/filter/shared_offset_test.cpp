@@ -134,6 +134,14 @@ TEST_F(DrawTogether, AHandThatTheTrackerMakesTooLargeIsMadeSmallerAtUnsureLandma
   EXPECT_LT(glm::distance(drawn()[20], right), 1) << "of 15 px";
 }
 
+TEST_F(DrawTogether, AFingerTheTrackerHasWrongHardlyMovesTheOthers) {
+  for (int i = 17; i <= 20; ++i) offsets_[i].y = 20.0f * static_cast<float>(i - 17);
+  sigmas_[0] = sigmas_[4] = 15;
+  // By least squares, 8.7 and 3.7 px.
+  EXPECT_LT(glm::distance(drawn()[0], {10, 0}), 5);
+  EXPECT_LT(glm::distance(drawn()[4], {10, 0}), 2);
+}
+
 TEST_F(DrawTogether, OffsetsThatAreNotKnownHaveNoPartInIt) {
   offsets_[3] = {kNan, kNan};
   offsets_[4].x = 20;

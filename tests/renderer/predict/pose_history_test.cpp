@@ -96,6 +96,15 @@ TEST(PoseHistory, AnAcceleratingHandIsFollowedBetterWithItsAcceleration) {
   EXPECT_LT(error_m[1], 0.3f * error_m[0]);
 }
 
+TEST(PoseHistory, AFingerThatSnapsDoesNotAccelerateTheHand) {
+  PoseHistory history = moving(0.5f, 0, {});
+  auto snapped = pose_at({0.0495f, 0, 0});
+  for (int j = 8; j <= 10; ++j) snapped.joints[j].position_m[1] = 0.02f;
+  history.push(99 * kMs, snapped);
+  for (const int j : {0, 15})
+    EXPECT_NEAR(history.at(117 * kMs)->joints[j].position_m[1], 0, 1e-5f) << j;
+}
+
 TEST(PoseHistory, AFastTurnIsNotExtrapolatedRoundAndRound) {
   const PoseHistory history = moving(0, 100.0f);
   EXPECT_LT(std::abs(std::remainder(angle_of(history.at(130 * kMs)) - 9.0f, 6.2831853f)), 1.01f);

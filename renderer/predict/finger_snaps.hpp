@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "calib/calibration.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "renderer/base/landmark_points.hpp"
+
+namespace handcast::renderer {
+
+/// Holds the fingers of one hand that have snapped. A tracker that loses sight of a finger guesses
+/// it, so that its joints step although the finger rests, and step back tenths of a second later.
+/// Landmarks put the finger back in the image, but its flexion stays wrong, and with it the skin
+/// that is drawn on it. One thread.
+class FingerSnaps {
+ public:
+  /// Copies the calibration.
+  explicit FingerSnaps(const calib::Calibration& calibration) : calibration_(calibration) {}
+
+  /// Adds a detection. Older ones than the newest are left out.
+  void detection(std::int64_t origin_ns, const msg::HandLandmarks& seen);
+
+  /// The sample of the tracker, in which a finger that has snapped is where it was before, as seen
+  /// from the palm. A step counts as a snap while the landmarks of a later image fit the finger
+  /// before it, not after it, and for half a second at most. `moved_px`: Q̂ - P of the last frame.
+  msg::HandPose held(std::int64_t origin_ns, const msg::HandPose& pose,
+                     const LandmarkPoints& moved_px);
+
+ private:
+  static constexpr int kFingers = 5, kFingerJoints = 4;
+
+  /// The joints of a finger that it can move, as seen from the palm.
+  using Finger = std::array<msg::Joint, kFingerJoints>;
+  /// A finger that has stepped.
+  struct Step {
+    std::int64_t since_ns = 0;  ///< time of the sample with the step
+    Finger before{};
+    LandmarkPoints moved_px{};  ///< Q̂ - P before
+    bool is_snap = false;
+  };
+  struct Detection {
+    std::int64_t origin_ns = 0;
+    msg::HandLandmarks seen;
+  };
+  /// What the newest landmarks say of a step.
+  enum class Evidence : std::uint8_t { none, snap, motion };
+
+  static Finger from_palm(const msg::HandPose& pose, int finger);
+  static msg::HandPose with_finger(msg::HandPose pose, int finger, const Finger& joints);
+  Evidence judge(const msg::HandPose& pose, int finger, const Step& step) const;
+  std::optional<float> distance_px(const msg::HandPose& pose, int finger,
+                                   const LandmarkPoints& moved_px) const;
+
+  calib::Calibration calibration_;
+  std::optional<Detection> newest_;
+  std::optional<std::int64_t> last_ns_;                ///< time of the last sample
+  std::array<Finger, kFingers> last_{};                ///< its fingers
+  std::array<std::optional<Step>, kFingers> steps_{};  ///< that have not been judged as motion
+};
+
+}  // namespace handcast::renderer
