@@ -4,20 +4,22 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
+#include "ipc/base/clock.hpp"
 #include "renderer/predict/joint_math.hpp"
 #include "renderer/predict/project_landmarks.hpp"
 
 namespace handcast::renderer {
 namespace {
 
-/// The tip moves by more than this from one sample to the next, as seen from the palm.
+/// From one sample to the next the tip moves by more than this, as seen from the palm, and is so
+/// far from where its own motion would have brought it.
 constexpr float kStep_m = 0.008f;
 /// After a gap of the samples a finger may be anywhere.
 constexpr std::int64_t kLongestGap_ns = 50'000'000;
 constexpr std::int64_t kLongestSnap_ns = 500'000'000;
 /// The landmarks contradict the finger after the step: they are farther from it than this, and
-/// nearer to the finger before it by this factor.
-constexpr float kOff_px = 4, kNearer = 0.5f;
+/// nearer to the finger before it by this factor; while it is held, nearer at all.
+constexpr float kOff_px = 4, kNearer = 0.35f;
 
 constexpr std::array kPalmLandmarks{0, 5, 9, 13, 17};
 
@@ -32,9 +34,7 @@ glm::quat turn_of_palm(const msg::HandPose& pose) {
   return glm::quat_cast(glm::mat3(glm::cross(forward, up), up, -forward));
 }
 
-float tip_distance_m(const std::array<msg::Joint, 4>& a, const std::array<msg::Joint, 4>& b) {
-  return glm::distance(position(a.back()), position(b.back()));
-}
+glm::vec3 tip(const std::array<msg::Joint, 4>& finger) { return position(finger.back()); }
 
 }  // namespace
 
@@ -46,18 +46,22 @@ msg::HandPose FingerSnaps::held(std::int64_t origin_ns, const msg::HandPose& pos
                                 const LandmarkPoints& moved_px) {
   if (last_ns_ && origin_ns <= *last_ns_) return pose;
   const bool goes_on = last_ns_ && origin_ns - *last_ns_ <= kLongestGap_ns;
+  const float since_s = goes_on ? static_cast<float>(ns_to_seconds(origin_ns - *last_ns_)) : 1;
   last_ns_ = origin_ns;
   msg::HandPose result = pose;
   for (int finger = 0; finger < kFingers; ++finger) {
     const Finger now = from_palm(pose, finger);
     auto& step = steps_[finger];
+    const glm::vec3 moved_m = goes_on ? tip(now) - tip(last_[finger]) : glm::vec3(0);
     if (!goes_on) step.reset();
-    if (goes_on && !step && tip_distance_m(last_[finger], now) > kStep_m)
+    if (!step && glm::length(moved_m) > kStep_m &&
+        glm::length(moved_m - since_s * tip_m_s_[finger]) > kStep_m)
       step = Step{origin_ns, last_[finger], moved_px};
     last_[finger] = now;
+    tip_m_s_[finger] = moved_m / since_s;
     if (!step) continue;
     if (origin_ns - step->since_ns > kLongestSnap_ns ||
-        tip_distance_m(step->before, now) < kStep_m) {
+        glm::distance(tip(step->before), tip(now)) < kStep_m) {
       step.reset();
       continue;
     }

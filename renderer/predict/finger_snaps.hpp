@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
 
 #include "calib/calibration.hpp"
@@ -24,8 +25,9 @@ class FingerSnaps {
   void detection(std::int64_t origin_ns, const msg::HandLandmarks& seen);
 
   /// The sample of the tracker, in which a finger that has snapped is where it was before, as seen
-  /// from the palm. A step counts as a snap while the landmarks of a later image fit the finger
-  /// before it, not after it, and for half a second at most. `moved_px`: Q̂ - P of the last frame.
+  /// from the palm. A step that the finger's own motion does not explain counts as a snap while the
+  /// landmarks of a later image fit the finger before it, not after it, and for half a second at
+  /// most. `moved_px`: Q̂ - P of the last frame.
   msg::HandPose held(std::int64_t origin_ns, const msg::HandPose& pose,
                      const LandmarkPoints& moved_px);
 
@@ -58,6 +60,7 @@ class FingerSnaps {
   std::optional<Detection> newest_;
   std::optional<std::int64_t> last_ns_;                ///< time of the last sample
   std::array<Finger, kFingers> last_{};                ///< its fingers
+  std::array<glm::vec3, kFingers> tip_m_s_{};          ///< velocities of their tips
   std::array<std::optional<Step>, kFingers> steps_{};  ///< that have not been judged as motion
 };
 
