@@ -69,6 +69,7 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
+  if (landmarks_.is_alone()) snaps_.forget();
   const auto held = settings_.predict.method == config::PredictMethod::acceleration
                         ? snaps_.held(origin_ns, pose, landmarks_.moved_px())
                         : pose;

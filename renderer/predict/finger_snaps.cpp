@@ -34,6 +34,11 @@ glm::quat turn_of_palm(const msg::HandPose& pose) {
   return glm::quat_cast(glm::mat3(glm::cross(forward, up), up, -forward));
 }
 
+glm::vec3 knuckle_from_palm(const msg::HandPose& pose, int finger) {
+  return glm::conjugate(turn_of_palm(pose)) *
+         (position(pose.joints[first_joint(finger)]) - position(pose.joints[1]));
+}
+
 glm::vec3 tip(const std::array<msg::Joint, 4>& finger) { return position(finger.back()); }
 
 }  // namespace
@@ -51,27 +56,26 @@ msg::HandPose FingerSnaps::held(std::int64_t origin_ns, const msg::HandPose& pos
   msg::HandPose result = pose;
   for (int finger = 0; finger < kFingers; ++finger) {
     const Finger now = from_palm(pose, finger);
-    auto& step = steps_[finger];
-    const glm::vec3 moved_m = goes_on ? tip(now) - tip(last_[finger]) : glm::vec3(0);
-    if (!goes_on) step.reset();
-    if (!step && glm::length(moved_m) > kStep_m &&
-        glm::length(moved_m - since_s * tip_m_s_[finger]) > kStep_m)
-      step = Step{origin_ns, last_[finger], moved_px};
+    const glm::vec3 knuckle_m = knuckle_from_palm(pose, finger);
+    const glm::vec3 moved_m = tip(now) - tip(last_[finger]);
+    auto& snap = snaps_[finger];
+    if (!goes_on) {
+      snap.reset();
+    } else if (snap) {
+      if (origin_ns - snap->since_ns > kLongestSnap_ns ||
+          glm::distance(tip(snap->before), tip(now)) < kStep_m ||
+          !contradicts(pose, finger, *snap, 1))
+        snap.reset();
+    } else if (glm::length(moved_m) > kStep_m &&
+               glm::length(moved_m - since_s * tip_m_s_[finger]) > kStep_m &&
+               glm::distance(knuckle_m, knuckles_m_[finger]) < kStep_m) {
+      snap = Snap{origin_ns, last_[finger], moved_px};
+      if (!contradicts(pose, finger, *snap, kNearer)) snap.reset();
+    }
+    if (snap) result = with_finger(result, finger, snap->before);
     last_[finger] = now;
-    tip_m_s_[finger] = moved_m / since_s;
-    if (!step) continue;
-    if (origin_ns - step->since_ns > kLongestSnap_ns ||
-        glm::distance(tip(step->before), tip(now)) < kStep_m) {
-      step.reset();
-      continue;
-    }
-    const auto evidence = judge(pose, finger, *step);
-    if (evidence == Evidence::motion) {
-      step.reset();
-    } else if (evidence == Evidence::snap) {
-      step->is_snap = true;
-      result = with_finger(result, finger, step->before);
-    }
+    tip_m_s_[finger] = goes_on ? moved_m / since_s : glm::vec3(0);
+    knuckles_m_[finger] = knuckle_m;
   }
   return result;
 }
@@ -97,16 +101,15 @@ msg::HandPose FingerSnaps::with_finger(msg::HandPose pose, int finger, const Fin
   return pose;
 }
 
-/// Both fingers are compared without the offset that the landmarks had before the step, so that
-/// only the step counts.
-FingerSnaps::Evidence FingerSnaps::judge(const msg::HandPose& pose, int finger,
-                                         const Step& step) const {
-  if (!newest_ || newest_->origin_ns < step.since_ns) return Evidence::none;
-  const auto now_px = distance_px(pose, finger, step.moved_px),
-             before_px = distance_px(with_finger(pose, finger, step.before), finger, step.moved_px);
-  if (!now_px || !before_px) return Evidence::none;
-  const float nearer = step.is_snap ? 1 : kNearer;
-  return *now_px > kOff_px && *before_px < nearer * *now_px ? Evidence::snap : Evidence::motion;
+/// True if landmarks that are not older than the snap are nearer to the finger before it than to
+/// that of the sample by the factor `nearer`. Both are compared without the offset that the
+/// landmarks had before, so that only the step counts.
+bool FingerSnaps::contradicts(const msg::HandPose& pose, int finger, const Snap& snap,
+                              float nearer) const {
+  if (!newest_ || newest_->origin_ns < snap.since_ns) return false;
+  const auto now_px = distance_px(pose, finger, snap.moved_px),
+             before_px = distance_px(with_finger(pose, finger, snap.before), finger, snap.moved_px);
+  return now_px && before_px && *now_px > kOff_px && *before_px < nearer * *now_px;
 }
 
 /// RMS of the three outer landmarks, as seen from those of the palm: sample and image are of

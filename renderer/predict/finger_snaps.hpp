@@ -30,38 +30,37 @@ class FingerSnaps {
   /// most. `moved_px`: Q̂ - P of the last frame.
   msg::HandPose held(std::int64_t origin_ns, const msg::HandPose& pose,
                      const LandmarkPoints& moved_px);
+  /// Drops all samples: those of a tracker that was silent cannot be compared.
+  void forget() { *this = FingerSnaps(calibration_); }
 
  private:
   static constexpr int kFingers = 5, kFingerJoints = 4;
 
   /// The joints of a finger that it can move, as seen from the palm.
   using Finger = std::array<msg::Joint, kFingerJoints>;
-  /// A finger that has stepped.
-  struct Step {
-    std::int64_t since_ns = 0;  ///< time of the sample with the step
+  /// A finger that has snapped.
+  struct Snap {
+    std::int64_t since_ns = 0;  ///< time of the first sample that is wrong
     Finger before{};
     LandmarkPoints moved_px{};  ///< Q̂ - P before
-    bool is_snap = false;
   };
   struct Detection {
     std::int64_t origin_ns = 0;
     msg::HandLandmarks seen;
   };
-  /// What the newest landmarks say of a step.
-  enum class Evidence : std::uint8_t { none, snap, motion };
-
   static Finger from_palm(const msg::HandPose& pose, int finger);
   static msg::HandPose with_finger(msg::HandPose pose, int finger, const Finger& joints);
-  Evidence judge(const msg::HandPose& pose, int finger, const Step& step) const;
+  bool contradicts(const msg::HandPose& pose, int finger, const Snap& snap, float nearer) const;
   std::optional<float> distance_px(const msg::HandPose& pose, int finger,
                                    const LandmarkPoints& moved_px) const;
 
   calib::Calibration calibration_;
   std::optional<Detection> newest_;
-  std::optional<std::int64_t> last_ns_;                ///< time of the last sample
-  std::array<Finger, kFingers> last_{};                ///< its fingers
-  std::array<glm::vec3, kFingers> tip_m_s_{};          ///< velocities of their tips
-  std::array<std::optional<Step>, kFingers> steps_{};  ///< that have not been judged as motion
+  std::optional<std::int64_t> last_ns_;           ///< time of the last sample
+  std::array<Finger, kFingers> last_{};           ///< its fingers
+  std::array<glm::vec3, kFingers> tip_m_s_{};     ///< velocities of their tips
+  std::array<glm::vec3, kFingers> knuckles_m_{};  ///< as seen from the palm
+  std::array<std::optional<Snap>, kFingers> snaps_{};
 };
 
 }  // namespace handcast::renderer

@@ -134,14 +134,25 @@ TEST(FingerSnaps, WithoutLandmarksTheTrackerIsBelieved) {
   EXPECT_GT(fingers.tip_off_m(300), 0.02f);
 }
 
-TEST(FingerSnaps, LandmarksThatComeLateHoldTheFingerFromThenOn) {
+TEST(FingerSnaps, LandmarksOlderThanTheSnapSayNothing) {
   Fingers fingers;
   fingers.tracked_deg = snap;
   fingers.seen_deg = [](std::int64_t ms) {
     return ms < 190 || ms > 230 ? std::optional(0.0f) : std::nullopt;
   };
-  EXPECT_GT(fingers.tip_off_m(220), 0.02f);
-  EXPECT_LT(fingers.tip_off_m(250), 1e-4f);
+  for (const int ms : {200, 220, 300}) EXPECT_GT(fingers.tip_off_m(ms), 0.02f) << ms << " ms";
+}
+
+TEST(FingerSnaps, AFingerThatTheTrackerTakesForItsNeighbourIsNotHeldOnAWrongKnuckle) {
+  FingerSnaps snaps(rig_above_hand());
+  const auto seen = landmarks_of(rig_above_hand(), 12 * kMs, hand(0), {0, 0}).hands[0];
+  auto wrong = hand(0);
+  for (int k = 0; k < 4; ++k) wrong.joints[kIndex + 5 + k] = wrong.joints[kIndex + 10 + k];
+  for (int ms = 0; ms < 100; ms += 10) snaps.held(ms * kMs, hand(0), {});
+  snaps.detection(102 * kMs, seen);
+  const auto held = snaps.held(100 * kMs, wrong, {});
+  for (int j = kIndex + 5; j < kIndex + 9; ++j)
+    EXPECT_LT(glm::distance(position(held.joints[j]), position(wrong.joints[j])), 1e-6f);
 }
 
 TEST(FingerSnaps, AfterAGapOfTheTrackerAFingerMayBeAnywhere) {
