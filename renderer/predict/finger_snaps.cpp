@@ -34,11 +34,6 @@ glm::quat turn_of_palm(const msg::HandPose& pose) {
   return glm::quat_cast(glm::mat3(glm::cross(forward, up), up, -forward));
 }
 
-glm::vec3 knuckle_from_palm(const msg::HandPose& pose, int finger) {
-  return glm::conjugate(turn_of_palm(pose)) *
-         (position(pose.joints[first_joint(finger)]) - position(pose.joints[1]));
-}
-
 glm::vec3 tip(const std::array<msg::Joint, 4>& finger) { return position(finger.back()); }
 
 }  // namespace
@@ -56,7 +51,6 @@ msg::HandPose FingerSnaps::held(std::int64_t origin_ns, const msg::HandPose& pos
   msg::HandPose result = pose;
   for (int finger = 0; finger < kFingers; ++finger) {
     const Finger now = from_palm(pose, finger);
-    const glm::vec3 knuckle_m = knuckle_from_palm(pose, finger);
     const glm::vec3 moved_m = tip(now) - tip(last_[finger]);
     auto& snap = snaps_[finger];
     if (!goes_on) {
@@ -67,15 +61,13 @@ msg::HandPose FingerSnaps::held(std::int64_t origin_ns, const msg::HandPose& pos
           !contradicts(pose, finger, *snap, 1))
         snap.reset();
     } else if (glm::length(moved_m) > kStep_m &&
-               glm::length(moved_m - since_s * tip_m_s_[finger]) > kStep_m &&
-               glm::distance(knuckle_m, knuckles_m_[finger]) < kStep_m) {
+               glm::length(moved_m - since_s * tip_m_s_[finger]) > kStep_m) {
       snap = Snap{origin_ns, last_[finger], moved_px};
       if (!contradicts(pose, finger, *snap, kNearer)) snap.reset();
     }
     if (snap) result = with_finger(result, finger, snap->before);
     last_[finger] = now;
     tip_m_s_[finger] = goes_on ? moved_m / since_s : glm::vec3(0);
-    knuckles_m_[finger] = knuckle_m;
   }
   return result;
 }

@@ -48,6 +48,7 @@ class FingerSnaps {
     std::int64_t origin_ns = 0;
     msg::HandLandmarks seen;
   };
+
   static Finger from_palm(const msg::HandPose& pose, int finger);
   static msg::HandPose with_finger(msg::HandPose pose, int finger, const Finger& joints);
   bool contradicts(const msg::HandPose& pose, int finger, const Snap& snap, float nearer) const;
@@ -56,10 +57,9 @@ class FingerSnaps {
 
   calib::Calibration calibration_;
   std::optional<Detection> newest_;
-  std::optional<std::int64_t> last_ns_;           ///< time of the last sample
-  std::array<Finger, kFingers> last_{};           ///< its fingers
-  std::array<glm::vec3, kFingers> tip_m_s_{};     ///< velocities of their tips
-  std::array<glm::vec3, kFingers> knuckles_m_{};  ///< as seen from the palm
+  std::optional<std::int64_t> last_ns_;        ///< time of the last sample
+  std::array<Finger, kFingers> last_{};        ///< its fingers
+  std::array<glm::vec3, kFingers> tip_m_s_{};  ///< velocities of their tips
   std::array<std::optional<Snap>, kFingers> snaps_{};
 };
 

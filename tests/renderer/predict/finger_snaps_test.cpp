@@ -98,7 +98,7 @@ TEST(FingerSnaps, AFingerThatMovesFastIsNotHeldByLandmarksThatLag) {
   fingers.tracked_deg = [](std::int64_t ms) {
     return ms < 200 ? 0 : 1.3e-2f * static_cast<float>((ms - 200) * (ms - 200));
   };
-  fingers.seen_deg = [&](std::int64_t ms) { return fingers.tracked_deg(ms - 30); };
+  fingers.seen_deg = [&](std::int64_t ms) { return fingers.tracked_deg(ms - 18); };
   for (const int ms : {220, 230, 240, 250}) {
     const auto lag_m = tip_apart_m(hand(fingers.tracked_deg(ms)), hand(*fingers.seen_deg(ms)));
     EXPECT_NEAR(fingers.tip_off_m(ms), lag_m, 1e-4f) << ms << " ms";
