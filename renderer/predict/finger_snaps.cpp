@@ -23,7 +23,7 @@ constexpr float kOff_px = 4, kNearer = 0.35f;
 
 constexpr std::array kPalmLandmarks{0, 5, 9, 13, 17};
 
-int first_joint(int finger) { return finger == 0 ? 2 : 2 + 5 * finger; }
+int first_joint(int finger) { return 2 + 5 * finger; }
 
 /// The orientation of the palm by the places of wrist and knuckles, which have less noise than the
 /// orientations of joints.

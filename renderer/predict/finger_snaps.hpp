@@ -30,7 +30,7 @@ class FingerSnaps {
   /// most. `moved_px`: Q̂ - P of the last frame.
   msg::HandPose held(std::int64_t origin_ns, const msg::HandPose& pose,
                      const LandmarkPoints& moved_px);
-  /// Drops all samples: those of a tracker that was silent cannot be compared.
+  /// Drops all samples and landmarks: those of a tracker that was silent cannot be compared.
   void forget() { *this = FingerSnaps(calibration_); }
 
  private:

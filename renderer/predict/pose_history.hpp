@@ -57,7 +57,7 @@ class PoseHistory {
   ///   drawn without the noise of the samples; up to twice that speed the two are blended.
   /// - acceleration: the same with the velocity of steps_ahead() and the acceleration of the three
   ///   newest samples, as far as it exceeds the noise of the tracker (share_beyond_noise()): that
-  ///   of the whole hand, whose mean has less noise, plus that of each joint relative to the hand.
+  ///   of the palm, whose mean has less noise, plus that of each joint relative to it.
   std::optional<msg::HandPose> at(std::int64_t time_ns, std::int64_t lost_ns = 200'000'000) const;
 
  private:

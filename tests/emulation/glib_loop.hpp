@@ -18,6 +18,7 @@ class GlibLoop {
     g_main_context_unref(context_);
   }
 
+  /// For sources that belong to this loop.
   GMainContext* context() const { return context_; }
 
   /// Calls `make`; the sources that it creates belong to this loop.
@@ -28,6 +29,7 @@ class GlibLoop {
     g_main_context_pop_thread_default(context_);
   }
 
+  /// Runs the loop until stop().
   void start() {
     thread_ = std::thread([this] { with([this] { g_main_loop_run(loop_); }); });
   }
