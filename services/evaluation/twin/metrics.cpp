@@ -9,6 +9,7 @@
 namespace handcast::twin {
 namespace {
 
+constexpr float kFar_mm = 10;  ///< light that is farther off is on another part of a finger
 constexpr std::size_t kMostKept = 1 << 17;
 constexpr std::array<double, 4> kSpeedSteps_m_s{0.1, 0.3, 0.6, 1.0};
 constexpr std::array<const char*, 5> kSpeedNames{"0-0.1", "0.1-0.3", "0.3-0.6", "0.6-1.0", ">1.0"};
@@ -53,6 +54,7 @@ void Metrics::Bin::add(const FrameScore::Hand& hand) {
   for (const float error : hand.interior_mm) {
     mm.add(error);
     lit_mm.add(error);
+    far_points += error > kFar_mm;
   }
   lit_points += static_cast<std::int64_t>(hand.interior_px.size());
   missing_points += static_cast<std::int64_t>(hand.missing_px.size());
@@ -89,6 +91,8 @@ void Metrics::Bin::write(nlohmann::json& json) const {
   write_spread(json["interior_mm"], mm, true);
   write_spread(json["lit_mm"], lit_mm, true);
   json["missing"] = ratio(double(missing_points), double(lit_points + missing_points));
+  json["off_10mm"] =
+      ratio(double(far_points + missing_points), double(lit_points + missing_points));
   json["coverage"] = ratio(double(lit_px), double(hand_px));
   json["spill"] = ratio(double(spill_px), double(hand_px));
   json["iou"] = ratio(double(lit_px), double(union_px));

@@ -36,13 +36,17 @@ class Metrics {
   /// The metrics so far. A value that was not measured is null; all bins and both hands are
   /// present.
   ///
-  ///     {"frames", "interior_mm": {mean, p95, p99}, "interior_px": {...}, "lit_mm": {...},
-  ///     "missing",
-  ///      "coverage", "spill", "iou", "seam_px", "jitter_px",
-  ///      "landmark_jitter_px", "foldovers", "landmark_px": {mean,
-  ///      p95, p99}, "landmark_mm": {...}, "rungs": {rung: share of the hands of drawn frames},
-  ///      "equivalent_latency_ms", "residual_px", "frame_us": {p50, p99}, "stage_us": {stage: {p50,
-  ///      p99}}, "bins": {...}, "hands": {"left": {...}, "right": {...}}}
+  ///     {"frames",
+  ///      "interior_mm": {mean, p95, p99}, "interior_px": {...}, "lit_mm": {...},
+  ///      "missing", "off_10mm", "coverage", "spill", "iou", "seam_px",
+  ///      "equivalent_latency_ms", "residual_px",
+  ///      "jitter_px", "landmark_jitter_px", "foldovers",
+  ///      "landmark_px": {mean, p95, p99}, "landmark_mm": {...},
+  ///      "rungs": {rung: share of the hands of drawn frames},
+  ///      "frame_us": {p50, p99}, "stage_us": {stage: {p50, p99}},
+  ///      "bins": {...}, "hands": {"left": {...}, "right": {...}}}
+  /// "off_10mm" is the share of the visible skin that is dark or whose light is more than 10 mm
+  /// off.
   nlohmann::json to_json() const;
 
  private:
@@ -63,7 +67,7 @@ class Metrics {
   struct Bin {
     Samples px, mm, lit_mm;
     std::int64_t frames = 0, hand_px = 0, lit_px = 0, spill_px = 0, union_px = 0;
-    std::int64_t lit_points = 0, missing_points = 0;
+    std::int64_t lit_points = 0, far_points = 0, missing_points = 0;
     double seam_px = 0, lag_px_s = 0, speed2_px_s2 = 0, error2_px2 = 0;
 
     void add(const FrameScore::Hand& hand);

@@ -79,8 +79,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kLevers{
     {"outline", {"cascade.correct.outline"}},
     {"gate",
      {"cascade.ladder.rung", "cascade.predict.method", "cascade.predict.still_mm_s",
-      // What takes the network's place without its files, which is no lever.
-      "landmarks.fallback"}},
+      // What takes the network's place without its files, and a setting of MediaPipe's: no levers.
+      "landmarks.fallback", "landmarks.definition"}},
 };
 
 TEST(ShippedPlans, EachLeverAddsWhatItIsNamedAfterAndTheLastRowIsOurs) {
@@ -113,13 +113,22 @@ TEST(ShippedPlans, TheUnseenMotionsAreScoredWithTheRigsOfTheComparison) {
         << name;
 }
 
-TEST(ShippedPlans, JitterIsMeasuredOnTheRigsOfTheComparison) {
+TEST(ShippedPlans, JitterAndFirstSecondsAreOfTheRigsOfTheComparison) {
   std::map<std::string, config::Rig> compared;
   for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
-  const auto still = rigs_of("jitter");
-  EXPECT_EQ(still.size(), 5u);
-  for (const auto& [name, rig] : still)
-    EXPECT_THAT(config::differences(rig, compared.at(name)), testing::IsEmpty()) << name;
+  for (const auto& [plan, variants] : {std::pair("jitter", 5u), std::pair("first_seconds", 3u)}) {
+    const auto rigs = rigs_of(plan);
+    EXPECT_EQ(rigs.size(), variants) << plan;
+    for (const auto& [name, rig] : rigs)
+      EXPECT_THAT(config::differences(rig, compared.at(name)), testing::IsEmpty())
+          << plan << ' ' << name;
+  }
+}
+
+TEST(ShippedPlans, TheFirstSecondsAreScored) {
+  const auto plan = load_plan(source_root() / "config/sweeps/first_seconds.toml");
+  ASSERT_TRUE(plan) << plan.error().what;
+  EXPECT_EQ(plan->warm_up_s, 0);
 }
 
 /// The values of a setting in the grid of a shipped plan.
@@ -138,7 +147,7 @@ std::set<std::string> values_in(const std::string& plan_name, const std::string&
 TEST(ShippedPlans, TheTablesOfAccuracyAreOfACarefulInstallation) {
   const auto careful = rigs_of("comparison").front().second;
   for (const auto* name :
-       {"levers", "fidelity", "motions", "fast", "two_hands", "jitter", "unseen"})
+       {"levers", "fidelity", "motions", "fast", "two_hands", "jitter", "first_seconds", "unseen"})
     for (const auto& [variant, rig] : rigs_of(name)) {
       EXPECT_EQ(rig.twin.shape.roll_deg, careful.twin.shape.roll_deg) << name << " " << variant;
       EXPECT_THAT(differences_in(rig, careful, {"twin.geometry.", "twin.tracker.", "twin.image."}),

@@ -145,6 +145,17 @@ TEST(Metrics, AFrameThatIsLeftDarkMakesTheHeadlineWorse) {
   EXPECT_DOUBLE_EQ(bad["lit_mm"]["mean"], 1) << "beside it: the light that is there";
 }
 
+TEST(Metrics, WhatIsDarkOrMoreThan10MmOffIsCountedAlike) {
+  FrameScore score;
+  score.hands.resize(1);
+  score.hands[0].interior_mm = {1, 10, 10.5f, 100};
+  score.hands[0].interior_px = {1, 10, 10.5f, 100};
+  score.hands[0].missing_px = {30};
+  Metrics metrics;
+  metrics.add(score);
+  EXPECT_DOUBLE_EQ(metrics.to_json()["off_10mm"], 3.0 / 5);
+}
+
 TEST(Metrics, TheResidualIsWhatNoDelayExplains) {
   const auto residual_px = [](double lag_px_s) {
     FrameScore score;
