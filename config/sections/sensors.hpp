@@ -239,15 +239,6 @@ void describe(Visitor& visitor, Pose& pose) {
   visitor.section("process", pose.process, "The process of the service.");
 }
 
-/// What the landmarks of `mediapipe` mean.
-enum class LandmarkDefinition {
-  tracker,  ///< wrist and knuckles moved to where the tracker's joints are
-  network,  ///< as the network defines them
-};
-constexpr std::array<std::string_view, 2> words_of(LandmarkDefinition) {
-  return {"tracker", "network"};
-}
-
 /// [landmarks]
 struct Landmarks {
   std::string backend = "twin";
@@ -255,7 +246,6 @@ struct Landmarks {
   Executor executor = Executor::onednn;
   std::string models;
   int hands = 2;
-  LandmarkDefinition definition = LandmarkDefinition::tracker;
   Replay replay;
   Process process;
 };
@@ -282,10 +272,6 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
                 "hands that the tracker does not see.");
   visitor.field("hands", landmarks.hands, between(1, 2),
                 "handcast, mediapipe: the largest number of hands.");
-  visitor.field("definition", landmarks.definition,
-                "mediapipe: where the landmarks are. network: where the network defines them. "
-                "tracker: wrist and knuckles are moved to the tracker's joints, with which the "
-                "cascade compares them.");
   visitor.section("replay", landmarks.replay,
                   "For backend = \"replay\": landmarks_{left,right}.npy, (n,21,2) or with sigmas "
                   "(n,21,3), with landmarks_timestamps.npy.");

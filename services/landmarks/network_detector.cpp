@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
-#include "services/landmarks/tracker/joint_convention.hpp"
 
 namespace handcast::landmarks {
 namespace {
@@ -15,14 +12,10 @@ namespace {
 /// A landmark model on the camera's images.
 class NetworkDetector final : public Detector {
  public:
-  /// `converts`: moves the model's points to the tracker's joints. `has_tracker`: false if the
-  /// poses of the rig are made from these landmarks; they are no hints then.
-  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool converts,
-                  bool has_tracker)
-      : finder_(std::move(finder)),
-        camera_(camera),
-        converts_(converts),
-        has_tracker_(has_tracker) {}
+  /// `has_tracker`: false if the poses of the rig are made from these landmarks; they are no hints
+  /// then.
+  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool has_tracker)
+      : finder_(std::move(finder)), camera_(camera), has_tracker_(has_tracker) {}
 
   Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& told,
                                 Deadline) override {
@@ -43,31 +36,19 @@ class NetworkDetector final : public Detector {
 
     msg::Landmarks landmarks;
     landmarks.header = {frame.header.frame_id, frame.header.origin_ns, 0};
-    for (const auto& hand : *found)
-      landmarks.hands[landmarks.count++] = message_of(hand, hints, frame.header.origin_ns);
+    for (const auto& hand : *found) landmarks.hands[landmarks.count++] = message_of(hand);
     return landmarks;
   }
 
  private:
-  msg::HandLandmarks message_of(const FoundHand& hand, const Hints& hints, std::int64_t time_ns) {
-    const auto side = static_cast<std::size_t>(hand.side);
-    Points points_px = undistorted(camera_, hand.points_px);
-    if (converts_) {
-      if (hints[side] && is_well_seen(hand)) offsets_[side].learn(time_ns, points_px, *hints[side]);
-      points_px = offsets_[side].to_tracker(points_px);
-    }
+  msg::HandLandmarks message_of(const FoundHand& hand) const {
+    const Points points_px = undistorted(camera_, hand.points_px);
     msg::HandLandmarks message{hand.side, hand.presence, {}};
     for (std::size_t i = 0; i < points_px.size(); ++i)
       message.points[i] = {points_px[i].x, points_px[i].y,
                            is_in_image(hand.points_px[i]) ? hand.confidences[i] : 0,
                            hand.sigma_px[i]};
     return message;
-  }
-
-  bool is_well_seen(const FoundHand& hand) const {
-    return mean_of(hand.confidences) >= kSteadyConfidence &&
-           std::ranges::all_of(hand.points_px,
-                               [this](glm::vec2 point_px) { return is_in_image(point_px); });
   }
 
   bool is_in_image(glm::vec2 at_px) const {
@@ -78,8 +59,7 @@ class NetworkDetector final : public Detector {
 
   HandFinder finder_;
   calib::CameraModel camera_;
-  bool converts_, has_tracker_;
-  std::array<JointConventionOffsets, msg::kMaxHands> offsets_;
+  bool has_tracker_;
 };
 
 /// Networks, and the mask, take a hand for one whose image has the same scale in all directions.
@@ -107,16 +87,13 @@ Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
   auto model =
       open_landmark_model(settings.backend, {.executor = settings.executor, .folder = *folder});
   if (!model) return fail_in(fmt::format("landmarks '{}'", settings.backend), model.error());
-  const bool converts = settings.definition == config::LandmarkDefinition::tracker &&
-                        !model->landmarks->traits().finds_tracker_joints;
   const bool has_tracker = rig.pose.backend != "none";
   // The poses of `stereo` are made from these landmarks, too, but of two views: good hints, once
   // the hands were found.
   const bool lifts = !has_tracker || rig.pose.backend == "stereo" || rig.pose.second == "stereo";
   HandFinder finder(std::move(*model), settings.hands,
                     lifts ? HandFinder::Poses::of_landmarks : HandFinder::Poses::of_a_tracker);
-  return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, converts,
-                                           has_tracker);
+  return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, has_tracker);
 }
 
 }  // namespace handcast::landmarks

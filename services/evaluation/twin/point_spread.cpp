@@ -9,35 +9,48 @@
 namespace handcast::twin {
 namespace {
 
-HANDCAST_CLONES void add_scaled(const float* from, float weight, float* to, int count) {
-  for (int x = 0; x < count; ++x) to[x] += weight * from[x];
+/// to[x] = the sum of weights[i] rows[i][x], in blocks whose sums stay in registers.
+HANDCAST_CLONES void add_up(const float* const* rows, const float* weights, int count, float* to,
+                            int width) {
+  constexpr int kBlock = 32;
+  int x = 0;
+  for (; x + kBlock <= width; x += kBlock) {
+    float sums[kBlock] = {};
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < kBlock; ++k) sums[k] += weights[i] * rows[i][x + k];
+    for (int k = 0; k < kBlock; ++k) to[x + k] = sums[k];
+  }
+  for (; x < width; ++x) {
+    float sum = 0;
+    for (int i = 0; i < count; ++i) sum += weights[i] * rows[i][x];
+    to[x] = sum;
+  }
 }
 
 }  // namespace
 
 PointSpread::PointSpread(double sigma_px) {
   const int reach = static_cast<int>(std::ceil(3 * sigma_px));
-  double sum = -1;
-  for (int i = 0; i <= reach; ++i) {
-    half_.push_back(
+  double sum = 0;
+  for (int i = -reach; i <= reach; ++i) {
+    weights_.push_back(
         reach == 0 ? 1 : static_cast<float>(std::exp(-0.5 * i * i / (sigma_px * sigma_px))));
-    sum += 2 * double(half_.back());
+    sum += double(weights_.back());
   }
-  for (float& weight : half_) weight /= static_cast<float>(sum);
+  for (float& weight : weights_) weight /= static_cast<float>(sum);
+  sources_.resize(weights_.size());
 }
 
 void PointSpread::spread_rows(renderer::View<float> image, const renderer::Rect& region) {
   const int width = region.width(), reach = reach_px();
   row_.resize(static_cast<std::size_t>(width) + 2 * static_cast<std::size_t>(reach));
+  for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i] = row_.data() + i;
   for (int y = region.y0; y < region.y1; ++y) {
     float* pixels = image.row(y) + region.x0;
     std::copy_n(pixels, width, row_.begin() + reach);
     std::fill_n(row_.begin(), reach, pixels[0]);
     std::fill_n(row_.end() - reach, reach, pixels[width - 1]);
-    std::fill_n(pixels, width, 0.0f);
-    for (int i = -reach; i <= reach; ++i)
-      add_scaled(row_.data() + reach + i, half_[static_cast<std::size_t>(std::abs(i))], pixels,
-                 width);
+    add_up(sources_.data(), weights_.data(), 2 * reach + 1, pixels, width);
   }
 }
 
@@ -48,11 +61,10 @@ void PointSpread::spread_columns(renderer::View<float> image, const renderer::Re
   for (int y = region.y0; y < region.y1; ++y)
     std::copy_n(image.row(y) + region.x0, width, rows_.row(y) + region.x0);
   for (int y = region.y0; y < region.y1; ++y) {
-    float* pixels = image.row(y) + region.x0;
-    std::fill_n(pixels, width, 0.0f);
     for (int i = -reach; i <= reach; ++i)
-      add_scaled(rows_.row(std::clamp(y + i, region.y0, region.y1 - 1)) + region.x0,
-                 half_[static_cast<std::size_t>(std::abs(i))], pixels, width);
+      sources_[static_cast<std::size_t>(i + reach)] =
+          rows_.row(std::clamp(y + i, region.y0, region.y1 - 1)) + region.x0;
+    add_up(sources_.data(), weights_.data(), 2 * reach + 1, image.row(y) + region.x0, width);
   }
 }
 

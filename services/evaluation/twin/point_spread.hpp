@@ -13,7 +13,7 @@ class PointSpread {
   /// `sigma_px`: standard deviation; 0 for a perfect lens.
   explicit PointSpread(double sigma_px);
   /// How far light spreads, px; 0 for a perfect lens.
-  int reach_px() const { return static_cast<int>(half_.size()) - 1; }
+  int reach_px() const { return static_cast<int>(weights_.size()) / 2; }
   /// Spreads the pixels of `region`, which must be inside `image`. What is beside the region
   /// counts as equal to its edge.
   void spread(renderer::View<float> image, const renderer::Rect& region);
@@ -22,7 +22,8 @@ class PointSpread {
   void spread_rows(renderer::View<float> image, const renderer::Rect& region);
   void spread_columns(renderer::View<float> image, const renderer::Rect& region);
 
-  std::vector<float> half_;  ///< weights from the centre outwards
+  std::vector<float> weights_;         ///< from one end to the other
+  std::vector<const float*> sources_;  ///< for each weight, the pixels that it belongs to
   std::vector<float> row_;
   renderer::Image<float> rows_;
 };

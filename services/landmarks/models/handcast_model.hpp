@@ -17,9 +17,7 @@ class HandcastModel final : public LandmarkModel {
   /// Errors (bad_config): `file` contains another network, or those of open_network().
   static Result<HandcastModel> open(config::Executor executor, const std::filesystem::path& file);
 
-  Traits traits() const override {
-    return {.passes_at_first = 2, .reads_tracker = true, .finds_tracker_joints = true};
-  }
+  Traits traits() const override { return {.passes_at_first = 2, .reads_tracker = true}; }
   Region region_around(const Points& points_px) const override {
     return handcast_network::region_around(points_px);
   }

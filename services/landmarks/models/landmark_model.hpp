@@ -44,9 +44,6 @@ class LandmarkModel {
     bool scores_sides = false;
     /// The tracker's joints are an input of the network.
     bool reads_tracker = false;
-    /// Its points are the tracker's joints. The points of other models may be defined a few pixels
-    /// beside them.
-    bool finds_tracker_joints = false;
   };
   /// The traits of this model; they never change.
   virtual Traits traits() const = 0;

@@ -11,20 +11,20 @@
 
 namespace handcast::landmarks {
 
-static constexpr config::SettingList kAlways{"landmarks.executor", "landmarks.models",
-                                             "landmarks.hands", "pose.backend"};
+static constexpr config::SettingList kReads{"landmarks.executor", "landmarks.models",
+                                            "landmarks.hands", "pose.backend"};
 
 static constexpr std::array kModels{
     LandmarkModelRow{.name = "handcast",
                      .sentence = "handcast's own network, which also reads the tracker's joints.",
                      .open = open_handcast_model,
                      .files = handcast_files,
-                     .reads = kAlways},
+                     .reads = kReads},
     LandmarkModelRow{.name = "mediapipe",
                      .sentence = "MediaPipe Hands lite, whose files scripts/get-models fetches.",
                      .open = open_mediapipe_model,
                      .files = mediapipe_files,
-                     .reads = kAlways + config::SettingList{"landmarks.definition"}},
+                     .reads = kReads},
 };
 
 std::span<const LandmarkModelRow> landmark_models() { return kModels; }

@@ -67,18 +67,6 @@ TEST_F(MediapipeDetector, LandmarksAreFreeOfTheLensesDistortion) {
   EXPECT_GT(std::hypot(seen.x_px - plain.x_px, seen.y_px - plain.y_px), 2);
 }
 
-TEST_F(MediapipeDetector, MovesTheThumbsKnuckleToTheTrackersJointUnlessToldNotTo) {
-  const auto as_tracker = detect();
-  rig_.landmarks.definition = config::LandmarkDefinition::network;
-  const auto as_network = detect();
-  const auto moved_px = [&](int i) {
-    return std::hypot(as_tracker.points[i].x_px - as_network.points[i].x_px,
-                      as_tracker.points[i].y_px - as_network.points[i].y_px);
-  };
-  EXPECT_GT(moved_px(2), 10);
-  EXPECT_EQ(moved_px(8), 0);
-}
-
 TEST_F(MediapipeDetector, HasNoSigma) {
   for (const auto& point : detect().points) EXPECT_EQ(point.sigma_px, 0);
 }

@@ -97,13 +97,12 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
   expect_reads("pose", rig, truth_and({"pose", "twin.tracker"}),
                settings_in({"pose.replay", "pose.none", "pose.leapc", "pose.openxr", "pose.stereo",
                             "pose.process.standby"}));
-  expect_reads(
-      "landmarks", rig,
-      truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "twin.image.lost",
-                 "twin.image.burst", "twin.image.clock_drift_ppm", "twin.image.clock_jitter_ms",
-                 "camera.rate_hz", "camera.exposure_ms"}),
-      settings_in({"landmarks.replay", "landmarks.executor", "landmarks.models", "landmarks.hands",
-                   "landmarks.definition", "landmarks.process.standby"}));
+  expect_reads("landmarks", rig,
+               truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "twin.image.lost",
+                          "twin.image.burst", "twin.image.clock_drift_ppm",
+                          "twin.image.clock_jitter_ms", "camera.rate_hz", "camera.exposure_ms"}),
+               settings_in({"landmarks.replay", "landmarks.executor", "landmarks.models",
+                            "landmarks.hands", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
@@ -111,9 +110,8 @@ TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
                settings_in({"landmarks.replay", "landmarks.process.standby"}));
   config::Rig handcast;
   handcast.landmarks.backend = "handcast";
-  expect_reads(
-      "landmarks", handcast, {"landmarks", "pose.backend"},
-      settings_in({"landmarks.replay", "landmarks.definition", "landmarks.process.standby"}));
+  expect_reads("landmarks", handcast, {"landmarks", "pose.backend"},
+               settings_in({"landmarks.replay", "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, ADetectorDependsOnWhatItsFallbackReads) {
@@ -135,7 +133,7 @@ TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
                             "pose.process.standby"}));
   expect_reads("landmarks", replay(), {"landmarks"},
                settings_in({"landmarks.executor", "landmarks.models", "landmarks.hands",
-                            "landmarks.definition", "landmarks.process.standby"}));
+                            "landmarks.process.standby"}));
 }
 
 config::Rig with_camera(const char* backend) {
@@ -221,9 +219,8 @@ TEST(Fingerprint, TheServicesOfTheSecondViewDependOnItsSectionsAndNotOnTheFirsts
   expect_reads("camera2", pair("replay", "replay"), {"camera2"},
                settings_in({"camera2.aravis", "camera2.v4l2", "camera2.leap", "camera2.delivery_ms",
                             "camera2.process.standby"}));
-  expect_reads(
-      "landmarks2", pair("replay", "handcast"), {"landmarks2", "pose.backend"},
-      settings_in({"landmarks2.replay", "landmarks2.definition", "landmarks2.process.standby"}));
+  expect_reads("landmarks2", pair("replay", "handcast"), {"landmarks2", "pose.backend"},
+               settings_in({"landmarks2.replay", "landmarks2.process.standby"}));
   expect_reads("pose", pair("replay", "replay"),
                {"pose", "hand", "camera.backend", "camera2.backend"},
                settings_in({"pose.none", "pose.replay", "pose.leapc", "pose.openxr",

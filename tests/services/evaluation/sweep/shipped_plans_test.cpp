@@ -79,8 +79,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kLevers{
     {"outline", {"cascade.correct.outline"}},
     {"gate",
      {"cascade.ladder.rung", "cascade.predict.method", "cascade.predict.still_mm_s",
-      // What takes the network's place without its files, and a setting of MediaPipe's: no levers.
-      "landmarks.fallback", "landmarks.definition"}},
+      // What takes the network's place without its files, which is no lever.
+      "landmarks.fallback"}},
 };
 
 TEST(ShippedPlans, EachLeverAddsWhatItIsNamedAfterAndTheLastRowIsOurs) {
