@@ -9,22 +9,25 @@
 namespace handcast::twin {
 namespace {
 
-/// to[x] = the sum of weights[i] rows[i][x], in blocks whose sums stay in registers.
+/// to[x] = the sum of weights[i] rows[i][x]. Four rows at a time: each pass reads and writes `to`.
 HANDCAST_CLONES void add_up(const float* const* rows, const float* weights, int count, float* to,
                             int width) {
-  constexpr int kBlock = 32;
-  int x = 0;
-  for (; x + kBlock <= width; x += kBlock) {
-    float sums[kBlock] = {};
-    for (int i = 0; i < count; ++i)
-      for (int k = 0; k < kBlock; ++k) sums[k] += weights[i] * rows[i][x + k];
-    for (int k = 0; k < kBlock; ++k) to[x + k] = sums[k];
+  for (int x = 0; x < width; ++x) to[x] = 0;
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    const float *a = rows[i], *b = rows[i + 1], *c = rows[i + 2], *d = rows[i + 3];
+    const float wa = weights[i], wb = weights[i + 1], wc = weights[i + 2], wd = weights[i + 3];
+    for (int x = 0; x < width; ++x) {
+      float sum = to[x];
+      sum += wa * a[x];
+      sum += wb * b[x];
+      sum += wc * c[x];
+      sum += wd * d[x];
+      to[x] = sum;
+    }
   }
-  for (; x < width; ++x) {
-    float sum = 0;
-    for (int i = 0; i < count; ++i) sum += weights[i] * rows[i][x];
-    to[x] = sum;
-  }
+  for (; i < count; ++i)
+    for (int x = 0; x < width; ++x) to[x] += weights[i] * rows[i][x];
 }
 
 }  // namespace
