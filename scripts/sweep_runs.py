@@ -93,15 +93,14 @@ class Runs:
         """Mean and p95 in mm."""
         return f"{self.mean(variant, motion, kind + '_mm_mean'):.1f} / {self.mean(variant, motion, kind + '_mm_p95'):.1f}"
 
-    def ratios(self, variant, reference, motion):
+    def ratios(self, variant, reference, motion, name="interior_mm_mean"):
         """The ratio of the mean errors for each seed."""
-        return [ours / theirs for ours, theirs in zip(self.of(variant, motion, "interior_mm_mean"),
-                                                      self.of(reference, motion, "interior_mm_mean"))]
+        return [ours / theirs for ours, theirs in zip(self.of(variant, motion, name), self.of(reference, motion, name))]
 
-    def ratios_of_all(self, variant, reference):
+    def ratios_of_all(self, variant, reference, name="interior_mm_mean"):
         """The mean of these ratios over all motions, for each seed."""
         return [statistics.fmean(of_seed) for of_seed in
-                zip(*(self.ratios(variant, reference, motion) for motion in self.motions))]
+                zip(*(self.ratios(variant, reference, motion, name) for motion in self.motions))]
 
     def cells(self, variant, reference):
         """The ratios of all cells of motion and seed."""

@@ -18,13 +18,13 @@ document() { printf 'before\n<!-- %s: begin -->\nold\n<!-- %s: end -->\nafter\n'
 
 # results VARIANTS MM_OF_SEED_1...: a sweep of one motion, with these errors of handcast, gate and no_tracker, and 10 mm of the others.
 results() {
-  local seed=1 mm variant other variants=$1
+  local seed=1 mm variant other lit variants=$1
   shift
-  echo "variant,twin.motion,twin.seed,interior_mm_mean,interior_mm_p95,lit_mm_mean,lit_mm_p95,missing,coverage,spill,detector,detector_age_ms,error"
+  echo "variant,twin.motion,twin.seed,interior_mm_mean,interior_mm_p95,lit_mm_mean,lit_mm_p95,missing,off_10mm,coverage,spill,foldovers,detector,detector_age_ms,error"
   for mm in "$@"; do
     for variant in $variants; do
-      case $variant in handcast | gate | no_tracker) other=$mm ;; *) other=10 ;; esac
-      echo "$variant,builtin:wave,$seed,$other,20,5,9,0.01,0.99,0.005,mediapipe,16.2,$([ -n "$other" ] || echo 'no hand')"
+      case $variant in handcast | gate | no_tracker) other=$mm lit=5 ;; *) other=10 lit=8 ;; esac
+      echo "$variant,builtin:wave,$seed,$other,20,$lit,9,0.01,0.02,0.99,0.005,0,mediapipe,16.2,$([ -n "$other" ] || echo 'no hand')"
     done
     seed=$((seed + 1))
   done
@@ -34,8 +34,10 @@ comparison="baseline paper paper_network handcast paper_model handcast_model"
 document comparison
 results "$comparison" 5 7 >"$work/results.csv"
 "$table" comparison "$work/results.csv" "$work/document.md" "a command"
-says '| \*\*handcast\*\* | mediapipe, 16.2 ms | 6.0 / 20.0 | 6.0 / 20.0 | 5.0 / 9.0 | 1.0 | 0.60 (0.50, 0.70) | paper, our times, the same detector |' || fail "the row is wrong"
+says '| \*\*handcast\*\* | mediapipe, 16.2 ms | 6.0 / 20.0 | 6.0 / 20.0 | 5.0 / 9.0 | 1.0 | 2.0 | 0.60 (0.50, 0.70) | paper, our times, the same detector |' || fail "the row is wrong"
 says 'as published: 0.60 (0.50, 0.70); the goal of 0.45 is missed. 6.0 / 20.0 mm; the goal of 1.8 / 4.0 mm is missed' || fail "the verdict is wrong"
+says 'By the lit points alone, the ratio is 0.62 (0.62, 0.62). Dark or more than 10 mm off: 2.0 % of the skin, 2.0 % with' || fail "the verdict on lit points is wrong"
+says 'larger: as published, in 0 of 2 cells of motion and seed (largest ratio 0.70); with our network for both, in 0 of 2 cells' || fail "the verdict on lost cells is wrong"
 says 'as published, in 0 of 2 cells of motion and seed (largest ratio 0.70)' || fail "the cells are wrong"
 says '`paper_mediapipe` was not measured: it has no runs' || fail "a variant without runs is not reported"
 says 'Seeds 1-2. Made by `a command`' || fail "seeds and command are missing"
@@ -45,11 +47,14 @@ grep -qx before "$work/document.md" && grep -qx after "$work/document.md" || fai
 results "$comparison" 3 11 >"$work/results.csv"
 "$table" comparison "$work/results.csv" "$work/document.md"
 says 'in 1 of 2 cells of motion and seed (largest ratio 1.10)' || fail "a lost cell is not reported"
+sed -i '/^handcast,.*,1,/s/,20,5,9,0.01,0.02,0.99,0.005,/,21,5,9,0.02,0.02,0.99,0.006,/' "$work/results.csv"
+"$table" comparison "$work/results.csv" "$work/document.md"
+says 'In the same order, its p95 is larger in 1, 1 and 0 cells; its dark share is larger in 1, 1 and 0 cells; its spill is larger in 1, 1 and 0 cells.' || fail "cells that are lost by other figures are not reported"
 
-results "$comparison" 4 5 9 | sed 's/,0.99,0.005,/,0.98,0.02,/' >"$work/results.csv"
+results "$comparison" 4 5 9 | sed 's/,0.99,0.005,0,/,0.98,0.02,3,/' >"$work/results.csv"
 "$table" comparison "$work/results.csv" "$work/document.md" "a command --quick"
 says 'as published: 0.60 ± 0.66; the goal' || fail "the interval of three seeds is wrong"
-says 'below the goal of 99 % in 3 of 3 runs (least 98.0 %), its spill above the goal of 1 % in 3 (most 2.0 %)' || fail "missed light is not reported"
+says 'below the goal of 99 % in 3 of 3 runs (least 98.0 %), its spill above the goal of 1 % in 3 (most 2.0 %). Its drawing has fold-overs in 3 of them' || fail "missed light is not reported"
 says 'Quick: two motions' || fail "a quick run is not named"
 
 results "$comparison" 5 7 "" >"$work/results.csv"
@@ -70,19 +75,21 @@ says 'as published: 0.68 (0.40, 0.95); the goal' || fail "the ratio of both mesh
 says 'Seeds 1-2: 2 of the 10 people of the protocol. Made by `a command`' || fail "a table of fewer people does not say so"
 document unseen_summary
 "$table" unseen_summary "$work/results.csv" "$work/document.md"
-says 'On 1 motions that nothing was tuned on (2 people, hands of 2 meshes) it is 6.8 / 20.0 mm' || fail "the summary of unseen motions is wrong"
-says 'worse in 1 of 4 cells of mesh, motion and seed as published (at most 1.20 times), in 1 with our network for both (at most 1.20 times).' || fail "the summary of unseen motions hides what is lost"
+says 'on 1 motions that nothing was tuned on, with true hands of 2 meshes .* its light is 6.8 / 20.0 mm' || fail "the summary of unseen motions is wrong"
+says 'On the mesh on which nothing was tuned, either, it is 7.5 / 20.0 mm, a ratio of 0.75' || fail "the mesh that nothing was tuned on has no figure"
+says 'larger in 1 of 4 cells of mesh, motion and seed as published (largest ratio 1.20), in 1 with our network for both (largest ratio 1.20).' || fail "the summary of unseen motions hides what is lost"
 
 document summary
 results "$comparison" 5 7 >"$work/results.csv"
-"$table" summary "$work/results.csv" "$work/document.md"
-says '(2 people, 1 motions), its light is 6.0 / 20.0 mm' && says '10.0 / 20.0 mm with MediaPipe' || fail "the summary is wrong"
-says 'a ratio of 0.60 (0.50, 0.70)' && says 'worse in 0 of 2 cells' || fail "the ratios of the summary are wrong"
+"$table" summary "$work/results.csv" "$work/document.md" "" 20
+says 'On 1 motions on which constants were chosen, its light is 6.0 / 20.0 mm' && says '10.0 / 20.0 mm with MediaPipe' || fail "the summary is wrong"
+says '2 simulated people, each with other errors of the rig; the protocol asks for 20' || fail "the summary hides that it is of few people"
+says 'a ratio of 0.60 (0.50, 0.70)' && says 'larger in 0 of 2 cells' || fail "the ratios of the summary are wrong"
 
 document levers
 results "paper bone_fit gate" 5 7 >"$work/results.csv"
 "$table" levers "$work/results.csv" "$work/document.md"
-says '| + bone fit | .* | 1.00 (1.00, 1.00) | paper, at our times |' && says '| + gate: handcast | .* | 0.60 (0.50, 0.70) |' || fail "the levers are wrong"
+says '| + bone fit | .* | 1.00 (1.00, 1.00) | paper, at our times |' && says '| + gate, acceleration, held snaps: handcast | .* | 0.60 (0.50, 0.70) |' || fail "the levers are wrong"
 
 document no_tracker
 results "baseline handcast no_tracker" 4 6 >"$work/results.csv"
@@ -93,7 +100,7 @@ document fast
 results "baseline paper handcast" 4 7 | sed -e '1s/$/,equivalent_latency_ms/; 2,$s/$/,-1/; /^handcast,.*,2,/s/-1$/-7/' >"$work/results.csv"
 "$table" fast "$work/results.csv" "$work/document.md"
 says "to the paper's cascade: 0.55 (0.40, 0.70); the goal of 0.5 is missed" || fail "the verdict on fast motions is wrong"
-says 'is -4.0 ms in the median (-7.0 to -1.0); the goal of 6.6 ms is missed in 1 of 2 runs' || fail "a late hand is not reported"
+says 'is -4.0 ms in the median (-7.0 to -1.0); 1 of 2 runs are within the goal of 6.6 ms' || fail "a late hand is not reported"
 says 'in 0 of 2 cells of motion and seed (largest ratio 0.70)' || fail "the cells of fast motions are wrong"
 
 document causes
@@ -113,6 +120,10 @@ results "baseline paper paper_network handcast handcast_mediapipe" 5 7 |
 says '| \*\*handcast\*\* | mediapipe, 16.2 ms | 0.40 (0.40, 0.40) | 0.40, 0.40 |' || fail "the row of the jitter is wrong"
 says 'The goal of 0.5 px is reached with our network' || fail "the verdict on the jitter is wrong"
 
+sed '1d; s/builtin:wave/builtin:still/' "$work/results.csv" >"$work/other.csv"
+cat "$work/other.csv" >>"$work/results.csv"
+! "$table" jitter "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a table of one motion takes runs of two"
+
 results "$comparison" 5 >"$work/results.csv"
 document comparison
 ! "$table" comparison "$work/results.csv" "$work/document.md" 2>/dev/null || fail "one seed has no interval"
@@ -121,7 +132,7 @@ results "$comparison" 5 7 >"$work/results.csv"
 ! "$table" comparison "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a document without the marks is not refused"
 ! "$table" levels "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a table that does not exist is not refused"
 
-for part in comparison unseen levers fidelity causes motions fast two_hands jitter no_tracker; do
+for part in comparison unseen levers fidelity causes motions fast two_hands jitter first_seconds no_tracker; do
   grep -q "<!-- $part: begin -->" "$1/docs/results.md" || fail "docs/results.md has no place for $part"
   [ -e "$1/config/sweeps/$part.toml" ] || fail "there is no plan config/sweeps/$part.toml"
 done
