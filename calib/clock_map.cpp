@@ -14,11 +14,11 @@ constexpr std::int64_t kBin_ns = 100'000'000;
 constexpr std::int64_t kBins = 80;
 /// Two quartz clocks differ by less than this.
 constexpr double kLargestDrift = 500e-6;
-/// The slope of a shorter time is not known better than 0.
+/// Over a shorter time, the slope is taken to be 0.
 constexpr double kShortest_s = 1;
-/// The drift that is expected where the slope is not known.
+/// Standard deviation of the drift between two clocks.
 constexpr double kUsualDrift = 50e-6;
-/// The delays of so many points in a row are those of one busy time.
+/// Neighbouring points wait alike on a busy machine: this many count as one independent point.
 constexpr double kBusyPoints = 10;
 /// An item that comes so much too early shows that a clock was set.
 constexpr double kClockWasSet_s = 0.005;
@@ -39,14 +39,14 @@ void ClockMap::add(std::int64_t device_ns, std::int64_t arrival_ns) {
 
 ClockMap::HostTime ClockMap::earliest_arrival(std::int64_t device_ns) const {
   const double device_s = ns_to_seconds(device_ns - first_device_ns_);
-  return {device_ns + first_delay_ns_ + seconds_to_ns(line_at(device_s)), seconds_to_ns(spread_s_)};
+  return {device_ns + first_delay_ns_ + seconds_to_ns(line_at(device_s)), seconds_to_ns(error_s_)};
 }
 
 void ClockMap::begin(std::int64_t device_ns, std::int64_t arrival_ns) {
   points_.clear();
   first_device_ns_ = device_ns;
   first_delay_ns_ = arrival_ns - device_ns;
-  middle_s_ = height_s_ = slope_ = spread_s_ = 0;
+  middle_s_ = height_s_ = slope_ = error_s_ = 0;
 }
 
 bool ClockMap::keep(const Point& point) {
@@ -60,7 +60,6 @@ bool ClockMap::keep(const Point& point) {
   return true;
 }
 
-/// The tenth that is still going on takes part only if it lowers the line.
 void ClockMap::fit() {
   const double span_s = points_.back().device_s - points_.front().device_s;
   if (span_s < kShortest_s) {
@@ -70,7 +69,7 @@ void ClockMap::fit() {
   } else {
     touch_from_below();
   }
-  spread_s_ = 2 * median_distance_s() + (span_s < kShortest_s ? kUsualDrift * kShortest_s : 0);
+  error_s_ = 2 * median_distance_s() + (span_s < kShortest_s ? kUsualDrift * kShortest_s : 0);
 }
 
 double ClockMap::median_distance_s() const {
@@ -83,9 +82,10 @@ double ClockMap::median_distance_s() const {
 }
 
 /// The slope is that of the half of the points that lie lowest (least trimmed squares, in a few
-/// rounds): the edge of the lower hull would follow two fast images that are close together. The
-/// usual drift is its prior, which counts where the points scatter, because most of them waited on
-/// a busy machine. The line then goes down until it touches the lowest point.
+/// rounds): the edge of the lower hull would follow two fast items that are close together. Its
+/// prior is a slope of 0 with standard deviation kUsualDrift, which weighs more if the points
+/// scatter, because most of them waited on a busy machine. The line then goes down until it touches
+/// the lowest point.
 void ClockMap::touch_from_below() {
   std::vector<Point> lowest(points_.begin(), points_.end());
   for (int round = 0; round < 3; ++round) {

@@ -53,7 +53,8 @@ class ClockMap {
   /// @{
   double middle_s_ = 0, height_s_ = 0, slope_ = 0;
   /// @}
-  double spread_s_ = 0;  ///< how far the points lie above the line
+  double error_s_ =
+      0;  ///< twice the median distance of the points from the line, and more at first
 };
 
 }  // namespace handcast::calib

@@ -11,7 +11,7 @@ namespace handcast::renderer {
 namespace {
 
 /// Wrist, palm and metacarpals.
-constexpr std::array kPalmJoints{0, 1, 2, 6, 11, 16, 21};
+constexpr std::array kPalmSkinJoints{0, 1, 2, 6, 11, 16, 21};
 /// Of the stations, in lengths of the palm from the wrist.
 constexpr float kFirst = 0.02f, kBetween = 0.17f;
 /// Where the thumb's border can be compared.
@@ -46,7 +46,7 @@ bool is_far_from_fingers(glm::vec2 place, const LandmarkPoints& px, float radius
 PalmOutline::PalmOutline(const HandMesh& mesh) {
   std::vector<bool> is_palm(mesh.vertex_count());
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const float share = weight_of(mesh, v, kPalmJoints);
+    const float share = weight_of(mesh, v, kPalmSkinJoints);
     is_palm[v] = share > 0.5f;
     if (share > 0.01f) vertices_.push_back({static_cast<std::uint16_t>(v), share});
   }
@@ -122,15 +122,16 @@ void PalmOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> verti
   const glm::vec2 knuckles_px = palm->axes.origin + palm->length_px * palm->axes.along;
   const bool is_slow = glm::distance(knuckles_px, last_px_) < kFastest_px_s * since_s;
   last_px_ = knuckles_px;
-  next_ = (next_ + 1) % kStations;  // one in each frame: a palm changes slowly
-  const float step_s = std::clamp(
-      static_cast<float>(ns_to_seconds(time_ns - std::exchange(stations_[next_].last_ns, time_ns))),
-      0.0f, kLongestStep_s);
+  station_ = (station_ + 1) % kStations;  // one in each frame: a palm changes slowly
+  const float step_s =
+      std::clamp(static_cast<float>(
+                     ns_to_seconds(time_ns - std::exchange(stations_[station_].last_ns, time_ns))),
+                 0.0f, kLongestStep_s);
   if (is_slow && palm->frontal > kIsFrontal && is_open(px)) {
     const Section section =
-        section_of(edges_, vertices_px, palm->axes, station_at(next_) * palm->length_px);
+        section_of(edges_, vertices_px, palm->axes, station_at(station_) * palm->length_px);
     if (section.low_px < 0 && section.high_px > 0)
-      measure_station(next_, *palm, section, step_s, px, mask);
+      measure_station(station_, *palm, section, step_s, px, mask);
   }
   stations_[kBallEnds].borders[1].person = kBallShare * stations_[kBallEnds - 1].borders[1].person;
   for (std::size_t i = 0; i < kStations; ++i)

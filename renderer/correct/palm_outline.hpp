@@ -72,7 +72,7 @@ class PalmOutline {
   std::vector<MeshEdge> edges_;
   std::vector<Vertex> vertices_;
   std::array<Station, kStations> stations_;
-  std::size_t next_ = 0;  ///< the station that was looked at last
+  std::size_t station_ = 0;  ///< the one that was looked at last
   std::int64_t last_ns_ = 0;
   glm::vec2 last_px_{0};  ///< the middle of the knuckles
 };

@@ -2,15 +2,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 
 #include "renderer/filter/landmark_filter.hpp"
 
 /// @file
-/// The filters behind make_landmark_filter(), one file each, and what they share. Included by the
-/// filters, by their tests and by users of TrackerMemory.
+/// The filters behind make_landmark_filter(), one file each, and what they share.
 
 namespace handcast::renderer {
 
@@ -38,44 +36,9 @@ std::unique_ptr<CarryFilter> make_one_euro_filter(const config::Filter& settings
 std::unique_ptr<LandmarkFilter> make_settled_filter(const config::Filter& settings,
                                                     std::unique_ptr<CarryFilter> inner);
 
-/// The landmarks that recent frames were drawn with, by target time; the last 150 ms. A filter
-/// without hindsight takes P at the time of an image from here: as it was predicted for the frame
-/// of that time, from the tracker samples that had arrived by then.
-class TrackerMemory {
- public:
-  /// Adds the landmarks of the frame for `target_ns`. Entries at or after that time are dropped.
-  void remember(std::int64_t target_ns, const LandmarkPoints& tracker);
-  /// The landmarks at `time_ns`, interpolated linearly. Empty outside the remembered times.
-  std::optional<LandmarkPoints> at(std::int64_t time_ns) const;
-
- private:
-  struct Entry {
-    std::int64_t target_ns;
-    LandmarkPoints tracker;
-  };
-  std::deque<Entry> entries_;  ///< by target time
-};
-
-/// P at the time of a detection: as it was predicted then if `memory` is given (not nullptr) and
-/// has it, else by hindsight from `tracker`. Empty if neither has it.
-std::optional<LandmarkPoints> tracker_then(const TrackerAt& tracker, const TrackerMemory* memory,
-                                           std::int64_t origin_ns);
-
-/// Sets the unknown offsets to the mean of the known ones. Does nothing if none is known.
-void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets,
-                  const std::array<bool, kLandmarks>& known);
-/// P plus the offsets, the unknown ones from lend_offsets(). Empty if no offset is known.
+/// P plus the offsets, the unknown ones being the mean of the known. Empty if no offset is known.
 std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker,
                                        std::array<glm::vec2, kLandmarks> offsets,
                                        const std::array<bool, kLandmarks>& known);
-
-/// Where landmarks are expected.
-struct ExpectedPoints {
-  std::array<glm::vec2, kLandmarks> px{};  ///< undistorted camera px
-  std::array<bool, kLandmarks> known{};    ///< false: `px` of this landmark is not valid
-};
-/// The displacement of the seen landmarks from the expected ones that all have in common: the
-/// length of the vector of the medians in x and in y. 0 if no landmark is both seen and expected.
-float common_error_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected);
 
 }  // namespace handcast::renderer

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "renderer/filter/filters.hpp"
+#include "renderer/filter/expected_points.hpp"
 
 namespace handcast::renderer {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/filter/landmark_filter.hpp"
 
+#include <algorithm>
+
 #include "renderer/filter/filters.hpp"
 
 namespace handcast::renderer {
@@ -34,7 +36,31 @@ class IdealFilter final : public LandmarkFilter {
   LandmarkOracle oracle_;
 };
 
+/// Sets the unknown offsets to the mean of the known ones. Does nothing if none is known.
+void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets,
+                  const std::array<bool, kLandmarks>& known) {
+  glm::vec2 sum{0};
+  int count = 0;
+  for (int i = 0; i < kLandmarks; ++i) {
+    if (!known[i]) continue;
+    sum += offsets[i];
+    ++count;
+  }
+  for (int i = 0; i < kLandmarks && count > 0; ++i)
+    if (!known[i]) offsets[i] = sum / static_cast<float>(count);
+}
+
 }  // namespace
+
+std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker,
+                                       std::array<glm::vec2, kLandmarks> offsets,
+                                       const std::array<bool, kLandmarks>& known) {
+  if (std::ranges::find(known, true) == known.end()) return std::nullopt;
+  lend_offsets(offsets, known);
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i) points[i] = tracker[i] + offsets[i];
+  return points;
+}
 
 bool moves_with_tracker(const config::Filter& settings) {
   switch (settings.method) {

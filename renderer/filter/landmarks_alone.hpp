@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "renderer/filter/filters.hpp"
+#include "renderer/filter/landmark_filter.hpp"
 #include "renderer/filter/point_track.hpp"
 
 namespace handcast::renderer {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <span>
 
 #include "renderer/filter/filters.hpp"
 #include "renderer/filter/finger_order.hpp"
 #include "renderer/filter/finger_steps.hpp"
 #include "renderer/filter/landmarks_alone.hpp"
 #include "renderer/filter/shared_offset.hpp"
+#include "renderer/filter/tracker_memory.hpp"
 
 namespace handcast::renderer {
 
@@ -62,7 +64,7 @@ class OffsetFilter : public CarryFilter {
         offsets[i] =
             alone ? alone_.at(i, target_ns) - tracker[i] : offset_at(tracks_[i], target_ns);
     }
-    if (!alone) draw_together(offsets, known, sigmas_.px(), tracker);
+    if (!alone) shrink_to_shared(offsets, known, sigmas_.px(), tracker);
     return moved_by(tracker, offsets, known);
   }
 
@@ -111,20 +113,14 @@ class OffsetFilter : public CarryFilter {
 
   /// By the medians of the offsets, which a wrong finger does not move.
   ExpectedPoints expected_in_common(const LandmarkPoints& then, std::int64_t origin_ns) const {
-    std::array<float, kLandmarks> x, y;
-    int count = 0;
-    for (const Track& track : tracks_) {
-      if (!track.known()) continue;
-      const glm::vec2 offset = offset_at(track, origin_ns);
-      x[count] = offset.x;
-      y[count++] = offset.y;
-    }
+    std::array<glm::vec2, kLandmarks> offsets_px;
+    std::size_t count = 0;
+    for (const Track& track : tracks_)
+      if (track.known()) offsets_px[count++] = offset_at(track, origin_ns);
     ExpectedPoints expected;
     if (count == 0) return expected;
-    std::nth_element(x.begin(), x.begin() + count / 2, x.begin() + count);
-    std::nth_element(y.begin(), y.begin() + count / 2, y.begin() + count);
-    for (int i = 0; i < kLandmarks; ++i)
-      expected.px[i] = then[i] + glm::vec2(x[count / 2], y[count / 2]);
+    const glm::vec2 median_px = median_of(std::span(offsets_px).first(count));
+    for (int i = 0; i < kLandmarks; ++i) expected.px[i] = then[i] + median_px;
     expected.known.fill(true);
     return expected;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/filter/filters.hpp"
+#include "renderer/filter/tracker_memory.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "renderer/base/noise.hpp"
 #include "renderer/base/similarity.hpp"
-#include "renderer/filter/filters.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -24,11 +24,6 @@ float given_sigma_px(const msg::Landmark& point) {
   return point.sigma_px > 0 ? std::min(point.sigma_px, kLargestSigma_px) : 0.0f;
 }
 
-/// Weight of a measured offset against the shared one, 0..1.
-float share_of(float spread_px2, float sigma_px) {
-  return spread_px2 / (spread_px2 + sigma_px * sigma_px);
-}
-
 struct Part {
   int first, count;  ///< landmarks
 };
@@ -45,13 +40,13 @@ LandmarkPoints shared_offsets(const std::array<glm::vec2, kLandmarks>& offsets_p
   LandmarkPoints seen = tracker;
   for (int i = 0; i < kLandmarks; ++i) {
     if (!known[i]) continue;
-    weight[i] = share_of(kLeastSpread_px2, sigma_px[i]);
+    weight[i] = share_beyond_noise(kLeastSpread_px2, sigma_px[i]);
     seen[i] += offsets_px[i];
   }
   Similarity hand = fit_similarity(tracker, seen, weight);
   for (int i = 0; i < kLandmarks; ++i) {
     const glm::vec2 off = seen[i] - hand(tracker[i]);
-    weight[i] *= share_of(kFar_px * kFar_px, glm::length(off));
+    weight[i] *= share_beyond_noise(kFar_px * kFar_px, glm::length(off));
   }
   hand = fit_similarity(tracker, seen, weight);
   LandmarkPoints shared;
@@ -70,9 +65,10 @@ void LandmarkSigmas::detection(const msg::HandLandmarks& seen) {
   }
 }
 
-void draw_together(std::array<glm::vec2, kLandmarks>& offsets_px,
-                   const std::array<bool, kLandmarks>& known,
-                   const std::array<float, kLandmarks>& sigma_px, const LandmarkPoints& tracker) {
+void shrink_to_shared(std::array<glm::vec2, kLandmarks>& offsets_px,
+                      const std::array<bool, kLandmarks>& known,
+                      const std::array<float, kLandmarks>& sigma_px,
+                      const LandmarkPoints& tracker) {
   if (std::ranges::none_of(sigma_px, [](float sigma) { return sigma > 0; }) ||
       std::ranges::none_of(known, std::identity()))
     return;
@@ -88,7 +84,8 @@ void draw_together(std::array<glm::vec2, kLandmarks>& offsets_px,
     spread_px2 = std::max(spread_px2 / std::max(members, 1.0f), kLeastSpread_px2);
     for (int i = first; i < first + count; ++i)
       if (known[i])
-        offsets_px[i] = glm::mix(shared_px[i], offsets_px[i], share_of(spread_px2, sigma_px[i]));
+        offsets_px[i] =
+            glm::mix(shared_px[i], offsets_px[i], share_beyond_noise(spread_px2, sigma_px[i]));
   }
 }
 

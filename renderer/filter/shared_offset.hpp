@@ -27,8 +27,8 @@ class LandmarkSigmas {
 /// tracker misplaces the whole hand more than the joints in it. A known offset is moved the more,
 /// the larger its sigma is compared with the spread of its finger's offsets about the similarity
 /// (empirical Bayes). An offset whose sigma is 0 is not moved.
-void draw_together(std::array<glm::vec2, kLandmarks>& offsets_px,
-                   const std::array<bool, kLandmarks>& known,
-                   const std::array<float, kLandmarks>& sigma_px, const LandmarkPoints& tracker);
+void shrink_to_shared(std::array<glm::vec2, kLandmarks>& offsets_px,
+                      const std::array<bool, kLandmarks>& known,
+                      const std::array<float, kLandmarks>& sigma_px, const LandmarkPoints& tracker);
 
 }  // namespace handcast::renderer

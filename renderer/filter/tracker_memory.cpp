@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <cmath>
+#include "renderer/filter/tracker_memory.hpp"
 
-#include "renderer/filter/filters.hpp"
+#include <algorithm>
 
 namespace handcast::renderer {
 namespace {
@@ -40,44 +39,6 @@ std::optional<LandmarkPoints> tracker_then(const TrackerAt& tracker, const Track
   if (memory)
     if (const auto then = memory->at(origin_ns)) return then;
   return tracker(origin_ns);
-}
-
-void lend_offsets(std::array<glm::vec2, kLandmarks>& offsets,
-                  const std::array<bool, kLandmarks>& known) {
-  glm::vec2 sum{0};
-  int count = 0;
-  for (int i = 0; i < kLandmarks; ++i) {
-    if (!known[i]) continue;
-    sum += offsets[i];
-    ++count;
-  }
-  for (int i = 0; i < kLandmarks && count > 0; ++i)
-    if (!known[i]) offsets[i] = sum / static_cast<float>(count);
-}
-
-std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker,
-                                       std::array<glm::vec2, kLandmarks> offsets,
-                                       const std::array<bool, kLandmarks>& known) {
-  if (std::ranges::find(known, true) == known.end()) return std::nullopt;
-  lend_offsets(offsets, known);
-  LandmarkPoints points;
-  for (int i = 0; i < kLandmarks; ++i) points[i] = tracker[i] + offsets[i];
-  return points;
-}
-
-float common_error_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected) {
-  std::array<float, kLandmarks> x, y;
-  int count = 0;
-  for (int i = 0; i < kLandmarks; ++i) {
-    if (!was_seen(seen.points[i]) || !expected.known[i]) continue;
-    const glm::vec2 error = position_px(seen.points[i]) - expected.px[i];
-    x[count] = error.x;
-    y[count++] = error.y;
-  }
-  if (count == 0) return 0;
-  std::nth_element(x.begin(), x.begin() + count / 2, x.begin() + count);
-  std::nth_element(y.begin(), y.begin() + count / 2, y.begin() + count);
-  return glm::length(glm::vec2(x[count / 2], y[count / 2]));
 }
 
 }  // namespace handcast::renderer

@@ -2,8 +2,8 @@
 #pragma once
 #include <optional>
 
-#include "renderer/filter/filters.hpp"
 #include "renderer/filter/landmark_track.hpp"
+#include "renderer/filter/tracker_memory.hpp"
 #include "renderer/ladder/corrected.hpp"
 #include "renderer/ladder/gate.hpp"
 #include "renderer/ladder/hindsight.hpp"

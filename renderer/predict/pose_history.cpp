@@ -46,7 +46,7 @@ bool is_finite(const msg::HandPose& pose) {
 constexpr float kHandNoise_m_s2 = 10;   ///< of the palm, the mean of its joints
 constexpr float kJointNoise_m_s2 = 40;  ///< of one joint relative to that mean
 /// The acceleration displaces a joint by at most this much.
-constexpr float kMostBend_m = 0.02f;
+constexpr float kMostAccelerated_m = 0.02f;
 
 glm::vec3 beyond_noise(const glm::vec3& acceleration, float noise) {
   return acceleration * share_beyond_noise(glm::dot(acceleration, acceleration), noise);
@@ -161,22 +161,23 @@ const PoseHistory::Sample* PoseHistory::earlier_than(const Sample& sample,
 /// Displacements by the acceleration `ahead_ns` (h) after the newest sample. The velocity of two
 /// samples is that of the middle between them, dt/2 before the newest one, so a constant
 /// acceleration a adds a h (h + dt) / 2.
-std::array<glm::vec3, msg::kJoints> PoseHistory::bends_m(const Sample& newest, const Sample& base,
-                                                         std::int64_t ahead_ns) const {
-  std::array<glm::vec3, msg::kJoints> bends{};
+std::array<glm::vec3, msg::kJoints> PoseHistory::accelerated_m(const Sample& newest,
+                                                               const Sample& base,
+                                                               std::int64_t ahead_ns) const {
+  std::array<glm::vec3, msg::kJoints> moved_m{};
   const Sample* first = settings_.method == config::PredictMethod::acceleration
                             ? earlier_than(base, kShortestBase_ns)
                             : nullptr;
-  if (!first) return bends;
+  if (!first) return moved_m;
   const auto first_s = static_cast<float>(ns_to_seconds(base.origin_ns - first->origin_ns));
   const auto second_s = static_cast<float>(ns_to_seconds(newest.origin_ns - base.origin_ns));
   const auto ahead_s = static_cast<float>(ns_to_seconds(ahead_ns));
-  bends = accelerations(first->pose, base.pose, newest.pose, first_s, second_s);
-  for (glm::vec3& bend : bends) {
-    bend *= 0.5f * ahead_s * (ahead_s + second_s);
-    bend *= std::min(1.0f, kMostBend_m / std::max(glm::length(bend), 1e-9f));
+  moved_m = accelerations(first->pose, base.pose, newest.pose, first_s, second_s);
+  for (glm::vec3& joint_m : moved_m) {
+    joint_m *= 0.5f * ahead_s * (ahead_s + second_s);
+    joint_m *= std::min(1.0f, kMostAccelerated_m / std::max(glm::length(joint_m), 1e-9f));
   }
-  return bends;
+  return moved_m;
 }
 
 msg::HandPose PoseHistory::predicted(std::int64_t time_ns) const {
@@ -196,14 +197,15 @@ msg::HandPose PoseHistory::predicted(std::int64_t time_ns) const {
   const auto steps = steps_ahead(newest.pose, since(*base), since(long_base ? *long_base : *base),
                                  static_cast<float>(ns_to_seconds(ahead_ns)));
   const auto still_m_s = static_cast<float>(settings_.still_mm_s * 1e-3);
-  const auto bends = bends_m(newest, *base, ahead_ns);
+  const auto by_acceleration_m = accelerated_m(newest, *base, ahead_ns);
   msg::HandPose pose = newest.pose;
   for (int j = 0; j < msg::kJoints; ++j) {
     const JointStep& step = steps[j];
     const Stillness& recent = stillness_[j];
     const float moving =
         still_m_s > 0 ? glm::smoothstep(still_m_s, 2 * still_m_s, recent.speed_m_s) : 1.0f;
-    const glm::vec3 moved = position(newest.pose.joints[j]) + step.moved_m + step.belief * bends[j];
+    const glm::vec3 moved =
+        position(newest.pose.joints[j]) + step.moved_m + step.belief * by_acceleration_m[j];
     place(pose.joints[j], glm::mix(recent.mean_m, moved, moving),
           blend(recent.mean_turn, step.turned, moving));
   }

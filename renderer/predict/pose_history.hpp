@@ -52,7 +52,8 @@ class PoseHistory {
   /// config::Predict::method, joint by joint, no farther than limit_ms:
   ///
   /// - hold: the newest pose.
-  /// - velocity: the constant velocity of the two newest samples. A joint that was slower than
+  /// - velocity: the constant velocity from the newest sample that is at least 6 ms older. A joint
+  /// that was slower than
   ///   still_mm_s over the last 50 ms rests at its mean over them instead, so that a still hand is
   ///   drawn without the noise of the samples; up to twice that speed the two are blended.
   /// - acceleration: the same with the velocity of steps_ahead() and the acceleration of the three
@@ -76,8 +77,8 @@ class PoseHistory {
   msg::HandPose predicted(std::int64_t time_ns) const;
   /// The newest sample that is at least `by_ns` before `sample`; nullptr if there is none.
   const Sample* earlier_than(const Sample& sample, std::int64_t by_ns) const;
-  std::array<glm::vec3, msg::kJoints> bends_m(const Sample& newest, const Sample& base,
-                                              std::int64_t ahead_ns) const;
+  std::array<glm::vec3, msg::kJoints> accelerated_m(const Sample& newest, const Sample& base,
+                                                    std::int64_t ahead_ns) const;
 
   config::Predict settings_;
   std::int64_t span_ns_;

@@ -98,9 +98,9 @@ TEST_P(SharedOffset, ASigmaWithoutBoundLeavesTheLandmarkToTheOthers) {
   }
 }
 
-class DrawTogether : public testing::Test {
+class ShrinkToShared : public testing::Test {
  protected:
-  DrawTogether() {
+  ShrinkToShared() {
     for (int i = 0; i < kLandmarks; ++i) tracker_[i] = glm::vec2(300 + 7 * i, 200 + (i * i) % 31);
     offsets_.fill({10, 0});
     known_.fill(true);
@@ -108,7 +108,7 @@ class DrawTogether : public testing::Test {
   }
   Offsets drawn() const {
     Offsets drawn = offsets_;
-    draw_together(drawn, known_, sigmas_, tracker_);
+    shrink_to_shared(drawn, known_, sigmas_, tracker_);
     return drawn;
   }
 
@@ -118,14 +118,14 @@ class DrawTogether : public testing::Test {
   Sigmas sigmas_;
 };
 
-TEST_F(DrawTogether, WithoutSigmasNothingMovesNotByABit) {
+TEST_F(ShrinkToShared, WithoutSigmasNothingMovesNotByABit) {
   for (int i = 0; i < kLandmarks; ++i)
     offsets_[i] = {0.1f * static_cast<float>(i * i), 17.3f - static_cast<float>(i)};
   sigmas_.fill(0);
   EXPECT_EQ(drawn(), offsets_);
 }
 
-TEST_F(DrawTogether, AHandThatTheTrackerMakesTooLargeIsMadeSmallerAtUnsureLandmarksToo) {
+TEST_F(ShrinkToShared, AHandThatTheTrackerMakesTooLargeIsMadeSmallerAtUnsureLandmarksToo) {
   for (int i = 0; i < kLandmarks; ++i)
     offsets_[i] = glm::vec2(10, 0) - 0.05f * (tracker_[i] - tracker_[0]);
   const glm::vec2 right = offsets_[20];
@@ -134,7 +134,7 @@ TEST_F(DrawTogether, AHandThatTheTrackerMakesTooLargeIsMadeSmallerAtUnsureLandma
   EXPECT_LT(glm::distance(drawn()[20], right), 1) << "of 15 px";
 }
 
-TEST_F(DrawTogether, AFingerTheTrackerHasWrongHardlyMovesTheOthers) {
+TEST_F(ShrinkToShared, AFingerTheTrackerHasWrongHardlyMovesTheOthers) {
   for (int i = 17; i <= 20; ++i) offsets_[i].y = 20.0f * static_cast<float>(i - 17);
   sigmas_[0] = sigmas_[4] = 15;
   // By least squares, 8.7 and 3.7 px.
@@ -142,7 +142,7 @@ TEST_F(DrawTogether, AFingerTheTrackerHasWrongHardlyMovesTheOthers) {
   EXPECT_LT(glm::distance(drawn()[4], {10, 0}), 2);
 }
 
-TEST_F(DrawTogether, OffsetsThatAreNotKnownHaveNoPartInIt) {
+TEST_F(ShrinkToShared, OffsetsThatAreNotKnownHaveNoPartInIt) {
   offsets_[3] = {kNan, kNan};
   offsets_[4].x = 20;
   known_[3] = false;
@@ -153,7 +153,7 @@ TEST_F(DrawTogether, OffsetsThatAreNotKnownHaveNoPartInIt) {
   EXPECT_EQ(drawn()[8], offsets_[8]);
 }
 
-TEST_F(DrawTogether, LandmarksOnOneSpotAreOnlyShifted) {
+TEST_F(ShrinkToShared, LandmarksOnOneSpotAreOnlyShifted) {
   tracker_.fill({300, 200});
   sigmas_[20] = 40;
   offsets_[20].x = 22;
