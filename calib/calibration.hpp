@@ -36,6 +36,11 @@ struct CameraModel {
   glm::dvec2 distort(const glm::dvec2& undistorted_px) const;
   /// The inverse of distort(), computed by Newton's method.
   glm::dvec2 undistort(const glm::dvec2& image_px) const;
+  /// True if a place is in the image: within half a pixel of the centres of its outer pixels.
+  bool contains(const glm::dvec2& image_px) const {
+    return image_px.x > -0.5 && image_px.y > -0.5 && image_px.x < width_px - 0.5 &&
+           image_px.y < height_px - 0.5;
+  }
   /// True if the distortion has no inverse somewhere inside the image.
   bool folds() const;
 };

@@ -13,12 +13,13 @@ namespace handcast::renderer {
 
 /// Moves the fingers of a drawn hand onto the outline of the mask. Landmarks are wrong for longer
 /// than a filter may wait, but the mask shows where a finger is: both of its sides across each
-/// phalanx, and its end beyond the tip. What the mask differs from the drawing is averaged over
-/// some hundredths of a second, and a Gaussian prior along each finger makes displacements of its
-/// landmarks of it. Not used are sides that another part of the drawn hand covers or touches, and
-/// sides that are far from the drawn ones: a mask that merges with another finger, a second hand, a
-/// sleeve or clutter. Measured are open hands that do not show their edge, and of these the fingers
-/// that do not fold back in the image. Without measurements the displacements fade. See
+/// phalanx, and its end beyond the tip. The difference between mask and drawing is averaged over
+/// some hundredths of a second; a Gaussian prior along each finger turns it into displacements of
+/// its landmarks. A side is not used if another part of the drawn hand covers or touches it, or if
+/// it is far from the drawn one, as where the mask merges with another finger, a second hand, a
+/// sleeve or clutter. Only open hands that are not seen from their edge are measured, and of these
+/// only the fingers that do not fold back in the image. Without measurements the displacements
+/// fade. See
 /// `docs/method.md#correct`. One thread.
 class FingerOutline {
  public:

@@ -56,8 +56,8 @@ bool is_open(const LandmarkPoints& landmarks_px);
 /// The distance of a point from the bone that starts at a landmark and ends at the next one.
 float from_bone_px(glm::vec2 place, const LandmarkPoints& landmarks_px, int start, int end);
 
-/// What a measurement says on average over the last seconds, and how much of a full average that
-/// is.
+/// An exponential moving average of a measurement that may be absent, and how much of a full
+/// average it is. The caller chooses the time constants.
 struct Lasting {
   float value = 0;
   float share = 0;  ///< 0: never measured, or long ago; 1: measured all the time

@@ -22,9 +22,9 @@ constexpr double kNearest_m = 0.05;
 
 /// One joint as the camera sees it.
 struct SeenJoint {
-  bool is_seen = false;
+  bool is_in_front = false;  ///< of the camera
   glm::dvec2 at_px{0};
-  glm::dmat3x2 moves_px{0};  ///< displacement in the image by one in the frame of the joint, px/m
+  glm::dmat3x2 jacobian_px_per_m{0};  ///< of at_px by a displacement in the frame of the joint
 };
 
 SeenJoint see(const calib::Calibration& calibration, const msg::Joint& joint) {
@@ -137,11 +137,11 @@ void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
     joints[i] = see(calibration_, pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[i])]);
     const auto& point = seen.points[i];
     const double sigma_px = std::hypot(kLeastSigma_px, point.sigma_px);
-    if (!joints[i].is_seen || !(point.confidence > 0) ||
+    if (!joints[i].is_in_front || !(point.confidence > 0) ||
         !std::isfinite(point.x_px + point.y_px + sigma_px))
       continue;
     const glm::dvec2 left_px = glm::dvec2(point.x_px, point.y_px) - joints[i].at_px -
-                               joints[i].moves_px * learned_[i].displacement_m;
+                               joints[i].jacobian_px_per_m * learned_[i].displacement_m;
     offsets[i] = {joints[i].at_px, left_px,
                   seen_share(pose, static_cast<int>(i)) / (sigma_px * sigma_px)};
   }
@@ -152,29 +152,29 @@ void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
     Learned& learned = learned_[i];
     learned.information *= keep;
     learned.weighted *= keep;
-    if (!joints[i].is_seen) continue;
-    const glm::dmat3x2& moves_px = joints[i].moves_px;
-    learned.moves_px = moves_px * learned.displacement_m;
+    if (!joints[i].is_in_front) continue;
+    const glm::dmat3x2& jacobian = joints[i].jacobian_px_per_m;
+    learned.displacement_px = jacobian * learned.displacement_m;
     const double weight = share * weight_of(offsets[i], shared);
     if (!(weight > 0)) continue;
-    const glm::dmat2x3 transposed = glm::transpose(moves_px);
+    const glm::dmat2x3 transposed = glm::transpose(jacobian);
     const glm::dvec2 own_px =
-        offsets[i].left_px - shared.at(offsets[i].at_px) + moves_px * learned.displacement_m;
-    learned.information += weight * (transposed * moves_px);
+        offsets[i].left_px - shared.at(offsets[i].at_px) + jacobian * learned.displacement_m;
+    learned.information += weight * (transposed * jacobian);
     learned.weighted += weight * (transposed * own_px);
     const glm::dmat3 prior(1 / (kPrior_m * kPrior_m));
     learned.displacement_m = glm::inverse(learned.information + prior) * learned.weighted;
     if (const double length = glm::length(learned.displacement_m); length > kMost_m)
       learned.displacement_m *= kMost_m / length;
-    learned.moves_px = moves_px * learned.displacement_m;
+    learned.displacement_px = jacobian * learned.displacement_m;
   }
 }
 
 msg::HandLandmarks JointDefinitions::as_tracked(const msg::HandLandmarks& seen) const {
   msg::HandLandmarks result = seen;
   for (std::size_t i = 0; i < learned_.size(); ++i) {
-    result.points[i].x_px -= static_cast<float>(learned_[i].moves_px.x);
-    result.points[i].y_px -= static_cast<float>(learned_[i].moves_px.y);
+    result.points[i].x_px -= static_cast<float>(learned_[i].displacement_px.x);
+    result.points[i].y_px -= static_cast<float>(learned_[i].displacement_px.y);
   }
   return result;
 }

@@ -38,7 +38,7 @@ class JointDefinitions {
     glm::dmat3 information{0};  ///< 1/m^2
     glm::dvec3 weighted{0};     ///< information times displacement
     glm::dvec3 displacement_m{0};
-    glm::dvec2 moves_px{0};  ///< the displacement in the last image
+    glm::dvec2 displacement_px{0};  ///< in the last image
   };
 
   calib::Calibration calibration_;

@@ -106,8 +106,8 @@ class HandPipeline {
   int correct(HandFrame& frame);
   /// The number of triangles that a warp of the landings has turned over.
   int foldovers(const HandFrame& frame) const;
-  /// Learns the widths of the person's fingers and where they are beside their landmarks. `mask`:
-  /// of this hand, projector px.
+  /// Learns the widths of the person's fingers, where they are beside their landmarks, and the
+  /// borders of the palm. `mask`: of this hand, projector px.
   void learn_outline(const HandFrame& frame, std::int64_t target_ns, GreyView mask);
 
   /// The hand for the painter, with its vertices at `position_px`. Borrows the mesh and the

@@ -21,13 +21,14 @@ class FingerSnaps {
   /// Copies the calibration.
   explicit FingerSnaps(const calib::Calibration& calibration) : calibration_(calibration) {}
 
-  /// Adds a detection. Older ones than the newest are left out.
+  /// Adds a detection. Ignored if it is older than the newest.
   void detection(std::int64_t origin_ns, const msg::HandLandmarks& seen);
 
-  /// The sample of the tracker, in which a finger that has snapped is where it was before, as seen
-  /// from the palm. A step that the finger's own motion does not explain counts as a snap while the
-  /// landmarks of a later image fit the finger before it, not after it, and for half a second at
-  /// most. `moved_px`: Q̂ - P of the last frame.
+  /// The sample `pose` (tracker space) with each finger that has snapped where it was before, as
+  /// seen from the palm. A step that the finger's own motion does not explain counts as a snap, for
+  /// half a second at most, while the landmarks of a later image fit the finger as it was before
+  /// the step and not as it is after it. A sample that is not newer than the last is returned
+  /// unchanged. `moved_px`: Q̂ - P of the last frame.
   msg::HandPose held(std::int64_t origin_ns, const msg::HandPose& pose,
                      const LandmarkPoints& moved_px);
   /// Drops all samples and landmarks: those of a tracker that was silent cannot be compared.

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 
+#include "renderer/predict/joint_math.hpp"
+
 namespace handcast::renderer {
 namespace {
 
 constexpr float kFarthestWrist_m = 3, kFarthestJoint_m = 0.8f;
 constexpr int kWrist = 1;
-
-glm::vec3 position(const msg::Joint& joint) {
-  return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};
-}
 
 }  // namespace
 

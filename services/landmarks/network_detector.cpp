@@ -46,15 +46,9 @@ class NetworkDetector final : public Detector {
     msg::HandLandmarks message{hand.side, hand.presence, {}};
     for (std::size_t i = 0; i < points_px.size(); ++i)
       message.points[i] = {points_px[i].x, points_px[i].y,
-                           is_in_image(hand.points_px[i]) ? hand.confidences[i] : 0,
+                           camera_.contains(hand.points_px[i]) ? hand.confidences[i] : 0,
                            hand.sigma_px[i]};
     return message;
-  }
-
-  bool is_in_image(glm::vec2 at_px) const {
-    return at_px.x >= -0.5f && at_px.y >= -0.5f &&
-           at_px.x < static_cast<float>(camera_.width_px) - 0.5f &&
-           at_px.y < static_cast<float>(camera_.height_px) - 0.5f;
   }
 
   HandFinder finder_;

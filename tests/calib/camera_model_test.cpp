@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <random>
 
@@ -32,6 +33,17 @@ TEST(CameraModel, TheReferenceLensMovesPixelsByWhatItsAuthorsMeasured) {
   EXPECT_GT(largest, 5);
   EXPECT_LT(largest, 30);
   EXPECT_LT(glm::distance(camera.distort({359.5, 269.5}), {359.5, 269.5}), 1e-9);
+}
+
+TEST(CameraModel, ContainsTheAreaOfItsPixels) {
+  const CameraModel camera;
+  const double right = camera.width_px - 0.5, bottom = camera.height_px - 0.5;
+  EXPECT_TRUE(camera.contains({-0.49, -0.49}));
+  EXPECT_TRUE(camera.contains({right - 0.01, bottom - 0.01}));
+  for (const glm::dvec2 beside :
+       {glm::dvec2(-0.51, 9), {9, -0.51}, {right + 0.01, 9}, {9, bottom + 0.01}})
+    EXPECT_FALSE(camera.contains(beside)) << beside.x << ", " << beside.y;
+  EXPECT_FALSE(camera.contains({std::numeric_limits<double>::quiet_NaN(), 9}));
 }
 
 TEST(CameraModel, ProjectsAsOpenCvDoes) {

@@ -34,11 +34,11 @@ class GlibLoop {
     thread_ = std::thread([this] { with([this] { g_main_loop_run(loop_); }); });
   }
 
-  /// Waits for the end of the loop.
+  /// Ends the loop and waits for its thread. Does nothing if it is not running.
   void stop() {
     if (!thread_.joinable()) return;
-    // It quits from within: g_main_loop_quit() before the thread has come to g_main_loop_run() has
-    // no effect, and the loop would run for ever.
+    // Quits from inside the loop: g_main_loop_quit() has no effect before g_main_loop_run() has
+    // begun, and the loop would never end.
     auto* quit = g_idle_source_new();
     g_source_set_callback(quit, quit_from_within, loop_, nullptr);
     g_source_attach(quit, context_);

@@ -8,25 +8,12 @@
 #include "ipc/base/clock.hpp"
 
 namespace handcast::simulate {
-namespace {
-
-const msg::HandLandmarks* hand_of(msg::Side side, const Detection& detection) {
-  if (!detection.landmarks) return nullptr;
-  const auto& landmarks = *detection.landmarks;
-  const auto end = landmarks.hands.begin() + landmarks.count;
-  const auto found =
-      std::find_if(landmarks.hands.begin(), end,
-                   [side](const msg::HandLandmarks& hand) { return hand.side == side; });
-  return found == end ? nullptr : &*found;
-}
-
-}  // namespace
-
 void DetectorTally::add(const Exposure& exposure, const Detection& detection) {
   ++runs_;
   if (detection.work_ns > 0) work_ms_.add(ns_to_ms(detection.work_ns));
   for (const auto side : {msg::Side::left, msg::Side::right})
-    add_hand(side, exposure.origin_ns, hand_of(side, detection));
+    add_hand(side, exposure.origin_ns,
+             detection.landmarks ? detection.landmarks->find(side) : nullptr);
 }
 
 void DetectorTally::add_hand(msg::Side side, std::int64_t time_ns,
@@ -53,9 +40,7 @@ void DetectorTally::add_hand(msg::Side side, std::int64_t time_ns,
 }
 
 bool DetectorTally::in_image(glm::vec2 undistorted_px) const {
-  const auto at = camera_.distort(undistorted_px);
-  return at.x > -0.5 && at.y > -0.5 && at.x < camera_.width_px - 0.5 &&
-         at.y < camera_.height_px - 0.5;
+  return camera_.contains(camera_.distort(undistorted_px));
 }
 
 nlohmann::json DetectorTally::to_json() const {

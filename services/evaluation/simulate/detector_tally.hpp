@@ -27,9 +27,8 @@ class DetectorTally {
   /// - hands: true hands with at least half of their landmarks in the image
   /// - missed: those of them that were not found
   /// - invented: hands that were found although there is no hand of that side
-  /// - error_px: error of the landmarks in the image, of the hands that were found;
-  /// autocorrelation:
-  ///   ErrorMemory
+  /// - error_px: error of the landmarks in the image, of the hands that were found
+  /// - autocorrelation: ErrorMemory
   /// - ms_p50: median time of a run on this machine
   nlohmann::json to_json() const;
 

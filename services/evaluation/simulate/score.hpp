@@ -10,11 +10,12 @@
 namespace handcast::simulate {
 
 /// Runs the rig on its twin in virtual time and returns the metrics of `simulate --json`: those of
-/// twin::Metrics, and "rig", "motion", "speed", "seed", "seconds", "software_ms",
+/// twin::Metrics, and "rig", "motion", "mesh", "speed", "seed", "seconds", "software_ms",
 /// "motion_to_photon_ms" (from the middle of the exposure of a frame's image to the middle of its
 /// light, mean over the drawn frames; null without any), "hand_speed_m_s" (HandSpeed), "fault"
-/// (Recovery) and "detector" (DetectorTally, with "backend" and "age_ms"). A rig with a timed fault
-/// runs twice, the second time without the fault.
+/// (Recovery) and "detector" (DetectorTally, with "backend" and "age_ms", and, if a fallback took
+/// the place of the rig's detector, "why"). A rig with a timed fault runs twice, the second time
+/// without the fault.
 ///
 /// Ignores rig_file and settings of the options, which are in `rig` already. Thread-safe: calls
 /// share no state, and the figures do not depend on other calls. Errors: those of the twin, the

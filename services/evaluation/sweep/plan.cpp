@@ -36,7 +36,7 @@ void describe(Visitor& visitor, Head& head) {
   visitor.field("rig", head.rig, "Rig file of the variants without one, relative to the plan.");
   visitor.field("settings_from", head.settings_from,
                 "TOML file with settings of all runs, which several plans share; relative to the "
-                "plan. Those of the plan itself count more.");
+                "plan. Those of the plan itself take precedence.");
   visitor.field("seconds", head.seconds, config::between(0.01, 86400, "s"),
                 "Scored time of each run.");
   visitor.field("warm_up_s", head.warm_up_s, config::between(0, 3600, "s"),
@@ -115,7 +115,7 @@ class Reader {
 
   Result<Plan> read(const Value& document) {
     Head head;
-    const auto rest = take_sections(document, {"settings", "variant", "grid"});
+    const auto [rest, sections] = split(document, {"settings", "variant", "grid"});
     config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
 
     auto shared = shared_settings(head.settings_from);
@@ -124,10 +124,10 @@ class Reader {
               head.seconds,
               head.warm_up_s,
               head.joints_only ? 0 : head.draw_every,
-              fixed(section("settings")),
+              fixed(section(sections, "settings")),
               {},
-              grids()};
-    variants(head, plan);
+              grids(section(sections, "grid"))};
+    variants(section(sections, "variant"), head, plan);
     check_fixed_once(plan);
     plan.settings.insert(plan.settings.begin(), std::make_move_iterator(shared.begin()),
                          std::make_move_iterator(shared.end()));
@@ -140,18 +140,21 @@ class Reader {
     faults_.add(fmt::format("{}:{}: {}: {}", file_.string(), line, path, sentence));
   }
 
-  /// Moves the named members to taken_ and returns the others.
-  Value take_sections(const Value& document, const std::vector<std::string_view>& names) {
-    taken_.clear();
-    config::Table rest;
+  /// The members of a document with these names, and the others.
+  struct Split {
+    Value rest;
+    config::Table sections;
+  };
+  static Split split(const Value& document, const std::vector<std::string_view>& names) {
+    config::Table rest, sections;
     for (const auto& member : std::get<config::Table>(document.data))
-      (std::ranges::find(names, member.name) == names.end() ? rest : taken_).push_back(member);
-    return {std::move(rest), document.line};
+      (std::ranges::find(names, member.name) == names.end() ? rest : sections).push_back(member);
+    return {{std::move(rest), document.line}, std::move(sections)};
   }
 
-  const Value* section(std::string_view name) const {
-    const auto found = std::ranges::find(taken_, name, &config::Member::name);
-    return found == taken_.end() ? nullptr : &found->value;
+  static const Value* section(const config::Table& sections, std::string_view name) {
+    const auto found = std::ranges::find(sections, name, &config::Member::name);
+    return found == sections.end() ? nullptr : &found->value;
   }
 
   config::Table members(const Value* section, std::string_view name) {
@@ -190,7 +193,8 @@ class Reader {
     return axes;
   }
 
-  /// The settings of the file that several plans share. Those of the plan and its grid count more.
+  /// The settings of the file that several plans share. Those of the plan and its grid take
+  /// precedence.
   std::vector<Axis> shared_settings(const std::string& shared) {
     if (shared.empty()) return {};
     const auto file = (folder_ / shared).lexically_normal();
@@ -207,8 +211,7 @@ class Reader {
     return settings;
   }
 
-  std::vector<Grid> grids() {
-    const auto* listed = section("grid");
+  std::vector<Grid> grids(const Value* listed) {
     const auto* array = listed ? std::get_if<config::Array>(&listed->data) : nullptr;
     if (!array) return {grid(listed)};
     if (array->empty()) complain(listed->line, "grid", "is an empty list: there is nothing to run");
@@ -233,8 +236,7 @@ class Reader {
     return axes;
   }
 
-  void variants(const Head& head, Plan& plan) {
-    const auto* listed = section("variant");
+  void variants(const Value* listed, const Head& head, Plan& plan) {
     const auto* array = listed ? std::get_if<config::Array>(&listed->data) : nullptr;
     if (listed && !array)
       complain(listed->line, "variant", "must be a list of sections: write [[variant]]");
@@ -245,8 +247,7 @@ class Reader {
     }
     if (array->empty())
       complain(listed->line, "variant", "is an empty list: there is nothing to run");
-    const auto elements = *array;
-    for (const auto& element : elements) {
+    for (const auto& element : *array) {
       if (!std::holds_alternative<config::Table>(element.data)) {
         complain(element.line, "variant", "must be a section: write [[variant]]");
         continue;
@@ -261,11 +262,11 @@ class Reader {
 
   Variant variant(const Value& element, const std::string& default_rig) {
     VariantHead head;
-    const auto rest = take_sections(element, {"settings"});
+    const auto [rest, sections] = split(element, {"settings"});
     config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
     if (head.name.empty()) complain(element.line, "variant.name", "is missing");
     const auto file = (folder_ / (head.rig.empty() ? default_rig : head.rig)).lexically_normal();
-    return {head.name, file, rig_text(file, element.line), fixed(section("settings"))};
+    return {head.name, file, rig_text(file, element.line), fixed(section(sections, "settings"))};
   }
 
   /// Reads a rig file. Its faults are reported once, even if several variants name it.
@@ -302,7 +303,6 @@ class Reader {
   config::Rig scratch_;           ///< receives each value when it is checked
   config::Listing listing_;
   config::Faults faults_;
-  config::Table taken_;
   std::vector<std::filesystem::path> judged_;
 };
 

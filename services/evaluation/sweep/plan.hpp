@@ -40,7 +40,7 @@ struct Variant {
 ///     draw_every = 24                  # draws and scores every 24th projector frame
 ///     joints_only = false              # true: draws nothing and scores only the 21 landmarks
 ///     settings_from = "worlds/a.toml"  # settings of all runs that several plans share; those of
-///                                      # the plan itself and its axes count more
+///                                      # the plan itself and its axes take precedence
 ///     [settings]                       # of all runs
 ///     twin.tracker.age_ms = 15
 ///     [[variant]]                      # without any, the rig is the only variant

@@ -76,9 +76,7 @@ msg::HandLandmarks DetectorModel::report(std::uint64_t run, msg::Side side,
     const std::uint64_t draw = draw_of(side, i);
     const glm::dvec2 noise(random.normal(run, draw), random.normal(run, draw + 1));
     const glm::dvec2 seen = glm::dvec2(truth[i]) + bias_px[i] + noise * settings_.noise_px;
-    const glm::dvec2 image = camera_.distort(truth[i]);
-    const bool inside = image.x > -0.5 && image.y > -0.5 && image.x < camera_.width_px - 0.5 &&
-                        image.y < camera_.height_px - 0.5;
+    const bool inside = camera_.contains(camera_.distort(truth[i]));
     hand.points[i] = {static_cast<float>(seen.x), static_cast<float>(seen.y), inside ? 1.0f : 0.0f};
   }
   spoil(run, origin_ns, hand);

@@ -17,11 +17,6 @@ constexpr double kStraightest_rad = -0.17, kMostBent_rad = 1.9;
 /// The DIP follows the PIP by two thirds (Rijpkema and Girard 1991).
 constexpr std::array<double, kBends> kShare{1, 1, 2.0 / 3};
 
-double smoothstep(double x) {
-  x = std::clamp(x, 0.0, 1.0);
-  return x * x * (3 - 2 * x);
-}
-
 std::uint64_t draw_of(renderer::Side side, int finger) {
   return static_cast<std::uint64_t>(side) * kFingers + static_cast<std::uint64_t>(finger);
 }
@@ -37,7 +32,8 @@ double held(const Random& random, std::uint64_t draw, double seconds, double per
     return random.normal(2 * draw + 1, static_cast<std::uint64_t>(static_cast<std::int64_t>(c)));
   };
   const double now = seconds < begins_s(cell) ? cell - 1 : cell;
-  const double share = smoothstep((seconds - begins_s(now)) / std::min(kSwitch_s, 0.4 * period_s));
+  const double share =
+      glm::smoothstep(0.0, 1.0, (seconds - begins_s(now)) / std::min(kSwitch_s, 0.4 * period_s));
   return value(now - 1) + share * (value(now) - value(now - 1));
 }
 

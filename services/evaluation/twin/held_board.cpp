@@ -41,9 +41,7 @@ double share_inside(const BoardViewer& viewer, const glm::dvec3& centre_m, const
     const glm::dvec3 point_m(viewer.from_first *
                              glm::dvec4(centre_m + turn * glm::dvec3(at * half_m, 0), 1));
     if (point_m.z < kBehind_m) continue;
-    const auto px = camera.distort(camera.project(point_m));
-    inside +=
-        px.x > -0.5 && px.y > -0.5 && px.x < camera.width_px - 0.5 && px.y < camera.height_px - 0.5;
+    inside += camera.contains(camera.distort(camera.project(point_m)));
   }
   return static_cast<double>(inside) / (kSteps * kSteps);
 }

@@ -16,11 +16,6 @@ constexpr double kPartly = 0.1, kMostly = 0.8;
 /// Sum of the flexion of a finger's joints when it begins to count as folded, and when it does.
 constexpr double kFolding_rad = 2.8, kFolded_rad = 3.6;
 
-double smoothstep(double from, double to, double x) {
-  const double u = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return u * u * (3 - 2 * u);
-}
-
 /// The points of two lines of finite length that are nearest to each other (Ericson, "Real-Time
 /// Collision Detection", 2005, 5.1.9), for a line from the origin.
 struct Nearest {
@@ -46,8 +41,8 @@ double blocks(const JointFrames& frames, const std::array<float, kJoints>& radii
   const auto near = nearest(seen, place(frames, from), place(frames, to));
   const double radius_m = 0.5 * (radii_m[from] + radii_m[to]);
   const double before_m = (1 - near.along) * glm::length(seen);
-  return smoothstep(0.6 * (radius_m + own_m), 1.1 * (radius_m + own_m), before_m) *
-         (1 - smoothstep(kBlocked * radius_m, kFree * radius_m, near.distance_m));
+  return glm::smoothstep(0.6 * (radius_m + own_m), 1.1 * (radius_m + own_m), before_m) *
+         (1 - glm::smoothstep(kBlocked * radius_m, kFree * radius_m, near.distance_m));
 }
 
 double hidden_share(const JointFrames& frames, const std::array<float, kJoints>& radii_m,
@@ -85,8 +80,9 @@ std::array<double, kFingers> hidden_fingers(const JointFrames& frames,
   std::array<double, kFingers> hidden{};
   for (int f = 0; f < kFingers; ++f) {
     const double bend = flexion[f][0] + flexion[f][1] + flexion[f][2];
-    const double folded = f == 0 ? 0 : smoothstep(kFolding_rad, kFolded_rad, bend);
-    hidden[f] = std::max(folded, smoothstep(kPartly, kMostly, hidden_share(frames, radius_m, f)));
+    const double folded = f == 0 ? 0 : glm::smoothstep(kFolding_rad, kFolded_rad, bend);
+    hidden[f] =
+        std::max(folded, glm::smoothstep(kPartly, kMostly, hidden_share(frames, radius_m, f)));
   }
   return hidden;
 }

@@ -11,7 +11,7 @@ namespace handcast::twin {
 namespace {
 
 constexpr int kWrist = 1;
-/// Error across the finger and along it. The mean of the squares is 1.
+/// Error along the finger, and across it. The mean of the squares is 1.
 constexpr std::array<double, 2> kAlongAndAcross{0.75, 1.199};
 /// Error by place on the finger: MCP, PIP, DIP, tip. With the wrist, the mean of the squares is 1.
 constexpr std::array<double, 4> kByPlace{0.8, 0.9, 1.03, 1.25};

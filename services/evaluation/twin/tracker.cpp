@@ -163,8 +163,8 @@ glm::dvec3 TrackerModel::noise_m(std::uint64_t k, Side side, int joint) const {
          (settings_.noise_mm * 1e-3);
 }
 
-/// The fingers of lag_ms ago on the wrist of a third of that ago. A hand that has only just come
-/// has no past.
+/// The fingers as they were lag_ms ago, on the wrist as it was lag_ms / 3 ago. A hand that has only
+/// just come has no past.
 std::optional<JointFrames> TrackerModel::lagging(std::int64_t time_ns,
                                                  const JointsAt& truth) const {
   const auto now = truth(time_ns);

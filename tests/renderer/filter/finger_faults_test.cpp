@@ -104,6 +104,14 @@ TEST(FingerOrder, ExchangedFingersArePutBackAsLongAsTheTrackerAgrees) {
   EXPECT_EQ(mended_ns({}), 500'000'000);
 }
 
+TEST(FingerOrder, FingersSideBySideMayBeNoiseAndStay) {
+  FingerOrder order;
+  const auto close = moved(hand(), kMiddle, -30);
+  auto seen = seen_at(close);
+  std::swap_ranges(&seen.points[5], &seen.points[9], &seen.points[9]);
+  EXPECT_EQ(order.mended(0, seen, close, close).points[5].x_px, close.px[9].x);
+}
+
 TEST(FingerOrder, FingersAtTheirPlacesStay) {
   FingerOrder order;
   const auto near = moved(hand(), kIndex, 12);

@@ -162,6 +162,40 @@ TEST(FingerSnaps, AfterAGapOfTheTrackerAFingerMayBeAnywhere) {
   EXPECT_GT(fingers.tip_off_m(300), 0.02f);
 }
 
+TEST(FingerSnaps, AFingerThatIsNearlyBackIsLetGo) {
+  Fingers fingers;
+  fingers.tracked_deg = [](std::int64_t ms) { return ms < 200 ? 0.0f : ms < 300 ? 25.0f : 5.0f; };
+  EXPECT_LT(fingers.tip_off_m(290), 1e-4f);
+  EXPECT_NEAR(fingers.tip_off_m(310), tip_apart_m(hand(5), hand(0)), 1e-4f);
+}
+
+/// A tracker and an image that have shown a resting hand for 100 ms.
+FingerSnaps after_rest() {
+  FingerSnaps snaps(rig_above_hand());
+  for (int ms = 0; ms < 100; ms += 10) snaps.held(ms * kMs, hand(0), {});
+  snaps.detection(102 * kMs, landmarks_of(rig_above_hand(), 102 * kMs, hand(0), {0, 0}).hands[0]);
+  return snaps;
+}
+
+TEST(FingerSnaps, AStepThatTheImageWouldHardlyShowIsNotHeld) {
+  auto raised = hand(0);
+  for (int j = kIndex + 1; j <= kTip; ++j) raised.joints[j].position_m[1] += 0.01f;
+  EXPECT_LT(tip_apart_m(after_rest().held(100 * kMs, raised, {}), raised), 1e-6f);
+}
+
+TEST(FingerSnaps, AnImageThatComesLateDoesNotReplaceANewerOne) {
+  auto snaps = after_rest();
+  snaps.detection(50 * kMs, landmarks_of(rig_above_hand(), 50 * kMs, hand(25), {0, 0}).hands[0]);
+  EXPECT_LT(tip_apart_m(snaps.held(100 * kMs, hand(25), {}), hand(0)), 1e-4f);
+}
+
+TEST(FingerSnaps, NothingIsHeldAfterAllWasForgotten) {
+  auto snaps = after_rest();
+  ASSERT_LT(tip_apart_m(snaps.held(100 * kMs, hand(25), {}), hand(0)), 1e-4f);
+  snaps.forget();
+  EXPECT_EQ(tip_apart_m(snaps.held(110 * kMs, hand(25), {}), hand(25)), 0);
+}
+
 TEST(FingerSnaps, BrokenAndOldSamplesChangeNothing) {
   FingerSnaps snaps(rig_above_hand());
   LandmarkPoints moved_px{};

@@ -14,11 +14,6 @@ using ByJoint = std::array<float, kJoints>;
 constexpr double kReach_mm = 2.5;  ///< a part that is farther by this has 1/e of the share
 constexpr int kRounds = 6;         ///< of averaging over neighbours
 
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
 /// Adds `share` to the joints of a part at a place along it.
 void add_joints(const Part& part, double along_mm, double share, ByJoint& weights) {
   double rest = 1;
@@ -26,7 +21,7 @@ void add_joints(const Part& part, double along_mm, double share, ByJoint& weight
     double beyond = 0;
     if (k + 1 < part.moved_by.size()) {
       const double from_mm = part.moved_by[k + 1].from_mm;
-      beyond = smooth_step(from_mm - part.blend_mm, from_mm + part.blend_mm, along_mm);
+      beyond = glm::smoothstep(from_mm - part.blend_mm, from_mm + part.blend_mm, along_mm);
     }
     weights[static_cast<std::size_t>(part.moved_by[k].joint)] +=
         static_cast<float>(share * (rest - std::min(rest, beyond)));

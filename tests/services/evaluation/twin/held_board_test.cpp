@@ -32,11 +32,6 @@ std::vector<glm::dvec2> in_image(const HeldBoard& held, const BoardOutline& boar
   return points;
 }
 
-bool inside(const glm::dvec2& px, const calib::CameraModel& camera) {
-  return px.x > -0.5 && px.y > -0.5 && px.x < camera.width_px - 0.5 &&
-         px.y < camera.height_px - 0.5;
-}
-
 /// The share of the board in the image: of the worst place, and the mean over all.
 struct Shares {
   double least = 1, mean = 0;
@@ -47,7 +42,7 @@ Shares shares_inside(const calib::CameraModel& camera, const BoardOutline& board
   for (int i = 0; i < HeldBoard::kPlaces; ++i) {
     const auto points = in_image(held, board, camera, middle_s(i));
     const auto count = std::count_if(points.begin(), points.end(),
-                                     [&](const auto& px) { return inside(px, camera); });
+                                     [&](const auto& px) { return camera.contains(px); });
     const double share = static_cast<double>(count) / static_cast<double>(points.size());
     shares.least = std::min(shares.least, share);
     shares.mean += share / HeldBoard::kPlaces;
@@ -66,7 +61,7 @@ TEST(HeldBoard, ReachesAllNineCellsOfTheImageAndItsCorners) {
     for (int i = 0; i < HeldBoard::kPlaces; ++i) {
       std::set<int> cells;
       for (const auto& px : in_image(usual(seed), kBoard, camera, middle_s(i))) {
-        if (inside(px, camera)) cells.insert(int(px.x) / 240 + 3 * (int(px.y) / 180));
+        if (camera.contains(px)) cells.insert(int(px.x) / 240 + 3 * (int(px.y) / 180));
         for (int c = 0; c < 4; ++c)
           corner_px[c] = std::min(corner_px[c], glm::distance(px, {c % 2 * 719, c / 2 * 539}));
       }
