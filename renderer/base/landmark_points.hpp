@@ -10,6 +10,14 @@ namespace handcast::renderer {
 
 using msg::kLandmarks;
 
+/// The fingers, from the thumb to the little finger, and the landmarks of each, from its lowest
+/// joint to its tip.
+inline constexpr int kFingers = 5, kLandmarksOfFinger = 4;
+/// The lowest landmark of a finger.
+constexpr int first_landmark(int finger) { return 1 + kLandmarksOfFinger * finger; }
+/// The finger of a landmark; -1 for the wrist.
+constexpr int finger_of_landmark(int landmark) { return (landmark + 3) / kLandmarksOfFinger - 1; }
+
 /// One position or displacement per landmark, in MediaPipe's order. Undistorted camera px, x right
 /// and y down, unless another unit is stated. P, Q and Q̂ (`docs/method.md#symbols`) have this type.
 using LandmarkPoints = std::array<glm::vec2, kLandmarks>;

@@ -72,7 +72,7 @@ float square(float x) { return x * x; }
 FingerOutline::FingerOutline(const HandMesh& mesh) {
   for (int f = 0; f < kFingers; ++f) {
     Finger& finger = fingers_[f];
-    finger.landmark = 1 + kOfFinger * f;
+    finger.landmark = first_landmark(f);
     // The thumb's metacarpal is of the palm; a proximal phalanx is free beyond the web.
     for (int k = f == 0 ? 1 : 0; k < kMostBones; ++k) {
       const float station = k == 0 ? kBeyondWeb : 0.5f;
@@ -85,7 +85,7 @@ FingerOutline::FingerOutline(const HandMesh& mesh) {
 
 /// False if a phalanx of the finger folds back in the image: two phalanges share one outline.
 bool FingerOutline::is_straight(const Finger& finger, const LandmarkPoints& px) {
-  for (int i = finger.landmark; i + 2 < finger.landmark + kOfFinger; ++i)
+  for (int i = finger.landmark; i + 2 < finger.landmark + kLandmarksOfFinger; ++i)
     if (!(glm::dot(px[i + 1] - px[i], px[i + 2] - px[i + 1]) > 0)) return false;
   return true;
 }
@@ -114,7 +114,8 @@ bool FingerOutline::is_free(glm::vec2 place, int landmark, const LandmarkPoints&
   for (const Finger& finger : fingers_)
     for (int k = 0; k < kMostBones; ++k) {
       const int start = finger.landmark + k;
-      const bool is_own = landmark >= finger.landmark && landmark < finger.landmark + kOfFinger;
+      const bool is_own =
+          landmark >= finger.landmark && landmark < finger.landmark + kLandmarksOfFinger;
       if (is_own && std::abs(start - landmark) < 2) continue;
       if (from_bone_px(place, px, start, start + 1) < kBoneRadius * radius_px_) return false;
     }
@@ -207,9 +208,9 @@ void FingerOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> ver
 
 /// The most likely displacements, by Kalman's update for each phalanx.
 void FingerOutline::solve_across(Finger& finger) const {
-  std::array<std::array<float, kOfFinger>, kOfFinger> covariance;
-  for (int i = 0; i < kOfFinger; ++i)
-    for (int j = 0; j < kOfFinger; ++j)
+  std::array<std::array<float, kLandmarksOfFinger>, kLandmarksOfFinger> covariance;
+  for (int i = 0; i < kLandmarksOfFinger; ++i)
+    for (int j = 0; j < kLandmarksOfFinger; ++j)
       covariance[i][j] = square(radius_px_) *
                          (square(kAcrossShared) + square(kAcrossGrown) * kPlace[i] * kPlace[j] +
                           (i == j ? square(kAcrossOwn) : 0));
@@ -218,16 +219,16 @@ void FingerOutline::solve_across(Finger& finger) const {
   for (const Bone& bone : finger.bones) {
     if (!(bone.across_px.share > 0)) continue;
     const int k = bone.first;
-    const auto at_station = [&](const std::array<float, kOfFinger>& of_finger) {
+    const auto at_station = [&](const std::array<float, kLandmarksOfFinger>& of_finger) {
       return glm::mix(of_finger[k], of_finger[k + 1], bone.station);
     };
-    std::array<float, kOfFinger> gain;
-    for (int i = 0; i < kOfFinger; ++i) gain[i] = at_station(covariance[i]);
+    std::array<float, kLandmarksOfFinger> gain;
+    for (int i = 0; i < kLandmarksOfFinger; ++i) gain[i] = at_station(covariance[i]);
     const float variance = at_station(gain) + square(kSigma * radius_px_) / bone.across_px.share;
     const float left_px = bone.across_px.value - at_station(result);
-    for (int i = 0; i < kOfFinger; ++i) result[i] += gain[i] / variance * left_px;
-    for (int i = 0; i < kOfFinger; ++i)
-      for (int j = 0; j < kOfFinger; ++j) covariance[i][j] -= gain[i] * gain[j] / variance;
+    for (int i = 0; i < kLandmarksOfFinger; ++i) result[i] += gain[i] / variance * left_px;
+    for (int i = 0; i < kLandmarksOfFinger; ++i)
+      for (int j = 0; j < kLandmarksOfFinger; ++j) covariance[i][j] -= gain[i] * gain[j] / variance;
   }
 }
 
@@ -237,19 +238,19 @@ void FingerOutline::solve_along(Finger& finger) const {
   if (!(finger.along_px.share > 0)) return;
   const float at_tip = square(kAlongShared) + square(kAlongGrown) + square(kAlongOwn),
               variance = at_tip + square(kSigma) / finger.along_px.share;
-  for (int i = 0; i < kOfFinger; ++i)
+  for (int i = 0; i < kLandmarksOfFinger; ++i)
     finger.along[i] = (square(kAlongShared) + square(kAlongGrown) * kPlace[i] +
-                       (i + 1 == kOfFinger ? square(kAlongOwn) : 0)) /
+                       (i + 1 == kLandmarksOfFinger ? square(kAlongOwn) : 0)) /
                       variance * finger.along_px.value;
 }
 
 LandmarkPoints FingerOutline::moved(const LandmarkPoints& landmarks_px) const {
   LandmarkPoints result = landmarks_px;
   for (const Finger& finger : fingers_)
-    for (int k = 0; k < kOfFinger; ++k) {
+    for (int k = 0; k < kLandmarksOfFinger; ++k) {
       const int i = finger.landmark + k;
       const glm::vec2 way =
-          landmarks_px[k + 1 < kOfFinger ? i + 1 : i] - landmarks_px[k > 0 ? i - 1 : i];
+          landmarks_px[k + 1 < kLandmarksOfFinger ? i + 1 : i] - landmarks_px[k > 0 ? i - 1 : i];
       const float length_px = glm::length(way);
       if (!(length_px > kThinnest_px)) continue;
       const glm::vec2 along = way / length_px, across(-along.y, along.x);

@@ -36,7 +36,7 @@ class FingerOutline {
   LandmarkPoints moved(const LandmarkPoints& landmarks_px) const;
 
  private:
-  static constexpr int kFingers = 5, kOfFinger = 4, kMostBones = 3;
+  static constexpr int kMostBones = 3;
 
   /// A phalanx that is measured.
   struct Bone {
@@ -51,7 +51,7 @@ class FingerOutline {
     std::vector<std::uint16_t> tip;  ///< vertices of the last phalanx
     Lasting along_px;                ///< the mask's end from the drawn one without displacement
     /// Displacements of its landmarks, across the finger and along it.
-    std::array<float, kOfFinger> across{}, along{};
+    std::array<float, kLandmarksOfFinger> across{}, along{};
   };
   /// A phalanx as it is drawn: the axes begin at the middle of its section, along to the tip.
   struct Drawn {

@@ -8,8 +8,6 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kFingers = 5;
-
 /// The finger of a joint, thumb 0; -1 for palm, wrist and the metacarpals of the four fingers.
 int finger_of_joint(int joint) {
   constexpr int kThumb = 2, kIndex = 6, kJointsOfFinger = 5;

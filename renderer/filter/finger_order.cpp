@@ -6,14 +6,11 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kFingers = 5, kJointsOfFinger = 4;
 constexpr std::int64_t kPatience_ns = 500'000'000;
 /// Fingers closer to their expected places than this are left as they are.
 constexpr float kFar_px = 15;
 /// Fingers are exchanged if this share of the distance remains with the fingers exchanged.
 constexpr float kCloser = 0.3f;
-
-constexpr int first_of(int finger) { return 1 + kJointsOfFinger * finger; }
 
 /// Mean distance of the seen landmarks of `finger` from the expected ones of the finger `place`.
 /// Empty if there is none to compare.
@@ -21,8 +18,8 @@ std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedP
                                  int finger, int place) {
   float sum = 0;
   int count = 0;
-  for (int k = 0; k < kJointsOfFinger; ++k) {
-    const int from = first_of(finger) + k, to = first_of(place) + k;
+  for (int k = 0; k < kLandmarksOfFinger; ++k) {
+    const int from = first_landmark(finger) + k, to = first_landmark(place) + k;
     if (!was_seen(seen.points[from]) || !expected.known[to]) continue;
     sum += glm::distance(position_px(seen.points[from]), expected.px[to]);
     ++count;
@@ -52,8 +49,9 @@ msg::HandLandmarks FingerOrder::mended(std::int64_t origin_ns, const msg::HandLa
     for (int b = a + 1; b < kFingers; ++b) {
       if (left_by_exchange(mended, expected, a, b).value_or(1) >= kCloser) continue;
       trackers_too = trackers_too && left_by_exchange(mended, by_tracker, a, b).value_or(1) < 1;
-      std::swap_ranges(&mended.points[first_of(a)], &mended.points[first_of(a)] + kJointsOfFinger,
-                       &mended.points[first_of(b)]);
+      std::swap_ranges(&mended.points[first_landmark(a)],
+                       &mended.points[first_landmark(a)] + kLandmarksOfFinger,
+                       &mended.points[first_landmark(b)]);
       wrong = true;
     }
   if (!wrong) {

@@ -6,7 +6,6 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kJointsOfFinger = 4;
 constexpr std::int64_t kPatience_ns = 500'000'000;
 constexpr float kStep_px = 8;
 constexpr float kSigmas = 2;  ///< a step must also exceed this many sigmas of the detector
@@ -16,7 +15,7 @@ constexpr float kExplained = 0.5f, kNearer = 0.7f;
 
 /// The distances of a finger's landmarks in two places, the second smallest of the four: a single
 /// landmark is not the finger, and the knuckle of a wrong finger may be right.
-float typical_px(std::array<float, kJointsOfFinger> distances_px) {
+float typical_px(std::array<float, kLandmarksOfFinger> distances_px) {
   std::ranges::nth_element(distances_px, distances_px.begin() + 1);
   return distances_px[1];
 }
@@ -24,9 +23,9 @@ float typical_px(std::array<float, kJointsOfFinger> distances_px) {
 /// How far the landmarks of a finger are from the expected ones. Empty if one cannot be compared.
 std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected,
                                  int finger) {
-  std::array<float, kJointsOfFinger> distances_px;
-  for (int k = 0; k < kJointsOfFinger; ++k) {
-    const int i = 1 + kJointsOfFinger * finger + k;
+  std::array<float, kLandmarksOfFinger> distances_px;
+  for (int k = 0; k < kLandmarksOfFinger; ++k) {
+    const int i = first_landmark(finger) + k;
     if (!was_seen(seen.points[i]) || !expected.known[i]) return std::nullopt;
     distances_px[k] = glm::distance(position_px(seen.points[i]), expected.px[i]);
   }
@@ -34,9 +33,9 @@ std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedP
 }
 
 float apart_px(const ExpectedPoints& a, const ExpectedPoints& b, int finger) {
-  std::array<float, kJointsOfFinger> distances_px;
-  for (int k = 0; k < kJointsOfFinger; ++k) {
-    const int i = 1 + kJointsOfFinger * finger + k;
+  std::array<float, kLandmarksOfFinger> distances_px;
+  for (int k = 0; k < kLandmarksOfFinger; ++k) {
+    const int i = first_landmark(finger) + k;
     distances_px[k] = glm::distance(a.px[i], b.px[i]);
   }
   return typical_px(distances_px);
@@ -44,9 +43,9 @@ float apart_px(const ExpectedPoints& a, const ExpectedPoints& b, int finger) {
 
 float sigma_px(const msg::HandLandmarks& seen, int finger) {
   float sum = 0;
-  for (int k = 0; k < kJointsOfFinger; ++k)
-    sum += seen.points[1 + kJointsOfFinger * finger + k].sigma_px;
-  return sum / kJointsOfFinger;
+  for (int k = 0; k < kLandmarksOfFinger; ++k)
+    sum += seen.points[first_landmark(finger) + k].sigma_px;
+  return sum / kLandmarksOfFinger;
 }
 
 }  // namespace
@@ -56,7 +55,7 @@ FingerSteps::Verdicts FingerSteps::judge(std::int64_t origin_ns, const msg::Hand
                                          const ExpectedPoints& common,
                                          const ExpectedPoints& alone) {
   Verdicts verdicts{};
-  for (int finger = 0; finger < 5; ++finger) {
+  for (int finger = 0; finger < kFingers; ++finger) {
     auto& held_since_ns = held_since_ns_[finger];
     auto& verdict = verdicts[finger];
     const auto step_px = distance_px(seen, expected, finger),

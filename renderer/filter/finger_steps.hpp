@@ -19,7 +19,7 @@ class FingerSteps {
     anew,   ///< begin anew from them
   };
   /// By finger, thumb first.
-  using Verdicts = std::array<Verdict, 5>;
+  using Verdicts = std::array<Verdict, kFingers>;
 
   /// `seen`: the landmarks of an image. `expected`: the same by the offsets so far; `common`: by
   /// the offset that the hand has as a whole; `alone`: by the landmarks' own motion. A step that
@@ -30,7 +30,7 @@ class FingerSteps {
                  const ExpectedPoints& alone);
 
  private:
-  std::array<std::optional<std::int64_t>, 5> held_since_ns_{};
+  std::array<std::optional<std::int64_t>, kFingers> held_since_ns_{};
 };
 
 }  // namespace handcast::renderer

@@ -42,8 +42,8 @@ class OffsetFilter : public CarryFilter {
     if (!then || silent_ || origin_ns < doubted_until_ns_) return;
     for (int i = 0; i < kLandmarks; ++i)
       if (was_seen(seen.points[i]))
-        take(i == 0 ? FingerSteps::Verdict::usual : verdicts[(i - 1) / 4], tracks_[i], origin_ns,
-             position_px(seen.points[i]) - (*then)[i]);
+        take(i == 0 ? FingerSteps::Verdict::usual : verdicts[finger_of_landmark(i)], tracks_[i],
+             origin_ns, position_px(seen.points[i]) - (*then)[i]);
   }
 
   void tracker_is(Tracker state) override { silent_ = state == Tracker::silent; }

@@ -7,12 +7,8 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kFingers = 5;
 constexpr std::array<int, kRungs> kFreeNumbers{
     0, 0, 2, 4, 4 + 2 * kFingers, 2 * kLandmarks, 2 * kLandmarks};
-
-/// Finger f has the landmarks 4 f + 1 to 4 f + 4; -1 for the wrist.
-constexpr int finger_of_landmark(int landmark) { return (landmark + 3) / 4 - 1; }
 
 glm::vec2 mean_shift(const LandmarkPoints& p, const LandmarkPoints& q) {
   glm::vec2 sum{0};

@@ -118,7 +118,8 @@ std::optional<float> FingerSnaps::distance_px(const msg::HandPose& pose, int fin
     palm_px += off_px(i) / static_cast<float>(kPalmLandmarks.size());
   }
   float square_px2 = 0;
-  for (int i = 4 * finger + 2; i <= 4 * finger + 4; ++i) {
+  for (int k = 1; k < kLandmarksOfFinger; ++k) {
+    const int i = first_landmark(finger) + k;
     if (!was_seen(seen[i])) return std::nullopt;
     const glm::vec2 off = off_px(i) - palm_px;
     square_px2 += glm::dot(off, off) / 3;

@@ -35,7 +35,7 @@ class FingerSnaps {
   void forget() { *this = FingerSnaps(calibration_); }
 
  private:
-  static constexpr int kFingers = 5, kFingerJoints = 4;
+  static constexpr int kFingerJoints = 4;
 
   /// The joints of a finger that it can move, as seen from the palm.
   using Finger = std::array<msg::Joint, kFingerJoints>;

@@ -217,7 +217,7 @@ Registered Registration::find(const Contour& outline, const Silhouette& newest,
 
   float furthest_px = 0;
   for (int i = 0; i < kLandmarks; ++i) {
-    int finger = i == 0 ? -1 : (i - 1) / 4;
+    int finger = finger_of_landmark(i);
     if (finger >= 0 && fingers_[finger].length_px < kLeastFinger_px) finger = -1;
     result.moved[i] = displacement(now[i], finger);
     furthest_px = std::max(furthest_px, glm::length(result.moved[i]));

@@ -42,7 +42,7 @@ class Registration {
                   std::span<const HandMotion> hands, std::size_t index);
 
  private:
-  static constexpr int kFingers = 5, kUnknowns = 3 + 2 * kFingers;
+  static constexpr int kUnknowns = 3 + 2 * kFingers;
   struct Point {
     glm::vec2 at, normal;  ///< after the tracker's motion
     int finger;            ///< -1: palm
