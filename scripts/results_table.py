@@ -10,6 +10,7 @@ lines "<!-- PART: begin -->" and "<!-- PART: end -->". COMMAND is named below th
 of seeds that the protocol asks for: a table of fewer says so. scripts/results calls this program.
 """
 
+import os
 import statistics
 import sys
 
@@ -94,6 +95,8 @@ def footer(runs, command, people):
     yield text
     if runs.left_out:
         yield f"Left out, because runs failed: the seeds {listed(runs.left_out)}."
+    if runs.missing:
+        yield f"{runs.missing} runs of the plan are absent: recordings or hands were not there, or the sweep was interrupted."
     for variant in runs.absent:
         yield f"`{variant}` was not measured: {runs.errors.get(variant) or 'it has no runs'}."
 
@@ -338,7 +341,9 @@ VERDICTS = {"comparison": verdict, "causes": verdict_of_causes, "two_hands": ver
 
 
 def check_headline(path, runs):
-    """Ends the program if a variant is absent of which the first sentences speak."""
+    """Ends the program if runs are absent of which the first sentences speak."""
+    if runs.missing:
+        die(f"{path} lacks {runs.missing} runs of its plan: recordings or hands were not there, or the sweep was interrupted")
     for variant in ("paper", "paper_network", "handcast"):
         if not runs.has(variant):
             die(f"{path} has no runs of {variant}")
@@ -346,33 +351,65 @@ def check_headline(path, runs):
 
 def lines_of(part, path, command, people):
     if part == "unseen_summary":
-        runs = Runs(path, ["paper", "paper_network", "handcast", "paper_mediapipe", "handcast_mediapipe"])
+        runs = Runs(path, ["paper", "paper_network", "handcast", "paper_mediapipe", "handcast_mediapipe"], "unseen")
         check_headline(path, runs)
         if not runs.meshes:
             die(f"{path} has no runs of several meshes")
         return list(unseen_summary(runs, people))
     if part == "summary":
-        runs = Runs(path, ["paper", "paper_network", "handcast", "paper_model", "handcast_model"])
+        runs = Runs(path, ["paper", "paper_network", "handcast", "paper_model", "handcast_model"], "comparison")
         check_headline(path, runs)
         return list(summary(runs, people))
     if part in BY_VARIANT:
-        runs = Runs(path, BY_VARIANT[part])
+        runs = Runs(path, BY_VARIANT[part], part)
         if part in ("comparison", "unseen", "first_seconds"):
             check_headline(path, runs)
         lines = list(unseen_tables(runs) if part == "unseen" else table_by_variant(part, runs))
         if part in VERDICTS and all(runs.has(variant) for variant in NEEDED.get(part, ())):
             lines += VERDICTS[part](runs)
     elif part in BY_MOTION:
-        runs = Runs(path, BY_MOTION[part][0])
+        runs = Runs(path, BY_MOTION[part][0], part)
         lines = list(table_by_motion(part, runs))
         if part in VERDICTS:
             lines += VERDICTS[part](runs)
     elif part == "jitter":
-        runs = Runs(path, JITTER)
+        runs = Runs(path, JITTER, part)
         lines = list(table_of_jitter(runs))
     else:
         die(f"there is no table '{part}'; there are: {', '.join([*BY_VARIANT, *BY_MOTION, 'jitter', 'summary', 'unseen_summary'])}")
     return lines + list(footer(runs, command, people))
+
+
+def replaced(document, part, lines):
+    """The text of a document with these lines between the marks of `part`."""
+    try:
+        with open(document, newline="", encoding="utf-8") as file:
+            text = file.read()
+    except (OSError, UnicodeDecodeError) as error:
+        die(f"{document} cannot be read: {error}")
+    begin, end = f"<!-- {part}: begin -->", f"<!-- {part}: end -->"
+    if text.count(begin) != 1 or text.count(end) != 1 or text.index(end) < text.index(begin):
+        die(f"{document} must have the lines {begin} and {end}, each once and in this order")
+    before, rest = text.split(begin)
+    old, after = rest.split(end)
+    if "<!-- " in old:
+        die(f"{document} has other marks between {begin} and {end}")
+    newline = "\r\n" if "\r\n" in text else "\n"
+    return before + begin + newline + newline.join(lines) + newline + end + after
+
+
+def write_whole(document, text):
+    """Replaces a file by a text as a whole: if that fails, the old one is untouched."""
+    beside = f"{document}.new"
+    try:
+        with open(beside, "w", newline="", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(beside, os.stat(document).st_mode & 0o7777)
+        os.replace(beside, document)
+    except OSError as error:
+        if os.path.exists(beside):
+            os.remove(beside)
+        die(f"{document} cannot be written: {error}")
 
 
 def main():
@@ -380,17 +417,10 @@ def main():
         sys.exit(__doc__)
     part, results, document = sys.argv[1:4]
     command = sys.argv[4] if len(sys.argv) > 4 else ""
-    people = int(sys.argv[5]) if len(sys.argv) > 5 else 0
-    lines = lines_of(part, results, command, people)
-    with open(document, encoding="utf-8") as file:
-        text = file.read()
-    begin, end = f"<!-- {part}: begin -->", f"<!-- {part}: end -->"
-    if begin not in text or end not in text.split(begin, 1)[1]:
-        die(f"{document} has no lines {begin} and {end}")
-    before, rest = text.split(begin, 1)
-    after = rest.split(end, 1)[1]
-    with open(document, "w", encoding="utf-8") as file:
-        file.write(before + begin + "\n" + "\n".join(lines) + "\n" + end + after)
+    people = sys.argv[5] if len(sys.argv) > 5 else "0"
+    if not people.isdecimal():
+        die(f"PEOPLE must be a number, and not '{people}'")
+    write_whole(document, replaced(document, part, lines_of(part, results, command, int(people))))
 
 
 main()

@@ -42,25 +42,50 @@ def listed(seeds):
     return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
 
 
-class Runs:
-    """The figures of a sweep, by variant, motion and seed; if the sweep has several meshes, a motion is a pair of both. Seeds of
-    which a run failed are left out, and variants that have no run at all."""
+def rows_of(path, plan):
+    """The rows of a file of results of `plan`, and how many runs that plan has."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            lines = file.read().splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        die(f"{path} cannot be read: {error}")
+    stamp = dict(word.split("=", 1) for word in lines[0].split() if "=" in word) if lines else {}
+    if not lines or not lines[0].startswith("# handcast sweep ") or not stamp.get("runs", "").isdecimal():
+        die(f"{path} is not a file of results of handcast sweep")
+    if stamp.get("plan") != plan:
+        die(f"{path} has the results of the plan {stamp.get('plan')}, and not of {plan}")
+    reader = csv.DictReader(lines[1:])
+    rows = list(reader)
+    if missing := [name for name in ("index", "variant", "twin.motion", "twin.seed", "interior_mm_mean", "error")
+                   if name not in (reader.fieldnames or [])]:
+        die(f"{path} has no column {missing[0]}")
+    for number, row in enumerate(rows, start=3):
+        if None in row or None in row.values() or not row["twin.seed"].isdecimal():
+            die(f"{path}:{number}: is not the row of a run")
+    return rows, int(stamp["runs"])
 
-    def __init__(self, path, wanted):
+
+class Runs:
+    """The figures of the sweep of `plan`, by variant, motion and seed; if the sweep has several meshes, a motion is a pair of both.
+    Seeds of which a run failed are left out, and variants that have no run at all."""
+
+    def __init__(self, path, wanted, plan):
+        self.path = path
         self.rows = collections.defaultdict(dict)
         self.motions, self.meshes, self.errors = [], [], {}
-        with open(path, newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(line for line in file if not line.startswith("#")):
-                motion = row["twin.motion"].split("/")[-1].removeprefix("builtin:")
-                if mesh := row.get("twin.shape.mesh"):
-                    motion = (mesh, motion)
-                    if mesh not in self.meshes:
-                        self.meshes.append(mesh)
-                if motion not in self.motions:
-                    self.motions.append(motion)
-                self.rows[row["variant"], motion][int(row["twin.seed"])] = row
-                if not row["interior_mm_mean"]:
-                    self.errors.setdefault(row["variant"], row["error"])
+        rows, runs = rows_of(path, plan)
+        self.missing = runs - len({row["index"] for row in rows})
+        for row in rows:
+            motion = row["twin.motion"].split("/")[-1].removeprefix("builtin:")
+            if mesh := row.get("twin.shape.mesh"):
+                motion = (mesh, motion)
+                if mesh not in self.meshes:
+                    self.meshes.append(mesh)
+            if motion not in self.motions:
+                self.motions.append(motion)
+            self.rows[row["variant"], motion][int(row["twin.seed"])] = row
+            if not row["interior_mm_mean"]:
+                self.errors.setdefault(row["variant"], row["error"])
         if not self.motions:
             die(f"{path} has no runs")
         self.variants = [variant for variant in wanted if any(
@@ -82,7 +107,19 @@ class Runs:
 
     def of(self, variant, motion, name):
         """The figure `name` for each seed."""
-        return [float(self.rows[variant, motion][seed][name]) for seed in self.seeds]
+        return [self.figure(self.rows[variant, motion][seed], name) for seed in self.seeds]
+
+    def figure(self, row, name):
+        """A figure of a run. Only a latency may be negative."""
+        try:
+            value = float(row[name])
+        except KeyError:
+            die(f"{self.path} has no column {name}")
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value) or (value < 0 and name != "equivalent_latency_ms"):
+            die(f"{self.path}: {name} of run {row['index']} is '{row[name]}', which is not a figure of a run")
+        return value
 
     def mean(self, variant, motion, name):
         """The mean over the seeds, or over all motions and seeds if `motion` is None."""
@@ -95,7 +132,10 @@ class Runs:
 
     def ratios(self, variant, reference, motion, name="interior_mm_mean"):
         """The ratio of the mean errors for each seed."""
-        return [ours / theirs for ours, theirs in zip(self.of(variant, motion, name), self.of(reference, motion, name))]
+        pairs = list(zip(self.of(variant, motion, name), self.of(reference, motion, name)))
+        if not all(theirs > 0 for _, theirs in pairs):
+            die(f"{self.path}: an error of {reference} is 0, so that nothing can be compared with it")
+        return [ours / theirs for ours, theirs in pairs]
 
     def ratios_of_all(self, variant, reference, name="interior_mm_mean"):
         """The mean of these ratios over all motions, for each seed."""
@@ -107,10 +147,12 @@ class Runs:
         return [ratio for motion in self.motions for ratio in self.ratios(variant, reference, motion)]
 
     def detector(self, variant):
-        """The back ends that have found the landmarks, and their age."""
+        """The back end that has found the landmarks, and its age."""
         rows = [self.rows[variant, motion][seed] for motion in self.motions for seed in self.seeds]
-        ages = {f"{float(row['detector_age_ms']):g} ms" for row in rows}
-        return ", ".join(sorted({row["detector"] for row in rows}) + sorted(ages))
+        names = sorted({row.get("detector", "") for row in rows})
+        if len(names) > 1:
+            die(f"{self.path}: the runs of {variant} have different detectors: {', '.join(names)}")
+        return ", ".join(names + sorted({f"{self.figure(row, 'detector_age_ms'):g} ms" for row in rows}))
 
     def has(self, variant):
         return variant in self.variants

@@ -62,12 +62,14 @@ std::string fault_of_texture(const HandMesh& hand) {
       layers, kMostLayers);
 }
 
-/// The bones within thumb and fingers have a length and so a direction.
+/// The bones of the palm, of thumb and of fingers have a length and so a direction.
 std::string fault_of_bones(const HandMesh& hand) {
   constexpr float kShortest_m = 0.001f;
   for (std::size_t joint = 0; joint < hand.rest.size(); ++joint) {
     const auto name = kJointNames[joint];
-    if (!name.ends_with("-intermediate") && !name.ends_with("-distal")) continue;
+    if (!name.ends_with("-proximal") && !name.ends_with("-intermediate") &&
+        !name.ends_with("-distal"))
+      continue;
     const auto parent = static_cast<std::size_t>(kJointParent[joint]);
     const float length_m =
         glm::distance(glm::vec3(hand.rest[joint][3]), glm::vec3(hand.rest[parent][3]));

@@ -209,8 +209,11 @@ std::string why_nothing_was_scored(const nlohmann::json& metrics, const Options&
   };
   if (options.draw_every == 0)
     return has("/landmark_mm/mean") ? "" : "no hand was tracked: there is nothing to score";
-  return has("/coverage")
-             ? ""
+  if (has("/coverage")) return "";
+  return metrics.value("frames", 0) == 0
+             ? "no frame was drawn: with projector.software_ms and twin.projector.work_ms, the "
+               "light "
+               "is never in time"
              : "no true hand was in the image of the projector: there is nothing to score";
 }
 

@@ -59,8 +59,12 @@ Result<void> Results::go_on(const Heading& heading) {
                     (may_be_discarded(fd_.get()) ? ", or overwrite it with --fresh" : ""));
   const bool no_columns = table->heading.columns.empty() && table->rows.empty();
   const bool begun = !table->heading.stamp.empty();
-  if (begun &&
-      (table->heading.stamp != heading.stamp || (!no_columns && table->heading != heading)))
+  if (begun && table->heading.stamp == heading.stamp && !no_columns && table->heading != heading)
+    return fail(Errc::bad_config,
+                fmt::format("{}: the columns of the file are not those of this version; give "
+                            "another file with -o, or overwrite it with --fresh",
+                            file_.string()));
+  if (begun && table->heading.stamp != heading.stamp)
     return fail(Errc::bad_config,
                 fmt::format("{}: the file holds results of another plan, rig or version ({}; this "
                             "is {}); give another file with -o, or overwrite it with --fresh",

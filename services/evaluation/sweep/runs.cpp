@@ -13,15 +13,19 @@
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
 #include "ipc/base/input_file.hpp"
+#include "services/evaluation/simulate/frame_detector.hpp"
 #include "services/evaluation/twin/flesh_model.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
+#include "services/landmarks/models/mediapipe_files.hpp"
+#include "services/landmarks/models/models_folder.hpp"
 
 namespace handcast::sweep {
 namespace {
 
 constexpr std::size_t kMostRuns = 1'000'000;
 
-/// The files whose content decides the results. (Libraries and recordings' folders are not read
-/// here.)
+/// The settings that name a file whose content decides the results. (Libraries and recordings'
+/// folders are not read here.)
 constexpr std::array<std::string_view, 7> kRead{"calibration",
                                                 "hand.left",
                                                 "hand.right",
@@ -78,6 +82,24 @@ std::string without_machine(config::Rig rig, const std::filesystem::path& folder
       text = std::filesystem::path(text).lexically_relative(folder).string();
     }
   return config::print_rig(rig) + hashes;
+}
+
+/// What is in the files that no setting names but a rig reads: WebXR's hand, and the networks of
+/// the detector that will run, which is another one if a file is absent.
+std::string unnamed_files(const config::Rig& rig, Contents& contents) {
+  std::string hashes;
+  if (rig.twin.shape.mesh == "webxr")
+    hashes += contents.of(twin::webxr_hand_file().string()) + '\n';
+  const auto detector = simulate::simulated_backend(rig).backend;
+  hashes += detector + '\n';
+  const auto folder = landmarks::models_folder(rig.landmarks.models);
+  for (const auto& model : landmarks::landmark_models()) {
+    if (model.name != detector || !folder) continue;
+    auto files = model.files({.executor = rig.landmarks.executor, .folder = *folder});
+    files.push_back(*folder / landmarks::kMediapipePalmFile);  // read by each of them if it exists
+    for (const auto& file : files) hashes += contents.of(file.string()) + '\n';
+  }
+  return hashes;
 }
 
 /// Advances to the next combination; returns false after the last.
@@ -141,6 +163,7 @@ Result<Expansion> expand(const Plan& plan) {
     if (rig) {
       hash.add(describe_run(plan, run));
       hash.add(without_machine(*rig, folder, contents));
+      hash.add(unnamed_files(*rig, contents));
     } else if (std::ranges::find(known, rig.error().what) == known.end()) {
       known.push_back(rig.error().what);
       faults.add(fmt::format("{}: run {} ({}): {}", plan.file.string(), run.index,

@@ -28,6 +28,13 @@ FleshModel of_side(renderer::HandMesh left, renderer::Side side) {
   return {side == renderer::Side::left ? std::move(left) : mirrored(std::move(left)), false};
 }
 
+/// True if the index finger lies where a left hand, whose back points to +y, has the little finger.
+bool is_right(const renderer::HandMesh& hand) {
+  constexpr std::size_t kWrist = 1, kIndex = 7, kMiddle = 12, kLittle = 22;
+  const auto at = [&](std::size_t joint) { return glm::vec3(hand.rest[joint][3]); };
+  return glm::cross(at(kMiddle) - at(kWrist), at(kIndex) - at(kLittle)).y > 0;
+}
+
 /// True if a tip lies on the joint before it, as load_hand() places one that is missing.
 bool lacks_tips(const renderer::HandMesh& hand) {
   for (std::size_t joint = 0; joint < hand.rest.size(); ++joint) {
@@ -63,6 +70,12 @@ Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::Han
                 fmt::format("twin.shape.mesh: {} has no joints at the finger tips, so that the "
                             "lengths of its last phalanges are unknown",
                             file.string()));
+  if (is_right(*left))
+    return fail(
+        Errc::bad_config,
+        fmt::format("twin.shape.mesh: {} is a right hand, or its back does not point to +y; "
+                    "name a left one, of which the right one is made",
+                    file.string()));
   return of_side(std::move(*left), drawn.side);
 }
 

@@ -16,7 +16,8 @@ struct FleshModel {
 /// The model that `twin.shape.mesh` names: "handcast" (`drawn` itself), "webxr", "implicit"
 /// (implicit_hand()), or a glTF file of a left hand, which is mirrored for the right. Without the
 /// files of "webxr" it is `drawn`.
-/// Errors: those of renderer::load_hand(), bad_config (no joints at the finger tips).
+/// Errors: those of renderer::load_hand(), bad_config (no joints at the finger tips,
+/// a right hand).
 Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::HandMesh& drawn);
 
 /// The file of the left WebXR hand that `scripts/setup --hands` installs; empty if there is none.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <set>
 
 #include "tests/services/evaluation/sweep/plans.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::sweep {
 namespace {
@@ -276,6 +278,33 @@ TEST(Fingerprint, ChangesWithTheFilesThatTheRigNames) {
   const auto before = fingerprint_of("rig = \"rig.toml\"\n", scratch.path() / "plan.toml");
   write_text(scratch.path() / "rig.cal", "another");
   EXPECT_NE(before, fingerprint_of("rig = \"rig.toml\"\n", scratch.path() / "plan.toml"));
+}
+
+TEST(Fingerprint, ChangesWithTheNetworksAndWithTheHandThatNoSettingNames) {
+  const test::Scratch scratch;
+  const auto models = scratch.path() / "models";
+  std::filesystem::create_directory(models);
+  write_text(scratch.path() / "rig.toml",
+             "[landmarks]\nbackend = \"mediapipe\"\nfallback = \"twin\"\nmodels = \"models\"\n"
+             "[twin.shape]\nmesh = \"webxr\"\n");
+  const system_test::Variable hand("HANDCAST_WEBXR_HAND", (scratch.path() / "hand.glb").string());
+  std::set<std::string> all;
+  const auto add = [&] {
+    all.insert(fingerprint_of("rig = \"rig.toml\"\n", scratch.path() / "plan.toml"));
+  };
+  add();  // the fallback
+  for (const char* file : {"hand_landmark_lite.onnx", "palm_detection_lite.onnx"})
+    write_text(models / file, "one");
+  add();
+  write_text(models / "hand_landmark_lite.onnx", "another");
+  add();
+  write_text(models / "palm_detection_lite.onnx", "another");
+  add();
+  for (const char* content : {"one", "another"}) {
+    write_text(scratch.path() / "hand.glb", content);
+    add();
+  }
+  EXPECT_EQ(all.size(), 6u);
 }
 
 TEST(Fingerprint, IsTheSameWhereverThePlanLies) {

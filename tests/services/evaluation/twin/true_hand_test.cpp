@@ -135,6 +135,18 @@ TEST(TrueHand, AModelWithoutTipsIsRefused) {
   EXPECT_THAT(model.error().what, testing::HasSubstr("no joints at the finger tips"));
 }
 
+TEST(TrueHand, ARightHandInThePlaceOfTheLeftIsRefused) {
+  for (const Side drawn : {Side::left, Side::right}) {
+    const auto load = [&](Side side) {
+      return load_flesh_model(renderer::default_hand_file(side).string(),
+                              *renderer::load_hand_or_default({}, drawn));
+    };
+    EXPECT_TRUE(load(Side::left)) << load(Side::left).error().what;
+    ASSERT_FALSE(load(Side::right));
+    EXPECT_THAT(load(Side::right).error().what, testing::HasSubstr("is a right hand"));
+  }
+}
+
 /// Tests of every mesh that is not the drawn one.
 class OtherFlesh : public testing::TestWithParam<const char*> {
  protected:
