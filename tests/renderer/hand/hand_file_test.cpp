@@ -179,6 +179,11 @@ TEST_F(HandFile, JointsInOnePlaceAreRefused) {
   EXPECT_THAT(
       refusal(path("odd.glb")),
       HasSubstr("index-finger-phalanx-proximal and index-finger-phalanx-intermediate lie in one"));
+  hand = mean_hand(Side::left);
+  hand.rest[kIndexIntermediate - 1][3] = hand.rest[kIndexIntermediate - 2][3];
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")),
+              HasSubstr("index-finger-metacarpal and index-finger-phalanx-proximal lie in one"));
 }
 
 TEST_F(HandFile, VerticesWithoutAJointAreRefused) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/twin/true_hand.hpp"
 
+#include <gmock/gmock.h>
+
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
