@@ -28,11 +28,13 @@ FleshModel of_side(renderer::HandMesh left, renderer::Side side) {
   return {side == renderer::Side::left ? std::move(left) : mirrored(std::move(left)), false};
 }
 
-/// True if the index finger lies where a left hand, whose back points to +y, has the little finger.
+/// True if the index finger lies where a left hand has the little finger. The wrist's +y points out
+/// of the back, as WebXR has it.
 bool is_right(const renderer::HandMesh& hand) {
   constexpr std::size_t kWrist = 1, kIndex = 7, kMiddle = 12, kLittle = 22;
   const auto at = [&](std::size_t joint) { return glm::vec3(hand.rest[joint][3]); };
-  return glm::cross(at(kMiddle) - at(kWrist), at(kIndex) - at(kLittle)).y > 0;
+  return glm::dot(glm::cross(at(kMiddle) - at(kWrist), at(kIndex) - at(kLittle)),
+                  glm::vec3(hand.rest[kWrist][1])) > 0;
 }
 
 /// True if a tip lies on the joint before it, as load_hand() places one that is missing.
