@@ -75,8 +75,8 @@ Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::Han
   if (is_right(*left))
     return fail(
         Errc::bad_config,
-        fmt::format("twin.shape.mesh: {} is a right hand, or its back does not point to +y; "
-                    "name a left one, of which the right one is made",
+        fmt::format("twin.shape.mesh: {} is a right hand, or the +y axis of its wrist does not "
+                    "point out of its back; name a left hand, which is mirrored for the right",
                     file.string()));
   return of_side(std::move(*left), drawn.side);
 }
