@@ -6,6 +6,9 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/owned.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
+#include "services/landmarks/models/mediapipe_files.hpp"
+#include "services/landmarks/models/models_folder.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::simulate {
@@ -82,6 +85,18 @@ landmarks::DetectorChoice simulated_backend(const config::Rig& rig) {
               "landmarks: recorded landmarks belong to other images, so 'twin' takes their "
               "place"};
   return choice;
+}
+
+std::vector<std::filesystem::path> network_files(const config::Rig& rig) {
+  const auto folder = landmarks::models_folder(rig.landmarks.models);
+  const auto backend = simulated_backend(rig).backend;
+  for (const auto& model : landmarks::landmark_models()) {
+    if (model.name != backend || !folder) continue;
+    auto files = model.files({.executor = rig.landmarks.executor, .folder = *folder});
+    files.push_back(*folder / landmarks::kMediapipePalmFile);  // read by each of them if it exists
+    return files;
+  }
+  return {};
 }
 
 Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,

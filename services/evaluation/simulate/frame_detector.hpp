@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
@@ -40,6 +42,9 @@ std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin);
 /// twin's images, except that "replay" becomes "twin" because recorded landmarks belong to other
 /// images.
 landmarks::DetectorChoice simulated_backend(const config::Rig& rig);
+
+/// The files of networks that it reads, some of which need not exist; none if it runs no network.
+std::vector<std::filesystem::path> network_files(const config::Rig& rig);
 
 /// Opens the detector of simulated_backend(). A real detector has the age, the clock error and the
 /// faults of the twin's model (Twin::spoil), but neither its noise nor its bias. `twin` must

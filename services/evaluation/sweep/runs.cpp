@@ -15,9 +15,6 @@
 #include "ipc/base/input_file.hpp"
 #include "services/evaluation/simulate/frame_detector.hpp"
 #include "services/evaluation/twin/flesh_model.hpp"
-#include "services/landmarks/models/landmark_models.hpp"
-#include "services/landmarks/models/mediapipe_files.hpp"
-#include "services/landmarks/models/models_folder.hpp"
 
 namespace handcast::sweep {
 namespace {
@@ -90,15 +87,8 @@ std::string unnamed_files(const config::Rig& rig, Contents& contents) {
   std::string hashes;
   if (rig.twin.shape.mesh == "webxr")
     hashes += contents.of(twin::webxr_hand_file().string()) + '\n';
-  const auto detector = simulate::simulated_backend(rig).backend;
-  hashes += detector + '\n';
-  const auto folder = landmarks::models_folder(rig.landmarks.models);
-  for (const auto& model : landmarks::landmark_models()) {
-    if (model.name != detector || !folder) continue;
-    auto files = model.files({.executor = rig.landmarks.executor, .folder = *folder});
-    files.push_back(*folder / landmarks::kMediapipePalmFile);  // read by each of them if it exists
-    for (const auto& file : files) hashes += contents.of(file.string()) + '\n';
-  }
+  hashes += simulate::simulated_backend(rig).backend + '\n';
+  for (const auto& file : simulate::network_files(rig)) hashes += contents.of(file.string()) + '\n';
   return hashes;
 }
 
