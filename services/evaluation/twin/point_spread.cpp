@@ -64,9 +64,10 @@ void PointSpread::spread_columns(renderer::View<float> image, const renderer::Re
   for (int y = region.y0; y < region.y1; ++y)
     std::copy_n(image.row(y) + region.x0, width, rows_.row(y) + region.x0);
   for (int y = region.y0; y < region.y1; ++y) {
-    for (int i = -reach; i <= reach; ++i)
-      sources_[static_cast<std::size_t>(i + reach)] =
-          rows_.row(std::clamp(y + i, region.y0, region.y1 - 1)) + region.x0;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      const int from = y + static_cast<int>(i) - reach;
+      sources_[i] = rows_.row(std::clamp(from, region.y0, region.y1 - 1)) + region.x0;
+    }
     add_up(sources_.data(), weights_.data(), 2 * reach + 1, image.row(y) + region.x0, width);
   }
 }
