@@ -289,9 +289,9 @@ def headline(runs, people):
     """The errors of both methods, their ratios, and where handcast is worse."""
     ours, theirs = runs.both("handcast", None), runs.both("paper", None)
     ratio, same = (interval(runs.ratios_of_all("handcast", reference)) for reference in ("paper", "paper_network"))
-    return (f"its light is {ours} mm (mean / p95) from its place with our network, that of the published method, as we wrote it anew, "
-            f"{theirs} mm with {'MediaPipe' if 'mediapipe' in runs.detector('paper') else 'a model of a detector'} and its own times: a ratio "
-            f"of {ratio} (95 % over the {people_of(runs, people)}). With our network and our times for both, the ratio is {same}. " +
+    return (f"its light is {ours} mm (mean / p95) from its place with our network; that of the published method, as we wrote it anew, is "
+            f"{theirs} mm off with {'MediaPipe' if 'mediapipe' in runs.detector('paper') else 'a model of a detector'} and its own times. The "
+            f"ratio is {ratio} (95 % over the {people_of(runs, people)}), and {same} with our network and our times for both. " +
             larger_in(runs))
 
 
