@@ -289,7 +289,7 @@ def headline(runs, people):
     """The errors of both methods, their ratios, and where handcast is worse."""
     ours, theirs = runs.both("handcast", None), runs.both("paper", None)
     ratio, same = (interval(runs.ratios_of_all("handcast", reference)) for reference in ("paper", "paper_network"))
-    return (f"its light is {ours} mm (mean / p95) from its place with our network; that of the published method, as we wrote it anew, is "
+    return (f"the light of handcast is {ours} mm (mean / p95) from its place with our network; that of the published method, as we wrote it anew, is "
             f"{theirs} mm off with {'MediaPipe' if 'mediapipe' in runs.detector('paper') else 'a model of a detector'} and its own times. The "
             f"ratio is {ratio} (95 % over the {people_of(runs, people)}), and {same} with our network and our times for both. " +
             larger_in(runs))
@@ -351,13 +351,13 @@ def check_headline(path, runs):
 
 def lines_of(part, path, command, people):
     if part == "unseen_summary":
-        runs = Runs(path, ["paper", "paper_network", "handcast", "paper_mediapipe", "handcast_mediapipe"], "unseen")
+        runs = Runs(path, [*BY_VARIANT["unseen"]], "unseen")
         check_headline(path, runs)
         if not runs.meshes:
             die(f"{path} has no runs of several meshes")
         return list(unseen_summary(runs, people))
     if part == "summary":
-        runs = Runs(path, ["paper", "paper_network", "handcast", "paper_model", "handcast_model"], "comparison")
+        runs = Runs(path, [*BY_VARIANT["comparison"]], "comparison")
         check_headline(path, runs)
         return list(summary(runs, people))
     if part in BY_VARIANT:
