@@ -53,8 +53,8 @@ class ClockMap {
   /// @{
   double middle_s_ = 0, height_s_ = 0, slope_ = 0;
   /// @}
-  double error_s_ =
-      0;  ///< twice the median distance of the points from the line, and more at first
+  /// Twice the median distance of the points from the line, and more in the first second.
+  double error_s_ = 0;
 };
 
 }  // namespace handcast::calib

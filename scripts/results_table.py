@@ -317,7 +317,7 @@ def unseen_summary(runs, people):
     for mesh in runs.meshes:
         if mesh == "implicit":
             alone = runs.of_mesh(mesh)
-            yield (f"On the mesh on which nothing was tuned, either, it is {alone.both('handcast', None)} mm, a ratio of "
+            yield (f"On the one of these meshes that nothing was tuned on, it is {alone.both('handcast', None)} mm, a ratio of "
                    f"{interval(alone.ratios_of_all('handcast', 'paper'))}.")
 
 
