@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The runs of a sweep, and means with intervals over its seeds, for results_table.py."""
+"""The runs of a sweep, and means with intervals over its seeds."""
 
 import collections
 import copy
@@ -130,6 +130,10 @@ class Runs:
         """Mean and p95 in mm."""
         return f"{self.mean(variant, motion, kind + '_mm_mean'):.1f} / {self.mean(variant, motion, kind + '_mm_p95'):.1f}"
 
+    def percent(self, variant, name, motion=None):
+        """The mean of a share in percent, over all motions and seeds if `motion` is None."""
+        return f"{100 * self.mean(variant, motion, name):.1f}"
+
     def ratios(self, variant, reference, motion, name="interior_mm_mean"):
         """The ratio of the mean errors for each seed."""
         pairs = list(zip(self.of(variant, motion, name), self.of(reference, motion, name)))
@@ -142,9 +146,14 @@ class Runs:
         return [statistics.fmean(of_seed) for of_seed in
                 zip(*(self.ratios(variant, reference, motion, name) for motion in self.motions))]
 
-    def cells(self, variant, reference):
-        """The ratios of all cells of motion and seed."""
-        return [ratio for motion in self.motions for ratio in self.ratios(variant, reference, motion)]
+    def lost(self, ours, theirs, name="interior_mm_mean"):
+        """In how many cells of motion and seed `ours` has the larger figure, and in how many it has any."""
+        pairs = [pair for motion in self.motions for pair in zip(self.of(ours, motion, name), self.of(theirs, motion, name))]
+        return sum(a > b for a, b in pairs), len(pairs)
+
+    def largest_ratio(self, variant, reference):
+        """The largest ratio of the mean errors of all cells."""
+        return max(max(self.ratios(variant, reference, motion)) for motion in self.motions)
 
     def detector(self, variant):
         """The back end that has found the landmarks, and its age."""
@@ -156,3 +165,24 @@ class Runs:
 
     def has(self, variant):
         return variant in self.variants
+
+    def only_motion(self):
+        """The motion of a sweep of one; ends the program if there are more."""
+        if len(self.motions) != 1:
+            die(f"this table is of one motion, and the runs are of {len(self.motions)}")
+        return self.motions[0]
+
+    def cell_name(self):
+        """What a cell of the table is."""
+        return "mesh, motion and seed" if self.meshes else "motion and seed"
+
+    def require_all(self):
+        """Ends the program if runs of the plan are absent."""
+        if self.missing:
+            die(f"{self.path} lacks {self.missing} runs of its plan: recordings or hands were not there, or the sweep was interrupted")
+
+    def require(self, variants):
+        """Ends the program if one of the variants has no runs."""
+        for variant in variants:
+            if not self.has(variant):
+                die(f"{self.path} has no runs of {variant}")

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sentences of the README about the comparison and the unseen motions."""
+
+from tables.runs import die, interval
+from tables.verdicts import pairs_of
+
+
+def larger_in(runs):
+    """In how many cells the mean error of handcast is larger, for the pairs that have runs."""
+    texts = []
+    for ours, theirs, words in pairs_of(runs):
+        count, of = runs.lost(ours, theirs)
+        cells = str(count) if texts else f"{count} of {of} cells of {runs.cell_name()}"
+        texts.append(f"in {cells} {words} (largest ratio {runs.largest_ratio(ours, theirs):.2f})")
+    return "The mean error of handcast is larger " + ", ".join(texts) + "."
+
+
+def people_of(runs, people):
+    """How many people there are, of how many."""
+    text = f"{len(runs.seeds)} simulated people, each with other errors of the rig"
+    return text + (f"; the protocol asks for {people}" if len(runs.seeds) < people else "")
+
+
+def headline(runs, people):
+    """The errors of both methods, their ratios, and where handcast is worse."""
+    ours, theirs = runs.both("handcast", None), runs.both("paper", None)
+    ratio, same = (interval(runs.ratios_of_all("handcast", reference)) for reference in ("paper", "paper_network"))
+    return (f"the light of handcast is {ours} mm (mean / p95) from its place with our network; that of the published method, as we wrote it anew, is "
+            f"{theirs} mm off with {'MediaPipe' if 'mediapipe' in runs.detector('paper') else 'a model of a detector'} and its own times. The "
+            f"ratio is {ratio} (95 % over the {people_of(runs, people)}), and {same} with our network and our times for both. " +
+            larger_in(runs))
+
+
+def summary(runs, people):
+    """The sentences of the README about motions on which constants were chosen."""
+    yield f"On {len(runs.motions)} motions on which constants were chosen, " + headline(runs, people)
+    easy, hard = ["still", "wave"], ["turn_pointing", "turn_fist"]
+    if set(easy + hard) <= set(runs.motions):
+        def span(variant, motions):
+            means = [runs.mean(variant, motion, "interior_mm_mean") for motion in motions]
+            least, most = f"{min(means):.1f}", f"{max(means):.1f}"
+            return least if least == most else f"{least} to {most}"
+
+        yield (f"Still and waving hands are {span('handcast', easy)} mm off, turning fists and pointing hands {span('handcast', hard)} mm "
+               f"({span('paper_network', hard)} mm with the published method and our network).")
+
+
+def unseen_summary(runs, people):
+    """The sentences of the README about motions that nothing was tuned on."""
+    if not runs.meshes:
+        die(f"{runs.path} has no runs of several meshes")
+    motions = {motion for _, motion in runs.motions}
+    yield (f"In a simulated careful installation, on {len(motions)} motions that nothing was tuned on, with true hands of "
+           f"{len(runs.meshes)} meshes that are not the drawn one, " + headline(runs, people))
+    for mesh in runs.meshes:
+        if mesh == "implicit":
+            alone = runs.of_mesh(mesh)
+            yield (f"On the one of these meshes that nothing was tuned on, it is {alone.both('handcast', None)} mm, a ratio of "
+                   f"{interval(alone.ratios_of_all('handcast', 'paper'))}.")
+
+
+# By name: the sentences, and the table whose results they are about.
+SUMMARIES = {"summary": (summary, "comparison"), "unseen_summary": (unseen_summary, "unseen")}
