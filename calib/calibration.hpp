@@ -32,6 +32,8 @@ struct CameraModel {
   glm::dmat3 matrix() const;
   /// Maps a point in camera space to undistorted pixels. z must be greater than 0.
   glm::dvec2 project(const glm::dvec3& point_m) const;
+  /// The derivative of project() by the point, px per m.
+  glm::dmat3x2 jacobian_px_per_m(const glm::dvec3& point_m) const;
   /// Maps undistorted pixels to pixels of the image as the lens forms it.
   glm::dvec2 distort(const glm::dvec2& undistorted_px) const;
   /// The inverse of distort(), computed by Newton's method.

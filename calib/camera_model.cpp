@@ -43,6 +43,12 @@ glm::dvec2 CameraModel::project(const glm::dvec3& point_m) const {
   return to_px(*this, glm::dvec2(point_m) / point_m.z);
 }
 
+glm::dmat3x2 CameraModel::jacobian_px_per_m(const glm::dvec3& point_m) const {
+  const double fx = fx_px / point_m.z, fy = fy_px / point_m.z;
+  return {glm::dvec2(fx, 0), glm::dvec2(0, fy),
+          glm::dvec2(-fx * point_m.x / point_m.z, -fy * point_m.y / point_m.z)};
+}
+
 glm::dvec2 CameraModel::distort(const glm::dvec2& undistorted_px) const {
   return to_px(*this, bend(*this, to_normalised(*this, undistorted_px)).point);
 }

@@ -43,6 +43,7 @@ struct Skin {
   bool fit = true;
   bool widths = true;
   bool turn = true;
+  bool bend = true;
 };
 
 template <class Visitor>
@@ -56,6 +57,9 @@ void describe(Visitor& visitor, Skin& skin) {
   visitor.field("turn", skin.turn,
                 "Learn from the landmarks by how much the tracker's hands are turned about their "
                 "wrist, and draw them turned back.");
+  visitor.field("bend", skin.bend,
+                "Bend the fingers of the drawn hand such that their joints are seen nearer to the "
+                "landmarks, before the drawing is moved onto them.");
 }
 
 /// How landmarks Q of an older image are carried to the time of the light; P are the joints of the

@@ -157,23 +157,39 @@ std::optional<float> FingerOutline::along(const Finger& finger, const Drawn& dra
   return *edge - end_px;
 }
 
+/// All phalanges as they are drawn. Their mean width becomes that of the fingers.
+FingerOutline::DrawnFingers FingerOutline::look(std::span<const glm::vec2> vertices_px,
+                                                const LandmarkPoints& landmarks_px) {
+  DrawnFingers fingers;
+  float sum_px = 0;
+  int count = 0;
+  for (std::size_t f = 0; f < fingers_.size(); ++f)
+    for (std::size_t b = 0; b < fingers_[f].bones.size(); ++b) {
+      fingers[f][b] = drawn(fingers_[f], fingers_[f].bones[b], vertices_px, landmarks_px);
+      if (!fingers[f][b]) continue;
+      sum_px += fingers[f][b]->half_px;
+      ++count;
+    }
+  if (count > 0) radius_px_ = sum_px / static_cast<float>(count);
+  return fingers;
+}
+
+/// Adds a difference that was seen with `moved_by_px` already in the drawing. From the drawing
+/// without displacement, too, the mask must not be far: a drawing that does not follow its
+/// displacement would let it grow from frame to frame.
+void FingerOutline::add(const std::optional<float>& seen_px, float moved_by_px, float part,
+                        Lasting& average) const {
+  if (seen_px && std::abs(*seen_px + moved_by_px) < kFarthest * radius_px_)
+    average.add(*seen_px + moved_by_px, part);
+}
+
 void FingerOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> vertices_px,
                             const LandmarkPoints& landmarks_px, GreyView mask) {
   const float step_s =
       std::clamp(static_cast<float>(ns_to_seconds(time_ns - last_ns_)), 0.0f, 10 * kFade_s);
   const float part = 1 - std::exp(-std::min(step_s, kLongestStep_s) / kMemory_s),
               kept = std::exp(-step_s / kFade_s);
-  std::array<DrawnBones, kFingers> all_drawn;
-  float sum_px = 0;
-  int count = 0;
-  for (std::size_t f = 0; f < fingers_.size(); ++f)
-    for (std::size_t b = 0; b < fingers_[f].bones.size(); ++b) {
-      all_drawn[f][b] = drawn(fingers_[f], fingers_[f].bones[b], vertices_px, landmarks_px);
-      if (!all_drawn[f][b]) continue;
-      sum_px += all_drawn[f][b]->half_px;
-      ++count;
-    }
-  if (count > 0) radius_px_ = sum_px / static_cast<float>(count);
+  const DrawnFingers all_drawn = look(vertices_px, landmarks_px);
   const bool is_shown = is_open(landmarks_px) && frontal_share(landmarks_px) > kLeastFrontal;
   for (std::size_t f = 0; f < fingers_.size(); ++f) {
     Finger& finger = fingers_[f];
@@ -186,18 +202,12 @@ void FingerOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> ver
       const float moved_px = glm::distance(landmarks_px[end], last_px_[end]);
       const auto& drawn = all_drawn[f][b];
       if (!is_measured || !drawn || !(moved_px <= kFastest_px_s * step_s)) continue;
-      // From the drawing without displacement, too, it must not be far: a drawing that does not
-      // follow its displacement would let it grow from frame to frame.
-      const auto add = [&](Lasting& average, const std::optional<float>& seen_px,
-                           float moved_by_px) {
-        if (seen_px && std::abs(*seen_px + moved_by_px) < kFarthest * radius_px_)
-          average.add(*seen_px + moved_by_px, part);
-      };
-      add(bone.across_px, across(finger, bone, *drawn, landmarks_px, mask),
-          glm::mix(finger.across[bone.first], finger.across[bone.first + 1], bone.station));
-      if (bone.first + 1 < kMostBones) continue;
-      add(finger.along_px, along(finger, *drawn, vertices_px, landmarks_px, mask),
-          finger.along.back());
+      add(across(finger, bone, *drawn, landmarks_px, mask),
+          glm::mix(finger.across[bone.first], finger.across[bone.first + 1], bone.station), part,
+          bone.across_px);
+      if (bone.first + 1 == kMostBones)
+        add(along(finger, *drawn, vertices_px, landmarks_px, mask), finger.along.back(), part,
+            finger.along_px);
     }
     solve_across(finger);
     solve_along(finger);

@@ -58,18 +58,21 @@ class FingerOutline {
     Axes axes;
     float half_px = 0;  ///< half of its width
   };
-  using DrawnBones = std::array<std::optional<Drawn>, kMostBones>;
+  using DrawnFingers = std::array<std::array<std::optional<Drawn>, kMostBones>, kFingers>;
 
   static bool is_straight(const Finger& finger, const LandmarkPoints& landmarks_px);
   static std::optional<Drawn> drawn(const Finger& finger, const Bone& bone,
                                     std::span<const glm::vec2> vertices_px,
                                     const LandmarkPoints& landmarks_px);
+  DrawnFingers look(std::span<const glm::vec2> vertices_px, const LandmarkPoints& landmarks_px);
   std::optional<float> across(const Finger& finger, const Bone& bone, const Drawn& drawn,
                               const LandmarkPoints& landmarks_px, GreyView mask) const;
   std::optional<float> along(const Finger& finger, const Drawn& drawn,
                              std::span<const glm::vec2> vertices_px,
                              const LandmarkPoints& landmarks_px, GreyView mask) const;
   bool is_free(glm::vec2 place, int landmark, const LandmarkPoints& landmarks_px) const;
+  void add(const std::optional<float>& seen_px, float moved_by_px, float part,
+           Lasting& average) const;
   void solve_across(Finger& finger) const;
   void solve_along(Finger& finger) const;
 

@@ -34,11 +34,8 @@ SeenJoint see(const calib::Calibration& calibration, const msg::Joint& joint) {
   const auto& [qx, qy, qz, qw] = joint.orientation_xyzw;
   const glm::dmat3 camera_from_joint =
       glm::dmat3(calibration.camera_from_tracker) * glm::mat3_cast(glm::dquat(qw, qx, qy, qz));
-  const auto& camera = calibration.camera;
-  const double fx = camera.fx_px / at.z, fy = camera.fy_px / at.z;
-  const glm::dmat3x2 project(glm::dvec2(fx, 0), glm::dvec2(0, fy),
-                             glm::dvec2(-fx * at.x / at.z, -fy * at.y / at.z));
-  return {true, camera.project(at), project * camera_from_joint};
+  return {true, calibration.camera.project(at),
+          calibration.camera.jacobian_px_per_m(at) * camera_from_joint};
 }
 
 /// The direction of the bone that begins at a joint.
@@ -67,6 +64,19 @@ struct Offset {
   double weight = 0;  ///< 1/px^2; 0: not seen
 };
 using Offsets = std::array<Offset, msg::kLandmarks>;
+
+/// What a displacement of the joint leaves of the way from the tracker's joint to its landmark,
+/// with a share of the weight that the landmark's sigma gives it.
+Offset offset_of(const SeenJoint& joint, const msg::Landmark& landmark, glm::dvec3 displacement_m,
+                 double share) {
+  const double sigma_px = std::hypot(kLeastSigma_px, landmark.sigma_px);
+  if (!joint.is_in_front || !(landmark.confidence > 0) ||
+      !std::isfinite(landmark.x_px + landmark.y_px + sigma_px))
+    return {};
+  const glm::dvec2 way_px = glm::dvec2(landmark.x_px, landmark.y_px) - joint.at_px;
+  return {joint.at_px, way_px - joint.jacobian_px_per_m * displacement_m,
+          share / (sigma_px * sigma_px)};
+}
 
 /// The shift, turn and scale in the image that all offsets share.
 struct Shared {
@@ -135,39 +145,34 @@ void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   Offsets offsets;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     joints[i] = see(calibration_, pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[i])]);
-    const auto& point = seen.points[i];
-    const double sigma_px = std::hypot(kLeastSigma_px, point.sigma_px);
-    if (!joints[i].is_in_front || !(point.confidence > 0) ||
-        !std::isfinite(point.x_px + point.y_px + sigma_px))
-      continue;
-    const glm::dvec2 left_px = glm::dvec2(point.x_px, point.y_px) - joints[i].at_px -
-                               joints[i].jacobian_px_per_m * learned_[i].displacement_m;
-    offsets[i] = {joints[i].at_px, left_px,
-                  seen_share(pose, static_cast<int>(i)) / (sigma_px * sigma_px)};
+    offsets[i] = offset_of(joints[i], seen.points[i], learned_[i].displacement_m,
+                           seen_share(pose, static_cast<int>(i)));
   }
   // What all landmarks of this image share is not of the joints.
   const Shared shared = shared_by(offsets, shared_by(offsets, median_of(offsets)));
   const double keep = std::exp(-since_s / kMemory_s), share = since_s / kLasting_s;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    Learned& learned = learned_[i];
-    learned.information *= keep;
-    learned.weighted *= keep;
+    learned_[i].information *= keep;
+    learned_[i].weighted *= keep;
     if (!joints[i].is_in_front) continue;
-    const glm::dmat3x2& jacobian = joints[i].jacobian_px_per_m;
-    learned.displacement_px = jacobian * learned.displacement_m;
-    const double weight = share * weight_of(offsets[i], shared);
-    if (!(weight > 0)) continue;
-    const glm::dmat2x3 transposed = glm::transpose(jacobian);
-    const glm::dvec2 own_px =
-        offsets[i].left_px - shared.at(offsets[i].at_px) + jacobian * learned.displacement_m;
-    learned.information += weight * (transposed * jacobian);
+    add(joints[i].jacobian_px_per_m, offsets[i].left_px - shared.at(offsets[i].at_px),
+        share * weight_of(offsets[i], shared), learned_[i]);
+  }
+}
+
+void JointDefinitions::add(const glm::dmat3x2& jacobian_px_per_m, glm::dvec2 left_px, double weight,
+                           Learned& learned) {
+  if (weight > 0) {
+    const glm::dmat2x3 transposed = glm::transpose(jacobian_px_per_m);
+    const glm::dvec2 own_px = left_px + jacobian_px_per_m * learned.displacement_m;
+    learned.information += weight * (transposed * jacobian_px_per_m);
     learned.weighted += weight * (transposed * own_px);
     const glm::dmat3 prior(1 / (kPrior_m * kPrior_m));
     learned.displacement_m = glm::inverse(learned.information + prior) * learned.weighted;
     if (const double length = glm::length(learned.displacement_m); length > kMost_m)
       learned.displacement_m *= kMost_m / length;
-    learned.displacement_px = jacobian * learned.displacement_m;
   }
+  learned.displacement_px = jacobian_px_per_m * learned.displacement_m;
 }
 
 msg::HandLandmarks JointDefinitions::as_tracked(const msg::HandLandmarks& seen) const {

@@ -41,6 +41,11 @@ class JointDefinitions {
     glm::dvec2 displacement_px{0};  ///< in the last image
   };
 
+  /// Adds what is left of an offset without the displacement that is known; nothing if the weight
+  /// (1/px^2) is 0.
+  static void add(const glm::dmat3x2& jacobian_px_per_m, glm::dvec2 left_px, double weight,
+                  Learned& learned);
+
   calib::Calibration calibration_;
   std::array<Learned, msg::kLandmarks> learned_;
   std::int64_t last_ns_ = 0;

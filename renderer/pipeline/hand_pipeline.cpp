@@ -9,6 +9,7 @@
 #include "renderer/content/textures.hpp"
 #include "renderer/correct/deform.hpp"
 #include "renderer/predict/project_landmarks.hpp"
+#include "renderer/skin/finger_bend.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -151,13 +152,15 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
 void HandPipeline::skin(HandFrame& frame, float shading) {
   frame.drawn_from = frame.corrected.tracker;
   msg::HandPose pose = frame.corrected.pose;
-  if (settings_.skin.turn) {
-    const auto turned = turn_.turned(pose);
-    if (const auto joints_px = project_landmarks(calibration_, turned)) {
+  const auto draw_from = [&](const msg::HandPose& changed) {
+    if (const auto joints_px = project_landmarks(calibration_, changed)) {
       frame.drawn_from = *joints_px;
-      pose = turned;
+      pose = changed;
     }
-  }
+  };
+  if (settings_.skin.turn) draw_from(turn_.turned(pose));
+  if (settings_.skin.bend && frame.corrected.has_landmarks)
+    draw_from(bent(pose, frame.registered.landmarks, calibration_));
   frame.depths_m = landmark_depths_m(calibration_, pose);
   frame.skinned = surface_.pose(pose, settings_.skin, calibration_, shading, frame.presence);
 }

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "ipc/base/clock.hpp"
-#include "renderer/predict/joint_math.hpp"
+#include "renderer/base/joint_math.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -5,7 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ipc/base/clock.hpp"
-#include "renderer/predict/joint_math.hpp"
+#include "renderer/base/joint_math.hpp"
 #include "renderer/predict/project_landmarks.hpp"
 
 namespace handcast::renderer {

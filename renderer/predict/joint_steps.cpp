@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "renderer/base/joint_math.hpp"
 #include "renderer/base/noise.hpp"
-#include "renderer/predict/joint_math.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "renderer/predict/joint_math.hpp"
+#include "renderer/base/joint_math.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -7,8 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/base/joint_math.hpp"
 #include "renderer/base/noise.hpp"
-#include "renderer/predict/joint_math.hpp"
 #include "renderer/predict/joint_steps.hpp"
 
 namespace handcast::renderer {

@@ -24,6 +24,7 @@ BY_VARIANT = {
         "registration": ("+ late registration", "paper"),
         "network": ("+ our network", "paper"),
         "learned": ("+ learned turn and definitions", "paper"),
+        "bend": ("+ bent fingers", "paper"),
         "outline": ("+ outline of open hands", "paper"),
         "gate": ("+ gate, acceleration, held snaps: handcast", "paper"),
     },

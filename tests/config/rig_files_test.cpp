@@ -69,7 +69,7 @@ TEST(ShippedRigs, PaperIsThePapersCascade) {
           "twin.detector.bias_px = 2.5", "twin.detector.bias_ms = 350",
           "twin.detector.bias_hidden = 6", "cascade.predict.method = \"velocity\"",
           "cascade.predict.still_mm_s = 0", "cascade.skin.fit = false",
-          "cascade.skin.widths = false", "cascade.skin.turn = false",
+          "cascade.skin.widths = false", "cascade.skin.turn = false", "cascade.skin.bend = false",
           "cascade.filter.method = \"paper\"", "cascade.filter.hindsight = false",
           "cascade.filter.blend_ms = 0", "cascade.filter.definitions = false",
           "cascade.correct.method = \"grid\"", "cascade.correct.alpha = 0.5",

@@ -40,6 +40,12 @@ Result<nlohmann::json> score(const Plan& plan, const Run& run) try {
   return fail(Errc::unavailable, problem.what());
 }
 
+/// True if the run was scored, but no light was on a hand: a fault of the whole run, or a mistake
+/// in its settings.
+bool is_dark(const nlohmann::json& metrics) {
+  return metrics.contains("coverage") && metrics["coverage"] == 0;
+}
+
 /// The runs of the shard that must be done. Prints those whose motion or hand is absent, a line for
 /// each.
 std::vector<const Run*> to_do(const Plan& plan, const std::vector<Run>& runs, const Work& work,
@@ -99,9 +105,12 @@ class Workers {
 
   void one(const Run& run) {
     const auto json = score(plan_, run);
-    if (!json)
+    const auto say = [&](std::string_view what) {
       progress_.say(fmt::format("sweep {}: run {} ({}): {}", plan_.name, run.index,
-                                describe_run(plan_, run), json.error().what));
+                                describe_run(plan_, run), what));
+    };
+    if (!json) say(json.error().what);
+    if (json && is_dark(*json)) say("scored, but no light was on a hand in any frame");
     const auto written = results_.append(json ? scored_row(plan_, run, *json)
                                               : failed_row(plan_, run, json.error().what));
     if (!written) {

@@ -91,8 +91,11 @@ Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& 
   if (hand->presence < kLeastPresence || !is_finite(hand->points_px)) return {};
   const Confidences confidences = confidences_of(*hand, region, candidate.hint_px);
   if (mean_of(confidences) < kLeastConfidence) return {};
-  found_.push_back({candidate.side, hand->presence, hand->points_px, region, hand->sigma_px,
-                    confidences, candidate.before_px, hand->left_score, candidate.comparisons});
+  auto sigma_px = hand->sigma_px;
+  if (const float usual = model_.landmarks->traits().usual_sigma; usual > 0)
+    sigma_px.fill(usual * region.size_px);
+  found_.push_back({candidate.side, hand->presence, hand->points_px, region, sigma_px, confidences,
+                    candidate.before_px, hand->left_score, candidate.comparisons});
   const auto left_score = left_score_of(image, candidate, found_.back());
   if (!left_score) return tl::make_unexpected(left_score.error());
   found_.back().left_score = *left_score;

@@ -44,6 +44,10 @@ class LandmarkModel {
     bool scores_sides = false;
     /// The tracker's joints are an input of the network.
     bool reads_tracker = false;
+    /// Of a model that reports no sigmas: the standard deviation of its landmarks per axis, as a
+    /// share of the region's side. It says nothing of single landmarks, and so does not change
+    /// their confidence.
+    float usual_sigma = 0;
   };
   /// The traits of this model; they never change.
   virtual Traits traits() const = 0;

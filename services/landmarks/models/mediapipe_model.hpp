@@ -9,13 +9,16 @@
 
 namespace handcast::landmarks {
 
-/// MediaPipe Hands' landmark network (lite). Reads the image alone; its points have no sigma.
+/// MediaPipe Hands' landmark network (lite). Reads the image alone; reports no sigmas.
 class MediapipeModel final : public LandmarkModel {
  public:
   /// `file`: of the landmark network. Errors: those of open_mediapipe_network().
   static Result<MediapipeModel> open(config::Executor executor, const std::filesystem::path& file);
 
-  Traits traits() const override { return {.passes_at_first = 1, .scores_sides = true}; }
+  /// The sigma makes the light nearest to its place on the twin (DECISIONS.md).
+  Traits traits() const override {
+    return {.passes_at_first = 1, .scores_sides = true, .usual_sigma = 0.015f};
+  }
   Region region_around(const Points& points_px) const override;
   /// Ignores `side` and `tracker_px`.
   Result<LandmarkEstimate> estimate(renderer::GreyView image, const Region& region, msg::Side side,

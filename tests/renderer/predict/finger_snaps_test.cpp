@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "renderer/predict/joint_math.hpp"
+#include "renderer/base/joint_math.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 
 namespace handcast::renderer {

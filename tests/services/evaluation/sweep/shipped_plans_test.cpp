@@ -76,6 +76,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kLevers{
     {"registration", {"cascade.register.method", "cascade.ladder.rung"}},
     {"network", {"landmarks.backend", "twin.detector.age_ms", "twin.detector.age_sd_ms"}},
     {"learned", {"cascade.skin.turn", "cascade.filter.definitions"}},
+    {"bend", {"cascade.skin.bend"}},
     {"outline", {"cascade.correct.outline"}},
     {"gate",
      {"cascade.ladder.rung", "cascade.predict.method", "cascade.predict.still_mm_s",

@@ -113,6 +113,18 @@ TEST_F(SweepTest, ARunWithoutAHandHasFailed) {
   EXPECT_THAT(read_table(file("a.csv"))->rows[0].back(), HasSubstr("there is nothing to score"));
 }
 
+TEST_F(SweepTest, ARunWithoutLightIsScoredAndReported) {
+  testing::internal::CaptureStderr();
+  const auto outcome = sweep(
+      "seconds = 0.1\nsettings.landmarks.backend = \"twin\"\nsettings.twin.tracker.dropout = 1\n"
+      "[grid]\ntwin.motion = [\"builtin:still\"]\n",
+      "a.csv");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("run 0 (twin, twin.motion=builtin:still): scored, but no light was on a "
+                        "hand in any frame"));
+  EXPECT_EQ(outcome.scored, 1u);
+}
+
 TEST_F(SweepTest, AMotionThatIsNotThereIsLeftOut) {
   testing::internal::CaptureStderr();
   const auto outcome = sweep(

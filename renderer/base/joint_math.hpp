@@ -6,7 +6,7 @@
 
 #include "ipc/msg/hand_poses.hpp"
 
-/// Places and turns of joints, for the parts of the prediction. Functions without state.
+/// Places and turns of joints. Functions without state.
 namespace handcast::renderer {
 
 /// The joints that fingers do not move: palm, wrist, and both ends of the metacarpals.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/predict/joint_math.hpp"
+#include "renderer/base/joint_math.hpp"
 
 #include <algorithm>
 #include <cmath>
