@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/base/joint_math.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -28,20 +29,18 @@ struct SeenJoint {
 };
 
 SeenJoint see(const calib::Calibration& calibration, const msg::Joint& joint) {
-  const auto& [x, y, z] = joint.position_m;
-  const glm::dvec3 at(calibration.camera_from_tracker * glm::dvec4(x, y, z, 1));
+  const glm::dvec3 at(calibration.camera_from_tracker * glm::dvec4(position(joint), 1));
   if (!(at.z > kNearest_m)) return {};
-  const auto& [qx, qy, qz, qw] = joint.orientation_xyzw;
   const glm::dmat3 camera_from_joint =
-      glm::dmat3(calibration.camera_from_tracker) * glm::mat3_cast(glm::dquat(qw, qx, qy, qz));
+      glm::dmat3(calibration.camera_from_tracker) * glm::mat3_cast(glm::dquat(orientation(joint)));
   return {true, calibration.camera.project(at),
           calibration.camera.jacobian_px_per_m(at) * camera_from_joint};
 }
 
 /// The direction of the bone that begins at a joint.
 glm::dvec3 towards_tip(const msg::HandPose& pose, int joint) {
-  const auto& [x, y, z, w] = pose.joints[static_cast<std::size_t>(joint)].orientation_xyzw;
-  return glm::dquat(w, x, y, z) * glm::dvec3(0, 0, -1);
+  return glm::dquat(orientation(pose.joints[static_cast<std::size_t>(joint)])) *
+         glm::dvec3(0, 0, -1);
 }
 
 /// How far the tracker sees a landmark: 1, and less for those beyond the knuckle of a finger that

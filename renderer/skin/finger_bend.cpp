@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <optional>
+#include <span>
 
 #include "renderer/base/joint_math.hpp"
 
@@ -14,86 +15,122 @@ namespace {
 
 constexpr int kBends = kLandmarksOfFinger - 1;  ///< joints of a finger that bend
 constexpr int kRounds = 2;                      ///< steps of Gauss-Newton
-constexpr double kSigma_px = 5;                 ///< of a landmark
+constexpr double kLeastShare = 0.125;           ///< of a step that is tried
+constexpr double kSigma_px = 5, kWeight = 1 / (kSigma_px * kSigma_px);  ///< of a landmark
 /// Standard deviations of the tracker's errors: what the joints of a finger share, and each its
 /// own.
 constexpr double kShared_rad = 0.15, kOwn_rad = 0.08;
-constexpr double kMost_rad = 0.6;
+constexpr double kMost_rad = 0.6;  ///< that a joint is bent by
 constexpr double kNearest_m = 0.05;
 
 /// The joints of a finger from its knuckle to its tip (of the thumb, from its base).
-std::array<int, kLandmarksOfFinger> joints_of(int finger) {
-  std::array<int, kLandmarksOfFinger> joints{};
-  for (int i = 0; i < kLandmarksOfFinger; ++i)
-    joints[i] = msg::kJointOfLandmark[first_landmark(finger) + i];
-  return joints;
+using Finger = std::array<msg::Joint, kLandmarksOfFinger>;
+using FingerPoints = std::span<const glm::vec2, kLandmarksOfFinger>;
+
+std::size_t joint_of(int finger, int i) {
+  return static_cast<std::size_t>(msg::kJointOfLandmark[first_landmark(finger) + i]);
 }
 
-/// The axis about which a joint bends: to the right of the finger, WebXR Hand Input, "Skeleton
-/// Joints".
-glm::vec3 axis_of(const msg::Joint& joint) { return orientation(joint) * glm::vec3(1, 0, 0); }
+/// The axis about which a joint bends: to the right of the finger (WebXR Hand Input, "Skeleton
+/// Joints").
+glm::vec3 axis_of(const msg::Joint& joint) {
+  return glm::normalize(orientation(joint)) * glm::vec3(1, 0, 0);
+}
 
-/// A finger in camera space.
+/// Turns each joint, with those beyond it, about its axis.
+Finger bent_by(Finger finger, const glm::dvec3& by_rad) {
+  for (int k = 0; k < kBends; ++k) {
+    const glm::vec3 centre = position(finger[k]);
+    const glm::quat turn = glm::angleAxis(static_cast<float>(by_rad[k]), axis_of(finger[k]));
+    for (int i = k; i < kLandmarksOfFinger; ++i)
+      place(finger[i], centre + turn * (position(finger[i]) - centre),
+            turn * orientation(finger[i]));
+  }
+  return finger;
+}
+
+/// A finger as the camera sees it.
 struct SeenFinger {
-  std::array<glm::dvec3, kLandmarksOfFinger> at_m;
-  std::array<glm::dvec3, kBends> axis;
+  std::array<glm::dvec3, kLandmarksOfFinger> at_m;    ///< camera space
+  std::array<glm::dvec3, kBends> axis;                ///< the same
+  std::array<glm::dvec2, kLandmarksOfFinger> off_px;  ///< to the landmarks, without the knuckle's
 };
 
 /// Empty if a joint is behind the camera.
-std::optional<SeenFinger> see(const msg::HandPose& pose, int finger,
-                              const glm::dmat4& camera_from_tracker) {
+std::optional<SeenFinger> see(const Finger& finger, FingerPoints landmarks_px,
+                              const calib::Calibration& calibration) {
   SeenFinger seen;
-  const auto joints = joints_of(finger);
   for (int i = 0; i < kLandmarksOfFinger; ++i) {
-    const msg::Joint& joint = pose.joints[joints[i]];
-    seen.at_m[i] = glm::dvec3(camera_from_tracker * glm::dvec4(position(joint), 1));
+    seen.at_m[i] = glm::dvec3(calibration.camera_from_tracker * glm::dvec4(position(finger[i]), 1));
     if (!(seen.at_m[i].z > kNearest_m)) return std::nullopt;
-    if (i < kBends) seen.axis[i] = glm::dmat3(camera_from_tracker) * glm::dvec3(axis_of(joint));
+    seen.off_px[i] = glm::dvec2(landmarks_px[i]) - calibration.camera.project(seen.at_m[i]);
+    if (i > 0) seen.off_px[i] -= seen.off_px[0];
+    if (i < kBends)
+      seen.axis[i] = glm::dmat3(calibration.camera_from_tracker) * glm::dvec3(axis_of(finger[i]));
   }
   return seen;
 }
 
-glm::dmat3 inverse_prior() {
-  glm::dmat3 covariance(kOwn_rad * kOwn_rad);
-  for (int i = 0; i < kBends; ++i) covariance[i] += kShared_rad * kShared_rad;
-  return glm::inverse(covariance);
+/// The inverse covariance of the bends, 1/rad^2.
+const glm::dmat3& prior() {
+  static const glm::dmat3 kPrior = [] {
+    glm::dmat3 covariance(kOwn_rad * kOwn_rad);
+    for (int i = 0; i < kBends; ++i) covariance[i] += kShared_rad * kShared_rad;
+    return glm::inverse(covariance);
+  }();
+  return kPrior;
 }
 
-/// One step towards the bends that are most likely, given those that the finger has.
-glm::dvec3 next_bends(const SeenFinger& finger, const glm::vec2* landmarks_px,
-                      const calib::CameraModel& camera, const glm::dvec3& bends_rad) {
-  static const glm::dmat3 kPrior = inverse_prior();
-  constexpr double kWeight = 1 / (kSigma_px * kSigma_px);
-  const glm::dvec2 shift_px = glm::dvec2(landmarks_px[0]) - camera.project(finger.at_m[0]);
-  glm::dmat3 normal = kPrior;
-  glm::dvec3 right = -kPrior * bends_rad;
+/// Twice the negative logarithm of the posterior, without a constant.
+double cost_of(const SeenFinger& finger, const glm::dvec3& bends_rad) {
+  double cost = glm::dot(bends_rad, prior() * bends_rad);
+  for (int i = 1; i < kLandmarksOfFinger; ++i)
+    cost += kWeight * glm::dot(finger.off_px[i], finger.off_px[i]);
+  return cost;
+}
+
+/// The bends that are most likely if the way of the joints is linear in them.
+glm::dvec3 most_likely(const SeenFinger& finger, const calib::CameraModel& camera,
+                       const glm::dvec3& bends_rad) {
+  glm::dmat3 normal = prior();
+  glm::dvec3 right = -prior() * bends_rad;
   for (int i = 1; i < kLandmarksOfFinger; ++i) {
-    const glm::dvec2 off_px =
-        glm::dvec2(landmarks_px[i]) - camera.project(finger.at_m[i]) - shift_px;
     const glm::dmat3x2 jacobian = camera.jacobian_px_per_m(finger.at_m[i]);
     glm::dmat3x2 px_per_rad(0);
     for (int bend = 0; bend < i; ++bend)
       px_per_rad[bend] =
           jacobian * glm::cross(finger.axis[bend], finger.at_m[i] - finger.at_m[bend]);
     normal += kWeight * (glm::transpose(px_per_rad) * px_per_rad);
-    right += kWeight * (glm::transpose(px_per_rad) * off_px);
+    right += kWeight * (glm::transpose(px_per_rad) * finger.off_px[i]);
   }
-  const glm::dvec3 next = bends_rad + glm::inverse(normal) * right;
-  return glm::clamp(next, glm::dvec3(-kMost_rad), glm::dvec3(kMost_rad));
+  const glm::dvec3 likely = bends_rad + glm::inverse(normal) * right;
+  return glm::clamp(likely, glm::dvec3(-kMost_rad), glm::dvec3(kMost_rad));
 }
 
-/// Turns each joint, with those beyond it, about its axis.
-void bend(msg::HandPose& pose, int finger, const glm::dvec3& by_rad) {
-  const auto joints = joints_of(finger);
-  for (int k = 0; k < kBends; ++k) {
-    const msg::Joint& pivot = pose.joints[joints[k]];
-    const glm::vec3 centre = position(pivot);
-    const glm::quat turn = glm::angleAxis(static_cast<float>(by_rad[k]), axis_of(pivot));
-    for (int i = k; i < kLandmarksOfFinger; ++i) {
-      msg::Joint& joint = pose.joints[joints[i]];
-      place(joint, centre + turn * (position(joint) - centre), turn * orientation(joint));
+/// Gauss-Newton with steps that are halved until the cost falls: a straight finger that lies across
+/// the line of sight shows a bend only by its length, which is not linear in it.
+Finger fitted(const Finger& finger, FingerPoints landmarks_px,
+              const calib::Calibration& calibration) {
+  Finger best = finger;
+  glm::dvec3 bends_rad(0);
+  auto seen = see(finger, landmarks_px, calibration);
+  for (int round = 0; seen && round < kRounds; ++round) {
+    const glm::dvec3 step_rad = most_likely(*seen, calibration.camera, bends_rad) - bends_rad;
+    const double cost = cost_of(*seen, bends_rad);
+    bool is_better = false;
+    for (double share = 1; !is_better && share >= kLeastShare; share /= 2) {
+      const Finger next = bent_by(best, share * step_rad);
+      const auto next_seen = see(next, landmarks_px, calibration);
+      // False for what is not a number.
+      is_better = next_seen && cost_of(*next_seen, bends_rad + share * step_rad) < cost;
+      if (!is_better) continue;
+      best = next;
+      seen = next_seen;
+      bends_rad += share * step_rad;
     }
+    if (!is_better) break;
   }
+  return best;
 }
 
 }  // namespace
@@ -101,17 +138,13 @@ void bend(msg::HandPose& pose, int finger, const glm::dvec3& by_rad) {
 msg::HandPose bent(const msg::HandPose& pose, const LandmarkPoints& landmarks_px,
                    const calib::Calibration& calibration) {
   msg::HandPose result = pose;
-  for (int finger = 0; finger < kFingers; ++finger) {
-    const glm::vec2* const of_finger_px = landmarks_px.data() + first_landmark(finger);
-    glm::dvec3 bends_rad(0);
-    for (int round = 0; round < kRounds; ++round) {
-      const auto seen = see(result, finger, calibration.camera_from_tracker);
-      if (!seen) break;
-      const glm::dvec3 next_rad = next_bends(*seen, of_finger_px, calibration.camera, bends_rad);
-      if (!std::isfinite(next_rad.x + next_rad.y + next_rad.z)) break;
-      bend(result, finger, next_rad - bends_rad);
-      bends_rad = next_rad;
-    }
+  for (int f = 0; f < kFingers; ++f) {
+    Finger finger;
+    for (int i = 0; i < kLandmarksOfFinger; ++i) finger[i] = pose.joints[joint_of(f, i)];
+    finger =
+        fitted(finger, FingerPoints(landmarks_px.data() + first_landmark(f), kLandmarksOfFinger),
+               calibration);
+    for (int i = 0; i < kLandmarksOfFinger; ++i) result.joints[joint_of(f, i)] = finger[i];
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/base/joint_math.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -27,9 +28,8 @@ constexpr double kNearest_m = 0.05;
 using Row = std::array<double, kUnknowns>;
 using Normal = std::array<Row, kUnknowns>;
 
-glm::dvec3 place(const msg::HandPose& pose, int joint) {
-  const auto& [x, y, z] = pose.joints[static_cast<std::size_t>(joint)].position_m;
-  return {x, y, z};
+glm::dvec3 at(const msg::HandPose& pose, int joint) {
+  return position(pose.joints[static_cast<std::size_t>(joint)]);
 }
 
 /// Gauss-Jordan elimination of the first kShared unknowns: what remains are the normal equations of
@@ -53,7 +53,7 @@ void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   const double since_s = std::clamp(ns_to_seconds(origin_ns - last_ns_), 0.0, kLasting_s);
   last_ns_ = origin_ns;
   const auto in_camera = [&](int joint) {
-    return glm::dvec3(calibration_.camera_from_tracker * glm::dvec4(place(pose, joint), 1));
+    return glm::dvec3(calibration_.camera_from_tracker * glm::dvec4(at(pose, joint), 1));
   };
   const glm::dvec3 wrist = in_camera(kWrist);
   const auto& camera = calibration_.camera;
@@ -102,15 +102,11 @@ msg::HandPose HandTurn::turned(const msg::HandPose& pose) const {
   const glm::dmat3 turn(
       glm::rotate(glm::dmat4(1), angle, tracker_from_camera * (angle_rad_ / angle)));
   const glm::quat quaternion(glm::quat_cast(turn));
-  const glm::dvec3 wrist = place(pose, kWrist);
+  const glm::dvec3 wrist = at(pose, kWrist);
   msg::HandPose result = pose;
   for (int j = 0; j < msg::kJoints; ++j) {
-    const glm::vec3 to(wrist + turn * (place(pose, j) - wrist));
     auto& joint = result.joints[static_cast<std::size_t>(j)];
-    joint.position_m = {to.x, to.y, to.z};
-    const auto& [x, y, z, w] = joint.orientation_xyzw;
-    const glm::quat q = quaternion * glm::quat(w, x, y, z);
-    joint.orientation_xyzw = {q.x, q.y, q.z, q.w};
+    place(joint, glm::vec3(wrist + turn * (at(pose, j) - wrist)), quaternion * orientation(joint));
   }
   return result;
 }

@@ -46,7 +46,7 @@ class LandmarkModel {
     bool reads_tracker = false;
     /// Of a model that reports no sigmas: the standard deviation of its landmarks per axis, as a
     /// share of the region's side. It says nothing of single landmarks, and so does not change
-    /// their confidence.
+    /// their confidence. Only of a model that scores sides: without scores, sigmas tell them.
     float usual_sigma = 0;
   };
   /// The traits of this model; they never change.
