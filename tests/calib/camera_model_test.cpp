@@ -35,6 +35,19 @@ TEST(CameraModel, TheReferenceLensMovesPixelsByWhatItsAuthorsMeasured) {
   EXPECT_LT(glm::distance(camera.distort({359.5, 269.5}), {359.5, 269.5}), 1e-9);
 }
 
+TEST(CameraModel, TheJacobianIsTheSlopeOfTheProjection) {
+  const auto camera = reference_rig().camera;
+  const glm::dvec3 at(0.12, -0.07, 0.65);
+  constexpr double kStep_m = 1e-6;
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 step(0);
+    step[axis] = kStep_m;
+    const glm::dvec2 slope =
+        (camera.project(at + step) - camera.project(at - step)) / (2 * kStep_m);
+    EXPECT_LT(glm::distance(slope, camera.jacobian_px_per_m(at)[axis]), 1e-3) << axis;
+  }
+}
+
 TEST(CameraModel, ContainsTheAreaOfItsPixels) {
   const CameraModel camera;
   const double right = camera.width_px - 0.5, bottom = camera.height_px - 0.5;

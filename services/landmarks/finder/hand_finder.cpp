@@ -92,7 +92,7 @@ Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& 
   const Confidences confidences = confidences_of(*hand, region, candidate.hint_px);
   if (mean_of(confidences) < kLeastConfidence) return {};
   auto sigma_px = hand->sigma_px;
-  if (const float usual = model_.landmarks->traits().usual_sigma; usual > 0)
+  if (const float usual = model_.landmarks->traits().usual_sigma; usual > 0 && has_tracker_)
     sigma_px.fill(usual * region.size_px);
   found_.push_back({candidate.side, hand->presence, hand->points_px, region, sigma_px, confidences,
                     candidate.before_px, hand->left_score, candidate.comparisons});

@@ -67,8 +67,19 @@ TEST_F(MediapipeDetector, LandmarksAreFreeOfTheLensesDistortion) {
   EXPECT_GT(std::hypot(seen.x_px - plain.x_px, seen.y_px - plain.y_px), 2);
 }
 
-TEST_F(MediapipeDetector, HasNoSigma) {
-  for (const auto& point : detect().points) EXPECT_EQ(point.sigma_px, 0);
+TEST_F(MediapipeDetector, AllLandmarksHaveTheSameSigma) {
+  const auto hand = detect();
+  const float wrist_to_knuckle_px = std::hypot(hand.points[9].x_px - hand.points[0].x_px,
+                                               hand.points[9].y_px - hand.points[0].y_px);
+  // The region's side is about two and a half palms.
+  EXPECT_NEAR(hand.points[0].sigma_px, 0.015 * 2.5 * wrist_to_knuckle_px,
+              0.3 * hand.points[0].sigma_px);
+  float surest = 0;
+  for (const auto& point : hand.points) {
+    EXPECT_EQ(point.sigma_px, hand.points[0].sigma_px);
+    surest = std::max(surest, point.confidence);
+  }
+  EXPECT_GT(surest, 0.9f) << "the sigma says nothing of single landmarks";
 }
 
 TEST_F(MediapipeDetector, PointsBesideTheImageAreNotSeen) {

@@ -89,7 +89,8 @@ TEST_P(EachLever, LowersTheError) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cascade, EachLever,
-    testing::Values(Lever{"offset_filter", "builtin:wave", "cascade.filter.method=paper", 1.05},
+    testing::Values(Lever{"offset_filter", "builtin:open_close", "cascade.filter.method=paper",
+                          1.05},
                     Lever{"hindsight", "builtin:shake", "cascade.filter.hindsight=false", 1.05},
                     Lever{"vertices", "builtin:open_close", "cascade.correct.method=grid", 1.05},
                     Lever{"bone_fit", "builtin:open_close", "cascade.skin.fit=false", 1.1},
