@@ -25,6 +25,8 @@ def runs_of(part, path):
     if part in ("comparison", "unseen", "first_seconds"):
         runs.require_all()
         runs.require(["paper", "paper_network", "handcast"])
+    if part == "unseen":
+        runs.require_meshes()
     return runs
 
 

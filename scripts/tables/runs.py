@@ -42,6 +42,10 @@ def listed(seeds):
     return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in spans)
 
 
+def is_count(text):
+    return text.isdecimal() and len(text) <= 9
+
+
 def rows_of(path, plan):
     """The rows of a file of results of `plan`, and how many runs that plan has."""
     try:
@@ -50,17 +54,20 @@ def rows_of(path, plan):
     except (OSError, UnicodeDecodeError) as error:
         die(f"{path} cannot be read: {error}")
     stamp = dict(word.split("=", 1) for word in lines[0].split() if "=" in word) if lines else {}
-    if not lines or not lines[0].startswith("# handcast sweep ") or not stamp.get("runs", "").isdecimal():
+    if not lines or not lines[0].startswith("# handcast sweep ") or not is_count(stamp.get("runs", "")):
         die(f"{path} is not a file of results of handcast sweep")
     if stamp.get("plan") != plan:
         die(f"{path} has the results of the plan {stamp.get('plan')}, and not of {plan}")
     reader = csv.DictReader(lines[1:])
-    rows = list(reader)
+    try:
+        rows = list(reader)
+    except csv.Error as error:
+        die(f"{path} cannot be read: {error}")
     if missing := [name for name in ("index", "variant", "twin.motion", "twin.seed", "interior_mm_mean", "error")
                    if name not in (reader.fieldnames or [])]:
         die(f"{path} has no column {missing[0]}")
     for number, row in enumerate(rows, start=3):
-        if None in row or None in row.values() or not row["twin.seed"].isdecimal():
+        if None in row or None in row.values() or not is_count(row["twin.seed"]):
             die(f"{path}:{number}: is not the row of a run")
     return rows, int(stamp["runs"])
 
@@ -88,6 +95,8 @@ class Runs:
                 self.errors.setdefault(row["variant"], row["error"])
         if not self.motions:
             die(f"{path} has no runs")
+        if self.meshes and not all(isinstance(motion, tuple) for motion in self.motions):
+            die(f"{path} has runs with a mesh and others without")
         self.variants = [variant for variant in wanted if any(
             row["interior_mm_mean"] for motion in self.motions for row in self.rows[variant, motion].values())]
         self.absent = [variant for variant in wanted if variant not in self.variants]
@@ -180,6 +189,11 @@ class Runs:
         """Ends the program if runs of the plan are absent."""
         if self.missing:
             die(f"{self.path} lacks {self.missing} runs of its plan: recordings or hands were not there, or the sweep was interrupted")
+
+    def require_meshes(self):
+        """Ends the program if the sweep is of one mesh."""
+        if not self.meshes:
+            die(f"{self.path} has no runs of several meshes")
 
     def require(self, variants):
         """Ends the program if one of the variants has no runs."""

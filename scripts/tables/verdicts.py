@@ -3,7 +3,7 @@
 
 import statistics
 
-from tables.runs import interval
+from tables.runs import die, interval
 
 # docs/method.md#goals. The first two are parts of the paper's error.
 GOAL, GOAL_FAST, GOAL_MM = 0.45, 0.5, (1.8, 4.0)
@@ -96,8 +96,10 @@ def verdict_of_causes(runs):
 def verdict_of_two_hands(runs):
     """How much worse two hands are than the same hands alone."""
     motion = runs.only_motion()
-    ratios = [2 * both / (left + right) for left, right, both in
-              zip(*(runs.of(variant, motion, "interior_mm_mean") for variant in ("left", "right", "both")))]
+    errors = list(zip(*(runs.of(variant, motion, "interior_mm_mean") for variant in ("left", "right", "both"))))
+    if not all(left + right > 0 for left, right, _ in errors):
+        die(f"{runs.path}: an error of hands alone is 0, so that nothing can be compared with it")
+    ratios = [2 * both / (left + right) for left, right, both in errors]
     yield (f"Both hands to the mean of each alone: {interval(ratios)}; the goal of {GOAL_TWO_HANDS} is "
            f"{reached(statistics.fmean(ratios) <= GOAL_TWO_HANDS)}.")
 

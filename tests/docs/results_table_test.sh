@@ -148,6 +148,9 @@ good && sed -i '4s/,10,/,0,/' "$work/results.csv" && refuses "an error of 0"
 good && sed -i '2s/coverage/covered/' "$work/results.csv" && refuses "a column that is missing"
 good && sed -i '4s/mediapipe/twin/' "$work/results.csv" && refuses "two detectors in one row"
 good && sed -i '6s/wave,1/wave,one/' "$work/results.csv" && refuses "a seed that is no number"
+good && sed -i "6s/wave,1/wave,$(printf '9%.0s' {1..5000})/" "$work/results.csv" && refuses "a seed of 5000 digits"
+good && sed -i "1s/runs=/runs=$(printf '9%.0s' {1..5000})/" "$work/results.csv" && refuses "more runs than there are numbers"
+good && head -c 140000 /dev/zero | tr '\0' m >>"$work/results.csv" && refuses "a field without an end"
 good && printf '7,half\n' >>"$work/results.csv" && refuses "half a row"
 good && printf '\377\376' >>"$work/results.csv" && refuses "bytes that are no text"
 good && refuses "people that are no number" five
@@ -160,6 +163,9 @@ document comparison && sed -i 's/$/\r/' "$work/document.md" && "$table" comparis
 results comparison "$comparison" 5 >"$work/results.csv"
 document comparison
 ! "$table" comparison "$work/results.csv" "$work/document.md" 2>/dev/null || fail "one seed has no interval"
+document unseen
+results unseen "$comparison" 5 7 >"$work/results.csv"
+! "$table" unseen "$work/results.csv" "$work/document.md" 2>/dev/null || fail "unseen motions without meshes are not refused"
 echo "no marks" >"$work/document.md"
 results comparison "$comparison" 5 7 >"$work/results.csv"
 ! "$table" comparison "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a document without the marks is not refused"
