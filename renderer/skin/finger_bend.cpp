@@ -15,7 +15,6 @@ namespace {
 
 constexpr int kBends = kLandmarksOfFinger - 1;  ///< joints of a finger that bend
 constexpr int kRounds = 2;                      ///< steps of Gauss-Newton
-constexpr double kLeastShare = 0.125;           ///< of a step that is tried
 constexpr double kSigma_px = 5, kWeight = 1 / (kSigma_px * kSigma_px);  ///< of a landmark
 /// Standard deviations of the tracker's errors: what the joints of a finger share, and each its
 /// own.
@@ -81,14 +80,6 @@ const glm::dmat3& prior() {
   return kPrior;
 }
 
-/// Twice the negative logarithm of the posterior, without a constant.
-double cost_of(const SeenFinger& finger, const glm::dvec3& bends_rad) {
-  double cost = glm::dot(bends_rad, prior() * bends_rad);
-  for (int i = 1; i < kLandmarksOfFinger; ++i)
-    cost += kWeight * glm::dot(finger.off_px[i], finger.off_px[i]);
-  return cost;
-}
-
 /// The bends that are most likely if the way of the joints is linear in them.
 glm::dvec3 most_likely(const SeenFinger& finger, const calib::CameraModel& camera,
                        const glm::dvec3& bends_rad) {
@@ -107,30 +98,18 @@ glm::dvec3 most_likely(const SeenFinger& finger, const calib::CameraModel& camer
   return glm::clamp(likely, glm::dvec3(-kMost_rad), glm::dvec3(kMost_rad));
 }
 
-/// Gauss-Newton with steps that are halved until the cost falls: a straight finger that lies across
-/// the line of sight shows a bend only by its length, which is not linear in it.
-Finger fitted(const Finger& finger, FingerPoints landmarks_px,
-              const calib::Calibration& calibration) {
-  Finger best = finger;
+/// The finger with its most likely bends, by Gauss-Newton.
+Finger fitted(Finger finger, FingerPoints landmarks_px, const calib::Calibration& calibration) {
   glm::dvec3 bends_rad(0);
-  auto seen = see(finger, landmarks_px, calibration);
-  for (int round = 0; seen && round < kRounds; ++round) {
-    const glm::dvec3 step_rad = most_likely(*seen, calibration.camera, bends_rad) - bends_rad;
-    const double cost = cost_of(*seen, bends_rad);
-    bool is_better = false;
-    for (double share = 1; !is_better && share >= kLeastShare; share /= 2) {
-      const Finger next = bent_by(best, share * step_rad);
-      const auto next_seen = see(next, landmarks_px, calibration);
-      // False for what is not a number.
-      is_better = next_seen && cost_of(*next_seen, bends_rad + share * step_rad) < cost;
-      if (!is_better) continue;
-      best = next;
-      seen = next_seen;
-      bends_rad += share * step_rad;
-    }
-    if (!is_better) break;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto seen = see(finger, landmarks_px, calibration);
+    if (!seen) break;
+    const glm::dvec3 likely_rad = most_likely(*seen, calibration.camera, bends_rad);
+    if (!std::isfinite(likely_rad.x + likely_rad.y + likely_rad.z)) break;
+    finger = bent_by(finger, likely_rad - bends_rad);
+    bends_rad = likely_rad;
   }
-  return best;
+  return finger;
 }
 
 }  // namespace

@@ -188,6 +188,7 @@ config::Cascade paper_grid() {
   auto settings = cascade(config::CorrectMethod::grid, config::FillMethod::none);
   settings.filter.method = config::FilterMethod::paper;
   settings.filter.definitions = false;
+  settings.skin.bend = false;
   settings.ladder.rung = config::RungChoice::landmarks;
   return settings;
 }

@@ -175,9 +175,9 @@ TEST(HandPipeline, FastMotionAndReversalsAreNotTakenForJumps) {
   }
 }
 
-/// How far the depths of the drawn finger tips are from the true ones, mm: a tracker has the
-/// fingers 12 degrees straighter at two joints than they are, and the landmarks are right.
-float tips_off_mm(bool bends) {
+/// How far the joints of the finger tips in the drawn pose are seen from where they are, px: a
+/// tracker has the fingers 12 degrees straighter at two joints, and the landmarks are right.
+float tips_off_px(bool bends) {
   const auto calibration = rig_above_hand();
   const auto pose_with = [](float knuckle, float middle) {
     const std::array<float, 4> finger{0, knuckle, middle, 20};
@@ -191,23 +191,23 @@ float tips_off_mm(bool bends) {
   settings.skin.turn = settings.filter.definitions = false;  // a pose that lasts teaches them
   auto hand =
       *HandPipeline::load(Side::left, settings, {.left = "builtin:white"}, {}, calibration, {});
+  const auto seen = landmarks_of(calibration, 0, truth, {}).hands[0];
   for (std::int64_t ms = 0; ms < 400; ++ms) {
     if (ms % 9 == 0) hand.push(ms * kMs, ms * kMs, reported);
-    if (ms % 16 == 0)
-      hand.push(ms * kMs, ms * kMs, landmarks_of(calibration, 0, truth, {}).hands[0]);
+    if (ms % 16 == 0) hand.push(ms * kMs, ms * kMs, seen);
   }
   auto frame = *hand.predict(400 * kMs, 404 * kMs, std::nullopt);
   hand.skin(frame, 0);
-  const auto true_m = landmark_depths_m(calibration, truth);
-  float sum_mm = 0;
-  for (const int tip : {8, 12, 16, 20}) sum_mm += 250 * std::abs(frame.depths_m[tip] - true_m[tip]);
-  return sum_mm;
+  float sum_px = 0;
+  for (const int tip : {8, 12, 16, 20})
+    sum_px += glm::distance(frame.drawn_from[tip], position_px(seen.points[tip]));
+  return sum_px / 4;
 }
 
 TEST(HandPipeline, FingersAreDrawnAsBentAsTheLandmarksShow) {
-  const float straight_mm = tips_off_mm(false);
-  EXPECT_GT(straight_mm, 5);
-  EXPECT_LT(tips_off_mm(true), 0.5f * straight_mm);
+  const float straight_px = tips_off_px(false);
+  EXPECT_GT(straight_px, 10);
+  EXPECT_LT(tips_off_px(true), 0.4f * straight_px);
 }
 
 TEST(HandPipeline, AStillHandOfAFlawlessTrackerIsNotTakenForFrozen) {
