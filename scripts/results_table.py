@@ -14,7 +14,7 @@ import sys
 
 from tables.document import replaced, write_whole
 from tables.rows import PARTS, footer, table, variants_of
-from tables.runs import Runs, die
+from tables.runs import Runs, die, is_count
 from tables.summaries import SUMMARIES
 from tables.verdicts import verdict
 
@@ -48,7 +48,7 @@ def main():
     part, results, document = sys.argv[1:4]
     command = sys.argv[4] if len(sys.argv) > 4 else ""
     people = sys.argv[5] if len(sys.argv) > 5 else "0"
-    if not people.isdecimal():
+    if not is_count(people):
         die(f"PEOPLE must be a number, and not '{people}'")
     write_whole(document, replaced(document, part, lines_of(part, results, command, int(people))))
 

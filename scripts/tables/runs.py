@@ -43,6 +43,7 @@ def listed(seeds):
 
 
 def is_count(text):
+    """True for a whole number that is not absurdly large."""
     return text.isdecimal() and len(text) <= 9
 
 

@@ -82,6 +82,11 @@ TEST_F(MediapipeDetector, AllLandmarksHaveTheSameSigma) {
   EXPECT_GT(surest, 0.9f) << "the sigma says nothing of single landmarks";
 }
 
+TEST_F(MediapipeDetector, WithoutATrackerItsLandmarksHaveNoSigma) {
+  rig_.pose.backend = "none";
+  for (const auto& point : detect().points) EXPECT_EQ(point.sigma_px, 0);
+}
+
 TEST_F(MediapipeDetector, PointsBesideTheImageAreNotSeen) {
   const auto capture = *test::capture(6);
   test::Grey cut(700, 200);
