@@ -17,18 +17,20 @@ namespace {
 constexpr double kLeastGamma = 0.3, kMostGamma = 5;
 constexpr std::size_t kLeastLevels = 5;
 
+/// Absolute differences: a busy computer takes some images in the wrong light, and squares would
+/// let these decide.
 template <class Curve>
 double misfit_of(std::span<const GreyStep> steps, const Curve& curve) {
   double sum = 0;
-  for (const auto& step : steps) sum += std::pow(step.share - curve(step.level), 2);
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(steps.size(), 1)));
+  for (const auto& step : steps) sum += std::abs(step.share - curve(step.level));
+  return sum / static_cast<double>(std::max<std::size_t>(steps.size(), 1));
 }
 
 double misfit_of_gamma(std::span<const GreyStep> steps, double brightest, double gamma) {
   return misfit_of(steps, [&](double level) { return share_of(level, brightest, gamma); });
 }
 
-/// The exponent of the least misfit, which has one minimum: golden section search.
+/// The exponent of the least misfit: golden section search.
 double best_gamma(std::span<const GreyStep> steps, double brightest) {
   constexpr double kGolden = 0.6180339887, kExact = 1e-4;
   double low = kLeastGamma, high = kMostGamma;

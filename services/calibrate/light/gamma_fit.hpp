@@ -17,7 +17,7 @@ struct GreyStep {
 struct GammaFit {
   double gamma = 0;           ///< light = level^gamma
   double low = 0, high = 0;   ///< 95 % interval of gamma
-  double misfit = 0;          ///< of the shares, root of the mean square
+  double misfit = 0;          ///< of the shares, mean absolute difference
   double misfit_of_srgb = 0;  ///< the same for the curve of sRGB (IEC 61966-2-1)
   bool is_srgb() const { return misfit_of_srgb <= misfit; }
   /// The value of projector.gamma.
@@ -27,9 +27,9 @@ struct GammaFit {
 /// The light of a level by a setting of projector.gamma, as a share of that of `brightest`.
 double share_of(double level, double brightest, double gamma_setting);
 
-/// Fits the exponent by least squares of the shares; the interval is that of 200 resamples of the
-/// steps (percentiles). `brightest`: the level whose share is 1. Errors: bad_data (fewer than 5
-/// levels; the light does not grow with the level; an exponent below 0.3 or above 5).
+/// Fits the exponent by least absolute differences of the shares; the interval is that of 200
+/// resamples of the steps (percentiles). `brightest`: the level whose share is 1. Errors: bad_data
+/// (fewer than 5 levels; the light does not grow with the level; an exponent below 0.3 or above 5).
 Result<GammaFit> fit_gamma(std::span<const GreyStep> steps, double brightest);
 
 /// Whether a setting of projector.gamma explains the steps clearly worse than the fit does. An

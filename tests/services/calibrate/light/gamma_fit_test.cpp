@@ -57,6 +57,20 @@ TEST(GammaFit, OnlyAClearMisfitIsAChange) {
   }
 }
 
+TEST(GammaFit, StepsTakenInTheWrongLightDoNotDecide) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    auto taken = steps(1.8, seed);
+    for (auto& step : taken)
+      if (any(random) < 0.15) step.share = any(random);
+    const auto fit = fit_gamma(taken, 1);
+    ASSERT_TRUE(fit) << fit.error().what;
+    EXPECT_NEAR(fit->setting(), 1.8, 0.05) << seed;
+    EXPECT_TRUE(is_clearly_worse(0, taken, 1, *fit)) << seed;
+  }
+}
+
 TEST(GammaFit, ADimmedProjectorHasTheSameExponent) {
   const auto fit = fit_gamma(steps(1.8, 1, 0.6), 0.6);
   ASSERT_TRUE(fit) << fit.error().what;
