@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "calib/lens/levenberg_marquardt.hpp"
 #include "calib/lens/normal.hpp"
 
 namespace handcast::calib {
@@ -15,17 +16,6 @@ std::vector<Normal> normals_of(std::span<const Points> views, Distortion distort
   for (std::size_t i = 0; i < views.size(); ++i)
     normals.push_back(normal_of(views[i], at.poses[i], at.camera, distortion));
   return normals;
-}
-
-double squares_of(const std::vector<Normal>& normals) {
-  double sum = 0;
-  for (const auto& normal : normals) sum += normal.squares;
-  return sum;
-}
-
-template <int n>
-void damp(cv::Matx<double, n, n>& matrix, double by) {
-  for (int i = 0; i < n; ++i) matrix(i, i) *= 1 + by;
 }
 
 /// One step of Levenberg and Marquardt.
@@ -111,23 +101,12 @@ std::optional<Solution> first_guess(std::span<const Points> views, int width_px,
 
 std::optional<Solution> solve(std::span<const Points> views, Distortion distortion,
                               const Solution& start) {
-  constexpr int kRounds = 100;
-  constexpr double kDone = 1e-7, kLargestDamping = 1e9;
+  constexpr Effort kEffort{100, 1e-7};
   Solution best = start;
   best.camera = within(start.camera, distortion);
-  auto normals = normals_of(views, distortion, best);
-  double damping = 1e-3;
-  for (int round = 0; round < kRounds && damping < kLargestDamping; ++round) {
-    auto next = stepped(best, normals, damping);
-    auto next_normals = normals_of(views, distortion, next);
-    const double before = squares_of(normals), after = squares_of(next_normals);
-    damping *= after < before ? 0.1 : 10;  // NaN is no progress either
-    if (after < before) {
-      best = std::move(next);
-      normals = std::move(next_normals);
-    }
-    if (std::abs(before - after) <= kDone * before) break;
-  }
+  const auto normals = minimise(
+      best, kEffort, [&](const Solution& at) { return normals_of(views, distortion, at); },
+      stepped);
   if (!(best.camera.fx_px > 0 && best.camera.fy_px > 0 && std::isfinite(squares_of(normals))))
     return {};
   for (std::size_t i = 0; i < views.size(); ++i)

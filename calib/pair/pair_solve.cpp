@@ -7,6 +7,8 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
+#include "calib/lens/levenberg_marquardt.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -16,12 +18,6 @@ std::vector<PairNormal> normals_of(std::span<const PairPoints> views, const Came
   for (std::size_t i = 0; i < views.size(); ++i)
     normals.push_back(normal_of(views[i], at.boards[i], at.pair, cameras));
   return normals;
-}
-
-double squares_of(const std::vector<PairNormal>& normals) {
-  double sum = 0;
-  for (const auto& normal : normals) sum += normal.squares;
-  return sum;
 }
 
 double points_in(const PairPoints& view) {
@@ -38,8 +34,8 @@ PairSolution stepped(const PairSolution& from, std::vector<PairNormal> normals, 
   cv::Matx66d matrix;
   cv::Vec6d slope;
   for (auto& normal : normals) {
-    for (int i = 0; i < kPairPose; ++i) normal.board(i, i) *= 1 + damping;
-    for (int i = 0; i < kPairPose; ++i) normal.shared(i, i) *= 1 + damping;
+    damp(normal.board, damping);
+    damp(normal.shared, damping);
     const auto statement = statement_of(normal);
     matrix += statement.matrix.get_minor<kPairPose, kPairPose>(0, 0);
     slope += pair_part(statement.slope);
@@ -105,22 +101,11 @@ std::optional<PairSolution> first_guess(std::span<const PairPoints> views, const
 
 std::optional<PairSolution> solve(std::span<const PairPoints> views, const Cameras& cameras,
                                   const PairSolution& start) {
-  constexpr int kRounds = 60;
-  constexpr double kDone = 1e-9, kLargestDamping = 1e9;
+  constexpr Effort kEffort{60, 1e-9};
   PairSolution best = start;
-  auto normals = normals_of(views, cameras, best);
-  double damping = 1e-3;
-  for (int round = 0; round < kRounds && damping < kLargestDamping; ++round) {
-    auto next = stepped(best, normals, damping);
-    auto next_normals = normals_of(views, cameras, next);
-    const double before = squares_of(normals), after = squares_of(next_normals);
-    damping *= after < before ? 0.1 : 10;  // NaN is no progress either
-    if (after < before) {
-      best = std::move(next);
-      normals = std::move(next_normals);
-    }
-    if (std::abs(before - after) <= kDone * before) break;
-  }
+  const auto normals = minimise(
+      best, kEffort, [&](const PairSolution& at) { return normals_of(views, cameras, at); },
+      stepped);
   if (!std::isfinite(squares_of(normals))) return {};
   best.rms_px.resize(views.size());
   for (std::size_t i = 0; i < views.size(); ++i)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 
 #include "config/rig.hpp"
 #include "config/settings/document.hpp"
@@ -53,6 +54,7 @@ void describe(Visitor& visitor, Head& head) {
 /// The settings at the top level of a [[variant]].
 struct VariantHead {
   std::string name, rig;
+  std::vector<std::string> from;
   ReadByHand settings;
 };
 
@@ -60,6 +62,10 @@ template <class Visitor>
 void describe(Visitor& visitor, VariantHead& head) {
   visitor.field("name", head.name, "Name of the variant.");
   visitor.field("rig", head.rig, "Rig file of the variant, relative to the plan.");
+  visitor.field(
+      "from", head.from,
+      "Variants above whose settings it has, too. Its rig is that of the first, if it has "
+      "none of its own. Its own settings take precedence.");
   visitor.section("settings", head.settings, "Settings of the variant's runs.");
 }
 
@@ -252,7 +258,7 @@ class Reader {
         complain(element.line, "variant", "must be a section: write [[variant]]");
         continue;
       }
-      auto read = variant(element, head.rig);
+      auto read = variant(element, head.rig, plan.variants);
       if (std::ranges::find(plan.variants, read.name, &Variant::name) != plan.variants.end())
         complain(element.line, "variant.name",
                  fmt::format("two variants are called '{}'", read.name));
@@ -260,13 +266,27 @@ class Reader {
     }
   }
 
-  Variant variant(const Value& element, const std::string& default_rig) {
+  Variant variant(const Value& element, const std::string& default_rig,
+                  std::span<const Variant> above) {
     VariantHead head;
     const auto [rest, sections] = split(element, {"settings"});
     config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
     if (head.name.empty()) complain(element.line, "variant.name", "is missing");
-    const auto file = (folder_ / (head.rig.empty() ? default_rig : head.rig)).lexically_normal();
-    return {head.name, file, rig_text(file, element.line), fixed(section(sections, "settings"))};
+    Variant read{head.name, folder_ / (head.rig.empty() ? default_rig : head.rig), {}, {}};
+    for (const auto& name : head.from) {
+      const auto base = std::ranges::find(above, name, &Variant::name);
+      if (base == above.end()) {
+        complain(element.line, "variant.from",
+                 fmt::format("no variant above is called '{}'", name));
+        continue;
+      }
+      if (head.rig.empty() && name == head.from.front()) read.rig_file = base->rig_file;
+      std::ranges::copy(base->settings, std::back_inserter(read.settings));
+    }
+    std::ranges::move(fixed(section(sections, "settings")), std::back_inserter(read.settings));
+    read.rig_file = read.rig_file.lexically_normal();
+    read.rig_text = rig_text(read.rig_file, element.line);
+    return read;
   }
 
   /// Reads a rig file. Its faults are reported once, even if several variants name it.

@@ -46,6 +46,10 @@ struct Variant {
 ///     [[variant]]                      # without any, the rig is the only variant
 ///     name = "one_euro"
 ///     settings.cascade.filter.method = "one_euro"
+///     [[variant]]
+///     name = "one_euro_held"
+///     from = ["one_euro"]              # has the rig and the settings of variants above, too
+///     settings.cascade.predict.method = "hold"
 ///     [grid]                           # all combinations are run
 ///     twin.motion = ["builtin:wave", "../../data/wave"]
 ///     twin.speed = [1, 2, 3]

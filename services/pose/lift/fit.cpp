@@ -15,7 +15,13 @@ using Equations = NormalEquations<kUnknowns>;
 
 constexpr double kHuber = 3;  ///< beyond so many standard deviations, residuals count linearly
 constexpr double kUsualSizeSd = 0.25;
-constexpr double kNearest_m = 0.05;
+
+/// The point, or one at the least depth at which the projection is used.
+glm::dvec3 in_front(glm::dvec3 at_m) {
+  constexpr double kNearest_m = 0.05;
+  at_m.z = std::max(at_m.z, kNearest_m);
+  return at_m;
+}
 
 constexpr int column_of(int finger, int angle) { return kFirstAngle + finger * kAngles + angle; }
 
@@ -38,12 +44,8 @@ struct Problem {
 
  private:
   double landmark(const PosedHand& hand, int i, Equations* equations) const {
-    const int joint = msg::kJointOfLandmark[i];
-    const glm::dvec3 at_m = hand.place_m[joint];
-    const double depth_m = std::max(at_m.z, kNearest_m);
-    const glm::dvec2 focal_px(camera.fx_px, camera.fy_px);
     const glm::dvec2 miss_px =
-        focal_px * glm::dvec2(at_m) / depth_m + glm::dvec2(camera.cx_px, camera.cy_px) - seen.px[i];
+        camera.project(in_front(hand.place_m[msg::kJointOfLandmark[i]])) - seen.px[i];
     const double sigmas = glm::length(miss_px) / seen.sigma_px[i];
     const double trust = std::min(1.0, kHuber / std::max(sigmas, 1e-9));
     if (equations)
@@ -69,11 +71,12 @@ struct Problem {
       columns[count] = column_of(finger, a);
       moves[count++] = glm::cross(hand.hinge[finger][a], at_m - pivot_m);
     }
-    const double depth_m = std::max(at_m.z, kNearest_m);
+    const glm::dmat3x2 jacobian_px_per_m = camera.jacobian_px_per_m(in_front(at_m));
     std::array<double, kFirstAngle + kAngles> across, down;
     for (int c = 0; c < count; ++c) {
-      across[c] = camera.fx_px * (moves[c].x - moves[c].z * at_m.x / depth_m) / depth_m;
-      down[c] = camera.fy_px * (moves[c].y - moves[c].z * at_m.y / depth_m) / depth_m;
+      const glm::dvec2 way_px = jacobian_px_per_m * moves[c];
+      across[c] = way_px.x;
+      down[c] = way_px.y;
     }
     equations.add(columns.data(), across.data(), count, miss_px.x, weight);
     equations.add(columns.data(), down.data(), count, miss_px.y, weight);

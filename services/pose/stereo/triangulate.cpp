@@ -44,14 +44,11 @@ std::optional<Normal> normal_at(std::span<const Sight> sights, const glm::dvec3&
     const auto& camera = sight.view->camera;
     const glm::dvec3 at_m = sight.view->in_view(place_m);
     if (!(at_m.z > View::kNearest_m)) return std::nullopt;
-    const glm::dmat3 first_from_view = glm::transpose(glm::dmat3(sight.view->view_from_first));
     const glm::dvec2 miss = (camera.project(at_m) - sight.px) / sight.sigma_px;
-    const glm::dvec3 across = first_from_view * glm::dvec3(1, 0, -at_m.x / at_m.z) *
-                              (camera.fx_px / at_m.z / sight.sigma_px),
-                     down = first_from_view * glm::dvec3(0, 1, -at_m.y / at_m.z) *
-                            (camera.fy_px / at_m.z / sight.sigma_px);
-    normal.information += glm::outerProduct(across, across) + glm::outerProduct(down, down);
-    normal.gradient += across * miss.x + down * miss.y;
+    const glm::dmat3x2 slope =
+        camera.jacobian_px_per_m(at_m) * glm::dmat3(sight.view->view_from_first) / sight.sigma_px;
+    normal.information += glm::transpose(slope) * slope;
+    normal.gradient += glm::transpose(slope) * miss;
     normal.misfit += glm::dot(miss, miss);
   }
   return normal;

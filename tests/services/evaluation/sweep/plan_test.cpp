@@ -55,6 +55,32 @@ TEST(Plan, ARunHasTheSettingsOfThePlanItsVariantAndItsPlaceInTheGrid) {
   EXPECT_EQ(rig_of(*plan, runs[0])->cascade.filter.method, config::Rig().cascade.filter.method);
 }
 
+TEST(Plan, AVariantHasTheSettingsOfThoseItIsFrom) {
+  const auto plan = plan_of(
+      "[[variant]]\nname = \"still\"\nsettings.twin.motion = \"builtin:still\"\n"
+      "settings.twin.speed = 2\n"
+      "[[variant]]\nname = \"paper\"\nrig = \"" +
+      (source_root() / "config/rigs/paper.toml").string() +
+      "\"\nsettings.cascade.skin.fit = true\n"
+      "[[variant]]\nname = \"both\"\nfrom = [\"paper\", \"still\"]\nsettings.twin.speed = 3\n"
+      "[[variant]]\nname = \"still_again\"\nfrom = [\"still\", \"both\"]\n");
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto runs = expand(*plan)->runs;
+  const auto both = rig_of(*plan, runs[2]);
+  ASSERT_TRUE(both) << both.error().what;
+  EXPECT_EQ(both->cascade.filter.method, config::FilterMethod::paper) << "the rig of the first";
+  EXPECT_TRUE(both->cascade.skin.fit);
+  EXPECT_EQ(both->twin.motion, "builtin:still");
+  EXPECT_EQ(both->twin.speed, 3) << "its own";
+  EXPECT_NE(rig_of(*plan, runs[3])->cascade.filter.method, config::FilterMethod::paper);
+  EXPECT_EQ(rig_of(*plan, runs[3])->twin.speed, 3) << "the last counts";
+}
+
+TEST(Plan, AVariantIsOnlyFromThoseAbove) {
+  EXPECT_THAT(fault_of("[[variant]]\nname = \"a\"\nfrom = [\"b\"]\n[[variant]]\nname = \"b\"\n"),
+              HasSubstr(":2: variant.from: no variant above is called 'b'"));
+}
+
 TEST(Plan, AnOldFormOfASettingIsReportedOnceAtItsLineAndRunInItsNewForm) {
   testing::internal::CaptureStderr();
   const auto plan =
