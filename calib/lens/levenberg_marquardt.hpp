@@ -23,7 +23,7 @@ void damp(cv::Matx<double, n, n>& matrix, double by) {
 /// When minimise() ends.
 struct Effort {
   int rounds;   ///< at most
-  double done;  ///< share of the squares; the last round has gained less
+  double done;  ///< share of the squares by which the last round has changed them at most
 };
 
 /// Changes `state` so that its squares are least, by Levenberg and Marquardt's method, and returns

@@ -168,7 +168,7 @@ void describe(Visitor& visitor, Content& content) {
   visitor.field("right", content.right, "The same for the right hand.");
   visitor.field(
       "shading", content.shading, between(0, 1),
-      "Strength of the shading by a light that shines from the projector. 0: no shading.");
+      "Strength of the shading by a light that shines along the camera's axis. 0: no shading.");
   visitor.field(
       "smooth", content.smooth,
       "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "

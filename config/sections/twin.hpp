@@ -42,10 +42,12 @@ struct Twin {
 
 template <class Visitor>
 void describe(Visitor& visitor, Twin& twin) {
-  visitor.field("motion", twin.motion,
-                "The true motion: builtin:show, open_close, wave, rotate, pinch, shake, two_hands, "
-                "still, crossing, flip, fist, point_at_camera, enter_leave, reverse, "
-                "cross_fingers, turn_pointing, turn_fist, places; or a folder with a recording.");
+  visitor.field(
+      "motion", twin.motion,
+      "The true motion: builtin:show, open_close, wave, rotate, pinch, shake, two_hands, "
+      "still, crossing, flip, fist, point_at_camera, enter_leave, reverse, "
+      "cross_fingers, turn_pointing, turn_fist, places, count, piano, grasp, beckon, coin; or a "
+      "folder with a recording.");
   visitor.field("hands", twin.hands, "The hands of the motion that exist in the twin.");
   visitor.field("speed", twin.speed, between(0.01, 20), "Speed of the motion; 1: unchanged.");
   visitor.field("seed", twin.seed, between(0, 1e9), "The seed of all random numbers.");

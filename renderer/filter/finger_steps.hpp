@@ -9,7 +9,8 @@
 namespace handcast::renderer {
 
 /// Judges the offsets of a finger that step by more than a tracker's error changes from one image
-/// to the next: two fingers have become one for the detector, or are two again. One thread.
+/// to the next: the tracker's finger has snapped, or two fingers have become one for the detector,
+/// or are two again. One thread.
 class FingerSteps {
  public:
   /// What is to be done with the new offsets of a finger.

@@ -63,6 +63,7 @@ std::optional<SeenFinger> see(const Finger& finger, FingerPoints landmarks_px,
     seen.at_m[i] = glm::dvec3(calibration.camera_from_tracker * glm::dvec4(position(finger[i]), 1));
     if (!(seen.at_m[i].z > kNearest_m)) return std::nullopt;
     seen.off_px[i] = glm::dvec2(landmarks_px[i]) - calibration.camera.project(seen.at_m[i]);
+    if (!std::isfinite(seen.off_px[i].x + seen.off_px[i].y)) return std::nullopt;
     if (i > 0) seen.off_px[i] -= seen.off_px[0];
     if (i < kBends)
       seen.axis[i] = glm::dmat3(calibration.camera_from_tracker) * glm::dvec3(axis_of(finger[i]));

@@ -41,8 +41,8 @@ class HandSurface {
   }
 
   /// Skins the mesh and projects it through the camera to the projector. `shading`: share of
-  /// Lambert's law in the light, 0..1, with a lamp at the camera. `presence`: factor of all levels,
-  /// 0..1, so that a fade looks even.
+  /// Lambert's law in the light, 0..1, of a light that shines along the camera's axis. `presence`:
+  /// factor of all levels, 0..1, so that a fade looks even.
   Skinned pose(const msg::HandPose& pose, const config::Skin& settings,
                const calib::Calibration& calibration, float shading, float presence = 1);
 

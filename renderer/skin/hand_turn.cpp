@@ -32,8 +32,8 @@ glm::dvec3 at(const msg::HandPose& pose, int joint) {
   return position(pose.joints[static_cast<std::size_t>(joint)]);
 }
 
-/// Gauss-Jordan elimination of the first kShared unknowns: what remains are the normal equations of
-/// the others. False if they are not determined.
+/// Eliminates the first kShared unknowns: what remains, their Schur complement, are the normal
+/// equations of the others. False if they are not determined.
 bool eliminate_shared(Normal& normal, Row& right) {
   for (int k = 0; k < kShared; ++k) {
     if (!(normal[k][k] > 1e-9)) return false;

@@ -83,6 +83,8 @@ class Runs:
         self.motions, self.meshes, self.errors = [], [], {}
         rows, runs = rows_of(path, plan)
         self.missing = runs - len({row["index"] for row in rows})
+        if self.missing < 0:
+            die(f"{path} has {-self.missing} runs more than its plan")
         for row in rows:
             motion = row["twin.motion"].split("/")[-1].removeprefix("builtin:")
             if mesh := row.get("twin.shape.mesh"):
@@ -91,11 +93,16 @@ class Runs:
                     self.meshes.append(mesh)
             if motion not in self.motions:
                 self.motions.append(motion)
-            self.rows[row["variant"], motion][int(row["twin.seed"])] = row
+            of_cell, seed = self.rows[row["variant"], motion], int(row["twin.seed"])
+            if seed in of_cell:
+                die(f"{path} has two runs of {row['variant']}, {row['twin.motion']} and seed {seed}")
+            of_cell[seed] = row
             if not row["interior_mm_mean"]:
                 self.errors.setdefault(row["variant"], row["error"])
         if not self.motions:
             die(f"{path} has no runs")
+        if strange := sorted({variant for variant, _ in self.rows} - set(wanted)):
+            die(f"{path} has runs of {', '.join(strange)}, for which the table has no row")
         if self.meshes and not all(isinstance(motion, tuple) for motion in self.motions):
             die(f"{path} has runs with a mesh and others without")
         self.variants = [variant for variant in wanted if any(

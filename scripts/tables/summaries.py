@@ -27,7 +27,7 @@ def headline(runs, people):
     ratio, same = (interval(runs.ratios_of_all("handcast", reference)) for reference in ("paper", "paper_network"))
     return (f"the light of handcast is {ours} mm (mean / p95) from its place with our network; that of the published method, as we wrote it anew, is "
             f"{theirs} mm off with {'MediaPipe' if 'mediapipe' in runs.detector('paper') else 'a model of a detector'} and its own times. The "
-            f"ratio is {ratio} (95 % over the {people_of(runs, people)}), and {same} with our network and our times for both. " +
+            f"ratio is {ratio} ({'95 % ' if len(runs.seeds) > 2 else ''}over the {people_of(runs, people)}), and {same} with our network and our times for both. " +
             larger_in(runs))
 
 

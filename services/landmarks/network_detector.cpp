@@ -12,14 +12,14 @@ namespace {
 /// A landmark model on the camera's images.
 class NetworkDetector final : public Detector {
  public:
-  /// `has_tracker`: false if the poses of the rig are made from these landmarks; they are no hints
-  /// then.
-  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool has_tracker)
-      : finder_(std::move(finder)), camera_(camera), has_tracker_(has_tracker) {}
+  /// `has_hints`: false if the poses of the rig are made from these landmarks alone, which would be
+  /// hints of their own.
+  NetworkDetector(HandFinder finder, const calib::CameraModel& camera, bool has_hints)
+      : finder_(std::move(finder)), camera_(camera), has_hints_(has_hints) {}
 
   Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& told,
                                 Deadline) override {
-    const Hints hints = has_tracker_ ? told : Hints{};
+    const Hints hints = has_hints_ ? told : Hints{};
     if (static_cast<int>(frame.width_px) != camera_.width_px ||
         static_cast<int>(frame.height_px) != camera_.height_px)
       return fail(
@@ -53,7 +53,7 @@ class NetworkDetector final : public Detector {
 
   HandFinder finder_;
   calib::CameraModel camera_;
-  bool has_tracker_;
+  bool has_hints_;
 };
 
 /// Networks, and the mask, take a hand for one whose image has the same scale in all directions.
@@ -81,13 +81,13 @@ Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
   auto model =
       open_landmark_model(settings.backend, {.executor = settings.executor, .folder = *folder});
   if (!model) return fail_in(fmt::format("landmarks '{}'", settings.backend), model.error());
-  const bool has_tracker = rig.pose.backend != "none";
+  const bool has_hints = rig.pose.backend != "none";
   // The poses of `stereo` are made from these landmarks, too, but of two views: good hints, once
   // the hands were found.
-  const bool lifts = !has_tracker || rig.pose.backend == "stereo" || rig.pose.second == "stereo";
+  const bool lifts = !has_hints || rig.pose.backend == "stereo" || rig.pose.second == "stereo";
   HandFinder finder(std::move(*model), settings.hands,
                     lifts ? HandFinder::Poses::of_landmarks : HandFinder::Poses::of_a_tracker);
-  return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, has_tracker);
+  return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, has_hints);
 }
 
 }  // namespace handcast::landmarks

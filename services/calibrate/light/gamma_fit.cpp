@@ -59,20 +59,26 @@ std::pair<double, double> interval_of(std::span<const GreyStep> steps, double br
   return {gammas[kResamples / 40], gammas[kResamples - 1 - kResamples / 40]};
 }
 
-/// The correlation of level and share.
-double correlation(std::span<const GreyStep> steps) {
-  const auto count = static_cast<double>(steps.size());
-  double x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-  for (const auto& step : steps) {
-    x += step.level / count;
-    y += step.share / count;
-  }
-  for (const auto& step : steps) {
-    xx += std::pow(step.level - x, 2);
-    yy += std::pow(step.share - y, 2);
-    xy += (step.level - x) * (step.share - y);
-  }
-  return xy / std::sqrt(std::max(xx * yy, 1e-12));
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// The misfit of a light that is the same at all levels.
+double misfit_of_constant(std::span<const GreyStep> steps) {
+  std::vector<double> shares;
+  for (const auto& step : steps) shares.push_back(step.share);
+  const double middle = median_of(std::move(shares));
+  return misfit_of(steps, [&](double) { return middle; });
+}
+
+/// The median absolute difference of the steps from the curve of a setting.
+double noise_of(std::span<const GreyStep> steps, double brightest, double gamma_setting) {
+  std::vector<double> differences;
+  for (const auto& step : steps)
+    differences.push_back(std::abs(step.share - share_of(step.level, brightest, gamma_setting)));
+  return median_of(std::move(differences));
 }
 
 constexpr int kSide_px = 260;  ///< of the picture
@@ -105,16 +111,17 @@ Result<GammaFit> fit_gamma(std::span<const GreyStep> steps, double brightest) {
     return fail(Errc::bad_data,
                 fmt::format("the light of {} grey levels was seen, and {} are needed",
                             levels.size(), kLeastLevels));
-  constexpr double kLeastCorrelation = 0.7;
-  if (!(correlation(steps) > kLeastCorrelation))
-    return fail(Errc::bad_data,
-                "the light does not grow with the grey level: something moved, or the camera sees "
-                "too little of the projector's light");
   GammaFit fit;
   fit.gamma = best_gamma(steps, brightest);
   std::tie(fit.low, fit.high) = interval_of(steps, brightest);
   fit.misfit = misfit_of_gamma(steps, brightest, fit.gamma);
   fit.misfit_of_srgb = misfit_of_gamma(steps, brightest, 0);
+  fit.noise = noise_of(steps, brightest, fit.setting());
+  constexpr double kMostOfConstant = 0.9;
+  if (!(fit.misfit < kMostOfConstant * misfit_of_constant(steps)))
+    return fail(Errc::bad_data,
+                "the light does not grow with the grey level: something moved, or the camera sees "
+                "too little of the projector's light");
   constexpr double kAtEdge = 0.01;
   if (fit.gamma < kLeastGamma + kAtEdge || fit.gamma > kMostGamma - kAtEdge)
     return fail(Errc::bad_data,
@@ -126,9 +133,10 @@ Result<GammaFit> fit_gamma(std::span<const GreyStep> steps, double brightest) {
 
 bool is_clearly_worse(double gamma_setting, std::span<const GreyStep> steps, double brightest,
                       const GammaFit& fit) {
-  constexpr double kClearly = 1.5;
-  return misfit_of_gamma(steps, brightest, gamma_setting) >
-         kClearly * std::min(fit.misfit, fit.misfit_of_srgb);
+  constexpr double kClearly = 0.6;  // of the noise
+  return misfit_of_gamma(steps, brightest, gamma_setting) -
+             std::min(fit.misfit, fit.misfit_of_srgb) >
+         kClearly * fit.noise;
 }
 
 std::string gamma_svg(std::span<const GreyStep> steps, double brightest, const GammaFit& fit,

@@ -19,6 +19,7 @@ struct GammaFit {
   double low = 0, high = 0;   ///< 95 % interval of gamma
   double misfit = 0;          ///< of the shares, mean absolute difference
   double misfit_of_srgb = 0;  ///< the same for the curve of sRGB (IEC 61966-2-1)
+  double noise = 0;           ///< of the shares about the better curve, median absolute difference
   bool is_srgb() const { return misfit_of_srgb <= misfit; }
   /// The value of projector.gamma.
   double setting() const { return is_srgb() ? 0 : gamma; }

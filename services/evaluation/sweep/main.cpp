@@ -29,7 +29,8 @@ constexpr int kExitStopped = 130;  ///< as a shell names the end of a program by
 const char* const kFooter = R"(A plan is a TOML file. The paths in it are relative to the file.
   rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24    joints_only = false
   [settings]    settings of all runs, e.g. twin.tracker.age_ms = 15; settings_from = "FILE.toml": a file of such settings
-  [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"
+  [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"; with from = ["NAME"], it has
+                the settings of variants above, too, and the rig of the first
   [grid]        lists of values, e.g. twin.speed = [1, 2, 3]; all combinations are run. Several [[grid]] are run one after the other
 config/REFERENCE.md lists the settings; config/sweeps holds plans.
 

@@ -64,8 +64,8 @@ void describe(Visitor& visitor, VariantHead& head) {
   visitor.field("rig", head.rig, "Rig file of the variant, relative to the plan.");
   visitor.field(
       "from", head.from,
-      "Variants above whose settings it has, too. Its rig is that of the first, if it has "
-      "none of its own. Its own settings take precedence.");
+      "Variants above whose settings it has, too; of a setting that several have, the last "
+      "counts, and its own counts most. Its rig is that of the first, if it has none.");
   visitor.section("settings", head.settings, "Settings of the variant's runs.");
 }
 
@@ -266,6 +266,12 @@ class Reader {
     }
   }
 
+  /// The last value of a setting counts.
+  static void set(std::vector<Axis>& settings, Axis setting) {
+    std::erase_if(settings, [&](const Axis& other) { return other.path == setting.path; });
+    settings.push_back(std::move(setting));
+  }
+
   Variant variant(const Value& element, const std::string& default_rig,
                   std::span<const Variant> above) {
     VariantHead head;
@@ -281,9 +287,10 @@ class Reader {
         continue;
       }
       if (head.rig.empty() && name == head.from.front()) read.rig_file = base->rig_file;
-      std::ranges::copy(base->settings, std::back_inserter(read.settings));
+      for (const auto& setting : base->settings) set(read.settings, setting);
     }
-    std::ranges::move(fixed(section(sections, "settings")), std::back_inserter(read.settings));
+    for (auto& setting : fixed(section(sections, "settings")))
+      set(read.settings, std::move(setting));
     read.rig_file = read.rig_file.lexically_normal();
     read.rig_text = rig_text(read.rig_file, element.line);
     return read;

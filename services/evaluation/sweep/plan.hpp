@@ -48,7 +48,8 @@ struct Variant {
 ///     settings.cascade.filter.method = "one_euro"
 ///     [[variant]]
 ///     name = "one_euro_held"
-///     from = ["one_euro"]              # has the rig and the settings of variants above, too
+///     from = ["one_euro"]              # the settings of variants above, and the rig of the first
+///                                      # of them; the last count most, and its own before all
 ///     settings.cascade.predict.method = "hold"
 ///     [grid]                           # all combinations are run
 ///     twin.motion = ["builtin:wave", "../../data/wave"]

@@ -54,7 +54,7 @@ Result<std::span<const FoundHand>> HandFinder::find(renderer::GreyView image, co
   for (auto& candidate : tracks_.candidates(hints_px, *model_.landmarks)) {
     if (has_most()) break;
     if (is_found(candidate.side)) candidate.side = other(candidate.side);
-    const bool is_known = !has_tracker_ && candidate.left_score >= 0;
+    const bool is_known = lifts_ && candidate.left_score >= 0;
     const bool either = !candidate.hint_px && !candidate.is_followed && !scores_sides &&
                         found_.empty() && !is_known;
     const auto examined =
@@ -92,7 +92,7 @@ Result<void> HandFinder::examine(renderer::GreyView image, const HandCandidate& 
   const Confidences confidences = confidences_of(*hand, region, candidate.hint_px);
   if (mean_of(confidences) < kLeastConfidence) return {};
   auto sigma_px = hand->sigma_px;
-  if (const float usual = model_.landmarks->traits().usual_sigma; usual > 0 && has_tracker_)
+  if (const float usual = model_.landmarks->traits().usual_sigma; usual > 0 && !lifts_)
     sigma_px.fill(usual * region.size_px);
   found_.push_back({candidate.side, hand->presence, hand->points_px, region, sigma_px, confidences,
                     candidate.before_px, hand->left_score, candidate.comparisons});
@@ -136,7 +136,7 @@ Result<LandmarkEstimate> HandFinder::run_model(renderer::GreyView image, const R
 Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCandidate& candidate,
                                         FoundHand& hand) {
   const float before = candidate.left_score < 0 ? hand.left_score : candidate.left_score;
-  if (!has_tracker_ && !candidate.is_followed) return before;
+  if (lifts_ && !candidate.is_followed) return before;
   if (!candidate.is_followed || candidate.hint_px || model_.landmarks->traits().scores_sides)
     return before + kLeftScoreShare * (hand.left_score - before);
   const float share = share_of_comparison(hand);
@@ -151,7 +151,7 @@ Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCand
 /// The weight of a comparison of sides in the mean; 0 if none is due. The first comparisons have
 /// equal weights, the start of the mean that of two.
 float HandFinder::share_of_comparison(FoundHand& hand) {
-  if (has_tracker_) return ++since_side_ % kCompareSidesEvery == 0 ? kLeftScoreShare : 0.0f;
+  if (!lifts_) return ++since_side_ % kCompareSidesEvery == 0 ? kLeftScoreShare : 0.0f;
   std::int64_t& compared_ns = compared_ns_[index_of(hand.side)];
   const std::int64_t since_ns = image_ns_ - compared_ns;
   if (since_ns < kCompareSidesEvery_ns) return 0;
@@ -186,7 +186,7 @@ bool HandFinder::search_is_due(const Hints& hints_px) {
   ++since_search_;
   if (!can_search()) return false;
   if (found_.empty()) return since_search_ >= kSearchEvery;
-  return (!has_tracker_ || !any(hints_px)) && !has_most() && since_search_ >= kSearchForMoreEvery;
+  return (lifts_ || !any(hints_px)) && !has_most() && since_search_ >= kSearchForMoreEvery;
 }
 
 Result<void> HandFinder::search(renderer::GreyView image) {

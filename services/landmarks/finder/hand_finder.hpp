@@ -31,9 +31,7 @@ class HandFinder {
 
   /// `most_hands`: 1 or 2.
   HandFinder(OpenedModel model, int most_hands, Poses poses = Poses::of_a_tracker)
-      : model_(std::move(model)),
-        most_hands_(most_hands),
-        has_tracker_(poses == Poses::of_a_tracker) {}
+      : model_(std::move(model)), most_hands_(most_hands), lifts_(poses == Poses::of_landmarks) {}
 
   /// The hands in the image, valid until the next call. The side of a hand is the tracker's if the
   /// tracker has a hand there, otherwise the model's. Images must come in the order of their times.
@@ -57,7 +55,7 @@ class HandFinder {
   const Times& times() const { return times_; }
 
  private:
-  bool can_search() const { return model_.palms || !has_tracker_; }
+  bool can_search() const { return model_.palms || lifts_; }
   bool is_found(msg::Side side) const;
   bool has_most() const { return found_.size() >= static_cast<std::size_t>(most_hands_); }
   Result<void> examine(renderer::GreyView image, const HandCandidate& candidate);
@@ -81,7 +79,7 @@ class HandFinder {
 
   OpenedModel model_;
   int most_hands_;
-  bool has_tracker_;
+  bool lifts_;  ///< poses are made from these landmarks
   BrightHands bright_hands_;
   HandTracks tracks_;
   SteadyHints steady_hints_;

@@ -46,9 +46,9 @@ class LandmarkModel {
     bool reads_tracker = false;
     /// Of a model that reports no sigmas: the standard deviation of its landmarks per axis, as a
     /// share of the region's side. It says nothing of single landmarks, and so does not change
-    /// their confidence. Landmarks have it in rigs with a tracker alone: poses that are made of
-    /// landmarks become worse by it. Only of a model that scores sides: without scores, sigmas
-    /// tell them.
+    /// their confidence. Landmarks have it where HandFinder::Poses::of_a_tracker: poses that are
+    /// made from landmarks become worse by it. Only of a model that scores sides: without scores,
+    /// sigmas tell them.
     float usual_sigma = 0;
   };
   /// The traits of this model; they never change.

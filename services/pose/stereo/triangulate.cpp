@@ -32,12 +32,14 @@ std::optional<glm::dvec3> nearest_to_rays(std::span<const Sight> sights) {
   return glm::inverse(sum) * right;
 }
 
-/// The problem at a point: information matrix, gradient and misfit. False if it is behind a camera.
+/// The problem at a point.
 struct Normal {
   glm::dmat3 information{0};
   glm::dvec3 gradient{0};
   double misfit = 0;
 };
+
+/// Empty if the point is behind a camera.
 std::optional<Normal> normal_at(std::span<const Sight> sights, const glm::dvec3& place_m) {
   Normal normal;
   for (const Sight& sight : sights) {

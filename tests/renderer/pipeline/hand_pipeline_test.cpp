@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "renderer/predict/project_landmarks.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
@@ -175,39 +176,61 @@ TEST(HandPipeline, FastMotionAndReversalsAreNotTakenForJumps) {
   }
 }
 
-/// How far the joints of the finger tips in the drawn pose are seen from where they are, px: a
-/// tracker has the fingers 12 degrees straighter at two joints, and the landmarks are right.
-float tips_off_px(bool bends) {
+/// What is skinned of a hand at rest.
+struct Drawn {
+  LandmarkPoints joints_px;
+  std::vector<glm::vec2> skin_px;
+};
+
+/// A hand with fingers bent by these angles at two joints, deg, whose landmarks are seen, while the
+/// tracker reports them bent by others.
+Drawn drawn(float true_deg, float reported_deg, const config::Skin& skin) {
   const auto calibration = rig_above_hand();
-  const auto pose_with = [](float knuckle, float middle) {
-    const std::array<float, 4> finger{0, knuckle, middle, 20};
+  const auto pose_with = [](float bent_deg) {
+    const std::array<float, 4> finger{0, bent_deg, bent_deg - 5, 20};
     const testing::Pose bent{"", {}, {finger, finger, finger, finger}};
     return pose_of(Side::left, testing::posed(*load_hand_or_default({}, Side::left), bent));
   };
-  const auto truth = pose_with(50, 45), reported = pose_with(38, 33);
   config::Cascade settings;
   settings.ladder.rung = config::RungChoice::landmarks;
-  settings.skin.bend = bends;
-  settings.skin.turn = settings.filter.definitions = false;  // a pose that lasts teaches them
+  settings.skin = skin;
+  settings.filter.definitions = false;  // an error that lasts teaches them
   auto hand =
       *HandPipeline::load(Side::left, settings, {.left = "builtin:white"}, {}, calibration, {});
-  const auto seen = landmarks_of(calibration, 0, truth, {}).hands[0];
+  const auto seen = landmarks_of(calibration, 0, pose_with(true_deg), {}).hands[0];
   for (std::int64_t ms = 0; ms < 400; ++ms) {
-    if (ms % 9 == 0) hand.push(ms * kMs, ms * kMs, reported);
+    if (ms % 9 == 0) hand.push(ms * kMs, ms * kMs, pose_with(reported_deg));
     if (ms % 16 == 0) hand.push(ms * kMs, ms * kMs, seen);
   }
   auto frame = *hand.predict(400 * kMs, 404 * kMs, std::nullopt);
   hand.skin(frame, 0);
+  const auto& skin_px = frame.skinned->seen_px;
+  return {frame.drawn_from, {skin_px.begin(), skin_px.end()}};
+}
+
+/// The mean distance of the joints of finger tips, px.
+float tips_off_px(const Drawn& a, const Drawn& b) {
   float sum_px = 0;
-  for (const int tip : {8, 12, 16, 20})
-    sum_px += glm::distance(frame.drawn_from[tip], position_px(seen.points[tip]));
+  for (const int tip : {8, 12, 16, 20}) sum_px += glm::distance(a.joints_px[tip], b.joints_px[tip]);
   return sum_px / 4;
 }
 
+float skin_off_px(const Drawn& a, const Drawn& b) {
+  float sum_px = 0;
+  for (std::size_t i = 0; i < a.skin_px.size(); ++i)
+    sum_px += glm::distance(a.skin_px[i], b.skin_px[i]);
+  return sum_px / static_cast<float>(a.skin_px.size());
+}
+
 TEST(HandPipeline, FingersAreDrawnAsBentAsTheLandmarksShow) {
-  const float straight_px = tips_off_px(false);
-  EXPECT_GT(straight_px, 10);
-  EXPECT_LT(tips_off_px(true), 0.4f * straight_px);
+  config::Skin skin;
+  skin.bend = skin.turn = false;
+  const auto truth = drawn(50, 50, skin), straight = drawn(50, 38, skin);
+  skin.bend = true;
+  const auto bent = drawn(50, 38, skin);
+  EXPECT_GT(tips_off_px(straight, truth), 10);
+  EXPECT_LT(tips_off_px(bent, truth), 0.4f * tips_off_px(straight, truth));
+  EXPECT_LT(skin_off_px(bent, truth), 0.5f * skin_off_px(straight, truth));
 }
 
 TEST(HandPipeline, AStillHandOfAFlawlessTrackerIsNotTakenForFrozen) {

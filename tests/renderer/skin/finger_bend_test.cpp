@@ -127,13 +127,14 @@ TEST_P(FingerBend, WildLandmarksBendNoJointFar) {
   }
 }
 
-TEST_P(FingerBend, ALandmarkThatIsNotANumberOrAJointBehindTheCameraLeavesItsFingerAlone) {
+TEST_P(FingerBend, ALandmarkThatIsNotFiniteOrAJointBehindTheCameraLeavesItsFingerAlone) {
   auto reported = pose(kReported);
   auto landmarks_px = seen(pose(kTrue));
+  landmarks_px[3].y = INFINITY;
   landmarks_px[7].x = NAN;
   reported.joints[static_cast<std::size_t>(msg::kJointOfLandmark[12])].position_m = {0, 2, 0};
   const auto result = bent(reported, landmarks_px);
-  for (const int alone : {5, 6, 7, 9, 10, 11})
+  for (const int alone : {2, 3, 5, 6, 7, 9, 10, 11})
     EXPECT_EQ(turned_rad(result, reported, alone), 0) << alone;
   EXPECT_GT(turned_rad(result, reported, 14), 0.05f) << "the ring finger";
 }

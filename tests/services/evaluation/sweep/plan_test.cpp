@@ -63,7 +63,8 @@ TEST(Plan, AVariantHasTheSettingsOfThoseItIsFrom) {
       (source_root() / "config/rigs/paper.toml").string() +
       "\"\nsettings.cascade.skin.fit = true\n"
       "[[variant]]\nname = \"both\"\nfrom = [\"paper\", \"still\"]\nsettings.twin.speed = 3\n"
-      "[[variant]]\nname = \"still_again\"\nfrom = [\"still\", \"both\"]\n");
+      "[[variant]]\nname = \"still_again\"\nfrom = [\"still\", \"both\"]\nrig = \"" +
+      (source_root() / "config/rigs/baseline.toml").string() + "\"\n");
   ASSERT_TRUE(plan) << plan.error().what;
   const auto runs = expand(*plan)->runs;
   const auto both = rig_of(*plan, runs[2]);
@@ -72,8 +73,17 @@ TEST(Plan, AVariantHasTheSettingsOfThoseItIsFrom) {
   EXPECT_TRUE(both->cascade.skin.fit);
   EXPECT_EQ(both->twin.motion, "builtin:still");
   EXPECT_EQ(both->twin.speed, 3) << "its own";
-  EXPECT_NE(rig_of(*plan, runs[3])->cascade.filter.method, config::FilterMethod::paper);
+  EXPECT_EQ(plan->variants[3].rig_file.filename(), "baseline.toml") << "its own";
   EXPECT_EQ(rig_of(*plan, runs[3])->twin.speed, 3) << "the last counts";
+}
+
+TEST(Plan, AVariantHasEachSettingOnce) {
+  std::string toml = "[[variant]]\nname = \"v0\"\nsettings.twin.speed = 2\n";
+  for (int i = 1; i < 40; ++i)
+    toml += fmt::format("[[variant]]\nname = \"v{0}\"\nfrom = [\"v{1}\", \"v{1}\"]\n", i, i - 1);
+  const auto plan = plan_of(toml);
+  ASSERT_TRUE(plan) << plan.error().what;
+  EXPECT_EQ(plan->variants.back().settings.size(), 1u);
 }
 
 TEST(Plan, AVariantIsOnlyFromThoseAbove) {
