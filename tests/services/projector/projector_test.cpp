@@ -57,6 +57,10 @@ class ProjectorContract : public testing::TestWithParam<std::string_view> {
     calibration_.projector_height_px = 24;
     rig_.projector.rate_hz = 100;
     rig_.projector.latency_ms = 4;
+    open();
+  }
+  void open() {
+    projector_.reset();
     auto opened = open_projector(rig_, calibration_);
     ASSERT_TRUE(opened) << opened.error().what;
     projector_ = std::move(*opened);
@@ -106,7 +110,10 @@ TEST_P(ProjectorContract, SaysWhoKnowsWhenLightCameAndHowManyRefreshesHadNoNewFr
 }
 
 TEST_P(ProjectorContract, ADeadlineInThePastIsATimeoutNotAHang) {
-  // A frame that takes longer than a period, on a busy machine, is not followed by a wait.
+  // A frame that takes longer than a period is not followed by a wait: on a busy machine, a
+  // window's takes more than 10 ms. The emulated card has one mode.
+  if (GetParam() != "kms") rig_.projector.rate_hz = 5;
+  open();
   auto busy = projector_->present(small_.frame, 1, kLight, Deadline::in(5s));
   for (int i = 2; busy && i < 500; ++i)
     busy = projector_->present(small_.frame, i, kLight, Deadline::now());
