@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "calib/screen/statistics.hpp"
 #include "renderer/base/srgb.hpp"
 
 namespace handcast::calibrate {
@@ -59,17 +60,11 @@ std::pair<double, double> interval_of(std::span<const GreyStep> steps, double br
   return {gammas[kResamples / 40], gammas[kResamples - 1 - kResamples / 40]};
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// The misfit of a light that is the same at all levels.
 double misfit_of_constant(std::span<const GreyStep> steps) {
   std::vector<double> shares;
   for (const auto& step : steps) shares.push_back(step.share);
-  const double middle = median_of(std::move(shares));
+  const double middle = calib::median(std::move(shares));
   return misfit_of(steps, [&](double) { return middle; });
 }
 
@@ -78,7 +73,7 @@ double noise_of(std::span<const GreyStep> steps, double brightest, double gamma_
   std::vector<double> differences;
   for (const auto& step : steps)
     differences.push_back(std::abs(step.share - share_of(step.level, brightest, gamma_setting)));
-  return median_of(std::move(differences));
+  return calib::median(std::move(differences));
 }
 
 constexpr int kSide_px = 260;  ///< of the picture
