@@ -11,7 +11,7 @@
 
 namespace handcast::calib {
 
-Cover cover_of(const Observations& o, const Pose& pose, const std::vector<bool>& inliers) {
+Cover cover_of(const Observations& o, const TrackerPose& pose, const std::vector<bool>& inliers) {
   constexpr int kSquare_px = 60, kLeast = 3;
   std::map<std::pair<int, int>, int> squares;
   std::vector<double> depths_m;

@@ -13,7 +13,7 @@ struct Cover {
   double image_share = 0;  ///< of 60 px squares of the image that hold at least 3 points
   double depth_m = 0;      ///< between the 2nd and the 98th percentile
 };
-Cover cover_of(const Observations& observations, const Pose& pose,
+Cover cover_of(const Observations& observations, const TrackerPose& pose,
                const std::vector<bool>& inliers);
 
 /// A time in which far fewer sightings fit than otherwise, in seconds since the first sighting.

@@ -49,7 +49,7 @@ double area_m2(const Triple& triple) {
 }
 
 /// Up to four poses in which the camera sees the triple as it did. Ke and Roumeliotis 2017.
-std::vector<Pose> poses_of(const CameraModel& camera, const Triple& triple) {
+std::vector<TrackerPose> poses_of(const CameraModel& camera, const Triple& triple) {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> images;
   for (const auto& [at_m, px] : triple) {
@@ -63,11 +63,11 @@ std::vector<Pose> poses_of(const CameraModel& camera, const Triple& triple) {
   } catch (const cv::Exception&) {
     return {};  // no solution
   }
-  std::vector<Pose> poses;
+  std::vector<TrackerPose> poses;
   for (std::size_t i = 0; i < turns.size(); ++i) {
     cv::Matx33d turn;
     cv::Rodrigues(turns[i], turn);
-    Pose pose;
+    TrackerPose pose;
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c) pose.rotation[c][r] = turn(r, c);
     for (int r = 0; r < 3; ++r) pose.translation_m[r] = shifts[i].at<double>(r);
@@ -77,8 +77,8 @@ std::vector<Pose> poses_of(const CameraModel& camera, const Triple& triple) {
 }
 
 /// Gives up when the sum exceeds `limit_px2`.
-double sum_of_squares(const CameraModel& camera, const std::vector<Pair>& pairs, const Pose& pose,
-                      double limit_px2) {
+double sum_of_squares(const CameraModel& camera, const std::vector<Pair>& pairs,
+                      const TrackerPose& pose, double limit_px2) {
   double sum = 0;
   for (const auto& [at_m, px] : pairs) {
     const auto at = pose.apply(at_m);

@@ -11,7 +11,7 @@ constexpr double kNear_px = 10;
 
 /// A pose from three sightings, and how well it fits the others.
 struct Hypothesis {
-  Pose pose;
+  TrackerPose pose;
   double cost_px2 = 0;  ///< mean of the squared distances, each at most kNear_px^2
 };
 

@@ -61,7 +61,7 @@ std::optional<std::string> other_tip(const CameraModel& camera, const TrackedTip
       kTipNames[static_cast<std::size_t>(*best)], 100 * best_share, 100 * index_share);
 }
 
-Pose pose_of(const TrackerFit& fit) {
+TrackerPose pose_of(const TrackerFit& fit) {
   return {glm::dmat3(fit.camera_from_tracker), glm::dvec3(fit.camera_from_tracker[3]),
           ns_to_seconds(fit.clock_offset_ns)};
 }

@@ -35,7 +35,7 @@ struct Solution {
   double cost_px2 = 0;
 };
 
-std::optional<Solution> solve(const Observations& o, const Pose& start) {
+std::optional<Solution> solve(const Observations& o, const TrackerPose& start) {
   const auto refined = refine(o, start);
   if (!refined) return std::nullopt;
   return Solution{*refined, cost_px2(o.distances_px(refined->pose))};
@@ -63,7 +63,7 @@ std::optional<double> second_pose_rad(const Observations& o,
                                       const std::vector<Hypothesis>& hypotheses,
                                       const Solution& best) {
   constexpr double kApart_rad = 0.17;
-  const auto apart = [&](const Pose& pose) {
+  const auto apart = [&](const TrackerPose& pose) {
     return angle_between_rad(pose, best.refined.pose) > kApart_rad;
   };
   const auto other = std::ranges::find_if(hypotheses, apart, &Hypothesis::pose);
@@ -93,7 +93,7 @@ std::vector<MisfitRun> leave_out_misfits(Observations& o, Refined& refined) {
     if (!run) break;
     const double shift_s = o.sightings.front().time_s - begin_s;
     *run = {run->begin_s + shift_s, run->end_s + shift_s};
-    std::erase_if(o.sightings, [&](const Observation& s) {
+    std::erase_if(o.sightings, [&](const TimedSighting& s) {
       const double at_s = s.time_s - begin_s;
       return at_s >= run->begin_s && at_s < run->end_s;
     });
@@ -108,7 +108,8 @@ std::vector<MisfitRun> leave_out_misfits(Observations& o, Refined& refined) {
   return runs;
 }
 
-Residuals residuals_of(const Observations& o, const Pose& pose, const std::vector<bool>& inliers) {
+Residuals residuals_of(const Observations& o, const TrackerPose& pose,
+                       const std::vector<bool>& inliers) {
   const auto distances = o.distances_px(pose);
   std::vector<double> fitting_px;
   for (std::size_t i = 0; i < distances.size(); ++i)
@@ -117,7 +118,7 @@ Residuals residuals_of(const Observations& o, const Pose& pose, const std::vecto
 }
 
 /// The middle and the corners of the box between the 2nd and the 98th percentiles of the points.
-std::array<glm::dvec3, 9> places_of(const Observations& o, const Pose& pose,
+std::array<glm::dvec3, 9> places_of(const Observations& o, const TrackerPose& pose,
                                     const std::vector<bool>& inliers) {
   std::array<std::vector<double>, 3> axes;
   for (std::size_t i = 0; i < inliers.size(); ++i) {
@@ -139,7 +140,7 @@ std::array<glm::dvec3, 9> places_of(const Observations& o, const Pose& pose,
   return places;
 }
 
-void set_pose(const Pose& pose, TrackerFit& fit) {
+void set_pose(const TrackerPose& pose, TrackerFit& fit) {
   fit.camera_from_tracker = glm::dmat4(pose.rotation);
   fit.camera_from_tracker[3] = glm::dvec4(pose.translation_m, 1);
   fit.clock_offset_ns = seconds_to_ns(pose.offset_s);

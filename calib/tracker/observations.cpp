@@ -47,9 +47,9 @@ Result<void> check_samples(std::span<const TrackerSample> samples) {
   return {};
 }
 
-Result<std::vector<Observation>> usable_sightings(std::span<const Sighting> sightings, int points,
-                                                  std::int64_t begin_ns) {
-  std::vector<Observation> usable;
+Result<std::vector<TimedSighting>> usable_sightings(std::span<const Sighting> sightings, int points,
+                                                    std::int64_t begin_ns) {
+  std::vector<TimedSighting> usable;
   for (const auto& s : sightings) {
     if (s.point < 0 || s.point >= points)
       return fail(Errc::bad_data, fmt::format("A sighting is of point {}, but the tracker has the "
@@ -60,9 +60,9 @@ Result<std::vector<Observation>> usable_sightings(std::span<const Sighting> sigh
       usable.push_back(
           {seconds_between(begin_ns, s.time_ns), s.point, s.undistorted_px, s.sigma_px});
   }
-  std::ranges::stable_sort(usable, {}, &Observation::time_s);
+  std::ranges::stable_sort(usable, {}, &TimedSighting::time_s);
   std::vector<double> sigmas(usable.size());
-  std::ranges::transform(usable, sigmas.begin(), &Observation::sigma);
+  std::ranges::transform(usable, sigmas.begin(), &TimedSighting::sigma);
   const double usual_px = percentile_of(std::move(sigmas), 0.5);
   for (auto& s : usable) s.sigma /= usual_px;
   return usable;
@@ -135,12 +135,12 @@ Result<void> check_amount(const Observations& o) {
   return {};
 }
 
-double angle_between_rad(const Pose& a, const Pose& b) {
+double angle_between_rad(const TrackerPose& a, const TrackerPose& b) {
   const auto turn = glm::transpose(a.rotation) * b.rotation;
   return std::acos(std::clamp((turn[0][0] + turn[1][1] + turn[2][2] - 1) / 2, -1., 1.));
 }
 
-std::vector<double> Observations::distances_px(const Pose& pose) const {
+std::vector<double> Observations::distances_px(const TrackerPose& pose) const {
   std::vector<double> distances;
   distances.reserve(sightings.size());
   for (const auto& s : sightings) {
@@ -177,7 +177,7 @@ Result<Observations> observe(const CameraModel& camera, std::span<const TrackerS
   if (const auto checked = check_common_time(o); !checked)
     return tl::make_unexpected(checked.error());
   // What is seen while the tracker is silent takes no part.
-  std::erase_if(o.sightings, [&](const Observation& s) {
+  std::erase_if(o.sightings, [&](const TimedSighting& s) {
     return !o.track.at(s.point, s.time_s) && !o.track.at(s.point, s.time_s - kSearch_s) &&
            !o.track.at(s.point, s.time_s + kSearch_s);
   });

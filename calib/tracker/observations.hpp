@@ -10,7 +10,7 @@
 namespace handcast::calib {
 
 /// A sighting whose time is in seconds since the first sample of the tracker.
-struct Observation {
+struct TimedSighting {
   double time_s = 0;
   int point = 0;
   glm::dvec2 px{0};
@@ -22,7 +22,7 @@ constexpr double kSearch_s = 0.1;
 
 /// What is to be found: camera space = rotation * tracker space + translation, and the tracker's
 /// clock minus the camera's.
-struct Pose {
+struct TrackerPose {
   glm::dmat3 rotation{1};
   glm::dvec3 translation_m{0};
   double offset_s = 0;
@@ -33,19 +33,19 @@ struct Pose {
 };
 
 /// The angle of the rotation between two poses.
-double angle_between_rad(const Pose& a, const Pose& b);
+double angle_between_rad(const TrackerPose& a, const TrackerPose& b);
 
 /// The input of a fit, checked and sorted by time.
 struct Observations {
   CameraModel camera;
   Track track;
-  std::vector<Observation> sightings;
+  std::vector<TimedSighting> sightings;
   int unusable_sightings = 0;  ///< left out: numbers that are not finite or not positive
   int unusable_samples = 0;
 
   /// The distance between each sighting and the projected point, in px. NaN if the tracker has no
   /// position at that time; infinite if the point is behind the camera.
-  std::vector<double> distances_px(const Pose& pose) const;
+  std::vector<double> distances_px(const TrackerPose& pose) const;
 };
 
 /// Errors: bad_data (see fit_tracker()).

@@ -23,7 +23,8 @@ struct Residual {
   Row slope;
 };
 
-std::optional<Residual> residual_of(const Observations& o, const Observation& s, const Pose& pose) {
+std::optional<Residual> residual_of(const Observations& o, const TimedSighting& s,
+                                    const TrackerPose& pose) {
   const auto moving = o.track.at(s.point, s.time_s + pose.offset_s);
   if (!moving) return std::nullopt;
   const auto x = pose.apply(moving->at_m), v = pose.rotation * moving->velocity_m_s;
@@ -52,7 +53,7 @@ double scale_of(const std::vector<Residual>& residuals, double limit) {
 /// A part of the normal equations, in standard deviations, at which the tracker's error is the
 /// same.
 struct Moment {
-  Normal normal;                         ///< as if there was no such error
+  NormalEquations normal;                ///< as if there was no such error
   Curvature second = Curvature::Zero();  ///< what the curvature of the robust cost is less
 
   void add(const Residual& r, double limit, double unit) {
@@ -70,7 +71,7 @@ struct SharedError {
   Eigen::Vector3d mean;
   Eigen::Matrix3d covariance;
 };
-SharedError shared_error(const Normal& n, double wander_m) {
+SharedError shared_error(const NormalEquations& n, double wander_m) {
   if (wander_m == 0) return {Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
   const Eigen::Matrix3d information =
       n.curvature.block<3, 3>(3, 3) + Eigen::Matrix3d::Identity() / (wander_m * wander_m);
@@ -88,7 +89,7 @@ bool has_shared_error(const Observations& o) {
 
 /// What a moment says about the pose, whatever its shared error is. A shift by that error and one
 /// of the pose have the same slopes.
-Normal without_shared_error(const Normal& n, const SharedError& error) {
+NormalEquations without_shared_error(const NormalEquations& n, const SharedError& error) {
   const Eigen::Matrix<double, 7, 3> across = n.curvature.middleCols<3>(3);
   return {n.curvature - across * error.covariance * across.transpose(),
           n.gradient - across * error.mean};
@@ -96,7 +97,7 @@ Normal without_shared_error(const Normal& n, const SharedError& error) {
 
 /// The same with the curvature of the robust cost; without its second part if outliers prevail.
 /// The gradient is that of step(), so that the sum over all moments is 0 at the solution.
-Normal of_robust_cost(const Moment& moment, double wander_m) {
+NormalEquations of_robust_cost(const Moment& moment, double wander_m) {
   auto robust = moment.normal;
   robust.curvature -= moment.second;
   if (wander_m == 0) return robust;
@@ -132,7 +133,7 @@ double scale_at(const Observations& o, const Refined& refined, double most) {
 
 }  // namespace
 
-Pose moved(const Pose& pose, const Change& change) {
+TrackerPose moved(const TrackerPose& pose, const Change& change) {
   const glm::dvec3 turn(change[0], change[1], change[2]), shift(change[3], change[4], change[5]);
   const double angle = glm::length(turn);
   const auto rotation =
@@ -141,7 +142,7 @@ Pose moved(const Pose& pose, const Change& change) {
           rotation * pose.translation_m + shift, pose.offset_s + change[6]};
 }
 
-Change change_between(const Pose& a, const Pose& b) {
+Change change_between(const TrackerPose& a, const TrackerPose& b) {
   const auto rotation = b.rotation * glm::transpose(a.rotation);
   const auto shift = b.translation_m - rotation * a.translation_m;
   Change change;
@@ -155,7 +156,7 @@ namespace {
 /// One Gauss-Newton step; nothing if the equations are singular. Estimates the shared error anew.
 std::optional<Change> step(const Observations& o, Refined& refined, double limit) {
   constexpr double kLeastWander_m = 1e-5, kMostWander_m = 0.005;
-  Normal sum;
+  NormalEquations sum;
   double squares_m2 = 0, count = 0;
   for (const auto& moment : moments_of(o, refined, limit)) {
     const auto error = shared_error(moment.normal, refined.wander_m);
@@ -185,7 +186,7 @@ constexpr int kMostRounds = 50;
 
 }  // namespace
 
-std::optional<Refined> refine(const Observations& o, const Pose& start) {
+std::optional<Refined> refine(const Observations& o, const TrackerPose& start) {
   // Larger scales would grow without end on sightings that are anywhere in the image.
   constexpr double kLargestScale = 3 * kNear_px / kTukey, kUsualWander_m = 0.001;
   Refined refined{
@@ -200,7 +201,8 @@ std::optional<Refined> refine(const Observations& o, const Pose& start) {
   return refined;
 }
 
-std::optional<Pose> with_limit(const Observations& o, const Refined& refined, double factor) {
+std::optional<TrackerPose> with_limit(const Observations& o, const Refined& refined,
+                                      double factor) {
   auto other = refined;
   for (int round = 0; round < kMostRounds; ++round) {
     const auto change = step(o, other, factor * kTukey * refined.scale);
@@ -212,8 +214,9 @@ std::optional<Pose> with_limit(const Observations& o, const Refined& refined, do
   return other.pose;
 }
 
-std::vector<Normal> normals_by_time(const Observations& o, const Refined& refined, double bin_s) {
-  std::vector<Normal> normals;
+std::vector<NormalEquations> normals_by_time(const Observations& o, const Refined& refined,
+                                             double bin_s) {
+  std::vector<NormalEquations> normals;
   double begin_s = 0;
   for (const auto& moment : moments_of(o, refined, kTukey * refined.scale)) {
     const auto bin = static_cast<std::size_t>(begin_s / bin_s);

@@ -22,13 +22,13 @@ constexpr double kTukey = 4.685;
 /// The tracker's common error is taken as constant for so long, and independent after it.
 constexpr double kWander_s = 0.25;
 
-Pose moved(const Pose& pose, const Change& change);
+TrackerPose moved(const TrackerPose& pose, const Change& change);
 /// The change from `a` to `b`, to first order.
-Change change_between(const Pose& a, const Pose& b);
+Change change_between(const TrackerPose& a, const TrackerPose& b);
 
 /// A pose that minimises the robust cost.
 struct Refined {
-  Pose pose;
+  TrackerPose pose;
   /// Standard deviation, along each axis, of the error that all points of the tracker share for a
   /// while (kWander_s): an unknown for each of these times. 0: there is none, because fewer than
   /// four points were seen, which cannot tell it from their own.
@@ -44,21 +44,21 @@ struct Refined {
 /// estimated with the pose: Dempster, Laird and Rubin 1977).
 /// The scale is estimated, at most as for sightings within 3 kNear_px.
 /// Nothing if the equations are singular.
-std::optional<Refined> refine(const Observations& observations, const Pose& start);
+std::optional<Refined> refine(const Observations& observations, const TrackerPose& start);
 
 /// The pose with another limit for outliers: so many times that of `refined`, whose scale and
 /// wander_m stay. Nothing if the equations are singular.
-std::optional<Pose> with_limit(const Observations& observations, const Refined& refined,
-                               double factor);
+std::optional<TrackerPose> with_limit(const Observations& observations, const Refined& refined,
+                                      double factor);
 
 /// The second derivative of the robust cost and minus its gradient, over a part of the sightings.
-struct Normal {
+struct NormalEquations {
   Curvature curvature = Curvature::Zero();
   Change gradient = Change::Zero();
 };
 /// Of each `bin_s` of time. Their sum has no gradient at the solution.
-std::vector<Normal> normals_by_time(const Observations& observations, const Refined& refined,
-                                    double bin_s);
+std::vector<NormalEquations> normals_by_time(const Observations& observations,
+                                             const Refined& refined, double bin_s);
 
 /// The tracker's common error as the sightings of each kWander_s show it by themselves: right,
 /// down, forward of the camera, in metres, relative to its mean. Empty if fewer than four points

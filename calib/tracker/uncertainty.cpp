@@ -26,8 +26,8 @@ double students_t(double freedom) {
          (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * freedom * freedom * freedom);
 }
 
-Normal sum_of(const std::vector<Normal>& normals) {
-  Normal sum;
+NormalEquations sum_of(const std::vector<NormalEquations>& normals) {
+  NormalEquations sum;
   for (const auto& n : normals) {
     sum.curvature += n.curvature;
     sum.gradient += n.gradient;
@@ -35,7 +35,7 @@ Normal sum_of(const std::vector<Normal>& normals) {
   return sum;
 }
 
-Change newton_step(const Normal& normal) {
+Change newton_step(const NormalEquations& normal) {
   const Eigen::LDLT<Curvature> solver(normal.curvature);
   return solver.isPositive() ? Change(solver.solve(normal.gradient)) : Change::Zero();
 }
@@ -47,7 +47,7 @@ std::size_t block_length(std::size_t bins) {
 
 /// The curvature is that of all blocks: resampled curvatures widen the intervals of 15 s by 15 %,
 /// which then hold the truth too often.
-Curvature bootstrap(const std::vector<Normal>& normals) {
+Curvature bootstrap(const std::vector<NormalEquations>& normals) {
   const std::size_t bins = normals.size(), length = block_length(bins);
   const std::size_t blocks = bins / length;
   std::mt19937 random(1);
@@ -55,7 +55,7 @@ Curvature bootstrap(const std::vector<Normal>& normals) {
   const auto all = sum_of(normals);
   Curvature covariance = Curvature::Zero();
   for (int i = 0; i < kResamples; ++i) {
-    Normal sum{all.curvature, Change::Zero()};
+    NormalEquations sum{all.curvature, Change::Zero()};
     for (std::size_t b = 0; b < blocks; ++b) {
       const auto first = any(random);
       for (std::size_t k = 0; k < length; ++k) sum.gradient += normals[(first + k) % bins].gradient;
@@ -116,7 +116,8 @@ Residuals held_out(const Observations& o, const Refined& refined) {
   const auto all = sum_of(normals);
   std::vector<double> held_px;
   for (std::size_t f = 0; f < normals.size(); ++f) {
-    const Normal rest{all.curvature - normals[f].curvature, all.gradient - normals[f].gradient};
+    const NormalEquations rest{all.curvature - normals[f].curvature,
+                               all.gradient - normals[f].gradient};
     const auto distances = o.distances_px(moved(refined.pose, newton_step(rest)));
     for (std::size_t i = 0; i < distances.size(); ++i) {
       const auto& s = o.sightings[i];

@@ -62,4 +62,8 @@ must_catch 'a cycle: services/landmarks/inference/onnx -> services/landmarks/inf
 # The headers of other projects.
 must_catch 'may only be included by config/settings/document.cpp' calib/planted.cpp '#include <toml++/toml.h>'
 must_catch 'may only be included by calib/board/, calib/lens/, calib/pair/, calib/tracker/first_pose.cpp, renderer/content/' services/camera/pictures.cpp '#include <opencv2/core.hpp>'
+
+# Two types of one name, which the linker cannot tell apart.
+must_catch 'handcast::calib::Pose is also defined in' \
+  calib/tracker/planted.hpp $'namespace handcast::calib {\nstruct Pose {};\n}  // namespace handcast::calib'
 echo "all planted breaches were caught"
