@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kColumns = 3;
 constexpr double kPanelWidth_px = 326, kPanelHeight_px = 280;
+constexpr double kBreakdownLabel_px = 27;  ///< width
 
 struct Panel {
   Stress stress;
@@ -36,11 +37,12 @@ void mark_breakdown(Script& script, const StressLine& line) {
   script.series({&*line.breakdown, 1},
                 fmt::format("points pt 6 ps 1.2 lw 2 lc rgb \"{}\"", line.method.colour.value));
   const auto place = script.place_px(*line.breakdown);
-  // The label is below the line on the right for handcast, above on the left for the others.
-  const bool ours = line.method.variant == "handcast";
-  script.text(place.x + (ours ? 9 : -9), place.y + (ours ? 11 : -12),
-              fmt::format("{:.3g}", line.breakdown->x),
-              {line.method.colour, ours ? "left" : "right", 11});
+  const auto number = fmt::format("{:.3g}", line.breakdown->x);
+  if (line.method.variant == "handcast")
+    script.text(place.x + 9, place.y + 11, number, {line.method.colour, "left", 11});
+  else  // above the line on the left, but inside the panel
+    script.text(std::max(place.x - 9, script.area().left + kBreakdownLabel_px), place.y - 15,
+                number, {line.method.colour, "right", 11});
 }
 
 /// Panels with the same metric have the same y axis.
