@@ -112,11 +112,14 @@ Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file
   const auto listing = list_settings(rig);
   Faults faults;
   apply_document(*document, file.string(), listing, faults);
-  resolve_paths(listing, std::filesystem::absolute(file).parent_path());
+  // The folder that this process was started in may have been deleted since: what is relative to it
+  // then stays so, and is not found.
+  std::error_code gone;
+  resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
   for (const auto& setting : settings)
     for (const auto& current : replace_renamed(setting, renamed_settings(), on_renamed))
       apply_assignment(current, listing, faults);
-  resolve_paths(listing, std::filesystem::current_path());
+  resolve_paths(listing, std::filesystem::current_path(gone));
   check_together(rig, file.string(), faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   return rig;

@@ -27,5 +27,8 @@ help_if_asked() {
   done
 }
 
+# for_sed TEXT: prints it as it must stand in the replacement of sed's s#...#...#.
+for_sed() { printf '%s' "$1" | sed 's/[&#\\]/\\&/g'; }
+
 # need_value "$@": checks that the option $1 is followed by a value.
 need_value() { [ $# -ge 2 ] || die "$1 needs a value; see --help"; }

@@ -61,7 +61,7 @@ Edge edge_of(std::span<const Toggle> toggles, std::size_t i, const SoundClip& cl
   const double first = std::ceil((window.from_ns - clip.first_ns) / clip.period_ns),
                last = std::floor((window.to_ns - clip.first_ns) / clip.period_ns);
   Edge edge;
-  if (first < 0 || last >= static_cast<double>(steps.size())) return edge;
+  if (first < 0 || last < first || last >= static_cast<double>(steps.size())) return edge;
   const float sign = toggles[i].is_bright != is_inverted ? 1 : -1;
   for (auto k = static_cast<std::size_t>(first); k <= static_cast<std::size_t>(last); ++k)
     if (const double step = sign * steps[k]; step > edge.step) {

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/log.hpp"
 
+#include <fcntl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
 #include <string>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/unique_fd.hpp"
 #include "ipc/base/wording.hpp"
 
 namespace handcast {
@@ -110,7 +115,32 @@ void write(Level level, std::string_view line) {
   const auto text = for_journal(
       level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
                          kNames[static_cast<std::size_t>(level)], printable(wording_of()(line))));
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+  put(text);
+}
+
+void put(std::string_view text) {
+  static std::atomic<std::int64_t> lost{0};
+  const auto takes = [](std::string_view words) {
+    return ::write(STDERR_FILENO, words.data(), words.size()) >= 0 ||
+           (errno != EAGAIN && errno != EWOULDBLOCK);
+  };
+  if (const auto lines = lost.load();
+      lines > 0 && takes(fmt::format("\n{} lines were lost: nobody read them\n", lines)))
+    lost -= lines;
+  if (!takes(text)) lost += std::ranges::count(text, '\n');
+}
+
+void never_wait_for_stderr() {
+  struct stat status {};
+  if (::fstat(STDERR_FILENO, &status) != 0) return;
+  if (S_ISSOCK(status.st_mode)) {
+    const timeval most{.tv_sec = 0, .tv_usec = 50'000};
+    ::setsockopt(STDERR_FILENO, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
+  } else if (S_ISFIFO(status.st_mode) || ::isatty(STDERR_FILENO) == 1) {
+    // Opened anew, because O_NONBLOCK belongs to what is open, which the shell shares.
+    const UniqueFd own(::open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+    if (own) ::dup2(own.get(), STDERR_FILENO);
+  }
 }
 
 }  // namespace handcast::log

@@ -40,6 +40,14 @@ std::optional<ParsedLine> parse(std::string_view line);
 /// unchanged.
 std::string for_journal(Level level, std::string text);
 
+/// Writes text to stderr with a single write(2). Any thread.
+void put(std::string_view text);
+/// From now on, put() does not wait: what a stopped terminal (Ctrl-S) or a pipe that nobody reads
+/// does not take is lost, and how many lines it was is said as soon as it takes text again. A
+/// supervisor must not stand still because of a reader. Files and the null device are as before;
+/// the journal is waited for up to 50 ms. Call it once, before other threads log.
+void never_wait_for_stderr();
+
 /// Writes one line to stderr with a single write(2): "12.345 camera  info  …", the time in seconds
 /// of CLOCK_MONOTONIC. In the journal, with for_journal(). Any thread.
 void write(Level level, std::string_view line);

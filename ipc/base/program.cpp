@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/program.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -19,10 +22,21 @@ int complain(int exit_code, std::string_view name, const std::string& sentence) 
   return exit_code;
 }
 
+/// Standard descriptors that the caller has closed would be given to the next file or socket, into
+/// which messages would be written.
+void open_standard_descriptors() {
+  for (int fd = ::open("/dev/null", O_RDWR); fd >= 0; fd = ::dup(fd))
+    if (fd > STDERR_FILENO) {
+      ::close(fd);
+      return;
+    }
+}
+
 }  // namespace
 
 int run_program(std::string_view name, int argc, char** argv,
                 const std::function<int(int argc, char** argv)>& body) {
+  open_standard_descriptors();
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
       return complain(kExitUsage, name, "argument " + std::to_string(i) + " is empty");

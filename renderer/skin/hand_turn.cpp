@@ -9,6 +9,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "renderer/base/joint_math.hpp"
+#include "renderer/base/landmark_points.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -62,7 +63,7 @@ void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   for (const int i : kDefinedAlike) {
     const glm::dvec3 joint = in_camera(msg::kJointOfLandmark[i]);
     const auto& point = seen.points[i];
-    if (point.confidence <= 0 || !(joint.z > kNearest_m) || !(wrist.z > kNearest_m)) continue;
+    if (!was_seen(point) || !(joint.z > kNearest_m) || !(wrist.z > kNearest_m)) continue;
     const glm::dvec2 from = camera.project(joint), way = from - camera.project(wrist),
                      offset = glm::dvec2(point.x_px, point.y_px) - from;
     const double sigma = std::hypot(kLeastSigma_px, point.sigma_px), weight = 1 / (sigma * sigma);
@@ -79,7 +80,7 @@ void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
         right[a] += weight * rows[axis][a] * offset[axis];
       }
   }
-  // A landmark that is not a number would stay in the sums for ever.
+  // What is not a number would stay in the sums for ever.
   if (!eliminate_shared(normal, right) || !std::isfinite(right[kShared] + right[kShared + 1]))
     return;
   const double keep = std::exp(-since_s / kMemory_s), share = since_s / kLasting_s;

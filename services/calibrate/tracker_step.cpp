@@ -100,6 +100,7 @@ Result<SeenBySide> watch(Desk& desk) {
     }
     progress.show(coverage.share(), noticed.advice(harvest.advice(coverage.advice())));
     const auto found = landmarks->next(Deadline::in(200ms));
+    if (!found && found.error().code != Errc::timeout) return tl::make_unexpected(found.error());
     sees_hand = found && (*found)->count > 0;
     if (sees_hand) noticed.landmarks_ns = now_ns();
     if (found)

@@ -18,7 +18,9 @@ std::string print(const std::vector<std::pair<std::string, std::string>>& settin
     const auto dot = setting.find('.');
     if (const auto begun = setting.substr(0, dot); begun != section)
       text += fmt::format("      [{}]\n", section = begun);
-    text += fmt::format("      {} = {}\n", setting.substr(dot + 1), nlohmann::json(value).dump());
+    text += fmt::format(
+        "      {} = {}\n", setting.substr(dot + 1),
+        nlohmann::json(value).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   }
   return text;
 }

@@ -16,10 +16,12 @@ namespace {
 
 constexpr std::uint64_t kKept = 100;  ///< number of pictures, then the oldest is overwritten
 
-/// The first of light.avi, light-2.avi, light-3.avi … that does not exist.
+/// The first of light.avi, light-2.avi, light-3.avi … that does not exist. What cannot be looked at
+/// cannot be written either, which says why.
 std::filesystem::path new_film_in(const std::filesystem::path& folder) {
   auto file = folder / "light.avi";
-  for (int number = 2; std::filesystem::exists(file); ++number)
+  std::error_code unknown;
+  for (int number = 2; std::filesystem::exists(file, unknown); ++number)
     file = folder / fmt::format("light-{}.avi", number);
   return file;
 }

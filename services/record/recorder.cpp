@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -60,11 +61,22 @@ void Recorder::write() {
   }
 }
 
+Recorder::Totals Recorder::totals() {
+  const std::lock_guard lock(mutex_);
+  return totals_;
+}
+
 Result<Recorder::End> Recorder::run(const std::function<bool()>& is_over,
                                     const std::function<void(const Totals&)>& look) {
   std::vector<Feed*> patient;
   std::vector<std::jthread> readers;
   std::jthread writer([this] { write(); });
+  // Of an exception, too: the threads are joined when it leaves this function.
+  const auto at_end = [this](void*) {
+    stopping_ = true;
+    queue_.close();
+  };
+  const std::unique_ptr<void, decltype(at_end)> end(this, at_end);
   for (const auto& feed : feeds_)
     if (!feed->is_hasty())
       patient.push_back(feed.get());
@@ -77,8 +89,7 @@ Result<Recorder::End> Recorder::run(const std::function<bool()>& is_over,
     sleep_until_ns(now_ns() + kTurn_ns);
     if (now_ns() < next_ns) continue;
     next_ns += kLook_ns;
-    const std::lock_guard lock(mutex_);
-    look(totals_);
+    look(totals());
   }
   stopping_ = true;
   readers.clear();  // joins them

@@ -29,8 +29,8 @@ class Recorder {
   };
 
   /// Records until `is_over` is true, the rig is down or the disk is full. Calls `look` about once
-  /// a second, and at the end, with what was written. Errors: unavailable (the disk is full, or
-  /// cannot be written): everything before is in the recording.
+  /// a second, and at the end, with what was written; it may take its time. Errors: unavailable
+  /// (the disk is full, or cannot be written): everything before is in the recording.
   Result<End> run(const std::function<bool()>& is_over,
                   const std::function<void(const Totals&)>& look);
 
@@ -38,6 +38,7 @@ class Recorder {
   void read(const std::vector<Feed*>& feeds, std::int64_t pause_ns);
   void write();
   void stop(Error reason);
+  Totals totals();
   Result<std::string> finish();
 
   std::vector<std::unique_ptr<Feed>> feeds_;

@@ -126,7 +126,9 @@ Result<void> RecordingWriter::finish(const std::string& reason,
                             {"bytes", stream.files.bytes()}};
   }
   const nlohmann::ordered_json summary{{"ended", reason}, {"streams", streams}};
-  return write_whole(folder_ / "summary.json", summary.dump(2) + "\n");
+  return write_whole(
+      folder_ / "summary.json",
+      summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace handcast::recording

@@ -17,10 +17,6 @@ log::Level level_of(std::string_view line) {
   return line.starts_with("handcast: ") ? log::Level::error : log::Level::info;
 }
 
-void put(std::string_view text) {
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
-}
-
 }  // namespace
 
 bool has_terminal() {
@@ -29,13 +25,13 @@ bool has_terminal() {
 }
 
 void print_line(std::string_view line) {
-  put(log::for_journal(level_of(line),
-                       fmt::format("{}{}\n", has_terminal() ? kClearLine : "", line)));
+  log::put(log::for_journal(level_of(line),
+                            fmt::format("{}{}\n", has_terminal() ? kClearLine : "", line)));
 }
 
 void show_progress(std::string_view line) {
   if (has_terminal())
-    put(fmt::format("{}{}\r", kClearLine, line));  // the next output overwrites this line
+    log::put(fmt::format("{}{}\r", kClearLine, line));  // the next output overwrites this line
   else
     print_line(line);
 }

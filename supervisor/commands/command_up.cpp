@@ -25,10 +25,17 @@ bool take_successor_mark() {
   return is_successor;
 }
 
-/// Makes this process the keeper of the same command.
-int keep_up(const Arguments& arguments) {
-  Arguments command{(program_folder() / "handcast").string(), "up"};
-  command.insert(command.end(), arguments.begin(), arguments.end());
+/// Makes this process the keeper of the same command, whose files a successor finds even if the
+/// folder that it was started in is deleted.
+int keep_up(const Options& options) {
+  Arguments command{(program_folder() / "handcast").string(), "up",
+                    std::filesystem::absolute(options.words.front())};
+  for (const auto& setting : options.all("--set"))
+    command.insert(command.end(), {"--set", setting});
+  if (options.has("--seconds"))
+    command.insert(command.end(), {"--seconds", options.value("--seconds")});
+  if (options.has("--out"))
+    command.insert(command.end(), {"--out", std::filesystem::absolute(options.value("--out"))});
   command.emplace_back(kKept);
   return keep(command);
 }
@@ -79,13 +86,14 @@ int run_up(const Arguments& arguments) {
                                                 .flags = {kNoKeeper, kKept},
                                                 .words = {"RIG.toml"}});
   if (!options) return complain(kExitUsage, "up: " + options.error().what + "; `handcast help up`");
+  log::never_wait_for_stderr();
   std::optional<double> seconds;
   if (options->has("--seconds")) {
     const auto parsed = parse_seconds(options->value("--seconds"));
     if (!parsed) return complain(kExitUsage, "up: " + parsed.error().what);
     seconds = *parsed;
   }
-  if (!options->has(kKept) && !options->has(kNoKeeper)) return keep_up(arguments);
+  if (!options->has(kKept) && !options->has(kNoKeeper)) return keep_up(*options);
   return run(run_options(*options, seconds));
 }
 

@@ -18,8 +18,9 @@ class LogTail {
   /// The number of reads in one turn for a living process, which may write faster than its lines
   /// are printed.
   static constexpr int kReadsAtOnce = 16;
-  /// The number of reads for a process that has ended; the capacity of the pipe limits it.
-  static constexpr int kAllReads = std::numeric_limits<int>::max();
+  /// The number of reads for a process that has ended: 1 MiB, which no pipe of a user exceeds. A
+  /// process that it left behind may go on writing.
+  static constexpr int kAllReads = 256;
 
   /// Appends bytes. Calls `on_line` for each line that they complete. An error that repeats the
   /// line before it, as a service that is started again and again does, gets a short one.

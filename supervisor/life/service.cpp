@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -50,12 +51,12 @@ void Service::handle(const Event& event, std::int64_t now) {
   auto [state, actions] = next(std::move(state_), event, now, rules());
   state_ = std::move(state);
   if (!actions.empty()) ++revision_;
-  MaybeEvent next_event;
+  std::vector<Event> caused;
   for (const auto& action : actions)
-    if (auto caused = std::visit([this](const auto& each) { return carry_out(each); }, action))
-      next_event = std::move(caused);
+    if (auto event = std::visit([this](const auto& each) { return carry_out(each); }, action))
+      caused.push_back(std::move(*event));
   if (!state_.replacement) wanted_.reset();
-  if (next_event) handle(*next_event);
+  for (const auto& each : caused) handle(each);
 }
 
 Service::MaybeEvent Service::carry_out(const action::Spawn&) {

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <exception>
 #include <limits>
 #include <utility>
 
@@ -151,6 +153,16 @@ void RigRunner::continue_run(const SavedRig& saved) {
 }
 
 int RigRunner::run() {
+  try {
+    return supervise();
+  } catch (const std::exception& problem) {
+    // Ends here, because the destructors further up end the services, which a successor takes over.
+    log::error("the supervisor cannot go on: {}", problem.what());
+    std::abort();
+  }
+}
+
+int RigRunner::supervise() {
   for (const auto& service : rig_.services.all())
     if (!service->first_start_ns()) service->hold();
   last_tick_ns_ = now_ns();
@@ -323,7 +335,8 @@ void RigRunner::finish() {
   if (const int left = end_services(rig_.name, 0, now_ns()); left > 0)
     log::warning("services of rig '{}' that this supervisor did not start were killed: {}",
                  rig_.name, left);
-  for (const auto& service : rig_.services.all()) leave_safe(*service, rig_.launch);
+  for (const auto& service : rig_.services.all())
+    leave_safe(*service, rig_.launch, [this] { keeper_.beat(rig_.name, true); });
   log::info("rig '{}' has stopped", rig_.name);
   control_->stop_accepting();
   requests_.on_done();

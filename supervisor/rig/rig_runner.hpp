@@ -38,6 +38,7 @@ class RigRunner {
 
  private:
   RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop);
+  int supervise();
 
   Result<void> claim_name();
   Result<void> watch_signals_and_time();

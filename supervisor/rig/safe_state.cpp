@@ -5,9 +5,10 @@
 #include <signal.h>
 #include <sys/wait.h>
 
-#include <cerrno>
+#include <chrono>
 #include <cstring>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "supervisor/base/pidfd.hpp"
 #include "supervisor/base/spawn.hpp"
@@ -15,7 +16,8 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr double kPatience_s = 3;
+constexpr std::chrono::seconds kPatience{3};
+constexpr double kLook_s = 0.2;
 
 bool has_ended_by_itself(const Service& service) {
   const auto& last = service.last_exit();
@@ -24,7 +26,7 @@ bool has_ended_by_itself(const Service& service) {
 
 }  // namespace
 
-void leave_safe(const Service& service, const Launch& launch) {
+void leave_safe(const Service& service, const Launch& launch, const std::function<void()>& beat) {
   const auto& spec = service.spec();
   if (!spec.has_safe_state || has_ended_by_itself(service)) return;
   const auto program = launch.program_folder / ("handcast-" + spec.name);
@@ -37,12 +39,15 @@ void leave_safe(const Service& service, const Launch& launch) {
     return log::error("{} --safe cannot be started: {}", program.string(),
                       std::strerror(pid.error()));
   const auto process = open_pidfd(*pid);
-  if (!ends_within(process, kPatience_s)) {
-    log::error("{} --safe has not ended within {:g} s; killed", program.string(), kPatience_s);
+  for (const auto limit = Deadline::in(kPatience); !ends_within(process, kLook_s);) {
+    beat();
+    if (!limit.passed()) continue;
+    log::error("{} --safe has not ended within {} s; killed", program.string(), kPatience.count());
     send_signal(process, SIGKILL);
+    ends_within(process, kLook_s);
+    break;
   }
-  while (waitpid(*pid, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  waitpid(*pid, nullptr, WNOHANG);  // one that hangs in its device is left to the keeper
 }
 
 }  // namespace handcast::supervisor

@@ -159,9 +159,9 @@ class Keeper {
   }
 
   void kill_supervisor(std::string_view why) {
-    log::warning("the supervisor (pid {}) {}; killed", supervisor_, why);
     kill(supervisor_, SIGKILL);
     is_killed_ = true;
+    log::warning("the supervisor (pid {}) {}; killed", supervisor_, why);
   }
 
   /// Reaps all children that have ended. Stores the end of the supervisor, reports the others.

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "tests/config/every_setting.hpp"
+#include "tests/scratch.hpp"
 
 namespace handcast::config {
 namespace {
@@ -211,6 +212,19 @@ TEST(Paths, OfAFileStartAtItsFolder) {
 TEST(Paths, OfAnAssignmentStartAtTheCurrentFolder) {
   EXPECT_EQ(rig_of("", {"hand.left=hand.glb"}).hand.left,
             (std::filesystem::current_path() / "hand.glb").string());
+}
+
+// A rig that is reloaded, and a service that is started again, may stand in a folder that is gone.
+TEST(Paths, OfAFileAreFoundFromAFolderThatWasDeleted) {
+  const auto before = std::filesystem::current_path();
+  {
+    const test::Scratch gone;
+    std::filesystem::current_path(gone.path());
+  }
+  const auto rig = parse_rig("calibration = 'c.toml'\n", kFile, {"hand.left=hand.glb"});
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(rig) << rig.error().what;
+  EXPECT_EQ(rig->calibration, "/rigs/c.toml");
 }
 
 TEST(Paths, BuiltinAndEmptyStayAsTheyAre) {

@@ -13,7 +13,7 @@ bool has_dark_hand(const Tick& tick, const twin::Twin& twin) {
   for (const auto side : {msg::Side::left, msg::Side::right}) {
     const bool lit = std::ranges::any_of(
         tick.hands, [side](const renderer::FrameHand& hand) { return hand.side == side; });
-    if (!lit && twin.landmarks(side, tick.lit_ns)) return true;
+    if (!lit && twin.landmarks(side, tick.target_ns)) return true;
   }
   return false;
 }
@@ -42,9 +42,9 @@ std::optional<LandmarkErrors> landmark_errors(const renderer::FrameHand& hand, s
 
 LightMoment moment_of(const Tick& tick, int detections, const twin::Twin& twin,
                       const calib::Calibration& calibration) {
-  LightMoment moment{ns_to_seconds(tick.lit_ns), 0, has_dark_hand(tick, twin), detections};
+  LightMoment moment{ns_to_seconds(tick.target_ns), 0, has_dark_hand(tick, twin), detections};
   for (const auto& hand : tick.hands)
-    if (const auto errors = landmark_errors(hand, tick.lit_ns, twin, calibration))
+    if (const auto errors = landmark_errors(hand, tick.target_ns, twin, calibration))
       moment.error_mm = std::max(moment.error_mm, errors->mean_mm());
   return moment;
 }

@@ -78,30 +78,8 @@ class Products {
 
   /// Adds a tick. `detections`: detections with a hand that had arrived before it.
   Result<void> add(const Tick& tick, int detections) {
-    add_speeds(tick.lit_ns);
-    for (const auto& hand : tick.hands) {
-      const auto truth = twin_.landmarks(hand.side, tick.lit_ns);
-      if (!truth) continue;
-      landmark_jitter_.add(hand.side, tick.lit_ns, landmark_points(hand, *truth),
-                           speed_m_s_[static_cast<std::size_t>(hand.side)]);
-      add_landmarks(hand, tick.lit_ns);
-      if (trace_) trace_->add(tick.lit_ns, hand, *truth);
-    }
-    if (fault_) moments_.push_back(moment_of(tick, detections, twin_, calibration_));
-    if (!tick.projection) return {};
-    const auto score = judge_->score(*tick.projection);
-    metrics_.add(score);
-    for (const auto& hand : score.hands)
-      light_jitter_.add(hand.side, tick.lit_ns, light_points(hand),
-                        speed_m_s_[static_cast<std::size_t>(hand.side)]);
-    metrics_.add_stages(tick.frame->stages);
-    metrics_.add_foldovers(tick.frame->foldovers);
-    for (const auto& hand : tick.hands) metrics_.add_rung(hand.rung);
-    if (const auto origin_ns = tick.projection->header.origin_ns; origin_ns > 0) {
-      motion_to_photon_ms_ += ns_to_ms(tick.lit_ns - origin_ns);
-      ++with_exposure_;
-    }
-    return picture(drawn_++, *tick.projection);
+    if (tick.is_new) add_landmarks(tick, detections);
+    return tick.projection ? add_light(tick) : Result<void>();
   }
 
   /// Closes the files after the last tick.
@@ -142,11 +120,38 @@ class Products {
         judge_(options.draw_every > 0 ? twin::Judge::create(twin, rig.observer.step_px) : nullptr) {
   }
 
-  void add_landmarks(const renderer::FrameHand& hand, std::int64_t lit_ns) {
-    const auto errors = landmark_errors(hand, lit_ns, twin_, calibration_);
-    if (!errors) return;
-    for (std::size_t i = 0; i < errors->px.size(); ++i)
-      metrics_.add_landmark(errors->px[i], errors->mm[i]);
+  /// What is said of the tracked landmarks, drawn or not: at the light for which they were
+  /// computed.
+  void add_landmarks(const Tick& tick, int detections) {
+    add_speeds(tick.target_ns);
+    for (const auto& hand : tick.hands) {
+      const auto truth = twin_.landmarks(hand.side, tick.target_ns);
+      const auto errors = landmark_errors(hand, tick.target_ns, twin_, calibration_);
+      if (!truth || !errors) continue;
+      landmark_jitter_.add(hand.side, tick.target_ns, landmark_points(hand, *truth),
+                           speed_m_s_[static_cast<std::size_t>(hand.side)]);
+      for (std::size_t i = 0; i < errors->px.size(); ++i)
+        metrics_.add_landmark(errors->px[i], errors->mm[i]);
+      if (trace_) trace_->add(tick.target_ns, hand, *truth);
+    }
+    if (fault_) moments_.push_back(moment_of(tick, detections, twin_, calibration_));
+  }
+
+  /// What is said of the light: when it is on.
+  Result<void> add_light(const Tick& tick) {
+    const auto score = judge_->score(*tick.projection);
+    metrics_.add(score);
+    for (const auto& hand : score.hands)
+      light_jitter_.add(hand.side, tick.lit_ns, light_points(hand),
+                        speed_m_s_[static_cast<std::size_t>(hand.side)]);
+    metrics_.add_stages(tick.frame->stages);
+    metrics_.add_foldovers(tick.frame->foldovers);
+    for (const auto& hand : tick.hands) metrics_.add_rung(hand.rung);
+    if (const auto origin_ns = tick.projection->header.origin_ns; origin_ns > 0) {
+      motion_to_photon_ms_ += ns_to_ms(tick.lit_ns - origin_ns);
+      ++with_exposure_;
+    }
+    return picture(drawn_++, *tick.projection);
   }
 
   void add_speeds(std::int64_t lit_ns) {

@@ -33,7 +33,7 @@ void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
   const auto target_ns = refreshes_.lit_ns(next_tick_);
   deliver(now_ns);
 
-  Tick tick{next_tick_, target_ns, {}, nullptr, nullptr};
+  Tick tick{.index = next_tick_, .target_ns = target_ns, .lit_ns = target_ns};
   if (const auto refreshes = drawn_refreshes(next_tick_); !refreshes.empty()) {
     const auto frame = draw(now_ns, target_ns);
     tick.hands = frame.hands;
@@ -42,6 +42,7 @@ void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
     for (const std::int64_t refresh : refreshes) {
       tick.lit_ns = projection_->lit_ns = refreshes_.lit_ns(refresh);
       on_tick(tick);
+      tick.is_new = false;
     }
   } else {
     if (looks_) pipeline_.look(newest_image(now_ns));

@@ -42,7 +42,7 @@ Result<void> run_ticks(const Options& options, Simulation& simulation,
   while (simulation.now_ns() < end_ns && done) {
     const bool scored = simulation.now_ns() >= start_ns;
     simulation.step([&](const Tick& tick) {
-      if (scored) done = on_tick(tick);
+      if (scored && done) done = on_tick(tick);
     });
     if (on_progress) on_progress(ns_to_seconds(simulation.now_ns()));
   }
@@ -61,7 +61,7 @@ Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig,
   Simulation simulation(rig, calibration, *parts->pipeline, *feed, options.draw_every);
   std::vector<LightMoment> moments;
   const auto add = [&](const Tick& tick) -> Result<void> {
-    moments.push_back(moment_of(tick, 0, *parts->twin, calibration));
+    if (tick.is_new) moments.push_back(moment_of(tick, 0, *parts->twin, calibration));
     return {};
   };
   const auto done = run_ticks(options, simulation, add, on_progress);

@@ -35,6 +35,13 @@ Result<UniqueFd> lock_results(const std::filesystem::path& file) {
   return fd;
 }
 
+/// The version of a program that is being worked on stays while its figures change.
+bool is_older_than_this_program(const std::filesystem::path& file) {
+  std::error_code unknown;
+  const auto built = std::filesystem::last_write_time("/proc/self/exe", unknown);
+  return !unknown && std::filesystem::last_write_time(file, unknown) < built && !unknown;
+}
+
 Result<std::unique_ptr<Results>> Results::open(const std::filesystem::path& file,
                                                const Heading& heading, bool fresh) {
   auto fd = lock_results(file);
@@ -73,6 +80,11 @@ Result<void> Results::go_on(const Heading& heading) {
     return fail(Errc::bad_config,
                 fmt::format("{}: the file does not hold results of a sweep; give another file "
                             "with -o",
+                            file_.string()));
+  if (!table->rows.empty() && is_older_than_this_program(file_))
+    return fail(Errc::bad_config,
+                fmt::format("{}: the file was written before this program was built, whose figures "
+                            "may differ; give another file with -o, or overwrite it with --fresh",
                             file_.string()));
   const auto whole_bytes = no_columns ? 0 : table->whole_bytes;
   if (ftruncate(fd_.get(), static_cast<off_t>(whole_bytes)) != 0)

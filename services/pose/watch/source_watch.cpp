@@ -35,6 +35,12 @@ void remove_impossible(msg::HandPoses& poses, msg::TrackerFaults& faults) {
 
 msg::TrackerFaults SourceWatch::look(msg::HandPoses& poses, std::int64_t arrival_ns) {
   msg::TrackerFaults faults;
+  if (poses.header.origin_ns - arrival_ns > kFuture_ns) {
+    ++faults.of(TrackerFault::late);
+    poses.count = 0;
+    is_usable_ = false;
+    return faults;
+  }
   judge_age(arrival_ns - poses.header.origin_ns, faults);
   remove_impossible(poses, faults);
   const auto as_before = named(poses, faults);
@@ -60,8 +66,7 @@ msg::TrackerFaults SourceWatch::look(msg::HandPoses& poses, std::int64_t arrival
 void SourceWatch::judge_age(std::int64_t age_ns, msg::TrackerFaults& faults) {
   const auto age = static_cast<double>(age_ns);
   const bool is_known = ages_ == kKnown;
-  if (age_ns < -kFuture_ns || (is_known && std::abs(age - usual_age_ns_) > kLate_ns))
-    ++faults.of(TrackerFault::late);
+  if (is_known && std::abs(age - usual_age_ns_) > kLate_ns) ++faults.of(TrackerFault::late);
   ages_ = std::min(ages_ + 1, kKnown);
   usual_age_ns_ += (age - usual_age_ns_) / ages_;
 }

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/log.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <array>
 
 #include "tests/ipc/base/captured_stderr.hpp"
 
@@ -27,6 +32,41 @@ TEST(Log, ALineInTheJournalHasThePriorityOfItsLevel) {
                                         {log::Level::error, "<3>"}})
     EXPECT_THAT(written(true, level, "text"), StartsWith(priority));
   log::set_level(log::Level::info);
+}
+
+/// Writes 3 MB of lines to stderr after never_wait_for_stderr() and then, once the reader has
+/// emptied it, another line. Ends the process, after a minute with a signal.
+[[noreturn]] void write_to_a_reader_that_sleeps(int reading, int writing) {
+  ::alarm(60);
+  ::fcntl(reading, F_SETFL, O_NONBLOCK);
+  ::dup2(writing, STDERR_FILENO);
+  log::never_wait_for_stderr();
+  for (int i = 0; i < 30'000; ++i) log::put(std::string(99, '.') + "\n");
+  std::array<char, 4096> bytes;
+  while (::read(reading, bytes.data(), bytes.size()) > 0) {
+  }
+  log::put("awake\n");
+  std::string read;
+  for (ssize_t count; (count = ::read(reading, bytes.data(), bytes.size())) > 0;)
+    read.append(bytes.data(), static_cast<std::size_t>(count));
+  const bool is_told = read.find(" lines were lost: nobody read them") != read.npos &&
+                       read.find("awake") != read.npos;
+  const bool is_still_waited_for_elsewhere = (::fcntl(writing, F_GETFL) & O_NONBLOCK) == 0;
+  _exit(is_told && is_still_waited_for_elsewhere ? 0 : 1);
+}
+
+TEST(Log, APipeThatNobodyReadsIsNotWaitedFor) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  EXPECT_EXIT(write_to_a_reader_that_sleeps(ends[0], ends[1]), ::testing::ExitedWithCode(0), "");
+}
+
+TEST(Log, ATerminalThatIsStoppedIsNotWaitedFor) {
+  const int reading = ::posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_TRUE(reading >= 0 && ::grantpt(reading) == 0 && ::unlockpt(reading) == 0);
+  const int writing = ::open(::ptsname(reading), O_RDWR | O_NOCTTY);
+  ASSERT_GE(writing, 0);
+  EXPECT_EXIT(write_to_a_reader_that_sleeps(reading, writing), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(Log, EveryLineOfASentenceOfSeveralLinesHasAPriorityInTheJournal) {

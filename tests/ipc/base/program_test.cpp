@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/program.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <stdexcept>
@@ -46,6 +48,16 @@ TEST(Program, WhoseOutputHasNoRoomHasFailed) {
         _exit(run(print));
       },
       ExitedWithCode(kExitRetry), "the output cannot be written: No space left");
+}
+
+TEST(Program, FindsItsStandardDescriptorsOpenEvenIfItsCallerClosedThem) {
+  const auto open_a_file = [](int, char**) { return ::open("/dev/zero", O_RDONLY); };
+  EXPECT_EXIT(
+      {
+        for (int fd = 0; fd < 64; ++fd) ::close(fd);
+        _exit(run(open_a_file));
+      },
+      ExitedWithCode(3), "");
 }
 
 TEST(Printable, ShowsWhatWouldMoveTheCursor) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A service with two processes: a worker and its spare, or its replacement.
+#include <sys/resource.h>
+
 #include "tests/supervisor/life/service_fixture.hpp"
 
 namespace handcast::supervisor {
@@ -47,6 +49,35 @@ TEST_F(ServiceWithSpare, ASpareThatDiesIsReplacedAndDoesNotCount) {
   EXPECT_EQ(pose.pid(), worker);
   EXPECT_EQ(pose.restarts(), 0);
   EXPECT_EQ(pose.state(), State::ready);
+}
+
+/// While the object exists, the process can open nothing more, and so start nothing.
+class NoDescriptorsLeft {
+ public:
+  NoDescriptorsLeft() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{.rlim_cur = 3, .rlim_max = before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoDescriptorsLeft() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoDescriptorsLeft(const NoDescriptorsLeft&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(ServiceWithSpare, BothOfWhichCannotBeStartedAtTheSameMomentAreStartedLater) {
+  auto& pose = ready_service();
+  {
+    const NoDescriptorsLeft none;
+    ::kill(pose.pid(), SIGKILL);
+    ::kill(pose.spare_pid(), SIGKILL);
+    run_until([&] { return !pose.is_running(); });
+    pose.tick(now_ns() + seconds_to_ns(60), look());  // both are due
+    EXPECT_FALSE(pose.is_running());
+  }
+  pose.tick(now_ns() + seconds_to_ns(120), look());
+  run_until([&] { return pose.state() == State::ready && pose.spare_pid() != 0; });
 }
 
 TEST_F(ServiceWithSpare, ASpareThatHangsIsReplaced) {

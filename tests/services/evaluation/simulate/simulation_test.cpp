@@ -233,6 +233,15 @@ TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
   EXPECT_EQ((*dark)["hand_speed_m_s"], (*lit)["hand_speed_m_s"]);
 }
 
+// A drawn frame may be shown later than those after it, which are not drawn.
+TEST(Simulation, TheTremblingOfTheLandmarksDoesNotDependOnWhenTheirLightIsShown) {
+  const auto trembling = [](const std::string& work_ms) {
+    return figure(run_rig("twin", "builtin:still", 1, {"twin.projector.work_ms=" + work_ms}, 8),
+                  "/landmark_jitter_px");
+  };
+  EXPECT_EQ(trembling("1.6"), trembling("0"));
+}
+
 TEST(Simulation, ABrokenRecordingIsOneSentence) {
   Options options = options_of("twin", 1);
   add_settings(options, {"twin.motion=/nowhere/at/all"});

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -119,6 +120,19 @@ TEST_F(ResultsTest, AnotherPlansFileIsLeftAlone) {
       << "another version gives other figures";
   EXPECT_EQ(text_of(path), before);
   EXPECT_TRUE(Results::open(path, heading_of(plan_, other, "1.0"), true)) << "--fresh";
+}
+
+TEST_F(ResultsTest, AFileOfAnEarlierBuildIsLeftAlone) {
+  const auto path = written("a.csv", {row(0, 1)});
+  const auto before = text_of(path);
+  EXPECT_TRUE(Results::open(path, heading_, false));
+  std::filesystem::last_write_time(
+      path, std::filesystem::last_write_time("/proc/self/exe") - std::chrono::seconds(1));
+  const auto refused = Results::open(path, heading_, false);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("before this program was built"));
+  EXPECT_EQ(text_of(path), before);
+  EXPECT_TRUE(Results::open(path, heading_, true)) << "--fresh";
 }
 
 TEST_F(ResultsTest, AFileThatIsNoneOfASweepIsLeftAlone) {

@@ -143,6 +143,16 @@ TEST(SourceWatch, AStampOfTheFutureIsCounted) {
   EXPECT_NEAR(seen.faults.of(TrackerFault::late), kRate_hz, 1);
 }
 
+// A reader that kept one such hand would take those of the next minute for older.
+TEST(SourceWatch, ASampleOfTheFutureHasNoHandsAndThoseAfterItAreFaultless) {
+  const auto seen =
+      watch(rig_with("builtin:wave"), 3, [](double at_s, msg::HandPoses& poses, std::int64_t&) {
+        if (at_s > 1 && at_s < 1.005) poses.header.origin_ns += 60'000'000'000;
+      });
+  EXPECT_EQ(seen.unusable, 1);
+  expect_equal(seen.faults, only(TrackerFault::late, 1));
+}
+
 TEST(SourceWatch, APoseThatNoHandHasIsCountedAndLeftOut) {
   const auto seen =
       watch(rig_with("builtin:wave"), 3, [](double at_s, msg::HandPoses& poses, std::int64_t&) {
