@@ -40,7 +40,8 @@ std::optional<ParsedLine> parse(std::string_view line);
 /// unchanged.
 std::string for_journal(Level level, std::string text);
 
-/// Writes text to stderr with a single write(2). Any thread.
+/// Writes text to stderr with a single write(2); a terminal that was closed is no error. Any
+/// thread.
 void put(std::string_view text);
 /// From now on, put() does not wait: what a stopped terminal (Ctrl-S) or a pipe that nobody reads
 /// does not take is lost, and how many lines it was is said as soon as it takes text again. A

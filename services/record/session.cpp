@@ -78,22 +78,16 @@ class Progress {
     for (const auto& total : totals)
       bytes += total.bytes, lost += total.lost, messages += total.messages;
     const double seconds = ns_to_seconds(now_ns() - begin_ns_);
-    say(fmt::format("\r{:.0f} s: {} messages, {:.1f} MB, {:.0f} MB/min, {} lost   ", seconds,
-                    messages, 1e-6 * static_cast<double>(bytes),
-                    60e-6 * static_cast<double>(bytes) / std::max(seconds, 0.1), lost));
+    log::put(fmt::format("\r{:.0f} s: {} messages, {:.1f} MB, {:.0f} MB/min, {} lost   ", seconds,
+                         messages, 1e-6 * static_cast<double>(bytes),
+                         60e-6 * static_cast<double>(bytes) / std::max(seconds, 0.1), lost));
   }
   void end() const {
-    if (is_terminal_) say("\n");
+    if (is_terminal_) log::put("\n");
   }
   double seconds() const { return ns_to_seconds(now_ns() - begin_ns_); }
 
  private:
-  /// The terminal may have been closed meanwhile, which does not end a recording.
-  static void say(const std::string& text) {
-    std::fputs(text.c_str(), stderr);
-    std::fflush(stderr);
-  }
-
   bool is_terminal_ = ::isatty(STDERR_FILENO) == 1;
   std::int64_t begin_ns_ = now_ns();
 };

@@ -9,6 +9,7 @@
 
 #include "calib/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "services/evaluation/simulate/score.hpp"
 
@@ -21,15 +22,15 @@ class Progress {
   Progress(std::string rig, double seconds, bool quiet)
       : rig_(std::move(rig)), seconds_(seconds), quiet_(quiet), tty_(isatty(STDERR_FILENO)) {}
   ~Progress() {
-    if (tty_ && !quiet_) fmt::print(stderr, "\n");
+    if (tty_ && !quiet_) log::put("\n");
   }
 
   void at(double done_s) {
     const int percent = static_cast<int>(100 * done_s / seconds_);
     if (quiet_ || percent < shown_ + (tty_ ? 1 : 10)) return;
     shown_ = percent;
-    fmt::print(stderr, "{}simulate {}: {:4.1f} of {:.1f} s, {:3d} %{} {}", tty_ ? "\r" : "", rig_,
-               done_s, seconds_, percent, estimate(done_s), tty_ ? "  " : "\n");
+    log::put(fmt::format("{}simulate {}: {:4.1f} of {:.1f} s, {:3d} %{} {}", tty_ ? "\r" : "", rig_,
+                         done_s, seconds_, percent, estimate(done_s), tty_ ? "  " : "\n"));
   }
 
  private:

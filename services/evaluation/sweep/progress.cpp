@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
 
 namespace handcast::sweep {
 namespace {
@@ -28,7 +29,7 @@ Progress::Progress(std::string plan, std::size_t runs, bool quiet)
       start_ns_(now_ns()) {}
 
 Progress::~Progress() {
-  if (terminal_ && !quiet_ && done_ > 0) fmt::print(stderr, "\n");
+  if (terminal_ && !quiet_ && done_ > 0) log::put("\n");
 }
 
 void Progress::one_done(bool failed) {
@@ -44,17 +45,18 @@ void Progress::one_done(bool failed) {
 
 void Progress::say(const std::string& sentence) {
   const std::lock_guard lock(mutex_);
-  fmt::print(stderr, "{}{}\n", terminal_ ? kClearLine : "", sentence);
+  log::put(fmt::format("{}{}\n", terminal_ ? kClearLine : "", sentence));
 }
 
 void Progress::show() {
   shown_ns_ = now_ns();
   const auto elapsed_s = ns_to_seconds(shown_ns_ - start_ns_);
   const auto rate_hz = static_cast<double>(done_) / elapsed_s;
-  fmt::print(stderr, "{}sweep {}: {} of {} runs, {} %{}, {:.3g} runs a second, about {} left{}",
-             terminal_ ? kClearLine : "", plan_, done_, runs_, 100 * done_ / runs_,
-             failed_ ? fmt::format(", {} failed", failed_) : "", rate_hz,
-             print_span(static_cast<double>(runs_ - done_) / rate_hz), terminal_ ? "" : "\n");
+  log::put(fmt::format("{}sweep {}: {} of {} runs, {} %{}, {:.3g} runs a second, about {} left{}",
+                       terminal_ ? kClearLine : "", plan_, done_, runs_, 100 * done_ / runs_,
+                       failed_ ? fmt::format(", {} failed", failed_) : "", rate_hz,
+                       print_span(static_cast<double>(runs_ - done_) / rate_hz),
+                       terminal_ ? "" : "\n"));
 }
 
 }  // namespace handcast::sweep
