@@ -53,8 +53,8 @@ void Service::handle(const Event& event, std::int64_t now) {
   if (!actions.empty()) ++revision_;
   std::vector<Event> caused;
   for (const auto& action : actions)
-    if (auto event = std::visit([this](const auto& each) { return carry_out(each); }, action))
-      caused.push_back(std::move(*event));
+    if (auto effect = std::visit([this](const auto& each) { return carry_out(each); }, action))
+      caused.push_back(std::move(*effect));
   if (!state_.replacement) wanted_.reset();
   for (const auto& each : caused) handle(each);
 }
