@@ -2,16 +2,19 @@
 #include "ipc/base/log.hpp"
 
 #include <fcntl.h>
+#include <limits.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
+#include <mutex>
 #include <string>
 
 #include "ipc/base/clock.hpp"
@@ -84,6 +87,61 @@ std::atomic<Level>& threshold() {
   return level;
 }
 
+std::string line_of(Level level, std::string_view sentence) {
+  return for_journal(level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()),
+                                        program(), kNames[static_cast<std::size_t>(level)],
+                                        printable(wording_of()(sentence))));
+}
+
+/// Set by never_wait_for_stderr().
+std::atomic<bool> unwaited{false};
+
+/// Writes to stderr, whose reader may be slow or have stopped.
+class Impatient {
+ public:
+  void put(std::string_view text) {
+    const std::lock_guard lock(mutex_);
+    if (lost_ > 0 && takes((is_cut_ ? "\n" : "") +
+                           line_of(Level::warning, fmt::format("{} lines that nobody read in time "
+                                                               "are missing here",
+                                                               lost_))))
+      lost_ = 0;
+    if (lost_ > 0 || !takes(text)) lost_ += std::ranges::count(text, '\n');
+  }
+
+ private:
+  /// Waits for a reader that is merely slow, but not again before it has taken something.
+  bool takes(std::string_view text) {
+    const auto limit = Deadline::in(std::chrono::milliseconds(is_waited_for_ ? 50 : 0));
+    for (auto rest = text;;) {
+      const auto taken = write_some(rest);
+      is_cut_ = taken < rest.size() && (taken > 0 ? rest[taken - 1] != '\n' : is_cut_);
+      rest.remove_prefix(taken);
+      is_waited_for_ = rest.empty();
+      if (rest.empty() || limit.passed()) return rest.empty();
+      pollfd writable{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+      if (taken == 0) ::poll(&writable, 1, 5);
+    }
+  }
+
+  /// Without waiting, if stderr is ready: what cannot be made non-blocking takes PIPE_BUF bytes
+  /// then.
+  static std::size_t write_some(std::string_view text) {
+    pollfd writable{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+    if (::poll(&writable, 1, 0) <= 0) return 0;
+    const auto size = std::min<std::size_t>(text.size(), PIPE_BUF);
+    auto count = ::send(STDERR_FILENO, text.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (count < 0 && errno == ENOTSOCK) count = ::write(STDERR_FILENO, text.data(), size);
+    if (count < 0 && errno != EAGAIN && errno != EINTR) return text.size();  // it is gone
+    return static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+  }
+
+  std::mutex mutex_;
+  std::int64_t lost_ = 0;      ///< lines
+  bool is_cut_ = false;        ///< the last line that was taken has no end
+  bool is_waited_for_ = true;  ///< it has taken all of the last text
+};
+
 }  // namespace
 
 void set_program(std::string_view name) { program() = name; }
@@ -111,36 +169,27 @@ std::string for_journal(Level level, std::string text) {
 }
 
 void write(Level level, std::string_view line) {
-  if (level < threshold().load(std::memory_order_relaxed)) return;
-  const auto text = for_journal(
-      level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
-                         kNames[static_cast<std::size_t>(level)], printable(wording_of()(line))));
-  put(text);
+  if (level >= threshold().load(std::memory_order_relaxed)) put(line_of(level, line));
 }
 
 void put(std::string_view text) {
-  static std::atomic<std::int64_t> lost{0};
-  const auto takes = [](std::string_view words) {
-    return ::write(STDERR_FILENO, words.data(), words.size()) >= 0 ||
-           (errno != EAGAIN && errno != EWOULDBLOCK);
-  };
-  if (const auto lines = lost.load();
-      lines > 0 && takes(fmt::format("\n{} lines were lost: nobody read them\n", lines)))
-    lost -= lines;
-  if (!takes(text)) lost += std::ranges::count(text, '\n');
+  if (!unwaited.load(std::memory_order_acquire)) {
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+    return;
+  }
+  static Impatient stderr_writer;
+  stderr_writer.put(text);
 }
 
 void never_wait_for_stderr() {
   struct stat status {};
   if (::fstat(STDERR_FILENO, &status) != 0) return;
-  if (S_ISSOCK(status.st_mode)) {
-    const timeval most{.tv_sec = 0, .tv_usec = 50'000};
-    ::setsockopt(STDERR_FILENO, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
-  } else if (S_ISFIFO(status.st_mode) || ::isatty(STDERR_FILENO) == 1) {
-    // Opened anew, because O_NONBLOCK belongs to what is open, which the shell shares.
-    const UniqueFd own(::open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
-    if (own) ::dup2(own.get(), STDERR_FILENO);
-  }
+  if (S_ISREG(status.st_mode) || (S_ISCHR(status.st_mode) && ::isatty(STDERR_FILENO) != 1)) return;
+  // Opened anew, because O_NONBLOCK belongs to what is open, which the shell shares. A socket, and
+  // what another user has opened, cannot be.
+  const UniqueFd own(::open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (own) ::dup2(own.get(), STDERR_FILENO);
+  unwaited.store(true, std::memory_order_release);
 }
 
 }  // namespace handcast::log

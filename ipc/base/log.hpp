@@ -40,16 +40,15 @@ std::optional<ParsedLine> parse(std::string_view line);
 /// unchanged.
 std::string for_journal(Level level, std::string text);
 
-/// Writes text to stderr with a single write(2); a terminal that was closed is no error. Any
-/// thread.
+/// Writes text to stderr. A terminal that was closed is no error. Any thread.
 void put(std::string_view text);
-/// From now on, put() does not wait: what a stopped terminal (Ctrl-S) or a pipe that nobody reads
-/// does not take is lost, and how many lines it was is said as soon as it takes text again. A
-/// supervisor must not stand still because of a reader. Files and the null device are as before;
-/// the journal is waited for up to 50 ms. Call it once, before other threads log.
+/// From now on, put() waits at most 50 ms for a terminal, a pipe or the journal, and not at all
+/// until it takes text again: a supervisor must not stand still because a reader does (Ctrl-S, a
+/// hung ssh). Later a line says how many lines are missing. Files are written as before. Call it
+/// once, before other threads log.
 void never_wait_for_stderr();
 
-/// Writes one line to stderr with a single write(2): "12.345 camera  info  …", the time in seconds
+/// Writes one line to stderr: "12.345 camera  info  …", the time in seconds
 /// of CLOCK_MONOTONIC. In the journal, with for_journal(). Any thread.
 void write(Level level, std::string_view line);
 

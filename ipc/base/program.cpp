@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -23,13 +24,11 @@ int complain(int exit_code, std::string_view name, const std::string& sentence) 
 }
 
 /// Standard descriptors that the caller has closed would be given to the next file or socket, into
-/// which messages would be written.
+/// which messages would be written. To read input and to write output remain errors.
 void open_standard_descriptors() {
-  for (int fd = ::open("/dev/null", O_RDWR); fd >= 0; fd = ::dup(fd))
-    if (fd > STDERR_FILENO) {
-      ::close(fd);
-      return;
-    }
+  constexpr std::array kModes{O_WRONLY, O_RDONLY, O_RDWR};
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; ++fd)
+    if (::fcntl(fd, F_GETFD) < 0) (void)!::open("/dev/null", kModes[static_cast<std::size_t>(fd)]);
 }
 
 }  // namespace

@@ -139,9 +139,7 @@ std::filesystem::path program_folder() {
 }
 
 int complain(int exit_code, std::string_view sentence) {
-  fmt::print(
-      stderr, "{}",
-      log::for_journal(log::Level::error, fmt::format("handcast: {}\n", printable(sentence))));
+  log::put(log::for_journal(log::Level::error, fmt::format("handcast: {}\n", printable(sentence))));
   return exit_code;
 }
 

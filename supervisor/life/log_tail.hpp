@@ -2,7 +2,6 @@
 #pragma once
 #include <deque>
 #include <functional>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,7 +17,7 @@ class LogTail {
   /// The number of reads in one turn for a living process, which may write faster than its lines
   /// are printed.
   static constexpr int kReadsAtOnce = 16;
-  /// The number of reads for a process that has ended: 1 MiB, which no pipe of a user exceeds. A
+  /// The number of reads for a process that has ended: 1 MiB, more than its pipe holds. A
   /// process that it left behind may go on writing.
   static constexpr int kAllReads = 256;
 

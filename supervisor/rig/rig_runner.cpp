@@ -156,6 +156,7 @@ int RigRunner::run() {
   try {
     return supervise();
   } catch (const std::exception& problem) {
+    if (keeper_.fd() < 0) throw;
     // Ends here, because the destructors further up end the services, which a successor takes over.
     log::error("the supervisor cannot go on: {}", problem.what());
     std::abort();

@@ -216,13 +216,15 @@ TEST(Paths, OfAnAssignmentStartAtTheCurrentFolder) {
 
 // A rig that is reloaded, and a service that is started again, may stand in a folder that is gone.
 TEST(Paths, OfAFileAreFoundFromAFolderThatWasDeleted) {
-  const auto before = std::filesystem::current_path();
+  struct ComeBack {
+    std::filesystem::path from = std::filesystem::current_path();
+    ~ComeBack() { std::filesystem::current_path(from); }
+  } come_back;
   {
     const test::Scratch gone;
     std::filesystem::current_path(gone.path());
   }
   const auto rig = parse_rig("calibration = 'c.toml'\n", kFile, {"hand.left=hand.glb"});
-  std::filesystem::current_path(before);
   ASSERT_TRUE(rig) << rig.error().what;
   EXPECT_EQ(rig->calibration, "/rigs/c.toml");
 }

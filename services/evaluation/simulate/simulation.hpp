@@ -19,7 +19,7 @@ namespace handcast::simulate {
 struct Tick {
   std::int64_t index = 0;      ///< number of the projector frame
   std::int64_t target_ns = 0;  ///< the middle of the light for which it was computed
-  std::int64_t lit_ns = 0;     ///< the same, or, of a frame that was late, of a light that shows it
+  std::int64_t lit_ns = 0;     ///< the middle of a light that shows it: later, if it was late
   bool is_new = true;          ///< false from the second drawn refresh on that shows it
   std::span<const renderer::FrameHand> hands;   ///< the tracked hands
   const renderer::Frame* frame = nullptr;       ///< null if the frame was tracked but not drawn

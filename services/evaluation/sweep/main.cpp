@@ -34,8 +34,8 @@ const char* const kFooter = R"(A plan is a TOML file. The paths in it are relati
   [grid]        lists of values, e.g. twin.speed = [1, 2, 3]; all combinations are run. Several [[grid]] are run one after the other
 config/REFERENCE.md lists the settings; config/sweeps holds plans.
 
-The same command continues an interrupted sweep and repeats the runs that failed. To use several machines, run one `--shard I/N` on
-each and --merge the results. The measured times of frames and stages depend on the number of jobs; use -j 1 to compare them.
+The same command continues an interrupted sweep and repeats the runs that failed, unless the program was built again meanwhile. To
+use several machines, run one `--shard I/N` on each and --merge the results. The measured times of frames and stages depend on the number of jobs; use -j 1 to compare them.
 Exit codes: 1 if runs failed, all were left out, or some are missing after a merge, 130 if the sweep was interrupted.)";
 
 std::atomic<bool> stop{false};

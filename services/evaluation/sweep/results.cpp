@@ -21,6 +21,14 @@ bool may_be_discarded(int fd) {
          kStampStart.starts_with(std::string_view(start.data(), static_cast<std::size_t>(read)));
 }
 
+/// True if the program was built later. Its version stays while it is worked on, and its figures
+/// change.
+bool is_older_than_this_program(const std::filesystem::path& file) {
+  std::error_code unknown;
+  const auto built = std::filesystem::last_write_time("/proc/self/exe", unknown);
+  return !unknown && std::filesystem::last_write_time(file, unknown) < built && !unknown;
+}
+
 }  // namespace
 
 Result<UniqueFd> lock_results(const std::filesystem::path& file) {
@@ -33,13 +41,6 @@ Result<UniqueFd> lock_results(const std::filesystem::path& file) {
     return fail(Errc::unavailable,
                 fmt::format("{}: another sweep is writing this file", file.string()));
   return fd;
-}
-
-/// The version of a program that is being worked on stays while its figures change.
-bool is_older_than_this_program(const std::filesystem::path& file) {
-  std::error_code unknown;
-  const auto built = std::filesystem::last_write_time("/proc/self/exe", unknown);
-  return !unknown && std::filesystem::last_write_time(file, unknown) < built && !unknown;
 }
 
 Result<std::unique_ptr<Results>> Results::open(const std::filesystem::path& file,
@@ -81,13 +82,11 @@ Result<void> Results::go_on(const Heading& heading) {
                 fmt::format("{}: the file does not hold results of a sweep; give another file "
                             "with -o",
                             file_.string()));
-  if (!table->rows.empty() && is_older_than_this_program(file_))
-    return fail(Errc::bad_config,
-                fmt::format("{}: the file was written before this program was built, whose figures "
-                            "may differ; give another file with -o, or overwrite it with --fresh",
-                            file_.string()));
+  earlier_build_ = !table->rows.empty() && is_older_than_this_program(file_);
   const auto whole_bytes = no_columns ? 0 : table->whole_bytes;
-  if (ftruncate(fd_.get(), static_cast<off_t>(whole_bytes)) != 0)
+  std::error_code unknown;  // untouched if it is whole: its time says which build wrote it
+  if (std::filesystem::file_size(file_, unknown) != whole_bytes &&
+      ftruncate(fd_.get(), static_cast<off_t>(whole_bytes)) != 0)
     return fail(Errc::bad_config, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
   for (const auto& row : table->rows) {
     if (Table::failed(row)) continue;

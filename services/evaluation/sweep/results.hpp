@@ -26,6 +26,8 @@ class Results {
 
   /// The runs that the file holds without an error. Does not change after open().
   const std::set<std::size_t>& done() const { return done_; }
+  /// True if the file was last written before this program was built.
+  bool is_of_an_earlier_build() const { return earlier_build_; }
 
   /// Appends a line. Thread-safe. Errors: unavailable (e.g. the disk is full, or the file was
   /// replaced); then all later calls fail, too.
@@ -44,6 +46,7 @@ class Results {
   std::filesystem::path file_;
   UniqueFd fd_;  ///< in append mode, and locked
   std::set<std::size_t> done_;
+  bool earlier_build_ = false;
   std::mutex mutex_;
   Result<void> state_;  ///< first error of writing: no line may follow an incomplete one
 };

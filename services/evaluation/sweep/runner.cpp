@@ -138,6 +138,12 @@ Result<Outcome> run_all(const Plan& plan, const std::vector<Run>& runs, const Wo
                         Results& results, const std::atomic<bool>& stop) {
   Outcome outcome;
   const auto todo = to_do(plan, runs, work, results, outcome);
+  if (!todo.empty() && results.is_of_an_earlier_build())
+    return fail(Errc::bad_config,
+                fmt::format("sweep {}: {} runs are left, but the others were scored by an earlier "
+                            "build of this program, whose figures may differ; give another file "
+                            "with -o, or do all of them again with --fresh",
+                            plan.name, todo.size()));
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int jobs =
       std::min(work.jobs > 0 ? work.jobs : cores, std::max(1, static_cast<int>(todo.size())));

@@ -16,8 +16,9 @@ using msg::TrackerFault;
 constexpr int kKnown = 30;
 /// So much more than the usual age is late; so much less is a wrong stamp.
 constexpr double kLate_ns = 20e6;
-/// Sources that predict stamp their samples with a time in the future, but not more.
-constexpr std::int64_t kFuture_ns = 100'000'000;
+/// Sources that predict stamp their samples with a time in the future, but not more: the renderer
+/// takes none that is later.
+constexpr std::int64_t kFuture_ns = 50'000'000;
 /// Tracker space is around the camera: a pose is judged where it is.
 const glm::dmat4 kHere{1};
 
@@ -38,6 +39,7 @@ msg::TrackerFaults SourceWatch::look(msg::HandPoses& poses, std::int64_t arrival
   if (poses.header.origin_ns - arrival_ns > kFuture_ns) {
     ++faults.of(TrackerFault::late);
     poses.count = 0;
+    poses.header.origin_ns = arrival_ns;
     is_usable_ = false;
     return faults;
   }

@@ -17,9 +17,10 @@ class SourceWatch {
   /// these. The renderer ignores the first.
   static constexpr float kFrozen = 0, kAtRest = 0.5f;
 
-  /// Judges a sample that arrived at `arrival_ns`. Removes hands that no person has, and all hands
-  /// of a time that is yet to come, to whose readers the true ones would count as older until then;
-  /// lowers the confidence of frozen ones. Returns what begins with this sample.
+  /// Judges a sample that arrived at `arrival_ns`. Removes hands that no person has, and lowers the
+  /// confidence of frozen ones. A sample from the future becomes one without hands at its arrival:
+  /// whoever kept it would refuse the true ones as older until that time. Returns what begins with
+  /// this sample.
   msg::TrackerFaults look(msg::HandPoses& poses, std::int64_t arrival_ns);
 
   /// True if the newest sample has a hand, and none that repeats a pose.

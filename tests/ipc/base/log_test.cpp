@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
+#include <thread>
 
 #include "tests/ipc/base/captured_stderr.hpp"
 
@@ -49,10 +51,35 @@ TEST(Log, ALineInTheJournalHasThePriorityOfItsLevel) {
   std::string read;
   for (ssize_t count; (count = ::read(reading, bytes.data(), bytes.size())) > 0;)
     read.append(bytes.data(), static_cast<std::size_t>(count));
-  const bool is_told = read.find(" lines were lost: nobody read them") != read.npos &&
+  const bool is_told = read.find(" lines that nobody read in time are missing here") != read.npos &&
                        read.find("awake") != read.npos;
   const bool is_still_waited_for_elsewhere = (::fcntl(writing, F_GETFL) & O_NONBLOCK) == 0;
   _exit(is_told && is_still_waited_for_elsewhere ? 0 : 1);
+}
+
+// The last words of a service that died come at once.
+TEST(Log, AReaderThatIsMerelySlowerLosesNothing) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const auto lines_of_a_slow_reader = [&] {
+    ::alarm(60);
+    ::dup2(ends[1], STDERR_FILENO);
+    ::close(ends[1]);
+    log::never_wait_for_stderr();
+    std::atomic<bool> is_over{false};
+    std::thread writer([&] {
+      for (int i = 0; i < 10'000; ++i) log::put(std::string(99, '.') + "\n");
+      is_over = true;
+    });
+    std::size_t count = 0;
+    std::array<char, 1000> bytes;
+    while (count < 1'000'000 || !is_over)
+      count += static_cast<std::size_t>(::read(ends[0], bytes.data(), bytes.size()));
+    writer.join();
+    return count;
+  };
+  EXPECT_EXIT(_exit(lines_of_a_slow_reader() == 1'000'000 ? 0 : 1), ::testing::ExitedWithCode(0),
+              "");
 }
 
 TEST(Log, APipeThatNobodyReadsIsNotWaitedFor) {

@@ -60,6 +60,16 @@ TEST(Program, FindsItsStandardDescriptorsOpenEvenIfItsCallerClosedThem) {
       ExitedWithCode(3), "");
 }
 
+TEST(Program, WhoseCallerClosedItsOutputHasFailedIfItPrints) {
+  const auto print = [](int, char**) { return std::printf("a result\n") > 0 ? kExitDone : 1; };
+  EXPECT_EXIT(
+      {
+        ::close(STDOUT_FILENO);
+        _exit(run(print));
+      },
+      ExitedWithCode(kExitRetry), "the output cannot be written");
+}
+
 TEST(Printable, ShowsWhatWouldMoveTheCursor) {
   EXPECT_EQ(printable("a\x1b[31mb\r\n\tc\x7f é"), "a\\x1b[31mb\\x0d\n\tc\\x7f é");
 }

@@ -70,8 +70,10 @@ TEST_F(ServiceWithSpare, BothOfWhichCannotBeStartedAtTheSameMomentAreStartedLate
   auto& pose = ready_service();
   {
     const NoDescriptorsLeft none;
-    ::kill(pose.pid(), SIGKILL);
+    const auto worker = pose.pid();
     ::kill(pose.spare_pid(), SIGKILL);
+    run_until([&] { return pose.spare_pid() == 0; });
+    ::kill(worker, SIGKILL);
     run_until([&] { return !pose.is_running(); });
     pose.tick(now_ns() + seconds_to_ns(60), look());  // both are due
     EXPECT_FALSE(pose.is_running());

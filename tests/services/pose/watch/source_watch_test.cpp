@@ -143,8 +143,17 @@ TEST(SourceWatch, AStampOfTheFutureIsCounted) {
   EXPECT_NEAR(seen.faults.of(TrackerFault::late), kRate_hz, 1);
 }
 
-// A reader that kept one such hand would take those of the next minute for older.
-TEST(SourceWatch, ASampleOfTheFutureHasNoHandsAndThoseAfterItAreFaultless) {
+TEST(SourceWatch, ASampleFromTheFutureBecomesOneWithoutHandsAtItsArrival) {
+  SourceWatch watch;
+  msg::HandPoses poses;
+  poses.count = 1;
+  poses.header.origin_ns = 61'000'000'000;
+  watch.look(poses, 1'000'000'000);
+  EXPECT_EQ(poses.count, 0u);
+  EXPECT_EQ(poses.header.origin_ns, 1'000'000'000);
+}
+
+TEST(SourceWatch, SamplesAfterOneFromTheFutureAreFaultless) {
   const auto seen =
       watch(rig_with("builtin:wave"), 3, [](double at_s, msg::HandPoses& poses, std::int64_t&) {
         if (at_s > 1 && at_s < 1.005) poses.header.origin_ns += 60'000'000'000;
