@@ -27,11 +27,14 @@ def people_of(runs, people):
 def headline(runs, people):
     """The errors of both methods, their ratios, and where handcast is worse."""
     ours, theirs = runs.both("handcast", None), runs.both("paper", None)
-    ratio, same = (interval(runs.ratios_of_all("handcast", reference)) for reference in ("paper", "paper_network"))
+    ratio = (f"{interval(runs.ratios_of_all('handcast', 'paper'))} ({'95 % ' if len(runs.seeds) > 2 else ''}over the "
+             f"{people_of(runs, people)})")
+    same = [f"{interval(runs.ratios_of_all(variant, paper))} {words} and our times for both" for variant, paper, words in
+            (("handcast", "paper_network", "with our network"), ("handcast_mediapipe", "paper_mediapipe", "with MediaPipe"))
+            if runs.has(variant) and runs.has(paper)]
     return (f"the light of handcast is {ours} mm (mean / p95) from its place with our network; that of the published method, as we wrote it anew, is "
             f"{theirs} mm off with {'MediaPipe' if 'mediapipe' in runs.detector('paper') else 'a model of a detector'} and its own times. The "
-            f"ratio is {ratio} ({'95 % ' if len(runs.seeds) > 2 else ''}over the {people_of(runs, people)}), and {same} with our network and our times for both. " +
-            larger_in(runs))
+            f"ratio is {', '.join([ratio, *same[:-1]])}, and {same[-1]}. " + larger_in(runs))
 
 
 def summary(runs, people):

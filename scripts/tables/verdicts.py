@@ -51,7 +51,8 @@ def verdict_of_comparison(runs):
         f"{words}, in {lost_cells(runs, ours, theirs)}" for ours, theirs, words in pairs) + "."
     yield "In the same order, " + "; ".join(
         f"its {words} is larger in {listing([runs.lost(ours, theirs, name)[0] for ours, theirs, _ in pairs])} cells"
-        for name, words in (("interior_mm_p95", "p95"), ("missing", "dark share"), ("spill", "spill"))) + "."
+        for name, words in (("lit_mm_mean", "mean by the lit points alone"), ("interior_mm_p95", "p95"), ("missing", "dark share"),
+                            ("off_10mm", "share that is dark or more than 10 mm off"), ("spill", "spill"))) + "."
     yield verdict_on_light(runs)
 
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "services/evaluation/chart/chart.hpp"
 #include "services/evaluation/chart/fault.hpp"
@@ -13,6 +14,9 @@ namespace {
 
 constexpr int kWidth_px = 1060;
 constexpr double kRow_px = 24, kNames_px = 422, kDots_px = 700, kTop_px = 96;
+
+/// Of kCompared: dots at one place are all seen.
+constexpr std::array kDotSizes{0.45, 0.75, 1.1};
 
 /// One block of rows, with the metric of its dots. The columns on the right hold another.
 struct Block {
@@ -66,16 +70,15 @@ void draw_row(Script& script, const Block& block, std::size_t row, double y_px) 
   const auto& failure = *block.rows[row];
   script.text(kNames_px - 12, y_px, failure.name, {kInk, "right", 12});
   script.stroke({kNames_px, y_px}, {kDots_px, y_px}, kLine);
-  for (std::size_t i = 0; i < std::size(kCompared); ++i) {
+  for (std::size_t i = std::size(kCompared); i-- > 0;) {  // the smaller dots above the larger ones
     const auto method = method_of(kCompared[i]);
     const auto* damage = damage_of(failure, method.variant);
     if (!damage) continue;
     const Point dot{(damage->*block.dot).value_or(0),
                     static_cast<double>(block.rows.size() - row) - 0.5};
     if (dot.x > 0)
-      script.series({&dot, 1},
-                    fmt::format("points pt 7 ps {} lc rgb \"{}\"",
-                                method.variant == "handcast" ? 1.0 : 0.75, method.colour.value));
+      script.series({&dot, 1}, fmt::format("points pt 7 ps {} lc rgb \"{}\"", kDotSizes[i],
+                                           method.colour.value));
     const bool ours = method.variant == "handcast";
     const auto* paper = damage_of(failure, "paper");
     const bool slower =
@@ -186,8 +189,8 @@ std::string slower_than_paper(const std::vector<Failure>& failures) {
 Chart chart_b_faults(const Results& results) {
   Chart chart{"chart_b_faults",
               "B. The failure atlas",
-              "The failures of a rig: the error of the light during each of them, and the time "
-              "until the light is good again.",
+              "The failures of a rig: how far its landmarks are off from each of them on, and the "
+              "time until they are good again; of what lasts, the light.",
               {},
               {},
               {}};

@@ -20,8 +20,11 @@ const std::array kOthers{
     Method{"paper_at_our_speed", "paper at our speed", kPaper},
     Method{"handcast", "handcast", kOurs},
     Method{"ideal", "ideal landmarks", kQuiet},
-    Method{.variant = "handcast_network", .label = "our network", .colour = kFast, .detects = true},
-    Method{.variant = "mediapipe", .label = "MediaPipe", .colour = kFast, .detects = true},
+    Method{.variant = "handcast_network",
+           .label = "with our network",
+           .colour = kFast,
+           .detects = true},
+    Method{.variant = "mediapipe", .label = "with MediaPipe", .colour = kFast, .detects = true},
 };
 
 }  // namespace

@@ -114,8 +114,8 @@ TEST_F(ChartsTest, ARealDetectorStandsWithItsAgeAtTheTimeOfOurFrames) {
       write_sweep(scratch_.path(), "times", columns, {"handcast,1,1,2,6.9,1.2,1000,16.2,"});
   ASSERT_TRUE(write_charts(order({ladder, times})));
   EXPECT_THAT(text_of(out() / "chart_a.csv"),
-              HasSubstr("natural speed,our network,cpu,6.7,4,2,,,,4.1,"));
-  EXPECT_THAT(text_of(out() / "chart_a.svg"), HasSubstr("our network, 4 ms old  4.0"));
+              HasSubstr("natural speed,with our network,cpu,6.7,4,2,,,,4.1,"));
+  EXPECT_THAT(text_of(out() / "chart_a.svg"), HasSubstr("with our network, 4 ms old  4.0"));
 }
 
 TEST_F(ChartsTest, AStressIsTheMeanOverSeedsAndItsBreakdownIsMarked) {
