@@ -14,7 +14,7 @@ namespace {
 /// Difference").
 constexpr double kJndEdges_ms = 3.08, kJndFilled_ms = 6.62;
 
-constexpr int kWidth_px = 1060, kHeight_px = 440;
+constexpr int kWidth_px = 1090, kHeight_px = 440;
 constexpr double kFrom_ms = 2;  ///< less than the delay of any camera and projector
 
 struct Panel {
