@@ -93,8 +93,8 @@ std::string line_of(Level level, std::string_view sentence) {
                                         printable(wording_of()(sentence))));
 }
 
-/// Set by never_wait_for_stderr().
-std::atomic<bool> unwaited{false};
+/// Set by never_wait_for_stderr(): how long stderr is waited for; negative: without end.
+std::atomic<std::chrono::milliseconds> patience{std::chrono::milliseconds(-1)};
 
 /// Writes to stderr, whose reader may be slow or have stopped.
 class Impatient {
@@ -112,7 +112,8 @@ class Impatient {
  private:
   /// Waits for a reader that is merely slow, but not again before it has taken something.
   bool takes(std::string_view text) {
-    const auto limit = Deadline::in(std::chrono::milliseconds(is_waited_for_ ? 50 : 0));
+    const auto limit =
+        Deadline::in(is_waited_for_ ? patience.load() : std::chrono::milliseconds(0));
     for (auto rest = text;;) {
       const auto taken = write_some(rest);
       is_cut_ = taken < rest.size() && (taken > 0 ? rest[taken - 1] != '\n' : is_cut_);
@@ -173,7 +174,7 @@ void write(Level level, std::string_view line) {
 }
 
 void put(std::string_view text) {
-  if (!unwaited.load(std::memory_order_acquire)) {
+  if (patience.load().count() < 0) {
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
     return;
   }
@@ -181,7 +182,7 @@ void put(std::string_view text) {
   stderr_writer.put(text);
 }
 
-void never_wait_for_stderr() {
+void never_wait_for_stderr(std::chrono::milliseconds most) {
   struct stat status {};
   if (::fstat(STDERR_FILENO, &status) != 0) return;
   if (S_ISREG(status.st_mode) || (S_ISCHR(status.st_mode) && ::isatty(STDERR_FILENO) != 1)) return;
@@ -189,7 +190,7 @@ void never_wait_for_stderr() {
   // what another user has opened, cannot be.
   const UniqueFd own(::open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   if (own) ::dup2(own.get(), STDERR_FILENO);
-  unwaited.store(true, std::memory_order_release);
+  patience = most;
 }
 
 }  // namespace handcast::log

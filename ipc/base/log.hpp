@@ -2,6 +2,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,11 +43,11 @@ std::string for_journal(Level level, std::string text);
 
 /// Writes text to stderr. A terminal that was closed is no error. Any thread.
 void put(std::string_view text);
-/// From now on, put() waits at most 50 ms for a terminal, a pipe or the journal, and not at all
-/// until it takes text again: a supervisor must not stand still because a reader does (Ctrl-S, a
-/// hung ssh). Later a line says how many lines are missing. Files are written as before. Call it
+/// From now on, put() waits at most `patience` for a terminal, a pipe or the journal, and not at
+/// all until it takes text again: a supervisor must not stand still because a reader does (Ctrl-S,
+/// a hung ssh). Later a line says how many lines are missing. Files are written as before. Call it
 /// once, before other threads log.
-void never_wait_for_stderr();
+void never_wait_for_stderr(std::chrono::milliseconds patience = std::chrono::milliseconds(50));
 
 /// Writes one line to stderr: "12.345 camera  info  …", the time in seconds
 /// of CLOCK_MONOTONIC. In the journal, with for_journal(). Any thread.

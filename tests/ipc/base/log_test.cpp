@@ -8,6 +8,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "tests/ipc/base/captured_stderr.hpp"
@@ -36,25 +37,25 @@ TEST(Log, ALineInTheJournalHasThePriorityOfItsLevel) {
   log::set_level(log::Level::info);
 }
 
-/// Writes 3 MB of lines to stderr after never_wait_for_stderr() and then, once the reader has
-/// emptied it, another line. Ends the process, after a minute with a signal.
+/// Writes 3 MB of lines to stderr after never_wait_for_stderr(), and only then reads, until a line
+/// says how many are missing. Ends the process, after a minute with a signal.
 [[noreturn]] void write_to_a_reader_that_sleeps(int reading, int writing) {
   ::alarm(60);
   ::fcntl(reading, F_SETFL, O_NONBLOCK);
   ::dup2(writing, STDERR_FILENO);
   log::never_wait_for_stderr();
   for (int i = 0; i < 30'000; ++i) log::put(std::string(99, '.') + "\n");
-  std::array<char, 4096> bytes;
-  while (::read(reading, bytes.data(), bytes.size()) > 0) {
-  }
-  log::put("awake\n");
   std::string read;
-  for (ssize_t count; (count = ::read(reading, bytes.data(), bytes.size())) > 0;)
-    read.append(bytes.data(), static_cast<std::size_t>(count));
-  const bool is_told = read.find(" lines that nobody read in time are missing here") != read.npos &&
-                       read.find("awake") != read.npos;
+  std::array<char, 4096> bytes;
+  while (read.find(" lines that nobody read in time are missing here") == read.npos ||
+         read.find("awake") == read.npos) {
+    ::usleep(1000);
+    for (ssize_t count; (count = ::read(reading, bytes.data(), bytes.size())) > 0;)
+      read.append(bytes.data(), static_cast<std::size_t>(count));
+    log::put("awake\n");
+  }
   const bool is_still_waited_for_elsewhere = (::fcntl(writing, F_GETFL) & O_NONBLOCK) == 0;
-  _exit(is_told && is_still_waited_for_elsewhere ? 0 : 1);
+  _exit(is_still_waited_for_elsewhere ? 0 : 1);
 }
 
 // The last words of a service that died come at once.
@@ -65,7 +66,7 @@ TEST(Log, AReaderThatIsMerelySlowerLosesNothing) {
     ::alarm(60);
     ::dup2(ends[1], STDERR_FILENO);
     ::close(ends[1]);
-    log::never_wait_for_stderr();
+    log::never_wait_for_stderr(std::chrono::seconds(30));
     std::atomic<bool> is_over{false};
     std::thread writer([&] {
       for (int i = 0; i < 10'000; ++i) log::put(std::string(99, '.') + "\n");
