@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/log.hpp"
 
-#include <fcntl.h>
-#include <limits.h>
-#include <poll.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <mutex>
 #include <string>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/base/unique_fd.hpp"
+#include "ipc/base/impatient_writer.hpp"
 #include "ipc/base/wording.hpp"
 
 namespace handcast {
@@ -93,55 +87,31 @@ std::string line_of(Level level, std::string_view sentence) {
                                         printable(wording_of()(sentence))));
 }
 
-/// Set by never_wait_for_stderr(): how long stderr is waited for; negative: without end.
-std::atomic<std::chrono::milliseconds> patience{std::chrono::milliseconds(-1)};
-
-/// Writes to stderr, whose reader may be slow or have stopped.
+/// Stderr after never_wait_for_stderr(), which may lose lines.
 class Impatient {
  public:
+  explicit Impatient(std::chrono::milliseconds patience) : writer_(STDERR_FILENO, patience) {}
+
   void put(std::string_view text) {
     const std::lock_guard lock(mutex_);
-    if (lost_ > 0 && takes((is_cut_ ? "\n" : "") +
-                           line_of(Level::warning, fmt::format("{} lines that nobody read in time "
-                                                               "are missing here",
-                                                               lost_))))
-      lost_ = 0;
-    if (lost_ > 0 || !takes(text)) lost_ += std::ranges::count(text, '\n');
+    if (lost_ > 0 && writer_.takes(missing())) lost_ = 0;
+    if (lost_ > 0 || !writer_.takes(text)) lost_ += std::ranges::count(text, '\n');
   }
 
  private:
-  /// Waits for a reader that is merely slow, but not again before it has taken something.
-  bool takes(std::string_view text) {
-    const auto limit =
-        Deadline::in(is_waited_for_ ? patience.load() : std::chrono::milliseconds(0));
-    for (auto rest = text;;) {
-      const auto taken = write_some(rest);
-      is_cut_ = taken < rest.size() && (taken > 0 ? rest[taken - 1] != '\n' : is_cut_);
-      rest.remove_prefix(taken);
-      is_waited_for_ = rest.empty();
-      if (rest.empty() || limit.passed()) return rest.empty();
-      pollfd writable{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
-      if (taken == 0) ::poll(&writable, 1, 5);
-    }
-  }
-
-  /// Without waiting, if stderr is ready: what cannot be made non-blocking takes PIPE_BUF bytes
-  /// then.
-  static std::size_t write_some(std::string_view text) {
-    pollfd writable{.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
-    if (::poll(&writable, 1, 0) <= 0) return 0;
-    const auto size = std::min<std::size_t>(text.size(), PIPE_BUF);
-    auto count = ::send(STDERR_FILENO, text.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (count < 0 && errno == ENOTSOCK) count = ::write(STDERR_FILENO, text.data(), size);
-    if (count < 0 && errno != EAGAIN && errno != EINTR) return text.size();  // it is gone
-    return static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+  std::string missing() const {
+    return (writer_.is_cut() ? "\n" : "") +
+           line_of(Level::warning,
+                   fmt::format("{} lines that nobody read in time are missing here", lost_));
   }
 
   std::mutex mutex_;
-  std::int64_t lost_ = 0;      ///< lines
-  bool is_cut_ = false;        ///< the last line that was taken has no end
-  bool is_waited_for_ = true;  ///< it has taken all of the last text
+  ImpatientWriter writer_;
+  std::int64_t lost_ = 0;  ///< lines
 };
+
+/// Null: stderr is waited for.
+std::atomic<Impatient*> impatient{nullptr};
 
 }  // namespace
 
@@ -174,23 +144,16 @@ void write(Level level, std::string_view line) {
 }
 
 void put(std::string_view text) {
-  if (patience.load().count() < 0) {
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
-    return;
-  }
-  static Impatient stderr_writer;
-  stderr_writer.put(text);
+  if (auto* writer = impatient.load()) return writer->put(text);
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
-void never_wait_for_stderr(std::chrono::milliseconds most) {
+void never_wait_for_stderr(std::chrono::milliseconds patience) {
   struct stat status {};
-  if (::fstat(STDERR_FILENO, &status) != 0) return;
-  if (S_ISREG(status.st_mode) || (S_ISCHR(status.st_mode) && ::isatty(STDERR_FILENO) != 1)) return;
-  // Opened anew, because O_NONBLOCK belongs to what is open, which the shell shares. A socket, and
-  // what another user has opened, cannot be.
-  const UniqueFd own(::open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
-  if (own) ::dup2(own.get(), STDERR_FILENO);
-  patience = most;
+  if (::fstat(STDERR_FILENO, &status) != 0 || S_ISREG(status.st_mode)) return;
+  if (S_ISCHR(status.st_mode) && ::isatty(STDERR_FILENO) != 1) return;
+  static Impatient writer(patience);
+  impatient = &writer;
 }
 
 }  // namespace handcast::log

@@ -46,11 +46,11 @@ void put(std::string_view text);
 /// From now on, put() waits at most `patience` for a terminal, a pipe or the journal, and not at
 /// all until it takes text again: a supervisor must not stand still because a reader does (Ctrl-S,
 /// a hung ssh). Later a line says how many lines are missing. Files are written as before. Call it
-/// once, before other threads log.
+/// once, before other threads log (see ImpatientWriter).
 void never_wait_for_stderr(std::chrono::milliseconds patience = std::chrono::milliseconds(50));
 
-/// Writes one line to stderr: "12.345 camera  info  …", the time in seconds
-/// of CLOCK_MONOTONIC. In the journal, with for_journal(). Any thread.
+/// Writes one line to stderr: "12.345 camera  info  …", the time in seconds of CLOCK_MONOTONIC. In
+/// the journal, with for_journal(). Any thread.
 void write(Level level, std::string_view line);
 
 /// Formats a line with fmt and writes it at the level of the function's name. Any thread.

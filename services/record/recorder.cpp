@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <memory>
 #include <thread>
 #include <utility>
 
@@ -71,12 +70,13 @@ Result<Recorder::End> Recorder::run(const std::function<bool()>& is_over,
   std::vector<Feed*> patient;
   std::vector<std::jthread> readers;
   std::jthread writer([this] { write(); });
-  // Of an exception, too: the threads are joined when it leaves this function.
-  const auto at_end = [this](void*) {
-    stopping_ = true;
-    queue_.close();
-  };
-  const std::unique_ptr<void, decltype(at_end)> end(this, at_end);
+  struct Stop {  // also by an exception: the threads are joined next
+    Recorder& of;
+    ~Stop() {
+      of.stopping_ = true;
+      of.queue_.close();
+    }
+  } stop{*this};
   for (const auto& feed : feeds_)
     if (!feed->is_hasty())
       patient.push_back(feed.get());

@@ -151,9 +151,8 @@ Chart chart_a(const Results& results) {
       "Further left is faster, further down is more accurate: the error is the one that 95 "
       "% of the points of the skin do not exceed; a point without light counts as 20 mm. "
       "The dashed line joins the methods that no other method beats in both. What is \"with\" a "
-      "detector is handcast. In the shaded "
-      "bands the delay is not noticed: up to 3.08 ms without the fill, when the edges of "
-      "the light are visible, and up to 6.62 ms with it.",
+      "detector is handcast. In the shaded bands the delay is not noticed: up to 3.08 ms without "
+      "the fill, when the edges of the light are visible, and up to 6.62 ms with it.",
       {},
       {},
       {}};

@@ -140,8 +140,8 @@ Result<Outcome> run_all(const Plan& plan, const std::vector<Run>& runs, const Wo
   const auto todo = to_do(plan, runs, work, results, outcome);
   if (!todo.empty() && results.is_of_an_earlier_build())
     return fail(Errc::bad_config,
-                fmt::format("sweep {}: {} runs are left, but the others were scored by an earlier "
-                            "build of this program, whose figures may differ; give another file "
+                fmt::format("sweep {}: the runs that are done are of an earlier build of this "
+                            "program, whose figures may differ, and {} are left; give another file "
                             "with -o, or do all of them again with --fresh",
                             plan.name, todo.size()));
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

@@ -65,6 +65,29 @@ TEST_F(SweepTest, ShardsMergeToTheFileOfAWholeRun) {
   EXPECT_EQ(text_of(file("merged.csv")), text_of(file("whole.csv")));
 }
 
+TEST_F(SweepTest, DoesNotGoOnWithRunsOfAnEarlierBuild) {
+  const auto plan = plan_of(kTiny);
+  ASSERT_TRUE(plan);
+  const auto expansion = expand(*plan);
+  ASSERT_TRUE(expansion);
+  const auto go_on = [&] {
+    std::filesystem::last_write_time(
+        file("a.csv"),
+        std::filesystem::last_write_time("/proc/self/exe") - std::chrono::seconds(1));
+    const auto results = Results::open(file("a.csv"), heading_of(*plan, *expansion, "1.0"), false);
+    EXPECT_TRUE(results) << results.error().what;
+    const std::atomic<bool> stop{false};
+    return run_all(*plan, expansion->runs, {{}, 1, true}, **results, stop);
+  };
+  sweep(kTiny, "a.csv");
+  EXPECT_TRUE(go_on()) << "no run is left";
+  const auto whole = text_of(file("a.csv"));
+  std::filesystem::resize_file(file("a.csv"), whole.size() - 10);
+  const auto refused = go_on();
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, testing::HasSubstr("an earlier build"));
+}
+
 TEST_F(SweepTest, GoesOnWhereItWasCutOff) {
   sweep(kTiny, "a.csv");
   const auto whole = text_of(file("a.csv"));
