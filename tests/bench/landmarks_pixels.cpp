@@ -2,6 +2,7 @@
 // How well the landmarks of cameras are found whose sensors have pixels of other shapes: with the
 // lens of the Leap rig, on the twin's images, by one eye without a tracker.
 //   bench_landmarks_pixels [RIG.toml] [--set PATH=VALUE]... [--seconds S] [--seed N]
+// There are no goals: an argument --goals FILE is accepted and ignored.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -97,6 +98,8 @@ int main(int argc, char** argv) {
       seconds = std::atof(argv[++i]);
     else if (word == "--seed" && has_next)
       seed = std::atoi(argv[++i]);
+    else if (word == "--goals" && has_next)
+      ++i;
     else
       rig = word;
   }
