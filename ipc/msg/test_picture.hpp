@@ -17,7 +17,7 @@ inline constexpr std::string_view kTestPictures = "calibration.pictures";
 /// follow the struct in the same slot, row by row from the top, without padding: 0 dark to 255,
 /// encoded as in sRGB. The projector shows it for kLasting_ns after it was published, so that hands
 /// are lit again soon after its writer has died.
-/// Published by: services/calibrate ("calibration.pictures").  Read by: services/projector.
+/// Published by: services/tools/calibrate ("calibration.pictures").  Read by: services/projector.
 struct TestPicture {
   static constexpr std::string_view layout = "TestPicture/1";  ///< see type_hash()
   static constexpr std::int64_t kLasting_ns = 1'000'000'000;   ///< after published_ns

@@ -22,7 +22,7 @@ extern const std::array<std::string_view, kJoints> kJointNames;
 extern const std::array<int, kJoints> kJointParent;
 
 /// A skinned hand at rest. Model space: metres, OpenXR hand axes (+x right, +y out of the back, -z
-/// towards the tips). The wrist is at the origin in the hands made by renderer/hand/maker.
+/// towards the tips). The wrist is at the origin in the hands made by services/lab/hand_maker.
 struct HandMesh {
   Side side = Side::left;            ///< which hand it is
   std::vector<glm::vec3> positions;  ///< per vertex, model space
@@ -33,7 +33,7 @@ struct HandMesh {
   /// Per vertex: the weights of these joints, with sum 1.
   std::vector<std::array<float, 4>> weights;
   /// Per vertex: the connected part of the UV layout, see number_charts(). 0 is not used. In the
-  /// hands made by renderer/hand/maker 1 is the back and 2 the palm.
+  /// hands made by services/lab/hand_maker 1 is the back and 2 the palm.
   std::vector<std::uint8_t> chart;
   std::vector<std::array<std::uint16_t, 3>> triangles;  ///< counter-clockwise seen from outside
   std::array<glm::mat4, kJoints> rest{};                ///< joint space to model space, rigid

@@ -113,6 +113,19 @@ function(handcast_module)
   handcast_use(${target} ${scope} ${ARG_USES})
 endfunction()
 
+# handcast_back_ends(folder ...): links the implementations that the table of back ends of the current module names. They include the
+# module's interface, and none of its sources includes them.
+function(handcast_back_ends)
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  handcast_target_of(${folder} target)
+  get_target_property(type ${target} TYPE)
+  set(scope PUBLIC)
+  if(type STREQUAL "INTERFACE_LIBRARY")
+    set(scope INTERFACE)
+  endif()
+  handcast_use(${target} ${scope} ${ARGN})
+endfunction()
+
 # handcast_embed(source HEADER header NAMESPACE name FILES variable file ...): makes a source with the texts of files as constants of type
 # std::string_view, which the header declares.
 function(handcast_embed source)

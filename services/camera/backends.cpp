@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "config/sections/twin/world_settings.hpp"
 #include "services/camera/camera.hpp"
-#include "services/evaluation/twin/settings.hpp"
 
 namespace handcast::camera {
 
@@ -34,7 +34,7 @@ static constexpr std::array kBackends{
     CameraBackend{.name = "twin",
                   .sentence = "Draws the twin's hand as an infrared camera would see it.",
                   .open = open_twin,
-                  .reads = twin::kWorldSettings + config::SettingList{"twin.image"}},
+                  .reads = config::kTwinWorldSettings + config::SettingList{"twin.image"}},
     CameraBackend{.name = "replay",
                   .sentence =
                       "Plays a recording of `handcast record`, PNG images, a film or a .npy "

@@ -9,14 +9,14 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/camera/png_pictures.hpp"
-#include "services/evaluation/twin/npy.hpp"
+#include "services/recording/arrays/npy.hpp"
 
 namespace handcast::camera {
 namespace {
 
 class NpyPictures final : public PictureSource {
  public:
-  NpyPictures(twin::NpyBytes file, std::int64_t exposure_ns)
+  NpyPictures(recording::NpyBytes file, std::int64_t exposure_ns)
       : file_(std::move(file)), exposure_ns_(exposure_ns) {}
 
   Result<void> read(std::size_t index, msg::CameraFrame& frame,
@@ -36,7 +36,7 @@ class NpyPictures final : public PictureSource {
   }
 
  private:
-  twin::NpyBytes file_;
+  recording::NpyBytes file_;
   std::int64_t exposure_ns_;
 };
 
@@ -48,7 +48,7 @@ bool is_of_size(const std::vector<std::size_t>& shape, const PlayedAs& as) {
 }  // namespace
 
 Result<PlayedPictures> open_npy_pictures(const std::filesystem::path& file, const PlayedAs& as) {
-  auto array = twin::open_npy_bytes(file);
+  auto array = recording::open_npy_bytes(file);
   if (!array) return tl::make_unexpected(array.error());
   if (!is_of_size(array->shape, as))
     return fail(

@@ -7,7 +7,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "renderer/content/picture.hpp"
-#include "services/evaluation/twin/recording.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 
 namespace handcast::camera {
 namespace fs = std::filesystem;
@@ -81,7 +81,7 @@ class PngPictures final : public PictureSource {
 Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::size_t count,
                                                    double rate_hz, std::int64_t first_ns) {
   const fs::path file = folder / "camera_timestamps.npy";
-  const auto there = twin::is_there(file);
+  const auto there = recording::is_there(file);
   if (!there) return tl::make_unexpected(there.error());
   if (!*there) {
     std::vector<std::int64_t> times_ns;
@@ -89,7 +89,7 @@ Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::
       times_ns.push_back(first_ns + seconds_to_ns(static_cast<double>(i) / rate_hz));
     return times_ns;
   }
-  auto times_ns = twin::read_stamps_ns(file);
+  auto times_ns = recording::read_stamps_ns(file);
   if (times_ns && times_ns->size() != count)
     return fail(Errc::bad_config, fmt::format("'{}' has {} times for {} images", file.string(),
                                               times_ns->size(), count));
@@ -98,11 +98,11 @@ Result<std::vector<std::int64_t>> picture_times_ns(const fs::path& folder, std::
 
 Result<PlayedPictures> open_png_pictures(const fs::path& folder, const PlayedAs& as) {
   const fs::path inner = folder / "camera";
-  const auto has_inner = twin::is_there(inner);
+  const auto has_inner = recording::is_there(inner);
   if (!has_inner) return tl::make_unexpected(has_inner.error());
   auto images = read_pictures(*has_inner ? inner : folder, as.width_px, as.height_px);
   if (!images) return tl::make_unexpected(images.error());
-  const auto stamps_ns = twin::read_all_stamps_ns(folder);
+  const auto stamps_ns = recording::read_all_stamps_ns(folder);
   if (!stamps_ns) return tl::make_unexpected(stamps_ns.error());
   const auto lap = timing::Lap::of(*stamps_ns);
   const auto count = images->size();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <string>
+
+#include "ipc/msg/hand_poses.hpp"
 
 namespace handcast::joints {
 
@@ -30,5 +33,18 @@ std::string sentence_of(const Conventions& conventions);
 /// Those of Leap Motion and Ultraleap: the ends of bones, axes of the bones, widths of the flesh.
 inline constexpr Conventions kLeap{
     .place = Place::bones, .has_measured_palm = false, .radii = Radii::bone_widths};
+
+/// The distance from each joint of the mean hand to its skin, m: for sources that report no widths
+/// (Radii::model). A test compares them with renderer::joint_radii_m(renderer::HandShape::mean()).
+inline constexpr std::array<float, msg::kJoints> kMeanRadii_m = [] {
+  std::array<float, msg::kJoints> radii{12, 17.5f,                      // palm, wrist
+                                        13, 10.6f, 10.2f, 8.4f,         // thumb
+                                        12, 10.4f, 9.2f,  8,    7,      // index finger
+                                        12, 10.6f, 9.5f,  8.2f, 7.1f,   // middle finger
+                                        12, 10.1f, 8.9f,  7.8f, 6.8f,   // ring finger
+                                        12, 8.8f,  7.8f,  6.9f, 6.1f};  // little finger
+  for (float& radius : radii) radius *= 1e-3f;
+  return radii;
+}();
 
 }  // namespace handcast::joints

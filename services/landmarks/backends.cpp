@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "config/sections/twin/world_settings.hpp"
 #include "ipc/base/join.hpp"
-#include "services/evaluation/twin/settings.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
@@ -24,11 +24,11 @@ static constexpr DetectorBackend kTwin{
     .name = "twin",
     .sentence = "Models a landmark detector that sees the twin's hand.",
     .open = open_twin,
-    .reads = twin::kWorldSettings + config::SettingList{"twin.detector", "twin.image.delivery_ms",
-                                                        "twin.image.lost", "twin.image.burst",
-                                                        "twin.image.clock_drift_ppm",
-                                                        "twin.image.clock_jitter_ms",
-                                                        "camera.rate_hz", "camera.exposure_ms"}};
+    .reads =
+        config::kTwinWorldSettings +
+        config::SettingList{"twin.detector", "twin.image.delivery_ms", "twin.image.lost",
+                            "twin.image.burst", "twin.image.clock_drift_ppm",
+                            "twin.image.clock_jitter_ms", "camera.rate_hz", "camera.exposure_ms"}};
 
 static constexpr DetectorBackend kReplay{.name = "replay",
                                          .sentence = "Plays recorded landmarks.",

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "services/evaluation/twin/recording.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/recording/about.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "services/recording/playback.hpp"
 #include "services/runtime/loop.hpp"
 
@@ -87,7 +87,7 @@ Result<std::unique_ptr<Detector>> open_recorded(const config::Replay& settings,
 
 /// The hand at one time stamp: x, y and, if the recording has them, sigmas. A landmark whose
 /// coordinates are not finite was not seen; a hand without a landmark is absent.
-msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side side) {
+msg::HandLandmarks hand_at(const recording::Npy& array, std::size_t index, msg::Side side) {
   const std::size_t columns = array.shape[2];
   msg::HandLandmarks hand;
   hand.side = side;
@@ -102,7 +102,7 @@ msg::HandLandmarks hand_at(const twin::Npy& array, std::size_t index, msg::Side 
 }
 
 /// Why these cannot be landmarks in camera pixels. Empty if they can.
-std::string fault_of_points(const twin::Npy& array) {
+std::string fault_of_points(const recording::Npy& array) {
   constexpr double kFarthest_px = 1e5, kFraction = 1.5;
   const std::size_t columns = array.shape[2];
   double farthest = 0;
@@ -124,10 +124,10 @@ std::string fault_of_points(const twin::Npy& array) {
 }
 
 Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side) {
-  const auto there = twin::is_there(file);
+  const auto there = recording::is_there(file);
   if (!there) return tl::make_unexpected(there.error());
   if (!*there) return Track{};
-  auto opened = twin::NpyFile::open(file);
+  auto opened = recording::NpyFile::open(file);
   if (!opened) return tl::make_unexpected(opened.error());
   const auto has_columns = [&](std::size_t columns) {
     return opened->shape() == std::vector<std::size_t>{count, msg::kLandmarks, columns};
@@ -153,9 +153,9 @@ Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int6
   if (auto there = recording::check_folder(folder); !there)
     return tl::make_unexpected(there.error());
   if (recording::is_recording(folder)) return open_recorded(settings, epoch_ns);
-  auto times_ns = twin::read_stamps_ns(folder / "landmarks_timestamps.npy");
+  auto times_ns = recording::read_stamps_ns(folder / "landmarks_timestamps.npy");
   if (!times_ns) return tl::make_unexpected(times_ns.error());
-  const auto stamps_ns = twin::read_all_stamps_ns(folder);
+  const auto stamps_ns = recording::read_all_stamps_ns(folder);
   if (!stamps_ns) return tl::make_unexpected(stamps_ns.error());
 
   std::array<Track, msg::kMaxHands> hands;

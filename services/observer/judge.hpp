@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <memory>
-#include <vector>
+#include <nlohmann/json_fwd.hpp>
 
-#include "services/evaluation/twin/metrics.hpp"
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "ipc/base/result.hpp"
+#include "ipc/msg/projection.hpp"
 
 namespace handcast::observer {
 
-/// Scores the live light against the true hand of the twin. Converts the times of the projector
-/// (CLOCK_MONOTONIC) to the clock of the twin, which starts at the epoch of the rig. One thread.
-class LiveJudge {
+/// Scores the live light against a ground truth. One thread.
+class Judge {
  public:
-  /// `epoch_ns`: the epoch of the rig, CLOCK_MONOTONIC. Errors: bad_config (the motion of the twin
-  /// cannot be read).
-  static Result<LiveJudge> create(const config::Rig& rig, const calib::Calibration& calibration,
-                                  std::int64_t epoch_ns);
+  virtual ~Judge() = default;
 
-  /// Scores one projected frame.
-  twin::FrameScore score(const msg::Projection& projection);
-
- private:
-  LiveJudge(std::unique_ptr<twin::Twin> twin, std::unique_ptr<twin::Judge> judge,
-            std::int64_t epoch_ns)
-      : twin_(std::move(twin)), judge_(std::move(judge)), epoch_ns_(epoch_ns) {}
-
-  std::unique_ptr<twin::Twin> twin_;  ///< must outlive the judge
-  std::unique_ptr<twin::Judge> judge_;
-  std::int64_t epoch_ns_;
-  std::vector<std::uint64_t> message_;  ///< an aligned copy of the message, with shifted times
+  /// Scores one projected frame; frames must come in the order of their lit_ns.
+  virtual void add(const msg::Projection& projection) = 0;
+  /// True if no frame was added.
+  virtual bool empty() const = 0;
+  /// The metrics of the frames of the last one to two minutes: see twin::Metrics::to_json().
+  virtual nlohmann::json scores() const = 0;
 };
+
+/// The judge that knows the true hand of the twin. `epoch_ns`: the epoch of the rig,
+/// CLOCK_MONOTONIC. Errors: bad_config (the motion of the twin cannot be read).
+Result<std::unique_ptr<Judge>> open_judge(const config::Rig& rig,
+                                          const calib::Calibration& calibration,
+                                          std::int64_t epoch_ns);
 
 }  // namespace handcast::observer

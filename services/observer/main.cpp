@@ -3,11 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/sections/twin/world_settings.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/contract.hpp"
-#include "services/evaluation/twin/settings.hpp"
 #include "services/observer/judge.hpp"
-#include "services/observer/live_score.hpp"
 #include "services/runtime/context.hpp"
 
 using namespace handcast;
@@ -22,10 +21,10 @@ static bool has_truth(const config::Rig& rig) {
 }
 
 /// Writes observer.json to the folder for kept files. Without one the scores are only logged.
-static void save(const observer::LiveScore& scores, service::Context& context) {
+static void save(const observer::Judge& judge, service::Context& context) {
   const auto folder = daemon::out_folder();
-  if (!folder || scores.empty()) return;
-  const auto written = write_whole(*folder / "observer.json", scores.to_json().dump(2) + "\n");
+  if (!folder || judge.empty()) return;
+  const auto written = write_whole(*folder / "observer.json", judge.scores().dump(2) + "\n");
   if (!written) context.tolerate({Errc::bad_data, "observer: " + written.error().what});
 }
 
@@ -34,9 +33,9 @@ static double number(const nlohmann::json& json, const char* pointer) {
   return json.contains(found) && json.at(found).is_number() ? json.at(found).get<double>() : 0.0;
 }
 
-static void log_scores(const observer::LiveScore& scores) {
-  if (scores.empty()) return;
-  const auto json = scores.to_json();
+static void log_scores(const observer::Judge& judge) {
+  if (judge.empty()) return;
+  const auto json = judge.scores();
   log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}",
             number(json, "/interior_mm/p95"), number(json, "/coverage"), number(json, "/spill"));
 }
@@ -44,8 +43,7 @@ static void log_scores(const observer::LiveScore& scores) {
 /// Scores the newest projected frame, observer.rate_hz times per second, at low priority.
 static void run_observer(service::Context& context) {
   if (::nice(10) == -1) log::debug("the priority cannot be lowered");
-  auto judge =
-      must(observer::LiveJudge::create(context.rig(), context.calibration(), context.epoch_ns()));
+  auto judge = must(observer::open_judge(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by();
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
   if (!has_truth(context.rig()))
@@ -53,7 +51,6 @@ static void run_observer(service::Context& context) {
         "nothing is scored: cameras or tracker do not see the twin's hand, so there is no true "
         "hand to compare with");
 
-  observer::LiveScore scores;
   const auto period_ns = seconds_to_ns(1 / context.rig().observer.rate_hz);
   std::int64_t score_ns = now_ns(), save_ns = score_ns + to_ns(2s), log_ns = score_ns + to_ns(5s);
   context.ready();
@@ -63,29 +60,28 @@ static void run_observer(service::Context& context) {
     if (time_ns >= score_ns) {
       score_ns = std::max(score_ns + period_ns, time_ns);
       if (!has_truth(context.rig())) continue;
-      if (const auto seen = projections.latest(Deadline::in(20ms)))
-        scores.add(judge.score(**seen), static_cast<int>((*seen)->foldovers));
+      if (const auto seen = projections.latest(Deadline::in(20ms))) judge->add(**seen);
     }
     if (time_ns >= save_ns) {
-      save(scores, context);
+      save(*judge, context);
       save_ns = time_ns + to_ns(2s);
     }
     if (time_ns >= log_ns) {
-      log_scores(scores);
+      log_scores(*judge);
       log_ns = time_ns + to_ns(5s);
     }
   }
-  save(scores, context);
+  save(*judge, context);
 }
 
 static Result<void> check_observer(const config::Rig& rig, const calib::Calibration& calibration) {
-  const auto judge = observer::LiveJudge::create(rig, calibration, now_ns());
+  const auto judge = observer::open_judge(rig, calibration, now_ns());
   return judge ? Result<void>() : tl::make_unexpected(judge.error());
 }
 
 /// The true hand comes from the twin's world, if there is one.
 static std::vector<std::string> settings() {
-  const auto world = twin::kWorldSettings.paths();
+  const auto world = config::kTwinWorldSettings.paths();
   std::vector<std::string> all{"observer", "camera.backend", "camera2.backend", "pose.backend"};
   all.insert(all.end(), world.begin(), world.end());
   return all;

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "services/evaluation/twin/settings.hpp"
+#include "config/sections/twin/world_settings.hpp"
 #include "services/pose/pair_source.hpp"
 #include "services/pose/watched_source.hpp"
 
@@ -30,7 +30,7 @@ static constexpr std::array kBackends{
     PoseBackend{.name = "twin",
                 .sentence = "Models a hand tracker that watches the twin's hand.",
                 .open = open_twin,
-                .reads = twin::kWorldSettings + config::SettingList{"twin.tracker"}},
+                .reads = config::kTwinWorldSettings + config::SettingList{"twin.tracker"}},
     PoseBackend{.name = "replay",
                 .sentence = "Plays a recording of hand poses.",
                 .open = open_replay,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "services/evaluation/twin/recording.hpp"
 #include "services/pose/pose_source.hpp"
 #include "services/recording/about.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "services/recording/playback.hpp"
 #include "services/runtime/loop.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 /// 0.
 class ReplayPose final : public PoseSource {
  public:
-  ReplayPose(twin::Recording recording, timing::Loop loop)
+  ReplayPose(recording::RecordedHands recording, timing::Loop loop)
       : recording_(std::move(recording)), loop_(std::move(loop)) {}
 
   Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
@@ -42,7 +42,7 @@ class ReplayPose final : public PoseSource {
   }
 
  private:
-  twin::Recording recording_;
+  recording::RecordedHands recording_;
   timing::Loop loop_;
   std::int64_t last_ns_ = 0;
 };
@@ -101,9 +101,9 @@ Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const ca
   if (auto there = recording::check_folder(settings.directory); !there)
     return fail_in("pose 'replay'", there.error());
   if (recording::is_recording(settings.directory)) return open_recorded(settings, epoch_ns);
-  auto recording = twin::read_recording(settings.directory);
+  auto recording = recording::read_recording(settings.directory);
   if (!recording) return fail_in("pose 'replay'", recording.error());
-  const auto stamps_ns = twin::read_all_stamps_ns(settings.directory);
+  const auto stamps_ns = recording::read_all_stamps_ns(settings.directory);
   if (!stamps_ns) return fail_in("pose 'replay'", stamps_ns.error());
   auto times_ns = recording->time_ns;
   for (auto& time_ns : times_ns) time_ns += recording->first_ns;

@@ -4,8 +4,8 @@
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/trace/history_request.hpp"
-#include "supervisor/trace/latency_table.hpp"
+#include "supervisor/look/trace/history_request.hpp"
+#include "supervisor/look/trace/latency_table.hpp"
 
 namespace handcast::supervisor {
 

@@ -7,9 +7,9 @@
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/top/top_layout.hpp"
-#include "supervisor/top/top_look.hpp"
-#include "supervisor/top/top_terminal.hpp"
+#include "supervisor/look/top/top_layout.hpp"
+#include "supervisor/look/top/top_look.hpp"
+#include "supervisor/look/top/top_terminal.hpp"
 
 namespace handcast::supervisor {
 namespace {

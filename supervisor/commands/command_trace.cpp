@@ -7,8 +7,8 @@
 #include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/trace/history_request.hpp"
-#include "supervisor/trace/perfetto.hpp"
+#include "supervisor/look/trace/history_request.hpp"
+#include "supervisor/look/trace/perfetto.hpp"
 
 namespace handcast::supervisor {
 

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/lens/lens_fit.hpp"
+#include "calib/solve/lens/lens_fit.hpp"
 #include "tests/bench/goals.hpp"
-#include "tests/calib/lens/synthetic_views.hpp"
+#include "tests/calib/solve/lens/synthetic_views.hpp"
 
 namespace handcast::bench {
 namespace {

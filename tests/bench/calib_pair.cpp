@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/pair/pair_fit.hpp"
+#include "calib/solve/pair/pair_fit.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
-#include "tests/calib/pair/pair_world.hpp"
+#include "tests/calib/solve/pair/pair_world.hpp"
 
 namespace handcast::bench {
 namespace {

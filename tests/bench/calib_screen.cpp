@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How accurately calib/screen finds the pixels of the projector, on rendered and on synthetic
-// boards (tests/calib/screen/rendered_board.hpp), and how long it takes on one core.
+// How accurately calib/solve/screen finds the pixels of the projector, on rendered and on synthetic
+// boards (tests/calib/solve/screen/rendered_board.hpp), and how long it takes on one core.
 //   bench_calib_screen [--goals FILE]
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "calib/screen/depth_error.hpp"
-#include "calib/screen/resampling.hpp"
+#include "calib/solve/screen/depth_error.hpp"
+#include "calib/solve/screen/resampling.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
-#include "tests/calib/screen/rendered_board.hpp"
+#include "tests/calib/solve/screen/rendered_board.hpp"
 
 namespace handcast::bench {
 namespace {

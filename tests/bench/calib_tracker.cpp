@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/tracker/fit_tracker.hpp"
+#include "calib/solve/tracker/fit_tracker.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
-#include "tests/calib/tracker/moving_hand.hpp"
+#include "tests/calib/solve/tracker/moving_hand.hpp"
 
 namespace handcast::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/simulate/score.hpp"
+#include "services/lab/simulate/score.hpp"
 
 namespace handcast::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #ifdef HANDCAST_WITH_HIDAPI
-#include "tests/services/dlp/emulated_hid.hpp"
+#include "tests/services/projector/dlp/emulated_hid.hpp"
 #endif
 
 namespace handcast::bench {

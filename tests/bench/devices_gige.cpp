@@ -13,7 +13,7 @@
 #include "ipc/base/log.hpp"
 #include "services/camera/aravis/pixels.hpp"
 #include "services/camera/camera.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/services/camera/aravis/fake_camera.hpp"

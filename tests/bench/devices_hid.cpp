@@ -4,10 +4,10 @@
 #include <map>
 #include <random>
 
-#include "services/dlp/link.hpp"
+#include "services/projector/dlp/link.hpp"
 #include "tests/bench/devices.hpp"
 #include "tests/bench/percentiles.hpp"
-#include "tests/services/dlp/emulated_controller.hpp"
+#include "tests/services/projector/dlp/emulated_controller.hpp"
 
 namespace handcast::bench {
 namespace {

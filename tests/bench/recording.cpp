@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "renderer/content/picture.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/recording/packed_image.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"

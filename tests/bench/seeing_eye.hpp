@@ -8,8 +8,8 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/owned.hpp"
-#include "services/evaluation/twin/camera_scene.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/camera_scene.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
 
 namespace handcast::bench {

@@ -5,7 +5,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "renderer/predict/pose_history.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/pose/stereo/stereo_tracker.hpp"
 #include "tests/bench/seeing_eye.hpp"
 

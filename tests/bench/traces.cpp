@@ -16,10 +16,10 @@
 
 #include "renderer/pipeline/stage_clock.hpp"
 #include "services/runtime/context.hpp"
+#include "supervisor/look/trace/latency_table.hpp"
+#include "supervisor/look/trace/perfetto.hpp"
 #include "supervisor/record/history.hpp"
 #include "supervisor/record/recorder.hpp"
-#include "supervisor/trace/latency_table.hpp"
-#include "supervisor/trace/perfetto.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 

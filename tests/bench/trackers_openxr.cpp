@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "renderer/predict/pose_history.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/pose/pose_source.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"

@@ -20,8 +20,8 @@
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/twin.hpp"
-#include "services/landmarks/detect/picture.hpp"
+#include "services/lab/twin/twin.hpp"
+#include "services/tools/detect/picture.hpp"
 #include "tests/bench/goals.hpp"
 
 namespace handcast::bench {
@@ -110,7 +110,7 @@ void add_sample(const twin::Twin& twin, const calib::Calibration& calibration, s
 
 /// The tracker of the paper's authors on their captures, against the tips that a person marked.
 std::optional<Errors> errors_of_captures(const std::filesystem::path& data) {
-  std::ifstream file("services/landmarks/training/real_tips.json");
+  std::ifstream file("services/lab/training/real_tips.json");
   const auto marks = nlohmann::json::parse(file, nullptr, false);
   if (marks.is_discarded()) return std::nullopt;
   Errors errors;

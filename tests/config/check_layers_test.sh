@@ -52,6 +52,14 @@ must_catch 'supervisor must not use renderer/base' \
   supervisor/CMakeLists.txt 'handcast_program(planted USES renderer/base)' \
   supervisor/planted.cpp '#include "renderer/base/image.hpp"'
 
+# The show, its tools and its laboratory.
+must_catch 'the show must not include services/lab/twin/twin.hpp, which is of the lab' \
+  services/camera/planted.cpp '#include "services/lab/twin/twin.hpp"'
+must_catch 'the show must not include calib/solve/lens/lens_fit.hpp, which is of the tools' \
+  renderer/base/planted.cpp '#include "calib/solve/lens/lens_fit.hpp"'
+must_catch 'the tools must not include services/lab/twin/twin.hpp, which is of the lab' \
+  services/tools/doctor/planted.cpp '#include "services/lab/twin/twin.hpp"'
+
 # Cycles of two modules, and of two folders inside one module.
 must_catch 'a cycle: renderer/filter -> renderer/predict -> renderer/filter' \
   renderer/predict/CMakeLists.txt 'handcast_program(planted USES renderer/filter)' \
@@ -61,9 +69,9 @@ must_catch 'a cycle: services/landmarks/inference/onnx -> services/landmarks/inf
 
 # The headers of other projects.
 must_catch 'may only be included by config/settings/document.cpp' calib/planted.cpp '#include <toml++/toml.h>'
-must_catch 'may only be included by calib/board/, calib/lens/, calib/pair/, calib/tracker/first_pose.cpp, renderer/content/' services/camera/pictures.cpp '#include <opencv2/core.hpp>'
+must_catch 'may only be included by calib/solve/board/, calib/solve/lens/, calib/solve/pair/, calib/solve/tracker/first_pose.cpp, renderer/content/' services/camera/pictures.cpp '#include <opencv2/core.hpp>'
 
 # Two types of one name, which the linker cannot tell apart.
 must_catch 'handcast::calib::Pose is also defined in' \
-  calib/tracker/planted.hpp $'namespace handcast::calib {\nstruct Pose {};\n}  // namespace handcast::calib'
+  calib/solve/tracker/planted.hpp $'namespace handcast::calib {\nstruct Pose {};\n}  // namespace handcast::calib'
 echo "all planted breaches were caught"

@@ -10,7 +10,7 @@
 #include "renderer/correct/deform.hpp"
 #include "renderer/correct/untangle.hpp"
 #include "renderer/skin/hand_surface.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace {

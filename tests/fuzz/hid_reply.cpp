@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a DLP controller sends: reports of any length, one after the other.
 
-#include "services/dlp/protocol/payload.hpp"
-#include "services/dlp/protocol/status.hpp"
+#include "services/projector/dlp/protocol/payload.hpp"
+#include "services/projector/dlp/protocol/status.hpp"
 #include "tests/fuzz/input.hpp"
 
 using namespace handcast;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A request to the exporter, as it arrives byte by byte, and the answer to it.
 // Limits: 10 s and 1 GB per input.
-#include "supervisor/metrics/http_server.hpp"
+#include "supervisor/look/metrics/http_server.hpp"
 #include "tests/fuzz/input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The figures that the exporter serves, from the status of a supervisor.
 // Limits: 10 s and 1 GB per input.
-#include "supervisor/metrics/metrics.hpp"
+#include "supervisor/look/metrics/metrics.hpp"
 
 #include "tests/fuzz/input.hpp"
 

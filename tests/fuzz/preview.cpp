@@ -10,8 +10,8 @@
 #include "ipc/msg/largest_images.hpp"
 #include "ipc/msg/owned.hpp"
 #include "ipc/msg/projection.hpp"
-#include "services/preview/layout/layout.hpp"
-#include "services/preview/scene/scene_maker.hpp"
+#include "services/tools/preview/layout/layout.hpp"
+#include "services/tools/preview/scene/scene_maker.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace {

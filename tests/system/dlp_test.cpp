@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tests/services/dlp/emulated_controller.hpp"
+#include "tests/services/projector/dlp/emulated_controller.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {

@@ -10,8 +10,8 @@
 #include <fstream>
 
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/recording.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/system/running_rig.hpp"
 #include "tests/system/variable.hpp"
 
@@ -34,12 +34,12 @@ class Faults : public SystemTest {
 void record_a_hand(const std::filesystem::path& folder) {
   const auto twin = twin::Twin::create({}, calib::reference_rig());
   ASSERT_TRUE(twin) << twin.error().what;
-  twin::Recording recording;
+  recording::RecordedHands recording;
   for (std::uint64_t k = 0; k < 50; ++k) {
     recording.time_ns.push_back(static_cast<std::int64_t>(k) * ms_to_ns(10));
     recording.hands[0].push_back((*twin)->tracker_sample(k).poses.hands[0]);
   }
-  ASSERT_TRUE(twin::write_recording(folder, recording));
+  ASSERT_TRUE(recording::write_recording(folder, recording));
 }
 
 TEST_F(Faults, EachServiceMayBeKilledAndTheLightGoesOn) {

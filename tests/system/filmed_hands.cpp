@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/camera_scene.hpp"
+#include "services/lab/twin/camera_scene.hpp"
 
 namespace handcast::system_test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 
 namespace handcast::system_test {
 

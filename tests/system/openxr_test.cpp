@@ -7,7 +7,7 @@
 #include "ipc/client/stream.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/msg/hand_poses.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "tests/services/pose/openxr/runtime/motion.hpp"
 #include "tests/services/pose/openxr/scripted_runtime.hpp"

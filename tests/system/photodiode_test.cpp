@@ -11,7 +11,7 @@
 #include "config/rig.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/projection.hpp"
-#include "tests/services/calibrate/sound/emulated_sound_card.hpp"
+#include "tests/services/tools/calibrate/sound/emulated_sound_card.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {
@@ -95,7 +95,7 @@ class WholeRigWithAPhotodiode : public SystemTest {
 };
 
 TEST_F(WholeRigWithAPhotodiode, TheDelayOfTheLightIsHeardAndWritten) {
-  constexpr double kLate_ms = 40, kProjector_hz = 57;  // as services/calibrate runs the twin
+  constexpr double kLate_ms = 40, kProjector_hz = 57;  // as services/tools/calibrate runs the twin
   Photodiode diode("twin", ms_to_ns(kLate_ms), kProjector_hz);
   const test::EmulatedSoundCard card(
       [&](std::int64_t time_ns) { return diode.voltage_at(time_ns); });

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/supervisor/trace/trace_decoder.hpp"
+#include "tests/supervisor/look/trace/trace_decoder.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {

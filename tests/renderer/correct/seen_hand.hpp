@@ -7,7 +7,7 @@
 #include "renderer/base/image.hpp"
 #include "renderer/base/landmark_points.hpp"
 #include "renderer/correct/deform.hpp"
-#include "renderer/hand/maker/hand_shape.hpp"
+#include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file
 /// The mean hand at rest, seen from above without perspective, and masks of hands like it.

@@ -9,8 +9,8 @@
 #include <limits>
 #include <random>
 
-#include "renderer/hand/maker/hand_shape.hpp"
 #include "renderer/predict/project_landmarks.hpp"
+#include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file
 /// Hands at rest in many views, 0.6 m from the camera, whose detector sees some joints elsewhere

@@ -9,8 +9,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "renderer/hand/maker/glb_write.hpp"
-#include "tests/renderer/hand/maker/mesh_checks.hpp"
+#include "services/lab/hand_maker/glb_write.hpp"
+#include "tests/services/lab/hand_maker/mesh_checks.hpp"
 
 namespace handcast::renderer {
 namespace {

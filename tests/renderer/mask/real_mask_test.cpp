@@ -13,8 +13,8 @@
 #include "renderer/content/picture.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/predict/project_landmarks.hpp"
-#include "services/evaluation/twin/npy.hpp"
 #include "services/joints/leap_layout.hpp"
+#include "services/recording/arrays/npy.hpp"
 #include "tests/renderer/mask/outline_score.hpp"
 #include "tests/renderer/mask/real_outlines.hpp"
 
@@ -66,7 +66,7 @@ std::optional<Image<std::uint8_t>> camera_image(const std::string& name) {
 
 /// The tracker's pose at the capture. The axes of the wrist alone are set: the mask needs no other.
 std::optional<msg::HandPose> tracker_pose(const std::string& name) {
-  const auto joints = twin::read_npy(name + "_joints_left.npy");
+  const auto joints = recording::read_npy(name + "_joints_left.npy");
   if (!joints) return std::nullopt;
   const auto place_m = [&](int leap) {
     return 1e-3 * glm::dvec3(joints->values[3 * leap], joints->values[3 * leap + 1],

@@ -8,9 +8,9 @@
 
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/predict/project_landmarks.hpp"
-#include "services/evaluation/twin/surface.hpp"
+#include "services/lab/twin/surface.hpp"
 #include "tests/renderer/mask/outline_score.hpp"
-#include "tests/services/evaluation/twin/world.hpp"
+#include "tests/services/lab/twin/world.hpp"
 
 /// The mask step on the twin's images against the true silhouette, with true poses as hints.
 namespace handcast::renderer {

@@ -7,9 +7,9 @@
 
 #include "calib/calibration.hpp"
 #include "renderer/hand/hand_mesh.hpp"
-#include "renderer/hand/maker/hand_shape.hpp"
 #include "renderer/pipeline/pipeline.hpp"
 #include "renderer/skin/skinning.hpp"
+#include "services/lab/hand_maker/hand_shape.hpp"
 #include "tests/renderer/hand_pose.hpp"
 
 /// @file

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "renderer/skin/skinning.hpp"
-#include "tests/renderer/hand/maker/mesh_checks.hpp"
 #include "tests/renderer/poses.hpp"
+#include "tests/services/lab/hand_maker/mesh_checks.hpp"
 
 namespace handcast::renderer {
 namespace {

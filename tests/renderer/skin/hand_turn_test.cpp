@@ -6,8 +6,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "renderer/hand/maker/hand_shape.hpp"
 #include "renderer/predict/project_landmarks.hpp"
+#include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file
 /// Hands at rest in many views, 0.6 m from the camera, as a tracker reports them and as they are.

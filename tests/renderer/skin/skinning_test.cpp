@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/renderer/hand/maker/mesh_checks.hpp"
 #include "tests/renderer/poses.hpp"
+#include "tests/services/lab/hand_maker/mesh_checks.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/hand/maker/hand_shape.hpp"
 #include "renderer/skin/bone_fit.hpp"
 #include "renderer/skin/skinning.hpp"
+#include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file
 /// A person's hand as a mask, seen from above without perspective, and the mean hand drawn on the

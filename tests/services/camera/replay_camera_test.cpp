@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "services/camera/camera.hpp"
-#include "services/evaluation/twin/recording.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
 
@@ -56,8 +56,8 @@ TEST_F(ReplayCamera, PlaysThePicturesInTheirOrderOverAndOver) {
 
 TEST_F(ReplayCamera, OriginsFollowTheTimeStamps) {
   test::write_pictures(scratch_.path(), 3, kWidth, kHeight);
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "camera_timestamps.npy",
-                                  {5'000'000, 5'010'000, 5'040'000}));
+  ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "camera_timestamps.npy",
+                                       {5'000'000, 5'010'000, 5'040'000}));
   const std::int64_t epoch_ns = now_ns() + to_ns(50ms);
   const auto camera = open_camera(rig_, calibration_, epoch_ns);
   ASSERT_TRUE(camera) << camera.error().what;
@@ -107,7 +107,8 @@ TEST_F(ReplayCamera, SaysWhichFileIsNoPicture) {
 
 TEST_F(ReplayCamera, SaysWhenTimesAndPicturesDoNotPair) {
   test::write_pictures(scratch_.path(), 2, kWidth, kHeight);
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "camera_timestamps.npy", {0, 10'000, 20'000}));
+  ASSERT_TRUE(
+      recording::write_npy_i64(scratch_.path() / "camera_timestamps.npy", {0, 10'000, 20'000}));
   expect_refused("3 times for 2 images");
 }
 

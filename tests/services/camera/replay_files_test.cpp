@@ -8,7 +8,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "services/camera/camera.hpp"
-#include "services/evaluation/twin/recording.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/recording/recordings.hpp"
 
@@ -128,8 +128,8 @@ TEST_F(ReplayFiles, AnArrayIsPlayedAtTheRateOfTheSettingsOrAtItsTimes) {
   const auto file = write_array(4, "(4, 5, 7)");
   for (const bool has_times : {false, true}) {
     if (has_times) {
-      ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "camera_timestamps.npy",
-                                      {0, 7'000, 17'000, 27'000}));
+      ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "camera_timestamps.npy",
+                                           {0, 7'000, 17'000, 27'000}));
     }
     const auto camera = open(file);
     ASSERT_TRUE(camera) << camera.error().what;

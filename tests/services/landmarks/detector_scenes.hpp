@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "ipc/msg/owned.hpp"
-#include "services/evaluation/twin/recording.hpp"
 #include "services/landmarks/detector.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 /// Frames for the tests of the detectors.
@@ -22,8 +22,8 @@ inline void write_detections(const std::filesystem::path& folder, std::size_t co
     values.insert(values.end(), 42, static_cast<float>(100 + i));
     times_us.push_back(static_cast<std::int64_t>(i) * 10'000);
   }
-  ASSERT_TRUE(twin::write_npy_f32(folder / "landmarks_left.npy", {count, 21, 2}, values));
-  ASSERT_TRUE(twin::write_npy_i64(folder / "landmarks_timestamps.npy", times_us));
+  ASSERT_TRUE(recording::write_npy_f32(folder / "landmarks_left.npy", {count, 21, 2}, values));
+  ASSERT_TRUE(recording::write_npy_i64(folder / "landmarks_timestamps.npy", times_us));
 }
 
 /// A frame without pixels.

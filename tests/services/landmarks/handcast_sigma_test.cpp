@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "ipc/msg/owned.hpp"
+#include "services/lab/training/trial.hpp"
 #include "services/landmarks/detector.hpp"
-#include "services/landmarks/training/trial.hpp"
 
 namespace handcast::landmarks {
 namespace {

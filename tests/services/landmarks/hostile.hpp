@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "ipc/msg/owned.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
 #include "tests/services/landmarks/pictures.hpp"

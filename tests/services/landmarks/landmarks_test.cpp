@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "config/settings/choice.hpp"
+#include "services/lab/training/trial.hpp"
 #include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
-#include "services/landmarks/training/trial.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/detector_scenes.hpp"
 #include "tests/services/unread_settings.hpp"

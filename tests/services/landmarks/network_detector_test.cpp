@@ -2,8 +2,8 @@
 // The landmark models as detectors: lens, convention of the joints, confidence, missing files.
 #include <gmock/gmock.h>
 
+#include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/mediapipe_files.hpp"
-#include "services/landmarks/training/trial.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/detector_scenes.hpp"
 

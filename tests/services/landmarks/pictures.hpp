@@ -13,9 +13,9 @@
 
 #include "renderer/base/image.hpp"
 #include "renderer/content/picture.hpp"
-#include "services/landmarks/detect/picture.hpp"
 #include "services/landmarks/geometry/points.hpp"
 #include "services/landmarks/models/mediapipe_files.hpp"
+#include "services/tools/detect/picture.hpp"
 
 /// Pictures for the tests of the landmark detector: real captures from outside, and synthetic ones.
 namespace handcast::test {

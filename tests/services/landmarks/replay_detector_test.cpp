@@ -54,8 +54,9 @@ TEST_F(ReplayDetector, APointThatIsNotANumberWasNotSeen) {
   std::vector<float> values(2 * 42, 7);
   values[42] = kUnseen;                      // detection 1: its first point
   std::fill_n(values.begin(), 42, kUnseen);  // detection 0: the whole hand
-  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_right.npy", {2, 21, 2}, values));
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  ASSERT_TRUE(
+      recording::write_npy_f32(scratch_.path() / "landmarks_right.npy", {2, 21, 2}, values));
+  ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
   const auto detector = open();
   ASSERT_TRUE(detector) << detector.error().what;
   EXPECT_EQ((*detector)->detect(frame_of(0, kEpoch_ns), {}, Deadline::now())->count, 0u);
@@ -70,8 +71,8 @@ TEST_F(ReplayDetector, GivesTheSigmasOfARecordingThatHasThem) {
   std::vector<float> values;
   for (int i = 0; i < 2 * msg::kLandmarks; ++i)
     values.insert(values.end(), {100, 200, 0.5f * static_cast<float>(i)});
-  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  ASSERT_TRUE(recording::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
+  ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
   const auto detector = open();
   ASSERT_TRUE(detector) << detector.error().what;
   const auto found = (*detector)->detect(frame_of(0, kEpoch_ns + to_ns(10ms)), {}, Deadline::now());
@@ -90,23 +91,23 @@ TEST_F(ReplayDetector, ALandmarkThatWasNotSeenNeedsNoSigma) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> values{none, none, none};
   while (values.size() < 2 * msg::kLandmarks * 3) values.insert(values.end(), {100, 200, 1});
-  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  ASSERT_TRUE(recording::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
+  ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
   EXPECT_TRUE(open()) << open().error().what;
   values[5] = none;  // of a landmark that was seen
-  ASSERT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
+  ASSERT_TRUE(recording::write_npy_f32(scratch_.path() / "landmarks_left.npy", {2, 21, 3}, values));
   EXPECT_FALSE(open());
 }
 
 TEST_F(ReplayDetector, SaysWhatItMisses) {
   expect_refused("landmarks_timestamps.npy");
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
   expect_refused("neither");
 }
 
 TEST_F(ReplayDetector, SaysWhenTimesAndLandmarksDoNotPair) {
   write_detections(scratch_.path(), 4);
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
+  ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", {0, 10'000}));
   expect_refused("(4, 21, 2); expected (2, 21, 2) or, with sigmas, (2, 21, 3)");
 }
 

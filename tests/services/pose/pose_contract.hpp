@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "services/evaluation/twin/recording.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/pose/pose_source.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/unread_settings.hpp"
 
@@ -21,10 +21,10 @@ namespace handcast::pose {
 using namespace std::chrono_literals;
 
 /// A recording of 30 samples of the twin's left hand, 5 ms apart.
-inline twin::Recording recording_of(const config::Rig& rig) {
+inline recording::RecordedHands recording_of(const config::Rig& rig) {
   const auto twin = twin::Twin::create(rig, calib::reference_rig());
   if (!twin) throw std::runtime_error(twin.error().what);
-  twin::Recording recording;
+  recording::RecordedHands recording;
   for (std::uint64_t k = 0; k < 30; ++k) {
     recording.time_ns.push_back(static_cast<std::int64_t>(k) * to_ns(5ms));
     recording.hands[0].push_back((*twin)->tracker_sample(k).poses.hands[0]);
@@ -83,7 +83,8 @@ class PoseContract : public testing::TestWithParam<PoseBackend> {
     rig_.pose.backend = GetParam().name;
     rig_.camera2.backend = "twin";  // for stereo
     rig_.pose.replay.directory = scratch_.path();
-    if (GetParam().name == "replay" && !twin::write_recording(scratch_.path(), recording_of(rig_)))
+    if (GetParam().name == "replay" &&
+        !recording::write_recording(scratch_.path(), recording_of(rig_)))
       throw std::runtime_error("the recording cannot be written");
 #ifdef HANDCAST_TEST_RUNTIME_MANIFEST
     rig_.pose.openxr.runtime = HANDCAST_TEST_RUNTIME_MANIFEST;

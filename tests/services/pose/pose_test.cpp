@@ -79,7 +79,7 @@ TEST(ReplayPose, PlaysWhatWasRecorded) {
   test::Scratch scratch;
   config::Rig rig;
   const auto recording = recording_of(rig);
-  ASSERT_TRUE(twin::write_recording(scratch.path(), recording));
+  ASSERT_TRUE(recording::write_recording(scratch.path(), recording));
   rig.pose.backend = "replay";
   rig.pose.replay.directory = scratch.path();
   const auto source = open_pose_source(rig, calib::reference_rig(), now_ns());

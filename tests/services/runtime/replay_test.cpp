@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "services/camera/camera.hpp"
-#include "services/evaluation/twin/recording.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/pose/pose_source.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/camera/pictures.hpp"
 
@@ -40,19 +40,21 @@ class Replay : public testing::Test {
     rig_.camera.replay.directory = rig_.pose.replay.directory = rig_.landmarks.replay.directory =
         scratch_.path();
 
-    twin::Recording recording;
+    recording::RecordedHands recording;
     recording.first_ns = kPoses_us.front() * 1000;
     for (const auto time_us : kPoses_us) {
       recording.time_ns.push_back(time_us * 1000 - recording.first_ns);
       recording.hands[0].emplace_back();
     }
-    EXPECT_TRUE(twin::write_recording(scratch_.path(), recording));
+    EXPECT_TRUE(recording::write_recording(scratch_.path(), recording));
     test::write_pictures(scratch_.path() / "camera", 3, kWidth, kHeight);
-    EXPECT_TRUE(twin::write_npy_i64(scratch_.path() / "camera_timestamps.npy", kPictures_us));
+    EXPECT_TRUE(recording::write_npy_i64(scratch_.path() / "camera_timestamps.npy", kPictures_us));
     std::vector<float> points;
     for (const float x : {100, 101, 102}) points.insert(points.end(), 42, x);
-    EXPECT_TRUE(twin::write_npy_f32(scratch_.path() / "landmarks_left.npy", {3, 21, 2}, points));
-    EXPECT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", kLandmarks_us));
+    EXPECT_TRUE(
+        recording::write_npy_f32(scratch_.path() / "landmarks_left.npy", {3, 21, 2}, points));
+    EXPECT_TRUE(
+        recording::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy", kLandmarks_us));
   }
 
   /// When an item was taken, played in the lap that its number says.
@@ -113,8 +115,8 @@ TEST_F(Replay, PicturesWithoutTimesBeginWithTheirFolder) {
 }
 
 TEST_F(Replay, TimesOfTwoClocksAreRefusedWithTheFileNamed) {
-  ASSERT_TRUE(twin::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy",
-                                  {1'700'000'000'000'000, 1'700'000'000'010'000}));
+  ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "landmarks_timestamps.npy",
+                                       {1'700'000'000'000'000, 1'700'000'000'010'000}));
   const auto pose = pose::open_pose_source(rig_, calibration_, epoch_ns_);
   ASSERT_FALSE(pose);
   EXPECT_EQ(pose.error().code, Errc::bad_config);

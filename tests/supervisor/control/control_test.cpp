@@ -4,7 +4,7 @@
 #include <sys/mman.h>
 #include <sys/socket.h>
 
-#include "supervisor/top/top_look.hpp"
+#include "supervisor/look/top/top_look.hpp"
 #include "tests/supervisor/control/control_fixture.hpp"
 
 namespace handcast::supervisor {

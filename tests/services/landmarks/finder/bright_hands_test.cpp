@@ -2,8 +2,8 @@
 // Hands that are found by their brightness alone, without tracker and palm network.
 #include <gtest/gtest.h>
 
+#include "services/lab/training/trial.hpp"
 #include "services/landmarks/finder/hand_finder.hpp"
-#include "services/landmarks/training/trial.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {

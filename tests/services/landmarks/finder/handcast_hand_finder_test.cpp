@@ -2,8 +2,8 @@
 // HandFinder with handcast's model on a stream of the twin's images.
 #include <gtest/gtest.h>
 
+#include "services/lab/training/trial.hpp"
 #include "services/landmarks/finder/hand_finder.hpp"
-#include "services/landmarks/training/trial.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {

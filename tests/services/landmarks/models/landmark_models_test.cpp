@@ -4,9 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include "services/lab/training/trial.hpp"
 #include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/models/models_folder.hpp"
-#include "services/landmarks/training/trial.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 

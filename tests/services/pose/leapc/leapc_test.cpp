@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <glm/gtc/quaternion.hpp>
 
-#include "services/evaluation/twin/npy.hpp"
+#include "services/recording/arrays/npy.hpp"
 #include "tests/services/pose/leapc/leapc_rig.hpp"
 #include "tests/services/pose/pose_contract.hpp"
 
@@ -154,7 +154,7 @@ TEST(Leapc, NothingIsLeftOpen) {
 
 /// The bones and joints of a recording as the library would report them.
 struct Recorded {
-  twin::Npy joints, bones;
+  recording::Npy joints, bones;
 };
 std::optional<Recorded> recorded;
 
@@ -177,9 +177,9 @@ TEST(Leapc, ARecordingIsReportedAsItIsRead) {
   const char* set = std::getenv("HANDCAST_DATA");
   const auto folder = std::filesystem::path(set ? set : "../shared/data") / "lmc" / "all_5s";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
-  recorded = Recorded{twin::read_npy(folder / "joints_left.npy").value(),
-                      twin::read_npy(folder / "bones_left.npy").value()};
-  const auto expected = twin::read_recording(folder).value().hands[0];
+  recorded = Recorded{recording::read_npy(folder / "joints_left.npy").value(),
+                      recording::read_npy(folder / "bones_left.npy").value()};
+  const auto expected = recording::read_recording(folder).value().hands[0];
   auto& leap = fresh_leap();
   leap.motion = play;
   leap.rate_hz = 400;

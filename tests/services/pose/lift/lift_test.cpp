@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/pose/lift/lifter.hpp"
 
 namespace handcast::pose {

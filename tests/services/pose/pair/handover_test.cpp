@@ -13,7 +13,7 @@
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 
 namespace handcast::pose {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/pose/stereo/stereo_tracker.hpp"
 
 namespace handcast::pose::stereo {

@@ -15,9 +15,9 @@
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
-#include "services/evaluation/twin/motions.hpp"
-#include "services/evaluation/twin/recording.hpp"
-#include "services/evaluation/twin/twin.hpp"
+#include "services/lab/twin/motions.hpp"
+#include "services/lab/twin/twin.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 
 namespace handcast::pose {
 namespace {
@@ -196,7 +196,7 @@ TEST(SourceWatch, ARecordingIsNoFault) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   for (const char* name : {"all_5s", "deformation", "rotation", "translation"}) {
     SCOPED_TRACE(name);
-    const auto recording = twin::read_recording(folder / name).value();
+    const auto recording = recording::read_recording(folder / name).value();
     SourceWatch watch;
     TrackerFaults faults;
     for (std::size_t i = 0; i < recording.time_ns.size(); ++i) {

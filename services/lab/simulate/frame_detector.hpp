@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "ipc/base/result.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "services/lab/simulate/exposure.hpp"
+#include "services/lab/twin/twin.hpp"
+#include "services/landmarks/detector.hpp"
+
+namespace handcast::simulate {
+
+/// The result of a landmark detector on one frame.
+struct Detection {
+  std::optional<msg::Landmarks> landmarks;  ///< empty if the detector could not use the frame
+  std::int64_t age_ns = 0;                  ///< virtual time from the frame's origin to the result
+  std::int64_t work_ns = 0;                 ///< run time on this machine; 0 if no image was read
+};
+
+/// A landmark detector for frames of the twin's camera, which must be passed in ascending order.
+class FrameDetector {
+ public:
+  virtual ~FrameDetector() = default;
+  /// Receives a sample of the tracker that arrived before the next run begins.
+  virtual void tell(const msg::HandPoses&) {}
+  /// Runs the detector on one frame. `run` is the number of the run.
+  virtual Detection detect(std::uint64_t run, const Exposure& exposure) = 0;
+};
+
+/// Makes the twin's model of a detector. `twin` must outlive it.
+std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin);
+
+/// The back end that the simulator runs for a rig: that of landmarks::choose_detector(), on the
+/// twin's images, except that "replay" becomes "twin" because recorded landmarks belong to other
+/// images.
+landmarks::DetectorChoice simulated_backend(const config::Rig& rig);
+
+/// The files of networks that it reads, some of which need not exist; none if it runs no network.
+std::vector<std::filesystem::path> network_files(const config::Rig& rig);
+
+/// Opens the detector of simulated_backend(). A real detector has the age, the clock error and the
+/// faults of the twin's model (Twin::spoil), but neither its noise nor its bias. `twin` must
+/// outlive it. Errors: those of landmarks::open_detector (bad_config if a model is missing).
+Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,
+                                                           const calib::Calibration& calibration,
+                                                           const twin::Twin& twin);
+
+}  // namespace handcast::simulate

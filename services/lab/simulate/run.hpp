@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "ipc/base/result.hpp"
+#include "services/lab/simulate/options.hpp"
+
+namespace handcast::simulate {
+
+/// Runs `handcast simulate`: simulates the rig, prints a summary and writes the files of the
+/// options. Returns why the metrics say nothing about the rig, e.g. because no hand was in sight;
+/// empty if they do. Errors: bad_config (a setting, or a file that cannot be read or written), and
+/// those of score().
+Result<std::string> run(const Options& options);
+
+}  // namespace handcast::simulate

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/lab/simulate/second_view.hpp"
+
+#include <algorithm>
+
+#include "config/second_view.hpp"
+
+namespace handcast::simulate {
+namespace {
+
+/// From the landmarks to their poses in the projector: the fit (0.1 ms, at most 0.6), and a second
+/// ring.
+constexpr std::int64_t kFit_ns = 300'000;
+
+}  // namespace
+
+Result<std::unique_ptr<SecondView>> SecondView::open(const config::Rig& rig,
+                                                     const calib::Calibration& calibration) {
+  const auto views = pose::stereo::views_of(calibration);
+  if (!views) return tl::make_unexpected(views.error());
+  const auto seen_rig = config::seen_by_second(rig);
+  const auto seen = calib::second_view(calibration);
+  auto twin = twin::Twin::create(seen_rig, seen);
+  if (!twin) return tl::make_unexpected(twin.error());
+  auto detector = open_frame_detector(seen_rig, seen, **twin);
+  if (!detector) return fail_in("the second view", detector.error());
+  auto tracker =
+      pose::stereo::StereoTracker::open(rig, *views, glm::inverse(calibration.camera_from_tracker));
+  if (!tracker) return tl::make_unexpected(tracker.error());
+  return std::unique_ptr<SecondView>(
+      new SecondView(std::move(*twin), std::move(*detector), *tracker, rig.pose.stereo));
+}
+
+std::vector<SensorEvent> SecondView::until(std::int64_t now_ns,
+                                           const std::vector<SensorEvent>& events,
+                                           const std::vector<SensorEvent>& poses) {
+  struct Arrival {
+    std::int64_t at_ns;
+    int view;
+    msg::Landmarks landmarks;
+  };
+  std::vector<Arrival> arrivals;
+  const auto take = [&](int view, const std::vector<SensorEvent>& from) {
+    for (const auto& event : from)
+      if (const auto* landmarks = std::get_if<msg::Landmarks>(&event.message))
+        arrivals.push_back({event.arrival_ns, view, *landmarks});
+  };
+  take(0, events);
+  std::vector<SensorEvent> second = poses;
+  detector_.until(now_ns, second);
+  take(1, second);
+  std::ranges::stable_sort(arrivals, {}, &Arrival::at_ns);
+  std::vector<SensorEvent> made;
+  for (const auto& arrival : arrivals) {
+    sample(arrival.at_ns, made);
+    pairing_.push(arrival.view, arrival.landmarks, arrival.at_ns);
+    sample(arrival.at_ns, made);
+  }
+  sample(now_ns, made);
+  return made;
+}
+
+/// Makes the samples that are due by `now_ns`.
+void SecondView::sample(std::int64_t now_ns, std::vector<SensorEvent>& made) {
+  while (const auto pair = pairing_.take(now_ns))
+    made.push_back({now_ns + kFit_ns, tracker_.sample(pose::stereo::seen_of(*pair))});
+}
+
+}  // namespace handcast::simulate

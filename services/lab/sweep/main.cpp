@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast sweep: scores grids of settings over motions, seeds and speeds, on all cores.
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <atomic>
+#include <cstdio>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
+#include "ipc/base/verb_options.hpp"
+#include "ipc/base/version.hpp"
+#include "services/lab/sweep/columns.hpp"
+#include "services/lab/sweep/merge.hpp"
+#include "services/lab/sweep/runner.hpp"
+
+namespace handcast::sweep {
+namespace {
+
+struct CommandLine {
+  std::vector<std::string> files;
+  std::string output, shard;
+  int jobs = 0;
+  bool fresh = false, list = false, merge = false, quiet = false;
+};
+
+constexpr int kExitStopped = 130;  ///< as a shell names the end of a program by Ctrl-C
+
+const char* const kFooter = R"(A plan is a TOML file. The paths in it are relative to the file.
+  rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24    joints_only = false
+  [settings]    settings of all runs, e.g. twin.tracker.age_ms = 15; settings_from = "FILE.toml": a file of such settings
+  [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"; with from = ["NAME"], it has
+                the settings of variants above, too, and the rig of the first
+  [grid]        lists of values, e.g. twin.speed = [1, 2, 3]; all combinations are run. Several [[grid]] are run one after the other
+config/REFERENCE.md lists the settings; config/sweeps holds plans.
+
+The same command continues an interrupted sweep and repeats the runs that failed, unless the program was built again meanwhile. To
+use several machines, run one `--shard I/N` on each and --merge the results. The measured times of frames and stages depend on the number of jobs; use -j 1 to compare them.
+Exit codes: 1 if runs failed, all were left out, or some are missing after a merge, 130 if the sweep was interrupted.)";
+
+std::atomic<bool> stop{false};
+
+/// Installs the handler: the first Ctrl-C lets the current runs end, the second ends the program.
+void stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop = true; };
+  action.sa_flags = SA_RESETHAND;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int complain(const Error& error) {
+  fmt::print(stderr, "handcast sweep: {}\n", error.what);
+  return exit_code_of(error);
+}
+
+std::filesystem::path output_of(const CommandLine& line, const Plan& plan, const Shard& shard) {
+  if (!line.output.empty()) return line.output;
+  const auto part = shard.count > 1 ? fmt::format(".{}-of-{}", shard.index, shard.count) : "";
+  return std::filesystem::path("out") / fmt::format("{}{}.csv", plan.name, part);
+}
+
+int list_runs(const Plan& plan, const std::vector<Run>& runs, const Shard& shard) {
+  for (const auto& run : runs) {
+    if (!shard.has(run)) continue;
+    const auto rig = rig_of(plan, run);
+    const auto absent = rig ? why_absent(*rig) : std::nullopt;
+    fmt::print("{:6}  {}{}\n", run.index, describe_run(plan, run),
+               absent ? fmt::format("  [left out: {}]", *absent) : "");
+  }
+  return kExitDone;
+}
+
+int report(const Plan& plan, const Outcome& outcome, const std::filesystem::path& file) {
+  fmt::print("sweep {}: {} runs scored, {} failed, {} kept, {} left out, {} not begun: {}\n",
+             plan.name, outcome.scored, outcome.failed, outcome.kept, outcome.absent, outcome.left,
+             file.string());
+  if (outcome.left > 0) return kExitStopped;
+  if (outcome.absent > 0 && outcome.scored + outcome.failed + outcome.kept == 0) {
+    fmt::print(stderr, "handcast sweep: all runs were left out: nothing was measured\n");
+    return kExitBadResult;
+  }
+  return outcome.failed > 0 ? kExitBadResult : kExitDone;
+}
+
+int sweep(const CommandLine& line) {
+  const auto shard = line.shard.empty() ? Result<Shard>(Shard{}) : parse_shard(line.shard);
+  if (!shard) return complain(shard.error());
+  const auto plan = load_plan(line.files.front());
+  if (!plan) return complain(plan.error());
+  const auto expansion = expand(*plan);
+  if (!expansion) return complain(expansion.error());
+  if (line.list) return list_runs(*plan, expansion->runs, *shard);
+
+  const auto file = output_of(line, *plan, *shard);
+  auto results =
+      Results::open(file, heading_of(*plan, *expansion, std::string(version())), line.fresh);
+  if (!results) return complain(results.error());
+  stop_on_signals();
+  const auto outcome =
+      run_all(*plan, expansion->runs, {*shard, line.jobs, line.quiet}, **results, stop);
+  return outcome ? report(*plan, *outcome, file) : complain(outcome.error());
+}
+
+int merge_files(const CommandLine& line) {
+  if (line.output.empty())
+    return complain({Errc::bad_config, "--merge needs an output file; give it with -o"});
+  const auto merged = merge({line.files.begin(), line.files.end()}, line.output);
+  if (!merged) return complain(merged.error());
+  fmt::print("{} runs, {} of them failed: {}\n", merged->rows, merged->failed, line.output);
+  if (!merged->missing.empty())
+    fmt::print(stderr, "handcast sweep: no file has runs {}\n", print_indices(merged->missing));
+  return merged->missing.empty() && merged->failed == 0 ? kExitDone : kExitBadResult;
+}
+
+}  // namespace
+}  // namespace handcast::sweep
+
+static int run_verb(int argc, char** argv) {
+  using namespace handcast::sweep;
+  CommandLine line;
+  CLI::App app(
+      "Scores a rig in virtual time with all combinations of the settings of a plan, and writes a "
+      "CSV file.",
+      "handcast sweep");
+  app.footer(kFooter);
+  app.add_option("PLAN.toml", line.files, "The plan; with --merge, the files of results")
+      ->required();
+  app.add_option("-o,--output", line.output, "File of results (default: out/PLAN.csv)");
+  app.add_option("--shard", line.shard, "I/N: does only the runs whose index is I modulo N");
+  app.add_option("-j,--jobs", line.jobs, "Number of simultaneous runs (default: one per core)")
+      ->check(CLI::Range(1, 4096));
+  app.add_flag("--list", line.list, "Prints the runs and does none");
+  app.add_flag("--fresh", line.fresh, "Discards the content of the file of results");
+  app.add_flag("--merge", line.merge, "Merges the results of shards into one file");
+  app.add_flag("--quiet", line.quiet, "Prints no progress");
+  if (const auto code = handcast::answered(app, handcast::parse_options(app, argc, argv)))
+    return *code;
+  if (line.merge) return merge_files(line);
+  if (line.files.size() > 1)
+    return complain(
+        {handcast::Errc::bad_config, "there must be one plan; use --merge for files of results"});
+  return sweep(line);
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast sweep", argc, argv, run_verb);
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/lab/twin/true_view.hpp"
+
+#include <algorithm>
+
+namespace handcast::twin {
+namespace {
+
+using renderer::Rect;
+
+constexpr int kWrist = 1;
+constexpr float kArmBegins_m = 0.005f;  ///< behind the wrist
+/// Velocities are central differences over this time before and after.
+constexpr std::int64_t kVelocityStep_ns = 1'000'000;
+
+}  // namespace
+
+TrueView::TrueView(const Twin& twin, int width_px, int height_px)
+    : twin_(twin), surface_(width_px, height_px), inverse_depth_(width_px, height_px) {
+  // A homography that mirrors reverses the orientation of the triangles.
+  front_ = glm::determinant(glm::dmat2(twin.geometry().calibration().projector_from_camera)) > 0
+               ? -1.0f
+               : 1.0f;
+  for (const Side side : {Side::left, Side::right}) {
+    const auto s = static_cast<std::size_t>(side);
+    behind_wrist_m_[s] = behind_wrist_m(twin.true_hand(side).mesh);
+    forearms_[s] = make_forearm(twin.true_hand(side).mesh, kBareArm_m);
+  }
+}
+
+std::optional<JointFrames> TrueView::joints_in_camera(Side side, std::int64_t time_ns) const {
+  auto joints = twin_.joints(side, time_ns);
+  const glm::mat4 camera_from_tracker(twin_.geometry().calibration().camera_from_tracker);
+  if (joints)
+    for (auto& frame : *joints) frame = camera_from_tracker * frame;
+  return joints;
+}
+
+void TrueView::pose(std::int64_t time_ns) {
+  count_ = 0;
+  for (const Side side : {Side::left, Side::right}) {
+    const auto joints = joints_in_camera(side, time_ns);
+    if (joints) pose_hand(seen_[count_++], side, time_ns, *joints);
+  }
+}
+
+void TrueView::project(std::span<const glm::vec3> positions, ScreenVertices& screen) const {
+  screen.resize(positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const glm::vec2 px = to_projector(positions[v]);
+    screen.x[v] = px.x;
+    screen.y[v] = px.y;
+    screen.inverse_depth[v] = 1 / positions[v].z;
+  }
+}
+
+void TrueView::pose_hand(SeenHand& hand, Side side, std::int64_t time_ns,
+                         const JointFrames& joints) {
+  hand.side = side;
+  hand.flesh = &twin_.true_hand(side);
+  hand.position_m.resize(hand.flesh->mesh.vertex_count());
+  twin::pose(*hand.flesh, joints, hand.position_m);
+  project(hand.position_m, hand.screen);
+  find_velocities(hand, time_ns, joints);
+  for (int j = 0; j < msg::kJoints; ++j) hand.joints_px[j] = to_projector(glm::vec3(joints[j][3]));
+  pose_arm(hand, joints);
+}
+
+/// A hand that appears or disappears within the step is taken to rest in the missing half.
+void TrueView::find_velocities(SeenHand& hand, std::int64_t time_ns, const JointFrames& joints) {
+  constexpr float kPerSecond = 1e9f / (2 * kVelocityStep_ns);
+  const std::size_t count = hand.position_m.size();
+  before_.resize(count);
+  after_.resize(count);
+  twin::pose(*hand.flesh, joints_in_camera(hand.side, time_ns - kVelocityStep_ns).value_or(joints),
+             before_);
+  twin::pose(*hand.flesh, joints_in_camera(hand.side, time_ns + kVelocityStep_ns).value_or(joints),
+             after_);
+  hand.velocity_m_s.resize(count);
+  hand.velocity_px_s.resize(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    hand.velocity_m_s[v] = (after_[v] - before_[v]) * kPerSecond;
+    hand.velocity_px_s[v] = (to_projector(after_[v]) - to_projector(before_[v])) * kPerSecond;
+  }
+}
+
+void TrueView::pose_arm(SeenHand& hand, const JointFrames& joints) {
+  after_.clear();
+  for (const glm::vec3& position : forearms_[static_cast<std::size_t>(hand.side)].positions)
+    after_.push_back(glm::vec3(joints[kWrist] * glm::vec4(position, 1)));
+  project(after_, hand.arm);
+}
+
+void TrueView::draw(const Rect& area) {
+  for (int y = area.y0; y < area.y1; ++y) {
+    std::fill_n(surface_.row(y) + area.x0, area.width(), kNothing);
+    std::fill_n(inverse_depth_.row(y) + area.x0, area.width(), 0.0f);
+  }
+  for (std::size_t h = 0; h < count_; ++h) draw_hand(h, area);
+}
+
+/// Draws a hand and its arm with a depth test.
+void TrueView::draw_hand(std::size_t index, const Rect& area) {
+  const SeenHand& hand = seen_[index];
+  const auto& behind = behind_wrist_m_[static_cast<std::size_t>(hand.side)];
+  const auto& triangles = hand.flesh->mesh.triangles;
+  const auto out = surface_.view();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& [i, j, k] = triangles[t];
+    const float za = behind[i], zb = behind[j], zc = behind[k];
+    draw_triangle(hand.screen, triangles[t], front_, area, inverse_depth_.view(),
+                  [&](int x, int y, float a, float b, float c) {
+                    out.at(x, y) =
+                        a * za + b * zb + c * zc > kArmBegins_m ? kArm : surface_of(index, t);
+                  });
+  }
+  for (const auto& triangle : forearms_[static_cast<std::size_t>(hand.side)].triangles)
+    draw_triangle(hand.arm, triangle, front_, area, inverse_depth_.view(),
+                  [&](int x, int y, float, float, float) { out.at(x, y) = kArm; });
+}
+
+}  // namespace handcast::twin

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "renderer/base/image.hpp"
+#include "services/lab/twin/surface.hpp"
+#include "services/lab/twin/twin.hpp"
+
+namespace handcast::twin {
+
+/// The surface at a projector pixel: kNothing, kArm, or a triangle of a hand.
+using Surface = std::uint32_t;
+inline constexpr Surface kNothing = 0, kArm = 1, kFirstTriangle = 2;
+/// A triangle of the hand with an index in TrueView::hands().
+/// @{
+constexpr Surface surface_of(std::size_t hand, std::size_t triangle) {
+  return kFirstTriangle + static_cast<Surface>(hand << 16 | triangle);
+}
+constexpr bool is_hand(Surface surface) { return surface >= kFirstTriangle; }
+constexpr std::size_t hand_of(Surface surface) { return (surface - kFirstTriangle) >> 16; }
+constexpr std::size_t triangle_of(Surface surface) { return (surface - kFirstTriangle) & 0xffff; }
+/// @}
+
+/// A true hand as the projector's light meets it.
+struct SeenHand {
+  Side side = Side::left;
+  const TrueHand* flesh = nullptr;
+  std::vector<glm::vec3> position_m;  ///< by vertex, camera space
+  ScreenVertices screen;              ///< by vertex, projector px
+  /// By vertex.
+  /// @{
+  std::vector<glm::vec2> velocity_px_s;
+  std::vector<glm::vec3> velocity_m_s;
+  /// @}
+  std::array<glm::vec2, msg::kJoints> joints_px;  ///< projector px
+  ScreenVertices arm;                             ///< the forearm's vertices
+};
+
+/// The true hands at one time, drawn into the image of the projector as it really is. Reuses its
+/// buffers. One thread.
+class TrueView {
+ public:
+  /// For images of the calibration's projector. `twin` must outlive it.
+  TrueView(const Twin& twin, int width_px, int height_px);
+
+  /// Poses the hands of a time.
+  void pose(std::int64_t time_ns);
+  /// Draws them, and their arms, into `area`, which must lie in the image.
+  void draw(const renderer::Rect& area);
+
+  /// The hands of that time.
+  std::span<const SeenHand> hands() const { return {seen_.data(), count_}; }
+  /// What is at each pixel of the area that was drawn last.
+  renderer::View<const Surface> surface() const { return surface_.view(); }
+  /// The whole image.
+  renderer::Rect screen() const { return {0, 0, surface_.width(), surface_.height()}; }
+  /// The pixel that lights a point in camera space, m.
+  glm::vec2 to_projector(const glm::vec3& camera_m) const {
+    return glm::vec2(twin_.geometry().to_projector(glm::dvec3(camera_m)));
+  }
+
+ private:
+  std::optional<JointFrames> joints_in_camera(Side side, std::int64_t time_ns) const;
+  void pose_hand(SeenHand& hand, Side side, std::int64_t time_ns, const JointFrames& joints);
+  void find_velocities(SeenHand& hand, std::int64_t time_ns, const JointFrames& joints);
+  void pose_arm(SeenHand& hand, const JointFrames& joints);
+  void project(std::span<const glm::vec3> positions, ScreenVertices& screen) const;
+  void draw_hand(std::size_t index, const renderer::Rect& area);
+
+  const Twin& twin_;
+  float front_;  ///< sign of the area of triangles that face the projector
+  std::array<std::vector<float>, 2> behind_wrist_m_;
+  std::array<Forearm, 2> forearms_;
+  std::array<SeenHand, 2> seen_;
+  std::size_t count_ = 0;
+  std::vector<glm::vec3> before_, after_;
+  renderer::Image<Surface> surface_;
+  renderer::Image<float> inverse_depth_;
+};
+
+}  // namespace handcast::twin

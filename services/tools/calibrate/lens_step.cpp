@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/tools/calibrate/lens_step.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calib/solve/board/board_finder.hpp"
+#include "calib/solve/lens/auto_capture.hpp"
+#include "calib/solve/lens/coverage.hpp"
+#include "calib/solve/lens/lens_fit.hpp"
+#include "services/tools/calibrate/lens_memory.hpp"
+#include "services/tools/calibrate/pictures.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kEnoughViews = 15;
+/// What a good fit stays below: the error of what it has not seen, and that of the focal length.
+/// @{
+constexpr double kGood_px = 0.6;
+constexpr double kGoodFocal = 0.01;
+/// @}
+
+/// One of the rig's cameras.
+struct Ring {
+  const char* step;
+  const char* stream;
+};
+constexpr Ring kFirst{"lens", "camera.frames"}, kSecond{"lens2", "camera2.frames"};
+
+/// The views of a board that a person has shown. `camera`: its size counts.
+Result<std::vector<calib::BoardView>> take_views(Desk& desk, const Ring& ring,
+                                                 const calib::CameraModel& camera) {
+  auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, ring.stream);
+  if (!frames) return tl::make_unexpected(frames.error());
+  const calib::BoardFinder finder(desk.options.board);
+  calib::Coverage coverage(camera.width_px, camera.height_px);
+  calib::AutoCapture capture(camera.width_px);
+  std::vector<calib::BoardView> views;
+  Progress progress(desk, ring.step);
+  while (coverage.share() < 1 || views.size() < kEnoughViews) {
+    if (const auto on = progress.goes_on(); !on || !*on) {
+      if (!on) return tl::make_unexpected(on.error());
+      break;
+    }
+    const double views_share = static_cast<double>(views.size()) / kEnoughViews;
+    progress.show(std::min({0.99, coverage.share(), views_share}),
+                  lens_advice(views.size(), kEnoughViews, coverage.advice()));
+    const auto frame = frames->latest(Deadline::in(200ms));
+    if (!frame && frame.error().code != Errc::timeout) return tl::make_unexpected(frame.error());
+    if (!frame) continue;
+    auto seen = finder.find(view_of(**frame));
+    if (!seen || !capture.take((*frame)->header.origin_ns, *seen)) continue;
+    coverage.add(*seen);
+    views.push_back(std::move(*seen));
+  }
+  return views;
+}
+
+std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
+  std::vector<glm::dvec2> dots;
+  for (const auto& view : views)
+    dots.insert(dots.end(), view.image_px.begin(), view.image_px.end());
+  std::vector<Bar> errors;
+  for (const auto& view : fit.views) errors.push_back({view.rms_px, !view.rejected.empty()});
+  return dots_svg(fit.camera.width_px, fit.camera.height_px, dots,
+                  fmt::format("Where the board was seen: {} corners in {} images. Parts without "
+                              "dots are extrapolated.",
+                              dots.size(), views.size())) +
+         bars_svg(errors, "px",
+                  "How far the corners of each image are from where the lens has them, root mean "
+                  "square. Those in the other colour were left out.");
+}
+
+Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
+  Outcome outcome;
+  const auto& focal = fit.spreads[0];
+  const double focal_error = (focal.high - focal.low) / 2 / fit.camera.fx_px;
+  outcome.made = fmt::format("{} images, {:.2f} px held out, focal length {:.1f} px +- {:.2f} %",
+                             views.size(), fit.held_out_px, fit.camera.fx_px, 100 * focal_error);
+  for (std::size_t i = 0; i < fit.views.size(); ++i)
+    if (!fit.views[i].rejected.empty())
+      outcome.findings.push_back(
+          fmt::format("image {} was left out. {}", i + 1, fit.views[i].rejected));
+  outcome.is_good = fit.held_out_px <= kGood_px && focal_error <= kGoodFocal;
+  if (!outcome.is_good)
+    outcome.findings.insert(outcome.findings.begin(),
+                            "this lens is not well known yet: is the board flat, and was it held "
+                            "near and far, in all corners, and tilted?");
+  outcome.meaning = fmt::format(
+      "Held out: how far corners are from where a fit that has not seen their image expects them; "
+      "good is at most {} px. +-: with 95 % probability the focal length is within; good is at "
+      "most {:g} %",
+      kGood_px, 100 * kGoodFocal);
+  outcome.pictures = pictures_of(fit, views);
+  return outcome;
+}
+
+/// Measures one camera, and sets its lens.
+Result<Outcome> measure(Desk& desk, const Ring& ring, calib::CameraModel& camera) {
+  const auto views = take_views(desk, ring, camera);
+  if (!views) return tl::make_unexpected(views.error());
+  const auto fit = calib::fit_lens(*views, camera.width_px, camera.height_px);
+  if (!fit) return tl::make_unexpected(fit.error());
+  camera = fit->camera;
+  auto outcome = outcome_of(*fit, *views);
+  if (!outcome.is_good) return outcome;
+  return remember_lens(desk.options.folder, ring.step, *fit).map([&] { return outcome; });
+}
+
+}  // namespace
+
+std::string lens_advice(std::size_t views, std::size_t wanted, const std::string& place) {
+  if (views == 0) return "Hold the board still in front of the camera";
+  if (place.empty())
+    return views + 1 >= wanted
+               ? "Almost done: one more image, at another place"
+               : fmt::format("All places were seen: {} more images, tilted and at other places",
+                             wanted - views);
+  return views >= wanted ? "Almost done: " + place : place;
+}
+
+Result<Outcome> measure_lens(Desk& desk) { return measure(desk, kFirst, desk.draft.camera); }
+
+Result<Outcome> measure_second_lens(Desk& desk) {
+  if (!desk.draft.camera2) return fail(Errc::bad_config, "the rig has no second camera");
+  return measure(desk, kSecond, desk.draft.camera2->camera);
+}
+
+}  // namespace handcast::calibrate

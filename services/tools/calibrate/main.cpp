@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast calibrate: measures the lens of each camera, the place of a second one, projector,
+// tracker and light of a rig; --check compares an installed rig with its calibration.
+#include <fmt/format.h>
+
+#include <span>
+#include <vector>
+
+#include "calib/solve/board/board_pdf.hpp"
+#include "config/settings/choice.hpp"
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
+#include "ipc/base/write_whole.hpp"
+#include "ipc/daemon/stop_signal.hpp"
+#include "services/tools/calibrate/check_steps.hpp"
+#include "services/tools/calibrate/correct.hpp"
+#include "services/tools/calibrate/hand_over.hpp"
+#include "services/tools/calibrate/installed.hpp"
+#include "services/tools/calibrate/own_devices.hpp"
+#include "services/tools/calibrate/points.hpp"
+#include "services/tools/calibrate/steps.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+int complain(const Error& error) {
+  fmt::print(stderr, "handcast calibrate: {}\n", printable(error.what));
+  return exit_code_of(error);
+}
+
+/// Does one step, and keeps what it has measured. False if the person has left the step out.
+Result<bool> do_step(const Options& options, const RunningAs& running, Session& session, Keys& keys,
+                     const StepEntry& entry) {
+  auto wanted = is_wanted(options, keys, entry);
+  if (!wanted || !*wanted) return wanted;
+  auto draft = session.draft();
+  const auto outcome =
+      with_rig(options, running, session.report().parent_path(), draft, keys, entry);
+  if (!outcome) return tl::make_unexpected(outcome.error());
+  return session.keep(entry.step, *outcome, draft).map([] { return true; });
+}
+
+/// Measures what is left, or was asked for. `done`: how many steps.
+Result<void> measure_steps(const Options& options, const RunningAs& running, Session& session,
+                           std::span<const Step> steps, int& done) {
+  Keys keys;
+  for (const Step step : steps) {
+    const auto kept = do_step(options, running, session, keys, entry_of(step));
+    if (!kept) return fail_in(config::word_of(step), kept.error());
+    done += *kept ? 1 : 0;
+  }
+  return {};
+}
+
+/// What was measured, now or in an earlier call, gets its place even if a later step has failed.
+Result<int> measure_all(const Options& options, const config::Rig& rig, const RunningAs& running,
+                        Session& session) {
+  const auto steps = steps_of(options, rig, session);
+  if (!steps.empty())
+    if (auto down = check_down(rig); !down) return tl::make_unexpected(down.error());
+  int done = 0;
+  const auto measured = measure_steps(options, running, session, steps, done);
+  if (done > 0)
+    fmt::print("the report is {}\n", session.report().string());
+  else if (measured)
+    fmt::print("{}\n", steps.empty() ? "nothing is left to be measured; --restart begins anew"
+                                     : "nothing was measured");
+  const auto handed_over = hand_over(options, rig, running.calibration, session);
+  if (measured) return handed_over.map([] { return kExitDone; });
+  if (!handed_over) complain(handed_over.error());
+  return tl::make_unexpected(measured.error());
+}
+
+Result<int> print_board(const Options& options) {
+  return write_whole(options.board_pdf, calib::board_pdf(options.board)).map([&] {
+    fmt::print("{}: print it at true scale (100 %), and glue it on something flat\n",
+               options.board_pdf.string());
+    return kExitDone;
+  });
+}
+
+/// Files for devices that are not those of the rig's calibration have names of their own.
+void name_anew(Options& options, config::Rig& rig, const std::string& devices) {
+  const std::filesystem::path old(rig.calibration);
+  rig.calibration = (old.parent_path() / (old.stem().string() + "." + devices + ".toml")).string();
+  if (options.folder == default_folder(options.rig_file))
+    options.folder.replace_extension(devices + ".calibration");
+}
+
+Result<int> run(Options options) {
+  if (!options.board_pdf.empty()) return print_board(options);
+  auto rig = config::load_rig(options.rig_file, options.settings);
+  if (!rig) return tl::make_unexpected(rig.error());
+  const auto done = [] { return kExitDone; };
+  // Also if the calibration cannot be read any more.
+  if (options.undo) return undo(*rig).map(done);
+  if (auto possible = check_steps(options, *rig); !possible)
+    return tl::make_unexpected(possible.error());
+  // Before anything is forgotten. Without these, nothing may be left to be measured.
+  if (options.restart || !options.steps.empty())
+    if (auto down = check_down(*rig); !down) return tl::make_unexpected(down.error());
+  if (rig->camera.backend != "twin")
+    fmt::print(stderr, "looking for the devices of {}\n", printable(options.rig_file.string()));
+  const auto own = own_devices(*rig);
+  const auto running = rig_as_it_runs(options, *rig, own);
+  if (!running) return tl::make_unexpected(running.error());
+  if (auto known = check_known(options, *running); !known)
+    return tl::make_unexpected(known.error());
+  if (!options.points.empty())
+    return judge_points(options.points, running->calibration.camera).map(done);
+  if (options.correct) return correct_tracker(options, *rig, running->calibration).map(done);
+  if (options.check) return check_installed(options, *rig, *running);
+  const auto named = rig->calibration;
+  if (!running->new_devices.empty()) name_anew(options, *rig, running->new_devices);
+  auto used = running->calibration;
+  if (used.camera_device.empty()) used.camera_device = own.camera;
+  if (used.camera2 && used.camera2->device.empty()) used.camera2->device = own.camera2;
+  if (used.projector_device.empty()) used.projector_device = own.projector;
+  auto session = Session::open(options, *rig, used);
+  if (!session) return tl::make_unexpected(session.error());
+  rig->calibration = named;
+  return measure_all(options, *rig, *running, *session);
+}
+
+int run_verb(int argc, char** argv) {
+  auto options = parse(argc, argv);
+  if (!options) {
+    fmt::print(stderr, "handcast calibrate: {}\n", printable(options.error().what));
+    return kExitUsage;
+  }
+  if (!options->text.empty()) {
+    fmt::print("{}", options->text);
+    return kExitDone;
+  }
+  daemon::install_stop_signals();
+  const auto done = run(std::move(*options));
+  return done ? *done : complain(done.error());
+}
+
+}  // namespace
+}  // namespace handcast::calibrate
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast calibrate", argc, argv, handcast::calibrate::run_verb);
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/tools/calibrate/options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <tuple>
+
+#include "calib/solve/board/board_name.hpp"
+#include "config/settings/choice.hpp"
+#include "ipc/base/verb_options.hpp"
+#include "services/tools/calibrate/combinations.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+constexpr const char* kSummary =
+    "Measures the lens of each camera, where the second one is, the projector, and the tracker's "
+    "place, and writes the rig's calibration file. It starts the rig itself, says what to hold "
+    "where, and can be left at any time and called again: it goes on where it was left. The old "
+    "calibration is kept.\n\n"
+    "Print the board first: handcast calibrate --print-board board.pdf";
+
+constexpr double kCheck_s = 10;  ///< how long --check looks at the hand, and at the board
+
+/// "1024x768", of a size that a calibration file may have.
+Result<Size> parse_size(const std::string& flag, const std::string& text) {
+  constexpr int kLeast_px = 16, kMost_px = 8192;
+  const auto is_side = [](int side_px) { return side_px >= kLeast_px && side_px <= kMost_px; };
+  Size size;
+  const char *begin = text.data(), *end = begin + text.size();
+  const auto width = std::from_chars(begin, end, size.width_px);
+  const bool has_cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  if (has_cross) {
+    const auto height = std::from_chars(width.ptr + 1, end, size.height_px);
+    if (height.ec == std::errc() && height.ptr == end && is_side(size.width_px) &&
+        is_side(size.height_px))
+      return size;
+  }
+  return fail(Errc::bad_config,
+              fmt::format("{}: '{}' is not a size like 1024x768, with {} to {} px on a side", flag,
+                          text, kLeast_px, kMost_px));
+}
+
+/// Error bad_config: no rig file, although one is needed.
+Result<void> check_rig_file(const Options& options) {
+  if (!options.board_pdf.empty() || !options.rig_file.empty()) return {};
+  return fail(Errc::bad_config, fmt::format("name the rig file: handcast calibrate RIG.toml{}",
+                                            options.check             ? " --check"
+                                            : options.correct         ? " --correct"
+                                            : options.undo            ? " --undo"
+                                            : !options.points.empty() ? " --points FOLDER"
+                                                                      : ""));
+}
+
+}  // namespace
+
+std::filesystem::path default_folder(const std::filesystem::path& rig_file) {
+  return std::filesystem::path(rig_file).replace_extension(".calibration");
+}
+
+Result<Options> parse(int argc, char** argv) {
+  CLI::App app(kSummary, "handcast calibrate");
+  Options options;
+  std::vector<std::string> steps;
+  std::string board = calib::print_board_name(calib::Board{}), camera, camera2, projector;
+  app.add_option("RIG.toml", options.rig_file, "The rig file");
+  app.add_option("STEP", steps,
+                 "lens, lens2, pair (of a second camera), screen, tracker, light; "
+                 "default: all that are left");
+  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's")
+      ->allow_extra_args(false);
+  app.add_option("--board", board,
+                 "The board that you have: KIND:COLUMNSxROWS:MM; charuco, checkerboard or circles, "
+                 "how many squares or circles, and the side of a square in mm (measure it)")
+      ->capture_default_str();
+  app.add_option("--print-board", options.board_pdf,
+                 "Writes the board to this file as a PDF to be printed, and ends");
+  app.add_option("--camera", camera,
+                 "Size of the camera's images, e.g. 1280x1024: only for a rig without a "
+                 "calibration, or for other devices than the calibrated ones");
+  app.add_option(
+      "--camera2", camera2,
+      "Size of the second camera's images, e.g. 640x480: only if it is not calibrated yet "
+      "and not that of the first camera");
+  app.add_option("--projector", projector,
+                 "Size of the projector's image, e.g. 1920x1080: only for a rig without a "
+                 "calibration, or for other devices than the calibrated ones");
+  app.add_option("--folder", options.folder,
+                 "Where pictures, results and the report go; default: RIG.calibration");
+  const auto* most_s =
+      app.add_option("--most-s", options.most_s,
+                     "Ends a step after so many seconds, even if it is not done, with what was "
+                     "seen; more time for a slow hand or a dark room. With --check, 10 for each "
+                     "part")
+          ->check(CLI::Range(5, 3600))
+          ->capture_default_str();
+  app.add_flag(
+      "--apply", options.apply,
+      "Writes the settings that were measured (projector.latency_ms, projector.gamma), and "
+      "the name of a new calibration file, to the rig file, in which all else stays as it "
+      "is; the old file is kept");
+  app.add_option("--photodiode", options.photodiode,
+                 "An ALSA capture device with a photodiode in the projector's light: the step "
+                 "light measures with it when the light comes, for a camera that does not see it");
+  app.add_flag("--yes", options.yes, "Starts each step at once, without waiting for Enter");
+  app.add_flag("--restart", options.restart,
+               "Forgets what was measured in this folder before it measures");
+  app.add_flag(
+      "--check", options.check,
+      "Says in half a minute whether camera, tracker, projector or second camera have moved "
+      "since they were calibrated, and changes nothing; the rig may be up");
+  app.add_option("--reflector", options.reflector_mm,
+                 "Measures the tracker by a retro-reflector of this diameter, mm, on the tip of an "
+                 "index finger, in place of the landmarks of a hand")
+      ->check(CLI::Range(1, 50));
+  app.add_option("--points", options.points,
+                 "Says how good recorded points of a reflector are, and ends: a folder with "
+                 "2dpoints.npy (px), 3dpoints.npy (mm) and perhaps timestamps.npy (us)");
+  app.add_flag(
+      "--correct", options.correct,
+      "Corrects a tracker that has moved a little, by hands that are held still, while the "
+      "rig is up; asks before it writes");
+  app.add_flag("--undo", options.undo,
+               "Puts back the calibration file that was there before the last change");
+  auto text = parse_options(app, argc, argv);
+  if (!text) return tl::make_unexpected(text.error());
+  if (!(options.text = std::move(*text)).empty()) return options;
+
+  if (options.check && most_s->count() == 0) options.most_s = kCheck_s;
+  for (const auto& word : steps) {
+    const auto step = config::choice_named<Step>(word);
+    if (!step)
+      return fail(Errc::bad_config, fmt::format("there is no step '{}'; there are {}", word,
+                                                fmt::join(words_of(Step{}), ", ")));
+    options.steps.push_back(*step);
+  }
+  auto parsed = calib::parse_board(board);
+  if (!parsed) return fail_in("--board", parsed.error());
+  options.board = *parsed;
+  for (const auto& [flag, given, size] :
+       {std::tuple{"--camera", &camera, &options.camera},
+        std::tuple{"--camera2", &camera2, &options.camera2},
+        std::tuple{"--projector", &projector, &options.projector}}) {
+    if (given->empty()) continue;
+    const auto read = parse_size(flag, *given);
+    if (!read) return tl::make_unexpected(read.error());
+    *size = *read;
+  }
+  if (options.folder.empty() && !options.rig_file.empty())
+    options.folder = default_folder(options.rig_file);
+  auto fits = check_combination(app, options);
+  if (fits) fits = check_rig_file(options);
+  return fits.map([&] { return options; });
+}
+
+}  // namespace handcast::calibrate

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/tools/calibrate/rig_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "calib/solve/board/board_name.hpp"
+#include "config/second_view.hpp"
+#include "ipc/base/write_whole.hpp"
+#include "services/tools/calibrate/check_steps.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+/// A lens as wide as most.
+calib::CameraModel usual_lens(Size size) {
+  constexpr double kFocalLength_widths = 1.3;
+  return {size.width_px,
+          size.height_px,
+          kFocalLength_widths * size.width_px,
+          kFocalLength_widths * size.width_px,
+          (size.width_px - 1) / 2.0,
+          (size.height_px - 1) / 2.0};
+}
+
+/// A calibration of which only the sizes are known: a lens as wide as most, and a projector image
+/// as large as the camera's.
+calib::Calibration from_sizes(Size camera, Size projector) {
+  calib::Calibration rough;
+  rough.camera = usual_lens(camera);
+  rough.projector_width_px = projector.width_px;
+  rough.projector_height_px = projector.height_px;
+  const double scale_x = static_cast<double>(projector.width_px) / camera.width_px,
+               scale_y = static_cast<double>(projector.height_px) / camera.height_px;
+  rough.projector_from_camera = {scale_x,           0, 0, 0, scale_y, 0, (scale_x - 1) / 2,
+                                 (scale_y - 1) / 2, 1};
+  return rough;
+}
+
+/// A second camera of which only the size is known: a hand's width to the right of the first one.
+calib::SecondCamera guessed_second(const Options& options, const calib::CameraModel& first) {
+  constexpr double kApart_m = 0.1;
+  auto size = options.camera2;
+  if (size.width_px == 0) size = {first.width_px, first.height_px};
+  glm::dmat4 from_first(1);
+  from_first[3].x = -kApart_m;
+  return {{}, usual_lens(size), from_first};
+}
+
+/// Writes a calibration to the session's folder, for the services.
+Result<RunningAs> run_with(const Options& options, calib::Calibration calibration,
+                           bool is_second_guessed, std::string new_devices) {
+  RunningAs running{std::move(calibration), options.settings, std::move(new_devices),
+                    is_second_guessed};
+  const auto file = std::filesystem::absolute(options.folder) / "rough.toml";
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (auto written = write_whole(file, calib::print_calibration(running.calibration)); !written)
+    return tl::make_unexpected(written.error());
+  running.settings.push_back("calibration=" + file.string());
+  return running;
+}
+
+/// What a calibration and a rig have differently; empty if they have the same devices, or these are
+/// not known.
+std::string other_devices(const calib::Calibration& calibration, const OwnDevices& own) {
+  const auto differ = [](const std::string& before, const std::vector<std::string>& names) {
+    return !before.empty() && !names.empty() && std::ranges::count(names, before) == 0;
+  };
+  if (differ(calibration.camera_device, own.camera_names))
+    return fmt::format("the camera '{}', and the rig has '{}'", calibration.camera_device,
+                       own.camera);
+  if (calibration.camera2 && differ(calibration.camera2->device, own.camera2_names))
+    return fmt::format("the second camera '{}', and the rig has '{}'", calibration.camera2->device,
+                       own.camera2);
+  if (differ(calibration.projector_device, own.projector_names))
+    return fmt::format("the projector '{}', and the rig has '{}'", calibration.projector_device,
+                       own.projector);
+  return {};
+}
+
+/// The names of devices as a part of a file's name: letters and digits; "new" if there are none.
+std::string slug_of(const OwnDevices& own) {
+  std::string slug;
+  for (const char c : own.camera + "_" + own.camera2 + "_" + own.projector) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (is_plain || (!slug.empty() && slug.back() != '_')) slug += is_plain ? c : '_';
+  }
+  while (!slug.empty() && slug.back() == '_') slug.pop_back();
+  return slug.empty() ? "new" : slug;
+}
+
+/// Error bad_config: a size was given which has no effect.
+Result<void> check_size(const char* flag, Size given, Size in_use) {
+  if (given.width_px == 0 ||
+      (given.width_px == in_use.width_px && given.height_px == in_use.height_px))
+    return {};
+  return fail(
+      Errc::bad_config,
+      fmt::format("{} {}x{} has no effect: the calibration that the rig names has {}x{}; "
+                  "for images of another size take `calibration` out of the rig file",
+                  flag, given.width_px, given.height_px, in_use.width_px, in_use.height_px));
+}
+
+}  // namespace
+
+Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
+                                 const OwnDevices& own) {
+  const bool is_real = rig.camera.backend != "twin";
+  const bool has_sizes = options.camera.width_px > 0 && options.projector.width_px > 0;
+  std::string others;
+  if (!rig.calibration.empty() || (!is_real && !has_sizes)) {
+    auto calibration = calib::load_calibration(rig.calibration);
+    if (!calibration) return tl::make_unexpected(calibration.error());
+    others = other_devices(*calibration, own);
+    const bool lacks_second = config::has_second_view(rig) && !calibration->camera2;
+    if (lacks_second) calibration->camera2 = guessed_second(options, calibration->camera);
+    if (others.empty() && lacks_second) return run_with(options, std::move(*calibration), true, {});
+    if (others.empty()) return RunningAs{std::move(*calibration), options.settings, {}};
+    if (const auto* asked = what_compares(options))
+      return fail(Errc::bad_config,
+                  fmt::format("{} was made with {}; {} needs a calibration of the "
+                              "devices that the rig has now",
+                              rig.calibration, others, asked));
+    if (!has_sizes)
+      return fail(
+          Errc::bad_config,
+          fmt::format("{} was made with {}; to calibrate the new one, too, add the sizes of "
+                      "the images, e.g. --camera 1280x1024 --projector {}x{}: it gets a "
+                      "file of its own, and the old one stays",
+                      rig.calibration, others, calibration->projector_width_px,
+                      calibration->projector_height_px));
+  }
+  if (!has_sizes)
+    return fail(Errc::bad_config,
+                "the rig names no calibration, so the sizes of its images are not known: add "
+                "--camera and --projector, e.g. --camera 1280x1024 --projector 1920x1080");
+  auto rough = from_sizes(options.camera, options.projector);
+  if (config::has_second_view(rig)) rough.camera2 = guessed_second(options, rough.camera);
+  return run_with(options, std::move(rough), false, others.empty() ? std::string() : slug_of(own));
+}
+
+Result<void> check_known(const Options& options, const RunningAs& running) {
+  const auto* asked = what_compares(options);
+  if (asked && options.points.empty() && running.is_second_guessed)
+    return fail(Errc::bad_config,
+                fmt::format("{}: the second camera is not calibrated yet; measure it first: "
+                            "handcast calibrate {} lens2 pair",
+                            asked, options.rig_file.string()));
+  auto same =
+      check_size("--camera", options.camera,
+                 {running.calibration.camera.width_px, running.calibration.camera.height_px});
+  if (same)
+    same = check_size(
+        "--projector", options.projector,
+        {running.calibration.projector_width_px, running.calibration.projector_height_px});
+  if (same && running.calibration.camera2)
+    same = check_size("--camera2", options.camera2,
+                      {running.calibration.camera2->camera.width_px,
+                       running.calibration.camera2->camera.height_px});
+  return same;
+}
+
+std::vector<std::string> twin_scene(Step step, const Options& options, double camera_hz) {
+  // Whole pictures at 946 Hz take a core. 57 Hz keeps step with no usual rate of a camera.
+  std::vector<std::string> settings{"projector.rate_hz=57"};
+  if (step == Step::tracker) {
+    if (options.reflector_mm == 0) {
+      settings.emplace_back("twin.motion=builtin:show");
+      return settings;
+    }
+    settings.push_back(fmt::format("twin.image.reflector_mm={}", options.reflector_mm));
+    settings.insert(settings.end(), {"twin.motion=builtin:places", "twin.image.gain=80"});
+    return settings;
+  }
+  if (step == Step::light) {
+    settings.insert(settings.end(), {"twin.motion=builtin:still", "twin.hands=left"});
+    return settings;
+  }
+  settings.emplace_back("twin.prop.kind=board");
+  settings.push_back("twin.prop.board=" + calib::print_board_name(options.board));
+  // All patterns must be seen while it is still.
+  const double lit_s = std::clamp(6 + 240 / camera_hz, 8.0, 60.0);
+  settings.push_back(fmt::format("twin.prop.hold_s={:.1f}", step == Step::screen ? lit_s : 1));
+  if (step == Step::lens2) settings.emplace_back("twin.prop.views=second");
+  if (step == Step::pair) settings.emplace_back("twin.prop.views=both");
+  if (step == Step::screen)
+    settings.insert(settings.end(), {"twin.image.leak=1", "twin.image.gain=80"});
+  return settings;
+}
+
+}  // namespace handcast::calibrate

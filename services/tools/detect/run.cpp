@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/tools/detect/run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+
+#include "renderer/content/picture.hpp"
+#include "services/landmarks/models/landmark_models.hpp"
+#include "services/landmarks/models/models_folder.hpp"
+#include "services/tools/detect/draw.hpp"
+#include "services/tools/detect/picture.hpp"
+#include "services/tools/detect/result.hpp"
+
+namespace handcast::detect {
+namespace {
+
+namespace fs = std::filesystem;
+using Times = landmarks::HandFinder::Times;
+
+Times median_of(std::vector<Times>& runs) {
+  Times median = runs.front();
+  for (const auto field : {&Times::all_ns, &Times::crop_ns, &Times::network_ns, &Times::palm_ns}) {
+    std::ranges::nth_element(runs, runs.begin() + static_cast<std::ptrdiff_t>(runs.size() / 2), {},
+                             field);
+    median.*field = runs[runs.size() / 2].*field;
+  }
+  return median;
+}
+
+/// The files of the pictures' drawings, all different. Errors: bad_config (one of them is a picture
+/// that is read).
+handcast::Result<std::vector<fs::path>> drawings_of(const Options& options) {
+  std::vector<fs::path> drawings;
+  std::set<std::string> taken;
+  for (const auto& image : options.images) {
+    const auto stem = image.stem().string();
+    auto name = stem + ".png";
+    for (int number = 2; !taken.insert(name).second; ++number)
+      name = fmt::format("{}_{}.png", stem, number);
+    drawings.push_back(options.output / name);
+    std::error_code absent;
+    for (const auto& read : options.images)
+      if (!options.output.empty() && fs::equivalent(drawings.back(), read, absent))
+        return fail(Errc::bad_config,
+                    fmt::format("--out {}: the drawing would replace the picture {}; name another "
+                                "folder",
+                                options.output.string(), read.string()));
+  }
+  return drawings;
+}
+
+handcast::Result<void> save(const fs::path& file, const renderer::Texture& drawing) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error)
+    return fail(Errc::unavailable, fmt::format("the folder '{}' cannot be created: {}",
+                                               file.parent_path().string(), error.message()));
+  return renderer::write_png(file, drawing.view());
+}
+
+handcast::Result<landmarks::Hints> read_hints(const Options& options, std::size_t i,
+                                              renderer::GreyView picture) {
+  landmarks::Hints hints;
+  if (options.joints.empty()) return hints;
+  const auto joints = read_joints(options.joints[i], picture.width, picture.height);
+  if (!joints) return tl::make_unexpected(joints.error());
+  hints[static_cast<std::size_t>(options.joints_side)] = *joints;
+  return hints;
+}
+
+handcast::Result<Result> detect_in(landmarks::HandFinder& finder, const Options& options,
+                                   std::size_t i, const fs::path& drawing) {
+  const auto picture = read_grey(options.images[i]);
+  if (!picture) return tl::make_unexpected(picture.error());
+  const auto hints = read_hints(options, i, picture->view());
+  if (!hints) return tl::make_unexpected(hints.error());
+  Result result{options.images[i], {}, {}};
+  std::vector<Times> runs;
+  for (int k = 0; k < options.repeat; ++k) {
+    finder.forget();
+    const auto found = finder.find(picture->view(), *hints, 0);
+    if (!found) return tl::make_unexpected(found.error());
+    result.hands.assign(found->begin(), found->end());
+    runs.push_back(finder.times());
+  }
+  result.times = median_of(runs);
+  if (!options.output.empty())
+    if (const auto saved = save(drawing, draw(picture->view(), result.hands, *hints)); !saved)
+      return tl::make_unexpected(saved.error());
+  return result;
+}
+
+/// Opens the landmark model. Without a choice it is MediaPipe, whose palm network finds hands that
+/// no tracker has seen, or, if its files are not where they are looked for, our own.
+handcast::Result<landmarks::OpenedModel> open_model(const Options& options) {
+  const auto folder = landmarks::models_folder(options.models);
+  if (!folder) return tl::make_unexpected(folder.error());
+  const landmarks::ModelOptions settings{.executor = options.executor, .folder = *folder};
+  if (!options.backend.empty()) return landmarks::open_landmark_model(options.backend, settings);
+  auto mediapipe = landmarks::open_landmark_model("mediapipe", settings);
+  if (mediapipe || !options.models.empty()) return mediapipe;
+  if (!options.quiet)
+    fmt::print(stderr, "handcast detect: with handcast's own network, because {}\n",
+               mediapipe.error().what);
+  return landmarks::open_landmark_model("handcast", settings);
+}
+
+}  // namespace
+
+handcast::Result<std::string> run(const Options& options) {
+  if (!options.joints.empty() && options.joints.size() != options.images.size())
+    return fail(
+        Errc::bad_config,
+        fmt::format(
+            "{} pictures, but {} files of joints; give one --joints per picture, in the same order",
+            options.images.size(), options.joints.size()));
+  const auto drawings = drawings_of(options);
+  if (!drawings) return tl::make_unexpected(drawings.error());
+  auto model = open_model(options);
+  if (!model) return tl::make_unexpected(model.error());
+  landmarks::HandFinder finder(std::move(*model), options.hands);
+  const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
+  std::vector<Result> results;
+  std::string text;
+  for (std::size_t i = 0; i < options.images.size(); ++i) {
+    if (shows_progress)
+      fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(),
+                 options.images[i].filename().string());
+    auto result = detect_in(finder, options, i, (*drawings)[i]);
+    if (!result) {
+      // What was found so far is not lost.
+      if (!results.empty()) fmt::print("{}", options.json ? print_json(results) : text);
+      return fail_in(options.images[i].string(), result.error());
+    }
+    if (!options.json) text += print_text(*result);
+    results.push_back(std::move(*result));
+  }
+  if (shows_progress) fmt::print(stderr, "\r\033[K");
+  return options.json ? print_json(results) : text;
+}
+
+}  // namespace handcast::detect

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/tools/doctor/live.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ipc/client/stream.hpp"
+#include "ipc/control/control_client.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "services/tools/doctor/images.hpp"
+
+namespace handcast::doctor {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr double kHeld = 0.95;                       ///< share of the wanted rate
+constexpr double kMostMissed = 0.01;                 ///< share of the refreshes
+constexpr double kMostLost = 0.01;                   ///< share of the images
+constexpr double kWorstClock_us = 200;               ///< at 1 m/s, 0.2 mm
+constexpr std::int64_t kLookEvery_ns = 100'000'000;  ///< at the pixels of an image
+
+/// What was seen of the sensors.
+struct Seen {
+  Greys greys;
+  std::int64_t worst_clock_ns = 0;
+  std::uint64_t images = 0, searched = 0, with_hand = 0;
+  std::uint64_t tracked = 0, tracked_with_hand = 0;  ///< samples of the tracker
+};
+
+void look_at(const msg::CameraFrame& frame, std::int64_t& next_look_ns, Seen& seen) {
+  ++seen.images;
+  seen.worst_clock_ns = std::max(seen.worst_clock_ns, frame.origin_error_ns);
+  if (now_ns() < next_look_ns) return;
+  next_look_ns = now_ns() + kLookEvery_ns;
+  seen.greys.add({frame.pixels(), frame.used_bytes() - sizeof(msg::CameraFrame)});
+}
+
+Result<Seen> watch(const std::string& rig, double seconds) {
+  auto frames = client::open_stream<msg::CameraFrame>(rig, "camera.frames");
+  if (!frames) return tl::make_unexpected(std::move(frames.error()));
+  auto landmarks = client::open_stream<msg::Landmarks>(rig, "landmarks.hands");
+  auto poses = client::open_stream<msg::HandPoses>(rig, "pose.hands");
+  Seen seen;
+  const std::int64_t begun_ns = now_ns();
+  // A ring still has what was published before a service stopped.
+  const auto is_new = [begun_ns](const auto& message) {
+    return message.header.published_ns >= begun_ns;
+  };
+  std::int64_t next_look_ns = 0;
+  for (const auto end = Deadline::at_ns(now_ns() + seconds_to_ns(seconds)); !end.passed();) {
+    const auto frame = frames->latest(Deadline::in(100ms));
+    if (frame && is_new(**frame)) look_at(**frame, next_look_ns, seen);
+    if (!frame && frame.error().code == Errc::disconnected)
+      return tl::make_unexpected(frame.error());
+    while (poses) {
+      const auto sample = poses->next(Deadline::now());
+      if (!sample) break;
+      if (!is_new(**sample)) continue;
+      ++seen.tracked;
+      seen.tracked_with_hand += (*sample)->count > 0;
+    }
+    if (!landmarks) continue;
+    while (const auto found = landmarks->next(Deadline::now())) {
+      if (!is_new(**found)) continue;
+      ++seen.searched;
+      seen.with_hand += (*found)->count > 0;
+    }
+  }
+  return seen;
+}
+
+double number_in(const json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_number() ? found->get<double>() : 0;
+}
+
+/// A member that should be an object; an empty one if it is not.
+json object_in(const json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_object() ? *found : json::object();
+}
+
+json ring_in(const json& status, const char* ring) {
+  return object_in(object_in(status, "rings"), ring);
+}
+
+std::vector<Finding> services_in(const json& status) {
+  std::vector<Finding> findings;
+  const auto services = object_in(status, "services");
+  for (const auto& [name, service] : services.items()) {
+    const auto state = service.value("state", std::string("unknown"));
+    if (state == "ready") continue;
+    findings.push_back({name, Grade::fault, fmt::format("it is {}", state),
+                        "`handcast status` shows its last words"});
+  }
+  if (findings.empty()) findings.push_back({"services", Grade::good, "all are ready", ""});
+  return findings;
+}
+
+Finding clock_of(const Seen& seen) {
+  if (seen.images == 0)
+    return {"camera clock", Grade::fault, "no image came", "`handcast status`, and its log"};
+  if (seen.worst_clock_ns == 0)
+    return {"camera clock", Grade::good, "images are stamped on this computer's clock", ""};
+  const double worst_us = ns_to_us(seen.worst_clock_ns);
+  const auto sentence = fmt::format("the time of an image is known to {:.0f} us", worst_us);
+  if (worst_us <= kWorstClock_us) return {"camera clock", Grade::good, sentence, ""};
+  return {"camera clock", Grade::advice, sentence,
+          "give the camera service a core and a real-time priority ([camera.process])"};
+}
+
+Finding losses_in(const json& status, const Seen& seen) {
+  const auto lost = object_in(status, "lost_images");
+  const double on_the_way =
+      number_in(lost, "missing") + number_in(lost, "incomplete") + number_in(lost, "underrun");
+  const auto sentence = fmt::format("{:.0f} since the start of the rig, {:.0f} skipped", on_the_way,
+                                    number_in(lost, "skipped"));
+  const double images =
+      number_in(ring_in(status, "camera.frames"), "count") + static_cast<double>(seen.images == 0);
+  if (on_the_way <= kMostLost * images) return {"lost images", Grade::good, sentence, ""};
+  return {"lost images", Grade::advice, sentence,
+          "packet size and socket buffers (GigE), the USB port, or a lower camera.rate_hz"};
+}
+
+Finding hands_in(const Seen& seen) {
+  if (seen.searched == 0)
+    return {"hand", Grade::fault, "the detector delivers nothing", "`handcast status`"};
+  const auto percent =
+      100. * static_cast<double>(seen.with_hand) / static_cast<double>(seen.searched);
+  const auto sentence = fmt::format("seen in {:.0f} % of the searched images", percent);
+  if (seen.with_hand > 0) return {"hand", Grade::good, sentence, ""};
+  return {"hand", Grade::advice, sentence,
+          "hold a hand in the camera's view while the doctor looks; `handcast preview` shows it"};
+}
+
+Finding tracker_of(const Seen& seen, double seconds) {
+  if (seen.tracked == 0)
+    return {"tracker", Grade::fault, "the pose service delivers nothing",
+            "`handcast status` shows its last words"};
+  const auto sentence = fmt::format(
+      "{:.0f} samples a second, a hand in {:.0f} %", static_cast<double>(seen.tracked) / seconds,
+      100. * static_cast<double>(seen.tracked_with_hand) / static_cast<double>(seen.tracked));
+  if (seen.tracked_with_hand > 0) return {"tracker", Grade::good, sentence, ""};
+  return {"tracker", Grade::advice, sentence,
+          "hold a hand in the tracker's view while the doctor looks"};
+}
+
+Finding light_of(const json& status) {
+  const auto light = status.value("light", json());
+  if (!light.is_object())
+    return {"light", Grade::fault, "none came", "`handcast status` says why the projector waits"};
+  const double missed = number_in(light, "missed_refreshes");
+  const double shown = number_in(ring_in(status, "projection.frames"), "count");
+  const auto sentence = fmt::format("{:.0f} refreshes without a new frame; times by the {}", missed,
+                                    light.value("times_by", std::string("?")));
+  if (missed <= kMostMissed * shown) return {"light", Grade::good, sentence, ""};
+  return {"light", Grade::fault, sentence,
+          "lower projector.rate_hz, or give the projector service a core ([projector.process])"};
+}
+
+}  // namespace
+
+Finding judge_rate(const json& ring, const char* check, const char* setting) {
+  const double wanted_hz = number_in(ring, "wanted_hz"), held_hz = number_in(ring, "held_hz");
+  const auto sentence = fmt::format("{:.1f} Hz of {:.1f} Hz", held_hz, wanted_hz);
+  const bool is_enough = held_hz >= kHeld * wanted_hz || !ring.value("is_held_to_it", true);
+  if (is_enough && held_hz > 0) return {check, Grade::good, sentence, ""};
+  return {check, Grade::fault, sentence,
+          fmt::format("lower {}, or find what is slow with `handcast latency`", setting)};
+}
+
+Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds) {
+  const auto seen = watch(rig, seconds);
+  if (!seen) return tl::make_unexpected(seen.error());
+  const auto answer = control::ask(rig, {.verb = control::Verb::status});
+  if (!answer) return tl::make_unexpected(answer.error());
+  const auto& status = answer->contains("status") ? (*answer)["status"] : *answer;
+  auto findings = services_in(status);
+  findings.push_back(judge_rate(ring_in(status, "camera.frames"), "camera rate", "camera.rate_hz"));
+  findings.push_back(
+      judge_rate(ring_in(status, "projection.frames"), "projector rate", "projector.rate_hz"));
+  findings.push_back(clock_of(*seen));
+  findings.push_back(losses_in(status, *seen));
+  findings.push_back(hands_in(*seen));
+  findings.push_back(tracker_of(*seen, seconds));
+  if (!seen->greys.empty()) {
+    auto images = judge_images(seen->greys, seen->with_hand > 0);
+    findings.insert(findings.end(), images.begin(), images.end());
+  }
+  findings.push_back(light_of(status));
+  return findings;
+}
+
+}  // namespace handcast::doctor

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast doctor: whether a rig, and the computer that runs it, are fit for a show.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
+#include "ipc/base/verb_options.hpp"
+#include "services/tools/doctor/live.hpp"
+#include "services/tools/doctor/machine.hpp"
+#include "services/tools/doctor/rig_file.hpp"
+#include "services/tools/doctor/start_check.hpp"
+#include "services/tools/doctor/tracker.hpp"
+
+namespace handcast::doctor {
+namespace {
+
+struct Options {
+  std::string file;
+  std::vector<std::string> settings;
+  double seconds = 5;
+  bool as_json = false;
+};
+
+/// The findings about a running rig; one finding if it is not up.
+std::vector<Finding> findings_of(Result<std::vector<Finding>> live) {
+  if (live) return std::move(*live);
+  return {
+      {"rig", Grade::advice,
+       "it was not watched, so nothing is known of cameras, hands and light: " + live.error().what,
+       "start it with `handcast up`, and call the doctor again"}};
+}
+
+std::vector<Finding> examine(const Options& options) {
+  const auto rig = config::load_rig(options.file, options.settings);
+  auto findings = examine_file(rig);
+  if (!rig) return findings;
+  auto live = examine_live(rig->name, options.seconds);
+  const bool is_up = live.has_value();
+  for (auto more :
+       {examine_start(options.file, options.settings), examine_machine(*rig),
+        examine_tracker(*rig, is_up ? Asking::not_now : Asking::now), findings_of(std::move(live))})
+    std::move(more.begin(), more.end(), std::back_inserter(findings));
+  return findings;
+}
+
+int run_verb(int argc, char** argv) {
+  CLI::App app(
+      "Checks a rig before the show: its file, this computer, and, if the rig is up, what it sees "
+      "and casts. Exit 1 if there is a fault.",
+      "handcast doctor");
+  Options options;
+  app.add_option("RIG.toml", options.file, "The rig file")->required();
+  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's");
+  app.add_option("--seconds", options.seconds, "How long a rig that is up is watched")
+      ->check([](const std::string& text) {
+        const double seconds = std::strtod(text.c_str(), nullptr);
+        return seconds >= 0.5 && seconds <= 3600 ? "" : "must be 0.5 to 3600 seconds";
+      })
+      ->capture_default_str();
+  app.add_flag("--json", options.as_json, "The same as JSON");
+  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
+  const auto findings = examine(options);
+  fmt::print("{}", options.as_json ? to_json(findings) : printable(print(findings)));
+  return has_fault(findings) ? kExitBadResult : kExitDone;
+}
+
+}  // namespace
+}  // namespace handcast::doctor
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast doctor", argc, argv, handcast::doctor::run_verb);
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast preview: what a running rig sees and does, as a picture.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
+#include "services/tools/preview/live.hpp"
+#include "services/tools/preview/shot.hpp"
+
+static int complain(int exit_code, const std::string& sentence) {
+  fmt::print(stderr, "handcast preview: {}\n", sentence);
+  return exit_code;
+}
+
+static handcast::Result<void> show(const handcast::preview::Options& options) {
+  using namespace handcast;
+  if (!options.shot.empty()) return preview::shoot(options);
+#ifdef HANDCAST_WITH_WINDOW
+  return preview::show_live(options);
+#else
+  return fail(Errc::bad_config,
+              "this build has no window (libglfw3-dev was not found); use --shot FILE.png");
+#endif
+}
+
+static int run_verb(int argc, char** argv) {
+  using namespace handcast;
+  const auto parsed = preview::parse(argc, argv);
+  if (!parsed) return complain(kExitUsage, parsed.error().what);
+  if (!parsed->text.empty()) {
+    fmt::print("{}", parsed->text);
+    return kExitDone;
+  }
+  if (::nice(10) == -1) fmt::print(stderr, "handcast preview: the priority cannot be lowered\n");
+  const auto done = show(parsed->options);
+  if (!done) return complain(exit_code_of(done.error()), done.error().what);
+  if (!parsed->options.shot.empty()) fmt::print("wrote {}\n", parsed->options.shot.string());
+  return kExitDone;
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast preview", argc, argv, run_verb);
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/tools/preview/status_gauges.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "ipc/msg/stage_mark.hpp"
+
+namespace handcast::preview {
+namespace {
+
+using nlohmann::json;
+
+/// The value at a path of keys; null if there is none.
+const json& at(const json& object, std::initializer_list<std::string_view> keys) {
+  static const json kNone;
+  const json* here = &object;
+  for (const auto key : keys) {
+    if (!here->is_object()) return kNone;
+    const auto found = here->find(std::string(key));
+    if (found == here->end()) return kNone;
+    here = &*found;
+  }
+  return *here;
+}
+
+std::optional<double> number(const json& value) {
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+std::string text(const json& value) {
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+}  // namespace
+
+std::optional<double> wanted_hz(const json& status, std::string_view stream) {
+  const auto hz = number(at(status, {"rings", stream, "wanted_hz"}));
+  return hz && *hz > 0 ? hz : std::nullopt;
+}
+
+void read_status(const json& status, Gauges& gauges) {
+  gauges.uptime_s = number(at(status, {"uptime_s"})).value_or(0);
+  if (const auto& services = at(status, {"services"}); services.is_object())
+    for (const auto& [name, service] : services.items()) {
+      const auto state = text(at(service, {"state"}));
+      if (state == "ready" || state == "stopped") continue;
+      const auto reason = text(at(service, {"reason"}));
+      gauges.ill.push_back(
+          fmt::format("{} is {}{}{}", name, state, reason.empty() ? "" : ": ", reason));
+    }
+  gauges.stages.clear();
+  for (const auto stage : msg::kStageNames) {
+    const auto p50 = number(at(status, {"stage_us", stage, "p50"})),
+               p99 = number(at(status, {"stage_us", stage, "p99"}));
+    if (p50 && p99) gauges.stages.push_back({std::string(stage), *p50, *p99});
+  }
+}
+
+}  // namespace handcast::preview

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/result.hpp"
+#include "ipc/client/stream.hpp"
+#include "services/tools/record/message_queue.hpp"
+
+namespace handcast::record {
+
+/// How a feed works.
+struct FeedSettings {
+  std::size_t stream = 0;      ///< index of its stream in the recording
+  std::size_t most_bytes = 0;  ///< limit of the memory of messages that are not written yet
+  std::int64_t begin_ns = 0;   ///< messages that were published before are left out
+};
+
+/// One ring of a rig as a source of messages. read() is called by one thread, written() by another.
+class Feed {
+ public:
+  virtual ~Feed() = default;
+
+  /// Passes the messages that have come on to the queue; waits for the first one until the
+  /// deadline. A message for which there is no room in the memory of the feed is lost. Errors:
+  /// disconnected (the rig is down).
+  virtual Result<void> read(MessageQueue& queue, Deadline deadline) = 0;
+
+  /// A message of this feed that was taken from the queue takes no more memory.
+  void written(std::size_t bytes) { held_bytes_ -= bytes; }
+  /// Messages that were lost since the last one that was passed on. Call it when read() is no
+  /// longer called.
+  std::uint64_t lost() const { return lost_; }
+  /// True for a ring of few slots, whose messages must be fetched soon.
+  bool is_hasty() const { return hasty_; }
+
+ protected:
+  Feed(bool hasty, const FeedSettings& settings) : hasty_(hasty), settings_(settings) {}
+
+  bool hasty_;
+  FeedSettings settings_;
+  std::uint64_t lost_ = 0;
+  std::atomic<std::size_t> held_bytes_{0};
+};
+
+/// Size in memory of a message in the queue.
+std::size_t bytes_of(const AnySample& sample);
+
+/// The feed of a ring, for all types of AnySample.
+template <class T>
+std::unique_ptr<Feed> feed_of(client::Stream<T> ring, const FeedSettings& settings);
+
+/// Opens the ring of a rig. Errors: as client::open_stream().
+Result<std::unique_ptr<Feed>> open_feed(const std::string& rig, const std::string& name,
+                                        const FeedSettings& settings);
+
+}  // namespace handcast::record

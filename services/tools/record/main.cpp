@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast record: writes the rings of a running rig to a folder.
+#include <fmt/format.h>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
+#include "services/tools/record/npy_folder.hpp"
+#include "services/tools/record/session.hpp"
+
+static int complain(int exit_code, const std::string& sentence) {
+  fmt::print(stderr, "handcast record: {}\n", sentence);
+  return exit_code;
+}
+
+static int run_verb(int argc, char** argv) {
+  using namespace handcast;
+  const auto parsed = record::parse(argc, argv);
+  if (!parsed) return complain(kExitUsage, parsed.error().what);
+  if (!parsed->text.empty()) {
+    fmt::print("{}", parsed->text);
+    return kExitDone;
+  }
+  const auto& options = parsed->options;
+  const auto done =
+      options.convert ? record::write_npy_folder(options.folder) : record::record(options);
+  return done ? kExitDone : complain(exit_code_of(done.error()), done.error().what);
+}
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast record", argc, argv, run_verb);
+}

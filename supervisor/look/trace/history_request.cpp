@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "supervisor/look/trace/history_request.hpp"
+
+#include <fmt/format.h>
+
+#include "ipc/control/control_client.hpp"
+#include "supervisor/spec/service_spec.hpp"
+
+namespace handcast::supervisor {
+
+Result<HistorySnapshot> ask_for_history(const std::string& rig, double seconds) {
+  control::Request request{.verb = control::Verb::history};
+  request.seconds = seconds;
+  auto answer = control::ask_with_descriptors(rig, request);
+  if (!answer) return tl::make_unexpected(answer.error());
+  if (answer->descriptors.size() != 1)
+    return fail(Errc::bad_data, fmt::format("the answer of rig '{}' contains no history", rig));
+  return read_history(answer->descriptors.front());
+}
+
+Result<std::map<std::string, double>> ask_for_rates(const std::string& rig) {
+  const auto answer = control::ask(rig, control::Request{.verb = control::Verb::status});
+  if (!answer) return tl::make_unexpected(answer.error());
+  std::map<std::string, double> rates;
+  for (const auto& service : services_of({}, {})) {
+    const nlohmann::json::json_pointer place("/status/rings/" + service.stream + "/wanted_hz");
+    if (!service.stream.empty() && answer->contains(place) && answer->at(place).is_number())
+      rates[service.name] = answer->at(place).get<double>();
+  }
+  return rates;
+}
+
+}  // namespace handcast::supervisor

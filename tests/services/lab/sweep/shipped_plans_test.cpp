@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "tests/config/every_setting.hpp"
+#include "tests/services/lab/sweep/plans.hpp"
+
+/// Tests of the plans in config/sweeps.
+namespace handcast::sweep {
+namespace {
+
+/// The rigs of a shipped plan by variant, on the first motion of its grid, in the plan's order.
+std::vector<std::pair<std::string, config::Rig>> rigs_of(const std::string& name) {
+  const auto plan = load_plan(source_root() / "config/sweeps" / (name + ".toml"));
+  EXPECT_TRUE(plan) << plan.error().what;
+  const auto expansion = expand(*plan);
+  EXPECT_TRUE(expansion) << expansion.error().what;
+  std::vector<std::pair<std::string, config::Rig>> rigs;
+  for (const auto& run : expansion->runs)
+    if (const auto& variant = plan->variants[run.variant].name;
+        rigs.empty() || rigs.back().first != variant)
+      rigs.emplace_back(variant, *rig_of(*plan, run));
+  return rigs;
+}
+
+config::Rig shipped(const std::string& name) {
+  const auto rig = config::load_rig(source_root() / "config/rigs" / (name + ".toml"));
+  EXPECT_TRUE(rig) << rig.error().what;
+  return *rig;
+}
+
+/// The settings in which two rigs differ, of those that begin with one of these words.
+std::vector<std::string> differences_in(const config::Rig& a, const config::Rig& b,
+                                        const std::vector<std::string>& words) {
+  auto paths = config::differences(a, b);
+  std::erase_if(paths, [&](const std::string& path) {
+    return std::ranges::none_of(words,
+                                [&](const std::string& word) { return path.starts_with(word); });
+  });
+  return paths;
+}
+
+TEST(ShippedPlans, WithEachDetectorBothCascadesHaveTheSameTimesAndTheSameWorld) {
+  std::map<std::string, config::Rig> rigs;
+  for (const auto& [name, rig] : rigs_of("comparison")) rigs.emplace(name, rig);
+  for (const auto& [paper, ours] :
+       {std::pair("paper_network", "handcast"), std::pair("paper_mediapipe", "handcast_mediapipe"),
+        std::pair("paper_model", "handcast_model")}) {
+    EXPECT_THAT(differences_in(rigs.at(paper), rigs.at(ours),
+                               {"landmarks.backend", "projector.", "twin.", "camera.", "pose."}),
+                testing::IsEmpty())
+        << paper;
+    EXPECT_THAT(differences_in(rigs.at(paper), shipped("paper"), {"cascade."}), testing::IsEmpty());
+    EXPECT_THAT(differences_in(rigs.at(ours), shipped("twin"), {"cascade."}), testing::IsEmpty());
+  }
+  EXPECT_THAT(
+      differences_in(rigs.at("paper"), shipped("paper"),
+                     {"cascade.", "landmarks.", "projector.", "twin.projector.", "twin.detector."}),
+      testing::IsEmpty())
+      << "as published";
+}
+
+/// What each row of the levers changes in the row above it.
+const std::vector<std::pair<std::string, std::vector<std::string>>> kLevers{
+    {"paper", {}},
+    {"bone_fit", {"cascade.skin.fit"}},
+    {"widths", {"cascade.skin.widths"}},
+    {"offset_filter",
+     {"cascade.filter.method", "cascade.filter.hindsight", "cascade.filter.blend_ms"}},
+    {"vertices",
+     {"cascade.correct.method", "cascade.correct.alpha", "cascade.mask.advance",
+      "cascade.fill.reach_px", "cascade.fill.fade_px"}},
+    {"registration", {"cascade.register.method", "cascade.ladder.rung"}},
+    {"network", {"landmarks.backend", "twin.detector.age_ms", "twin.detector.age_sd_ms"}},
+    {"learned", {"cascade.skin.turn", "cascade.filter.definitions"}},
+    {"bend", {"cascade.skin.bend"}},
+    {"outline", {"cascade.correct.outline"}},
+    {"gate",
+     {"cascade.ladder.rung", "cascade.predict.method", "cascade.predict.still_mm_s",
+      // What takes the network's place without its files, which is no lever.
+      "landmarks.fallback"}},
+};
+
+TEST(ShippedPlans, EachLeverAddsWhatItIsNamedAfterAndTheLastRowIsOurs) {
+  const auto rigs = rigs_of("levers");
+  ASSERT_EQ(rigs.size(), kLevers.size());
+  const std::vector<std::string> everything{"cascade.", "landmarks.", "projector.", "twin.",
+                                            "camera.",  "pose.",      "content.",   "hand."};
+  EXPECT_THAT(differences_in(rigs.front().second, shipped("paper"), {"cascade.", "landmarks."}),
+              testing::IsEmpty());
+  for (std::size_t i = 0; i < rigs.size(); ++i) {
+    EXPECT_EQ(rigs[i].first, kLevers[i].first);
+    if (i == 0) continue;
+    EXPECT_THAT(differences_in(rigs[i].second, rigs[i - 1].second, everything),
+                testing::UnorderedElementsAreArray(kLevers[i].second))
+        << rigs[i].first;
+  }
+  EXPECT_THAT(
+      differences_in(rigs.back().second, shipped("twin"),
+                     {"cascade.", "landmarks.", "projector.", "twin.detector.", "twin.projector."}),
+      testing::IsEmpty());
+}
+
+TEST(ShippedPlans, TheUnseenMotionsAreScoredWithTheRigsOfTheComparison) {
+  std::map<std::string, config::Rig> compared;
+  for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
+  const auto unseen = rigs_of("unseen");
+  EXPECT_EQ(unseen.size(), 6u);
+  for (const auto& [name, rig] : unseen)
+    EXPECT_THAT(config::differences(rig, compared.at(name)), testing::ElementsAre("twin.motion"))
+        << name;
+}
+
+TEST(ShippedPlans, JitterAndFirstSecondsAreOfTheRigsOfTheComparison) {
+  std::map<std::string, config::Rig> compared;
+  for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
+  for (const auto& [plan, variants] : {std::pair("jitter", 5u), std::pair("first_seconds", 3u)}) {
+    const auto rigs = rigs_of(plan);
+    EXPECT_EQ(rigs.size(), variants) << plan;
+    for (const auto& [name, rig] : rigs)
+      EXPECT_THAT(config::differences(rig, compared.at(name)), testing::IsEmpty())
+          << plan << ' ' << name;
+  }
+}
+
+TEST(ShippedPlans, TheFirstSecondsAreScored) {
+  const auto plan = load_plan(source_root() / "config/sweeps/first_seconds.toml");
+  ASSERT_TRUE(plan) << plan.error().what;
+  EXPECT_EQ(plan->warm_up_s, 0);
+}
+
+/// The values of a setting in the grid of a shipped plan.
+std::set<std::string> values_in(const std::string& plan_name, const std::string& setting) {
+  const auto plan = load_plan(source_root() / "config/sweeps" / (plan_name + ".toml"));
+  EXPECT_TRUE(plan) << plan.error().what;
+  const auto expansion = expand(*plan);
+  std::set<std::string> values;
+  for (const auto& run : expansion->runs) {
+    const auto rig = rig_of(*plan, run);
+    values.insert(setting == "motion" ? rig->twin.motion : rig->twin.shape.mesh);
+  }
+  return values;
+}
+
+TEST(ShippedPlans, TheTablesOfAccuracyAreOfACarefulInstallation) {
+  const auto careful = rigs_of("comparison").front().second;
+  for (const auto* name :
+       {"levers", "fidelity", "motions", "fast", "two_hands", "jitter", "first_seconds", "unseen"})
+    for (const auto& [variant, rig] : rigs_of(name)) {
+      EXPECT_EQ(rig.twin.shape.roll_deg, careful.twin.shape.roll_deg) << name << " " << variant;
+      EXPECT_THAT(differences_in(rig, careful, {"twin.geometry.", "twin.tracker.", "twin.image."}),
+                  testing::IsEmpty())
+          << name << " " << variant;
+    }
+}
+
+TEST(ShippedPlans, TheUnseenMotionsAreInNoOtherPlan) {
+  const auto unseen = values_in("unseen", "motion");
+  EXPECT_EQ(unseen.size(), 5u);
+  EXPECT_EQ(values_in("unseen", "mesh"), (std::set<std::string>{"implicit", "webxr"}));
+  for (const auto& file : std::filesystem::directory_iterator(source_root() / "config/sweeps")) {
+    const auto name = file.path().stem().string();
+    if (file.path().extension() != ".toml" || name == "unseen") continue;
+    for (const auto& motion : values_in(name, "motion"))
+      EXPECT_FALSE(unseen.contains(motion)) << name << ": " << motion;
+  }
+}
+
+}  // namespace
+}  // namespace handcast::sweep

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/tools/calibrate/hand_over.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "config/settings/files.hpp"
+#include "tests/scratch.hpp"
+
+namespace handcast::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const MeasuredSetting kLatency{"projector.latency_ms", "10.2"};
+
+/// Each call is one of the program: it reads the rig and opens the session anew.
+class HandOver : public testing::Test {
+ protected:
+  HandOver() {
+    options_.rig_file = scratch_.path() / "rig.toml";
+    options_.folder = scratch_.path() / "rig.calibration";
+    write_rig("name = \"mine\"\n");
+  }
+  void write_rig(const std::string& text) const { std::ofstream(options_.rig_file) << text; }
+  config::Rig rig() const { return *config::load_rig(options_.rig_file, {}); }
+  calib::Calibration running() const { return *calib::load_calibration(rig().calibration); }
+  Session open() const { return *Session::open(options_, rig(), running()); }
+  /// Keeps a step with a lens of this focal length.
+  void measure(Step step, double fx_px, std::vector<MeasuredSetting> settings = {}) const {
+    auto session = open();
+    auto measured = session.draft();
+    measured.camera.fx_px = fx_px;
+    ASSERT_TRUE(session.keep(step, {"measured", true, {}, "", std::move(settings)}, measured));
+  }
+  /// What the call prints.
+  std::string call(bool apply) {
+    options_.apply = apply;
+    auto session = open();
+    testing::internal::CaptureStdout();
+    const auto done = hand_over(options_, rig(), running(), session);
+    auto printed = testing::internal::GetCapturedStdout();
+    EXPECT_TRUE(done) << done.error().what;
+    return printed;
+  }
+
+  test::Scratch scratch_;
+  Options options_;
+};
+
+TEST_F(HandOver, WhatAnEarlierCallHasMeasuredIsPutInPlace) {
+  measure(Step::screen, 1200, {kLatency});
+  const auto printed = call(true);
+  EXPECT_THAT(printed, HasSubstr("  projector.latency_ms = 10.2\n"));
+  EXPECT_THAT(printed, HasSubstr("  calibration = \"rig_calibration.toml\"\n"));
+  EXPECT_EQ(rig().projector.latency_ms, 10.2);
+  EXPECT_EQ(running().camera.fx_px, 1200);
+  EXPECT_EQ(call(true), "") << "all is in its place";
+}
+
+TEST_F(HandOver, WhatWasOnlyPrintedIsAppliedLater) {
+  measure(Step::screen, 1200, {kLatency});
+  const auto before = *config::read_text(options_.rig_file);
+  EXPECT_THAT(call(false), HasSubstr("  projector.latency_ms = 10.2\n"));
+  EXPECT_EQ(*config::read_text(options_.rig_file), before);
+  call(true);
+  EXPECT_EQ(rig().projector.latency_ms, 10.2);
+  EXPECT_EQ(running().camera.fx_px, 1200);
+}
+
+TEST_F(HandOver, SettingsStayUntilTheyCouldBeApplied) {
+  measure(Step::screen, 1200, {{"projector.no_such_setting", "1"}});
+  options_.apply = true;
+  auto session = open();
+  testing::internal::CaptureStdout();
+  EXPECT_FALSE(hand_over(options_, rig(), running(), session));
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("  projector.no_such_setting = 1"));
+  EXPECT_EQ(open().settings().size(), 1U);
+}
+
+TEST_F(HandOver, TheTruthOfATwinStaysWhereItWas) {
+  const auto truth = calib::print_calibration(running());
+  measure(Step::lens, 1200);
+  call(false);
+  call(true);
+  ASSERT_EQ(rig().twin.geometry.calibration, scratch_.path() / "rig_truth.toml");
+  EXPECT_EQ(*config::read_text(rig().twin.geometry.calibration), truth);
+  measure(Step::lens, 1300);
+  call(true);
+  EXPECT_EQ(running().camera.fx_px, 1300);
+  EXPECT_EQ(*config::read_text(rig().twin.geometry.calibration), truth);
+}
+
+TEST_F(HandOver, TheTruthOfATwinWhoseCalibrationIsReplacedStays) {
+  auto own = calib::reference_rig();
+  own.camera.fx_px = 1100;
+  std::ofstream(scratch_.path() / "own.toml") << calib::print_calibration(own);
+  write_rig("name = \"mine\"\ncalibration = \"own.toml\"\n");
+  const auto truth = calib::print_calibration(running());
+  measure(Step::lens, 1200);
+  call(false);
+  EXPECT_EQ(running().camera.fx_px, 1200);
+  measure(Step::lens, 1300);  // what runs is no longer the truth
+  call(true);
+  EXPECT_EQ(*config::read_text(rig().twin.geometry.calibration), truth);
+}
+
+TEST_F(HandOver, ARealRigHasNoTruth) {
+  write_rig("name = \"mine\"\n[camera]\nbackend = \"v4l2\"\n");
+  measure(Step::lens, 1200);
+  call(true);
+  EXPECT_EQ(rig().twin.geometry.calibration, "");
+  EXPECT_FALSE(fs::exists(scratch_.path() / "rig_truth.toml"));
+}
+
+}  // namespace
+}  // namespace handcast::calibrate
