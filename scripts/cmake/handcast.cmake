@@ -19,15 +19,18 @@ cmake_path(SET HANDCAST_INSTALL_SHAREDIR NORMALIZE "${CMAKE_INSTALL_BINDIR}/../s
 
 set(HANDCAST_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
-# A compiler cache is faster for repeated builds, precompiled headers for a single build. They do not
-# work together. Clones in all folders share the cache.
+# A compiler cache is faster for repeated builds; precompiled headers, and the sources of a module in few compilations, for a single
+# build. They do not work together. Clones in all folders share the cache.
 find_program(CCACHE ccache)
+set(single_build ON)
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
-  option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" OFF)
-else()
-  option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" ON)
+  set(single_build OFF)
 endif()
+option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" ${single_build})
+option(HANDCAST_UNITY "Compile up to 16 sources of a module at once" ${single_build})
+set(CMAKE_UNITY_BUILD ${HANDCAST_UNITY})
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
 # GLib's headers (Aravis) bring it to some targets; clang refuses a precompiled header that was made without it.
 add_compile_options(-pthread)
