@@ -16,7 +16,7 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCL
 install(DIRECTORY config/rigs DESTINATION ${CMAKE_INSTALL_DOCDIR}/config)
 foreach(file
     config/REFERENCE.md config/assets/leap/bring_up.txt config/assets/preview.png config/assets/readme.png config/assets/template.png ipc/ring/README.md
-    renderer/README.md scripts/read_recording.py services/landmarks/training/MODEL_CARD.md
+    renderer/README.md scripts/read_recording.py services/lab/training/MODEL_CARD.md
     tests/client/CMakeLists.txt tests/client/read_projections.cpp)
   cmake_path(GET file PARENT_PATH folder)
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
