@@ -28,7 +28,7 @@ def people_of(runs, people):
 def readme(runs, people):
     """The table of the README and its sentence of doubt."""
     motions = {motion for _, motion in runs.motions}
-    yield "| error of the light, mean / p95 mm | handcast | the paper's method | ratio | worse in |"
+    yield "| error of the light, mean / p95 mm | handcast | the paper's method | ratio | worse in (cases) |"
     yield "|---|---|---|---|---|"
     for ours, theirs, words in pairs_of(runs):
         count, of = runs.lost(ours, theirs)
@@ -38,7 +38,7 @@ def readme(runs, people):
     yield ""
     yield (f"All of this is simulated ({len(motions)} motions on which nothing was tuned, {people_of(runs, people)} with hands of "
            f"{len(runs.meshes)} other meshes): the paper's method is our rewriting of it, our network was trained on renders of hands like "
-           f"those that are drawn, more light than the paper's falls beside the hand in {spill} of {of} cells, and no real device has been "
+           f"those that are drawn, more light than the paper's falls beside the hand in {spill} of {of} cases, and no real device has been "
            f"measured yet.")
 
 

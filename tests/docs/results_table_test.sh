@@ -84,7 +84,7 @@ document summary
 "$table" summary "$work/results.csv" "$work/document.md" "" 10
 says "| as published (MediaPipe, the paper's times) | 6.8 / 20.0 | 10.0 / 20.0 | 0.68 (0.40, 0.95) | 1 of 4 |" || fail "the row of the README is wrong"
 says '| our network, our times for both | 6.8 / 20.0 | 10.0 / 20.0 | 0.68 (0.40, 0.95) | 1 of 4 |' || fail "the README hides what is lost"
-says 'simulated (1 motions .*, 2 simulated people of 10 of the protocol with hands of 2 other meshes).* in 0 of 4 cells, and no real device' || fail "the sentence of doubt is wrong"
+says 'simulated (1 motions .*, 2 simulated people of 10 of the protocol with hands of 2 other meshes).* in 0 of 4 cases, and no real device' || fail "the sentence of doubt is wrong"
 awk 'length > 120' "$work/document.md" | grep -q . && fail "a line of the README is too wide"
 document unseen_pairs
 "$table" unseen_pairs "$work/results.csv" "$work/document.md" "" 2
