@@ -9,8 +9,9 @@
 #include "services/landmarks/geometry/points.hpp"
 #include "services/landmarks/geometry/region.hpp"
 
-/// The inputs and the output of handcast's own landmark network (training/MODEL_CARD.md). The
-/// training uses the same functions. Functions without state; any thread.
+/// The inputs and the output of handcast's own landmark network
+/// (services/lab/training/MODEL_CARD.md). The training uses the same functions. Functions without
+/// state; any thread.
 namespace handcast::landmarks::handcast_network {
 
 inline constexpr int kSide_px = 96;    ///< side of the crop
