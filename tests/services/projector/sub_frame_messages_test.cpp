@@ -31,7 +31,9 @@ class SubFrameMessagesTest : public testing::Test {
     frame.colour = pixels.view();
     frame.region = {1, 2, 2, 3};
     frame.target_ns = target_ns;
-    messages_.keep(frame, count, target_ns - 9 * kMs, target_ns - 8 * kMs);
+    const msg::StageMark mark{msg::Stage::frame, 0, target_ns - 9 * kMs, target_ns - 8 * kMs};
+    frame.stages = {&mark, 1};
+    messages_.keep(frame, count);
   }
 
   /// The message that is published next, as frame_id, pixel, target_ns, lit_ns.
