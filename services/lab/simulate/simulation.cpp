@@ -45,8 +45,8 @@ void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
       tick.is_new = false;
     }
   } else {
-    if (looks_) pipeline_.look(newest_image(now_ns));
-    tick.hands = pipeline_.track(now_ns, target_ns);
+    tick.hands =
+        pipeline_.track(now_ns, target_ns, looks_ ? newest_image(now_ns) : renderer::TimedImage{});
     on_tick(tick);
   }
   ++next_tick_;

@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file

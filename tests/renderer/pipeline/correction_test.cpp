@@ -109,8 +109,7 @@ float beside_px(bool outline, float sigma_px = 3) {
       for (auto& point : seen.hands[0].points) point.sigma_px = sigma_px;
       for (const int i : {6, 7, 8}) seen.hands[0].points[i].x_px += wrong_px;
       pipeline->push(t, seen);
-      pipeline->look({image.view(), t - 2 * kMs, static_cast<std::uint64_t>(t)});
-      pipeline->track(t, t + 4 * kMs);
+      pipeline->track(t, t + 4 * kMs, {image.view(), t - 2 * kMs, static_cast<std::uint64_t>(t)});
     }
     const auto hands = pipeline->render(400 * kMs, 404 * kMs, {image.view(), 398 * kMs, 1}).hands;
     return std::vector<glm::vec2>(hands[0].landings.begin(), hands[0].landings.end());

@@ -202,11 +202,12 @@ TEST(Pipeline, WhatIsStampedInTheFutureOutdatesNothing) {
     if (ahead_ns > 0) {
       pipeline->push(60 * kMs, poses_of(60 * kMs + ahead_ns, {elsewhere}));
       pipeline->push(60 * kMs, landmarks_of(calibration, 60 * kMs + ahead_ns, elsewhere, {}));
-      pipeline->look({image.view(), 60 * kMs + ahead_ns});
+      pipeline->track(60 * kMs, 64 * kMs, {image.view(), 60 * kMs + ahead_ns});
       EXPECT_EQ(
           lit_pixels(pipeline->render(60 * kMs, 64 * kMs, {image.view(), 60 * kMs + ahead_ns})),
           lit_pixels(pipeline->render(60 * kMs, 64 * kMs, {})));
     } else {
+      pipeline->track(60 * kMs, 64 * kMs);
       pipeline->render(60 * kMs, 64 * kMs, {});
       pipeline->render(60 * kMs, 64 * kMs, {});
     }

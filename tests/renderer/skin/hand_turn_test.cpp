@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file
