@@ -40,8 +40,8 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
       settings_(settings),
       calibration_(calibration),
       states_{.reports = {.snaps = FingerSnaps(calibration),
-                          .turn = HandTurn(calibration),
-                          .definitions = JointDefinitions(calibration)},
+                          .orientation_bias = OrientationBias(calibration),
+                          .landmark_offset = LandmarkOffset(calibration)},
               .motion = {.track = HandTrack(settings.predict, calibration),
                          .landmarks = LandmarkTrack(filter_of(settings), std::move(oracle)),
                          .ladder = HandLadder(settings)},
@@ -82,13 +82,13 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
   auto& [reports, motion, light, shape] = states_;
   const bool is_alone = motion.landmarks.is_alone();
   if (const auto pose = motion.track.recent_pose(origin_ns); pose && !is_alone) {
-    if (settings_.skin.turn) reports.turn.learn(origin_ns, *pose, seen);
+    if (settings_.skin.turn) reports.orientation_bias.learn(origin_ns, *pose, seen);
     if (settings_.filter.definitions)
-      reports.definitions.learn(origin_ns, reports.turn.turned(*pose), seen);
+      reports.landmark_offset.learn(origin_ns, reports.orientation_bias.turned(*pose), seen);
   }
   reports.has_sigmas =
       std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
-  const auto as_tracked = reports.definitions.as_tracked(seen);
+  const auto as_tracked = reports.landmark_offset.as_tracked(seen);
   reports.snaps.detection(origin_ns, as_tracked);
   if (!is_alone) motion.ladder.detection(motion.track, origin_ns, as_tracked);
   motion.landmarks.detection(now_ns, origin_ns, as_tracked, motion.track);
@@ -165,7 +165,7 @@ ProjectedPose HandPipeline::posed(const HandFrame& frame) const {
   const bool is_bent = settings_.skin.bend && corrected.has_landmarks;
   if (!settings_.skin.turn && !is_bent) return corrected.posed;
   msg::HandPose pose = corrected.posed.pose;
-  if (settings_.skin.turn) pose = states_.reports.turn.turned(pose);
+  if (settings_.skin.turn) pose = states_.reports.orientation_bias.turned(pose);
   if (is_bent) pose = bent(pose, frame.registered.landmarks, calibration_);
   return project(calibration_, pose).value_or(corrected.posed);
 }
@@ -200,12 +200,13 @@ int HandPipeline::correct(HandFrame& frame) {
   }
   if (settings_.correct.outline) shape.palm.move(frame.to_px, skinned.landings_px);
   if (corrected.moves < Rung::fingers) return 0;
-  return shape.untangler.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
+  return shape.foldover_repair.repair(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
 }
 
 int HandPipeline::foldovers(const HandFrame& frame) const {
   const Skinned& skinned = *frame.skinned;
-  return states_.shape.untangler.count(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
+  return states_.shape.foldover_repair.count(skinned.seen_px, skinned.landings_px,
+                                             skinned.facing_sign);
 }
 
 void HandPipeline::learn_outline(const HandFrame& frame, std::int64_t target_ns, GreyView mask) {

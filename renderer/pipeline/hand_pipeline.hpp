@@ -8,11 +8,11 @@
 #include "config/sections/cascade.hpp"
 #include "config/sections/projector.hpp"
 #include "renderer/correct/finger_outline.hpp"
+#include "renderer/correct/foldover_repair.hpp"
 #include "renderer/correct/palm_outline.hpp"
 #include "renderer/correct/rung_mover.hpp"
-#include "renderer/correct/untangle.hpp"
 #include "renderer/draw/painter.hpp"
-#include "renderer/filter/joint_definitions.hpp"
+#include "renderer/filter/landmark_offset.hpp"
 #include "renderer/filter/landmark_track.hpp"
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
@@ -22,7 +22,7 @@
 #include "renderer/predict/presence.hpp"
 #include "renderer/register/late_registration.hpp"
 #include "renderer/skin/hand_surface.hpp"
-#include "renderer/skin/hand_turn.hpp"
+#include "renderer/skin/orientation_bias.hpp"
 
 namespace handcast::renderer {
 
@@ -47,10 +47,10 @@ struct HandFrame {
 struct HandStates {
   /// How the reports of the sensors differ from the hand.
   struct Reports {
-    FingerSnaps snaps;             ///< of the tracker: fingers that it has lost
-    HandTurn turn;                 ///< of the tracker: how it turns the hand
-    JointDefinitions definitions;  ///< of the detector: where it sees the tracker's joints
-    bool has_sigmas = false;       ///< the detector says how wrong its landmarks may be
+    FingerSnaps snaps;                 ///< of the tracker: fingers that it has lost
+    OrientationBias orientation_bias;  ///< of the tracker: how it turns the hand
+    LandmarkOffset landmark_offset;    ///< of the detector: where it sees the tracker's joints
+    bool has_sigmas = false;           ///< the detector says how wrong its landmarks may be
   } reports;
   /// Where the hand is: the states of predict, filter and ladder.
   struct Motion {
@@ -71,18 +71,18 @@ struct HandStates {
           fingers(surface.mesh()),
           palm(surface.mesh()),
           mover(surface.mesh()),
-          untangler(surface.mesh()) {}
+          foldover_repair(surface.mesh()) {}
 
     HandSurface surface;
     FingerOutline fingers;
     PalmOutline palm;
     RungMover mover;
-    Untangler untangler;
+    FoldoverRepair foldover_repair;
   } shape;
 };
 
 /// The steps for one hand. The pipeline does a step for all hands before the next step, because the
-/// hands share the camera's image (Pipeline::advance()). One thread.
+/// hands share the camera's image (Pipeline::place()). One thread.
 class HandPipeline {
  public:
   /// Loads the mesh and the content of one hand of the settings. `oracle`: see

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A .glb file as the model of a hand: read, painted, skinned, corrected, untangled, and scored as
+// A .glb file as the model of a hand: read, painted, skinned, corrected, repaired, and scored as
 // the true hand of the twin.
 // Limits: 10 s and 1 GB per input.
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "ipc/msg/owned.hpp"
 #include "renderer/content/chart_map.hpp"
 #include "renderer/correct/deform.hpp"
-#include "renderer/correct/untangle.hpp"
+#include "renderer/correct/foldover_repair.hpp"
 #include "renderer/skin/hand_surface.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "tests/fuzz/input.hpp"
@@ -40,8 +40,8 @@ msg::Owned<msg::Projection> draw(const HandMesh& mesh, const twin::Twin& twin,
     q[i] = p[i] + glm::vec2(i % 4 == 0 ? -20 : 20, static_cast<float>(i));
   }
   renderer::correct_vertices(cascade.correct, surface.mesh(), p, q, skinned.landings_px);
-  renderer::Untangler untangler(surface.mesh());
-  fuzz::require(untangler.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign) >= 0);
+  renderer::FoldoverRepair repair(surface.mesh());
+  fuzz::require(repair.repair(skinned.seen_px, skinned.landings_px, skinned.facing_sign) >= 0);
 
   msg::Owned<msg::Projection> projection;
   projection->lit_ns = kTime_ns;
