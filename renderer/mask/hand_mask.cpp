@@ -136,7 +136,7 @@ Rect HandMask::region_of(std::size_t h, const Moved& hand, const Rect& image_reg
   if (calibration_.parallax == glm::dvec3(0))
     return lookup_.to_projector(image_region).within(screen.x1, screen.y1);
   auto& nearness = nearness_[h];
-  nearness.set(hand.landings_px, hand.depths_m, calibration_.plane_m);
+  nearness.set(hand.projected_px, hand.depths_m, calibration_.plane_m);
   return lookup_.to_projector(image_region, nearness.least())
       .joined(lookup_.to_projector(image_region, nearness.most()))
       .within(screen.x1, screen.y1);

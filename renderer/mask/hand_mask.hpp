@@ -45,7 +45,7 @@ class HandMask {
     /// Its drawn vertices, projector px, and their depths: needed if camera and projector are not
     /// coaxial.
     /// @{
-    std::span<const glm::vec2> landings_px{};
+    std::span<const glm::vec2> projected_px{};
     std::span<const float> depths_m{};
     /// @}
   };

@@ -59,7 +59,7 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
   auto texture = load_content(is_left ? content.left : content.right, *mesh);
   if (!texture) return tl::make_unexpected(texture.error());
   if (mesh->vertex_count() > msg::kMaxVertices)
-    log::warning("the hand has {} vertices: observers receive the landings of the first {} only",
+    log::warning("the hand has {} vertices: observers receive the first {} only",
                  mesh->vertex_count(), msg::kMaxVertices);
   HandSurface surface(std::move(*mesh), settings.mask.forearm_mm);
   return HandPipeline(side, settings, calibration, std::move(surface),
@@ -126,7 +126,7 @@ HandMask::Moved HandPipeline::moved(const HandFrame& frame) const {
           frame.corrected.landmarks,
           frame.registered.moved_then,
           frame.registered.moved_now,
-          frame.skinned->landings_px,
+          frame.skinned->projected_px,
           frame.skinned->depth_m};
 }
 
@@ -193,19 +193,19 @@ int HandPipeline::correct(HandFrame& frame) {
   auto& shape = states_.shape;
   const Skinned& skinned = *frame.skinned;
   if (corrected.moves < Rung::landmarks) {
-    shape.mover.move(fit_rung(corrected.moves, frame.from_px, frame.to_px), skinned.landings_px);
+    shape.mover.move(fit_rung(corrected.moves, frame.from_px, frame.to_px), skinned.projected_px);
   } else {
     correct_vertices(settings_.correct, shape.surface.mesh(), frame.from_px, frame.to_px,
-                     skinned.landings_px);
+                     skinned.projected_px);
   }
-  if (settings_.correct.outline) shape.palm.move(frame.to_px, skinned.landings_px);
+  if (settings_.correct.outline) shape.palm.move(frame.to_px, skinned.projected_px);
   if (corrected.moves < Rung::fingers) return 0;
-  return shape.foldover_repair.repair(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
+  return shape.foldover_repair.repair(skinned.seen_px, skinned.projected_px, skinned.facing_sign);
 }
 
 int HandPipeline::foldovers(const HandFrame& frame) const {
   const Skinned& skinned = *frame.skinned;
-  return states_.shape.foldover_repair.count(skinned.seen_px, skinned.landings_px,
+  return states_.shape.foldover_repair.count(skinned.seen_px, skinned.projected_px,
                                              skinned.facing_sign);
 }
 
@@ -219,8 +219,8 @@ void HandPipeline::learn_outline(const HandFrame& frame, std::int64_t target_ns,
   if (settings_.correct.method != config::CorrectMethod::vertices || !settings_.correct.outline ||
       !states_.reports.has_sigmas)
     return;
-  shape.palm.measure(target_ns, frame.skinned->landings_px, frame.to_px, mask);
-  shape.fingers.measure(target_ns, frame.skinned->landings_px, frame.to_px, mask);
+  shape.palm.measure(target_ns, frame.skinned->projected_px, frame.to_px, mask);
+  shape.fingers.measure(target_ns, frame.skinned->projected_px, frame.to_px, mask);
 }
 
 DrawnHand HandPipeline::drawn(const Skinned& skinned,
@@ -242,7 +242,7 @@ FrameHand HandPipeline::described(const HandFrame& frame) const {
   hand.presence = frame.presence;
   hand.has_landmarks = corrected.has_landmarks;
   hand.rung = corrected.rung;
-  if (frame.skinned) hand.landings = frame.skinned->landings_px;
+  if (frame.skinned) hand.projected_px = frame.skinned->projected_px;
   return hand;
 }
 

@@ -40,7 +40,7 @@ struct HandFrame {
   /// @{
   LandmarkPoints from_px{}, to_px{};
   /// @}
-  std::optional<Skinned> skinned;  ///< skin; its landings are moved by correct
+  std::optional<Skinned> skinned;  ///< skin; its projected vertices are moved by correct
 };
 
 /// What is known of one hand from one message or frame to the next.
@@ -134,10 +134,10 @@ class HandPipeline {
 
   /// Step skin: poses the mesh. `shading`: see HandSurface::pose().
   void skin(HandFrame& frame, float shading);
-  /// Step correct: moves the landings from P onto Q̂ by the model of the frame's rung. Returns the
-  /// number of triangles that remain turned over.
+  /// Step correct: moves the projected vertices from P onto Q̂ by the model of the frame's rung.
+  /// Returns the number of triangles that remain turned over.
   int correct(HandFrame& frame);
-  /// The number of triangles that a warp of the landings has turned over.
+  /// The number of triangles that a warp of the projected vertices has turned over.
   int foldovers(const HandFrame& frame) const;
   /// Learns the widths of the person's fingers, where they are beside their landmarks, and the
   /// borders of the palm. `mask`: of this hand, projector px.

@@ -142,7 +142,7 @@ Pipeline::Placed Pipeline::place(std::int64_t now_ns, std::int64_t target_ns,
   placed.foldovers = correct(is_drawn ? settings_.correct.method : config::CorrectMethod::vertices);
   stages_.mark(Stage::correct, rungs());
   if (!placed.is_masked) {
-    placed.region = landing_bounds();
+    placed.region = projected_bounds();
     return placed;
   }
   placed.region = advance_masks();
@@ -186,8 +186,8 @@ Rect Pipeline::advance_masks() {
   return mask_.advance(passed_.moved);
 }
 
-/// Moves the landings, and makes the grid if the drawing will be warped. Returns the number of
-/// triangles that are turned over.
+/// Moves the projected vertices, and makes the grid if the drawing will be warped. Returns the
+/// number of triangles that are turned over.
 int Pipeline::correct(config::CorrectMethod method) {
   passed_.grid.reset();
   if (method == config::CorrectMethod::grid) return correct_by_grid();
@@ -229,7 +229,7 @@ int Pipeline::correct_by_grid() {
                      MovingLeastSquares(p, q, static_cast<float>(settings_.correct.alpha)));
   int foldovers = 0;
   for (auto& [hand, frame] : hands) {
-    for (glm::vec2& landing : frame.skinned->landings_px) landing = (*grid)(landing);
+    for (glm::vec2& vertex : frame.skinned->projected_px) vertex = (*grid)(vertex);
     foldovers += hand->foldovers(frame);
   }
   return foldovers;
@@ -250,10 +250,10 @@ void Pipeline::learn_outline(std::int64_t target_ns) {
     }
 }
 
-Rect Pipeline::landing_bounds() const {
+Rect Pipeline::projected_bounds() const {
   Rect bounds;
   for (const auto& [hand, frame] : passed_.hands)
-    bounds = bounds.joined(hand->bounds(frame.skinned->landings_px));
+    bounds = bounds.joined(hand->bounds(frame.skinned->projected_px));
   return on_screen(bounds);
 }
 
@@ -264,7 +264,7 @@ FrameDrawing Pipeline::drawing_of(const Placed& placed) {
   for (const auto& [hand, frame] : hands) {
     if (frame.presence <= 0) continue;
     const Skinned& skinned = *frame.skinned;
-    drawn.push_back(hand->drawn(skinned, grid ? skinned.seen_px : skinned.landings_px));
+    drawn.push_back(hand->drawn(skinned, grid ? skinned.seen_px : skinned.projected_px));
     if (grid) source = source.joined(hand->bounds(skinned.seen_px));
   }
   return {drawn, placed.region, on_screen(source), grid ? &*grid : nullptr,

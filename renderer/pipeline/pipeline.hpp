@@ -60,8 +60,8 @@ class Pipeline {
   /// The same without drawing: the hands and their landmarks. Call it for frames that are not
   /// drawn, because filters remember their output of every frame, late registration follows the
   /// hands through all images, and the person's hand is learned from them. An image that was given
-  /// before is ignored. Landings are empty, unless the frame learns from its image. Valid until the
-  /// next call of track() or render().
+  /// before is ignored. No vertices are projected, unless the frame learns from its image. Valid
+  /// until the next call of track() or render().
   std::span<const FrameHand> track(std::int64_t now_ns, std::int64_t target_ns,
                                    const TimedImage& camera = {});
   /// True if track() uses images.
@@ -119,7 +119,7 @@ class Pipeline {
   std::optional<std::int64_t> expected_image_ns(std::int64_t target_ns) const;
   std::uint32_t rungs() const;
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
-  Rect landing_bounds() const;
+  Rect projected_bounds() const;
   std::span<const FrameHand> frame_hands();
 
   config::Cascade settings_;

@@ -39,9 +39,9 @@ msg::Owned<msg::Projection> draw(const HandMesh& mesh, const twin::Twin& twin,
     p[i] = calibration.to_projector(seen[i]);
     q[i] = p[i] + glm::vec2(i % 4 == 0 ? -20 : 20, static_cast<float>(i));
   }
-  renderer::correct_vertices(cascade.correct, surface.mesh(), p, q, skinned.landings_px);
+  renderer::correct_vertices(cascade.correct, surface.mesh(), p, q, skinned.projected_px);
   renderer::FoldoverRepair repair(surface.mesh());
-  fuzz::require(repair.repair(skinned.seen_px, skinned.landings_px, skinned.facing_sign) >= 0);
+  fuzz::require(repair.repair(skinned.seen_px, skinned.projected_px, skinned.facing_sign) >= 0);
 
   msg::Owned<msg::Projection> projection;
   projection->lit_ns = kTime_ns;
@@ -51,7 +51,7 @@ msg::Owned<msg::Projection> draw(const HandMesh& mesh, const twin::Twin& twin,
   hand.vertex_count =
       static_cast<std::uint32_t>(std::min<std::size_t>(mesh.vertex_count(), msg::kMaxVertices));
   for (std::uint32_t v = 0; v < hand.vertex_count; ++v)
-    hand.landings[v] = {skinned.landings_px[v].x, skinned.landings_px[v].y};
+    hand.landings[v] = {skinned.projected_px[v].x, skinned.projected_px[v].y};
   return projection;
 }
 

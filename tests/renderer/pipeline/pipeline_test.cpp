@@ -117,7 +117,7 @@ TEST(Pipeline, TrackingSaysWhatRenderingWouldUse) {
   ASSERT_EQ(tracked.size(), 1u);
   EXPECT_EQ(tracked[0].tracker, frame.hands[0].tracker);
   EXPECT_EQ(tracked[0].corrected, frame.hands[0].corrected);
-  EXPECT_TRUE(tracked[0].landings.empty());
+  EXPECT_TRUE(tracked[0].projected_px.empty());
 }
 
 TEST_P(EverySide, TheEdgeOfASmoothPictureIsLitInPart) {
