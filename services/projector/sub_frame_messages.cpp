@@ -52,7 +52,7 @@ void SubFrameMessages::publish_next() {
       slot && kept.used_bytes() <= sizeof kept + slot.tail_bytes()) {
     std::memcpy(static_cast<void*>(&*slot), &kept, kept.used_bytes());
     slot->header.frame_id = id;
-    slot->lit_ns = sub_frame.times.lit_ns;
+    slot->lit_ns = sub_frame.times.display_ns;
     projections_.publish(std::move(slot));
   }
   if (sub_frame.is_first)

@@ -74,7 +74,7 @@ class SubFramePlan {
   std::int64_t hand_over_ns() const { return hand_over_ns_; }
   /// Notes when it was.
   void presented(const PresentTimes& times) {
-    light_.add(times.lit_ns - hand_over_ns_);
+    light_.add(times.display_ns - hand_over_ns_);
     if (times.next_ns == 0) return;
     hand_over_ns_ = times.next_ns - output_period_ns();  // the projector has its own rhythm
   }
@@ -84,7 +84,7 @@ class SubFramePlan {
   PresentTimes times_of(int sub_frame, const PresentTimes& times) const {
     const std::uint32_t refreshes = sub_frame == 0 ? times.note.refreshes : 0;
     return {.handed_ns = times.handed_ns + sub_frame * period_ns_,
-            .lit_ns = times.lit_ns + (2 * sub_frame + 1 - sub_frames_) * period_ns_ / 2,
+            .display_ns = times.display_ns + (2 * sub_frame + 1 - sub_frames_) * period_ns_ / 2,
             .note = {times.note.source, refreshes}};
   }
   /// Time from one output frame to the next.

@@ -13,8 +13,9 @@ inline std::vector<msg::StageMark> time_sheet(std::span<const msg::StageMark> st
                                               const PresentTimes& times) {
   std::vector<msg::StageMark> marks(stages.begin(), stages.end());
   marks.push_back({msg::Stage::present, 0, stages.back().end_ns, times.handed_ns});
-  if (times.lit_ns > times.handed_ns)
-    marks.push_back({msg::Stage::light, msg::detail_of(times.note), times.handed_ns, times.lit_ns});
+  if (times.display_ns > times.handed_ns)
+    marks.push_back(
+        {msg::Stage::light, msg::detail_of(times.note), times.handed_ns, times.display_ns});
   return marks;
 }
 

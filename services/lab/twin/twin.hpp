@@ -110,7 +110,7 @@ struct FrameScore {
   };
   static constexpr std::size_t kParts = 6;  ///< thumb to little finger, palm
 
-  std::int64_t lit_ns = 0;  ///< time of the light, since the epoch
+  std::int64_t display_ns = 0;  ///< time of the light, since the epoch
   /// The score of one hand.
   struct Hand {
     Side side = Side::left;          ///< which hand it is

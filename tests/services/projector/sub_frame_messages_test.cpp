@@ -36,7 +36,7 @@ class SubFrameMessagesTest : public testing::Test {
     messages_.keep(frame, count);
   }
 
-  /// The message that is published next, as frame_id, pixel, target_ns, lit_ns.
+  /// The message that is published next, as frame_id, pixel, target_ns, display_ns.
   using Seen = std::tuple<std::uint64_t, std::uint32_t, std::int64_t, std::int64_t>;
   std::vector<Seen> seen() {
     std::vector<Seen> all;
@@ -106,7 +106,7 @@ TEST_F(SubFrameMessagesTest, AnOutputFrameThatWasNotShownIsNotPublished) {
   draw(2, 60, 4);
   messages_.handed_over(plan_, 4, {100 * kMs, 113 * kMs});
   messages_.publish(1000 * kMs);
-  for (const auto& [id, pixel, target_ns, lit_ns] : seen()) EXPECT_EQ(pixel, 2u);
+  for (const auto& [id, pixel, target_ns, display_ns] : seen()) EXPECT_EQ(pixel, 2u);
 }
 
 }  // namespace
