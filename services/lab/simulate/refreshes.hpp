@@ -20,10 +20,10 @@ class Refreshes {
   /// The beginning of a frame, ns since the epoch.
   std::int64_t begin_ns(std::int64_t frame) const;
   /// The middle of the light for which a frame is drawn.
-  std::int64_t lit_ns(std::int64_t frame) const { return begin_ns(frame) + leg_ns_; }
+  std::int64_t display_ns(std::int64_t frame) const { return begin_ns(frame) + leg_ns_; }
   /// The most refreshes that a frame can be late.
   static constexpr std::int64_t kLongestDelay = 64;
-  /// The frame whose light is on at lit_ns(frame): this one, or an earlier one.
+  /// The frame whose light is on at display_ns(frame): this one, or an earlier one.
   std::int64_t shown_at(std::int64_t frame);
 
  private:

@@ -30,23 +30,23 @@ std::vector<std::int64_t> Simulation::drawn_refreshes(std::int64_t frame) {
 
 void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
   const auto now_ns = refreshes_.begin_ns(next_tick_);
-  const auto target_ns = refreshes_.lit_ns(next_tick_);
+  const auto target_ns = refreshes_.display_ns(next_tick_);
   deliver(now_ns);
 
-  Tick tick{.index = next_tick_, .target_ns = target_ns, .lit_ns = target_ns};
+  Tick tick{.index = next_tick_, .target_ns = target_ns, .display_ns = target_ns};
   if (const auto refreshes = drawn_refreshes(next_tick_); !refreshes.empty()) {
     const auto frame = draw(now_ns, target_ns);
     tick.hands = frame.hands;
     tick.frame = &frame;
     tick.projection = &*projection_;
     for (const std::int64_t refresh : refreshes) {
-      tick.lit_ns = projection_->lit_ns = refreshes_.lit_ns(refresh);
+      tick.display_ns = projection_->lit_ns = refreshes_.display_ns(refresh);
       on_tick(tick);
       tick.is_new = false;
     }
   } else {
-    if (looks_) pipeline_.look(newest_image(now_ns));
-    tick.hands = pipeline_.track(now_ns, target_ns);
+    tick.hands =
+        pipeline_.track(now_ns, target_ns, looks_ ? newest_image(now_ns) : renderer::TimedImage{});
     on_tick(tick);
   }
   ++next_tick_;

@@ -17,10 +17,10 @@ namespace handcast::simulate {
 
 /// One projector frame of a simulated rig. The borrowed data is valid during the callback only.
 struct Tick {
-  std::int64_t index = 0;      ///< number of the projector frame
-  std::int64_t target_ns = 0;  ///< the middle of the light for which it was computed
-  std::int64_t lit_ns = 0;     ///< the middle of a light that shows it: later, if it was late
-  bool is_new = true;          ///< false from the second drawn refresh on that shows it
+  std::int64_t index = 0;       ///< number of the projector frame
+  std::int64_t target_ns = 0;   ///< the middle of the light for which it was computed
+  std::int64_t display_ns = 0;  ///< the middle of a light that shows it: later, if it was late
+  bool is_new = true;           ///< false from the second drawn refresh on that shows it
   std::span<const renderer::FrameHand> hands;   ///< the tracked hands
   const renderer::Frame* frame = nullptr;       ///< null if the frame was tracked but not drawn
   const msg::Projection* projection = nullptr;  ///< null if the frame was not drawn

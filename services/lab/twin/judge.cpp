@@ -24,16 +24,17 @@ class RigJudge final : public Judge {
       fingers_[static_cast<std::size_t>(side)] = fingers_of(twin.true_hand(side).mesh);
   }
 
-  FrameScore score(const msg::Projection& projection) override {
+  FrameScore score(const msg::Projection& projection, std::int64_t epoch_ns) override {
     const JudgedLight light(projection);
-    view_.pose(projection.lit_ns);
+    const std::int64_t display_ns = projection.lit_ns - epoch_ns;
+    view_.pose(display_ns);
     const Rect area = judged_area(light);
     view_.draw(area);
     for (int y = area.y0; y < area.y1; ++y) light.row(y, area.x0, area.x1, alpha_.row(y));
     for (const auto& hand : view_.hands()) texture_.place(hand);
 
     FrameScore score;
-    score.lit_ns = projection.lit_ns;
+    score.display_ns = display_ns;
     score.hands.resize(view_.hands().size());
     for (std::size_t h = 0; h < score.hands.size(); ++h) score.hands[h].side = seen(h).side;
     count_pixels(area, light, score);

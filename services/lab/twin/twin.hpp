@@ -110,7 +110,7 @@ struct FrameScore {
   };
   static constexpr std::size_t kParts = 6;  ///< thumb to little finger, palm
 
-  std::int64_t lit_ns = 0;  ///< time of the light, since the epoch
+  std::int64_t display_ns = 0;  ///< time of the light, since the epoch
   /// The score of one hand.
   struct Hand {
     Side side = Side::left;          ///< which hand it is
@@ -140,9 +140,11 @@ class Judge {
   /// of the projector.
   static std::unique_ptr<Judge> create(const Twin& twin, int step_px);
   virtual ~Judge() = default;
-  /// Scores one projection. projection.lit_ns must be in ns since the twin's epoch. Without shown
-  /// points all of the surface counts as missing.
-  virtual FrameScore score(const msg::Projection& projection) = 0;
+  /// Scores one projection. `epoch_ns`: the twin's epoch, on the clock of the projection. Without
+  /// shown points all of the surface counts as missing.
+  virtual FrameScore score(const msg::Projection& projection, std::int64_t epoch_ns) = 0;
+  /// Scores one whose times are ns since the twin's epoch.
+  FrameScore score(const msg::Projection& projection) { return score(projection, 0); }
 };
 
 }  // namespace handcast::twin

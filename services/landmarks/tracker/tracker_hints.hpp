@@ -37,10 +37,6 @@ class TrackerHints {
   }
 };
 
-/// The joints of a pose that belong to the 21 landmarks, in undistorted camera pixels; empty if one
-/// of them is behind the camera.
-std::optional<Points> project(const calib::Calibration& calibration, const msg::HandPose& pose);
-
 /// From undistorted pixels to pixels of the image.
 Points distorted(const calib::CameraModel& camera, const Points& undistorted_px);
 /// From pixels of the image to undistorted pixels.

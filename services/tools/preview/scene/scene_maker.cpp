@@ -10,7 +10,7 @@
 
 #include "ipc/msg/largest_images.hpp"
 #include "ipc/msg/same_calibration.hpp"
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "services/tools/preview/scene/sane_time.hpp"
 
 namespace handcast::preview {
@@ -134,22 +134,17 @@ void SceneMaker::find_mask(const msg::CameraFrame& frame) {
        static_cast<int>(frame.width_px)},
       sane_ns(frame.header.origin_ns),
       frame.header.frame_id};
-  std::array<renderer::Corrected, kSides.size()> corrected;
-  std::vector<renderer::HandMask::Expected> expected;
-  for (std::size_t i = 0; i < kSides.size(); ++i) {
-    const auto pose = hands_->pose_at(kSides[i], image.origin_ns);
-    const auto tracker =
-        pose ? renderer::project_landmarks(world_->calibration, *pose) : std::nullopt;
-    if (!tracker) continue;
-    const auto offset = hands_->offset_at(kSides[i], image.origin_ns);
-    corrected[i].pose = *pose;
-    corrected[i].tracker = *tracker;
-    corrected[i].landmarks = offset ? renderer::sum(*tracker, *offset) : *tracker;
-    corrected[i].has_landmarks = offset.has_value();
-    expected.push_back({.side = kSides[i], .then = pose, .hand = &corrected[i]});
+  std::vector<renderer::HandMask::Sought> sought;
+  for (const auto side : kSides) {
+    const auto pose = hands_->pose_at(side, image.origin_ns);
+    const auto posed = pose ? renderer::project(world_->calibration, *pose) : std::nullopt;
+    if (!posed) continue;
+    const auto offset_px = hands_->offset_at(side, image.origin_ns);
+    sought.push_back(
+        {side, posed, offset_px.value_or(renderer::LandmarkPoints{}), offset_px.has_value()});
   }
-  if (expected.empty()) return;
-  mask_->find(image, expected);
+  if (sought.empty()) return;
+  mask_->find(image, sought);
   hand_px_ = mask_->silhouette(image).mask;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/correct/untangle.hpp"
+#include "renderer/correct/foldover_repair.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ float area(std::span<const glm::vec2> px, const std::array<std::uint16_t, 3>& tr
 
 }  // namespace
 
-Untangler::Untangler(const HandMesh& mesh) : triangles_(mesh.triangles) {
+FoldoverRepair::FoldoverRepair(const HandMesh& mesh) : triangles_(mesh.triangles) {
   std::map<std::array<float, 3>, std::uint16_t> places;
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     const glm::vec3& at = mesh.positions[v];
@@ -36,14 +36,14 @@ Untangler::Untangler(const HandMesh& mesh) : triangles_(mesh.triangles) {
       around_[place_of_[v]].push_back(static_cast<std::uint32_t>(t));
 }
 
-bool Untangler::turned_over(std::size_t triangle, std::span<const glm::vec2> before,
-                            std::span<const glm::vec2> after, float facing_sign) const {
+bool FoldoverRepair::turned_over(std::size_t triangle, std::span<const glm::vec2> before,
+                                 std::span<const glm::vec2> after, float facing_sign) const {
   return area(before, triangles_[triangle]) * facing_sign > 0 &&
          area(after, triangles_[triangle]) * facing_sign < -kInvisible_px2;
 }
 
 /// Makes each place a cluster.
-void Untangler::start(std::span<const glm::vec2> before, std::span<const glm::vec2> after) {
+void FoldoverRepair::start(std::span<const glm::vec2> before, std::span<const glm::vec2> after) {
   clusters_.resize(at_place_.size());
   for (std::size_t place = 0; place < at_place_.size(); ++place) {
     const std::uint16_t v = at_place_[place].front();
@@ -51,14 +51,14 @@ void Untangler::start(std::span<const glm::vec2> before, std::span<const glm::ve
   }
 }
 
-std::uint16_t Untangler::root_of(std::uint16_t place) {
+std::uint16_t FoldoverRepair::root_of(std::uint16_t place) {
   while (clusters_[place].parent != place)
     place = clusters_[place].parent = clusters_[clusters_[place].parent].parent;
   return place;
 }
 
 /// Joins the clusters of the corners. Returns false if they are one already.
-bool Untangler::join(const Triangle& triangle) {
+bool FoldoverRepair::join(const Triangle& triangle) {
   const std::uint16_t root = root_of(place_of_[triangle[0]]);
   bool has_grown = false;
   for (const std::uint16_t v : {triangle[1], triangle[2]}) {
@@ -73,7 +73,7 @@ bool Untangler::join(const Triangle& triangle) {
 }
 
 /// Gives the places of each cluster its mean displacement.
-void Untangler::move_clusters(std::span<const glm::vec2> before, std::span<glm::vec2> after) {
+void FoldoverRepair::move_clusters(std::span<const glm::vec2> before, std::span<glm::vec2> after) {
   for (std::size_t place = 0; place < at_place_.size(); ++place) {
     const Cluster& cluster = clusters_[root_of(static_cast<std::uint16_t>(place))];
     if (cluster.count < 2) continue;
@@ -84,8 +84,8 @@ void Untangler::move_clusters(std::span<const glm::vec2> before, std::span<glm::
 
 /// Gives the corners of each turned-over triangle their mean displacement and examines its
 /// neighbours again. Returns true if nothing remains turned over.
-bool Untangler::smooth(std::span<const glm::vec2> before, std::span<glm::vec2> after,
-                       float facing_sign) {
+bool FoldoverRepair::smooth(std::span<const glm::vec2> before, std::span<glm::vec2> after,
+                            float facing_sign) {
   int moves = 0;
   for (std::size_t next = 0; next < waiting_.size(); ++next) {
     if (!turned_over(waiting_[next], before, after, facing_sign)) continue;
@@ -102,16 +102,16 @@ bool Untangler::smooth(std::span<const glm::vec2> before, std::span<glm::vec2> a
   return true;
 }
 
-int Untangler::count(std::span<const glm::vec2> before, std::span<const glm::vec2> after,
-                     float facing_sign) const {
+int FoldoverRepair::count(std::span<const glm::vec2> before, std::span<const glm::vec2> after,
+                          float facing_sign) const {
   int turned_over_count = 0;
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     turned_over_count += turned_over(t, before, after, facing_sign);
   return turned_over_count;
 }
 
-void Untangler::find_turned_over(std::span<const glm::vec2> before,
-                                 std::span<const glm::vec2> after, float facing_sign) {
+void FoldoverRepair::find_turned_over(std::span<const glm::vec2> before,
+                                      std::span<const glm::vec2> after, float facing_sign) {
   waiting_.clear();
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     if (turned_over(t, before, after, facing_sign))
@@ -119,15 +119,15 @@ void Untangler::find_turned_over(std::span<const glm::vec2> before,
 }
 
 /// The triangles that face the camera.
-void Untangler::find_facing(std::span<const glm::vec2> before, float facing_sign) {
+void FoldoverRepair::find_facing(std::span<const glm::vec2> before, float facing_sign) {
   waiting_.clear();
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     if (area(before, triangles_[t]) * facing_sign > 0)
       waiting_.push_back(static_cast<std::uint32_t>(t));
 }
 
-int Untangler::untangle(std::span<const glm::vec2> before, std::span<glm::vec2> after,
-                        float facing_sign) {
+int FoldoverRepair::repair(std::span<const glm::vec2> before, std::span<glm::vec2> after,
+                           float facing_sign) {
   find_turned_over(before, after, facing_sign);
   if (smooth(before, after, facing_sign)) return 0;
   start(before, after);

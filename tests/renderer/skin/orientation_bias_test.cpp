@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/skin/hand_turn.hpp"
+#include "renderer/skin/orientation_bias.hpp"
 
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file
@@ -33,7 +33,7 @@ msg::HandPose posed(const glm::mat4& camera_from_wrist) {
   return pose;
 }
 
-class HandTurnTest : public testing::Test {
+class OrientationBiasTest : public testing::Test {
  protected:
   const calib::Calibration calibration_;
   std::mt19937 random_{7};
@@ -61,8 +61,8 @@ class HandTurnTest : public testing::Test {
     return both;
   }
 
-  HandTurn learned(double tilt_rad, glm::vec3 wrong_rad, double noise_px = 0) {
-    HandTurn turn(calibration_);
+  OrientationBias learned(double tilt_rad, glm::vec3 wrong_rad, double noise_px = 0) {
+    OrientationBias turn(calibration_);
     for (int i = 0; i < kViews; ++i, time_ns_ += kBetween_ns) {
       const View both = view(tilt_rad, wrong_rad, noise_px);
       turn.learn(time_ns_, both.reported, both.seen);
@@ -71,9 +71,9 @@ class HandTurnTest : public testing::Test {
   }
 };
 
-TEST_F(HandTurnTest, LearnsATurnAndUndoesIt) {
+TEST_F(OrientationBiasTest, LearnsATurnAndUndoesIt) {
   const glm::vec3 wrong(0.06f, -0.05f, 0);
-  const HandTurn turn = learned(0.3, wrong);
+  const OrientationBias turn = learned(0.3, wrong);
   EXPECT_NEAR(turn.angle_rad().x, -wrong.x, 0.012);
   EXPECT_NEAR(turn.angle_rad().y, -wrong.y, 0.012);
   const View both = view(0.3, wrong);
@@ -90,15 +90,15 @@ TEST_F(HandTurnTest, LearnsATurnAndUndoesIt) {
   EXPECT_LT(turned_px, 0.3 * reported_px);
 }
 
-TEST_F(HandTurnTest, LearnsItFromNoisyLandmarks) {
+TEST_F(OrientationBiasTest, LearnsItFromNoisyLandmarks) {
   const glm::vec3 wrong(0.06f, -0.05f, 0);
-  const HandTurn turn = learned(0.3, wrong, 3);
+  const OrientationBias turn = learned(0.3, wrong, 3);
   EXPECT_NEAR(turn.angle_rad().x, -wrong.x, 0.02);
   EXPECT_NEAR(turn.angle_rad().y, -wrong.y, 0.02);
 }
 
-TEST_F(HandTurnTest, AShiftAScaleAndARollAreNoTurn) {
-  HandTurn turn(calibration_);
+TEST_F(OrientationBiasTest, AShiftAScaleAndARollAreNoTurn) {
+  OrientationBias turn(calibration_);
   for (int i = 0; i < kViews; ++i, time_ns_ += kBetween_ns) {
     View both = view(0.3, {0, 0, 0.05f});
     for (auto& point : both.seen.points) {
@@ -110,19 +110,19 @@ TEST_F(HandTurnTest, AShiftAScaleAndARollAreNoTurn) {
   EXPECT_LT(glm::length(turn.angle_rad()), 0.01);
 }
 
-TEST_F(HandTurnTest, ManyImagesOfOnePoseCountAsFew) {
+TEST_F(OrientationBiasTest, ManyImagesOfOnePoseCountAsFew) {
   const glm::vec3 wrong(0.06f, 0, 0);
-  HandTurn many(calibration_), few(calibration_);
+  OrientationBias many(calibration_), few(calibration_);
   const View both = view(0, wrong);
   for (int i = 0; i < 200; ++i) many.learn(time_ns_ + i * 1'000'000, both.reported, both.seen);
   few.learn(time_ns_, both.reported, both.seen);
   EXPECT_LT(std::abs(many.angle_rad().x), 2 * std::abs(few.angle_rad().x));
 }
 
-TEST_F(HandTurnTest, ALandmarkThatNoCameraSeesTeachesNothing) {
+TEST_F(OrientationBiasTest, ALandmarkThatNoCameraSeesTeachesNothing) {
   const View both = view(0.3, {0.06f, 0, 0});
   const auto taught = [&](const auto& spoil) {
-    HandTurn turn(calibration_);
+    OrientationBias turn(calibration_);
     auto seen = both.seen;
     spoil(seen.points[8]);
     turn.learn(time_ns_, both.reported, seen);
@@ -134,15 +134,15 @@ TEST_F(HandTurnTest, ALandmarkThatNoCameraSeesTeachesNothing) {
     EXPECT_EQ(taught([x_px](msg::Landmark& point) { point.x_px = x_px; }), without) << x_px;
 }
 
-TEST_F(HandTurnTest, NeverTurnsFarAndIgnoresWhatIsNotSeen) {
-  HandTurn turn(calibration_);
+TEST_F(OrientationBiasTest, NeverTurnsFarAndIgnoresWhatIsNotSeen) {
+  OrientationBias turn(calibration_);
   for (int i = 0; i < kViews; ++i, time_ns_ += kBetween_ns) {
     const View both = view(0.3, {0.9f, 0, 0});
     turn.learn(time_ns_, both.reported, both.seen);
   }
   EXPECT_LT(glm::length(turn.angle_rad()), 0.21);
 
-  HandTurn blind(calibration_);
+  OrientationBias blind(calibration_);
   View both = view(0.3, {0.1f, 0, 0});
   for (auto& point : both.seen.points) point.confidence = 0;
   blind.learn(time_ns_, both.reported, both.seen);

@@ -9,16 +9,16 @@
 
 namespace handcast::renderer {
 
-/// Learns by how much a tracker's hands are turned about their wrist, from the landmarks that the
-/// camera sees. In one image, outer joints of the fingers that are nearer to the camera than others
-/// tell a turn from a shift: the landmarks' offsets grow with the joints' depth. The tracker's
-/// other errors look the same in one pose and not in the next, so a turn is believed as it is seen
-/// in many poses: an information filter over some seconds, with the prior that there is none. See
-/// `docs/method.md#skin`. One thread.
-class HandTurn {
+/// Learns the orientation bias of a tracker: by how much its hands are turned about their wrist,
+/// from the landmarks that the camera sees. In one image, outer joints of the fingers that are
+/// nearer to the camera than others tell a turn from a shift: the landmarks' offsets grow with the
+/// joints' depth. The tracker's other errors look the same in one pose and not in the next, so a
+/// turn is believed as it is seen in many poses: an information filter over some seconds, with the
+/// prior that there is none. See `docs/method.md#skin`. One thread.
+class OrientationBias {
  public:
   /// Copies the calibration.
-  explicit HandTurn(const calib::Calibration& calibration) : calibration_(calibration) {}
+  explicit OrientationBias(const calib::Calibration& calibration) : calibration_(calibration) {}
 
   /// Adds the landmarks of an image (undistorted px) and the tracker's hand at the same time.
   void learn(std::int64_t origin_ns, const msg::HandPose& pose, const msg::HandLandmarks& seen);

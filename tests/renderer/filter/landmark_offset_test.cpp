@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/filter/joint_definitions.hpp"
+#include "renderer/filter/landmark_offset.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "services/lab/hand_maker/hand_shape.hpp"
 
 /// @file
@@ -35,10 +35,10 @@ msg::HandPose posed(const glm::mat4& camera_from_wrist) {
   return pose;
 }
 
-class JointDefinitionsTest : public testing::Test {
+class LandmarkOffsetTest : public testing::Test {
  protected:
   const calib::Calibration calibration_;
-  JointDefinitions definitions_{calibration_};
+  LandmarkOffset offset_{calibration_};
   std::mt19937 random_{7};
   std::int64_t time_ns_ = 10'000'000'000;
 
@@ -77,36 +77,34 @@ class JointDefinitionsTest : public testing::Test {
   }
 };
 
-TEST_F(JointDefinitionsTest, AJointSeenElsewhereOnTheHandIsLearnedInTheFrameOfItsBone) {
+TEST_F(LandmarkOffsetTest, AJointSeenElsewhereOnTheHandIsLearnedInTheFrameOfItsBone) {
   const glm::vec3 elsewhere_m(0.004f, 0, -0.006f);
   for (int i = 0; i < kViews; ++i) {
     const auto pose = any_view();
-    definitions_.learn(time_ns_ += kBetween_ns, pose, seen(pose, elsewhere_m, 1));
+    offset_.learn(time_ns_ += kBetween_ns, pose, seen(pose, elsewhere_m, 1));
   }
-  EXPECT_LT(glm::length(definitions_.displacement_m(kIndexKnuckle) - glm::dvec3(elsewhere_m)),
-            0.0015);
+  EXPECT_LT(glm::length(offset_.displacement_m(kIndexKnuckle) - glm::dvec3(elsewhere_m)), 0.0015);
   const auto pose = any_view();
   const auto landmarks = seen(pose, elsewhere_m);
-  definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
-  EXPECT_LT(distance_px(pose, definitions_.as_tracked(landmarks)),
-            0.5 * distance_px(pose, landmarks));
+  offset_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+  EXPECT_LT(distance_px(pose, offset_.as_tracked(landmarks)), 0.5 * distance_px(pose, landmarks));
 }
 
-TEST_F(JointDefinitionsTest, AHandThatIsElsewhereIsNotADefinition) {
+TEST_F(LandmarkOffsetTest, AHandThatIsElsewhereIsNotAnOffset) {
   for (int i = 0; i < kViews; ++i) {
     const auto pose = any_view();
     auto landmarks = seen(pose, {});
     for (auto& point : landmarks.points) point.x_px += 20;
-    definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+    offset_.learn(time_ns_ += kBetween_ns, pose, landmarks);
   }
   for (int i = 0; i < msg::kLandmarks; ++i)
-    EXPECT_LT(glm::length(definitions_.displacement_m(i)), 0.0003) << "landmark " << i;
+    EXPECT_LT(glm::length(offset_.displacement_m(i)), 0.0003) << "landmark " << i;
 }
 
-TEST_F(JointDefinitionsTest, AFoldedFingerThatTheTrackerGuessesIsNotADefinition) {
+TEST_F(LandmarkOffsetTest, AFoldedFingerThatTheTrackerGuessesIsNotAnOffset) {
   constexpr int kIndexTip = 8;
   const auto learned_m = [&](float bend_rad) {
-    definitions_ = JointDefinitions(calibration_);
+    offset_ = LandmarkOffset(calibration_);
     for (int i = 0; i < kViews; ++i) {
       auto pose = any_view();
       auto landmarks = seen(pose, {});
@@ -120,32 +118,32 @@ TEST_F(JointDefinitionsTest, AFoldedFingerThatTheTrackerGuessesIsNotADefinition)
             glm::angleAxis(-bend_rad * static_cast<float>(k + 1), glm::vec3(1, 0, 0));
         x = bent.x, y = bent.y, z = bent.z, w = bent.w;
       }
-      definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+      offset_.learn(time_ns_ += kBetween_ns, pose, landmarks);
     }
-    return glm::length(definitions_.displacement_m(kIndexTip));
+    return glm::length(offset_.displacement_m(kIndexTip));
   };
   EXPECT_GT(learned_m(0.1f), 0.0005);
   EXPECT_EQ(learned_m(1.2f), 0);
 }
 
-TEST_F(JointDefinitionsTest, OneImageTeachesLittle) {
+TEST_F(LandmarkOffsetTest, OneImageTeachesLittle) {
   const auto pose = any_view();
   for (int i = 0; i < 3; ++i)
-    definitions_.learn(time_ns_ += 1'000'000, pose, seen(pose, {0, 0, -0.01f}));
-  EXPECT_LT(glm::length(definitions_.displacement_m(kIndexKnuckle)), 0.005);
+    offset_.learn(time_ns_ += 1'000'000, pose, seen(pose, {0, 0, -0.01f}));
+  EXPECT_LT(glm::length(offset_.displacement_m(kIndexKnuckle)), 0.005);
 }
 
-TEST_F(JointDefinitionsTest, ALandmarkFarAwayDoesNotTeachMoreThanANearOne) {
+TEST_F(LandmarkOffsetTest, ALandmarkFarAwayDoesNotTeachMoreThanANearOne) {
   for (int i = 0; i < kViews; ++i) {
     const auto pose = any_view();
     auto landmarks = seen(pose, {});
     if (i % 4 == 0) landmarks.points[kIndexKnuckle].x_px += 200;
-    definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+    offset_.learn(time_ns_ += kBetween_ns, pose, landmarks);
   }
-  EXPECT_LT(glm::length(definitions_.displacement_m(kIndexKnuckle)), 0.002);
+  EXPECT_LT(glm::length(offset_.displacement_m(kIndexKnuckle)), 0.002);
 }
 
-TEST_F(JointDefinitionsTest, LandmarksThatAreMissingOrNoNumbersAreIgnored) {
+TEST_F(LandmarkOffsetTest, LandmarksThatAreMissingOrNoNumbersAreIgnored) {
   const float not_a_number = std::numeric_limits<float>::quiet_NaN();
   for (int i = 0; i < kViews; ++i) {
     const auto pose = any_view();
@@ -153,11 +151,11 @@ TEST_F(JointDefinitionsTest, LandmarksThatAreMissingOrNoNumbersAreIgnored) {
     landmarks.points[8].x_px = not_a_number;
     landmarks.points[12].sigma_px = not_a_number;
     landmarks.points[16] = {5000, 5000, 0, 1};
-    definitions_.learn(time_ns_ += kBetween_ns, pose, landmarks);
+    offset_.learn(time_ns_ += kBetween_ns, pose, landmarks);
   }
-  EXPECT_GT(glm::length(definitions_.displacement_m(kIndexKnuckle)), 0.003);
+  EXPECT_GT(glm::length(offset_.displacement_m(kIndexKnuckle)), 0.003);
   for (const int missing : {8, 12, 16})
-    EXPECT_EQ(definitions_.displacement_m(missing), glm::dvec3(0)) << missing;
+    EXPECT_EQ(offset_.displacement_m(missing), glm::dvec3(0)) << missing;
 }
 
 }  // namespace

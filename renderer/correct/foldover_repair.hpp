@@ -15,16 +15,16 @@ namespace handcast::renderer {
 /// are joined into clusters that move with the mean of their displacements. Inside a cluster
 /// nothing is turned over, and clusters only grow, so this ends. Vertices at the same position (UV
 /// seams) move together. One thread.
-class Untangler {
+class FoldoverRepair {
  public:
   /// For the triangles of `mesh`.
-  explicit Untangler(const HandMesh& mesh);
+  explicit FoldoverRepair(const HandMesh& mesh);
 
   /// Repairs `after`, the vertices after a correction; `before`: the same before it, px. Only
   /// triangles that face the camera are examined: those whose area has the sign `facing_sign` (y
   /// down). An area of up to 0.01 px^2 does not count as turned over. Returns the number of
   /// triangles that remain turned over, which should be 0.
-  int untangle(std::span<const glm::vec2> before, std::span<glm::vec2> after, float facing_sign);
+  int repair(std::span<const glm::vec2> before, std::span<glm::vec2> after, float facing_sign);
   /// The number of triangles that are turned over in `after`, counted in the same way.
   int count(std::span<const glm::vec2> before, std::span<const glm::vec2> after,
             float facing_sign) const;

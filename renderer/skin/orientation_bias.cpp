@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/skin/hand_turn.hpp"
+#include "renderer/skin/orientation_bias.hpp"
 
 #include <algorithm>
 #include <array>
@@ -49,8 +49,8 @@ bool eliminate_shared(Normal& normal, Row& right) {
 
 }  // namespace
 
-void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
-                     const msg::HandLandmarks& seen) {
+void OrientationBias::learn(std::int64_t origin_ns, const msg::HandPose& pose,
+                            const msg::HandLandmarks& seen) {
   const double since_s = std::clamp(ns_to_seconds(origin_ns - last_ns_), 0.0, kLasting_s);
   last_ns_ = origin_ns;
   const auto in_camera = [&](int joint) {
@@ -95,7 +95,7 @@ void HandTurn::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   if (!(glm::length(angle_rad_) < kMost_rad)) angle_rad_ *= kMost_rad / glm::length(angle_rad_);
 }
 
-msg::HandPose HandTurn::turned(const msg::HandPose& pose) const {
+msg::HandPose OrientationBias::turned(const msg::HandPose& pose) const {
   const double angle = glm::length(angle_rad_);
   if (!(angle > 1e-6)) return pose;
   const glm::dmat3 tracker_from_camera =

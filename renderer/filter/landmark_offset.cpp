@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/filter/joint_definitions.hpp"
+#include "renderer/filter/landmark_offset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -136,8 +136,8 @@ Shared median_of(const Offsets& offsets) {
 
 }  // namespace
 
-void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
-                             const msg::HandLandmarks& seen) {
+void LandmarkOffset::learn(std::int64_t origin_ns, const msg::HandPose& pose,
+                           const msg::HandLandmarks& seen) {
   const double since_s = std::clamp(ns_to_seconds(origin_ns - last_ns_), 0.0, kLasting_s);
   last_ns_ = origin_ns;
   std::array<SeenJoint, msg::kLandmarks> joints;
@@ -159,8 +159,8 @@ void JointDefinitions::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   }
 }
 
-void JointDefinitions::add(const glm::dmat3x2& jacobian_px_per_m, glm::dvec2 left_px, double weight,
-                           Learned& learned) {
+void LandmarkOffset::add(const glm::dmat3x2& jacobian_px_per_m, glm::dvec2 left_px, double weight,
+                         Learned& learned) {
   if (weight > 0) {
     const glm::dmat2x3 transposed = glm::transpose(jacobian_px_per_m);
     const glm::dvec2 own_px = left_px + jacobian_px_per_m * learned.displacement_m;
@@ -174,7 +174,7 @@ void JointDefinitions::add(const glm::dmat3x2& jacobian_px_per_m, glm::dvec2 lef
   learned.displacement_px = jacobian_px_per_m * learned.displacement_m;
 }
 
-msg::HandLandmarks JointDefinitions::as_tracked(const msg::HandLandmarks& seen) const {
+msg::HandLandmarks LandmarkOffset::as_tracked(const msg::HandLandmarks& seen) const {
   msg::HandLandmarks result = seen;
   for (std::size_t i = 0; i < learned_.size(); ++i) {
     result.points[i].x_px -= static_cast<float>(learned_[i].displacement_px.x);

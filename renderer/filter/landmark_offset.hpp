@@ -10,16 +10,16 @@
 
 namespace handcast::renderer {
 
-/// Learns where a detector sees each joint in comparison with the tracker's joint of the same name.
-/// The two do not mean the same points: one may lie nearer to the web, the other in the middle of
-/// the knuckle, and this difference turns with the bone, unlike errors of the calibration or of the
-/// place of the hand. One displacement per landmark is learned in the frame of its joint: an
-/// information filter over some seconds, with the prior that there is none. See
-/// `docs/method.md#filter`. One thread.
-class JointDefinitions {
+/// Learns the landmark offsets of a detector: where it sees each joint in comparison with the
+/// tracker's joint of the same name. The two do not mean the same points: one may lie nearer to the
+/// web, the other in the middle of the knuckle, and this difference turns with the bone, unlike
+/// errors of the calibration or of the place of the hand. One displacement per landmark is learned
+/// in the frame of its joint: an information filter over some seconds, with the prior that there is
+/// none. See `docs/method.md#filter`. One thread.
+class LandmarkOffset {
  public:
   /// Copies the calibration.
-  explicit JointDefinitions(const calib::Calibration& calibration) : calibration_(calibration) {}
+  explicit LandmarkOffset(const calib::Calibration& calibration) : calibration_(calibration) {}
 
   /// Adds the landmarks of an image (undistorted px) and the tracker's hand at the same time.
   void learn(std::int64_t origin_ns, const msg::HandPose& pose, const msg::HandLandmarks& seen);
