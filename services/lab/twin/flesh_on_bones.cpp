@@ -6,7 +6,7 @@
 #include "renderer/skin/skinning.hpp"
 #include "services/lab/twin/finger_pose.hpp"
 #include "services/lab/twin/random.hpp"
-#include "services/lab/twin/true_hand.hpp"
+#include "services/lab/twin/true_hands.hpp"
 
 namespace handcast::twin {
 namespace {

@@ -1,19 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "config/sections/leapc.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/result.hpp"
+#include "ipc/msg/hand_poses.hpp"
 #include "services/pose/leapc/devices.hpp"
 #include "services/pose/leapc/event_reader.hpp"
 #include "services/pose/leapc/host_clock.hpp"
 #include "services/pose/leapc/library.hpp"
-#include "services/pose/leapc/mailbox.hpp"
 
 namespace handcast::pose::leapc {
+
+/// Holds the newest sample until it is taken, and says why there is none. Any thread.
+class Mailbox {
+ public:
+  /// Replaces the sample, or the error, that is waiting.
+  void put(Result<msg::HandPoses> sample);
+  /// Why no samples come; empty: they should.
+  void say(std::string trouble);
+  /// The newest sample, as soon as there is one. Errors: timeout, with the trouble; the error that
+  /// was put.
+  Result<msg::HandPoses> take(Deadline deadline);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::optional<Result<msg::HandPoses>> newest_;
+  std::string trouble_;
+};
 
 /// A connection to Ultraleap's service, polled on a thread of its own. Makes it anew if the service
 /// was away. Leaves samples, and why there are none, in a mailbox.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/pose/lift/starts.hpp"
-#include "services/pose/stereo/triangulate.hpp"
+#include "services/pose/lift/fit.hpp"
+#include "services/pose/stereo/view.hpp"
 
 namespace handcast::pose::stereo {
 namespace {

@@ -9,7 +9,7 @@
 
 #ifdef HANDCAST_WITH_LIBUSB
 #include "calib/calibration.hpp"
-#include "services/camera/leap/calibration_file.hpp"
+#include "services/camera/leap/controller.hpp"
 #endif
 
 namespace handcast::devices {

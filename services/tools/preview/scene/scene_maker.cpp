@@ -11,7 +11,7 @@
 #include "ipc/msg/largest_images.hpp"
 #include "ipc/msg/same_calibration.hpp"
 #include "renderer/predict/project_landmarks.hpp"
-#include "services/tools/preview/scene/sane_time.hpp"
+#include "services/tools/preview/scene/scene.hpp"
 
 namespace handcast::preview {
 namespace {

@@ -7,7 +7,6 @@
 #include "ipc/msg/projection.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "services/tools/preview/scene/drawing.hpp"
-#include "services/tools/preview/scene/from_camera.hpp"
 #include "services/tools/preview/scene/hands.hpp"
 #include "services/tools/preview/scene/scene.hpp"
 #include "services/tools/preview/scene/world.hpp"
