@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/lab/hand_maker/hand_shape.hpp"
+#include "services/lab/hand_maker/rest_pose.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/lab/hand_maker/hand_shape.hpp"
+#include "services/lab/hand_maker/rest_pose.hpp"
 
 namespace handcast::renderer {
 

@@ -3,6 +3,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "services/lab/hand_maker/rest_pose.hpp"
+
 namespace handcast::renderer {
 namespace {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "services/lab/hand_maker/hand_shape.hpp"
+#include "services/lab/hand_maker/rest_pose.hpp"
 #include "services/lab/twin/implicit/limb.hpp"
 
 namespace handcast::twin {
