@@ -5,14 +5,15 @@
     results_table.py PART RESULTS.csv DOCUMENT.md [COMMAND [PEOPLE]]
 
 PART is a table of scripts/results (comparison, unseen, levers, fidelity, causes, motions, fast, two_hands, jitter, first_seconds,
-no_tracker), or summary or unseen_summary: sentences about the results of comparison and unseen. They replace what stands between the
-lines "<!-- PART: begin -->" and "<!-- PART: end -->". COMMAND is named below the table as what has made it, and PEOPLE is the number
-of seeds that the protocol asks for: a table of fewer says so. scripts/results calls this program.
+no_tracker), or a short form of one: summary (of unseen, for README.md), unseen_pairs, comparison_pairs or levers_summary (for
+docs/results.md). It replaces what stands between the lines "<!-- PART: begin -->" and "<!-- PART: end -->". COMMAND is named below the
+table as what has made it, and PEOPLE is the number of seeds that the protocol asks for: a table of fewer says so. scripts/results calls
+this program.
 """
 
 import sys
 
-from tables.document import replaced, write_whole
+from tables.document import replaced, wrapped, write_whole
 from tables.rows import PARTS, footer, table, variants_of
 from tables.runs import Runs, die, is_count
 from tables.summaries import SUMMARIES
@@ -20,7 +21,7 @@ from tables.verdicts import verdict
 
 
 def runs_of(part, path):
-    """The runs of a table. Those of which the first sentences of the README speak must all be there."""
+    """The runs of a table. Those of which README.md and docs/results.md speak must all be there."""
     runs = Runs(path, variants_of(part), part)
     if part in ("comparison", "unseen", "first_seconds"):
         runs.require_all()
@@ -31,10 +32,10 @@ def runs_of(part, path):
 
 
 def lines_of(part, path, command, people):
-    """The lines of a table with all that stands below it, or the sentences of a summary."""
+    """The lines of a table with all that stands below it, or of its short form."""
     if part in SUMMARIES:
-        sentences, table_part = SUMMARIES[part]
-        return list(sentences(runs_of(table_part, path), people))
+        short_form, table_part = SUMMARIES[part]
+        return list(short_form(runs_of(table_part, path), people))
     if part not in PARTS:
         die(f"there is no table '{part}'; there are: {', '.join([*PARTS, *SUMMARIES])}")
     runs = runs_of(part, path)
@@ -50,7 +51,7 @@ def main():
     people = sys.argv[5] if len(sys.argv) > 5 else "0"
     if not is_count(people):
         die(f"PEOPLE must be a number, and not '{people}'")
-    write_whole(document, replaced(document, part, lines_of(part, results, command, int(people))))
+    write_whole(document, replaced(document, part, wrapped(lines_of(part, results, command, int(people)))))
 
 
 main()

@@ -44,7 +44,7 @@ void describe(Visitor& visitor, Leap& leap) {
   visitor.field("bring_up", leap.bring_up,
                 "File of control transfers that are sent before the stream is started; relative to "
                 "the rig file. Empty: those that every controller needs. Firmware before 1.7.1 "
-                "needs more; see docs/operating.md.");
+                "needs more; see docs/operating/cameras.md.");
 }
 
 }  // namespace handcast::config

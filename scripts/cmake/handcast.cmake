@@ -19,15 +19,18 @@ cmake_path(SET HANDCAST_INSTALL_SHAREDIR NORMALIZE "${CMAKE_INSTALL_BINDIR}/../s
 
 set(HANDCAST_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
-# A compiler cache is faster for repeated builds, precompiled headers for a single build. They do not
-# work together. Clones in all folders share the cache.
+# A compiler cache is faster for repeated builds; precompiled headers, and the sources of a module in few compilations, for a single
+# build. They do not work together. Clones in all folders share the cache.
 find_program(CCACHE ccache)
+set(single_build ON)
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
-  option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" OFF)
-else()
-  option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" ON)
+  set(single_build OFF)
 endif()
+option(HANDCAST_PRECOMPILE "Precompile the headers that most sources include" ${single_build})
+option(HANDCAST_UNITY "Compile up to 16 sources of a module at once" ${single_build})
+set(CMAKE_UNITY_BUILD ${HANDCAST_UNITY})
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
 # GLib's headers (Aravis) bring it to some targets; clang refuses a precompiled header that was made without it.
 add_compile_options(-pthread)
@@ -169,13 +172,14 @@ endfunction()
 set(handcast_test_options -O1)
 
 # handcast_test([SUFFIX word] SOURCES a_test.cpp ... USES folder ... [LIBRARIES target ...] [NEEDS target ...] [TIMEOUT seconds]
-#               [LABELS ...] [NO_HANDS])
+#               [LABELS ...] [NO_HANDS] [SHORT filter])
 #
 # Declares a GoogleTest program and a ctest named after the folder: tests/renderer/mask -> test_renderer_mask[_SUFFIX].
 # NEEDS: targets of programs and files that the test uses when it runs; the hands made by the build are added automatically, unless
 # NO_HANDS says that the test does not read them. A test with the label `threads` also runs with the thread sanitizer: see .ci/run.
+# SHORT: the whole program takes minutes and has the label `nightly`; what the filter selects is a test of its own, NAME_short.
 function(handcast_test)
-  cmake_parse_arguments(ARG "NO_HANDS" "SUFFIX;TIMEOUT" "SOURCES;USES;LIBRARIES;NEEDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "NO_HANDS" "SUFFIX;TIMEOUT;SHORT" "SOURCES;USES;LIBRARIES;NEEDS;LABELS" ${ARGN})
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
   string(REPLACE "/" "_" name test_${folder})
   if(ARG_SUFFIX)
@@ -195,14 +199,22 @@ function(handcast_test)
     add_dependencies(${name} ${ARG_NEEDS})
   endif()
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+  set(tests ${name})
+  if(ARG_SHORT)
+    add_test(NAME ${name}_short COMMAND ${name} --gtest_filter=${ARG_SHORT} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    list(APPEND tests ${name}_short)
+  endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
   if(HANDCAST_SANITIZE)
     math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")  # sanitizers are slow; a hang still ends
   endif()
-  set_tests_properties(${name} PROPERTIES
+  set_tests_properties(${tests} PROPERTIES
     TIMEOUT ${ARG_TIMEOUT}
     LABELS "${ARG_LABELS}"
     ENVIRONMENT "HANDCAST_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};HANDCAST_SOURCE=${CMAKE_SOURCE_DIR}")
+  if(ARG_SHORT)
+    set_property(TEST ${name} APPEND PROPERTY LABELS nightly)
+  endif()
 endfunction()

@@ -2,8 +2,23 @@
 """Text between marks of a document, which is replaced as a whole."""
 
 import os
+import re
+import textwrap
 
 from tables.runs import die
+
+WIDTH = 120  # of a line that is no row of a table
+
+
+def wrapped(lines):
+    """The lines, those that are no rows of tables broken at WIDTH; a code span keeps its line."""
+    for line in lines:
+        if line.startswith("|") or len(line) <= WIDTH:
+            yield line
+            continue
+        whole = re.sub("`[^`]*`", lambda span: span[0].replace(" ", "\0"), line)
+        for part in textwrap.wrap(whole, WIDTH, break_long_words=False, break_on_hyphens=False):
+            yield part.replace("\0", " ")
 
 
 def replaced(document, part, lines):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rows and columns of the tables of docs/results.md."""
+"""The rows and columns of the tables of docs/lab/results_tables.md."""
 
 from tables.runs import interval, listed
 

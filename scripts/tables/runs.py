@@ -78,7 +78,7 @@ class Runs:
     Seeds of which a run failed are left out, and variants that have no run at all."""
 
     def __init__(self, path, wanted, plan):
-        self.path = path
+        self.path, self.part = path, plan
         self.rows = collections.defaultdict(dict)
         self.motions, self.meshes, self.errors = [], [], {}
         rows, runs = rows_of(path, plan)

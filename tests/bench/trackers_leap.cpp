@@ -2,7 +2,7 @@
 // The driver of Leap Motion Controllers on an emulated one, of full size and rate.
 //   bench_trackers_leap [--goals FILE] [--seconds N] [--faults N] [--priority N]
 // The captures, and the emulation, which stands for hardware, have the real-time priority that
-// docs/operating.md recommends for the camera's service, if it is permitted; --priority 0: none.
+// docs/operating/cameras.md recommends for the camera's service, if it is permitted; 0: none.
 #include <malloc.h>
 #include <sched.h>
 

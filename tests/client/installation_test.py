@@ -82,7 +82,7 @@ class TheInstalledTree(unittest.TestCase):
         for file in ("share/handcast/hand_left.glb", "share/handcast/landmarks/handcast.onnx",
                      "share/handcast/rigs/twin.toml", "share/handcast/calibrations/paper.toml",
                      "share/handcast/sweeps/stress.toml", "share/doc/handcast/README.md",
-                     "share/doc/handcast/docs/operating.md",
+                     "share/doc/handcast/docs/operating/technician.md",
                      "share/doc/handcast/config/REFERENCE.md", "share/doc/handcast/LICENSE"):
             self.assertTrue((tree / file).is_file(), file)
 

@@ -29,10 +29,10 @@ inline float exponential(float x) {
 
 }  // namespace handcast::landmarks
 
+/// The inputs and the output of handcast's own landmark network
+/// (services/lab/training/MODEL_CARD.md). The training uses the same functions. Functions without
+/// state; any thread.
 namespace handcast::landmarks::handcast_network {
-
-// The inputs and the output of handcast's own landmark network (training/MODEL_CARD.md). The
-// training uses the same functions. Functions without state; any thread.
 
 inline constexpr int kSide_px = 96;    ///< side of the crop
 inline constexpr int kMapCells = 24;   ///< cells along a side of a tracker map

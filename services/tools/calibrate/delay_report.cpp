@@ -31,7 +31,7 @@ void report_delay(const config::Rig& rig, const calib::LightDelay& delay, Outcom
   } else if (latency_ms < 0) {
     outcome.findings.push_back(fmt::format(
         "the light of '{}' seems to come {}, which is before it is handed over: the time stamps of "
-        "the camera are late, see docs/operating.md",
+        "the camera are late, see camera.delivery_ms in docs/operating/cameras.md",
         backend, measured(delay)));
   } else {
     outcome.findings.push_back(

@@ -62,7 +62,7 @@ std::vector<Finding> openxr(const config::Rig& rig, [[maybe_unused]] Asking aski
   const auto answer = pose::openxr::probe(settings);
   findings.push_back(answer ? Finding{"tracker service", Grade::good, *answer + " answers", ""}
                             : Finding{"tracker service", Grade::fault, answer.error().what,
-                                      "docs/operating.md, \"Trackers\""});
+                                      "docs/operating/trackers.md, \"OpenXR\""});
 #else
   findings.push_back({"tracker service", Grade::fault, "this build cannot use OpenXR",
                       "install libopenxr-dev, and build again"});

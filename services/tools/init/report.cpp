@@ -53,7 +53,7 @@ std::vector<std::string> steps(const Plan& plan, const std::string& file) {
         calibrate_command(plan, file)));
   if (plan.controller)
     steps.push_back(
-        "Read \"A DLP projector with a controller\" in docs/operating.md before the "
+        "Read \"A DLP projector with a controller\" in docs/operating/light.md before the "
         "first light.");
   steps.push_back(fmt::format("handcast doctor {}", file));
   steps.push_back(fmt::format("handcast up {}", file));
