@@ -25,8 +25,9 @@ struct Person {
 /// of a second for each. Errors: the hand model cannot be read.
 Result<std::vector<Person>> draw_people(int count, std::uint64_t seed);
 
-/// The joints at the root of each finger's first phalanx and at its tip, thumb first.
+/// The joints at the wrist, at the root of each finger's first phalanx and at its tip, thumb first.
 /// @{
+inline constexpr int kWristJoint = 1;
 inline constexpr std::array<int, 5> kFirstPhalanx{3, 7, 12, 17, 22};
 inline constexpr std::array<int, 5> kTip{5, 10, 15, 20, 25};
 /// @}

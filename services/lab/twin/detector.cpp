@@ -11,7 +11,6 @@
 namespace handcast::twin {
 namespace {
 
-constexpr int kWrist = 1;
 /// Error along the finger, and across it. The mean of the squares is 1.
 constexpr std::array<double, 2> kAlongAndAcross{0.75, 1.199};
 /// Error by place on the finger: MCP, PIP, DIP, tip. With the wrist, the mean of the squares is 1.
@@ -44,8 +43,8 @@ PoseNumbers pose_numbers(const JointFrames& camera_frames) {
     numbers[n++] = flexion[f][0];
     numbers[n++] = flexion[f][1];
   }
-  const glm::dmat3 wrist(camera_frames[kWrist]);
-  const glm::dvec3 seen_from = glm::normalize(glm::dvec3(camera_frames[kWrist][3]));
+  const glm::dmat3 wrist(camera_frames[kWristJoint]);
+  const glm::dvec3 seen_from = glm::normalize(glm::dvec3(camera_frames[kWristJoint][3]));
   for (const glm::dvec3& direction : {wrist[1], wrist[2], seen_from})
     for (int axis = 0; axis < 3; ++axis) numbers[n++] = direction[axis];
   return numbers;
@@ -113,7 +112,7 @@ std::array<glm::dvec2, msg::kLandmarks> LandmarkBias::at(
 
 namespace {
 
-constexpr int kIndexKnuckle = 5, kMiddleKnuckle = 9;
+constexpr int kIndexKnuckleLandmark = 5, kMiddleKnuckleLandmark = 9;
 /// Landmarks of the fingers that merge, from the PIP to the tip.
 constexpr int kIndexPip = 6, kMiddlePip = 10, kFromPipToTip = 3;
 
@@ -199,8 +198,8 @@ void DetectorModel::spoil(std::uint64_t run, std::int64_t origin_ns,
   const double seconds = ns_to_seconds(origin_ns);
   if (settings_.merged.holds(seconds)) merge_fingers(hand);
   if (settings_.wrong_finger.holds(seconds))
-    std::swap_ranges(&hand.points[kIndexKnuckle], &hand.points[kMiddleKnuckle],
-                     &hand.points[kMiddleKnuckle]);
+    std::swap_ranges(&hand.points[kIndexKnuckleLandmark], &hand.points[kMiddleKnuckleLandmark],
+                     &hand.points[kMiddleKnuckleLandmark]);
 }
 
 }  // namespace handcast::twin

@@ -34,13 +34,15 @@ Nearest nearest(const glm::dvec3& end, const glm::dvec3& p, const glm::dvec3& q)
   return {s, glm::distance(end * s, p + bone * t)};
 }
 
-glm::dvec3 place(const JointFrames& frames, int joint) { return glm::dvec3(frames[joint][3]); }
+glm::dvec3 exact_position(const JointFrames& frames, int joint) {
+  return glm::dvec3(frames[joint][3]);
+}
 
 /// How far the capsule of a bone blocks the view of a place whose flesh has the radius `own_m`.
 /// What touches the place is not before it.
 double blocks(const JointFrames& frames, const std::array<float, kJoints>& radii_m, int from,
               int to, const glm::dvec3& seen, double own_m) {
-  const auto near = nearest(seen, place(frames, from), place(frames, to));
+  const auto near = nearest(seen, exact_position(frames, from), exact_position(frames, to));
   const double radius_m = 0.5 * (radii_m[from] + radii_m[to]);
   const double before_m = (1 - near.along) * glm::length(seen);
   return glm::smoothstep(0.6 * (radius_m + own_m), 1.1 * (radius_m + own_m), before_m) *
@@ -57,7 +59,8 @@ double hidden_share(const JointFrames& frames, const std::array<float, kJoints>&
                                     {dip, tip, 0.5},
                                     {dip, tip, 1.0}})
     hidden += hidden_place(frames, radii_m, finger,
-                           glm::mix(place(frames, a), place(frames, b), share), radii_m[b]);
+                           glm::mix(exact_position(frames, a), exact_position(frames, b), share),
+                           radii_m[b]);
   return hidden / 5;
 }
 

@@ -85,7 +85,6 @@ void Spline::at(double time_s, double* out) const {
 
 using msg::kJoints;
 
-constexpr int kWrist = 1;
 constexpr std::size_t kJointChannels = 7;  ///< x y z, then the quaternion x y z w
 /// Time before and after an end of the recording in which the hand brakes and turns back.
 constexpr double kTurn_s = 0.15;
@@ -149,7 +148,7 @@ class RecordedMotion final : public Motion {
       frames[j][3] = {v[0], v[1], v[2], 1};
     }
     const auto s = static_cast<std::size_t>(side);
-    frames[kWrist] = frames[kWrist] * recorded_from_person_[s];
+    frames[kWristJoint] = frames[kWristJoint] * recorded_from_person_[s];
     return with_bones_of(rest_[s], frames);
   }
 

@@ -24,7 +24,7 @@ Result<Views> views_of(const calib::Calibration& calibration) {
 
 namespace {
 
-constexpr int kSteps = 4;
+constexpr int kTriangulationSteps = 4;
 constexpr double kParallel = 1e-9;  ///< least determinant of the sum of two rays' projectors
 
 bool is_finite(const glm::dvec3& v) {
@@ -80,7 +80,7 @@ std::optional<SpacePoint> triangulate(std::span<const Sight> sights) {
   if (sights.size() < 2) return std::nullopt;
   auto place_m = nearest_to_rays(sights);
   if (!place_m || !is_finite(*place_m)) return std::nullopt;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kTriangulationSteps; ++i) {
     const auto normal = normal_at(sights, *place_m);
     if (!normal) return std::nullopt;
     *place_m -= glm::inverse(normal->information) * normal->gradient;

@@ -31,12 +31,12 @@ struct Result {
 /// "left" or "right".
 const char* name_of(msg::Side side) { return side == msg::Side::left ? "left" : "right"; }
 
-constexpr std::array kFinger{"thumb", "index", "middle", "ring", "little"};
+constexpr std::array kFingerNames{"thumb", "index", "middle", "ring", "little"};
 
 std::string table_of(const landmarks::Points& points) {
   std::string text = fmt::format("    wrist   {:7.1f} {:7.1f}\n", points[0].x, points[0].y);
   for (int finger = 0; finger < 5; ++finger) {
-    text += fmt::format("    {:7}", kFinger[finger]);
+    text += fmt::format("    {:7}", kFingerNames[finger]);
     for (int k = 1; k <= 4; ++k)
       text += fmt::format(" {:7.1f} {:7.1f} {}", points[4 * finger + k].x, points[4 * finger + k].y,
                           k < 4 ? " " : "");
