@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "ipc/msg/header.hpp"
+#include "ipc/msg/tail.hpp"
 
 namespace handcast::msg {
 

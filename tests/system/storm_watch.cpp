@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "ipc/ring/real_atomics.hpp"
+#include "ipc/ring/control_words.hpp"
 
 namespace handcast::storm {
 namespace {
