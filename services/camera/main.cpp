@@ -4,7 +4,6 @@
 #include "config/second_view.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "services/camera/camera.hpp"
-#include "services/camera/frame_size.hpp"
 #include "services/runtime/context.hpp"
 #include "services/runtime/second_view.hpp"
 

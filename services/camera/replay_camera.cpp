@@ -3,7 +3,6 @@
 
 #include "services/camera/camera.hpp"
 #include "services/camera/film_pictures.hpp"
-#include "services/camera/frame_size.hpp"
 #include "services/camera/npy_pictures.hpp"
 #include "services/camera/png_pictures.hpp"
 #include "services/camera/read_ahead.hpp"

@@ -23,7 +23,7 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr int kMostRounds = 5;  ///< of looking for services that are left
+constexpr int kMostSearches = 5;  ///< of looking for services that are left
 
 std::optional<pid_t> pid_in(const std::string& name) {
   pid_t pid = 0;
@@ -124,7 +124,7 @@ std::vector<FoundProcess> find_services(const std::string& name) {
 int end_services(const std::string& name, double patience_s, std::int64_t before_ns) {
   std::set<pid_t> ended;
   const auto deadline = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(patience_s)));
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostSearches; ++round) {
     auto found = find_services(name);
     std::erase_if(found, [&](const auto& process) { return process.epoch_ns > before_ns; });
     if (found.empty()) break;

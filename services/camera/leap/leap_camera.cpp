@@ -3,13 +3,126 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "services/camera/camera.hpp"
-#include "services/camera/frame_size.hpp"
+#include "services/camera/keep/silence.hpp"
+#include "services/camera/keep/trouble.hpp"
 #include "services/camera/leap/bring_up.hpp"
 #include "services/camera/leap/deinterleave.hpp"
-#include "services/camera/leap/keeper.hpp"
+#include "services/camera/leap/session.hpp"
+
+namespace handcast::camera::leap {
+namespace {
+
+/// Keeps a controller streaming: sees within about 50 ms that its images have stopped, and opens it
+/// again as soon as it answers, on a thread of its own, because a device that is stuck blocks calls
+/// for half a second.
+class Keeper {
+ public:
+  /// `session` streams into `mailbox`.
+  Keeper(const config::Camera& settings, const calib::Calibration& calibration,
+         std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox);
+  Keeper(const Keeper&) = delete;
+  Keeper& operator=(const Keeper&) = delete;
+  ~Keeper();
+
+  /// Why no images come now; empty if they should come. Any thread.
+  std::optional<Error> trouble() const { return trouble_.why(); }
+
+ private:
+  void run(const std::stop_token& stop);
+  void watch();
+  void reopen();
+  void say(const Error& why);
+
+  config::Camera settings_;
+  calib::Calibration calibration_;
+  std::unique_ptr<Session> session_;
+  std::shared_ptr<Mailbox> mailbox_;
+  std::string name_;  ///< of the controller
+  Silence silence_;
+  std::int64_t lost_ns_ = 0;  ///< when its images stopped
+  int vain_starts_ = 0;       ///< sessions in a row without an image
+  Trouble trouble_;
+  std::jthread thread_;
+};
+
+constexpr std::int64_t kAbsent_ns = 20'000'000;
+
+Keeper::Keeper(const config::Camera& settings, const calib::Calibration& calibration,
+               std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox)
+    : settings_(settings),
+      calibration_(calibration),
+      session_(std::move(session)),
+      mailbox_(std::move(mailbox)),
+      name_(session_->name()),
+      silence_(Silence::patience_of(session_->mode().rate_hz)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Keeper::~Keeper() {
+  thread_.request_stop();
+  thread_.join();
+}
+
+void Keeper::say(const Error& why) {
+  trouble_.say({why.code, fmt::format("camera 'leap': {}", why.what)});
+}
+
+void Keeper::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    if (session_)
+      watch();
+    else
+      reopen();
+  }
+}
+
+void Keeper::watch() {
+  sleep_until_ns(now_ns() + Silence::kTurn_ns);
+  const std::int64_t last_ns = mailbox_->last_sign_ns();
+  const bool has_come = silence_.is_broken(last_ns);
+  if (has_come && trouble()) {
+    log::info("camera: {} is back after {:.0f} ms", name_, ns_to_ms(now_ns() - lost_ns_));
+    trouble_.end();
+  }
+  const auto ended = session_->trouble();
+  if (!ended && !silence_.is_too_long(last_ns, now_ns())) return;
+  vain_starts_ = has_come ? 0 : vain_starts_ + 1;
+  if (has_come) lost_ns_ = now_ns();
+  if (ended)
+    say({ended->code, fmt::format("{}; it is opened again as soon as it answers", ended->what)});
+  else if (has_come)
+    say({Errc::timeout, fmt::format("{} sends no images; it is opened again", name_)});
+  else
+    say({Errc::timeout,
+         fmt::format("{} answers, but sends no images; firmware before 1.7.1 needs a longer "
+                     "bring-up sequence (camera.leap.bring_up)",
+                     name_)});
+  session_.reset();
+}
+
+void Keeper::reopen() {
+  // The one that was lost, even if another one is attached meanwhile.
+  auto session = Session::start(name_, settings_, calibration_, mailbox_, vain_starts_ > 0);
+  if (!session) {
+    say({session.error().code, fmt::format("{}: {}; it is opened again as soon as it answers",
+                                           name_, session.error().what)});
+    return sleep_until_ns(now_ns() + kAbsent_ns);
+  }
+  session_ = std::move(*session);
+  silence_.begin_again();
+}
+
+}  // namespace
+
+}  // namespace handcast::camera::leap
 
 namespace handcast::camera {
 namespace {

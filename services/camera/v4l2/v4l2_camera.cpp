@@ -1,15 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "ipc/base/log.hpp"
 #include "services/camera/camera.hpp"
-#include "services/camera/frame_size.hpp"
 #include "services/camera/v4l2/controls.hpp"
 #include "services/camera/v4l2/convert.hpp"
 #include "services/camera/v4l2/exposure.hpp"
+#include "services/camera/v4l2/loss_count.hpp"
 #include "services/camera/v4l2/mode.hpp"
-#include "services/camera/v4l2/newest_image.hpp"
+#include "services/camera/v4l2/stream.hpp"
+
+namespace handcast::camera::v4l2 {
+namespace {
+
+/// An image and its number.
+struct Numbered {
+  Filled image;
+  std::uint64_t number = 0;
+};
+
+Result<std::vector<Numbered>> take_all(Stream& stream, LossCount& losses) {
+  std::vector<Numbered> images;
+  while (images.size() < stream.buffers()) {
+    const auto image = stream.take();
+    if (!image) return tl::make_unexpected(image.error());
+    if (!*image) return images;
+    images.push_back({**image, losses.arrived((*image)->sequence)});
+  }
+  losses.all_were_full();
+  return images;
+}
+
+/// Takes everything from a stream and gives all but the newest image back. Broken images are
+/// dropped. If all buffers were full, even the newest image may be old, because the driver had no
+/// buffer for those after it: all are dropped. Empty if no image is left. Errors: disconnected.
+Result<std::optional<Numbered>> take_newest(Stream& stream, LossCount& losses) {
+  const auto images = take_all(stream, losses);
+  if (!images) return tl::make_unexpected(images.error());
+  const bool is_late = images->size() == stream.buffers();
+  std::optional<Numbered> newest;
+  for (const auto& one : *images) {
+    const bool is_broken = one.image.is_broken || one.image.bytes.empty();
+    const bool is_dropped = is_broken || is_late;
+    if (is_broken) losses.incomplete();
+    if ((!is_broken && is_late) || (!is_dropped && newest)) losses.skipped();
+    const auto* given = is_dropped ? &one : newest ? &*newest : nullptr;
+    if (given != nullptr)
+      if (auto done = stream.give_back(given->image); !done)
+        return tl::make_unexpected(done.error());
+    if (!is_dropped) newest = one;
+  }
+  return newest;
+}
+
+}  // namespace
+
+}  // namespace handcast::camera::v4l2
 
 namespace handcast::camera {
 namespace {

@@ -12,11 +12,17 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
-#include "services/lab/simulate/exposure.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
 
 namespace handcast::simulate {
+
+/// A frame of the twin's camera.
+struct Exposure {
+  std::uint64_t frame_id = 0;  ///< number of the frame
+  std::int64_t origin_ns = 0;  ///< true middle of its exposure, since the epoch
+  std::int64_t stamp_ns = 0;   ///< that time by the camera's clock, which the cascade sees
+};
 
 /// The result of a landmark detector on one frame.
 struct Detection {

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "ipc/base/clock.hpp"
-#include "services/lab/simulate/counting_feed.hpp"
 #include "services/lab/simulate/detector_tally.hpp"
 #include "services/lab/simulate/hand_speed.hpp"
 #include "services/lab/simulate/jitter.hpp"
@@ -16,6 +15,7 @@
 #include "services/lab/simulate/png.hpp"
 #include "services/lab/simulate/recorder.hpp"
 #include "services/lab/simulate/recovery.hpp"
+#include "services/lab/simulate/sensor_feed.hpp"
 #include "services/lab/simulate/trace.hpp"
 #include "services/lab/twin/metrics.hpp"
 

@@ -7,11 +7,10 @@
 #include "ipc/base/clock.hpp"
 #include "renderer/base/clones.hpp"
 #include "services/lab/twin/background.hpp"
-#include "services/lab/twin/bystander.hpp"
 #include "services/lab/twin/grey_surface.hpp"
-#include "services/lab/twin/lamp.hpp"
+#include "services/lab/twin/person.hpp"
 #include "services/lab/twin/skin_pattern.hpp"
-#include "services/lab/twin/table_mirror.hpp"
+#include "services/lab/twin/solid.hpp"
 
 namespace handcast::twin {
 namespace {

@@ -12,10 +12,9 @@
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/lab/twin/image_faults.hpp"
 #include "services/lab/twin/image_sensor.hpp"
-#include "services/lab/twin/point_spread.hpp"
 #include "services/lab/twin/solid.hpp"
 #include "services/lab/twin/surface.hpp"
-#include "services/lab/twin/true_hand.hpp"
+#include "services/lab/twin/true_hands.hpp"
 
 namespace handcast::twin {
 

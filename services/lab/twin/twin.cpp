@@ -4,18 +4,67 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 
 #include "calib/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/lab/twin/board_scene.hpp"
 #include "services/lab/twin/camera_scene.hpp"
-#include "services/lab/twin/camera_times.hpp"
 #include "services/lab/twin/detector.hpp"
+#include "services/lab/twin/random.hpp"
+#include "services/lab/twin/sensor_clock.hpp"
 #include "services/lab/twin/tracker.hpp"
 
 namespace handcast::twin {
 namespace {
+
+/// The times of the twin's camera: what is true, and what its stamps say. Pure functions of the
+/// settings, the seed and the number of the frame. Times are ns since the rig's epoch.
+class CameraTimes {
+ public:
+  /// Copies what it needs.
+  explicit CameraTimes(const config::Rig& rig);
+
+  /// The true middle of the exposure of frame `k`.
+  std::int64_t origin_ns(std::uint64_t k) const;
+  /// The middle of its exposure by the camera's clock: the only time that the cascade sees.
+  std::int64_t stamp_ns(std::uint64_t k) const { return clock_.stamp_ns(k, origin_ns(k)); }
+  /// The time at which frame `k` is in memory. Does not decrease with k.
+  std::int64_t arrival_ns(std::uint64_t k) const;
+  /// True if frame `k` never arrives.
+  bool lost(std::uint64_t k) const;
+  /// The true time of the image of this id and stamp. An image that is not this camera's is taken
+  /// at its stamp.
+  std::int64_t true_ns(std::uint64_t frame_id, std::int64_t stamp) const {
+    return stamp == stamp_ns(frame_id) ? origin_ns(frame_id) : stamp;
+  }
+
+ private:
+  double rate_hz_, lost_, burst_;
+  std::int64_t transfer_ns_;  ///< from the middle of an exposure to the image in memory
+  Random loss_, bursts_;
+  SensorClock clock_;
+};
+
+CameraTimes::CameraTimes(const config::Rig& rig)
+    : rate_hz_(rig.camera.rate_hz),
+      lost_(rig.twin.image.lost),
+      burst_(rig.twin.image.burst),
+      transfer_ns_(ms_to_ns(rig.camera.exposure_ms) / 2 + ms_to_ns(rig.twin.image.delivery_ms)),
+      loss_(rig.twin.seed, Stream::camera_loss),
+      bursts_(rig.twin.seed, Stream::camera_burst),
+      clock_(rig.twin.image.clock, 0, seconds_to_ns(1 / rig.camera.rate_hz),
+             Random(rig.twin.seed, Stream::camera_clock)) {}
+
+std::int64_t CameraTimes::origin_ns(std::uint64_t k) const {
+  return seconds_to_ns(static_cast<double>(k) / rate_hz_);
+}
+
+std::int64_t CameraTimes::arrival_ns(std::uint64_t k) const {
+  return burst_arrival_ns(k, burst_, bursts_,
+                          [this](std::uint64_t i) { return origin_ns(i) + transfer_ns_; });
+}
+
+bool CameraTimes::lost(std::uint64_t k) const { return loss_.uniform(k) < lost_; }
 
 constexpr std::array<Side, 2> kSides{Side::left, Side::right};
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string>
 
 #include "services/landmarks/models/handcast_model.hpp"

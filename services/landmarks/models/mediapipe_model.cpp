@@ -3,7 +3,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/landmarks/models/mediapipe_files.hpp"
-#include "services/landmarks/models/mediapipe_regions.hpp"
+#include "services/landmarks/models/mediapipe_palms.hpp"
 
 namespace handcast::landmarks {
 

@@ -4,7 +4,6 @@
 
 #include "services/landmarks/crop/crop.hpp"
 #include "services/landmarks/inference/network.hpp"
-#include "services/landmarks/models/landmark_model.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 
 namespace handcast::landmarks {

@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "renderer/content/picture.hpp"
-#include "services/joints/leap_layout.hpp"
+#include "services/joints/leap_hand.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 
 namespace handcast::detect {

@@ -13,7 +13,7 @@
 #include "renderer/content/picture.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/predict/projected_pose.hpp"
-#include "services/joints/leap_layout.hpp"
+#include "services/joints/leap_hand.hpp"
 #include "services/recording/arrays/npy.hpp"
 #include "tests/renderer/mask/outline_score.hpp"
 #include "tests/renderer/mask/real_outlines.hpp"

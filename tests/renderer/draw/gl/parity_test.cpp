@@ -9,7 +9,7 @@
 #include "renderer/draw/cpu/cpu_painter.hpp"
 #include "renderer/draw/gl/gl_painter.hpp"
 #include "renderer/skin/hand_surface.hpp"
-#include "services/lab/twin/motions.hpp"
+#include "services/lab/twin/motion.hpp"
 #include "tests/renderer/draw/bent_grid.hpp"
 #include "tests/renderer/draw/gl/difference.hpp"
 #include "tests/renderer/hand_pose.hpp"

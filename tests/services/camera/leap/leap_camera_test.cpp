@@ -2,7 +2,7 @@
 // A controller while all goes well, and what is refused.
 #include <fstream>
 
-#include "services/camera/leap/calibration_file.hpp"
+#include "services/camera/leap/controller.hpp"
 #include "tests/services/camera/camera_contract.hpp"
 #include "tests/services/camera/leap/leap_test.hpp"
 

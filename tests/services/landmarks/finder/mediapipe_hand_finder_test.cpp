@@ -6,7 +6,7 @@
 
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/mediapipe_model.hpp"
-#include "services/landmarks/models/mediapipe_regions.hpp"
+#include "services/landmarks/models/mediapipe_palms.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {

@@ -4,7 +4,6 @@
 #include "calib/solve/board/board_name.hpp"
 #include "calib/solve/board/draw_board.hpp"
 #include "services/camera/camera.hpp"
-#include "services/camera/frame_size.hpp"
 #include "services/lab/twin/backends/camera/seen_light.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "services/runtime/first_at.hpp"
