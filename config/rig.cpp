@@ -103,10 +103,9 @@ Process process_of(const Rig& rig, std::string_view service) {
 }
 
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
-                      const std::vector<std::string>& settings, const OnRenamed& on_renamed) {
-  auto document = parse_document(toml, file.string());
+                      const std::vector<std::string>& settings) {
+  const auto document = parse_document(toml, file.string());
   if (!document) return tl::make_unexpected(document.error());
-  replace_renamed(*document, file.string(), renamed_settings(), on_renamed);
 
   Rig rig;
   const auto listing = list_settings(rig);
@@ -116,20 +115,17 @@ Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file
   // then stays so, and is not found.
   std::error_code gone;
   resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
-  for (const auto& setting : settings)
-    for (const auto& current : replace_renamed(setting, renamed_settings(), on_renamed))
-      apply_assignment(current, listing, faults);
+  for (const auto& setting : settings) apply_assignment(setting, listing, faults);
   resolve_paths(listing, std::filesystem::current_path(gone));
   check_together(rig, file.string(), faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   return rig;
 }
 
-Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                     const OnRenamed& on_renamed) {
+Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   const auto text = read_text(file);
   if (!text) return tl::make_unexpected(text.error());
-  return parse_rig(*text, file, settings, on_renamed);
+  return parse_rig(*text, file, settings);
 }
 
 std::string print_rig(const Rig& rig) {

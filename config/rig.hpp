@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "config/renamed_settings.hpp"
 #include "config/sections/cascade.hpp"
 #include "config/sections/dlp.hpp"
 #include "config/sections/projector.hpp"
@@ -72,19 +71,16 @@ void describe(Visitor& visitor, Rig& rig) {
 Process process_of(const Rig& rig, std::string_view service);
 
 /// Reads a rig file and applies `settings` ("path=value") on top. Relative paths become absolute:
-/// those of the file start at its folder, those of `settings` at the current folder. Settings in an
-/// old form (renamed_settings) are read in their new form, and each is reported to `on_renamed`.
-/// Errors: bad_config, with one line for each fault, e.g. "FILE:LINE: camera.rate_hz: 0 is outside
-/// 1..2000 Hz".
+/// those of the file start at its folder, those of `settings` at the current folder. Errors:
+/// bad_config, with one line for each fault, e.g. "FILE:LINE: camera.rate_hz: 0 is outside 1..2000
+/// Hz".
 Result<Rig> load_rig(const std::filesystem::path& file,
-                     const std::vector<std::string>& settings = {},
-                     const OnRenamed& on_renamed = log_renamed);
+                     const std::vector<std::string>& settings = {});
 
 /// Like load_rig(), from memory. `file` is used in messages, and relative paths start at its
 /// folder.
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
-                      const std::vector<std::string>& settings = {},
-                      const OnRenamed& on_renamed = log_renamed);
+                      const std::vector<std::string>& settings = {});
 
 /// The rig as a commented TOML file with all settings, which load_rig() reads back.
 std::string print_rig(const Rig& rig);
