@@ -90,6 +90,29 @@ bool is_path(std::string_view setting, std::string_view value) {
   return !value.starts_with("builtin:") && !value.starts_with(kFrozen);
 }
 
+std::string name_at(Viewpoint at, std::string_view name) {
+  for (const std::string_view section : {"camera", "landmarks"})
+    if (at == Viewpoint::second && name.substr(0, name.find('.')) == section)
+      return std::string(section) + "2" + std::string(name.substr(section.size()));
+  return std::string(name);
+}
+
+std::string name_at_first(std::string_view name) {
+  for (const std::string first : {"camera", "landmarks"})
+    if (const auto section = name.substr(0, name.find('.'));
+        section == name_at(Viewpoint::second, first))
+      return first + std::string(name.substr(section.size()));
+  return {};
+}
+
+const Camera& camera_at(const Rig& rig, Viewpoint at) {
+  return at == Viewpoint::first ? rig.camera : rig.camera2;
+}
+
+const Landmarks& landmarks_at(const Rig& rig, Viewpoint at) {
+  return at == Viewpoint::first ? rig.landmarks : rig.landmarks2;
+}
+
 Process process_of(const Rig& rig, std::string_view service) {
   if (service == "camera") return rig.camera.process;
   if (service == "camera2") return rig.camera2.process;

@@ -11,6 +11,7 @@
 #include "config/sections/sensors.hpp"
 #include "config/sections/supervisor.hpp"
 #include "config/sections/twin.hpp"
+#include "config/sections/viewpoint.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::config {
@@ -65,6 +66,17 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("observer", rig.observer, "The service that scores the light.");
   visitor.section("supervisor", rig.supervisor, "Start, supervision and stop of the services.");
 }
+
+/// The name at a viewpoint of what is called `name` ("camera.frames", "landmarks") at the first
+/// one: "camera2.frames", "landmarks2". Names of what all viewpoints share ("pose.hands") stay.
+std::string name_at(Viewpoint at, std::string_view name);
+/// The reverse: what is called "camera2.v4l2" at the second viewpoint is "camera.v4l2". "" for
+/// names that are not of the second one.
+std::string name_at_first(std::string_view name);
+/// The section of the camera at a viewpoint.
+const Camera& camera_at(const Rig& rig, Viewpoint at);
+/// The section of the landmark detector at a viewpoint.
+const Landmarks& landmarks_at(const Rig& rig, Viewpoint at);
 
 /// The section [NAME.process] of the service with this name ("camera"); the defaults if there is no
 /// such service.

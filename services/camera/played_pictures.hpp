@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "services/camera/picture_source.hpp"
 #include "services/recording/playback.hpp"
@@ -16,6 +17,7 @@ struct PlayedPictures {
 
 /// How a recording is to be played.
 struct PlayedAs {
+  std::string stream;               ///< of a recording that has several: "camera2.frames"
   int width_px = 0, height_px = 0;  ///< of the calibration's image
   std::uint32_t calibration = 0;    ///< its id
   std::int64_t exposure_ns = 0;     ///< if the recording does not say it

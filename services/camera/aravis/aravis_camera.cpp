@@ -16,13 +16,13 @@ namespace {
 class AravisCamera final : public Camera {
  public:
   AravisCamera(const aravis::Device& device, const config::Camera& settings,
-               const calib::Calibration& calibration, std::unique_ptr<aravis::Session> session,
+               const calib::PlacedCamera& camera, std::unique_ptr<aravis::Session> session,
                std::shared_ptr<aravis::Mailbox> mailbox)
       : format_(settings.aravis.format),
-        width_px_(calibration.camera.width_px),
-        height_px_(calibration.camera.height_px),
+        width_px_(camera.model.width_px),
+        height_px_(camera.model.height_px),
         mailbox_(mailbox),
-        keeper_(device, settings, calibration, std::move(session), std::move(mailbox)) {}
+        keeper_(device, settings, camera, std::move(session), std::move(mailbox)) {}
 
   Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                        Deadline deadline) override {
@@ -30,7 +30,7 @@ class AravisCamera final : public Camera {
     aravis::Image image;
     if (mailbox_->take(image, deadline)) return copy(image, frame);
     if (const auto trouble = keeper_.trouble()) return tl::make_unexpected(*trouble);
-    return fail(Errc::timeout, "camera 'aravis': no image before the deadline");
+    return fail(Errc::timeout, "no image before the deadline");
   }
 
  private:
@@ -39,8 +39,8 @@ class AravisCamera final : public Camera {
     std::size_t bytes = 0;
     const void* data = arv_buffer_get_data(image.buffer(), &bytes);
     if (!data || bytes < bytes_of(format_, pixels))
-      return fail(Errc::bad_data, fmt::format("camera 'aravis': an image of {} bytes instead of {}",
-                                              bytes, bytes_of(format_, pixels)));
+      return fail(Errc::bad_data, fmt::format("an image of {} bytes instead of {}", bytes,
+                                              bytes_of(format_, pixels)));
     frame.header.frame_id = image.number;
     frame.header.origin_ns = image.exposed_ns;
     frame.exposure_ns = image.exposure_ns;
@@ -60,21 +60,19 @@ class AravisCamera final : public Camera {
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_aravis(const config::Rig& rig,
-                                            const calib::Calibration& calibration,
-                                            const std::int64_t& /*epoch_ns*/) {
-  const auto device = aravis::find_device(rig.camera.aravis.device);
-  if (!device) return fail_in("camera 'aravis'", device.error());
+Result<std::unique_ptr<Camera>> open_aravis(const Opening& with) {
+  const auto device = aravis::find_device(with.settings.aravis.device);
+  if (!device) return tl::make_unexpected(device.error());
   const auto mailbox = std::make_shared<aravis::Mailbox>(1);
-  auto session = aravis::Session::start(*device, rig.camera, calibration, mailbox);
-  if (!session) return fail_in("camera 'aravis'", session.error());
+  auto session = aravis::Session::start(*device, with.settings, with.camera, mailbox);
+  if (!session) return tl::make_unexpected(session.error());
   const auto& named = (*session)->device();
   const auto& accepted = (*session)->accepted();
   log::info(
-      "camera: {} {} {}, {:.1f} Hz, exposure {:.3f} ms{}", named.vendor, named.model, named.serial,
+      "{} {} {}, {:.1f} Hz, exposure {:.3f} ms{}", named.vendor, named.model, named.serial,
       accepted.rate_hz, accepted.exposure_ms,
       accepted.packet_bytes > 0 ? fmt::format(", packets of {} bytes", accepted.packet_bytes) : "");
-  return std::make_unique<AravisCamera>(*device, rig.camera, calibration, std::move(*session),
+  return std::make_unique<AravisCamera>(*device, with.settings, with.camera, std::move(*session),
                                         mailbox);
 }
 

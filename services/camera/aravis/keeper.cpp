@@ -20,11 +20,11 @@ std::int64_t patience_of(const config::Camera& settings) {
 
 }  // namespace
 
-Keeper::Keeper(Device device, const config::Camera& settings, const calib::Calibration& calibration,
+Keeper::Keeper(Device device, const config::Camera& settings, const calib::PlacedCamera& camera,
                std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox)
     : device_(std::move(device)),
       settings_(settings),
-      calibration_(calibration),
+      camera_(camera),
       session_(std::move(session)),
       mailbox_(std::move(mailbox)),
       presence_(device_),
@@ -66,15 +66,14 @@ void Keeper::watch() {
 
 Error Keeper::why_no_images(bool answers) const {
   if (!answers || silence_.is_broken(mailbox_->last_sign_ns()))
-    return {Errc::timeout, fmt::format("camera 'aravis': {} sends no images; it is opened again as "
+    return {Errc::timeout, fmt::format("{} sends no images; it is opened again as "
                                        "soon as it answers",
                                        device_.id)};
   if (!device_.is_gige() || !session_)
-    return {Errc::timeout,
-            fmt::format("camera 'aravis': {} answers, but none of its images arrives", device_.id)};
+    return {Errc::timeout, fmt::format("{} answers, but none of its images arrives", device_.id)};
   return {Errc::timeout,
-          fmt::format("camera 'aravis': {} answers, but none of its images arrives; packets of {} "
-                      "bytes may be too large for the network (camera.aravis.packet_bytes; 1500 "
+          fmt::format("{} answers, but none of its images arrives; packets of {} "
+                      "bytes may be too large for the network (aravis.packet_bytes; 1500 "
                       "pass nearly everywhere), or a firewall stops them",
                       device_.id, session_->accepted().packet_bytes)};
 }
@@ -102,9 +101,9 @@ void Keeper::reopen() {
   if (mailbox_->last_sign_ns() > answered_ns) return found("its images came back");
   miss_it(true);
   session_.reset();
-  auto session = Session::start(device_, settings_, calibration_, mailbox_);
+  auto session = Session::start(device_, settings_, camera_, mailbox_);
   if (!session) {
-    trouble_.say({session.error().code, fmt::format("camera 'aravis': {}", session.error().what)});
+    trouble_.say(session.error());
     return sleep_until_ns(now_ns() + Silence::kTurn_ns);
   }
   session_ = std::move(*session);
@@ -116,8 +115,7 @@ void Keeper::reopen() {
 
 void Keeper::found(std::string_view how) {
   if (trouble())
-    log::info("camera: {} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_),
-              how);
+    log::info("{} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_), how);
   is_lost_ = is_reopened_ = false;
   trouble_.end();
 }

@@ -17,7 +17,7 @@ namespace handcast::camera::aravis {
 class Keeper {
  public:
   /// `session` streams into `mailbox`. `device`: where to look for it when it is lost.
-  Keeper(Device device, const config::Camera& settings, const calib::Calibration& calibration,
+  Keeper(Device device, const config::Camera& settings, const calib::PlacedCamera& camera,
          std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox);
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
@@ -41,7 +41,7 @@ class Keeper {
 
   Device device_;
   config::Camera settings_;
-  calib::Calibration calibration_;
+  calib::PlacedCamera camera_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<Mailbox> mailbox_;
   Presence presence_;

@@ -66,7 +66,7 @@ void Receiver::on_stream(void* receiver, ArvStreamCallbackType what, ArvBuffer*)
 void Receiver::begin_thread() const {
   pthread_setname_np(pthread_self(), "camera-stream");
   if (priority_ > 0 && !arv_make_thread_realtime(priority_))
-    log::warning("camera: the thread that receives the images has no real-time priority");
+    log::warning("the thread that receives the images has no real-time priority");
 }
 
 void Receiver::on_buffer_done(std::int64_t arrived_ns) {

@@ -23,20 +23,18 @@ Session::Session(Owned<ArvCamera> camera, Device device, const config::Camera& s
 
 Result<std::unique_ptr<Session>> Session::start(const Device& device,
                                                 const config::Camera& settings,
-                                                const calib::Calibration& calibration,
+                                                const calib::PlacedCamera& camera,
                                                 std::shared_ptr<Mailbox> mailbox) {
-  auto camera = open_device(device);
-  if (!camera) return tl::make_unexpected(camera.error());
-  const auto named = with_its_names(camera->get(), device);
+  auto opened = open_device(device);
+  if (!opened) return tl::make_unexpected(opened.error());
+  const auto named = with_its_names(opened->get(), device);
   const auto [serial, id, address, model] = names_of(named);
-  if (auto ours =
-          calib::check_device("camera", calibration.camera_device, {serial, id, address, model});
-      !ours)
+  if (auto ours = calib::check_device("camera", camera.device, {serial, id, address, model}); !ours)
     return tl::make_unexpected(ours.error());
   std::unique_ptr<Session> session(
-      new Session(std::move(*camera), named, settings, std::move(mailbox)));
-  const auto accepted = configure(session->camera_.get(), settings, calibration.camera.width_px,
-                                  calibration.camera.height_px);
+      new Session(std::move(*opened), named, settings, std::move(mailbox)));
+  const auto accepted =
+      configure(session->camera_.get(), settings, camera.model.width_px, camera.model.height_px);
   if (!accepted) return tl::make_unexpected(accepted.error());
   session->accepted_ = *accepted;
   if (const auto started = session->start_stream(); !started)

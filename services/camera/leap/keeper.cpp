@@ -15,10 +15,10 @@ constexpr std::int64_t kAbsent_ns = 20'000'000;
 
 }  // namespace
 
-Keeper::Keeper(const config::Camera& settings, const calib::Calibration& calibration,
+Keeper::Keeper(const config::Camera& settings, const calib::PlacedCamera& camera,
                std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox)
     : settings_(settings),
-      calibration_(calibration),
+      camera_(camera),
       session_(std::move(session)),
       mailbox_(std::move(mailbox)),
       name_(session_->name()),
@@ -28,10 +28,6 @@ Keeper::Keeper(const config::Camera& settings, const calib::Calibration& calibra
 Keeper::~Keeper() {
   thread_.request_stop();
   thread_.join();
-}
-
-void Keeper::say(const Error& why) {
-  trouble_.say({why.code, fmt::format("camera 'leap': {}", why.what)});
 }
 
 void Keeper::run(const std::stop_token& stop) {
@@ -48,7 +44,7 @@ void Keeper::watch() {
   const std::int64_t last_ns = mailbox_->last_sign_ns();
   const bool has_come = silence_.is_broken(last_ns);
   if (has_come && trouble()) {
-    log::info("camera: {} is back after {:.0f} ms", name_, ns_to_ms(now_ns() - lost_ns_));
+    log::info("{} is back after {:.0f} ms", name_, ns_to_ms(now_ns() - lost_ns_));
     trouble_.end();
   }
   const auto ended = session_->trouble();
@@ -56,22 +52,25 @@ void Keeper::watch() {
   vain_starts_ = has_come ? 0 : vain_starts_ + 1;
   if (has_come) lost_ns_ = now_ns();
   if (ended)
-    say({ended->code, fmt::format("{}; it is opened again as soon as it answers", ended->what)});
+    trouble_.say(
+        {ended->code, fmt::format("{}; it is opened again as soon as it answers", ended->what)});
   else if (has_come)
-    say({Errc::timeout, fmt::format("{} sends no images; it is opened again", name_)});
+    trouble_.say({Errc::timeout, fmt::format("{} sends no images; it is opened again", name_)});
   else
-    say({Errc::timeout,
+    trouble_.say(
+        {Errc::timeout,
          fmt::format("{} answers, but sends no images; firmware before 1.7.1 needs a longer "
-                     "bring-up sequence (camera.leap.bring_up)",
+                     "bring-up sequence (leap.bring_up)",
                      name_)});
   session_.reset();
 }
 
 void Keeper::reopen() {
   // The one that was lost, even if another one is attached meanwhile.
-  auto session = Session::start(name_, settings_, calibration_, mailbox_, vain_starts_ > 0);
+  auto session = Session::start(name_, settings_, camera_, mailbox_, vain_starts_ > 0);
   if (!session) {
-    say({session.error().code, fmt::format("{}: {}; it is opened again as soon as it answers",
+    trouble_.say(
+        {session.error().code, fmt::format("{}: {}; it is opened again as soon as it answers",
                                            name_, session.error().what)});
     return sleep_until_ns(now_ns() + kAbsent_ns);
   }

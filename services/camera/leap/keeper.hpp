@@ -17,7 +17,7 @@ namespace handcast::camera::leap {
 class Keeper {
  public:
   /// `session` streams into `mailbox`.
-  Keeper(const config::Camera& settings, const calib::Calibration& calibration,
+  Keeper(const config::Camera& settings, const calib::PlacedCamera& camera,
          std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox);
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
@@ -30,10 +30,9 @@ class Keeper {
   void run(const std::stop_token& stop);
   void watch();
   void reopen();
-  void say(const Error& why);
 
   config::Camera settings_;
-  calib::Calibration calibration_;
+  calib::PlacedCamera camera_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<Mailbox> mailbox_;
   std::string name_;  ///< of the controller

@@ -14,19 +14,17 @@
 namespace handcast::camera {
 namespace {
 
-constexpr std::string_view kPlace = "camera 'leap'";
-
 /// A Leap Motion Controller as a stereo camera.
 class LeapCamera final : public Camera {
  public:
-  LeapCamera(const config::Camera& settings, const calib::Calibration& calibration,
+  LeapCamera(const config::Camera& settings, const calib::PlacedCamera& camera,
              std::unique_ptr<leap::Session> session, std::shared_ptr<leap::Mailbox> mailbox)
       : eye_(settings.leap.eye == config::Eye::left ? 0 : 1),
-        width_px_(calibration.camera.width_px),
-        height_px_(calibration.camera.height_px),
+        width_px_(camera.model.width_px),
+        height_px_(camera.model.height_px),
         exposure_ns_(ms_to_ns(settings.exposure_ms)),
         mailbox_(mailbox),
-        keeper_(settings, calibration, std::move(session), std::move(mailbox)) {}
+        keeper_(settings, camera, std::move(session), std::move(mailbox)) {}
 
   bool has_second_image() const override { return true; }
 
@@ -50,7 +48,7 @@ class LeapCamera final : public Camera {
     if (auto room = check_room(width_px_, height_px_, tail_bytes); !room) return room;
     if (mailbox_->take(image_, deadline)) return {};
     if (const auto trouble = keeper_.trouble()) return tl::make_unexpected(*trouble);
-    return fail(Errc::timeout, fmt::format("{}: no image before the deadline", kPlace));
+    return fail(Errc::timeout, "no image before the deadline");
   }
 
   void write(std::size_t eye, msg::CameraFrame& frame) const {
@@ -75,33 +73,31 @@ class LeapCamera final : public Camera {
 
 void report(const leap::Session& session, double asked_hz) {
   const auto& mode = session.mode();
-  const auto text = fmt::format("{}: {} sends {}x{} of both eyes", kPlace, session.name(),
-                                mode.width_px, mode.height_px);
+  const auto text =
+      fmt::format("{} sends {}x{} of both eyes", session.name(), mode.width_px, mode.height_px);
   if (std::abs(mode.rate_hz - asked_hz) < 0.01 * asked_hz)
     return log::info("{} at {:.4g} Hz", text, mode.rate_hz);
-  log::warning("{} at {:.4g} Hz instead of {:g} Hz (camera.rate_hz)", text, mode.rate_hz, asked_hz);
+  log::warning("{} at {:.4g} Hz instead of {:g} Hz (rate_hz)", text, mode.rate_hz, asked_hz);
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_leap(const config::Rig& rig,
-                                          const calib::Calibration& calibration,
-                                          const std::int64_t& epoch_ns) {
-  const auto& settings = rig.camera;
+Result<std::unique_ptr<Camera>> open_leap(const Opening& with) {
+  const auto& settings = with.settings;
   // Numbers go on over restarts of the service; the rate is at most 250 Hz.
   constexpr std::int64_t kShortestPeriod_ns = 4'000'000;
-  const auto first = static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns() - epoch_ns, 0) /
-                                                kShortestPeriod_ns);
+  const auto first = static_cast<std::uint64_t>(
+      std::max<std::int64_t>(now_ns() - with.epoch_ns, 0) / kShortestPeriod_ns);
   const auto mailbox = std::make_shared<leap::Mailbox>(first);
-  auto session = leap::Session::start(settings.leap.device, settings, calibration, mailbox, false);
-  if (!session) return fail_in(kPlace, session.error());
+  auto session = leap::Session::start(settings.leap.device, settings, with.camera, mailbox, false);
+  if (!session) return tl::make_unexpected(session.error());
   report(**session, settings.rate_hz);
-  return std::make_unique<LeapCamera>(settings, calibration, std::move(*session), mailbox);
+  return std::make_unique<LeapCamera>(settings, with.camera, std::move(*session), mailbox);
 }
 
-Result<void> check_leap(const config::Rig& rig, const calib::Calibration&, const std::int64_t&) {
-  const auto steps = leap::load_bring_up(rig.camera.leap.bring_up);
-  if (!steps) return fail_in("camera.leap.bring_up", steps.error());
+Result<void> check_leap(const Opening& with) {
+  const auto steps = leap::load_bring_up(with.settings.leap.bring_up);
+  if (!steps) return fail_in("leap.bring_up", steps.error());
   return {};
 }
 

@@ -9,7 +9,7 @@
 namespace handcast::camera::v4l2 {
 namespace {
 
-constexpr std::string_view kRemedy = "set camera.v4l2.device to a path, a name or a bus";
+constexpr std::string_view kRemedy = "set v4l2.device to a path, a name or a bus";
 
 Result<Device> usable(Device device) {
   if (device.identity.fault.empty()) return device;

@@ -5,15 +5,15 @@
 
 namespace handcast::twin {
 
-CameraTimes::CameraTimes(const config::Rig& rig)
-    : rate_hz_(rig.camera.rate_hz),
-      lost_(rig.twin.image.lost),
-      burst_(rig.twin.image.burst),
-      transfer_ns_(ms_to_ns(rig.camera.exposure_ms) / 2 + ms_to_ns(rig.twin.image.delivery_ms)),
-      loss_(rig.twin.seed, Stream::camera_loss),
-      bursts_(rig.twin.seed, Stream::camera_burst),
-      clock_(rig.twin.image.clock, 0, seconds_to_ns(1 / rig.camera.rate_hz),
-             Random(rig.twin.seed, Stream::camera_clock)) {}
+CameraTimes::CameraTimes(const config::Camera& camera, const config::Twin& twin)
+    : rate_hz_(camera.rate_hz),
+      lost_(twin.image.lost),
+      burst_(twin.image.burst),
+      transfer_ns_(ms_to_ns(camera.exposure_ms) / 2 + ms_to_ns(twin.image.delivery_ms)),
+      loss_(twin.seed, Stream::camera_loss),
+      bursts_(twin.seed, Stream::camera_burst),
+      clock_(twin.image.clock, 0, seconds_to_ns(1 / camera.rate_hz),
+             Random(twin.seed, Stream::camera_clock)) {}
 
 std::int64_t CameraTimes::origin_ns(std::uint64_t k) const {
   return seconds_to_ns(static_cast<double>(k) / rate_hz_);

@@ -13,7 +13,7 @@ namespace handcast::twin {
 class CameraTimes {
  public:
   /// Copies what it needs.
-  explicit CameraTimes(const config::Rig& rig);
+  CameraTimes(const config::Camera& camera, const config::Twin& twin);
 
   /// The true middle of the exposure of frame `k`.
   std::int64_t origin_ns(std::uint64_t k) const;
