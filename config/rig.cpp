@@ -90,6 +90,29 @@ bool is_path(std::string_view setting, std::string_view value) {
   return !value.starts_with("builtin:") && !value.starts_with(kFrozen);
 }
 
+std::string name_at(Viewpoint at, std::string_view name) {
+  for (const std::string_view section : {"camera", "landmarks"})
+    if (at == Viewpoint::second && name.substr(0, name.find('.')) == section)
+      return std::string(section) + "2" + std::string(name.substr(section.size()));
+  return std::string(name);
+}
+
+std::string name_at_first(std::string_view name) {
+  for (const std::string first : {"camera", "landmarks"})
+    if (const auto section = name.substr(0, name.find('.'));
+        section == name_at(Viewpoint::second, first))
+      return first + std::string(name.substr(section.size()));
+  return {};
+}
+
+const Camera& camera_at(const Rig& rig, Viewpoint at) {
+  return at == Viewpoint::first ? rig.camera : rig.camera2;
+}
+
+const Landmarks& landmarks_at(const Rig& rig, Viewpoint at) {
+  return at == Viewpoint::first ? rig.landmarks : rig.landmarks2;
+}
+
 Process process_of(const Rig& rig, std::string_view service) {
   if (service == "camera") return rig.camera.process;
   if (service == "camera2") return rig.camera2.process;
@@ -103,10 +126,9 @@ Process process_of(const Rig& rig, std::string_view service) {
 }
 
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
-                      const std::vector<std::string>& settings, const OnRenamed& on_renamed) {
-  auto document = parse_document(toml, file.string());
+                      const std::vector<std::string>& settings) {
+  const auto document = parse_document(toml, file.string());
   if (!document) return tl::make_unexpected(document.error());
-  replace_renamed(*document, file.string(), renamed_settings(), on_renamed);
 
   Rig rig;
   const auto listing = list_settings(rig);
@@ -116,20 +138,17 @@ Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file
   // then stays so, and is not found.
   std::error_code gone;
   resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
-  for (const auto& setting : settings)
-    for (const auto& current : replace_renamed(setting, renamed_settings(), on_renamed))
-      apply_assignment(current, listing, faults);
+  for (const auto& setting : settings) apply_assignment(setting, listing, faults);
   resolve_paths(listing, std::filesystem::current_path(gone));
   check_together(rig, file.string(), faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   return rig;
 }
 
-Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                     const OnRenamed& on_renamed) {
+Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   const auto text = read_text(file);
   if (!text) return tl::make_unexpected(text.error());
-  return parse_rig(*text, file, settings, on_renamed);
+  return parse_rig(*text, file, settings);
 }
 
 std::string print_rig(const Rig& rig) {

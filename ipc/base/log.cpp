@@ -18,7 +18,6 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/unique_fd.hpp"
-#include "ipc/base/wording.hpp"
 
 namespace handcast {
 namespace {
@@ -140,21 +139,15 @@ std::string& program() {
   return name;
 }
 
-using Wording = std::string (*)(std::string_view);
-Wording& wording_of() {
-  static Wording wording = printable;
-  return wording;
-}
-
 std::atomic<Level>& threshold() {
   static std::atomic<Level> level{level_from_environment()};
   return level;
 }
 
 std::string line_of(Level level, std::string_view sentence) {
-  return for_journal(level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()),
-                                        program(), kNames[static_cast<std::size_t>(level)],
-                                        printable(wording_of()(sentence))));
+  return for_journal(level,
+                     fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
+                                 kNames[static_cast<std::size_t>(level)], printable(sentence)));
 }
 
 /// Stderr after never_wait_for_stderr(), which may lose lines.
@@ -187,7 +180,6 @@ std::atomic<Impatient*> impatient{nullptr};
 
 void set_program(std::string_view name) { program() = name; }
 void set_level(Level level) { threshold() = level; }
-void set_wording(std::string (*wording)(std::string_view sentence)) { wording_of() = wording; }
 
 std::optional<ParsedLine> parse(std::string_view line) {
   take_word(line);  // time

@@ -20,6 +20,10 @@ struct ProjectedPose {
 /// the camera or less than 5 cm in front of it.
 std::optional<ProjectedPose> project(const calib::Calibration& calibration,
                                      const msg::HandPose& pose);
+/// P alone, of any camera: its lens, and its pose as the transform from tracker space.
+std::optional<LandmarkPoints> project_landmarks(const calib::CameraModel& camera,
+                                                const glm::dmat4& camera_from_tracker,
+                                                const msg::HandPose& pose);
 /// P alone.
 std::optional<LandmarkPoints> project_landmarks(const calib::Calibration& calibration,
                                                 const msg::HandPose& pose);

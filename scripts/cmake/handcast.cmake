@@ -161,10 +161,19 @@ endfunction()
 # made by the program itself and installed with it.
 function(handcast_service name)
   handcast_program(handcast-${name} ${ARGN})
+  handcast_description(${name} ${name})
+endfunction()
+
+# handcast_instance(program name): handcast-PROGRAM --as NAME is the service NAME.
+function(handcast_instance program name)
+  handcast_description(${program} ${name} --as ${name})
+endfunction()
+
+function(handcast_description program name)
   set(folder ${CMAKE_BINARY_DIR}/share/handcast/services)
-  add_custom_command(TARGET handcast-${name} POST_BUILD
+  add_custom_command(TARGET handcast-${program} POST_BUILD
     COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
-    COMMAND handcast-${name} --describe > ${folder}/${name}.json
+    COMMAND handcast-${program} ${ARGN} --describe > ${folder}/${name}.json
     BYPRODUCTS ${folder}/${name}.json)
   install(FILES ${folder}/${name}.json DESTINATION ${HANDCAST_INSTALL_SHAREDIR}/services)
 endfunction()

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
@@ -31,6 +32,7 @@ struct PlayedPictures {
 
 /// How a recording is to be played.
 struct PlayedAs {
+  std::string stream;               ///< of a recording that has several: "camera2.frames"
   int width_px = 0, height_px = 0;  ///< of the calibration's image
   std::uint32_t calibration = 0;    ///< its id
   std::int64_t exposure_ns = 0;     ///< if the recording does not say it

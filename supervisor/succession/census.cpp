@@ -52,7 +52,12 @@ std::int64_t number_in(std::string_view environment, std::string_view variable) 
   return number;
 }
 
+/// The instance that --as names on its command line, or else the name of its program.
 std::string service_name(const std::filesystem::path& process) {
+  constexpr std::string_view kInstance("\0--as\0", 6);
+  const auto words = proc_text(process / "cmdline");
+  if (const auto option = words.find(kInstance); option != std::string::npos)
+    return words.substr(option + kInstance.size()).c_str();
   std::error_code error;
   auto program = std::filesystem::read_symlink(process / "exe", error).filename().string();
   if (const auto deleted = program.find(" (deleted)"); deleted != std::string::npos)

@@ -25,7 +25,7 @@ namespace {
 class Keeper {
  public:
   /// `session` streams into `mailbox`. `device`: where to look for it when it is lost.
-  Keeper(Device device, const config::Camera& settings, const calib::Calibration& calibration,
+  Keeper(Device device, const config::Camera& settings, const calib::PlacedCamera& camera,
          std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox);
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
@@ -49,7 +49,7 @@ class Keeper {
 
   Device device_;
   config::Camera settings_;
-  calib::Calibration calibration_;
+  calib::PlacedCamera camera_;
   std::unique_ptr<Session> session_;
   std::shared_ptr<Mailbox> mailbox_;
   Presence presence_;
@@ -68,11 +68,11 @@ std::int64_t patience_of(const config::Camera& settings) {
   return Silence::patience_of(settings.rate_hz);
 }
 
-Keeper::Keeper(Device device, const config::Camera& settings, const calib::Calibration& calibration,
+Keeper::Keeper(Device device, const config::Camera& settings, const calib::PlacedCamera& camera,
                std::unique_ptr<Session> session, std::shared_ptr<Mailbox> mailbox)
     : device_(std::move(device)),
       settings_(settings),
-      calibration_(calibration),
+      camera_(camera),
       session_(std::move(session)),
       mailbox_(std::move(mailbox)),
       presence_(device_),
@@ -114,15 +114,14 @@ void Keeper::watch() {
 
 Error Keeper::why_no_images(bool answers) const {
   if (!answers || silence_.is_broken(mailbox_->last_sign_ns()))
-    return {Errc::timeout, fmt::format("camera 'aravis': {} sends no images; it is opened again as "
+    return {Errc::timeout, fmt::format("{} sends no images; it is opened again as "
                                        "soon as it answers",
                                        device_.id)};
   if (!device_.is_gige() || !session_)
-    return {Errc::timeout,
-            fmt::format("camera 'aravis': {} answers, but none of its images arrives", device_.id)};
+    return {Errc::timeout, fmt::format("{} answers, but none of its images arrives", device_.id)};
   return {Errc::timeout,
-          fmt::format("camera 'aravis': {} answers, but none of its images arrives; packets of {} "
-                      "bytes may be too large for the network (camera.aravis.packet_bytes; 1500 "
+          fmt::format("{} answers, but none of its images arrives; packets of {} "
+                      "bytes may be too large for the network (aravis.packet_bytes; 1500 "
                       "pass nearly everywhere), or a firewall stops them",
                       device_.id, session_->accepted().packet_bytes)};
 }
@@ -150,9 +149,9 @@ void Keeper::reopen() {
   if (mailbox_->last_sign_ns() > answered_ns) return found("its images came back");
   miss_it(true);
   session_.reset();
-  auto session = Session::start(device_, settings_, calibration_, mailbox_);
+  auto session = Session::start(device_, settings_, camera_, mailbox_);
   if (!session) {
-    trouble_.say({session.error().code, fmt::format("camera 'aravis': {}", session.error().what)});
+    trouble_.say(session.error());
     return sleep_until_ns(now_ns() + Silence::kTurn_ns);
   }
   session_ = std::move(*session);
@@ -164,8 +163,7 @@ void Keeper::reopen() {
 
 void Keeper::found(std::string_view how) {
   if (trouble())
-    log::info("camera: {} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_),
-              how);
+    log::info("{} is back after {:.0f} ms: {}", device_.id, ns_to_ms(now_ns() - lost_ns_), how);
   is_lost_ = is_reopened_ = false;
   trouble_.end();
 }
@@ -183,13 +181,13 @@ namespace {
 class AravisCamera final : public Camera {
  public:
   AravisCamera(const aravis::Device& device, const config::Camera& settings,
-               const calib::Calibration& calibration, std::unique_ptr<aravis::Session> session,
+               const calib::PlacedCamera& camera, std::unique_ptr<aravis::Session> session,
                std::shared_ptr<aravis::Mailbox> mailbox)
       : format_(settings.aravis.format),
-        width_px_(calibration.camera.width_px),
-        height_px_(calibration.camera.height_px),
+        width_px_(camera.model.width_px),
+        height_px_(camera.model.height_px),
         mailbox_(mailbox),
-        keeper_(device, settings, calibration, std::move(session), std::move(mailbox)) {}
+        keeper_(device, settings, camera, std::move(session), std::move(mailbox)) {}
 
   Result<void> capture(msg::CameraFrame& frame, std::size_t tail_bytes,
                        Deadline deadline) override {
@@ -197,7 +195,7 @@ class AravisCamera final : public Camera {
     aravis::Image image;
     if (mailbox_->take(image, deadline)) return copy(image, frame);
     if (const auto trouble = keeper_.trouble()) return tl::make_unexpected(*trouble);
-    return fail(Errc::timeout, "camera 'aravis': no image before the deadline");
+    return fail(Errc::timeout, "no image before the deadline");
   }
 
  private:
@@ -206,8 +204,8 @@ class AravisCamera final : public Camera {
     std::size_t bytes = 0;
     const void* data = arv_buffer_get_data(image.buffer(), &bytes);
     if (!data || bytes < bytes_of(format_, pixels))
-      return fail(Errc::bad_data, fmt::format("camera 'aravis': an image of {} bytes instead of {}",
-                                              bytes, bytes_of(format_, pixels)));
+      return fail(Errc::bad_data, fmt::format("an image of {} bytes instead of {}", bytes,
+                                              bytes_of(format_, pixels)));
     frame.header.frame_id = image.number;
     frame.header.origin_ns = image.exposed_ns;
     frame.exposure_ns = image.exposure_ns;
@@ -227,21 +225,19 @@ class AravisCamera final : public Camera {
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_aravis(const config::Rig& rig,
-                                            const calib::Calibration& calibration,
-                                            const std::int64_t& /*epoch_ns*/) {
-  const auto device = aravis::find_device(rig.camera.aravis.device);
-  if (!device) return fail_in("camera 'aravis'", device.error());
+Result<std::unique_ptr<Camera>> open_aravis(const Opening& with) {
+  const auto device = aravis::find_device(with.settings.aravis.device);
+  if (!device) return tl::make_unexpected(device.error());
   const auto mailbox = std::make_shared<aravis::Mailbox>(1);
-  auto session = aravis::Session::start(*device, rig.camera, calibration, mailbox);
-  if (!session) return fail_in("camera 'aravis'", session.error());
+  auto session = aravis::Session::start(*device, with.settings, with.camera, mailbox);
+  if (!session) return tl::make_unexpected(session.error());
   const auto& named = (*session)->device();
   const auto& accepted = (*session)->accepted();
   log::info(
-      "camera: {} {} {}, {:.1f} Hz, exposure {:.3f} ms{}", named.vendor, named.model, named.serial,
+      "{} {} {}, {:.1f} Hz, exposure {:.3f} ms{}", named.vendor, named.model, named.serial,
       accepted.rate_hz, accepted.exposure_ms,
       accepted.packet_bytes > 0 ? fmt::format(", packets of {} bytes", accepted.packet_bytes) : "");
-  return std::make_unique<AravisCamera>(*device, rig.camera, calibration, std::move(*session),
+  return std::make_unique<AravisCamera>(*device, with.settings, with.camera, std::move(*session),
                                         mailbox);
 }
 

@@ -82,7 +82,7 @@ void Receiver::on_stream(void* receiver, ArvStreamCallbackType what, ArvBuffer*)
 void Receiver::begin_thread() const {
   pthread_setname_np(pthread_self(), "camera-stream");
   if (priority_ > 0 && !arv_make_thread_realtime(priority_))
-    log::warning("camera: the thread that receives the images has no real-time priority");
+    log::warning("the thread that receives the images has no real-time priority");
 }
 
 void Receiver::on_buffer_done(std::int64_t arrived_ns) {
@@ -154,20 +154,18 @@ Session::Session(Owned<ArvCamera> camera, Device device, const config::Camera& s
 
 Result<std::unique_ptr<Session>> Session::start(const Device& device,
                                                 const config::Camera& settings,
-                                                const calib::Calibration& calibration,
+                                                const calib::PlacedCamera& camera,
                                                 std::shared_ptr<Mailbox> mailbox) {
-  auto camera = open_device(device);
-  if (!camera) return tl::make_unexpected(camera.error());
-  const auto named = with_its_names(camera->get(), device);
+  auto opened = open_device(device);
+  if (!opened) return tl::make_unexpected(opened.error());
+  const auto named = with_its_names(opened->get(), device);
   const auto [serial, id, address, model] = names_of(named);
-  if (auto ours =
-          calib::check_device("camera", calibration.camera_device, {serial, id, address, model});
-      !ours)
+  if (auto ours = calib::check_device("camera", camera.device, {serial, id, address, model}); !ours)
     return tl::make_unexpected(ours.error());
   std::unique_ptr<Session> session(
-      new Session(std::move(*camera), named, settings, std::move(mailbox)));
-  const auto accepted = configure(session->camera_.get(), settings, calibration.camera.width_px,
-                                  calibration.camera.height_px);
+      new Session(std::move(*opened), named, settings, std::move(mailbox)));
+  const auto accepted =
+      configure(session->camera_.get(), settings, camera.model.width_px, camera.model.height_px);
   if (!accepted) return tl::make_unexpected(accepted.error());
   session->accepted_ = *accepted;
   if (const auto started = session->start_stream(); !started)

@@ -87,7 +87,7 @@ class Session {
   /// open_device() and configure(); bad_config (the calibration was made with another camera).
   static Result<std::unique_ptr<Session>> start(const Device& device,
                                                 const config::Camera& settings,
-                                                const calib::Calibration& calibration,
+                                                const calib::PlacedCamera& camera,
                                                 std::shared_ptr<Mailbox> mailbox);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

@@ -60,10 +60,9 @@ Result<Controller> open_controller(const std::string& wanted) {
   if (std::ranges::find(ports, wanted) != ports.end()) return open_at(wanted);
   if (!wanted.empty()) return open_by_serial(wanted, ports);
   if (ports.size() == 1) return open_at(ports.front());
-  return fail(
-      Errc::bad_config,
-      fmt::format("camera.leap.device: several controllers are attached, at the USB ports {}",
-                  join(ports, ", ")));
+  return fail(Errc::bad_config,
+              fmt::format("leap.device: several controllers are attached, at the USB ports {}",
+                          join(ports, ", ")));
 }
 
 Result<std::vector<std::uint8_t>> read_memory(UsbDevice& device, int address, std::size_t count) {

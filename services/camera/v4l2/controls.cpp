@@ -205,9 +205,8 @@ Result<Control> named(const Device& device, std::string_view name) {
 Result<void> set(const Device& device, const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos)
-    return fail(
-        Errc::bad_config,
-        fmt::format("camera.v4l2.controls: '{}' is not of the form name=value", assignment));
+    return fail(Errc::bad_config,
+                fmt::format("v4l2.controls: '{}' is not of the form name=value", assignment));
   const auto control = named(device, std::string_view(assignment).substr(0, equals));
   if (!control) return tl::make_unexpected(control.error());
   const auto value = value_for(*control, std::string_view(assignment).substr(equals + 1));
@@ -215,7 +214,7 @@ Result<void> set(const Device& device, const std::string& assignment) {
   const auto held = write_control(device, *control, *value);
   if (!held) return tl::make_unexpected(held.error());
   if (*held != *value)
-    log::warning("camera 'v4l2': the control {} is {} instead of {}", control->name, *held, *value);
+    log::warning("the control {} is {} instead of {}", control->name, *held, *value);
   return {};
 }
 

@@ -137,7 +137,7 @@ std::string describe(const Identity& identity) {
 
 namespace {
 
-constexpr std::string_view kRemedy = "set camera.v4l2.device to a path, a name or a bus";
+constexpr std::string_view kRemedy = "set v4l2.device to a path, a name or a bus";
 
 Result<Device> usable(Device device) {
   if (device.identity.fault.empty()) return device;

@@ -149,7 +149,7 @@ Error lacks(const Device& device, WebcamFormat wanted, Size size) {
   const auto formats = formats_of(device.fd.get());
   return {Errc::bad_config,
           fmt::format("{} has no {} of {}x{} px, the size in the calibration; it has {}; set "
-                      "camera.v4l2.format or calibrate the camera in one of these sizes",
+                      "v4l2.format or calibrate the camera in one of these sizes",
                       describe(device.identity),
                       wanted == WebcamFormat::automatic ? "image that handcast reads"
                                                         : fmt::format("{} image", word_of(wanted)),

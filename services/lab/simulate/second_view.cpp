@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "config/second_view.hpp"
-
 namespace handcast::simulate {
 
 void BackToBack::until(std::int64_t now_ns, std::vector<SensorEvent>& events) {
@@ -62,11 +60,10 @@ Result<std::unique_ptr<SecondView>> SecondView::open(const config::Rig& rig,
                                                      const calib::Calibration& calibration) {
   const auto views = pose::stereo::views_of(calibration);
   if (!views) return tl::make_unexpected(views.error());
-  const auto seen_rig = config::seen_by_second(rig);
-  const auto seen = calib::second_view(calibration);
-  auto twin = twin::Twin::create(seen_rig, seen);
+  constexpr auto kSecond = config::Viewpoint::second;
+  auto twin = twin::Twin::create(rig, calibration, kSecond);
   if (!twin) return tl::make_unexpected(twin.error());
-  auto detector = open_frame_detector(seen_rig, seen, **twin);
+  auto detector = open_frame_detector(rig, calibration, **twin, kSecond);
   if (!detector) return fail_in("the second view", detector.error());
   auto tracker =
       pose::stereo::StereoTracker::open(rig, *views, glm::inverse(calibration.camera_from_tracker));

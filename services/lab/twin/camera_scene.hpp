@@ -30,8 +30,8 @@ using TruthAt = std::function<std::optional<JointFrames>(Side side, std::int64_t
 /// faults. Reuses its buffers: not thread-safe.
 class CameraScene {
  public:
-  /// Copies the settings and the calibration. `seed` selects the noise and the holes.
-  CameraScene(const config::TwinImage& settings, int seed, const calib::Calibration& calibration);
+  /// Copies the settings and the camera. `seed` selects the noise and the holes.
+  CameraScene(const config::TwinImage& settings, int seed, const calib::PlacedCamera& camera);
 
   /// Sets one hand, which must outlive the scene. A hand that was not set is not drawn.
   void set_hand(Side side, const TrueHand& flesh);

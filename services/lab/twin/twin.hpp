@@ -27,11 +27,12 @@ namespace handcast::twin {
 /// epoch (virtual or real). Not thread-safe: use one object per thread.
 class Twin {
  public:
-  /// Creates the twin of a rig; copies what it needs. With calib::second_view(), the world is the
-  /// same, and camera and detector are those of the second view. Errors: those of open_motion and
-  /// of loading the hand models (bad_config).
+  /// Creates the twin of a rig; copies what it needs. Camera and detector are those of a viewpoint;
+  /// the world is the same for all. Errors: bad_config (the calibration has no such camera), those
+  /// of open_motion and of loading the hand models (bad_config).
   static Result<std::unique_ptr<Twin>> create(const config::Rig& rig,
-                                              const calib::Calibration& calibration);
+                                              const calib::Calibration& calibration,
+                                              config::Viewpoint at = config::Viewpoint::first);
   virtual ~Twin() = default;
 
   /// The true joints of one hand in tracker space; empty if there is no such hand at that time, and

@@ -32,9 +32,8 @@ Result<std::unique_ptr<Network>> open_mediapipe_network(config::Executor executo
   if (!fs::exists(file, ignored))
     return fail(
         Errc::bad_config,
-        fmt::format(
-            "'{}' is missing; scripts/get-models fetches it, or set landmarks.models to its folder",
-            file.string()));
+        fmt::format("'{}' is missing; scripts/get-models fetches it, or set models to its folder",
+                    file.string()));
   auto network = open_network(executor, file);
   if (!network) return network;
   if (!has_shapes(**network, expected))

@@ -14,7 +14,7 @@ constexpr std::int64_t kLost_ns = 100'000'000;
 void TrackerHints::push(const msg::HandPoses& poses) {
   for (std::uint32_t i = 0; i < poses.count && i < poses.hands.size(); ++i) {
     const msg::HandPose& pose = poses.hands[i];
-    if (!renderer::is_plausible(pose, calibration_.camera_from_tracker)) continue;
+    if (!renderer::is_plausible(pose, camera_.from_tracker)) continue;
     histories_[pose.side == msg::Side::left ? 0 : 1].push(poses.header.origin_ns, pose);
   }
 }
@@ -23,7 +23,7 @@ Hints TrackerHints::at(std::int64_t time_ns) const {
   Hints hints;
   for (std::size_t side = 0; side < histories_.size(); ++side)
     if (const auto pose = histories_[side].at(time_ns, kLost_ns))
-      hints[side] = renderer::project_landmarks(calibration_, *pose);
+      hints[side] = renderer::project_landmarks(camera_.model, camera_.from_tracker, *pose);
   return hints;
 }
 

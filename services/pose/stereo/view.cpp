@@ -13,13 +13,9 @@ glm::dvec2 View::project(const glm::dvec3& first_m) const {
 }
 
 Result<Views> views_of(const calib::Calibration& calibration) {
-  const auto& second = calibration.camera2;
-  if (!second)
-    return fail(
-        Errc::bad_config,
-        "the calibration has no second camera ([camera2], [camera2_from_camera]); measure it with "
-        "`handcast calibrate`");
-  return Views{View{calibration.camera}, View{second->camera, second->from_camera}};
+  const auto second = calib::camera_at(calibration, config::Viewpoint::second);
+  if (!second) return tl::make_unexpected(second.error());
+  return Views{View{calibration.camera}, View{second->model, calibration.camera2->from_camera}};
 }
 
 namespace {

@@ -22,16 +22,12 @@ std::string as_assignment(const MeasuredSetting& setting, const std::filesystem:
   return fmt::format("{}={}", setting.path, value);
 }
 
-void say_nothing(const std::string& /*renamed*/) {}
-
-/// The new text must be the rig that the old one is with --set: also where a file has a setting in
-/// an old form.
+/// The new text must be the rig that the old one is with --set.
 Result<void> check_edit(const std::filesystem::path& rig_file, const std::string& before,
                         const std::string& after, const MeasuredSetting& setting) {
-  const auto expected =
-      config::parse_rig(before, rig_file, {as_assignment(setting, rig_file)}, say_nothing);
+  const auto expected = config::parse_rig(before, rig_file, {as_assignment(setting, rig_file)});
   if (!expected) return tl::make_unexpected(expected.error());
-  const auto rig = config::parse_rig(after, rig_file, {}, say_nothing);
+  const auto rig = config::parse_rig(after, rig_file);
   if (!rig) return tl::make_unexpected(rig.error());
   if (config::print_rig(*rig) == config::print_rig(*expected)) return {};
   return fail(Errc::bad_config,

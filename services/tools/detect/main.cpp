@@ -64,9 +64,7 @@ static int run_verb(int argc, char** argv) {
       ->default_str("left");
   app.add_option("--model", options.models,
                  "The folder of MediaPipe's files; scripts/get-models fetches them");
-  app.add_option_function<std::string>(
-         "--backend", [&](const std::string& name) { detect::set_backend(options, name); },
-         detect::backend_help())
+  app.add_option("--backend", options.backend, detect::backend_help())
       ->default_str("mediapipe, or handcast without its files");
   app.add_option_function<std::string>(
          "--executor",

@@ -24,8 +24,4 @@ struct Options {
   bool quiet = false;                 ///< print no progress
 };
 
-/// Sets the landmark model. An old name is read as the current one, may set the executor as well,
-/// and is reported on stderr.
-void set_backend(Options& options, const std::string& name);
-
 }  // namespace handcast::detect
