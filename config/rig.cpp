@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "config/measured.hpp"
 #include "config/settings/files.hpp"
 #include "config/settings/frozen_file.hpp"
 #include "config/settings/load.hpp"
@@ -78,6 +80,29 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
                     file, correct.bone_short_px, correct.bone_long_px));
 }
 
+/// The values of the last text win over those of the others, and `settings` over all. The first
+/// text is the rig file.
+Result<Rig> parse_layers(std::span<const NamedText> layers,
+                         const std::vector<std::string>& settings) {
+  Rig rig;
+  const auto listing = list_settings(rig);
+  Faults faults;
+  // The folder that this process was started in may have been deleted since: what is relative to it
+  // then stays so, and is not found.
+  std::error_code gone;
+  for (const auto& [file, toml] : layers) {
+    const auto document = parse_document(toml, file);
+    if (!document) return tl::make_unexpected(document.error());
+    apply_document(*document, file, listing, faults);
+    resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
+  }
+  for (const auto& setting : settings) apply_assignment(setting, listing, faults);
+  resolve_paths(listing, std::filesystem::current_path(gone));
+  check_together(rig, layers.front().path, faults);
+  if (!faults.empty()) return tl::make_unexpected(faults.to_error());
+  return rig;
+}
+
 }  // namespace
 
 bool names_a_file(std::string_view setting) {
@@ -127,28 +152,20 @@ Process process_of(const Rig& rig, std::string_view service) {
 
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
                       const std::vector<std::string>& settings) {
-  const auto document = parse_document(toml, file.string());
-  if (!document) return tl::make_unexpected(document.error());
-
-  Rig rig;
-  const auto listing = list_settings(rig);
-  Faults faults;
-  apply_document(*document, file.string(), listing, faults);
-  // The folder that this process was started in may have been deleted since: what is relative to it
-  // then stays so, and is not found.
-  std::error_code gone;
-  resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
-  for (const auto& setting : settings) apply_assignment(setting, listing, faults);
-  resolve_paths(listing, std::filesystem::current_path(gone));
-  check_together(rig, file.string(), faults);
-  if (!faults.empty()) return tl::make_unexpected(faults.to_error());
-  return rig;
+  const NamedText whole{file.string(), toml};
+  return parse_layers({&whole, 1}, settings);
 }
 
 Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
-  const auto text = read_text(file);
-  if (!text) return tl::make_unexpected(text.error());
-  return parse_rig(*text, file, settings);
+  std::vector<NamedText> layers;
+  std::error_code unknown;
+  for (const auto& layer : {file, measured_file_of(file)}) {
+    if (!layers.empty() && !std::filesystem::exists(layer, unknown)) break;
+    auto text = read_text(layer);
+    if (!text) return tl::make_unexpected(text.error());
+    layers.push_back({layer.string(), std::move(*text)});
+  }
+  return parse_layers(layers, settings);
 }
 
 std::string print_rig(const Rig& rig) {

@@ -82,15 +82,15 @@ const Landmarks& landmarks_at(const Rig& rig, Viewpoint at);
 /// such service.
 Process process_of(const Rig& rig, std::string_view service);
 
-/// Reads a rig file and applies `settings` ("path=value") on top. Relative paths become absolute:
-/// those of the file start at its folder, those of `settings` at the current folder. Errors:
-/// bad_config, with one line for each fault, e.g. "FILE:LINE: camera.rate_hz: 0 is outside 1..2000
-/// Hz".
+/// Reads a rig file, applies the measured settings beside it (measured.hpp), and `settings`
+/// ("path=value") on top. Relative paths become absolute: those of the files start at their folder,
+/// those of `settings` at the current folder. Errors: bad_config, with one line for each fault, e.g.
+/// "FILE:LINE: camera.rate_hz: 0 is outside 1..2000 Hz".
 Result<Rig> load_rig(const std::filesystem::path& file,
                      const std::vector<std::string>& settings = {});
 
-/// Like load_rig(), from memory. `file` is used in messages, and relative paths start at its
-/// folder.
+/// Like load_rig(), from memory and without measured settings. `file` is used in messages, and
+/// relative paths start at its folder.
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
                       const std::vector<std::string>& settings = {});
 

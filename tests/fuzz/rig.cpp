@@ -3,6 +3,7 @@
 // Limits: 10 s and 1 GB per input.
 #include "config/rig.hpp"
 
+#include "config/measured.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace {
@@ -24,6 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto text = fuzz::text_of({data, size});
   const auto end = std::min(text.find('\0'), size);
   const auto settings = lines_of(text.substr(std::min(end + 1, size)));
+  const auto measured = config::parse_measured(std::string(text.substr(0, end)), "rig");
+  if (measured)
+    fuzz::require(config::parse_measured(config::print_measured(*measured), "rig").has_value());
   const auto rig = config::parse_rig(std::string(text.substr(0, end)), "/rigs/rig.toml", settings);
   if (!rig) {
     fuzz::require(rig.error().code == Errc::bad_config && !rig.error().what.empty());
