@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/lab/training/contact_sheet.hpp"
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 
 namespace handcast::landmarks::training {
 namespace {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/settings/choice.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"

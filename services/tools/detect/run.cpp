@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
 #include "services/tools/detect/draw.hpp"

@@ -3,7 +3,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/write_whole.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/tools/preview/rig_feed.hpp"
 
 namespace handcast::preview {
