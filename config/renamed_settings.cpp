@@ -10,12 +10,8 @@ namespace handcast::config {
 static constexpr std::array kRenamed{
     // The back end named what ran MediaPipe's network.
     Renamed{.old = {"landmarks.backend", "own"}, .now = {"landmarks.backend", "handcast"}},
-    Renamed{.old = {"landmarks.backend", "onednn"},
-            .now = {"landmarks.backend", "mediapipe"},
-            .also = {"landmarks.executor", "onednn"}},
-    Renamed{.old = {"landmarks.backend", "opencv"},
-            .now = {"landmarks.backend", "mediapipe"},
-            .also = {"landmarks.executor", "opencv"}},
+    Renamed{.old = {"landmarks.backend", "onednn"}, .now = {"landmarks.backend", "mediapipe"}},
+    Renamed{.old = {"landmarks.backend", "opencv"}, .now = {"landmarks.backend", "mediapipe"}},
 };
 
 std::span<const Renamed> renamed_settings() { return kRenamed; }

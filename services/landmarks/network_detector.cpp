@@ -78,8 +78,7 @@ Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
     return fail_in(fmt::format("landmarks '{}'", settings.backend), square.error());
   const auto folder = models_folder(settings.models);
   if (!folder) return fail_in("landmarks.models", folder.error());
-  auto model =
-      open_landmark_model(settings.backend, {.executor = settings.executor, .folder = *folder});
+  auto model = open_landmark_model(settings.backend, {.folder = *folder});
   if (!model) return fail_in(fmt::format("landmarks '{}'", settings.backend), model.error());
   const bool has_hints = rig.pose.backend != "none";
   // The poses of `stereo` are made from these landmarks, too, but of two views: good hints, once

@@ -2,6 +2,7 @@
 // Old forms in rig files and assignments.
 #include "config/renamed_settings.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "config/rig.hpp"
@@ -27,20 +28,16 @@ std::pair<Rig, std::vector<std::string>> read(const std::string& toml,
 TEST(RenamedSettings, TheBackEndOwnIsHandcast) {
   const auto [rig, sentences] = read("[landmarks]\nbackend = 'own'\n");
   EXPECT_EQ(rig.landmarks.backend, "handcast");
-  EXPECT_EQ(rig.landmarks.executor, Executor::onednn);
   EXPECT_THAT(sentences,
               ElementsAre("rig.toml:2: landmarks.backend = \"own\" is now \"handcast\""));
 }
 
-TEST(RenamedSettings, TheBackEndsOnednnAndOpencvAreMediapipeInThatExecutor) {
-  const auto [rig, sentences] = read("landmarks.backend = 'opencv'\n");
-  EXPECT_EQ(rig.landmarks.backend, "mediapipe");
-  EXPECT_EQ(rig.landmarks.executor, Executor::opencv);
-  EXPECT_EQ(sentences.size(), 1u);
-  const auto [other, ignored] =
-      read("landmarks.executor = 'opencv'\n", {"landmarks.backend=onednn"});
-  EXPECT_EQ(other.landmarks.backend, "mediapipe");
-  EXPECT_EQ(other.landmarks.executor, Executor::onednn) << "the later word counts";
+TEST(RenamedSettings, TheBackEndsOnednnAndOpencvAreMediapipe) {
+  for (const char* name : {"onednn", "opencv"}) {
+    const auto [rig, sentences] = read(fmt::format("landmarks.backend = '{}'\n", name));
+    EXPECT_EQ(rig.landmarks.backend, "mediapipe");
+    EXPECT_EQ(sentences.size(), 1u);
+  }
 }
 
 TEST(RenamedSettings, AnAssignmentIsReportedWithoutALine) {

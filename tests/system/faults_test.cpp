@@ -235,9 +235,6 @@ TEST_F(Faults, AnOldNameOfABackEndIsReportedOnceAndTheNewOneIsUsed) {
   EXPECT_THAT(swapped.log, HasSubstr("swap: landmarks.backend = \"own\" is now \"handcast\""));
   EXPECT_EQ(service("landmarks")["backend"], "handcast");
 
-  const auto other_executor = handcast({"swap", "landmarks", "opencv"});
-  EXPECT_EQ(other_executor.exit_code, 100);
-  EXPECT_THAT(other_executor.log, HasSubstr("but the rig has landmarks.executor = \"onednn\""));
   expect_more_light();
 }
 

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "config/sections/executor.hpp"
 #include "renderer/base/image.hpp"
 #include "services/landmarks/crop/crop.hpp"
 #include "services/landmarks/inference/network.hpp"
@@ -16,8 +15,7 @@ namespace handcast::landmarks {
 class MediapipePalmNetwork {
  public:
   /// Errors: those of open_mediapipe_network().
-  static Result<MediapipePalmNetwork> open(config::Executor executor,
-                                           const std::filesystem::path& file);
+  static Result<MediapipePalmNetwork> open(const std::filesystem::path& file);
 
   /// The regions of the palms in the image, the most certain first. Errors: bad_data.
   Result<std::vector<Region>> search(renderer::GreyView image);

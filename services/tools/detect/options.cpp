@@ -4,18 +4,14 @@
 #include <fmt/format.h>
 
 #include "config/renamed_settings.hpp"
-#include "config/settings/choice.hpp"
 
 namespace handcast::detect {
 
 void set_backend(Options& options, const std::string& name) {
   const auto report = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
   for (const auto& [setting, value] : config::current_form(
-           {"landmarks.backend", name}, "handcast detect", config::renamed_settings(), report)) {
+           {"landmarks.backend", name}, "handcast detect", config::renamed_settings(), report))
     if (setting == "landmarks.backend") options.backend = value;
-    if (setting == "landmarks.executor")
-      options.executor = config::choice_named<config::Executor>(value).value();
-  }
 }
 
 }  // namespace handcast::detect

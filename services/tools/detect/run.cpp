@@ -98,7 +98,7 @@ handcast::Result<Result> detect_in(landmarks::HandFinder& finder, const Options&
 handcast::Result<landmarks::OpenedModel> open_model(const Options& options) {
   const auto folder = landmarks::models_folder(options.models);
   if (!folder) return tl::make_unexpected(folder.error());
-  const landmarks::ModelOptions settings{.executor = options.executor, .folder = *folder};
+  const landmarks::ModelOptions settings{.folder = *folder};
   if (!options.backend.empty()) return landmarks::open_landmark_model(options.backend, settings);
   auto mediapipe = landmarks::open_landmark_model("mediapipe", settings);
   if (mediapipe || !options.models.empty()) return mediapipe;

@@ -102,7 +102,6 @@ TEST(Plan, AnOldFormOfASettingIsReportedOnceAtItsLineAndRunInItsNewForm) {
     const auto rig = rig_of(*plan, run);
     ASSERT_TRUE(rig) << rig.error().what;
     EXPECT_EQ(rig->landmarks.backend, "mediapipe");
-    EXPECT_EQ(rig->landmarks.executor, config::Executor::opencv);
   }
   const auto log = testing::internal::GetCapturedStderr();
   EXPECT_THAT(log, HasSubstr("/plans/test.toml:3: landmarks.backend = \"opencv\" is now"));
