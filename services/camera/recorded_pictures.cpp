@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/recorded_pictures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "calib/calibration.hpp"
 #include "ipc/base/log.hpp"
+#include "services/camera/played_pictures.hpp"
 #include "services/recording/about.hpp"
 
 namespace handcast::camera {

@@ -2,11 +2,8 @@
 #include <algorithm>
 
 #include "services/camera/camera.hpp"
-#include "services/camera/film_pictures.hpp"
-#include "services/camera/npy_pictures.hpp"
-#include "services/camera/png_pictures.hpp"
+#include "services/camera/played_pictures.hpp"
 #include "services/camera/read_ahead.hpp"
-#include "services/camera/recorded_pictures.hpp"
 #include "services/recording/about.hpp"
 
 namespace handcast::camera {

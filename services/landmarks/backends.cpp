@@ -55,8 +55,7 @@ DetectorChoice choose_detector(const config::Rig& rig, config::Viewpoint at) {
   // A folder that does not exist is a wrong setting and not a missing file.
   const auto folder = models_folder(settings.models);
   if (settings.fallback.empty() || !folder) return {settings.backend, {}};
-  const auto missing =
-      missing_file(settings.backend, {.executor = settings.executor, .folder = *folder});
+  const auto missing = missing_file(settings.backend, {.folder = *folder});
   if (missing.empty()) return {settings.backend, {}};
   return {settings.fallback,
           fmt::format("{0}: '{1}' is missing, so '{2}' takes the place of '{3}' ({0}.fallback)",

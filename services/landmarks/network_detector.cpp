@@ -77,8 +77,7 @@ Result<std::unique_ptr<Detector>> open_network_detector(const Opening& with) {
     return tl::make_unexpected(square.error());
   const auto folder = models_folder(settings.models);
   if (!folder) return fail_in("models", folder.error());
-  auto model =
-      open_landmark_model(settings.backend, {.executor = settings.executor, .folder = *folder});
+  auto model = open_landmark_model(settings.backend, {.folder = *folder});
   if (!model) return tl::make_unexpected(model.error());
   const bool has_hints = pose.backend != "none";
   // The poses of `stereo` are made from these landmarks, too, but of two views: good hints, once

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "ipc/base/log.hpp"
-#include "renderer/content/picture.hpp"
-#include "renderer/output/jpeg.hpp"
+#include "renderer/media/jpeg.hpp"
+#include "renderer/media/picture.hpp"
 
 namespace handcast::projector {
 namespace {

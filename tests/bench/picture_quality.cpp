@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "renderer/base/srgb.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "renderer/pipeline/pipeline.hpp"
 #include "services/lab/twin/motion.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"

@@ -92,7 +92,7 @@ std::vector<std::filesystem::path> network_files(const config::Rig& rig) {
   const auto backend = simulated_backend(rig).backend;
   for (const auto& model : landmarks::landmark_models()) {
     if (model.name != backend || !folder) continue;
-    auto files = model.files({.executor = rig.landmarks.executor, .folder = *folder});
+    auto files = model.files({.folder = *folder});
     files.push_back(*folder / landmarks::kMediapipePalmFile);  // read by each of them if it exists
     return files;
   }

@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/lab/simulate/detector_tally.hpp"
 #include "services/lab/simulate/hand_speed.hpp"
 #include "services/lab/simulate/jitter.hpp"
 #include "services/lab/simulate/photograph.hpp"
-#include "services/lab/simulate/png.hpp"
 #include "services/lab/simulate/recorder.hpp"
 #include "services/lab/simulate/recovery.hpp"
 #include "services/lab/simulate/sensor_feed.hpp"
@@ -167,8 +167,8 @@ class Products {
 
   Result<void> picture(std::int64_t frame, const msg::Projection& projection) {
     if (!photographer_ || frame % options_.picture_every != 0) return {};
-    return write_png(numbered_png(options_.frames_directory, pictures_++),
-                     photographer_->take(projection));
+    return renderer::write_png(numbered_png(options_.frames_directory, pictures_++),
+                               photographer_->take(projection));
   }
 
   const Options& options_;

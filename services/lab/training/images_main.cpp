@@ -8,7 +8,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/lab/training/generator.hpp"
 
 namespace handcast::landmarks::training {

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "config/sections/executor.hpp"
 #include "config/settings/setting_list.hpp"
 #include "ipc/base/result.hpp"
 #include "ipc/msg/hand_poses.hpp"
@@ -75,7 +74,6 @@ class LandmarkModel {
 
 /// The options of a model.
 struct ModelOptions {
-  config::Executor executor = config::Executor::onednn;  ///< the library that runs the networks
   std::filesystem::path folder;  ///< folder of MediaPipe's files; see models_folder()
   /// File of handcast's network; empty: the one that comes with handcast.
   std::filesystem::path handcast_network;
@@ -103,7 +101,7 @@ struct LandmarkModelRow {
 std::span<const LandmarkModelRow> landmark_models();
 
 /// Opens the model called `name`. Errors: bad_config (no such model; a file is missing or holds
-/// another network; the executor cannot run it).
+/// another network, or one that cannot be run).
 Result<OpenedModel> open_landmark_model(std::string_view name, const ModelOptions& options);
 
 /// The first file that the model called `name` needs and that does not exist. Empty if there is

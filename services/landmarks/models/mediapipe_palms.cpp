@@ -144,12 +144,11 @@ Region region_of_palm(const Palm& palm, const Region& shown) {
                                   in_image(palm.points[0]), in_image(palm.points[2]));
 }
 
-Result<MediapipePalmNetwork> MediapipePalmNetwork::open(config::Executor executor,
-                                                        const std::filesystem::path& file) {
+Result<MediapipePalmNetwork> MediapipePalmNetwork::open(const std::filesystem::path& file) {
   static const NetworkShapes kShapes{"the palm network",
                                      {1, kPalmSide_px, kPalmSide_px, 3},
                                      {{1, kPalmAnchors, kPalmValues}, {1, kPalmAnchors, 1}}};
-  auto network = open_mediapipe_network(executor, file, kShapes);
+  auto network = open_mediapipe_network(file, kShapes);
   if (!network) return tl::make_unexpected(network.error());
   return MediapipePalmNetwork(std::move(*network));
 }

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "config/sections/executor.hpp"
 #include "renderer/base/image.hpp"
 #include "services/landmarks/crop/crop.hpp"
 #include "services/landmarks/geometry/points.hpp"
@@ -64,8 +63,7 @@ Region region_of_palm(const Palm& palm, const Region& shown);
 class MediapipePalmNetwork {
  public:
   /// Errors: those of open_mediapipe_network().
-  static Result<MediapipePalmNetwork> open(config::Executor executor,
-                                           const std::filesystem::path& file);
+  static Result<MediapipePalmNetwork> open(const std::filesystem::path& file);
 
   /// The regions of the palms in the image, the most certain first. Errors: bad_data.
   Result<std::vector<Region>> search(renderer::GreyView image);

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/joints/leap_hand.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
@@ -168,7 +168,7 @@ handcast::Result<Result> detect_in(landmarks::HandFinder& finder, const Options&
 handcast::Result<landmarks::OpenedModel> open_model(const Options& options) {
   const auto folder = landmarks::models_folder(options.models);
   if (!folder) return tl::make_unexpected(folder.error());
-  const landmarks::ModelOptions settings{.executor = options.executor, .folder = *folder};
+  const landmarks::ModelOptions settings{.folder = *folder};
   if (!options.backend.empty()) return landmarks::open_landmark_model(options.backend, settings);
   auto mediapipe = landmarks::open_landmark_model("mediapipe", settings);
   if (mediapipe || !options.models.empty()) return mediapipe;

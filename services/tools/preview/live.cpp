@@ -9,7 +9,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "renderer/window/window.hpp"
 #include "services/tools/preview/rig_feed.hpp"
 

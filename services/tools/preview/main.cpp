@@ -8,7 +8,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/write_whole.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/tools/preview/live.hpp"
 #include "services/tools/preview/options.hpp"
 #include "services/tools/preview/rig_feed.hpp"

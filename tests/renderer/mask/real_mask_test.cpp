@@ -10,8 +10,8 @@
 #include <glm/gtx/quaternion.hpp>
 #include <optional>
 
-#include "renderer/content/picture.hpp"
 #include "renderer/mask/hand_mask.hpp"
+#include "renderer/media/picture.hpp"
 #include "renderer/predict/projected_pose.hpp"
 #include "services/joints/leap_hand.hpp"
 #include "services/recording/arrays/npy.hpp"

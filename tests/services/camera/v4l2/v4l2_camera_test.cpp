@@ -2,7 +2,7 @@
 // A webcam while it streams.
 #include <cerrno>
 
-#include "renderer/output/jpeg.hpp"
+#include "renderer/media/jpeg.hpp"
 #include "tests/services/camera/camera_contract.hpp"
 #include "tests/services/camera/v4l2/webcam_test.hpp"
 

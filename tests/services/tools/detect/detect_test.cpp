@@ -200,10 +200,9 @@ TEST_F(Detect, IsAVerbWithTheUsualExitCodes) {
   };
   EXPECT_EQ(exit_code("--help"), 0);
   const std::string image = " " + options_.images[0].string();
-  EXPECT_EQ(exit_code("--backend mediapipe --executor onednn --model " + options_.models + image),
-            0);
+  EXPECT_EQ(exit_code("--backend mediapipe --model " + options_.models + image), 0);
   EXPECT_EQ(exit_code("--backend mediapipe --model " + scratch_.path().string() + image), 100);
-  EXPECT_NE(exit_code("--executor abacus --model " + options_.models + image), 0);
+  EXPECT_NE(exit_code("--abacus --model " + options_.models + image), 0);
 }
 
 }  // namespace

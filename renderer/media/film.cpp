@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/output/film.hpp"
+#include "renderer/media/film.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

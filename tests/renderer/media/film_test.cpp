@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Films are read back with OpenCV, which knows nothing of how they were written.
-#include "renderer/output/film.hpp"
+#include "renderer/media/film.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "renderer/output/jpeg.hpp"
+#include "renderer/media/jpeg.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::renderer {

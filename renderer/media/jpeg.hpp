@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
@@ -19,5 +20,8 @@ Result<Texture> decode_jpeg(std::string_view bytes);
 /// marker at the end. Errors (bad_data), as the ends of sentences: not a JPEG image, truncated or
 /// damaged, of another size, progressive.
 Result<void> decode_grey_jpeg(std::span<const std::uint8_t> bytes, View<std::uint8_t> grey);
+
+/// A picture (RGBA8, alpha is left out) as a JPEG file, with all its colour and little loss.
+std::vector<std::uint8_t> jpeg_of(View<const std::uint32_t> picture);
 
 }  // namespace handcast::renderer

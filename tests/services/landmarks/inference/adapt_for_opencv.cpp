@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/landmarks/inference/onnx/adapt_for_opencv.hpp"
-
 #include <limits>
 #include <set>
+
+#include "tests/services/landmarks/inference/opencv_network.hpp"
 
 namespace handcast::landmarks::onnx {
 

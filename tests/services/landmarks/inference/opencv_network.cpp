@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/services/landmarks/inference/opencv_network.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,9 +9,7 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 
-#include "services/landmarks/inference/network.hpp"
-#include "services/landmarks/inference/onnx/adapt_for_opencv.hpp"
-#include "services/landmarks/inference/onnx/model.hpp"
+#include "tests/services/landmarks/inference/write_onnx.hpp"
 
 namespace handcast::landmarks {
 
@@ -32,8 +32,7 @@ std::string layer_of(const std::vector<std::string>& layers, const std::string& 
   return found == layers.end() ? std::string() : *found;
 }
 
-/// The executor `opencv`: OpenCV's dnn module with one thread. cv::setNumThreads applies to the
-/// whole process.
+/// cv::setNumThreads applies to the whole process.
 class OpencvNetwork final : public Network {
  public:
   explicit OpencvNetwork(const onnx::Model& model)
