@@ -10,7 +10,7 @@ namespace handcast::twin {
 namespace {
 
 constexpr int kIndexKnuckle = 7, kMiddleKnuckle = 12, kLittleKnuckle = 22;
-constexpr int kIndexPip = 8, kMiddlePip = 13, kFromPipToTip = 3;
+constexpr int kIndexPip = 8, kMiddlePip = 13;
 
 glm::dmat4 rigid_inverse(const glm::dmat4& m) {
   glm::dmat4 inverse(glm::transpose(glm::dmat3(m)));
