@@ -84,8 +84,8 @@ Process process_of(const Rig& rig, std::string_view service);
 
 /// Reads a rig file, applies the measured settings beside it (measured.hpp), and `settings`
 /// ("path=value") on top. Relative paths become absolute: those of the files start at their folder,
-/// those of `settings` at the current folder. Errors: bad_config, with one line for each fault, e.g.
-/// "FILE:LINE: camera.rate_hz: 0 is outside 1..2000 Hz".
+/// those of `settings` at the current folder. Errors: bad_config, with one line for each fault,
+/// e.g. "FILE:LINE: camera.rate_hz: 0 is outside 1..2000 Hz".
 Result<Rig> load_rig(const std::filesystem::path& file,
                      const std::vector<std::string>& settings = {});
 

@@ -11,11 +11,11 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr float kMemory_s = 0.04f;       ///< of the averages
-constexpr float kFade_s = 0.3f;          ///< in which an average that is not measured fades
-constexpr float kLongestStep_s = 0.02f;  ///< one frame does not count as more
-constexpr float kLeastFrontal = 0.5f;    ///< hands seen from the edge hide their own fingers
-constexpr float kFastest_px_s = 1500;    ///< landmarks that move faster are blurred
+constexpr float kMemory_s = 0.04f;             ///< of the averages
+constexpr float kFade_s = 0.3f;                ///< in which an average that is not measured fades
+constexpr float kLongestFingerStep_s = 0.02f;  ///< one frame does not count as more
+constexpr float kLeastFrontal = 0.5f;          ///< hands seen from the edge hide their own fingers
+constexpr float kFastestFinger_px_s = 1500;    ///< landmarks that move faster are blurred
 
 // Of the prior: standard deviations of the displacements, in radii of a finger. They are what the
 // landmarks of a finger share, what grows from the knuckle to the tip, and each one's own.
@@ -31,7 +31,7 @@ constexpr float kBeyondWeb = 0.85f;    ///< station of a proximal phalanx
 constexpr float kThinnest_px = 3;
 /// Of the radius. A side of the mask is within this of the drawn one; a side of the drawing is free
 /// if nothing else is within this beyond it.
-constexpr float kFarthest = 0.8f, kMargin = 0.25f;
+constexpr float kFarthestEdge = 0.8f, kEdgeMargin = 0.25f;
 constexpr float kThinner = 0.75f, kWider = 1.35f;  ///< mask / drawing, of a finger's width
 constexpr float kFoldedLength = 1;  ///< shorter phalanges, in radii, are seen from the end
 constexpr float kPalmRadius = 1.6f, kBoneRadius = 0.9f;  ///< of what may cover a side
@@ -130,10 +130,11 @@ std::optional<float> FingerOutline::across(const Finger& finger, const Bone& bon
   std::array<float, 2> wider_px{};
   for (std::size_t side = 0; side < 2; ++side) {
     const glm::vec2 way = side == 0 ? -drawn.axes.across : drawn.axes.across;
-    const glm::vec2 beyond = drawn.axes.origin + way * (drawn.half_px + kMargin * radius_px_);
+    const glm::vec2 beyond = drawn.axes.origin + way * (drawn.half_px + kEdgeMargin * radius_px_);
     if (!is_free(beyond, finger.landmark + bone.first, landmarks_px)) return std::nullopt;
-    const auto edge = edge_px(mask, drawn.axes.origin, way, (1 + kFarthest) * drawn.half_px);
-    if (!edge || std::abs(*edge - drawn.half_px) > kFarthest * drawn.half_px) return std::nullopt;
+    const auto edge = edge_px(mask, drawn.axes.origin, way, (1 + kFarthestEdge) * drawn.half_px);
+    if (!edge || std::abs(*edge - drawn.half_px) > kFarthestEdge * drawn.half_px)
+      return std::nullopt;
     wider_px[side] = *edge - drawn.half_px;
   }
   const float ratio = 1 + 0.5f * (wider_px[0] + wider_px[1]) / drawn.half_px;
@@ -149,9 +150,10 @@ std::optional<float> FingerOutline::along(const Finger& finger, const Drawn& dra
   for (const std::uint16_t v : finger.tip)
     end_px = std::max(end_px, glm::dot(vertices_px[v] - drawn.axes.origin, drawn.axes.along));
   if (end_px < drawn.half_px) return std::nullopt;  // seen from the end
-  const glm::vec2 beyond = drawn.axes.origin + drawn.axes.along * (end_px + kMargin * radius_px_);
+  const glm::vec2 beyond =
+      drawn.axes.origin + drawn.axes.along * (end_px + kEdgeMargin * radius_px_);
   if (!is_free(beyond, finger.landmark + 2, landmarks_px)) return std::nullopt;
-  const float most_px = kFarthest * radius_px_;
+  const float most_px = kFarthestEdge * radius_px_;
   const auto edge = edge_px(mask, drawn.axes.origin, drawn.axes.along, end_px + most_px);
   if (!edge || std::abs(*edge - end_px) > most_px) return std::nullopt;
   return *edge - end_px;
@@ -179,7 +181,7 @@ FingerOutline::DrawnFingers FingerOutline::look(std::span<const glm::vec2> verti
 /// displacement would let it grow from frame to frame.
 void FingerOutline::add(const std::optional<float>& seen_px, float moved_by_px, float part,
                         Lasting& average) const {
-  if (seen_px && std::abs(*seen_px + moved_by_px) < kFarthest * radius_px_)
+  if (seen_px && std::abs(*seen_px + moved_by_px) < kFarthestEdge * radius_px_)
     average.add(*seen_px + moved_by_px, part);
 }
 
@@ -187,7 +189,7 @@ void FingerOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> ver
                             const LandmarkPoints& landmarks_px, GreyView mask) {
   const float step_s =
       std::clamp(static_cast<float>(ns_to_seconds(time_ns - last_ns_)), 0.0f, 10 * kFade_s);
-  const float part = 1 - std::exp(-std::min(step_s, kLongestStep_s) / kMemory_s),
+  const float part = 1 - std::exp(-std::min(step_s, kLongestFingerStep_s) / kMemory_s),
               kept = std::exp(-step_s / kFade_s);
   const DrawnFingers all_drawn = look(vertices_px, landmarks_px);
   const bool is_shown = is_open(landmarks_px) && frontal_share(landmarks_px) > kLeastFrontal;
@@ -201,7 +203,7 @@ void FingerOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> ver
       const int end = finger.landmark + bone.first + 1;
       const float moved_px = glm::distance(landmarks_px[end], last_px_[end]);
       const auto& drawn = all_drawn[f][b];
-      if (!is_measured || !drawn || !(moved_px <= kFastest_px_s * step_s)) continue;
+      if (!is_measured || !drawn || !(moved_px <= kFastestFinger_px_s * step_s)) continue;
       add(across(finger, bone, *drawn, landmarks_px, mask),
           glm::mix(finger.across[bone.first], finger.across[bone.first + 1], bone.station), part,
           bone.across_px);

@@ -23,12 +23,12 @@ constexpr float kShared = 0.8f;  ///< what is believed of it: borders may be wro
 constexpr std::size_t kBallEnds = 2;
 constexpr float kBallShare = 0.5f;
 constexpr float kPersonMemory_s = 5, kPersonPrior_s = 0.2f;
-constexpr float kLongestStep_s = 0.1f;
-constexpr float kFastest_px_s = 1500;  ///< a palm that moves faster is blurred
-constexpr float kFarthest = 0.35f;     ///< of a border from the mask's end, in half widths
+constexpr float kLongestPalmStep_s = 0.1f;
+constexpr float kFastestPalm_px_s = 1500;  ///< a palm that moves faster is blurred
+constexpr float kFarthestBorder = 0.35f;   ///< of a border from the mask's end, in half widths
 /// What is a finger or may hide behind one, and by how much beyond a border, in lengths of the
 /// palm.
-constexpr float kFingerRadius = 0.16f, kMargin = 0.04f;
+constexpr float kFingerRadius = 0.16f, kBorderMargin = 0.04f;
 constexpr float kIsFrontal = 0.9f;
 constexpr float kShortest_px = 10;
 
@@ -71,10 +71,11 @@ std::optional<float> PalmOutline::outside(const Palm& palm, std::size_t station,
   const auto& [origin, along, across] = palm.axes;
   const glm::vec2 outwards = border == 0 ? -across : across,
                   place = origin + palm.length_px * (station_at(station) * along + drawn * across);
-  if (!is_far_from_fingers(place + kMargin * palm.length_px * outwards, landmarks_px,
+  if (!is_far_from_fingers(place + kBorderMargin * palm.length_px * outwards, landmarks_px,
                            kFingerRadius * palm.length_px))
     return std::nullopt;
-  const auto edge = edge_px(mask, place, outwards, kFarthest * std::abs(drawn) * palm.length_px);
+  const auto edge =
+      edge_px(mask, place, outwards, kFarthestBorder * std::abs(drawn) * palm.length_px);
   return edge ? std::optional(*edge / palm.length_px) : std::nullopt;
 }
 
@@ -120,13 +121,13 @@ void PalmOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> verti
   const auto palm = palm_of(px);
   if (!palm) return;
   const glm::vec2 knuckles_px = palm->axes.origin + palm->length_px * palm->axes.along;
-  const bool is_slow = glm::distance(knuckles_px, last_px_) < kFastest_px_s * since_s;
+  const bool is_slow = glm::distance(knuckles_px, last_px_) < kFastestPalm_px_s * since_s;
   last_px_ = knuckles_px;
   station_ = (station_ + 1) % kStations;  // one in each frame: a palm changes slowly
   const float step_s =
       std::clamp(static_cast<float>(
                      ns_to_seconds(time_ns - std::exchange(stations_[station_].last_ns, time_ns))),
-                 0.0f, kLongestStep_s);
+                 0.0f, kLongestPalmStep_s);
   if (is_slow && palm->frontal > kIsFrontal && is_open(px)) {
     const Section section =
         section_of(edges_, vertices_px, palm->axes, station_at(station_) * palm->length_px);
@@ -136,7 +137,7 @@ void PalmOutline::measure(std::int64_t time_ns, std::span<const glm::vec2> verti
   stations_[kBallEnds].borders[1].person = kBallShare * stations_[kBallEnds - 1].borders[1].person;
   for (std::size_t i = 0; i < kStations; ++i)
     for (Border& border : stations_[i].borders) {
-      const float most = kFarthest * std::abs(border.drawn);
+      const float most = kFarthestBorder * std::abs(border.drawn);
       border.moved = std::clamp(palm->frontal * (shared_at(i) + border.person), -most, most);
     }
 }

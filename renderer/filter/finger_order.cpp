@@ -6,16 +6,16 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kPatience_ns = 500'000'000;
+constexpr std::int64_t kOrderPatience_ns = 500'000'000;
 /// Fingers closer to their expected places than this are left as they are.
-constexpr float kFar_px = 15;
+constexpr float kFarFromOrder_px = 15;
 /// Fingers are exchanged if this share of the distance remains with the fingers exchanged.
 constexpr float kCloser = 0.3f;
 
 /// Mean distance of the seen landmarks of `finger` from the expected ones of the finger `place`.
 /// Empty if there is none to compare.
-std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected,
-                                 int finger, int place) {
+std::optional<float> order_distance_px(const msg::HandLandmarks& seen,
+                                       const ExpectedPoints& expected, int finger, int place) {
   float sum = 0;
   int count = 0;
   for (int k = 0; k < kLandmarksOfFinger; ++k) {
@@ -32,9 +32,11 @@ std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedP
 /// Empty if they cannot be compared, or one of them is at its place.
 std::optional<float> left_by_exchange(const msg::HandLandmarks& seen,
                                       const ExpectedPoints& expected, int a, int b) {
-  const auto a_a = distance_px(seen, expected, a, a), b_b = distance_px(seen, expected, b, b);
-  const auto a_b = distance_px(seen, expected, a, b), b_a = distance_px(seen, expected, b, a);
-  if (!a_a || !b_b || !a_b || !b_a || std::min(*a_a, *b_b) <= kFar_px) return std::nullopt;
+  const auto a_a = order_distance_px(seen, expected, a, a),
+             b_b = order_distance_px(seen, expected, b, b);
+  const auto a_b = order_distance_px(seen, expected, a, b),
+             b_a = order_distance_px(seen, expected, b, a);
+  if (!a_a || !b_b || !a_b || !b_a || std::min(*a_a, *b_b) <= kFarFromOrder_px) return std::nullopt;
   return (*a_b + *b_a) / (*a_a + *b_b);
 }
 
@@ -59,7 +61,7 @@ msg::HandLandmarks FingerOrder::mended(std::int64_t origin_ns, const msg::HandLa
     return seen;
   }
   if (!wrong_since_ns_) wrong_since_ns_ = origin_ns;
-  return trackers_too || origin_ns - *wrong_since_ns_ < kPatience_ns ? mended : seen;
+  return trackers_too || origin_ns - *wrong_since_ns_ < kOrderPatience_ns ? mended : seen;
 }
 
 }  // namespace handcast::renderer

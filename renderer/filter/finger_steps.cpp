@@ -6,7 +6,7 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kPatience_ns = 500'000'000;
+constexpr std::int64_t kStepPatience_ns = 500'000'000;
 constexpr float kStep_px = 8;
 constexpr float kSigmas = 2;  ///< a step must also exceed this many sigmas of the detector
 /// Shares of the step: what the landmarks' own motion may leave of it, and how much nearer to the
@@ -21,8 +21,8 @@ float typical_px(std::array<float, kLandmarksOfFinger> distances_px) {
 }
 
 /// How far the landmarks of a finger are from the expected ones. Empty if one cannot be compared.
-std::optional<float> distance_px(const msg::HandLandmarks& seen, const ExpectedPoints& expected,
-                                 int finger) {
+std::optional<float> step_distance_px(const msg::HandLandmarks& seen,
+                                      const ExpectedPoints& expected, int finger) {
   std::array<float, kLandmarksOfFinger> distances_px;
   for (int k = 0; k < kLandmarksOfFinger; ++k) {
     const int i = first_landmark(finger) + k;
@@ -58,9 +58,9 @@ FingerSteps::Verdicts FingerSteps::judge(std::int64_t origin_ns, const msg::Hand
   for (int finger = 0; finger < kFingers; ++finger) {
     auto& held_since_ns = held_since_ns_[finger];
     auto& verdict = verdicts[finger];
-    const auto step_px = distance_px(seen, expected, finger),
-               common_px = distance_px(seen, common, finger),
-               alone_px = distance_px(seen, alone, finger);
+    const auto step_px = step_distance_px(seen, expected, finger),
+               common_px = step_distance_px(seen, common, finger),
+               alone_px = step_distance_px(seen, alone, finger);
     const bool is_trackers = !held_since_ns && step_px && alone_px && *step_px > kStep_px &&
                              *alone_px < kExplained * *step_px;
     if (is_trackers) {
@@ -76,7 +76,7 @@ FingerSteps::Verdicts FingerSteps::judge(std::int64_t origin_ns, const msg::Hand
       verdict = Verdict::anew;
     } else {
       if (!held_since_ns) held_since_ns = origin_ns;
-      verdict = origin_ns - *held_since_ns < kPatience_ns ? Verdict::hold : Verdict::anew;
+      verdict = origin_ns - *held_since_ns < kStepPatience_ns ? Verdict::hold : Verdict::anew;
     }
     if (verdict == Verdict::anew) held_since_ns.reset();
   }

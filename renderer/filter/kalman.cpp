@@ -5,7 +5,7 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when it is first seen
+constexpr double kHandStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when it is first seen
 
 /// A constant-velocity Kalman filter on the landmarks themselves, without the tracker: the method
 /// that the paper compares its own with ("Temporal Filtering"), but with the time of each
@@ -13,7 +13,7 @@ constexpr double kStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when i
 class Kalman final : public CarryFilter {
  public:
   explicit Kalman(const config::Filter& settings)
-      : model_{settings.motion_process, settings.noise_px, kStartSpeed2} {}
+      : model_{settings.motion_process, settings.noise_px, kHandStartSpeed2} {}
 
   void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& seen,
                  const TrackerAt&) override {

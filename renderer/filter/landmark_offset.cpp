@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kPrior_m = 0.004;
 constexpr double kLeastSigma_px = 5;  ///< of a landmark: what lasts is more than its sigma
-constexpr double kFar_px = 8;         ///< offsets farther than this from the learned one count less
-constexpr double kLasting_s = 0.4;    ///< errors of landmarks are independent after this
+constexpr double kFarFromLearned_px =
+    8;                              ///< offsets farther than this from the learned one count less
+constexpr double kLasting_s = 0.4;  ///< errors of landmarks are independent after this
 constexpr double kMemory_s = 20;
 constexpr double kMost_m = 0.025;
 /// Sum of the flexion of a finger's joints at which it begins to teach less, and teaches nothing.
@@ -90,7 +91,7 @@ struct Shared {
 
 /// Less weight for offsets far from what all share.
 double weight_of(const Offset& offset, const Shared& shared) {
-  const double far = glm::length(offset.left_px - shared.at(offset.at_px)) / kFar_px;
+  const double far = glm::length(offset.left_px - shared.at(offset.at_px)) / kFarFromLearned_px;
   return offset.weight / (1 + far * far);
 }
 

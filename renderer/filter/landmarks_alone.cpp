@@ -6,13 +6,13 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when it is first seen
+constexpr double kAloneStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when it is first seen
 constexpr std::int64_t kFresh_ns = 80'000'000;
 
 }  // namespace
 
 LandmarksAlone::LandmarksAlone(const config::Filter& settings)
-    : model_{settings.motion_process, settings.noise_px, kStartSpeed2} {}
+    : model_{settings.motion_process, settings.noise_px, kAloneStartSpeed2} {}
 
 void LandmarksAlone::detection(std::int64_t origin_ns, const msg::HandLandmarks& seen) {
   if (origin_ns - newest_ns_ > kFresh_ns) forget();

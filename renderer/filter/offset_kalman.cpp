@@ -5,8 +5,8 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr double kStartSpeed2 = 100;  ///< (px/s)^2; an offset changes slowly
-constexpr double kGuess_px = 4;       ///< standard deviation of an offset that is a guess
+constexpr double kOffsetStartSpeed2 = 100;  ///< (px/s)^2; an offset changes slowly
+constexpr double kGuess_px = 4;             ///< standard deviation of an offset that is a guess
 
 /// A constant-velocity Kalman filter on Q - P. See `docs/method.md#filter`. The variance of a point
 /// grows while it is missing.
@@ -25,7 +25,7 @@ class OffsetKalman final : public OffsetFilter<PointTrack> {
     return track.at(time_ns);
   }
   PointTrack::Model model() const {
-    return {settings().process, settings().noise_px, kStartSpeed2};
+    return {settings().process, settings().noise_px, kOffsetStartSpeed2};
   }
 };
 

@@ -18,7 +18,7 @@ constexpr float kLeastSpread_px = 7;
 constexpr float kLeastSpread_px2 = kLeastSpread_px * kLeastSpread_px;
 /// An offset this far from the shared one has half the weight in it (Cauchy's weights): a finger
 /// that the tracker has wrong does not move the others.
-constexpr float kFar_px = 15;
+constexpr float kFarFromShared_px = 15;
 
 float given_sigma_px(const msg::Landmark& point) {
   return point.sigma_px > 0 ? std::min(point.sigma_px, kLargestSigma_px) : 0.0f;
@@ -46,7 +46,7 @@ LandmarkPoints shared_offsets(const std::array<glm::vec2, kLandmarks>& offsets_p
   Similarity hand = fit_similarity(tracker, seen, weight);
   for (int i = 0; i < kLandmarks; ++i) {
     const glm::vec2 off = seen[i] - hand(tracker[i]);
-    weight[i] *= share_beyond_noise(kFar_px * kFar_px, glm::length(off));
+    weight[i] *= share_beyond_noise(kFarFromShared_px * kFarFromShared_px, glm::length(off));
   }
   hand = fit_similarity(tracker, seen, weight);
   LandmarkPoints shared;

@@ -13,7 +13,7 @@ constexpr int kCell_px = 16;
 constexpr int kRowStep = 8;  ///< one row of eight is measured, and shares its thresholds
 /// Position between the dark and the bright mean. Nearer to the middle of the edge than the global
 /// threshold can be, which must not lose skin that is darker than the mean.
-constexpr float kRimShare = 0.35f;
+constexpr float kLocalRimShare = 0.35f;
 constexpr float kClear = 8;  ///< least distance from the dark mean: four times the least noise
 /// Weight of the means of the whole region, as a share of a full cell: it decides where a cell and
 /// its neighbours are wholly dark or wholly bright.
@@ -107,7 +107,7 @@ void LocalThreshold::measure(GreyView image, const Rect& region, int threshold) 
     const Cell& cell = cells_[i];
     const float dark = (cell.dark + kPrior * dark_mean) / (cell.dark_count + kPrior),
                 bright = (cell.bright + kPrior * bright_mean) / (cell.bright_count + kPrior);
-    const float chosen = std::max(dark + kRimShare * (bright - dark),
+    const float chosen = std::max(dark + kLocalRimShare * (bright - dark),
                                   std::min(dark + kClear, 0.5f * (dark + bright)));
     thresholds_[i] =
         std::clamp(chosen, global / kMostFactor, std::min(254.0f, global * kMostFactor));

@@ -10,7 +10,7 @@ namespace handcast::renderer {
 namespace {
 
 /// Position between the dark and the bright mean: skin that faces away from the lamp is hand too.
-constexpr double kRimShare = 0.25;
+constexpr double kGlobalRimShare = 0.25;
 /// Least difference between the means of the two classes.
 constexpr double kLeastContrast = 10;
 /// Least share of the variance between the classes. A single normal distribution has 0.64.
@@ -79,8 +79,8 @@ int choose_threshold(GreyView image, Rect region) {
   const int noise = std::max(kLeastNoise, ground - percentile(histogram, dark_share, 0.16));
   const double clear_of_noise =
       std::min<double>(ground + kNoises * noise, 0.5 * (dark_mean + bright_mean));
-  return static_cast<int>(
-      std::lround(std::max(clear_of_noise, dark_mean + kRimShare * (bright_mean - dark_mean))));
+  return static_cast<int>(std::lround(
+      std::max(clear_of_noise, dark_mean + kGlobalRimShare * (bright_mean - dark_mean))));
 }
 
 }  // namespace handcast::renderer

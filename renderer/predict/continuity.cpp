@@ -12,7 +12,8 @@ namespace handcast::renderer {
 namespace {
 
 constexpr std::int64_t kShortestSilence_ns = 25'000'000;
-constexpr std::int64_t kLongGap_ns = 50'000'000;  ///< no velocity is derived across a longer gap
+constexpr std::int64_t kGapWithoutVelocity_ns =
+    50'000'000;  ///< no velocity is derived across a longer gap
 constexpr double kMostIntervals = 2.5;
 constexpr float kSlack_m = 8e-3f;       ///< noise of the samples
 constexpr float kLeastLimit_m_s2 = 60;  ///< largest acceleration of a hand that rested
@@ -35,7 +36,7 @@ std::int64_t Continuity::patience_ns() const {
 
 bool Continuity::broken(const Sample* before, const Sample& last, const Sample& next) {
   const std::int64_t step_ns = next.origin_ns - last.origin_ns;
-  const bool gap = step_ns > std::max(kLongGap_ns, 2 * patience_ns());
+  const bool gap = step_ns > std::max(kGapWithoutVelocity_ns, 2 * patience_ns());
   interval_ns_ += static_cast<std::int64_t>(
       kLearning * static_cast<double>(std::min(step_ns, 4 * interval_ns_) - interval_ns_));
   if (gap) return true;

@@ -10,7 +10,7 @@ namespace handcast::renderer {
 namespace {
 
 /// A last frame farther away than this is not blended with.
-constexpr std::int64_t kLongGap_ns = 100'000'000;
+constexpr std::int64_t kGapWithoutBlend_ns = 100'000'000;
 
 }  // namespace
 
@@ -20,7 +20,8 @@ glm::vec2 JumpBlend::bounded(const glm::vec2& jump_px) const {
 }
 
 std::optional<std::int64_t> JumpBlend::last_ns(std::int64_t target_ns) const {
-  return last_ns_ && std::abs(target_ns - *last_ns_) <= kLongGap_ns ? last_ns_ : std::nullopt;
+  return last_ns_ && std::abs(target_ns - *last_ns_) <= kGapWithoutBlend_ns ? last_ns_
+                                                                            : std::nullopt;
 }
 
 LandmarkPoints JumpBlend::smooth(std::int64_t target_ns, const LandmarkPoints& wanted,

@@ -9,10 +9,11 @@ namespace handcast::renderer {
 namespace {
 
 constexpr int kPalm = 0, kWrist = 1;
-constexpr int kMemory = 600;  ///< tracker samples, about five seconds
-constexpr std::int64_t kForget_ns = 1'000'000'000;
+constexpr int kRememberedSamples = 600;  ///< tracker samples, about five seconds
+constexpr std::int64_t kForgetBones_ns = 1'000'000'000;
 constexpr std::array<int, 4> kKnuckles{7, 12, 17, 22};  ///< proximal joints, index to little finger
-constexpr float kLeast = 0.5f, kMost = 2.0f;            ///< limits of the stretch, against outliers
+constexpr float kLeastStretch = 0.5f,
+                kMostStretch = 2.0f;  ///< limits of the stretch, against outliers
 constexpr float kShortest_m = 1e-4f;
 
 glm::vec3 origin(const glm::mat4& frame) { return glm::vec3(frame[3]); }
@@ -38,7 +39,7 @@ float size_ratio(const JointFrames& rest, const JointFrames& posed) {
     rest_m += bone_length(rest, joint);
     posed_m += bone_length(posed, joint);
   }
-  return rest_m > kShortest_m ? std::clamp(posed_m / rest_m, kLeast, kMost) : 1.0f;
+  return rest_m > kShortest_m ? std::clamp(posed_m / rest_m, kLeastStretch, kMostStretch) : 1.0f;
 }
 
 /// The smallest rotation from unit vector `from` to unit vector `to`.
@@ -77,7 +78,7 @@ glm::mat4 onto(const Span& rest, const Span& posed, const glm::mat3& turn, float
   if (rest_m > kShortest_m && posed_m > kShortest_m) {
     const glm::vec3 axis = rest_way / rest_m;
     whole = aim(turn * axis, posed_way / posed_m) * turn *
-            stretch(axis, std::clamp(posed_m / rest_m, kLeast, kMost), width);
+            stretch(axis, std::clamp(posed_m / rest_m, kLeastStretch, kMostStretch), width);
   }
   glm::mat4 posed_from_rest(whole);
   posed_from_rest[3] = glm::vec4(posed.start - whole * rest.start, 1);
@@ -124,9 +125,9 @@ BoneFit::Person BoneFit::person_in(const JointFrames& posed) const {
 
 void BoneFit::learn(std::int64_t origin_ns, const JointFrames& posed) {
   if (!is_finite(posed)) return;
-  if (origin_ns - last_ns_ > kForget_ns) learned_ = 0;
+  if (origin_ns - last_ns_ > kForgetBones_ns) learned_ = 0;
   last_ns_ = origin_ns;
-  learned_ = std::min(learned_ + 1, kMemory);
+  learned_ = std::min(learned_ + 1, kRememberedSamples);
   const Person seen = person_in(posed);
   const float share = 1 / static_cast<float>(learned_);
   for (std::size_t finger = 0; finger < seen.base.size(); ++finger) {

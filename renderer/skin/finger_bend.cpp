@@ -19,8 +19,8 @@ constexpr double kSigma_px = 5, kWeight = 1 / (kSigma_px * kSigma_px);  ///< of 
 /// Standard deviations of the tracker's errors: what the joints of a finger share, and each its
 /// own.
 constexpr double kShared_rad = 0.15, kOwn_rad = 0.08;
-constexpr double kMost_rad = 0.6;  ///< that a joint is bent by
-constexpr double kNearest_m = 0.05;
+constexpr double kMostBend_rad = 0.6;  ///< that a joint is bent by
+constexpr double kNearestFinger_m = 0.05;
 
 /// The joints of a finger from its knuckle to its tip (of the thumb, from its base).
 using Finger = std::array<msg::Joint, kLandmarksOfFinger>;
@@ -61,7 +61,7 @@ std::optional<SeenFinger> see(const Finger& finger, FingerPoints landmarks_px,
   SeenFinger seen;
   for (int i = 0; i < kLandmarksOfFinger; ++i) {
     seen.at_m[i] = glm::dvec3(calibration.camera_from_tracker * glm::dvec4(position(finger[i]), 1));
-    if (!(seen.at_m[i].z > kNearest_m)) return std::nullopt;
+    if (!(seen.at_m[i].z > kNearestFinger_m)) return std::nullopt;
     seen.off_px[i] = glm::dvec2(landmarks_px[i]) - calibration.camera.project(seen.at_m[i]);
     if (!std::isfinite(seen.off_px[i].x + seen.off_px[i].y)) return std::nullopt;
     if (i > 0) seen.off_px[i] -= seen.off_px[0];
@@ -96,7 +96,7 @@ glm::dvec3 most_likely(const SeenFinger& finger, const calib::CameraModel& camer
     right += kWeight * (glm::transpose(px_per_rad) * finger.off_px[i]);
   }
   const glm::dvec3 likely = bends_rad + glm::inverse(normal) * right;
-  return glm::clamp(likely, glm::dvec3(-kMost_rad), glm::dvec3(kMost_rad));
+  return glm::clamp(likely, glm::dvec3(-kMostBend_rad), glm::dvec3(kMostBend_rad));
 }
 
 /// The finger with its most likely bends, by Gauss-Newton.

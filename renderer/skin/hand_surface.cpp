@@ -11,18 +11,19 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr int kWrist = 1;
-constexpr float kNearest_m = 0.02f;  ///< vertices nearer to the camera's plane are moved to here
+constexpr int kWristBone = 1;
+constexpr float kNearestVertex_m =
+    0.02f;  ///< vertices nearer to the camera's plane are moved to here
 
 /// Removes the triangles whose corners are mostly moved by the wrist and lie more than `forearm_mm`
 /// from it towards the elbow.
 HandMesh without_forearm(HandMesh mesh, double forearm_mm) {
-  const glm::mat4 wrist_from_model = glm::inverse(mesh.rest[kWrist]);
+  const glm::mat4 wrist_from_model = glm::inverse(mesh.rest[kWristBone]);
   std::vector<bool> beyond(mesh.vertex_count());
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     float on_wrist = 0;
     for (int k = 0; k < 4; ++k)
-      if (mesh.joints[v][k] == kWrist) on_wrist += mesh.weights[v][k];
+      if (mesh.joints[v][k] == kWristBone) on_wrist += mesh.weights[v][k];
     const float towards_elbow_m = (wrist_from_model * glm::vec4(mesh.positions[v], 1)).z;
     beyond[v] = on_wrist > 0.5f && towards_elbow_m * 1e3f > static_cast<float>(forearm_mm);
   }
@@ -91,8 +92,8 @@ Skinned HandSurface::pose(const msg::HandPose& pose, const config::Skin& setting
 
   const glm::mat4x3 projector_from_space(calibration.projection());
   const int count = static_cast<int>(mesh_.vertex_count());
-  project_all(&positions_m_[0].x, count, &projector_from_space[0][0], kNearest_m, &seen_px_[0].x,
-              depth_m_.data());
+  project_all(&positions_m_[0].x, count, &projector_from_space[0][0], kNearestVertex_m,
+              &seen_px_[0].x, depth_m_.data());
   if (shaded) shade_all(&normals_[0].x, count, shading, presence, light_.data());
   if (!shaded) std::fill(light_.begin(), light_.end(), presence);
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());

@@ -16,15 +16,15 @@ namespace {
 
 /// The landmarks that detectors and trackers define alike: the outer two joints of each finger.
 constexpr std::array kDefinedAlike{3, 4, 7, 8, 11, 12, 15, 16, 19, 20};
-constexpr int kWrist = 1;
+constexpr int kWristJoint = 1;
 constexpr int kShared = 4;              ///< shift, scale and roll, which differ from image to image
 constexpr int kUnknowns = kShared + 2;  ///< and the turns about the image's axes
 constexpr double kLeastSigma_px = 5;    ///< of a landmark: what lasts is more than its sigma
 constexpr double kLasting_s = 0.4;      ///< errors of landmarks are independent after this
 constexpr double kMemory_s = 10;
 constexpr double kPrior_rad = 0.05;
-constexpr double kMost_rad = 0.2;
-constexpr double kNearest_m = 0.05;
+constexpr double kMostBias_rad = 0.2;
+constexpr double kNearestHand_m = 0.05;
 
 using Row = std::array<double, kUnknowns>;
 using Normal = std::array<Row, kUnknowns>;
@@ -56,14 +56,14 @@ void OrientationBias::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   const auto in_camera = [&](int joint) {
     return glm::dvec3(calibration_.camera_from_tracker * glm::dvec4(at(pose, joint), 1));
   };
-  const glm::dvec3 wrist = in_camera(kWrist);
+  const glm::dvec3 wrist = in_camera(kWristJoint);
   const auto& camera = calibration_.camera;
   Normal normal{};
   Row right{};
   for (const int i : kDefinedAlike) {
     const glm::dvec3 joint = in_camera(msg::kJointOfLandmark[i]);
     const auto& point = seen.points[i];
-    if (!was_seen(point) || !(joint.z > kNearest_m) || !(wrist.z > kNearest_m)) continue;
+    if (!was_seen(point) || !(joint.z > kNearestHand_m) || !(wrist.z > kNearestHand_m)) continue;
     const glm::dvec2 from = camera.project(joint), way = from - camera.project(wrist),
                      offset = glm::dvec2(point.x_px, point.y_px) - from;
     const double sigma = std::hypot(kLeastSigma_px, point.sigma_px), weight = 1 / (sigma * sigma);
@@ -92,7 +92,8 @@ void OrientationBias::learn(std::int64_t origin_ns, const msg::HandPose& pose,
   }
   const glm::dmat3 prior(1 / (kPrior_rad * kPrior_rad));
   angle_rad_ = glm::inverse(information_ + prior) * weighted_;
-  if (!(glm::length(angle_rad_) < kMost_rad)) angle_rad_ *= kMost_rad / glm::length(angle_rad_);
+  if (!(glm::length(angle_rad_) < kMostBias_rad))
+    angle_rad_ *= kMostBias_rad / glm::length(angle_rad_);
 }
 
 msg::HandPose OrientationBias::turned(const msg::HandPose& pose) const {
@@ -103,7 +104,7 @@ msg::HandPose OrientationBias::turned(const msg::HandPose& pose) const {
   const glm::dmat3 turn(
       glm::rotate(glm::dmat4(1), angle, tracker_from_camera * (angle_rad_ / angle)));
   const glm::quat quaternion(glm::quat_cast(turn));
-  const glm::dvec3 wrist = at(pose, kWrist);
+  const glm::dvec3 wrist = at(pose, kWristJoint);
   msg::HandPose result = pose;
   for (int j = 0; j < msg::kJoints; ++j) {
     auto& joint = result.joints[static_cast<std::size_t>(j)];

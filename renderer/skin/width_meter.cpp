@@ -20,14 +20,14 @@ constexpr float kThinnest_px = 4;  ///< bones smaller than this are not measured
 /// Length / width as modelled; shorter bones are seen from the end.
 constexpr float kShortest = 1.3f;
 constexpr float kFastest_px_s = 400;  ///< faster hands are blurred and their masks lag
-constexpr float kLeast = 0.75f, kMost = 1.35f;
-constexpr int kMemory = 600, kEnough = 12;  ///< measurements of one bone
+constexpr float kLeastWidth = 0.75f, kMostWidth = 1.35f;
+constexpr int kRememberedWidths = 600, kEnough = 12;  ///< measurements of one bone
 constexpr std::size_t kFewestBones = 3;
 /// Limits of the factor. What is drawn too wide is cut off by the mask; what is drawn too thin must
 /// be filled, so fingers are hardly made thinner.
 constexpr float kThinnest = 0.93f, kThickest = 1.2f;
 constexpr float kStep = 0.005f;  ///< largest change of the factor per frame, so it does not jump
-constexpr std::int64_t kForget_ns = 1'000'000'000;
+constexpr std::int64_t kForgetWidths_ns = 1'000'000'000;
 
 /// The distance from `start` in direction `way` (unit) to the end of the mask. Empty if it does not
 /// end within `most_px`.
@@ -82,7 +82,7 @@ WidthMeter::WidthMeter(const HandMesh& mesh) {
 void WidthMeter::measure(std::int64_t time_ns, std::span<const glm::vec2> projected_px,
                          const LandmarkPoints& landmarks_px, GreyView mask) {
   const std::int64_t step_ns = time_ns - last_ns_;
-  if (step_ns > kForget_ns) forget();
+  if (step_ns > kForgetWidths_ns) forget();
   const float still_px = kFastest_px_s * static_cast<float>(ns_to_seconds(step_ns));
   for (Bone& bone : bones_) {
     if (glm::distance(landmarks_px[bone.landmark], last_px_[bone.landmark]) > still_px) continue;
@@ -116,7 +116,7 @@ std::optional<float> WidthMeter::ratio_at(const Bone& bone, std::span<const glm:
              right_px = reach_px(mask, middle, -across, drawn_px);
   if (!left_px || !right_px) return std::nullopt;
   const float ratio = (*left_px + *right_px) / drawn_px;
-  return ratio > kLeast && ratio < kMost ? std::optional(ratio) : std::nullopt;
+  return ratio > kLeastWidth && ratio < kMostWidth ? std::optional(ratio) : std::nullopt;
 }
 
 void WidthMeter::forget() {
@@ -140,9 +140,10 @@ std::optional<float> WidthMeter::typical() const {
 }
 
 void WidthMeter::Bone::note(float factor) {
-  const float place = (std::clamp(factor, kLeast, kMost) - kLeast) / (kMost - kLeast);
+  const float place =
+      (std::clamp(factor, kLeastWidth, kMostWidth) - kLeastWidth) / (kMostWidth - kLeastWidth);
   ++seen[static_cast<std::size_t>(std::lround(place * static_cast<float>(seen.size() - 1)))];
-  if (++count < kMemory) return;
+  if (++count < kRememberedWidths) return;
   count = 0;
   for (int& bin : seen) count += bin /= 2;
 }
@@ -150,7 +151,8 @@ void WidthMeter::Bone::note(float factor) {
 float WidthMeter::Bone::median() const {
   std::size_t bin = 0;
   for (int below = seen[0]; 2 * below < count && bin + 1 < seen.size(); below += seen[bin]) ++bin;
-  return kLeast + (kMost - kLeast) * static_cast<float>(bin) / static_cast<float>(seen.size() - 1);
+  return kLeastWidth +
+         (kMostWidth - kLeastWidth) * static_cast<float>(bin) / static_cast<float>(seen.size() - 1);
 }
 
 }  // namespace handcast::renderer

@@ -27,7 +27,7 @@ namespace handcast::supervisor {
 namespace {
 
 /// What a program printed, and how it ended.
-struct Outcome {
+struct CheckOutcome {
   std::string output;
   int exit_code = -1;  ///< -1 if a signal ended it
   int signal = 0;      ///< 0 if it ended itself
@@ -50,7 +50,7 @@ std::optional<std::string> read_all(int fd, Deadline deadline) {
 
 /// Runs a program and waits for its end. Errors: bad_config (it cannot be started, or does not end
 /// in time), unavailable (no descriptors).
-Result<Outcome> run_and_read(const std::vector<std::string>& command, double patience_s) {
+Result<CheckOutcome> run_and_read(const std::vector<std::string>& command, double patience_s) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return fail(Errc::unavailable, std::strerror(errno));
   const UniqueFd output(ends[0]);
@@ -65,7 +65,7 @@ Result<Outcome> run_and_read(const std::vector<std::string>& command, double pat
   const auto printed =
       read_all(output.get(), Deadline::in(std::chrono::nanoseconds(seconds_to_ns(patience_s))));
   if (!printed) kill(*pid, SIGKILL);
-  Outcome outcome{printed.value_or("")};
+  CheckOutcome outcome{printed.value_or("")};
   int status = 0;
   while (waitpid(*pid, &status, 0) < 0 && errno == EINTR) {
   }

@@ -15,13 +15,13 @@
 namespace handcast::supervisor {
 namespace {
 
-struct Outcome {
+struct ControlOutcome {
   int exit_code = kExitDone;
   nlohmann::json answer;
 };
 
 /// Chooses the rig and sends it a request. Prints errors.
-Outcome send(const std::string& rig_name, const control::Request& request) {
+ControlOutcome send(const std::string& rig_name, const control::Request& request) {
   const auto rig = choose_rig(rig_name);
   if (!rig) return {complain(rig.error()), {}};
   auto answer = control::ask(*rig, request);

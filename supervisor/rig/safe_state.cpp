@@ -16,7 +16,7 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::chrono::seconds kPatience{3};
+constexpr std::chrono::seconds kSafeStatePatience{3};
 constexpr double kLook_s = 0.2;
 
 bool has_ended_by_itself(const Service& service) {
@@ -39,10 +39,10 @@ void leave_safe(const Service& service, const Launch& launch, const std::functio
   if (!pid)
     return log::error("{} --safe cannot be started: {}", program, std::strerror(pid.error()));
   const auto process = open_pidfd(*pid);
-  for (const auto limit = Deadline::in(kPatience); !ends_within(process, kLook_s);) {
+  for (const auto limit = Deadline::in(kSafeStatePatience); !ends_within(process, kLook_s);) {
     beat();
     if (!limit.passed()) continue;
-    log::error("{} --safe has not ended within {} s; killed", program, kPatience.count());
+    log::error("{} --safe has not ended within {} s; killed", program, kSafeStatePatience.count());
     send_signal(process, SIGKILL);
     ends_within(process, kLook_s);
     break;

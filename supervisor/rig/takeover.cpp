@@ -14,7 +14,7 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr auto kPatience = std::chrono::milliseconds(500);
+constexpr auto kTakeoverPatience = std::chrono::milliseconds(500);
 
 bool lives(const AdoptedRig& adopted, pid_t pid) {
   return std::ranges::any_of(
@@ -33,7 +33,7 @@ void report_deaths(const AdoptedRig& adopted, KeeperLink& keeper) {
 }  // namespace
 
 bool end_supervisor_without_keeper(const std::string& name) {
-  const auto status = control::ask_with_descriptors(name, {}, kPatience);
+  const auto status = control::ask_with_descriptors(name, {}, kTakeoverPatience);
   if (!status || !status->object["status"].value("keeper_died", false)) return false;
   const auto pid = control::listener_of(*control::address_of(name));
   const auto pidfd = pid > 0 ? open_pidfd(pid) : UniqueFd();

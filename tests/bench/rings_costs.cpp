@@ -13,10 +13,10 @@
 namespace handcast::bench {
 namespace {
 
-constexpr int kSlots = 8;
+constexpr int kCostSlots = 8;
 constexpr int kBatches = 400, kPerBatch = 500;
 
-using Reader = ipc::Reader<Block>;
+using CostReader = ipc::Reader<Block>;
 using Writer = ipc::Writer<Block>;
 
 double median_ns(const std::function<void()>& work) {
@@ -29,11 +29,11 @@ double median_ns(const std::function<void()>& work) {
 }
 
 ipc::Segment make_ring(std::size_t bytes) {
-  return must(ipc::Segment::create(ipc::RingSpec::of<Block>("bench", kSlots, false, bytes)));
+  return must(ipc::Segment::create(ipc::RingSpec::of<Block>("bench", kCostSlots, false, bytes)));
 }
 
 void read_without_end(const ipc::Segment& segment) {
-  auto reader = must(Reader::attach(again(segment), ipc::Wait::spin));
+  auto reader = must(CostReader::attach(again(segment), ipc::Wait::spin));
   for (;;) reader.latest(Deadline::in(std::chrono::seconds(1)));
 }
 
@@ -41,9 +41,9 @@ void read_without_end(const ipc::Segment& segment) {
 
 double loan_and_publish_ns(int readers, bool busy) {
   const auto segment = make_ring(sizeof(Block));
-  std::vector<Reader> attached;
+  std::vector<CostReader> attached;
   for (int i = busy ? 1 : 0; i < readers; ++i)
-    attached.push_back(must(Reader::attach(again(segment))));
+    attached.push_back(must(CostReader::attach(again(segment))));
   std::optional<Process> other;
   if (busy) other.emplace(1, [&] { read_without_end(segment); });
   auto writer = must(Writer::attach(again(segment)));
@@ -52,7 +52,7 @@ double loan_and_publish_ns(int readers, bool busy) {
 
 double take_ns(std::size_t bytes, ipc::Hold hold) {
   const auto segment = make_ring(bytes);
-  auto reader = must(Reader::attach(again(segment), ipc::Wait::futex, hold));
+  auto reader = must(CostReader::attach(again(segment), ipc::Wait::futex, hold));
   auto writer = must(Writer::attach(again(segment)));
   auto block = writer.loan();
   fill(*block, 1, bytes);

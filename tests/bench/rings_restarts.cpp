@@ -19,7 +19,7 @@
 namespace handcast::bench {
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(10);
+constexpr auto kRestartPatience = std::chrono::seconds(10);
 constexpr std::int64_t kLook_every_ns = 20'000;
 
 /// Each from the kill.
@@ -32,7 +32,7 @@ void kill_one(const BareRig& rig, const std::string& service, Restarts& restarts
   const auto view = rig.view_of(rig.streams().at(service));
   const auto epoch = view.epoch();
   const auto victim = rig.pid_of(service);
-  const auto limit = Deadline::in(kPatience);
+  const auto limit = Deadline::in(kRestartPatience);
   const auto killed_ns = now_ns();
   ::kill(victim, SIGKILL);
   while (view.epoch() == epoch) {

@@ -12,7 +12,7 @@ namespace handcast::camera::leap {
 namespace {
 
 constexpr std::uint16_t kVendor = 0xf182, kProduct = 0x0003;
-constexpr int kControlInterface = 0, kStreamingInterface = 1;
+constexpr int kControlInterface = 0, kOpenedStreamingInterface = 1;
 constexpr unsigned kPatience_ms = 500;
 
 std::string port_of(libusb_device* device) {
@@ -50,7 +50,7 @@ std::span<const std::uint8_t> extra_of(const libusb_config_descriptor& config, i
 
 UsbHandle::~UsbHandle() {
   if (device) {
-    libusb_release_interface(device, kStreamingInterface);
+    libusb_release_interface(device, kOpenedStreamingInterface);
     libusb_release_interface(device, kControlInterface);
     libusb_close(device);
   }
@@ -105,7 +105,7 @@ Result<UsbDevice> UsbDevice::open(const std::string& port) {
     return true;
   });
   if (code == 0) code = libusb_set_auto_detach_kernel_driver(handle->device, 1);
-  for (const int interface : {kControlInterface, kStreamingInterface})
+  for (const int interface : {kControlInterface, kOpenedStreamingInterface})
     if (code == 0) code = libusb_claim_interface(handle->device, interface);
   if (code == 0) return UsbDevice(std::move(handle));
   auto error = usb_error(code, *handle, "opening it");
@@ -143,7 +143,7 @@ Result<StreamDescription> UsbDevice::describe() const {
   const int code = libusb_get_active_config_descriptor(libusb_get_device(handle_->device), &config);
   if (code != 0) return tl::make_unexpected(usb_error(code, *handle_, "reading its description"));
   auto description = parse_descriptors(extra_of(*config, kControlInterface),
-                                       extra_of(*config, kStreamingInterface));
+                                       extra_of(*config, kOpenedStreamingInterface));
   libusb_free_config_descriptor(config);
   return description;
 }

@@ -10,13 +10,13 @@ namespace {
 constexpr double kFlesh_m = 0.02, kBehind_m = 0.008;
 
 /// A landmark in a view.
-struct SeenJoint {
+struct SeenPoint {
   glm::dvec2 px;
   double depth_m;
 };
 
-std::array<SeenJoint, msg::kLandmarks> seen_in(const PosedHand& hand, const View& view) {
-  std::array<SeenJoint, msg::kLandmarks> seen;
+std::array<SeenPoint, msg::kLandmarks> seen_in(const PosedHand& hand, const View& view) {
+  std::array<SeenPoint, msg::kLandmarks> seen;
   for (int i = 0; i < msg::kLandmarks; ++i) {
     const glm::dvec3& place_m = hand.place_m[msg::kJointOfLandmark[i]];
     seen[i] = {view.project(place_m), std::max(view.in_view(place_m).z, View::kNearest_m)};
@@ -25,7 +25,7 @@ std::array<SeenJoint, msg::kLandmarks> seen_in(const PosedHand& hand, const View
 }
 
 /// A bone ends at each landmark but the wrist's: those of the palm begin at the wrist.
-bool hides(const SeenJoint& from, const SeenJoint& to, double focal_px, const SeenJoint& point) {
+bool hides(const SeenPoint& from, const SeenPoint& to, double focal_px, const SeenPoint& point) {
   const glm::dvec2 bone_px = to.px - from.px;
   const double share = std::clamp(
       glm::dot(point.px - from.px, bone_px) / std::max(glm::dot(bone_px, bone_px), 1e-9), 0.0, 1.0);

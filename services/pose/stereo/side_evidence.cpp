@@ -14,7 +14,7 @@ namespace {
 constexpr double kSideErrorsLast_s = 0.4;
 /// From comparison to comparison, until the side is sure and then.
 constexpr std::int64_t kOften_ns = 50'000'000, kRarely_ns = 400'000'000;
-constexpr double kSure = 4, kMostLogOdds = 8;
+constexpr double kSure = 4, kMostEvidence = 8;
 /// Of one comparison. Landmarks are less independent than their costs say: these differ by 12 to
 /// 200 (3 where hands cross) between a hand and its mirror image, by 6 to 19 if the network took it
 /// for the other one.
@@ -57,7 +57,7 @@ void SideEvidence::forget() {
 }
 
 void SideEvidence::add(double log_odds) {
-  log_odds_ = std::clamp(log_odds_ + log_odds, -kMostLogOdds, kMostLogOdds);
+  log_odds_ = std::clamp(log_odds_ + log_odds, -kMostEvidence, kMostEvidence);
 }
 
 }  // namespace handcast::pose::stereo

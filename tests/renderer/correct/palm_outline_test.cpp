@@ -10,7 +10,7 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kFrame_ns = 2'000'000;
+constexpr std::int64_t kPalmFrame_ns = 2'000'000;
 
 class PalmOutlineTest : public testing::Test {
  protected:
@@ -39,7 +39,7 @@ class PalmOutlineTest : public testing::Test {
   std::vector<glm::vec2> drawn() const { return drawn(hand_.landmarks_px); }
 
   void look_at(const Image<std::uint8_t>& mask, int frames, const LandmarkPoints& landmarks) {
-    for (int i = 0; i < frames; ++i, time_ns_ += kFrame_ns)
+    for (int i = 0; i < frames; ++i, time_ns_ += kPalmFrame_ns)
       outline_.measure(time_ns_, drawn(landmarks), landmarks, mask.view());
   }
   void look_at(const Image<std::uint8_t>& mask, int frames) {

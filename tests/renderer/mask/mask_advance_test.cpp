@@ -27,7 +27,7 @@ struct MovingHand {
 };
 
 /// Hands at a time, as messages and as the camera's image. At most two hands, which do not overlap.
-struct Scene {
+struct AdvanceScene {
   calib::Calibration calibration = rig_above_hand();
   std::vector<MovingHand> hands;
 
@@ -45,7 +45,7 @@ struct Scene {
 
 using Pixels = Image<std::uint32_t>;  ///< projector pixels, 0 if less than half of it is lit
 
-Pixels light_of(const Scene& scene, bool advance) {
+Pixels light_of(const AdvanceScene& scene, bool advance) {
   config::Cascade settings;
   settings.correct.method = config::CorrectMethod::none;
   settings.mask.advance = advance;
@@ -63,7 +63,7 @@ Pixels light_of(const Scene& scene, bool advance) {
 }
 
 /// The hands at the time of the photons.
-Pixels truth_of(const Scene& scene) {
+Pixels truth_of(const AdvanceScene& scene) {
   const auto image = scene.image(kTarget_ns);
   Image<std::uint8_t> grey(scene.calibration.projector_width_px,
                            scene.calibration.projector_height_px);
@@ -75,7 +75,7 @@ Pixels truth_of(const Scene& scene) {
 }
 
 /// Projector row of the wrist at the target time. Below it is the arm, which gets no light.
-int wrist_row(const Scene& scene) {
+int wrist_row(const AdvanceScene& scene) {
   const auto [x, y, z] = scene.hands[0].at(kTarget_ns).joints[1].position_m;
   return static_cast<int>(
       scene.calibration
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Sides, MaskAdvance, ::testing::Values(Side::left, Side:
 TEST_P(MaskAdvance, TheLightOfAMovingHandIsWhereTheHandWillBe) {
   for (const glm::vec3 velocity_m_s :
        {glm::vec3(0.8f, 0, 0), glm::vec3(-0.8f, 0, 0), glm::vec3(0.3f, 0, 0.6f)}) {
-    const Scene scene{.hands = {{GetParam(), velocity_m_s, {}}}};
+    const AdvanceScene scene{.hands = {{GetParam(), velocity_m_s, {}}}};
     const Pixels with = light_of(scene, true), without = light_of(scene, false),
                  truth = truth_of(scene);
     const int last_row = wrist_row(scene);
@@ -128,7 +128,7 @@ TEST_P(MaskAdvance, TheLightOfAMovingHandIsWhereTheHandWillBe) {
 
 TEST_P(MaskAdvance, AtTheImagesEdgeItMovesAsTheLensShowsIt) {
   for (const float way : {-1.0f, 1.0f}) {
-    const Scene scene{.hands = {{GetParam(), {1.5f * way, 0, 0}, {0.09f * way, 0, 0}}}};
+    const AdvanceScene scene{.hands = {{GetParam(), {1.5f * way, 0, 0}, {0.09f * way, 0, 0}}}};
     const Pixels with = light_of(scene, true), truth = truth_of(scene);
     const int last_row = wrist_row(scene);
     EXPECT_LT(glm::distance(centroid(with, 0, with.width(), last_row),
@@ -139,7 +139,7 @@ TEST_P(MaskAdvance, AtTheImagesEdgeItMovesAsTheLensShowsIt) {
 }
 
 TEST_P(MaskAdvance, AStillHandGetsTheSameLight) {
-  const Scene scene{.hands = {{GetParam(), {}, {0.02f, 0, 0}}}};
+  const AdvanceScene scene{.hands = {{GetParam(), {}, {0.02f, 0, 0}}}};
   const Pixels with = light_of(scene, true), without = light_of(scene, false);
   int lit = 0, other = 0;
   for (std::size_t i = 0; i < with.pixels().size(); ++i) {
@@ -151,8 +151,8 @@ TEST_P(MaskAdvance, AStillHandGetsTheSameLight) {
 }
 
 TEST(TwoMasks, EachHandsMaskMovesWithItsOwnHand) {
-  const Scene scene{.hands = {{Side::left, {-0.5f, 0, 0}, {-0.09f, 0, 0}},
-                              {Side::right, {0.5f, 0, 0}, {0.09f, 0, 0}}}};
+  const AdvanceScene scene{.hands = {{Side::left, {-0.5f, 0, 0}, {-0.09f, 0, 0}},
+                                     {Side::right, {0.5f, 0, 0}, {0.09f, 0, 0}}}};
   const Pixels with = light_of(scene, true), without = light_of(scene, false),
                truth = truth_of(scene);
   const int last_row = wrist_row(scene), middle = truth.width() / 2;

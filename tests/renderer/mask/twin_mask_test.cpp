@@ -16,7 +16,8 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr float kCut_px = 3;  ///< the boundary nearer than this to the cut at the arm is no outline
+constexpr float kTwinCut_px =
+    3;  ///< the boundary nearer than this to the cut at the arm is no outline
 
 /// The values that make the twin's images look like the real captures (docs/method.md#twin).
 config::TwinImage like_captures() {
@@ -88,7 +89,7 @@ OutlineScore worst_score(const config::TwinImage& image) {
       const auto hint = make_hint(rig, {}, *hand.then, {}, true)->hint;
       const auto score = score_outline(
           step.silhouette(camera).mask, silhouette_of(*twin, joints).view(),
-          [&](glm::vec2 at) { return glm::dot(at - hint.wrist_px, hint.to_elbow) < -kCut_px; });
+          [&](glm::vec2 at) { return glm::dot(at - hint.wrist_px, hint.to_elbow) < -kTwinCut_px; });
       worst.iou = std::min(worst.iou, score.iou);
       worst.p50_px = std::max(worst.p50_px, score.p50_px);
       worst.p95_px = std::max(worst.p95_px, score.p95_px);

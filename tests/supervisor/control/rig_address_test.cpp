@@ -18,7 +18,7 @@ using testing::IsEmpty;
 
 constexpr uid_t kSomebodyElse = 65534;
 
-void refuse(const Request&, const ControlServer::Reply& reply) { reply(failure("no")); }
+void refuse_all(const Request&, const ControlServer::Reply& reply) { reply(failure("no")); }
 
 class RigAddressTest : public Control {
  protected:
@@ -51,17 +51,17 @@ TEST_F(RigAddressTest, AnAddressNamesItsRigToTheSameUserAndScope) {
 
 TEST_F(RigAddressTest, TheNameBelongsToTheProcessThatListens) {
   EXPECT_THAT(living_rigs(), IsEmpty());
-  auto first = ControlServer::listen("desk", loop_, refuse);
+  auto first = ControlServer::listen("desk", loop_, refuse_all);
   ASSERT_TRUE(first);
   EXPECT_THAT(living_rigs(), ElementsAre("desk"));
-  const auto second = ControlServer::listen("desk", loop_, refuse);
+  const auto second = ControlServer::listen("desk", loop_, refuse_all);
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error().what, HasSubstr("'desk' is up already"));
   EXPECT_EQ(listener_of(address_of("desk").value()), getpid());
   first->reset();
   EXPECT_THAT(living_rigs(), IsEmpty());
   EXPECT_EQ(listener_of(address_of("desk").value()), -1);
-  EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse));
+  EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse_all));
 }
 
 TEST_F(RigAddressTest, ANameIsFreeAfterItsProcessWasKilled) {
@@ -71,7 +71,7 @@ TEST_F(RigAddressTest, ANameIsFreeAfterItsProcessWasKilled) {
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     auto loop = EventLoop::open().value();
-    const auto server = ControlServer::listen("desk", loop, refuse);
+    const auto server = ControlServer::listen("desk", loop, refuse_all);
     [[maybe_unused]] const auto told = write(ready[1], server ? "y" : "n", 1);
     for (;;) pause();
   }
@@ -79,10 +79,10 @@ TEST_F(RigAddressTest, ANameIsFreeAfterItsProcessWasKilled) {
   char word = 0;
   ASSERT_EQ(read(ready[0], &word, 1), 1);
   ASSERT_EQ(word, 'y');
-  EXPECT_FALSE(ControlServer::listen("desk", loop_, refuse));
+  EXPECT_FALSE(ControlServer::listen("desk", loop_, refuse_all));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse));
+  EXPECT_TRUE(ControlServer::listen("desk", loop_, refuse_all));
 }
 
 TEST_F(RigAddressTest, AnotherUsersRequestIsNotEvenRead) {
@@ -120,7 +120,7 @@ TEST_F(RigAddressTest, WhatListensInARigsNameForAnotherUserIsNotTrusted) {
   const auto answer = ask("desk", {});
   ASSERT_FALSE(answer);
   EXPECT_THAT(answer.error().what, HasSubstr("another user"));
-  const auto server = ControlServer::listen("desk", loop_, refuse);
+  const auto server = ControlServer::listen("desk", loop_, refuse_all);
   ASSERT_FALSE(server);
   EXPECT_THAT(server.error().what, HasSubstr("another user"));
   EXPECT_THAT(living_rigs(), IsEmpty());

@@ -11,13 +11,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr Exit kCrash{.signalled = true, .code = 9};
-const spare::Prepared kPrepared{.prepared_ns = seconds_to_ns(11), .sign_ns = seconds_to_ns(20)};
+constexpr Exit kReplacementCrash{.signalled = true, .code = 9};
+const spare::Prepared kReplacementPrepared{.prepared_ns = seconds_to_ns(11),
+                                           .sign_ns = seconds_to_ns(20)};
 
 event::Tick beating_at(double time_s) { return {.last_sign_ns = seconds_to_ns(time_s)}; }
 
 /// A service that keeps a standby, ready since 10 s.
-Machine ready_machine(Spare spare = spare::None{}) {
+Machine replaceable_machine(Spare spare = spare::None{}) {
   Machine machine{.state = {.worker = worker::Ready{.life = {.started_ns = seconds_to_ns(9)},
                                                     .ready_ns = seconds_to_ns(10),
                                                     .quiet_from_ns = seconds_to_ns(10)},
@@ -28,7 +29,7 @@ Machine ready_machine(Spare spare = spare::None{}) {
 
 /// A service without standby, ready since 10 s, whose replacement was started at 20 s.
 Machine replacing_machine(Replacement how = {}) {
-  auto machine = ready_machine();
+  auto machine = replaceable_machine();
   machine.rules.wants_standby = false;
   machine.at(20, event::Prepare{.how = how});
   machine.at(20, beating_at(20));
@@ -36,7 +37,7 @@ Machine replacing_machine(Replacement how = {}) {
 }
 
 TEST(NextReplacement, TheWorkerGoesOnUntilItIsPreparedThenTheyChangePlaces) {
-  auto machine = ready_machine();
+  auto machine = replaceable_machine();
   machine.rules.wants_standby = false;
   EXPECT_THAT(machine.at(20, event::Prepare{}), IsEmpty());
   EXPECT_THAT(machine.at(20, beating_at(20)), ElementsAre("spawn spare"));
@@ -76,18 +77,18 @@ TEST(NextReplacement, OneThatDiesWhileItWaitsForTheDeviceLeavesTheServiceToItsOl
   auto machine = replacing_machine({.alone = true});
   machine.at(22, event::SpareSpoke{});
   machine.at(22, event::HandOver{});
-  machine.at(22.1, event::SpareEnded{kCrash});
+  machine.at(22.1, event::SpareEnded{kReplacementCrash});
   EXPECT_THAT(machine.at(22.2, event::Ended{{.code = 0}}), ElementsAre("read last words", "spawn"));
 }
 
 TEST(NextReplacement, AStandbyOfTheSameSettingsIsOneAtOnceAndAnotherIsReplaced) {
-  auto same = ready_machine(kPrepared);
+  auto same = replaceable_machine(kReplacementPrepared);
   EXPECT_THAT(same.at(20, event::Prepare{.how = {}, .may_use_spare = true}), IsEmpty());
   EXPECT_THAT(same.at(20, event::HandOver{}), ElementsAre("hand over"));
   same.at(20.1, event::SaidReady{});
   EXPECT_EQ(same.spare(), "leaving until 23, next at 21.1") << "a new standby follows";
 
-  auto other = ready_machine(kPrepared);
+  auto other = replaceable_machine(kReplacementPrepared);
   EXPECT_THAT(other.at(20, event::Prepare{}), ElementsAre("ask spare to stop"));
   EXPECT_THAT(other.at(20, event::HandOver{}), IsEmpty());
   other.at(20.2, event::SpareEnded{{.code = 0}});
@@ -108,12 +109,12 @@ TEST(NextReplacement, OneThatFailsIsReportedAndTheWorkerGoesOn) {
 
   auto late = replacing_machine();
   EXPECT_THAT(late.at(30, beating_at(30)), testing::Contains("kill spare"));
-  EXPECT_THAT(late.at(30.1, event::SpareEnded{kCrash}),
+  EXPECT_THAT(late.at(30.1, event::SpareEnded{kReplacementCrash}),
               testing::Contains("replacement failed: was not prepared within 10 s"));
 }
 
 TEST(NextReplacement, ItsFailureBringsTheStandbyBack) {
-  auto machine = ready_machine(kPrepared);
+  auto machine = replaceable_machine(kReplacementPrepared);
   machine.at(20, event::Prepare{});
   machine.at(20.1, event::SpareEnded{{.code = 0}});
   machine.at(20.2, beating_at(20.2));
@@ -124,7 +125,7 @@ TEST(NextReplacement, ItsFailureBringsTheStandbyBack) {
 TEST(NextReplacement, AWorkerThatDiesMeanwhileIsStartedAgainAndThenReplaced) {
   auto machine = replacing_machine();
   machine.at(22, event::SpareSpoke{});
-  EXPECT_EQ(machine.at(22.5, event::Ended{kCrash}).front(), "spawn")
+  EXPECT_EQ(machine.at(22.5, event::Ended{kReplacementCrash}).front(), "spawn")
       << "only its owner lets the replacement take over";
   EXPECT_EQ(machine.at(22.6, event::HandOver{}), Machine::Texts{"hand over"});
   EXPECT_EQ(machine.worker(), "starting until 32.6, promoted");
@@ -133,7 +134,7 @@ TEST(NextReplacement, AWorkerThatDiesMeanwhileIsStartedAgainAndThenReplaced) {
 TEST(NextReplacement, ItTakesOverFromAWorkerThatWaitsOrHasGivenUp) {
   auto waiting = replacing_machine();
   waiting.state.past.deaths.streak = 3;
-  waiting.at(21, event::Ended{kCrash});
+  waiting.at(21, event::Ended{kReplacementCrash});
   ASSERT_THAT(waiting.worker(), HasSubstr("waiting"));
   auto given_up = replacing_machine();
   given_up.at(21, event::Ended{{.code = 100}});

@@ -9,7 +9,7 @@ namespace {
 using Action = Decision::Action;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr Exit kKilled{.signalled = true, .code = 9};
+constexpr Exit kKilledExit{.signalled = true, .code = 9};
 
 /// The waits in ms of `count` deaths that follow each other after `apart_ns` each, none of them
 /// healthy.
@@ -18,7 +18,7 @@ std::vector<std::int64_t> waits_of(int count, std::int64_t apart_ns) {
   DeathRecord record;
   for (int i = 0; i < count; ++i) {
     auto decision =
-        decide(record, {.died_ns = i * apart_ns, .ready_ns = std::nullopt, .exit = kKilled});
+        decide(record, {.died_ns = i * apart_ns, .ready_ns = std::nullopt, .exit = kKilledExit});
     waits_ms.push_back(decision.wait_ns / 1'000'000);
     record = decision.record;
   }
@@ -38,9 +38,10 @@ TEST(RestartPolicy, NoWaitIsLongerThanFiveSeconds) {
 
 TEST(RestartPolicy, ThirtySecondsOfHealthMakeTheNextRestartImmediateAgain) {
   const DeathRecord record{.streak = 5, .recent_ns = {}};
-  const auto almost = decide(record, {.died_ns = 30 * kSecond_ns, .ready_ns = 1, .exit = kKilled});
+  const auto almost =
+      decide(record, {.died_ns = 30 * kSecond_ns, .ready_ns = 1, .exit = kKilledExit});
   const auto healthy =
-      decide(record, {.died_ns = 30 * kSecond_ns + 1, .ready_ns = 1, .exit = kKilled});
+      decide(record, {.died_ns = 30 * kSecond_ns + 1, .ready_ns = 1, .exit = kKilledExit});
   EXPECT_EQ(almost.wait_ns, 800'000'000);
   EXPECT_EQ(healthy.wait_ns, 0);
   EXPECT_EQ(healthy.record.streak, 1);
@@ -50,16 +51,16 @@ TEST(RestartPolicy, TenDeathsWithinAMinuteAreAStormAndNineAreNot) {
   DeathRecord record;
   for (int i = 0; i < 9; ++i) {
     const auto decision =
-        decide(record, {.died_ns = i * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+        decide(record, {.died_ns = i * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilledExit});
     EXPECT_EQ(decision.action, Action::restart) << i;
     record = decision.record;
   }
   const auto tenth =
-      decide(record, {.died_ns = 59 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+      decide(record, {.died_ns = 59 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilledExit});
   EXPECT_EQ(tenth.action, Action::degrade);
   EXPECT_EQ(tenth.wait_ns, 5 * kSecond_ns);
   const auto later =
-      decide(record, {.died_ns = 61 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+      decide(record, {.died_ns = 61 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilledExit});
   EXPECT_EQ(later.action, Action::restart) << "the first deaths are more than a minute ago";
 }
 
@@ -67,15 +68,15 @@ TEST(RestartPolicy, DeathsRightAfterReadyStillAddUpToAStorm) {
   DeathRecord record;
   Decision decision;
   for (std::int64_t i = 1; i <= 10; ++i) {
-    decision = decide(record,
-                      {.died_ns = i * kSecond_ns, .ready_ns = i * kSecond_ns - 1, .exit = kKilled});
+    decision = decide(
+        record, {.died_ns = i * kSecond_ns, .ready_ns = i * kSecond_ns - 1, .exit = kKilledExit});
     record = decision.record;
   }
   EXPECT_EQ(decision.action, Action::degrade);
 }
 
 TEST(RestartPolicy, JitterMakesAWaitUpToAQuarterLonger) {
-  const Death death{.died_ns = kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled};
+  const Death death{.died_ns = kSecond_ns, .ready_ns = std::nullopt, .exit = kKilledExit};
   const DeathRecord third{.streak = 2, .recent_ns = {}};
   EXPECT_EQ(decide(third, death, 0).wait_ns, 100'000'000);
   EXPECT_EQ(decide(third, death, 0.5).wait_ns, 112'500'000);
@@ -86,8 +87,8 @@ TEST(RestartPolicy, JitterMakesAWaitUpToAQuarterLonger) {
 TEST(RestartPolicy, AStormIsRetriedSlowlyAsLongAsItLasts) {
   DeathRecord record;
   for (std::int64_t i = 0; i < 40; ++i) {
-    const auto decision =
-        decide(record, {.died_ns = i * 5 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilled});
+    const auto decision = decide(
+        record, {.died_ns = i * 5 * kSecond_ns, .ready_ns = std::nullopt, .exit = kKilledExit});
     if (i >= 9) {
       EXPECT_EQ(decision.action, Action::degrade) << i;
       EXPECT_EQ(decision.wait_ns, kLongestWait_ns) << i;

@@ -50,7 +50,7 @@ class Table : public testing::Test {
 };
 
 constexpr auto kWorks = "echo >&$HANDCAST_READY_FD; exec sleep 1000";
-constexpr auto kNeverReady = "exec sleep 1000";
+constexpr auto kSleepsForEver = "exec sleep 1000";
 constexpr auto kCannotWork = "exit 100";
 
 TEST_F(Table, AServiceMayBeginWhenItsNeedIsReady) {
@@ -75,7 +75,7 @@ TEST_F(Table, ANeedThatHasGivenUpIsNotWaitedFor) {
 }
 
 TEST_F(Table, ANeedIsWaitedForAsLongAsItMayTakeToBeReady) {
-  auto& camera = add("camera", {}, kNeverReady);
+  auto& camera = add("camera", {}, kSleepsForEver);
   auto& landmarks = add("landmarks", {"camera"}, kWorks);
   camera.start();
   const auto started_ns = camera.first_start_ns().value();
@@ -91,7 +91,7 @@ TEST_F(Table, ANeedThatIsNotInTheRigIsNoNeed) {
 
 TEST_F(Table, ARigIsUpWhenEachServiceHasBeenReadyOrHasHadItsTime) {
   auto& camera = add("camera", {}, kWorks);
-  auto& pose = add("pose", {}, kNeverReady);
+  auto& pose = add("pose", {}, kSleepsForEver);
   camera.start();
   pose.start();
   run_until([&] { return camera.state() == State::ready; });

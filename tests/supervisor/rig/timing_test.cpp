@@ -16,7 +16,7 @@
 namespace handcast::supervisor {
 namespace {
 
-config::Rig desk() {
+config::Rig timed_desk() {
   config::Rig rig;
   rig.name = "desk";
   rig.supervisor.silent_s = 2;
@@ -88,7 +88,7 @@ class Timing : public testing::Test {
   Activity seems_ = Activity::busy;
   std::uint64_t slices_ = 1;
   EventLoop loop_ = EventLoop::open().value();
-  LiveRig rig_{desk(), loop_, [](Service&, Notice) {}};
+  LiveRig rig_{timed_desk(), loop_, [](Service&, Notice) {}};
 };
 
 constexpr double kStep_s = 0.011;  // of the ticks

@@ -67,7 +67,7 @@ class Systemd : public testing::Test {
   UniqueFd socket_;
 };
 
-std::uint64_t inode_of(int fd) {
+std::uint64_t socket_inode_of(int fd) {
   struct stat status {};
   return fstat(fd, &status) == 0 ? status.st_ino : 0;
 }
@@ -104,7 +104,7 @@ TEST_F(Systemd, GetsTheRingsByTheirNames) {
   EXPECT_EQ(receive(), "FDSTOREREMOVE=1\nFDNAME=camera.frames");
   UniqueFd stored;
   EXPECT_EQ(receive(&stored), "FDSTORE=1\nFDNAME=camera.frames");
-  EXPECT_EQ(inode_of(stored.get()), inode_of(ring.get()));
+  EXPECT_EQ(socket_inode_of(stored.get()), socket_inode_of(ring.get()));
 }
 
 TEST_F(Systemd, GetsManyRingsAlsoWhenItReadsSlowly) {
@@ -153,15 +153,16 @@ TEST_F(Systemd, GivesTheRingsBackOnce) {
   if (child == 0) {
     const int first = memfd_create("a", 0), second = memfd_create("b", 0);
     dup2(first, 100), dup2(second, 101);
-    const auto a = inode_of(100), b = inode_of(101);
+    const auto a = socket_inode_of(100), b = socket_inode_of(101);
     dup2(100, 3), dup2(101, 4);
     setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
     setenv("LISTEN_FDS", "2", 1);
     setenv("LISTEN_FDNAMES", "camera.frames:pose.hands", 1);
     const auto taken = taken_from_systemd();
-    const bool right = taken.size() == 2 && taken[0].first == "camera.frames" &&
-                       inode_of(taken[0].second.get()) == a && taken[1].first == "pose.hands" &&
-                       inode_of(taken[1].second.get()) == b && fcntl(3, F_GETFD) == FD_CLOEXEC;
+    const bool right =
+        taken.size() == 2 && taken[0].first == "camera.frames" &&
+        socket_inode_of(taken[0].second.get()) == a && taken[1].first == "pose.hands" &&
+        socket_inode_of(taken[1].second.get()) == b && fcntl(3, F_GETFD) == FD_CLOEXEC;
     _exit(right && taken_from_systemd().empty() && !getenv("LISTEN_FDS") ? 0 : 1);
   }
   int status = -1;

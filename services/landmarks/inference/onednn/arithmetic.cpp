@@ -185,7 +185,7 @@ std::size_t emit_matmul(Builder& builder, const Node& node, std::span<const Node
   return 0;
 }
 
-constexpr Operator kOperators[] = {
+constexpr Operator kArithmeticOperators[] = {
     {"Add", emit_binary},           {"Sub", emit_binary},           {"Mul", emit_binary},
     {"Div", emit_binary},           {"Max", emit_binary},           {"Min", emit_binary},
     {"Relu", emit_activation},      {"Sigmoid", emit_activation},   {"Tanh", emit_activation},
@@ -199,6 +199,6 @@ constexpr Operator kOperators[] = {
 
 }  // namespace
 
-std::span<const Operator> arithmetic_operators() { return kOperators; }
+std::span<const Operator> arithmetic_operators() { return kArithmeticOperators; }
 
 }  // namespace handcast::landmarks::onednn

@@ -256,11 +256,11 @@ std::size_t emit_gemm(Builder& builder, const Node& node, std::span<const Node> 
                                                 only_candidate(operation));
 }
 
-constexpr Operator kOperators[] = {
+constexpr Operator kConvolutionOperators[] = {
     {"Conv", emit_conv}, {"ConvTranspose", emit_conv_transpose}, {"Gemm", emit_gemm}};
 
 }  // namespace
 
-std::span<const Operator> convolution_operators() { return kOperators; }
+std::span<const Operator> convolution_operators() { return kConvolutionOperators; }
 
 }  // namespace handcast::landmarks::onednn

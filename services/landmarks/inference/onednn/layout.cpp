@@ -11,7 +11,7 @@ namespace handcast::landmarks::onednn {
 
 namespace {
 
-std::size_t axis_of(const Node& node, std::int64_t axis, std::size_t rank) {
+std::size_t index_of_axis(const Node& node, std::int64_t axis, std::size_t rank) {
   const auto count = static_cast<std::int64_t>(rank);
   if (axis < -count || axis >= count) refuse(node, fmt::format("names axis {} of {}", axis, rank));
   return static_cast<std::size_t>(axis < 0 ? axis + count : axis);
@@ -42,7 +42,7 @@ std::size_t emit_transpose(Builder& builder, const Node& node, std::span<const N
   if (order.size() != rank)
     refuse(node, "has a permutation of another number of axes than its input");
   for (std::size_t i = 0; i < rank; ++i)
-    target[axis_of(node, order[i], rank)] = static_cast<int>(i);
+    target[index_of_axis(node, order[i], rank)] = static_cast<int>(i);
   if (std::find(target.begin(), target.end(), -1) != target.end())
     refuse(node, "names an axis twice");
   builder.define(node.outputs[0], {input.desc.permute_axes(target), input.buffer});
@@ -88,7 +88,7 @@ std::size_t emit_squeeze(Builder& builder, const Node& node, std::span<const Nod
   const Shape from = builder.operand(node, 0).desc.dims();
   std::vector<bool> gone(from.size(), false);
   if (const auto axes = axes_of(builder, node)) {
-    for (const std::int64_t axis : *axes) gone[axis_of(node, axis, from.size())] = true;
+    for (const std::int64_t axis : *axes) gone[index_of_axis(node, axis, from.size())] = true;
   } else {
     for (std::size_t i = 0; i < from.size(); ++i) gone[i] = from[i] == 1;
   }
@@ -105,7 +105,7 @@ std::size_t emit_unsqueeze(Builder& builder, const Node& node, std::span<const N
   const std::size_t rank = from.size() + axes.size();
   if (rank > 6) refuse(node, "has more than six axes");
   std::vector<bool> fresh(rank, false);
-  for (const std::int64_t axis : axes) fresh[axis_of(node, axis, rank)] = true;
+  for (const std::int64_t axis : axes) fresh[index_of_axis(node, axis, rank)] = true;
   if (std::count(fresh.begin(), fresh.end(), true) != static_cast<std::ptrdiff_t>(axes.size()))
     refuse(node, "names an axis twice");
   Shape shape;
@@ -122,7 +122,7 @@ std::size_t emit_concat(Builder& builder, const Node& node, std::span<const Node
     descs.push_back(parts.emplace_back(builder.operand(node, i)).desc);
   if (parts.empty()) refuse(node, "has no inputs");
   const Shape first = descs[0].dims();
-  const std::size_t axis = axis_of(node, node.integer("axis", 0), first.size());
+  const std::size_t axis = index_of_axis(node, node.integer("axis", 0), first.size());
   for (const auto& desc : descs) {
     Shape shape = desc.dims();
     if (shape.size() == first.size()) shape[axis] = first[axis];
@@ -217,7 +217,7 @@ std::size_t emit_slice(Builder& builder, const Node& node, std::span<const Node>
   Shape shape = input.desc.dims(), offsets(shape.size(), 0);
   const Cuts cuts = cuts_of(builder, node, shape.size());
   for (std::size_t i = 0; i < cuts.starts.size(); ++i) {
-    const std::size_t axis = axis_of(node, cuts.axes[i], shape.size());
+    const std::size_t axis = index_of_axis(node, cuts.axes[i], shape.size());
     const Range range = range_of(cuts.starts[i], cuts.ends[i], input.desc.dims()[axis]);
     if (range.count < 1) refuse(node, "has an empty result");
     shape[axis] = range.count;
@@ -230,7 +230,7 @@ std::size_t emit_slice(Builder& builder, const Node& node, std::span<const Node>
 std::size_t emit_split(Builder& builder, const Node& node, std::span<const Node>) {
   const Value input = builder.plain(builder.operand(node, 0));
   const Shape from = input.desc.dims();
-  const std::size_t axis = axis_of(node, node.integer("axis", 0), from.size());
+  const std::size_t axis = index_of_axis(node, node.integer("axis", 0), from.size());
   const auto count = static_cast<std::int64_t>(node.outputs.size());
   const Shape even(node.outputs.size(), from[axis] / count);
   const Shape sizes =
@@ -251,7 +251,7 @@ std::size_t emit_split(Builder& builder, const Node& node, std::span<const Node>
   return 0;
 }
 
-constexpr Operator kOperators[] = {
+constexpr Operator kLayoutOperators[] = {
     {"Identity", emit_identity},   {"Dropout", emit_identity}, {"Transpose", emit_transpose},
     {"Reshape", emit_reshape},     {"Flatten", emit_flatten},  {"Squeeze", emit_squeeze},
     {"Unsqueeze", emit_unsqueeze}, {"Concat", emit_concat},    {"Pad", emit_pad},
@@ -260,6 +260,6 @@ constexpr Operator kOperators[] = {
 
 }  // namespace
 
-std::span<const Operator> layout_operators() { return kOperators; }
+std::span<const Operator> layout_operators() { return kLayoutOperators; }
 
 }  // namespace handcast::landmarks::onednn

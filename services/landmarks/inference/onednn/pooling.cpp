@@ -109,15 +109,15 @@ std::size_t emit_resize(Builder& builder, const Node& node, std::span<const Node
   return 0;
 }
 
-constexpr Operator kOperators[] = {{"MaxPool", emit_pool},
-                                   {"AveragePool", emit_pool},
-                                   {"GlobalAveragePool", emit_global_pool},
-                                   {"GlobalMaxPool", emit_global_pool},
-                                   {"Resize", emit_resize},
-                                   {"Upsample", emit_resize}};
+constexpr Operator kPoolingOperators[] = {{"MaxPool", emit_pool},
+                                          {"AveragePool", emit_pool},
+                                          {"GlobalAveragePool", emit_global_pool},
+                                          {"GlobalMaxPool", emit_global_pool},
+                                          {"Resize", emit_resize},
+                                          {"Upsample", emit_resize}};
 
 }  // namespace
 
-std::span<const Operator> pooling_operators() { return kOperators; }
+std::span<const Operator> pooling_operators() { return kPoolingOperators; }
 
 }  // namespace handcast::landmarks::onednn

@@ -17,9 +17,9 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kMm_per_pt = 25.4 / 72;
-constexpr Board kCheckerboard{BoardKind::checkerboard, 10, 7, 20};
-constexpr Board kCircles{BoardKind::circles, 9, 6, 20};
-constexpr Board kCharuco{BoardKind::charuco, 10, 7, 20};
+constexpr Board kPrintedCheckerboard{BoardKind::checkerboard, 10, 7, 20};
+constexpr Board kPrintedCircles{BoardKind::circles, 9, 6, 20};
+constexpr Board kPrintedCharuco{BoardKind::charuco, 10, 7, 20};
 
 std::string content_of(const std::string& pdf) {
   const auto begin = pdf.find("stream\n") + 7;
@@ -66,7 +66,8 @@ GreyPicture rendered(const std::string& pdf, double px_per_mm) {
 }
 
 class EveryPdf : public testing::TestWithParam<Board> {};
-INSTANTIATE_TEST_SUITE_P(Kinds, EveryPdf, testing::Values(kCheckerboard, kCircles, kCharuco),
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryPdf,
+                         testing::Values(kPrintedCheckerboard, kPrintedCircles, kPrintedCharuco),
                          [](const auto& test) {
                            return std::string(words_of(
                                test.param.kind)[static_cast<std::size_t>(test.param.kind)]);
@@ -115,8 +116,8 @@ TEST_P(EveryPdf, HasARulerOf100Millimetres) {
 }
 
 TEST(BoardPdf, TheCaptionSaysWhatItIs) {
-  EXPECT_THAT(board_pdf(kCharuco), HasSubstr("(charuco, 10 x 7 squares of 20 mm) Tj"));
-  EXPECT_THAT(board_pdf(kCircles), HasSubstr("(circles, 9 x 6, 20 mm apart) Tj"));
+  EXPECT_THAT(board_pdf(kPrintedCharuco), HasSubstr("(charuco, 10 x 7 squares of 20 mm) Tj"));
+  EXPECT_THAT(board_pdf(kPrintedCircles), HasSubstr("(circles, 9 x 6, 20 mm apart) Tj"));
 }
 
 TEST(BoardPdf, ThePageIsTheSmallestThatHoldsTheBoard) {

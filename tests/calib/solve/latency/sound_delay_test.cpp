@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::int64_t ns(double ms) { return static_cast<std::int64_t>(ms * 1e6); }
+std::int64_t sound_ns(double ms) { return static_cast<std::int64_t>(ms * 1e6); }
 
 /// What an input without a constant voltage records of a light that toggles.
 struct Recording {
@@ -24,7 +24,7 @@ struct Recording {
     std::uniform_real_distribution<double> some(least_ms, most_ms);
     double at_ms = 1000;
     while (at_ms < 5000) {
-      toggles.push_back({ns(at_ms), toggles.size() % 2 == 0});
+      toggles.push_back({sound_ns(at_ms), toggles.size() % 2 == 0});
       at_ms += some(random);
     }
     clip.first_ns = 0;
@@ -69,7 +69,7 @@ TEST(SoundDelay, AnInputMayBeInverted) {
 TEST(SoundDelay, TheErrorOfTheClockIsInTheInterval) {
   Recording recording(7);
   const auto sure = fit_sound_delay(recording.toggles, recording.clip);
-  recording.clip.error_ns = ns(1);
+  recording.clip.error_ns = sound_ns(1);
   const auto unsure = fit_sound_delay(recording.toggles, recording.clip);
   ASSERT_TRUE(sure && unsure);
   EXPECT_NEAR(unsure->low_ms, sure->low_ms - 1, 1e-6);
@@ -111,7 +111,7 @@ TEST(SoundDelay, StepsAtUncertainTimesAreTakenUpToFiveMilliseconds) {
   for (const double scatter_ms : {4.0, 15.0}) {
     Recording recording(20);
     for (std::size_t i = 0; i < recording.toggles.size(); ++i)
-      recording.toggles[i].begin_ns += ns(scatter_ms * (static_cast<double>(i / 2 % 3) - 1));
+      recording.toggles[i].begin_ns += sound_ns(scatter_ms * (static_cast<double>(i / 2 % 3) - 1));
     const auto found = fit_sound_delay(recording.toggles, recording.clip);
     EXPECT_EQ(found.has_value(), scatter_ms < 5);
     if (found)

@@ -14,11 +14,12 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr Board kBoard{BoardKind::charuco, 10, 7, 20};
+constexpr Board kCoveredBoard{BoardKind::charuco, 10, 7, 20};
 
 BoardView seen(glm::dvec3 middle_m, glm::dvec2 tilt_rad = {0, 0}, double turn_rad = 0) {
   std::mt19937 random(1);
-  return view_of(kBoard, CameraModel{}, held(kBoard, middle_m, tilt_rad, turn_rad), 0, random);
+  return view_of(kCoveredBoard, CameraModel{}, held(kCoveredBoard, middle_m, tilt_rad, turn_rad), 0,
+                 random);
 }
 
 Coverage covered_by(const BoardView& view) {

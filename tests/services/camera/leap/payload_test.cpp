@@ -9,11 +9,12 @@
 namespace handcast::camera::leap {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using PayloadBytes = std::vector<std::uint8_t>;
 
 /// A payload with a header of 12 bytes.
-Bytes payload(bool frame_id, bool ends, std::size_t data, std::optional<std::uint32_t> stamp = {}) {
-  Bytes bytes(12 + data, 7);
+PayloadBytes payload(bool frame_id, bool ends, std::size_t data,
+                     std::optional<std::uint32_t> stamp = {}) {
+  PayloadBytes bytes(12 + data, 7);
   bytes[0] = 12;
   bytes[1] = static_cast<std::uint8_t>(0x80 | frame_id | (ends ? 2 : 0) | (stamp ? 4 : 0));
   put_32(bytes, 2, stamp.value_or(0));
@@ -32,8 +33,9 @@ TEST(Payload, ItsHeaderIsRead) {
 
 TEST(Payload, WhatIsNoHeaderIsSaid) {
   for (const auto& bytes :
-       {Bytes{}, Bytes{12}, Bytes(11, 12), Bytes{12, 0x80, 0}, Bytes{1, 0x80},
-        Bytes{2, 0x84, 1, 2, 3, 4}, Bytes{12, 0x00, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}) {
+       {PayloadBytes{}, PayloadBytes{12}, PayloadBytes(11, 12), PayloadBytes{12, 0x80, 0},
+        PayloadBytes{1, 0x80}, PayloadBytes{2, 0x84, 1, 2, 3, 4},
+        PayloadBytes{12, 0x00, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}}) {
     const auto parsed = parse_payload(bytes);
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.error().code, Errc::bad_data);
@@ -44,7 +46,9 @@ TEST(Payload, WhatIsNoHeaderIsSaid) {
 /// Images of 100 bytes in payloads of 40, 40 and 20; stamps of two images differ by 8.
 class Assembler : public testing::Test {
  protected:
-  FrameAssembler::Ended take(const Bytes& bytes) { return assembler_.take(bytes, ++time_ns_); }
+  FrameAssembler::Ended take(const PayloadBytes& bytes) {
+    return assembler_.take(bytes, ++time_ns_);
+  }
   /// Sends the payloads of an image but those in `without`. What its last one ended.
   FrameAssembler::Ended send(std::uint32_t number, std::initializer_list<int> without = {}) {
     FrameAssembler::Ended ended;

@@ -13,7 +13,7 @@
 namespace handcast::test {
 namespace {
 
-constexpr std::size_t kBufferSpace = 4 << 20, kMemory = 32 * kBufferSpace;
+constexpr std::size_t kImageSpace = 4 << 20, kMemory = 32 * kImageSpace;
 
 std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 
@@ -92,7 +92,7 @@ void EmulatedWebcam::Kernel::send(std::int64_t exposed_ns, std::int64_t arrived_
             .flags = description_.stamps | (is_broken ? V4L2_BUF_FLAG_ERROR : 0u),
             .sequence = faults_.does_not_count ? 0 : sequence,
             .stamp = timeval_of(stamp_ns)};
-  std::copy_n(bytes.begin(), buffer.bytes_used, bytes_ + index * kBufferSpace);
+  std::copy_n(bytes.begin(), buffer.bytes_used, bytes_ + index * kImageSpace);
   done_.push_back(index);
   sent_.push_back({sequence, exposed_ns, arrived_ns});
   changed_.notify_all();

@@ -12,7 +12,7 @@
 namespace handcast::twin {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
+constexpr int kRasterWidth = 64, kRasterHeight = 48;
 
 /// Draws one triangle, and expects that only pixels of the image are painted. Returns how many.
 int paint(const std::array<glm::vec2, 3>& corners) {
@@ -23,19 +23,21 @@ int paint(const std::array<glm::vec2, 3>& corners) {
     screen.y[v] = corners[v].y;
     screen.inverse_depth[v] = 1;
   }
-  renderer::Image<float> depth(kWidth, kHeight);
+  renderer::Image<float> depth(kRasterWidth, kRasterHeight);
   int count = 0;
   for (const float front : {1.0f, -1.0f})
-    draw_triangle(screen, {0, 1, 2}, front, {0, 0, kWidth, kHeight}, depth.view(),
+    draw_triangle(screen, {0, 1, 2}, front, {0, 0, kRasterWidth, kRasterHeight}, depth.view(),
                   [&](int x, int y, float, float, float) {
-                    EXPECT_TRUE(x >= 0 && x < kWidth && y >= 0 && y < kHeight) << x << ", " << y;
+                    EXPECT_TRUE(x >= 0 && x < kRasterWidth && y >= 0 && y < kRasterHeight)
+                        << x << ", " << y;
                     ++count;
                   });
   return count;
 }
 
 TEST(Raster, PaintsTheWholeImageForATriangleAroundIt) {
-  EXPECT_EQ(paint({glm::vec2{-500, -500}, {1000, -500}, {-500, 1000}}), kWidth * kHeight);
+  EXPECT_EQ(paint({glm::vec2{-500, -500}, {1000, -500}, {-500, 1000}}),
+            kRasterWidth * kRasterHeight);
 }
 
 TEST(Raster, StaysInTheImageWhereverTheCornersAre) {
@@ -60,8 +62,8 @@ TEST(Raster, LeavesOutATriangleWithoutAPlace) {
 struct Scene {
   Scene(int count, float size_px, unsigned seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<float> x(-20, kWidth + 20.0f), y(-20, kHeight + 20.0f),
-        aside(-size_px, size_px), unit(0.5f, 2);
+    std::uniform_real_distribution<float> x(-20, kRasterWidth + 20.0f),
+        y(-20, kRasterHeight + 20.0f), aside(-size_px, size_px), unit(0.5f, 2);
     screen.resize(3 * static_cast<std::size_t>(count));
     for (std::size_t v = 0; v < screen.x.size(); ++v) {
       const bool first = v % 3 == 0;
@@ -84,22 +86,23 @@ TEST(Raster, GreyValuesAreThoseOfTheGeneralRasterInsideItsRegionAndUntouchedOuts
   const renderer::Rect region{5, 3, 61, 45};
   for (const float size_px : {1.3f, 3.0f, 40.0f, 300.0f}) {
     const Scene scene(4000, size_px, 7);
-    renderer::Image<float> depth(kWidth, kHeight), expected(kWidth, kHeight);
+    renderer::Image<float> depth(kRasterWidth, kRasterHeight),
+        expected(kRasterWidth, kRasterHeight);
     for (const auto& triangle : scene.triangles)
       draw_triangle(scene.screen, triangle, -1, region, depth.view(),
                     [&](int x, int y, float a, float b, float c) {
                       expected.at(x, y) = a * scene.grey[triangle[0]] +
                                           b * scene.grey[triangle[1]] + c * scene.grey[triangle[2]];
                     });
-    renderer::Image<float> own_depth(kWidth + kSpare_px, kHeight),
-        image(kWidth + kSpare_px, kHeight);
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = region.x1; x < kWidth + kSpare_px; ++x) image.at(x, y) = -1;
+    renderer::Image<float> own_depth(kRasterWidth + kSpare_px, kRasterHeight),
+        image(kRasterWidth + kSpare_px, kRasterHeight);
+    for (int y = 0; y < kRasterHeight; ++y)
+      for (int x = region.x1; x < kRasterWidth + kSpare_px; ++x) image.at(x, y) = -1;
     draw_grey(scene.screen, scene.grey, scene.triangles, -1, region, own_depth.view(),
               image.view());
     int drawn = 0, other = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth + kSpare_px; ++x) {
+    for (int y = 0; y < kRasterHeight; ++y)
+      for (int x = 0; x < kRasterWidth + kSpare_px; ++x) {
         if (x >= region.x1) {
           EXPECT_EQ(image.at(x, y), -1) << x << ", " << y;
           continue;

@@ -33,11 +33,11 @@ Mapped mapped(HandMesh drawn, HandMesh flesh) {
   return both;
 }
 
-HandMesh drawn_hand() { return *renderer::load_hand_or_default({}, Side::left); }
+HandMesh mapped_hand() { return *renderer::load_hand_or_default({}, Side::left); }
 
 /// The drawn hand with other widths: the flesh that the map must recover is known.
 Mapped mapped_to_hand_of_width(float width) {
-  const HandMesh drawn = drawn_hand();
+  const HandMesh drawn = mapped_hand();
   Flesh thick = Flesh::of_model();
   thick.width.fill(width);
   return mapped(drawn,
@@ -50,7 +50,7 @@ double percentile(std::vector<double> values, double share) {
 }
 
 TEST(TextureMap, OfAMeshOntoItselfIsTheIdentity) {
-  const HandMesh drawn = drawn_hand();
+  const HandMesh drawn = mapped_hand();
   const auto both = mapped(drawn, drawn);
   for (std::size_t v = 0; v < drawn.vertex_count(); ++v)
     ASSERT_LT(glm::distance(both.at[v], drawn.positions[v]), 1e-5f) << v;
@@ -119,7 +119,7 @@ void expect_a_sound_map(const Mapped& both) {
 }
 
 void expect_a_sound_map_to(const std::string& mesh) {
-  const HandMesh drawn = drawn_hand();
+  const HandMesh drawn = mapped_hand();
   const auto model = load_flesh_model(mesh, drawn);
   ASSERT_TRUE(model) << model.error().what;
   ASSERT_FALSE(model->is_drawn_mesh);
@@ -139,7 +139,7 @@ TEST(TextureMap, ToTheImplicitHandKeepsTheOrderAlongFingersAndTurnsNothingOver) 
 }
 
 TEST(TextureLookup, FindsEachVertexByItsTextureCoordinates) {
-  const HandMesh drawn = drawn_hand();
+  const HandMesh drawn = mapped_hand();
   const TextureLookup lookup(drawn);
   for (std::size_t v = 0; v < drawn.vertex_count(); ++v)
     ASSERT_LT(glm::distance(lookup.at(drawn.uv[v]).on(drawn, drawn.positions), drawn.positions[v]),
@@ -148,7 +148,7 @@ TEST(TextureLookup, FindsEachVertexByItsTextureCoordinates) {
 }
 
 TEST(TextureLookup, TakesTheNearestPointForCoordinatesBesideTheCharts) {
-  const HandMesh drawn = drawn_hand();
+  const HandMesh drawn = mapped_hand();
   const TextureLookup lookup(drawn);
   for (const glm::vec2 uv : {glm::vec2(-0.1f, 0.5f), glm::vec2(2, 2), glm::vec2(0.5f, 0)}) {
     float nearest = 10;

@@ -12,7 +12,7 @@
 namespace handcast::landmarks {
 namespace {
 
-constexpr std::int64_t kFrame_ns = 2'000'000;
+constexpr std::int64_t kPalmFrame_ns = 2'000'000;
 constexpr int kTips[] = {4, 8, 12, 16, 20};
 
 class MediapipeHandFinder : public testing::Test {
@@ -30,7 +30,7 @@ class MediapipeHandFinder : public testing::Test {
 
   /// The next image of a stream; the tracker sees what the capture's did, or nothing.
   std::vector<FoundHand> find(const test::Grey& image, const Hints& hints = {}) {
-    const auto found = finder_->find(image.view(), hints, time_ns_ += kFrame_ns);
+    const auto found = finder_->find(image.view(), hints, time_ns_ += kPalmFrame_ns);
     EXPECT_TRUE(found) << found.error().what;
     return found ? std::vector<FoundHand>(found->begin(), found->end()) : std::vector<FoundHand>();
   }

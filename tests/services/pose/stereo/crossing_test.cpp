@@ -11,7 +11,7 @@
 namespace handcast::pose::stereo {
 namespace {
 
-constexpr std::int64_t kStep_ns = 8'000'000;
+constexpr std::int64_t kCrossingStep_ns = 8'000'000;
 
 /// What detectors report of a hand behind the other one.
 enum class Behind { nothing, hand_in_front };
@@ -54,7 +54,7 @@ class CrossingTest : public testing::Test {
   double worst_mm(double end_s, Behind behind, float least = 0.5f) {
     double worst = 0;
     missing_ = 0;
-    for (std::int64_t time_ns = 0; time_ns < seconds_to_ns(end_s); time_ns += kStep_ns) {
+    for (std::int64_t time_ns = 0; time_ns < seconds_to_ns(end_s); time_ns += kCrossingStep_ns) {
       const auto here = seen(0, time_ns, behind), there = seen(1, time_ns, behind);
       const auto poses = world_.tracker().sample({&here, &there});
       missing_ += 2 - static_cast<int>(poses.count);
@@ -89,7 +89,7 @@ TEST_F(CrossingTest, AHandThatStaysHiddenLosesItsConfidenceAndThenItsPose) {
   int samples = 0, falls = 0;
   std::int64_t hidden_ns = -1;
   auto front = msg::Side::left;
-  for (std::int64_t time_ns = 0; time_ns < 2'000'000'000; time_ns += kStep_ns) {
+  for (std::int64_t time_ns = 0; time_ns < 2'000'000'000; time_ns += kCrossingStep_ns) {
     auto here = seen(0, time_ns, Behind::nothing), there = seen(1, time_ns, Behind::nothing);
     if (hidden_ns < 0 && here.count == 1 && there.count == 1) hidden_ns = time_ns;
     if (hidden_ns == time_ns) front = here.hands[0].side;

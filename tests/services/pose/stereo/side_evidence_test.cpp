@@ -8,12 +8,13 @@
 namespace handcast::pose::stereo {
 namespace {
 
-constexpr std::int64_t kStep_ns = 50'000'000;
+constexpr std::int64_t kEvidenceStep_ns = 50'000'000;
 
 /// After so many comparisons of these costs and votes.
 double log_odds_after(int comparisons, double cost, double cost_of_other, int votes) {
   SideEvidence evidence;
-  for (int i = 0; i < comparisons; ++i) evidence.compare(i * kStep_ns, cost, cost_of_other, votes);
+  for (int i = 0; i < comparisons; ++i)
+    evidence.compare(i * kEvidenceStep_ns, cost, cost_of_other, votes);
   return evidence.log_odds();
 }
 
@@ -61,14 +62,14 @@ TEST(SideEvidence, WhatIsSureIsComparedRarelyAndStillCorrected) {
   SideEvidence evidence;
   EXPECT_TRUE(evidence.is_due(0));
   evidence.compare(0, 20, 22, 0);
-  EXPECT_FALSE(evidence.is_due(kStep_ns / 2));
-  EXPECT_TRUE(evidence.is_due(kStep_ns));
-  for (int i = 1; i < 100; ++i) evidence.compare(i * kStep_ns, 20, 40, -2);
-  EXPECT_FALSE(evidence.is_due(100 * kStep_ns));
+  EXPECT_FALSE(evidence.is_due(kEvidenceStep_ns / 2));
+  EXPECT_TRUE(evidence.is_due(kEvidenceStep_ns));
+  for (int i = 1; i < 100; ++i) evidence.compare(i * kEvidenceStep_ns, 20, 40, -2);
+  EXPECT_FALSE(evidence.is_due(100 * kEvidenceStep_ns));
   int wrong = 0;
   for (; evidence.log_odds() < 3.5; ++wrong) {
     ASSERT_LT(wrong, 30);
-    evidence.compare((100 + wrong) * kStep_ns, 40, 20, 2);
+    evidence.compare((100 + wrong) * kEvidenceStep_ns, 40, 20, 2);
   }
 }
 
@@ -77,10 +78,10 @@ TEST(SideEvidence, WhatIsForgottenIsNotComparedAtOnceAgainButCountsWholeThen) {
   evidence.compare(0, 20, 35, 0);
   evidence.forget();
   EXPECT_EQ(evidence.log_odds(), 0);
-  EXPECT_FALSE(evidence.is_due(kStep_ns / 2));
-  EXPECT_TRUE(evidence.is_due(kStep_ns));
-  EXPECT_TRUE(evidence.is_due(-kStep_ns)) << "a clock that began anew";
-  evidence.compare(kStep_ns, 35, 23, 0);
+  EXPECT_FALSE(evidence.is_due(kEvidenceStep_ns / 2));
+  EXPECT_TRUE(evidence.is_due(kEvidenceStep_ns));
+  EXPECT_TRUE(evidence.is_due(-kEvidenceStep_ns)) << "a clock that began anew";
+  evidence.compare(kEvidenceStep_ns, 35, 23, 0);
   EXPECT_GE(evidence.log_odds(), 3.5);
 }
 

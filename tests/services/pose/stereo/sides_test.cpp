@@ -9,11 +9,11 @@
 namespace handcast::pose::stereo {
 namespace {
 
-constexpr std::int64_t kStep_ns = 8'000'000;
+constexpr std::int64_t kSidesStep_ns = 8'000'000;
 constexpr std::int64_t kRare_ns = 60'000'000;  ///< a comparison is due in each sample
 
 TEST(Sides, NoSampleComparesTwoHandsAndBothTakeTurns) {
-  for (const std::int64_t step_ns : {kStep_ns, kRare_ns}) {
+  for (const std::int64_t step_ns : {kSidesStep_ns, kRare_ns}) {
     TwoViews world(with_noise(1), "two_hands");
     std::uint64_t before = 0;
     for (int i = 0; i < 20; ++i) {
@@ -34,7 +34,7 @@ TEST(Sides, LandmarksThatFitNoHandAreNotComparedInEachSample) {
   constexpr int kSamples = 100;
   int poses = 0;
   for (int i = 0; i < kSamples; ++i) {
-    auto here = world.seen(0, i * kStep_ns), there = world.seen(1, i * kStep_ns);
+    auto here = world.seen(0, i * kSidesStep_ns), there = world.seen(1, i * kSidesStep_ns);
     for (auto* seen : {&here, &there}) std::ranges::reverse(seen->hands[0].points);
     poses += static_cast<int>(world.tracker().sample({&here, &there}).count);
   }

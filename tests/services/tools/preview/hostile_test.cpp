@@ -14,18 +14,18 @@ namespace {
 using namespace test;
 using testing::IsEmpty;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(),
                 kInfinite = std::numeric_limits<float>::infinity();
 
 TEST(HostileMessages, LandmarksThatCannotBeSeenAreLeftOut) {
   SceneMaker maker(world());
   auto marks = landmarks(kImage_ns, {300, 200});
   auto& points = marks.hands[0].points;
-  points[0].x_px = kNan;
+  points[0].x_px = kNotANumber;
   points[1].y_px = -kInfinite;
   points[2].x_px = 1e30f;
-  points[3].confidence = kNan;
-  points[4].sigma_px = kNan;
+  points[3].confidence = kNotANumber;
+  points[4].sigma_px = kNotANumber;
   points[5].sigma_px = 1e30f;
   points[6].sigma_px = -3;
   marks.count = 4'000'000'000u;
@@ -40,7 +40,7 @@ TEST(HostileMessages, LandmarksThatCannotBeSeenAreLeftOut) {
 
 TEST(HostileMessages, PosesThatCannotBeHandsAreLeftOut) {
   SceneMaker maker(world());
-  for (const float bad : {kNan, kInfinite, 1e30f, -50.0f}) {
+  for (const float bad : {kNotANumber, kInfinite, 1e30f, -50.0f}) {
     auto pose = poses(kImage_ns, {300, 200});
     pose.hands[0].joints[9].position_m[1] = bad;
     maker.push(pose);
@@ -104,7 +104,7 @@ TEST(HostileMessages, VerticesThatAreNowhereAreLeftOut) {
     return maker.make(&*frame(), &*cast).drawing.size();
   };
   EXPECT_EQ(edges_with([](auto&) {}), 5u);
-  EXPECT_EQ(edges_with([](auto& cast) { cast.hands[0].landings[1].x_px = kNan; }), 3u);
+  EXPECT_EQ(edges_with([](auto& cast) { cast.hands[0].landings[1].x_px = kNotANumber; }), 3u);
   EXPECT_EQ(edges_with([](auto& cast) { cast.hands[0].landings[0].y_px = kInfinite; }), 0u);
   EXPECT_EQ(edges_with([](auto& cast) { cast.hands[0].landings[2].x_px = 1e9f; }), 0u);
   EXPECT_EQ(edges_with([](auto& cast) { cast.hands[0].vertex_count = 3; }), 0u)

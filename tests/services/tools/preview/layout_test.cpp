@@ -12,7 +12,7 @@
 namespace handcast::preview {
 namespace {
 
-constexpr auto kBlack = Colour::of(0x000000);
+constexpr auto kInk = Colour::of(0x000000);
 constexpr int kSide_px = 100, kScale = 5;
 constexpr Box kBox{0, 0, kSide_px* kScale, kSide_px* kScale};
 
@@ -27,7 +27,7 @@ Scene one_landmark(float sigma_px) {
 }
 
 renderer::Texture camera_panel(const Scene& scene, const Layers& layers = Layers().set()) {
-  Canvas canvas(kSide_px * kScale, kSide_px * kScale, kBlack);
+  Canvas canvas(kSide_px * kScale, kSide_px * kScale, kInk);
   draw_camera(canvas, kBox, scene, layers);
   return canvas.picture();
 }
@@ -168,7 +168,7 @@ TEST(Layout, AbsurdSizesAreLimited) {
 
 TEST(Layout, TheGraphOfARateRisesWithTheRate) {
   const auto lit_rows = [](float hz) {
-    Canvas canvas(300, 150, kBlack);
+    Canvas canvas(300, 150, kInk);
     draw_rates(canvas, {0, 0, 300, 150}, {.rates = {{"s", 100.0, std::vector<float>(20, hz)}}});
     int rows = 0;
     for (int y = 50; y < 150; ++y) rows += canvas.picture().at(200, y) != 0xff000000u;
