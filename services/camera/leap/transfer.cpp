@@ -13,7 +13,7 @@ namespace {
 /// To and from an interface, of its class.
 constexpr std::uint8_t kToInterface = 0x21, kFromInterface = 0xa1;
 constexpr std::uint8_t kSetCurrent = 0x01, kGetCurrent = 0x81;
-constexpr std::uint16_t kProbe = 0x0100, kCommit = 0x0200, kStreamingIndex = 1;
+constexpr std::uint16_t kProbe = 0x0100, kCommit = 0x0200, kStreamingInterface = 1;
 constexpr std::uint16_t kControlBytes = 2;
 /// The block of the probe in version 1.0.
 constexpr std::uint16_t kProbeBytes = 26;
@@ -62,7 +62,7 @@ Result<std::vector<ControlTransfer>> transfers_of(const config::Leap& settings, 
 }
 
 ControlTransfer probe(const StreamMode& mode) {
-  ControlTransfer transfer{kToInterface, kSetCurrent, kProbe, kStreamingIndex, kProbeBytes};
+  ControlTransfer transfer{kToInterface, kSetCurrent, kProbe, kStreamingInterface, kProbeBytes};
   transfer.data.resize(kProbeBytes);
   put_16(transfer.data, 0, 1);  // the interval is kept
   transfer.data[kProbeFormat] = mode.format;
@@ -72,14 +72,14 @@ ControlTransfer probe(const StreamMode& mode) {
 }
 
 ControlTransfer read_probe() {
-  return {kFromInterface, kGetCurrent, kProbe, kStreamingIndex, kProbeBytes};
+  return {kFromInterface, kGetCurrent, kProbe, kStreamingInterface, kProbeBytes};
 }
 
 ControlTransfer commit(std::span<const std::uint8_t> probed) {
   return {kToInterface,
           kSetCurrent,
           kCommit,
-          kStreamingIndex,
+          kStreamingInterface,
           static_cast<std::uint16_t>(probed.size()),
           {probed.begin(), probed.end()}};
 }
