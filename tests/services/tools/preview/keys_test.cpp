@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "services/tools/preview/live.hpp"
+#include "services/tools/preview/keys.hpp"
 
 namespace handcast::preview {
 namespace {
