@@ -10,7 +10,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "ipc/base/output_file.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/tools/page/html.hpp"
 
 namespace handcast::report {
