@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/calibrate/pair_check.hpp"
+#include "services/tools/calibrate/pair_step.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/calibrate/lens_memory.hpp"
+#include "services/tools/calibrate/lens_step.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
