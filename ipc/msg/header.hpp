@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 namespace handcast::msg {
@@ -26,5 +28,26 @@ constexpr std::uint64_t type_hash() {
   for (const char c : T::layout) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
   return (hash ^ sizeof(T)) * 1099511628211ull;
 }
+
+/// Size in bytes of a message of `fixed` bytes followed by an image. The arguments may come from
+/// torn or hostile memory: if the size overflows, the result is the largest size_t, which fits no
+/// slot.
+constexpr std::size_t bytes_with_tail(std::size_t fixed, std::size_t width, std::size_t height,
+                                      std::size_t bytes_per_pixel) {
+  std::size_t pixels = 0, tail = 0, all = 0;
+  const bool too_large = __builtin_mul_overflow(width, height, &pixels) ||
+                         __builtin_mul_overflow(pixels, bytes_per_pixel, &tail) ||
+                         __builtin_add_overflow(fixed, tail, &all);
+  return too_large ? std::numeric_limits<std::size_t>::max() : all;
+}
+
+/// The inputs of one projector frame: the newest of each kind when the frame was begun. All times
+/// are CLOCK_MONOTONIC; 0 means that there was none.
+struct MadeFrom {
+  std::uint64_t image_id = 0;     ///< frame_id of the camera image
+  std::int64_t image_ns = 0;      ///< the middle of its exposure
+  std::int64_t pose_ns = 0;       ///< the sample time of the newest tracker sample
+  std::int64_t landmarks_ns = 0;  ///< the exposure of the image that was searched for landmarks
+};
 
 }  // namespace handcast::msg

@@ -6,8 +6,6 @@
 
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/header.hpp"
-#include "ipc/msg/made_from.hpp"
-#include "ipc/msg/tail.hpp"
 
 namespace handcast::msg {
 

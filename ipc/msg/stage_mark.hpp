@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "ipc/msg/header.hpp"
-#include "ipc/msg/made_from.hpp"
 
 namespace handcast::msg {
 
@@ -54,7 +53,7 @@ inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::co
 /// The time that one stage of one frame took.
 struct StageMark {
   Stage stage = Stage::frame;  ///< what was done
-  /// By stage: frame_losses.hpp, tracker_faults.hpp (sample), detector_note.hpp (detect),
+  /// By stage: camera_frame.hpp, tracker_faults.hpp (sample), detector_note.hpp (detect),
   /// drift_note.hpp (watch), rung.hpp, light_source.hpp; else 0.
   std::uint32_t detail = 0;
   /// Begin and end of the stage, CLOCK_MONOTONIC.

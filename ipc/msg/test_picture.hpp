@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "ipc/msg/header.hpp"
-#include "ipc/msg/tail.hpp"
 
 namespace handcast::msg {
 

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <new>
 #include <utility>
 
 #include "ipc/base/clock.hpp"

@@ -4,6 +4,9 @@
 #include <bit>
 #include <cstdint>
 
+#include "ipc/ring/words.hpp"
+#include "ipc/shm/segment.hpp"
+
 namespace handcast::ipc {
 
 /// The atomic operations of the protocol in production: lock-free words in shared memory, and a
@@ -40,5 +43,11 @@ struct RealAtomics {
   /// Wakes all threads of all processes that wait on `word`.
   static void wake(Word& word);
 };
+
+/// The control words of a mapped segment; valid as long as it is mapped.
+inline ControlWords<RealAtomics> control_words_of(const Segment& segment) {
+  auto* lines = reinterpret_cast<ControlWords<RealAtomics>::Line*>(segment.data() + kControlOffset);
+  return {lines, segment.slots(), segment.keep_history()};
+}
 
 }  // namespace handcast::ipc

@@ -5,7 +5,6 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "ipc/ring/copy.hpp"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/ring/control_words.hpp"
 #include "ipc/ring/copy.hpp"
 #include "ipc/ring/protocol.hpp"
+#include "ipc/ring/real_atomics.hpp"
 #include "ipc/ring/tally.hpp"
 
 namespace handcast::ipc {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/ring/control_words.hpp"
 #include "ipc/ring/copy.hpp"
+#include "ipc/ring/real_atomics.hpp"
 #include "ipc/ring/row_owner.hpp"
 
 namespace handcast::ipc {

@@ -13,8 +13,8 @@
 #include <string>
 
 #include "ipc/base/unique_fd.hpp"
-#include "ipc/ring/control_words.hpp"
 #include "ipc/ring/protocol.hpp"
+#include "ipc/ring/real_atomics.hpp"
 
 namespace handcast::ipc {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "ipc/msg/made_from.hpp"
+#include "ipc/msg/header.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/base/landmark_points.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "ipc/msg/frame_losses.hpp"
+#include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/light_source.hpp"
 
 namespace handcast::supervisor {

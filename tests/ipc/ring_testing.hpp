@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string>
 
-#include "ipc/ring/control_words.hpp"
 #include "ipc/ring/reader.hpp"
+#include "ipc/ring/real_atomics.hpp"
 #include "ipc/ring/writer.hpp"
 
 /// Messages and helpers for the tests of the rings.

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "ipc/ring/control_words.hpp"
+#include "ipc/ring/real_atomics.hpp"
 
 namespace handcast::storm {
 namespace {

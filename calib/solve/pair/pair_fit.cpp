@@ -15,20 +15,20 @@
 namespace handcast::calib {
 namespace {
 
-constexpr int kLens = 9;
-using LensRoot = cv::Matx<double, kLens, kLens>;
+constexpr int kLensNumbers = 9;
+using LensRoot = cv::Matx<double, kLensNumbers, kLensNumbers>;
 
 /// A matrix that makes errors of this covariance of independent ones.
 LensRoot root_of(const LensCovariance& covariance) {
   LensRoot matrix, directions;
-  for (int i = 0; i < kLens; ++i)
-    for (int j = 0; j < kLens; ++j)
+  for (int i = 0; i < kLensNumbers; ++i)
+    for (int j = 0; j < kLensNumbers; ++j)
       matrix(i, j) = covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-  cv::Vec<double, kLens> variances;
+  cv::Vec<double, kLensNumbers> variances;
   cv::eigen(matrix, variances, directions);
   LensRoot root = directions.t();
-  for (int i = 0; i < kLens; ++i)
-    for (int j = 0; j < kLens; ++j) root(i, j) *= std::sqrt(std::max(variances[j], 0.));
+  for (int i = 0; i < kLensNumbers; ++i)
+    for (int j = 0; j < kLensNumbers; ++j) root(i, j) *= std::sqrt(std::max(variances[j], 0.));
   return root;
 }
 
@@ -38,10 +38,10 @@ SharedVector lens_errors(const std::array<LensRoot, 2>& roots, std::mt19937& ran
   SharedVector errors;
   int at = kPairPose;
   for (const auto& root : roots) {
-    cv::Vec<double, kLens> drawn;
-    for (int i = 0; i < kLens; ++i) drawn[i] = normal(random);
-    const cv::Vec<double, kLens> error(root * drawn);
-    for (int i = 0; i < kLens; ++i) errors[at++] = error[i];
+    cv::Vec<double, kLensNumbers> drawn;
+    for (int i = 0; i < kLensNumbers; ++i) drawn[i] = normal(random);
+    const cv::Vec<double, kLensNumbers> error(root * drawn);
+    for (int i = 0; i < kLensNumbers; ++i) errors[at++] = error[i];
   }
   return errors;
 }

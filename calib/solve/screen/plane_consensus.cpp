@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kLeastPoints = 20;
 constexpr double kLeastShare = 0.6;
-constexpr int kSamples = 300;  ///< with 60 % inliers all but 1e-18 of the runs find one
+constexpr int kTries = 300;  ///< with 60 % inliers all but 1e-18 of the runs find one
 constexpr std::size_t kScoredPoints = 500;  ///< on which a sample is judged
 constexpr double kAgree_px = 4;             ///< projector px
 constexpr int kRounds = 4;                  ///< of fitting and choosing the inliers
@@ -61,7 +61,7 @@ ScreenModel best_sample(std::span<const Observation> all, double plane_m) {
   scored.resize(std::min(scored.size(), kScoredPoints));
   ScreenModel best{glm::dmat3(1), glm::dvec3(0), plane_m};
   std::ptrdiff_t most = -1;
-  for (int sample = 0; sample < kSamples; ++sample) {
+  for (int sample = 0; sample < kTries; ++sample) {
     std::array<glm::dvec2, 4> from, to;
     for (std::size_t i = 0; i < 4; ++i) {
       const auto& point = all[random() % all.size()];

@@ -8,7 +8,7 @@
 #include "calib/calibration.hpp"
 #include "calib/clock_map.hpp"
 #include "config/sections/sensors.hpp"
-#include "ipc/msg/frame_losses.hpp"
+#include "ipc/msg/camera_frame.hpp"
 #include "services/camera/aravis/configure.hpp"
 #include "services/camera/aravis/device.hpp"
 #include "services/camera/aravis/glib.hpp"

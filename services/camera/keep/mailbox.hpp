@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/msg/frame_losses.hpp"
+#include "ipc/msg/camera_frame.hpp"
 
 namespace handcast::camera {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "ipc/msg/frame_losses.hpp"
+#include "ipc/msg/camera_frame.hpp"
 #include "services/camera/keep/mailbox.hpp"
 #include "services/camera/leap/frame_assembler.hpp"
 #include "services/camera/leap/frame_times.hpp"

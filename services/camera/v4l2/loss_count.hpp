@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "ipc/msg/frame_losses.hpp"
+#include "ipc/msg/camera_frame.hpp"
 
 namespace handcast::camera::v4l2 {
 

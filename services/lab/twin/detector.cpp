@@ -114,12 +114,12 @@ namespace {
 
 constexpr int kIndexKnuckleLandmark = 5, kMiddleKnuckleLandmark = 9;
 /// Landmarks of the fingers that merge, from the PIP to the tip.
-constexpr int kIndexPipLandmark = 6, kMiddlePip = 10, kFromPipToTip = 3;
+constexpr int kIndexPipLandmark = 6, kMiddlePipLandmark = 10;
 
 /// Both fingers where the mean of the two is.
 void merge_fingers(msg::HandLandmarks& hand) {
   for (int i = 0; i < kFromPipToTip; ++i) {
-    auto &index = hand.points[kIndexPipLandmark + i], &middle = hand.points[kMiddlePip + i];
+    auto &index = hand.points[kIndexPipLandmark + i], &middle = hand.points[kMiddlePipLandmark + i];
     index.x_px = middle.x_px = (index.x_px + middle.x_px) / 2;
     index.y_px = middle.y_px = (index.y_px + middle.y_px) / 2;
   }

@@ -10,7 +10,7 @@ namespace handcast::twin {
 namespace {
 
 constexpr int kIndexKnuckle = 7, kMiddleKnuckle = 12, kLittleKnuckle = 22;
-constexpr int kIndexPipJoint = 8, kMiddlePipJoint = 13, kJointsFromPipToTip = 3;
+constexpr int kIndexPip = 8, kMiddlePip = 13;
 
 glm::dmat4 rigid_inverse(const glm::dmat4& m) {
   glm::dmat4 inverse(glm::transpose(glm::dmat3(m)));
@@ -131,9 +131,9 @@ JointFrames with_bones_of(const JointFrames& rest, const JointFrames& frames) {
 
 JointFrames merged(const JointFrames& frames) {
   JointFrames one = frames;
-  for (int i = 0; i < kJointsFromPipToTip; ++i)
-    one[kIndexPipJoint + i] = one[kMiddlePipJoint + i] =
-        mean_of(frames[kIndexPipJoint + i], frames[kMiddlePipJoint + i]);
+  for (int i = 0; i < kFromPipToTip; ++i)
+    one[kIndexPip + i] = one[kMiddlePip + i] =
+        mean_of(frames[kIndexPip + i], frames[kMiddlePip + i]);
   return one;
 }
 

@@ -16,6 +16,8 @@ using renderer::kJoints;
 inline constexpr int kWristJoint = 1;
 inline constexpr int kFingers = 5;
 inline constexpr std::array<int, kFingers> kMetacarpalJoint{2, 6, 11, 16, 21};
+/// PIP, DIP and tip of a finger: its joints, and its landmarks.
+inline constexpr int kFromPipToTip = 3;
 /// The joints of a finger that bend, from the palm on. The thumb's third is not used.
 inline constexpr int kBends = 3;
 /// Number of joints that bend: MCP and IP of the thumb; MCP, PIP and DIP of the others.
