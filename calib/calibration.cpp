@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "calib/rigid.hpp"
 
@@ -85,26 +84,20 @@ double Calibration::mm_per_projector_px(double distance_m) const {
   return 1000 * distance_m * std::sqrt(area_px2 / (camera.fx_px * camera.fy_px));
 }
 
-namespace {
-
-Calibration with_cameras_exchanged(Calibration rig) {
-  auto& other = *rig.camera2;
-  std::swap(rig.camera_device, other.device);
-  std::swap(rig.camera, other.camera);
-  rig.camera_from_tracker = other.from_camera * rig.camera_from_tracker;
-  other.from_camera = glm::inverse(other.from_camera);
-  rig.is_second_view = !rig.is_second_view;
-  return rig;
+PlacedCamera first_camera(const Calibration& calibration) {
+  return {calibration.camera_device, calibration.camera, calibration.camera_from_tracker};
 }
 
-}  // namespace
-
-Calibration second_view(const Calibration& calibration) {
-  return calibration.is_second_view ? calibration : with_cameras_exchanged(calibration);
-}
-
-Calibration first_view(const Calibration& calibration) {
-  return calibration.is_second_view ? with_cameras_exchanged(calibration) : calibration;
+Result<PlacedCamera> camera_at(const Calibration& calibration, config::Viewpoint at) {
+  if (at == config::Viewpoint::first) return first_camera(calibration);
+  const auto& second = calibration.camera2;
+  if (!second)
+    return fail(
+        Errc::bad_config,
+        "the calibration has no second camera ([camera2], [camera2_from_camera]); measure it with "
+        "`handcast calibrate`");
+  return PlacedCamera{second->device, second->camera,
+                      second->from_camera * calibration.camera_from_tracker};
 }
 
 Calibration reference_rig() {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "config/sections/viewpoint.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::calib {
@@ -83,8 +84,6 @@ struct Calibration {
   /// @}
   CameraModel camera;                   ///< the infrared camera
   std::optional<SecondCamera> camera2;  ///< empty: the rig has one camera
-  /// True for what second_view() made: `camera` is the second camera, and camera2 the first.
-  bool is_second_view = false;
   glm::dmat4 camera_from_tracker{1};    ///< rigid, in metres
   glm::dmat3 projector_from_camera{1};  ///< H: undistorted camera px to projector px
   glm::dvec3 parallax{0};               ///< e: projector px times m
@@ -114,12 +113,17 @@ struct Calibration {
 /// coaxial projector.
 Calibration reference_rig();
 
-/// The calibration as the second camera has it: `camera`, its device and camera_from_tracker are
-/// its own. The same id; what concerns the projector is left as it is, and holds for the first
-/// camera alone. The calibration must have a second camera.
-Calibration second_view(const Calibration& calibration);
-/// The calibration as the first camera has it: undoes second_view().
-Calibration first_view(const Calibration& calibration);
+/// One camera of a rig, for code that works for any of them.
+struct PlacedCamera {
+  std::string device;          ///< as Calibration::camera_device
+  CameraModel model;           ///< its lens
+  glm::dmat4 from_tracker{1};  ///< from the space of the tracker to its own; rigid, in metres
+};
+
+/// The first camera of a rig.
+PlacedCamera first_camera(const Calibration& calibration);
+/// The camera at a viewpoint. Errors: bad_config (the calibration has no second camera).
+Result<PlacedCamera> camera_at(const Calibration& calibration, config::Viewpoint at);
 
 /// Reads a calibration file: TOML, with matrices as rows. An empty path gives the reference rig; a
 /// frozen file (config::freeze()) is read like the file. Errors: bad_config (the file cannot be

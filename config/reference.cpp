@@ -43,16 +43,42 @@ std::string row(const Setting& setting) {
                      cell(setting.sentence));
 }
 
+constexpr std::string_view kTable =
+    "\n| setting | default | allowed | unit | |\n|---|---|---|---|---|\n";
+
+std::string heading(const Section& section) {
+  return fmt::format("\n## [{}]\n\n{}", section.path, section.sentence);
+}
+
+/// A section that has the settings of another one, said once: in those within it too. The table has
+/// the settings with defaults of their own.
+std::string print_as(const Section& section, const std::string& other, const Listing& listing) {
+  std::string rows;
+  for (const auto& each : listing) {
+    if (each.path != section.path && !each.path.starts_with(section.path + ".")) continue;
+    for (const auto& setting : each.settings)
+      if (print_value(setting) != print_value(*find_setting(listing, name_at_first(setting.path))))
+        rows += row(setting);
+  }
+  return fmt::format("{} It has the settings and sections of [{}]{}.\n", heading(section), other,
+                     rows.empty() ? "" : ", with these defaults") +
+         (rows.empty() ? "" : std::string(kTable) + rows);
+}
+
 }  // namespace
 
 std::string print_reference() {
   Rig defaults;
   std::string page(kHead);
-  for (const auto& section : list_settings(defaults)) {
-    page += section.path.empty() ? "\n## The file itself\n"
-                                 : fmt::format("\n## [{}]\n\n{}\n", section.path, section.sentence);
+  const auto listing = list_settings(defaults);
+  for (const auto& section : listing) {
+    if (const auto other = name_at_first(section.path); !other.empty()) {
+      if (section.path.find('.') == std::string::npos) page += print_as(section, other, listing);
+      continue;
+    }
+    page += section.path.empty() ? "\n## The file itself\n" : heading(section) + "\n";
     if (section.settings.empty()) continue;
-    page += "\n| setting | default | allowed | unit | |\n|---|---|---|---|---|\n";
+    page += kTable;
     for (const auto& setting : section.settings) page += row(setting);
   }
   return page;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "config/measured.hpp"
 #include "config/settings/files.hpp"
 #include "config/settings/frozen_file.hpp"
 #include "config/settings/load.hpp"
@@ -78,6 +80,29 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
                     file, correct.bone_short_px, correct.bone_long_px));
 }
 
+/// The values of the last text win over those of the others, and `settings` over all. The first
+/// text is the rig file.
+Result<Rig> parse_layers(std::span<const NamedText> layers,
+                         const std::vector<std::string>& settings) {
+  Rig rig;
+  const auto listing = list_settings(rig);
+  Faults faults;
+  // The folder that this process was started in may have been deleted since: what is relative to it
+  // then stays so, and is not found.
+  std::error_code gone;
+  for (const auto& [file, toml] : layers) {
+    const auto document = parse_document(toml, file);
+    if (!document) return tl::make_unexpected(document.error());
+    apply_document(*document, file, listing, faults);
+    resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
+  }
+  for (const auto& setting : settings) apply_assignment(setting, listing, faults);
+  resolve_paths(listing, std::filesystem::current_path(gone));
+  check_together(rig, layers.front().path, faults);
+  if (!faults.empty()) return tl::make_unexpected(faults.to_error());
+  return rig;
+}
+
 }  // namespace
 
 bool names_a_file(std::string_view setting) {
@@ -88,6 +113,29 @@ bool is_path(std::string_view setting, std::string_view value) {
   if (!names_a_file(setting) || value.empty()) return false;
   if (setting == "twin.shape.mesh" && value.find_first_of("./") == value.npos) return false;
   return !value.starts_with("builtin:") && !value.starts_with(kFrozen);
+}
+
+std::string name_at(Viewpoint at, std::string_view name) {
+  for (const std::string_view section : {"camera", "landmarks"})
+    if (at == Viewpoint::second && name.substr(0, name.find('.')) == section)
+      return std::string(section) + "2" + std::string(name.substr(section.size()));
+  return std::string(name);
+}
+
+std::string name_at_first(std::string_view name) {
+  for (const std::string first : {"camera", "landmarks"})
+    if (const auto section = name.substr(0, name.find('.'));
+        section == name_at(Viewpoint::second, first))
+      return first + std::string(name.substr(section.size()));
+  return {};
+}
+
+const Camera& camera_at(const Rig& rig, Viewpoint at) {
+  return at == Viewpoint::first ? rig.camera : rig.camera2;
+}
+
+const Landmarks& landmarks_at(const Rig& rig, Viewpoint at) {
+  return at == Viewpoint::first ? rig.landmarks : rig.landmarks2;
 }
 
 Process process_of(const Rig& rig, std::string_view service) {
@@ -103,33 +151,21 @@ Process process_of(const Rig& rig, std::string_view service) {
 }
 
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
-                      const std::vector<std::string>& settings, const OnRenamed& on_renamed) {
-  auto document = parse_document(toml, file.string());
-  if (!document) return tl::make_unexpected(document.error());
-  replace_renamed(*document, file.string(), renamed_settings(), on_renamed);
-
-  Rig rig;
-  const auto listing = list_settings(rig);
-  Faults faults;
-  apply_document(*document, file.string(), listing, faults);
-  // The folder that this process was started in may have been deleted since: what is relative to it
-  // then stays so, and is not found.
-  std::error_code gone;
-  resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
-  for (const auto& setting : settings)
-    for (const auto& current : replace_renamed(setting, renamed_settings(), on_renamed))
-      apply_assignment(current, listing, faults);
-  resolve_paths(listing, std::filesystem::current_path(gone));
-  check_together(rig, file.string(), faults);
-  if (!faults.empty()) return tl::make_unexpected(faults.to_error());
-  return rig;
+                      const std::vector<std::string>& settings) {
+  const NamedText whole{file.string(), toml};
+  return parse_layers({&whole, 1}, settings);
 }
 
-Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                     const OnRenamed& on_renamed) {
-  const auto text = read_text(file);
-  if (!text) return tl::make_unexpected(text.error());
-  return parse_rig(*text, file, settings, on_renamed);
+Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  std::vector<NamedText> layers;
+  std::error_code unknown;
+  for (const auto& layer : {file, measured_file_of(file)}) {
+    if (!layers.empty() && !std::filesystem::exists(layer, unknown)) break;
+    auto text = read_text(layer);
+    if (!text) return tl::make_unexpected(text.error());
+    layers.push_back({layer.string(), std::move(*text)});
+  }
+  return parse_layers(layers, settings);
 }
 
 std::string print_rig(const Rig& rig) {

@@ -5,13 +5,13 @@
 #include <string_view>
 #include <vector>
 
-#include "config/renamed_settings.hpp"
 #include "config/sections/cascade.hpp"
 #include "config/sections/dlp.hpp"
 #include "config/sections/projector.hpp"
 #include "config/sections/sensors.hpp"
 #include "config/sections/supervisor.hpp"
 #include "config/sections/twin.hpp"
+#include "config/sections/viewpoint.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::config {
@@ -67,24 +67,32 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("supervisor", rig.supervisor, "Start, supervision and stop of the services.");
 }
 
+/// The name at a viewpoint of what is called `name` ("camera.frames", "landmarks") at the first
+/// one: "camera2.frames", "landmarks2". Names of what all viewpoints share ("pose.hands") stay.
+std::string name_at(Viewpoint at, std::string_view name);
+/// The reverse: what is called "camera2.v4l2" at the second viewpoint is "camera.v4l2". "" for
+/// names that are not of the second one.
+std::string name_at_first(std::string_view name);
+/// The section of the camera at a viewpoint.
+const Camera& camera_at(const Rig& rig, Viewpoint at);
+/// The section of the landmark detector at a viewpoint.
+const Landmarks& landmarks_at(const Rig& rig, Viewpoint at);
+
 /// The section [NAME.process] of the service with this name ("camera"); the defaults if there is no
 /// such service.
 Process process_of(const Rig& rig, std::string_view service);
 
-/// Reads a rig file and applies `settings` ("path=value") on top. Relative paths become absolute:
-/// those of the file start at its folder, those of `settings` at the current folder. Settings in an
-/// old form (renamed_settings) are read in their new form, and each is reported to `on_renamed`.
-/// Errors: bad_config, with one line for each fault, e.g. "FILE:LINE: camera.rate_hz: 0 is outside
-/// 1..2000 Hz".
+/// Reads a rig file, applies the measured settings beside it (measured.hpp), and `settings`
+/// ("path=value") on top. Relative paths become absolute: those of the files start at their folder,
+/// those of `settings` at the current folder. Errors: bad_config, with one line for each fault, e.g.
+/// "FILE:LINE: camera.rate_hz: 0 is outside 1..2000 Hz".
 Result<Rig> load_rig(const std::filesystem::path& file,
-                     const std::vector<std::string>& settings = {},
-                     const OnRenamed& on_renamed = log_renamed);
+                     const std::vector<std::string>& settings = {});
 
-/// Like load_rig(), from memory. `file` is used in messages, and relative paths start at its
-/// folder.
+/// Like load_rig(), from memory and without measured settings. `file` is used in messages, and
+/// relative paths start at its folder.
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
-                      const std::vector<std::string>& settings = {},
-                      const OnRenamed& on_renamed = log_renamed);
+                      const std::vector<std::string>& settings = {});
 
 /// The rig as a commented TOML file with all settings, which load_rig() reads back.
 std::string print_rig(const Rig& rig);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <utility>
-
 #include "config/rig.hpp"
 
 namespace handcast::config {
@@ -13,14 +11,6 @@ inline bool has_two_eyes(const Camera& camera) { return camera.backend == "leap"
 /// delivers those of two eyes.
 inline bool has_second_images(const Rig& rig) {
   return rig.camera2.backend != "none" || has_two_eyes(rig.camera);
-}
-
-/// The rig as the services of the second view read it: [camera2] and [landmarks2] in the places of
-/// [camera] and [landmarks].
-inline Rig seen_by_second(Rig rig) {
-  rig.camera = rig.camera2;
-  rig.landmarks = rig.landmarks2;
-  return rig;
 }
 
 /// True if the rig has two cameras: a second one, or one that delivers the images of both.

@@ -27,6 +27,8 @@ def role_of(arguments):
     program = pathlib.Path(arguments[0]).name
     if program == "handcast":
         return "supervisor" if "--kept" in arguments else "keeper" if "up" in arguments[1:2] else ""
+    if "--as" in arguments:
+        return arguments[arguments.index("--as") + 1]
     return program.removeprefix("handcast-") if program.startswith("handcast-") else ""
 
 

@@ -27,7 +27,7 @@ constexpr double kFar_px = 12;
 /// A hand whose median offset is larger belongs to something else.
 constexpr double kNowhere_px = 150;
 /// Of what earlier hands said, with each new one: a tracker that moves meanwhile is noticed.
-constexpr double kKeep = 0.985;
+constexpr double kInformationKept = 0.985;
 constexpr double kNearest_m = 0.05;
 constexpr std::size_t kLeastLandmarks = 10;
 
@@ -174,8 +174,8 @@ bool DriftFit::add(const HeldHand& hand) {
   Eigen::MatrixXd kept;
   Eigen::VectorXd kept_weighted;
   leave_out_rest(kLasting, information, weighted, kept, kept_weighted);
-  information_ = kKeep * information_ + kept;
-  weighted_ = kKeep * weighted_ + kept_weighted;
+  information_ = kInformationKept * information_ + kept;
+  weighted_ = kInformationKept * weighted_ + kept_weighted;
   ++hands_;
   return true;
 }

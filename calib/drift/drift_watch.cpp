@@ -11,7 +11,7 @@ namespace {
 /// What a tracker and a detector do with a person's hands wherever they are; different for each.
 constexpr double kPerson_m = 0.0006, kPerson_rad = 0.0026;
 /// Of what was known before, when the next person comes.
-constexpr double kKeep = 0.7;
+constexpr double kPastKept = 0.7;
 constexpr int kLeastPlaces = 6;
 /// The square of a drift in standard deviations from which on it is beyond doubt. Without a drift
 /// it was at most 1.9 for 20 persons on the twin, because DriftFit allows for larger errors; with
@@ -72,8 +72,8 @@ void DriftWatch::part_with_persons(std::int64_t time_ns) {
       std::ranges::all_of(hands_, [&](const Hand& hand) { return hand.still.is_gone(time_ns); });
   if (!are_gone || std::ranges::none_of(hands_, [](const Hand& h) { return h.fit.has_value(); }))
     return;
-  past_.information *= kKeep;
-  past_.weighted *= kKeep;
+  past_.information *= kPastKept;
+  past_.weighted *= kPastKept;
   past_ += of_persons();
   for (auto& hand : hands_) hand = {};
 }

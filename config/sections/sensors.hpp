@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "config/sections/drift.hpp"
-#include "config/sections/executor.hpp"
 #include "config/sections/handover.hpp"
 #include "config/sections/leap.hpp"
 #include "config/sections/leapc.hpp"
@@ -243,7 +242,6 @@ void describe(Visitor& visitor, Pose& pose) {
 struct Landmarks {
   std::string backend = "twin";
   std::string fallback;
-  Executor executor = Executor::onednn;
   std::string models;
   int hands = 2;
   Replay replay;
@@ -261,9 +259,6 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
   visitor.field("fallback", landmarks.fallback,
                 "The back end that takes the place of `backend` if a file of its networks is "
                 "missing; a line of the log says so. Empty: a missing file is an error.");
-  visitor.field("executor", landmarks.executor,
-                "handcast, mediapipe: the library that runs the networks. onednn is the faster "
-                "one; opencv needs a build with OpenCV's dnn module.");
   visitor.field("models", landmarks.models,
                 "handcast, mediapipe: folder of MediaPipe's files, which scripts/get-models "
                 "fetches; relative to the rig file. Empty: the folder in HANDCAST_MODELS, else "

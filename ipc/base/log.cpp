@@ -1,21 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/log.hpp"
 
+#include <fcntl.h>
+#include <limits.h>
+#include <poll.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 #include <mutex>
-#include <string>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/base/impatient_writer.hpp"
-#include "ipc/base/wording.hpp"
+#include "ipc/base/unique_fd.hpp"
 
 namespace handcast {
+namespace {
+
+/// Writes text to a descriptor whose reader may be slow or have stopped: a terminal, a pipe or a
+/// socket. One thread at a time.
+class ImpatientWriter {
+ public:
+  /// Makes writing to the descriptor, which stays the caller's, not block: it then refers to a file
+  /// of its own, because O_NONBLOCK of the one it shares with other programs would hit these, too.
+  /// What cannot be opened anew (a socket, a terminal of another user) is only written when poll(2)
+  /// says that it is ready.
+  ImpatientWriter(int fd, std::chrono::milliseconds patience);
+
+  /// Writes text. Waits up to `patience` for a reader that is merely slow, but not again before it
+  /// has taken all of a text. False if a part of it is lost. A reader that is gone takes
+  /// everything.
+  bool takes(std::string_view text);
+  /// True if the last line that was taken has no end.
+  bool is_cut() const { return is_cut_; }
+
+ private:
+  std::size_t write_some(std::string_view text) const;
+
+  int fd_;
+  std::chrono::milliseconds patience_;
+  bool is_cut_ = false;
+  bool is_waited_for_ = true;
+};
+
+constexpr int kLook_ms = 5;
+
+bool is_writable(int fd, int within_ms) {
+  pollfd writable{.fd = fd, .events = POLLOUT, .revents = 0};
+  return ::poll(&writable, 1, within_ms) > 0;
+}
+
+ImpatientWriter::ImpatientWriter(int fd, std::chrono::milliseconds patience)
+    : fd_(fd), patience_(patience) {
+  const auto path = fmt::format("/proc/self/fd/{}", fd);
+  const UniqueFd own(::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (own) ::dup2(own.get(), fd);
+}
+
+bool ImpatientWriter::takes(std::string_view text) {
+  const auto limit = Deadline::in(is_waited_for_ ? patience_ : std::chrono::milliseconds(0));
+  for (;;) {
+    const auto taken = write_some(text);
+    if (taken > 0) is_cut_ = text[taken - 1] != '\n';
+    text.remove_prefix(taken);
+    is_waited_for_ = text.empty();
+    if (text.empty() || limit.passed()) return text.empty();
+    if (taken == 0) is_writable(fd_, kLook_ms);
+  }
+}
+
+/// The number of bytes that are taken without waiting.
+std::size_t ImpatientWriter::write_some(std::string_view text) const {
+  if (!is_writable(fd_, 0)) return 0;
+  const auto size = std::min<std::size_t>(text.size(), PIPE_BUF);
+  auto count = ::send(fd_, text.data(), size, MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (count < 0 && errno == ENOTSOCK) count = ::write(fd_, text.data(), size);
+  if (count < 0 && errno != EAGAIN && errno != EINTR) return text.size();  // the reader is gone
+  return static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+}
+
+}  // namespace
 
 std::string printable(std::string_view text) {
   std::string shown;
@@ -70,21 +139,15 @@ std::string& program() {
   return name;
 }
 
-using Wording = std::string (*)(std::string_view);
-Wording& wording_of() {
-  static Wording wording = printable;
-  return wording;
-}
-
 std::atomic<Level>& threshold() {
   static std::atomic<Level> level{level_from_environment()};
   return level;
 }
 
 std::string line_of(Level level, std::string_view sentence) {
-  return for_journal(level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()),
-                                        program(), kNames[static_cast<std::size_t>(level)],
-                                        printable(wording_of()(sentence))));
+  return for_journal(level,
+                     fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
+                                 kNames[static_cast<std::size_t>(level)], printable(sentence)));
 }
 
 /// Stderr after never_wait_for_stderr(), which may lose lines.
@@ -117,7 +180,6 @@ std::atomic<Impatient*> impatient{nullptr};
 
 void set_program(std::string_view name) { program() = name; }
 void set_level(Level level) { threshold() = level; }
-void set_wording(std::string (*wording)(std::string_view sentence)) { wording_of() = wording; }
 
 std::optional<ParsedLine> parse(std::string_view line) {
   take_word(line);  // time

@@ -12,7 +12,7 @@ bool is_descriptor(int fd, const struct stat& status) {
   return ::fstat(fd, &other) == 0 && other.st_dev == status.st_dev && other.st_ino == status.st_ino;
 }
 
-const char* kind_of(mode_t mode) {
+const char* kind_of_output(mode_t mode) {
   if (S_ISDIR(mode)) return "a folder";
   if (S_ISFIFO(mode)) return "a pipe";
   if (S_ISSOCK(mode)) return "a socket";
@@ -30,7 +30,7 @@ Result<void> check_output(const std::filesystem::path& file) {
   if (::stat(file.c_str(), &status) != 0) return {};  // opening it says why
   if (S_ISREG(status.st_mode) || S_ISCHR(status.st_mode) || is_standard_output(status)) return {};
   return fail(Errc::bad_config, fmt::format("{}: cannot be written: it is {}, not a file",
-                                            file.string(), kind_of(status.st_mode)));
+                                            file.string(), kind_of_output(status.st_mode)));
 }
 
 }  // namespace handcast

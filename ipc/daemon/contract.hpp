@@ -11,7 +11,8 @@
 /// The contract between the supervisor and the daemons that it starts. It is also the way to run a
 /// daemon by hand in a test.
 ///
-///   argv   --config FILE [--set path=value]...
+///   argv   [--as NAME] --config FILE [--set path=value]...
+///              NAME: the service that it is, of a program that can be several.
 ///
 ///   env    HANDCAST_RINGS=camera.frames=5,pose.hands=6
 ///              The descriptors of the rings' segments, by stream.

@@ -17,11 +17,12 @@ struct BackendDescription {
   bool exclusive = false;  ///< only one process at a time can have its device open
 };
 
-/// A service as its program describes itself (`handcast-NAME --describe`). The build writes one
+/// A service as its program describes itself (`handcast-NAME --describe`, for an instance with
+/// `--as INSTANCE`). The build writes one
 /// file per service; the supervisor, the reference of settings and the picture in
 /// docs/architecture.md are made from them.
 struct ServiceDescription {
-  std::string name;      ///< "camera": the program is handcast-camera
+  std::string name;      ///< "camera"; of an instance of handcast-camera, "camera2"
   std::string summary;   ///< one sentence
   std::string paced_by;  ///< what its loop waits for: "its device", a ring, a setting
   std::vector<std::string> publishes{};   ///< rings it writes, besides its stage marks
@@ -30,8 +31,6 @@ struct ServiceDescription {
   /// the service.
   std::vector<std::string> settings{};
   std::vector<BackendDescription> backends{};  ///< empty if it has none to choose from
-  /// It works for the second camera (services/runtime/second_view.hpp). Known to the program alone.
-  bool is_second_view = false;
 };
 
 /// The description as JSON, with a line end.

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "renderer/content/builtin.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 
 namespace handcast::renderer {
 

@@ -38,9 +38,9 @@ Filtered LandmarkTrack::filter(std::int64_t now_ns, std::int64_t target_ns,
 
   filter_->tracker_is(is_silent ? LandmarkFilter::Tracker::silent
                                 : LandmarkFilter::Tracker::reporting);
-  const auto filtered = filter_->at(now_ns, target_ns, predicted.landmarks);
-  const LandmarkPoints landmarks = filtered.value_or(predicted.landmarks);
-  moved_px_ = difference(landmarks, predicted.landmarks);
+  const auto filtered = filter_->at(now_ns, target_ns, predicted.posed.landmarks);
+  const LandmarkPoints landmarks = filtered.value_or(predicted.posed.landmarks);
+  moved_px_ = difference(landmarks, predicted.posed.landmarks);
   return {landmarks, filtered.has_value(), is_alone_, has_news, filtered ? seen_ns_ : std::nullopt};
 }
 

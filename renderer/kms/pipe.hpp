@@ -1,13 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <xf86drmMode.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "ipc/base/result.hpp"
-#include "renderer/kms/atomic.hpp"
 #include "renderer/kms/buffer.hpp"
 #include "renderer/kms/display.hpp"
+#include "renderer/kms/owned.hpp"
 
 namespace handcast::renderer::kms {
+
+/// A connector, CRTC or plane of a card, and the properties that it had when it was read.
+class Object {
+ public:
+  Object() = default;
+  /// Reads it. `type`: DRM_MODE_OBJECT_*.
+  static Object read(int card, std::uint32_t id, std::uint32_t type);
+
+  std::uint32_t id() const { return id_; }
+  /// The number of a property; empty if the driver does not have it.
+  std::optional<std::uint32_t> property(std::string_view name) const;
+  /// Its value when it was read; 0 if the driver does not have it.
+  std::uint64_t value(std::string_view name) const;
+
+ private:
+  struct Property {
+    std::uint32_t id = 0;
+    std::uint64_t value = 0;
+  };
+  std::uint32_t id_ = 0;
+  std::map<std::string, Property, std::less<>> properties_;
+};
+
+/// Data of a property (a mode, a colour table) in the kernel.
+class Blob {
+ public:
+  Blob() = default;
+  Blob(int card, const void* data, std::size_t bytes);
+  /// A copy of another blob, which its owner may release; empty if there is none.
+  static Blob copy_of(int card, std::uint64_t id);
+  ~Blob() { reset(); }
+  Blob(Blob&& other) noexcept;
+  Blob& operator=(Blob&& other) noexcept;
+
+  std::uint32_t id() const { return id_; }  ///< 0: none
+
+ private:
+  void reset();
+  int card_ = -1;
+  std::uint32_t id_ = 0;
+};
+
+/// Values that a card takes over all at once, or not at all.
+class Request {
+ public:
+  /// Adds a value. A property that the driver does not have is left out.
+  void set(const Object& object, std::string_view name, std::uint64_t value);
+  /// Sends the values. `flags`: DRM_MODE_ATOMIC_*, DRM_MODE_PAGE_FLIP_EVENT; `user`: returned with
+  /// the event. Returns 0 or an errno.
+  int commit(int card, std::uint32_t flags, void* user = nullptr) const;
+
+ private:
+  Owned<drmModeAtomicReq> values_{drmModeAtomicAlloc()};
+};
 
 /// The parts of a card through which a picture gets to a display, with the properties they had when
 /// they were found.

@@ -3,17 +3,22 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <pthread.h>
 #include <xf86drm.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <condition_variable>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include "ipc/base/log.hpp"
 #include "renderer/kms/card.hpp"
 
 namespace handcast::renderer::kms {
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -38,6 +43,18 @@ Error why_not_flipped(int number, const Display& display) {
 }
 
 }  // namespace
+
+PlugWatch::PlugWatch(int card, std::uint32_t connector_id)
+    : thread_([this, card, connector_id](const std::stop_token& stop) {
+        const sched_param none{};
+        pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);  // the daemon may be real-time
+        std::mutex mutex;
+        std::condition_variable_any stopped;
+        std::unique_lock lock(mutex);
+        while (!stopped.wait_for(lock, stop, std::chrono::milliseconds(250),
+                                 [&] { return stop.stop_requested(); }))
+          is_plugged_ = kms::is_plugged(card, connector_id);
+      }) {}
 
 Screen::Screen(ScreenSettings settings, UniqueFd card, Display display)
     : settings_(std::move(settings)), card_(std::move(card)), display_(std::move(display)) {}

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
@@ -13,9 +15,24 @@
 #include "renderer/kms/buffer.hpp"
 #include "renderer/kms/display.hpp"
 #include "renderer/kms/pipe.hpp"
-#include "renderer/kms/plug_watch.hpp"
 
 namespace handcast::renderer::kms {
+
+/// Notices within a quarter of a second that a display is unplugged or plugged in again. It asks on
+/// a thread of its own, because the kernel lets the question wait while another program asks a
+/// display for its modes.
+class PlugWatch {
+ public:
+  /// `card` must stay open while this object lives.
+  PlugWatch(int card, std::uint32_t connector_id);
+
+  /// Any thread.
+  bool is_plugged() const { return is_plugged_; }
+
+ private:
+  std::atomic<bool> is_plugged_ = true;
+  std::jthread thread_;
+};
 
 /// What a screen is opened with.
 struct ScreenSettings {

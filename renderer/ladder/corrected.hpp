@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "ipc/msg/hand_poses.hpp"
-#include "renderer/base/landmark_points.hpp"
 #include "renderer/ladder/rung.hpp"
+#include "renderer/predict/projected_pose.hpp"
 
 namespace handcast::renderer {
 
-/// One hand at the time of the photons, on its rung: it is drawn in `pose` and then moved from P
+/// One hand at the time of the photons, on its rung: it is drawn in its pose and then moved from P
 /// onto Q̂.
 struct Corrected {
-  msg::HandPose pose;          ///< tracker space
-  LandmarkPoints tracker{};    ///< P: the landmarks of `pose` in the camera
+  ProjectedPose posed;         ///< with P
   LandmarkPoints landmarks{};  ///< Q̂, or P if nothing corrects it
   bool has_landmarks = false;  ///< `landmarks` are Q̂, even if the rung leaves them at P
   bool is_alone = false;       ///< see Filtered::is_alone
@@ -23,7 +21,7 @@ struct Corrected {
   float registered = 1;  ///< share of late registration in the light, 0..1
 
   /// Q̂ - P.
-  LandmarkPoints offset_px() const { return difference(landmarks, tracker); }
+  LandmarkPoints offset_px() const { return difference(landmarks, posed.landmarks); }
 };
 
 }  // namespace handcast::renderer

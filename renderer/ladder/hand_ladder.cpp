@@ -79,17 +79,10 @@ void HandLadder::judge_landmarks(Evidence& evidence) const {
   }
 }
 
-std::optional<HandLadder::Newest> HandLadder::newest(const HandTrack& track) const {
-  const auto pose = track.pose_at(track.newest_ns());
-  const auto tracker = track.landmarks_at(track.newest_ns());
-  return pose && tracker ? std::optional(Newest{*pose, *tracker}) : std::nullopt;
-}
-
 Corrected HandLadder::take(const HandTrack& track, std::int64_t target_ns,
                            std::optional<std::int64_t> camera_ns, const Predicted& predicted,
                            const Filtered& filtered) {
-  Corrected hand{.pose = predicted.pose,
-                 .tracker = predicted.landmarks,
+  Corrected hand{.posed = predicted.posed,
                  .landmarks = filtered.landmarks,
                  .has_landmarks = filtered.has_landmarks,
                  .is_alone = filtered.is_alone,
@@ -104,14 +97,14 @@ Corrected HandLadder::take(const HandTrack& track, std::int64_t target_ns,
     hand.registered = fixed_ == Rung::registered ? 1.0f : 0.0f;
     return hand;
   }
-  const auto newest_sample = newest(track);
-  if (!newest_sample) return hand;
-  hand.rung = automatic_ ? choose(track, target_ns, camera_ns, hand, *newest_sample) : fixed_;
+  const auto newest = track.projected_at(track.newest_ns());
+  if (!newest) return hand;
+  hand.rung = automatic_ ? choose(track, target_ns, camera_ns, hand, *newest) : fixed_;
   if (!automatic_ && hand.has_landmarks)
     models_[static_cast<std::size_t>(hand.rung)] =
-        fit_rung(hand.rung, hand.tracker, hand.landmarks);
+        fit_rung(hand.rung, hand.posed.landmarks, hand.landmarks);
   blend_.turn_to(hand.rung, target_ns, automatic_ ? settings_.filter.blend_ms : 0);
-  apply(*newest_sample, hand);
+  apply(*newest, hand);
   // Landmarks that are blended must move the drawing, which takes at least a shift.
   const Rung least = hand.has_landmarks ? Rung::shift : Rung::hold;
   if (blend_.is_pure(hand.rung)) hand.moves = std::clamp(hand.rung, least, Rung::landmarks);
@@ -121,15 +114,16 @@ Corrected HandLadder::take(const HandTrack& track, std::int64_t target_ns,
 
 Rung HandLadder::choose(const HandTrack& track, std::int64_t target_ns,
                         std::optional<std::int64_t> camera_ns, const Corrected& hand,
-                        const Newest& newest) {
+                        const ProjectedPose& newest) {
+  const LandmarkPoints& tracker = hand.posed.landmarks;
   hindsight_.look_back(track);
   if (hindsight_.wants(target_ns)) {
     const auto seen = camera_ns ? track.landmarks_at(*camera_ns) : std::nullopt;
     hindsight_.remember({target_ns, camera_ns.value_or(track.newest_ns()), track.newest_ns(),
-                         newest.tracker, seen.value_or(hand.tracker), hand.tracker});
+                         newest.landmarks, seen.value_or(tracker), tracker});
   }
   const auto& [hold_px, predict_px, register_px] = hindsight_.motion();
-  Evidence evidence{std::max(hold_px * hold_px, mean_square(newest.tracker, hand.tracker)),
+  Evidence evidence{std::max(hold_px * hold_px, mean_square(newest.landmarks, tracker)),
                     predict_px * predict_px, register_px * register_px};
   evidence.has_landmarks = hand.has_landmarks;
   evidence.can_register = camera_ns.has_value();
@@ -143,29 +137,28 @@ Rung HandLadder::choose(const HandTrack& track, std::int64_t target_ns,
   offset_ = hand.offset_px();
   if (!with_tracker_) lit_.remember(target_ns, hand.landmarks);
   evidence.left_px2.fill(0);
-  evidence.left_px2[0] = evidence.left_px2[1] = mean_square(hand.tracker, hand.landmarks);
+  evidence.left_px2[0] = evidence.left_px2[1] = mean_square(tracker, hand.landmarks);
   judge_landmarks(evidence);
   for (const Rung rung : kModelled) {
-    auto& model = models_[static_cast<std::size_t>(rung)] =
-        fit_rung(rung, hand.tracker, hand.landmarks);
+    auto& model = models_[static_cast<std::size_t>(rung)] = fit_rung(rung, tracker, hand.landmarks);
     evidence.left_px2[static_cast<std::size_t>(rung)] =
-        residual_px2(model, hand.tracker, hand.landmarks);
+        residual_px2(model, tracker, hand.landmarks);
   }
   return gate_.choose(target_ns, evidence);
 }
 
-void HandLadder::apply(const Newest& newest, Corrected& hand) const {
+void HandLadder::apply(const ProjectedPose& newest, Corrected& hand) const {
   // On a low rung that was chosen, not set, the landmarks stay valid: through them the jumps of the
   // tracker are blended.
   const bool goes_on = automatic_ && hand.has_landmarks;
   if (blend_.is_pure(Rung::hold)) {
-    if (!goes_on) hand.pose = newest.pose, hand.tracker = newest.tracker;
-    hand.landmarks = newest.tracker;
+    if (!goes_on) hand.posed = newest;
+    hand.landmarks = newest.landmarks;
     hand.has_landmarks = goes_on;
     return;
   }
   if (blend_.is_pure(Rung::predict)) {
-    hand.landmarks = hand.tracker;
+    hand.landmarks = hand.posed.landmarks;
     hand.has_landmarks = goes_on;
     return;
   }
@@ -174,8 +167,8 @@ void HandLadder::apply(const Newest& newest, Corrected& hand) const {
   if (full == 1) return;
   LandmarkPoints mixed{};
   for (int i = 0; i < kLandmarks; ++i) {
-    const glm::vec2 p = hand.tracker[i];
-    mixed[i] = held * newest.tracker[i] + predicted * p + full * hand.landmarks[i];
+    const glm::vec2 p = hand.posed.landmarks[i];
+    mixed[i] = held * newest.landmarks[i] + predicted * p + full * hand.landmarks[i];
     for (const Rung rung : kModelled)
       if (blend_.share(rung) > 0)
         mixed[i] += blend_.share(rung) * models_[static_cast<std::size_t>(rung)].moved(i, p);

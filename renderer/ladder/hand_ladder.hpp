@@ -34,16 +34,10 @@ class HandLadder {
   }
 
  private:
-  /// The newest tracker sample.
-  struct Newest {
-    msg::HandPose pose;
-    LandmarkPoints tracker;  ///< P of `pose`
-  };
   void judge_landmarks(Evidence& evidence) const;
-  std::optional<Newest> newest(const HandTrack& track) const;
   Rung choose(const HandTrack& track, std::int64_t target_ns, std::optional<std::int64_t> camera_ns,
-              const Corrected& hand, const Newest& newest);
-  void apply(const Newest& newest, Corrected& hand) const;
+              const Corrected& hand, const ProjectedPose& newest);
+  void apply(const ProjectedPose& newest, Corrected& hand) const;
 
   config::Cascade settings_;
   bool automatic_;

@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "renderer/base/similarity.hpp"
-#include "renderer/predict/project_landmarks.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -56,14 +55,15 @@ void HandMask::clear_camera_mask(int width, int height) {
   fill_rect(camera_mask_, written_, 0);
 }
 
-void HandMask::find(const TimedImage& camera, std::span<const Expected> hands) {
+void HandMask::find(const TimedImage& camera, std::span<const Sought> hands) {
   clear_camera_mask(camera.view.width, camera.view.height);
   owned_hints_.clear();
   hints_.clear();
   std::vector<std::optional<std::size_t>> hint_of(hands.size());
   for (std::size_t h = 0; h < hands.size(); ++h) {
-    auto hint = hands[h].then ? make_hint(calibration_, settings_, *hands[h].then, *hands[h].hand)
-                              : std::nullopt;
+    if (!hands[h].then) continue;
+    auto hint = make_hint(calibration_, settings_, *hands[h].then, hands[h].offset_px,
+                          hands[h].has_landmarks);
     if (!hint) continue;
     hint_of[h] = owned_hints_.size();
     owned_hints_.push_back(std::move(*hint));
@@ -71,13 +71,15 @@ void HandMask::find(const TimedImage& camera, std::span<const Expected> hands) {
   for (const OwnedHint& owned : owned_hints_) hints_.push_back(owned.hint);
   written_ = finder_.find(camera.view, hints_, camera_mask_.view());
   found_.clear();
-  shown_.clear();
   for (std::size_t h = 0; h < hands.size(); ++h) {
-    const auto& hint = hint_of[h];
-    found_.push_back(hint ? finder_.hand_bounds(*hint) : Rect{});
-    shown_.push_back(
-        hint && is_shown(found_[h], memory_of(hands[h].side).found, owned_hints_[*hint].seeds_px));
-    if (shown_[h]) remember(hands[h], found_[h]);
+    const auto& [side, then, offset_px, has_landmarks] = hands[h];
+    Found& found = found_.emplace_back(Found{.side = side});
+    if (then) found.then = then->landmarks;
+    if (const auto& hint = hint_of[h]) {
+      found.bounds = finder_.hand_bounds(*hint);
+      found.is_shown = is_shown(found.bounds, memory_of(side).found, owned_hints_[*hint].seeds_px);
+    }
+    if (found.is_shown) remember(hands[h], found.bounds);
   }
 }
 
@@ -92,7 +94,7 @@ bool HandMask::is_shown(const Rect& found, const Rect& before,
   });
 }
 
-void HandMask::remember(const Expected& hand, const Rect& found) {
+void HandMask::remember(const Sought& hand, const Rect& found) {
   Memory& memory = memory_of(hand.side);
   if (memory.mask.width() != camera_mask_.width() ||
       memory.mask.height() != camera_mask_.height()) {
@@ -104,8 +106,7 @@ void HandMask::remember(const Expected& hand, const Rect& found) {
   for (int y = memory.found.y0; y < memory.found.y1; ++y)
     std::memcpy(memory.mask.row(y) + memory.found.x0, camera_mask_.row(y) + memory.found.x0,
                 static_cast<std::size_t>(memory.found.width()));
-  memory.landmarks =
-      in_image(sum(*project_landmarks(calibration_, *hand.then), hand.hand->offset_px()));
+  memory.landmarks = in_image(sum(hand.then->landmarks, hand.offset_px));
 }
 
 LandmarkPoints HandMask::in_image(LandmarkPoints undistorted_px) const {
@@ -114,52 +115,51 @@ LandmarkPoints HandMask::in_image(LandmarkPoints undistorted_px) const {
 }
 
 /// Maps image positions on the hand at the target time to those at the exposure.
-Similarity HandMask::since_exposure(const Expected& hand) const {
-  const auto then =
-      hand.then && settings_.advance ? project_landmarks(calibration_, *hand.then) : std::nullopt;
-  if (!then) return {};
-  return fit_similarity(in_image(sum(hand.hand->tracker, hand.moved_now)),
-                        in_image(sum(*then, hand.moved_then)));
+Similarity HandMask::since_exposure(const Found& found, const Moved& hand) const {
+  if (!found.then || !settings_.advance) return {};
+  return fit_similarity(in_image(sum(hand.tracker, hand.moved_now)),
+                        in_image(sum(*found.then, hand.moved_then)));
 }
 
 /// Maps image positions on the hand at the target time to those when it was last shown. No image
 /// has been registered since, so the motion is that of the landmarks.
-Similarity HandMask::since_seen(const Expected& hand) const {
+Similarity HandMask::since_seen(const Found& found, const Moved& hand) const {
   return settings_.advance
-             ? fit_similarity(in_image(hand.hand->landmarks), memory_of(hand.side).landmarks)
+             ? fit_similarity(in_image(hand.landmarks), memory_of(found.side).landmarks)
              : Similarity{};
 }
 
 /// Where hand `h`, which fills `image_region` at the target time, falls in the projector. Sets its
 /// nearness if the projector is not coaxial.
-Rect HandMask::region_of(std::size_t h, const Expected& hand, const Rect& image_region) {
+Rect HandMask::region_of(std::size_t h, const Moved& hand, const Rect& image_region) {
   const Rect screen{0, 0, projector_mask_.width(), projector_mask_.height()};
   if (calibration_.parallax == glm::dvec3(0))
     return lookup_.to_projector(image_region).within(screen.x1, screen.y1);
   auto& nearness = nearness_[h];
-  nearness.set(hand.landings_px, hand.depths_m, calibration_.plane_m);
+  nearness.set(hand.projected_px, hand.depths_m, calibration_.plane_m);
   return lookup_.to_projector(image_region, nearness.least())
       .joined(lookup_.to_projector(image_region, nearness.most()))
       .within(screen.x1, screen.y1);
 }
 
-Rect HandMask::advance(std::span<const Expected> hands) {
+Rect HandMask::advance(std::span<const Moved> hands) {
   Rect all;
   std::vector<Rect> regions;
   std::vector<Similarity> moves;
   for (std::size_t h = 0; h < hands.size(); ++h) {
-    moves.push_back(shown_[h] ? since_exposure(hands[h]) : since_seen(hands[h]));
-    const Rect found = shown_[h] ? found_[h] : memory_of(hands[h].side).found;
-    const bool dark = found.empty() || hands[h].presence <= 0;
-    const Rect moved = dark ? Rect{} : moved_back(found, moves.back()).grown(kMargin_px);
+    const Found& found = found_[h];
+    moves.push_back(found.is_shown ? since_exposure(found, hands[h]) : since_seen(found, hands[h]));
+    const Rect bounds = found.is_shown ? found.bounds : memory_of(found.side).found;
+    const bool dark = bounds.empty() || hands[h].presence <= 0;
+    const Rect moved = dark ? Rect{} : moved_back(bounds, moves.back()).grown(kMargin_px);
     regions.push_back(region_of(h, hands[h], moved));
     all = all.joined(regions.back());
   }
   if (regions.size() > 1) fill_rect(projector_mask_, all, 0);
   for (const bool shown : {false, true})
     for (std::size_t h = 0; h < regions.size(); ++h) {
-      if (shown_[h] != shown) continue;
-      const GreyView mask = shown ? camera_mask_.view() : memory_of(hands[h].side).mask.view();
+      if (found_[h].is_shown != shown) continue;
+      const GreyView mask = shown ? camera_mask_.view() : memory_of(found_[h].side).mask.view();
       lookup_.resample(mask, regions[h], projector_mask_.view(), moves[h], nearness_[h].points());
     }
   return all;

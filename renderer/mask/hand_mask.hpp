@@ -9,12 +9,12 @@
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
 #include "renderer/base/image.hpp"
-#include "renderer/ladder/corrected.hpp"
 #include "renderer/mask/camera_lookup.hpp"
 #include "renderer/mask/hint.hpp"
 #include "renderer/mask/mask.hpp"
 #include "renderer/mask/nearness_grid.hpp"
 #include "renderer/mask/silhouette.hpp"
+#include "renderer/predict/projected_pose.hpp"
 
 namespace handcast::renderer {
 
@@ -26,20 +26,26 @@ using msg::Side;
 /// `docs/method.md#mask`. One thread.
 class HandMask {
  public:
-  /// Where one hand is expected.
-  struct Expected {
+  /// A hand to be found in an image.
+  struct Sought {
     Side side;                          ///< which hand it is
-    std::optional<msg::HandPose> then;  ///< its pose at the exposure; empty: do not search for it
-    const Corrected* hand = nullptr;    ///< the hand at the target time; borrowed
-    float presence = 1;                 ///< share of its light; 0: it gets no mask
+    std::optional<ProjectedPose> then;  ///< by the tracker at the exposure; empty: it is not sought
+    LandmarkPoints offset_px{};         ///< Q̂ - P
+    bool has_landmarks = false;         ///< the offset is that of landmarks, not 0
+  };
+  /// A hand at the target time.
+  struct Moved {
+    float presence = 1;          ///< share of its light; 0: it gets no mask
+    LandmarkPoints tracker{};    ///< P
+    LandmarkPoints landmarks{};  ///< Q̂ before registration
     /// Displacement of its landmarks by late registration, at the exposure and at the target time.
     /// @{
     LandmarkPoints moved_then{}, moved_now{};
     /// @}
-    /// Its drawn vertices at the target time, projector px, and their depths: needed by advance()
-    /// if camera and projector are not coaxial.
+    /// Its drawn vertices, projector px, and their depths: needed if camera and projector are not
+    /// coaxial.
     /// @{
-    std::span<const glm::vec2> landings_px{};
+    std::span<const glm::vec2> projected_px{};
     std::span<const float> depths_m{};
     /// @}
   };
@@ -50,12 +56,12 @@ class HandMask {
            bool smooth = false);
 
   /// Finds the hands in an image.
-  void find(const TimedImage& camera, std::span<const Expected> hands);
+  void find(const TimedImage& camera, std::span<const Sought> hands);
 
   /// True if the image of the last find() shows its hand `h`: one of its joints is lit, or the
   /// bounds of its mask have at least a quarter of the area that they had when the hand was last
   /// shown.
-  bool shows(std::size_t h) const { return shown_[h]; }
+  bool shows(std::size_t h) const { return found_[h].is_shown; }
   /// The masks in `camera`, which must be the image of the last find(). Valid until the next
   /// find().
   Silhouette silhouette(const TimedImage& camera) const {
@@ -63,15 +69,22 @@ class HandMask {
             written_,    finder_.threshold(), finder_.local_threshold()};
   }
 
-  /// Moves the masks of the last find() to the target time, in projector pixels. `hands`: the same
-  /// hands. Returns the region that contains the masks. Where the bounds of two hands overlap, both
-  /// masks move as the second hand does, or as the one that is shown.
-  Rect advance(std::span<const Expected> hands);
+  /// Moves the masks of the last find() to the target time, in projector pixels. `hands`: those of
+  /// find(), in the same order. Returns the region that contains the masks. Where the bounds of two
+  /// hands overlap, both masks move as the second hand does, or as the one that is shown.
+  Rect advance(std::span<const Moved> hands);
   /// The masks of the last advance(), in the projector's size: 255 hand, 0 not, or the
   /// share of the pixel that is hand. Defined inside the returned region only.
   GreyView in_projector() const { return projector_mask_.view(); }
 
  private:
+  /// One hand of find().
+  struct Found {
+    Side side;
+    std::optional<LandmarkPoints> then;  ///< P at the exposure
+    Rect bounds;                         ///< of its mask; empty if there is none
+    bool is_shown = false;               ///< see shows()
+  };
   /// One hand as it was last shown.
   struct Memory {
     Image<std::uint8_t> mask;    ///< of the camera's size, 0 outside `found`
@@ -80,12 +93,12 @@ class HandMask {
   };
 
   LandmarkPoints in_image(LandmarkPoints undistorted_px) const;
-  Similarity since_exposure(const Expected& hand) const;
-  Similarity since_seen(const Expected& hand) const;
-  Rect region_of(std::size_t h, const Expected& hand, const Rect& image_region);
+  Similarity since_exposure(const Found& found, const Moved& hand) const;
+  Similarity since_seen(const Found& found, const Moved& hand) const;
+  Rect region_of(std::size_t h, const Moved& hand, const Rect& image_region);
   void clear_camera_mask(int width, int height);
   bool is_shown(const Rect& found, const Rect& before, std::span<const glm::vec2> seeds_px) const;
-  void remember(const Expected& hand, const Rect& found);
+  void remember(const Sought& hand, const Rect& found);
   Memory& memory_of(Side side) { return memories_[static_cast<std::size_t>(side)]; }
   const Memory& memory_of(Side side) const { return memories_[static_cast<std::size_t>(side)]; }
 
@@ -98,8 +111,7 @@ class HandMask {
   Rect written_;  ///< part of camera_mask_ that is not 0
   std::vector<OwnedHint> owned_hints_;
   std::vector<HandHint> hints_;
-  std::vector<Rect> found_;  ///< per hand of find(): bounds of its mask; empty if there is none
-  std::vector<bool> shown_;  ///< per hand of find(): see shows()
+  std::vector<Found> found_;
   std::array<Memory, msg::kMaxHands> memories_;  ///< by side
 };
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "renderer/predict/project_landmarks.hpp"
-
 namespace handcast::renderer {
 namespace {
 
@@ -48,14 +46,11 @@ bool is_in_reach(const calib::CameraModel& camera, const glm::dvec2& undistorted
 }
 
 /// Camera px per mm at the distance of each landmark.
-std::array<float, kLandmarks> scale_of(const calib::Calibration& calibration,
-                                       const msg::HandPose& pose) {
+std::array<float, kLandmarks> scale_of(const calib::CameraModel& camera,
+                                       const std::array<double, kLandmarks>& depths_m) {
   std::array<float, kLandmarks> px_per_mm;
-  for (int i = 0; i < kLandmarks; ++i) {
-    const auto& [x, y, z] = pose.joints[msg::kJointOfLandmark[i]].position_m;
-    const double distance_m = (calibration.camera_from_tracker * glm::dvec4(x, y, z, 1)).z;
-    px_per_mm[i] = static_cast<float>(1e-3 * calibration.camera.fx_px / std::max(distance_m, 0.05));
-  }
+  for (int i = 0; i < kLandmarks; ++i)
+    px_per_mm[i] = static_cast<float>(1e-3 * camera.fx_px / depths_m[i]);
   return px_per_mm;
 }
 
@@ -91,24 +86,21 @@ Rect bounds_of(const std::vector<Flesh>& flesh, float margin_px) {
 }  // namespace
 
 std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
-                                   const config::Mask& settings, const msg::HandPose& then,
-                                   const Corrected& hand) {
-  const auto points = project_landmarks(calibration, then);
-  if (!points) return std::nullopt;
+                                   const config::Mask& settings, const ProjectedPose& then,
+                                   const LandmarkPoints& offset_px, bool has_landmarks) {
   OwnedHint owned;
   bool in_reach = false;
   for (int i = 0; i < kLandmarks; ++i) {
-    const glm::dvec2 px =
-        glm::dvec2((*points)[i]) + glm::dvec2(hand.landmarks[i] - hand.tracker[i]);
+    const glm::dvec2 px = glm::dvec2(then.landmarks[i]) + glm::dvec2(offset_px[i]);
     in_reach |= is_in_reach(calibration.camera, px);
     owned.seeds_px.push_back(calibration.camera.distort(px));
   }
   if (!in_reach) return std::nullopt;
 
-  const auto& [x, y, z] = then.joints[kWrist].position_m;
-  const auto& [qx, qy, qz, qw] = then.joints[kWrist].orientation_xyzw;
+  const auto& [x, y, z] = then.pose.joints[kWrist].position_m;
+  const auto& [qx, qy, qz, qw] = then.pose.joints[kWrist].orientation_xyzw;
   const glm::dvec3 wrist(x, y, z), to_elbow = glm::dquat(qw, qx, qy, qz) * glm::dvec3(0, 0, 1);
-  const glm::dvec2 offset = hand.landmarks[0] - hand.tracker[0];
+  const glm::dvec2 offset = offset_px[0];
   const double forearm_m = settings.forearm_mm * 1e-3;
   const glm::dvec2 end = image_of(calibration, wrist + forearm_m * to_elbow, offset);
   glm::dvec2 along =
@@ -117,9 +109,9 @@ std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
   if (glm::length(along) < 2) along = owned.seeds_px[0] - owned.seeds_px[9];
   if (glm::length(along) < 1e-3) along = {0, 1};
 
-  owned.flesh = flesh_of(owned.seeds_px, end, scale_of(calibration, then));
-  const float sure_px = hand.has_landmarks ? kSure_px : kTrackerSure_px,
-              most_px = hand.has_landmarks ? kMost_px : kTrackerMost_px;
+  owned.flesh = flesh_of(owned.seeds_px, end, scale_of(calibration.camera, then.depths_m));
+  const float sure_px = has_landmarks ? kSure_px : kTrackerSure_px,
+              most_px = has_landmarks ? kMost_px : kTrackerMost_px;
   owned.hint = {
       bounds_of(owned.flesh, most_px), end, glm::normalize(along), {}, {}, sure_px, most_px};
   owned.hint.inside_px = owned.seeds_px;

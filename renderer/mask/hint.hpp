@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
-#include "renderer/ladder/corrected.hpp"
 #include "renderer/mask/mask.hpp"
+#include "renderer/predict/projected_pose.hpp"
 
 namespace handcast::renderer {
 
@@ -16,10 +17,11 @@ struct OwnedHint {
   std::vector<Flesh> flesh;         ///< HandHint::flesh
 };
 
-/// Where a hand is expected in an image: `then`, its pose at the exposure, moved by Q̂ - P of
-/// `hand`. Empty if the hand has no P or is more than half an image outside the image.
+/// Where a hand is expected in an image: `then`, its pose at the exposure, moved by `offset_px`
+/// (Q̂ - P). `has_landmarks`: the offset is that of landmarks, not 0. Empty if the hand is more than
+/// half an image outside the image.
 std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
-                                   const config::Mask& settings, const msg::HandPose& then,
-                                   const Corrected& hand);
+                                   const config::Mask& settings, const ProjectedPose& then,
+                                   const LandmarkPoints& offset_px, bool has_landmarks);
 
 }  // namespace handcast::renderer

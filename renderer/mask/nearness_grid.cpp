@@ -18,12 +18,12 @@ NearnessGrid::NearnessGrid(int columns, int rows, int step_px)
       step_px_(step_px),
       points_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
 
-void NearnessGrid::set(std::span<const glm::vec2> landings_px, std::span<const float> depths_m,
+void NearnessGrid::set(std::span<const glm::vec2> projected_px, std::span<const float> depths_m,
                        double plane_m) {
   std::ranges::fill(points_, kUnset);
   const auto plane_nearness = static_cast<float>(1 / plane_m);
-  for (std::size_t v = 0; v < landings_px.size(); ++v) {
-    const auto at = glm::round(landings_px[v] / static_cast<float>(step_px_));
+  for (std::size_t v = 0; v < projected_px.size(); ++v) {
+    const auto at = glm::round(projected_px[v] / static_cast<float>(step_px_));
     if (!(at.x >= 0 && at.y >= 0 && at.x < static_cast<float>(columns_) &&
           at.y < static_cast<float>(rows_)))
       continue;

@@ -15,8 +15,9 @@ class NearnessGrid {
 
   /// Sets each point to the nearest vertex around it, or, if there is none, to the point beside it
   /// that was set; all to 0 if there are no vertices. The spans have the same length;
-  /// `landings_px`: projector px.
-  void set(std::span<const glm::vec2> landings_px, std::span<const float> depths_m, double plane_m);
+  /// `projected_px`: projector px.
+  void set(std::span<const glm::vec2> projected_px, std::span<const float> depths_m,
+           double plane_m);
   /// The points, row by row.
   std::span<const float> points() const { return points_; }
   /// The range of the points.

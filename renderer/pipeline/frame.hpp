@@ -22,9 +22,9 @@ struct FrameHand {
   float presence = 1;          ///< factor of all its levels, 0..1
   /// Index among the drawn hands, see surface_id(); -1: not drawn.
   int drawn_as = -1;
-  bool has_landmarks = false;           ///< `corrected` is Q̂, even if the rung leaves it at P
-  std::span<const glm::vec2> landings;  ///< per vertex: where its light lands, projector px
-  Rung rung = Rung::landmarks;          ///< the rung of this frame
+  bool has_landmarks = false;               ///< `corrected` is Q̂, even if the rung leaves it at P
+  std::span<const glm::vec2> projected_px;  ///< projected vertices: where their light lands
+  Rung rung = Rung::landmarks;              ///< the rung of this frame
 };
 
 /// One finished frame. Everything it refers to is valid until the next Pipeline::render() or

@@ -8,7 +8,7 @@
 #include "ipc/msg/projection.hpp"
 #include "renderer/content/textures.hpp"
 #include "renderer/correct/deform.hpp"
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/plausible_pose.hpp"
 #include "renderer/skin/finger_bend.hpp"
 
 namespace handcast::renderer {
@@ -39,17 +39,14 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
     : side_(side),
       settings_(settings),
       calibration_(calibration),
-      snaps_(calibration),
-      track_(settings.predict, calibration),
-      landmarks_(filter_of(settings), std::move(oracle)),
-      ladder_(settings),
-      surface_(std::move(surface)),
-      turn_(calibration),
-      definitions_(calibration),
-      fingers_(surface_.mesh()),
-      palm_(surface_.mesh()),
-      mover_(surface_.mesh()),
-      untangler_(surface_.mesh()),
+      states_{.reports = {.snaps = FingerSnaps(calibration),
+                          .orientation_bias = OrientationBias(calibration),
+                          .landmark_offset = LandmarkOffset(calibration)},
+              .motion = {.track = HandTrack(settings.predict, calibration),
+                         .landmarks = LandmarkTrack(filter_of(settings), std::move(oracle)),
+                         .ladder = HandLadder(settings)},
+              .light = {},
+              .shape = HandStates::Shape(std::move(surface))},
       picture_(std::move(picture)) {}
 
 Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settings,
@@ -62,7 +59,7 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
   auto texture = load_content(is_left ? content.left : content.right, *mesh);
   if (!texture) return tl::make_unexpected(texture.error());
   if (mesh->vertex_count() > msg::kMaxVertices)
-    log::warning("the hand has {} vertices: observers receive the landings of the first {} only",
+    log::warning("the hand has {} vertices: observers receive the first {} only",
                  mesh->vertex_count(), msg::kMaxVertices);
   HandSurface surface(std::move(*mesh), settings.mask.forearm_mm);
   return HandPipeline(side, settings, calibration, std::move(surface),
@@ -70,61 +67,72 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
-  if (landmarks_.is_alone()) snaps_.forget();
+  if (!is_plausible(pose, calibration_.camera_from_tracker)) return;
+  auto& [reports, motion, light, shape] = states_;
+  if (motion.landmarks.is_alone()) reports.snaps.forget();
   const auto held = settings_.predict.method == config::PredictMethod::acceleration
-                        ? snaps_.held(origin_ns, pose, landmarks_.moved_px())
+                        ? reports.snaps.held(origin_ns, pose, motion.landmarks.moved_px())
                         : pose;
-  landmarks_.tracker_sample(now_ns, track_.push(now_ns, origin_ns, held));
-  surface_.learn(origin_ns, held);
+  motion.landmarks.tracker_sample(now_ns, motion.track.push(now_ns, origin_ns, held));
+  shape.surface.learn(origin_ns, held);
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
                         const msg::HandLandmarks& seen) {
-  const auto pose = track_.recent_pose(origin_ns);
-  if (pose && !landmarks_.is_alone()) {
-    if (settings_.skin.turn) turn_.learn(origin_ns, *pose, seen);
-    if (settings_.filter.definitions) definitions_.learn(origin_ns, turn_.turned(*pose), seen);
+  auto& [reports, motion, light, shape] = states_;
+  const bool is_alone = motion.landmarks.is_alone();
+  if (const auto pose = motion.track.recent_pose(origin_ns); pose && !is_alone) {
+    if (settings_.skin.turn) reports.orientation_bias.learn(origin_ns, *pose, seen);
+    if (settings_.filter.definitions)
+      reports.landmark_offset.learn(origin_ns, reports.orientation_bias.turned(*pose), seen);
   }
-  has_sigmas_ =
+  reports.has_sigmas =
       std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
-  const auto as_tracked = definitions_.as_tracked(seen);
-  snaps_.detection(origin_ns, as_tracked);
-  if (!landmarks_.is_alone()) ladder_.detection(track_, origin_ns, as_tracked);
-  landmarks_.detection(now_ns, origin_ns, as_tracked, track_);
+  const auto as_tracked = reports.landmark_offset.as_tracked(seen);
+  reports.snaps.detection(origin_ns, as_tracked);
+  if (!is_alone) motion.ladder.detection(motion.track, origin_ns, as_tracked);
+  motion.landmarks.detection(now_ns, origin_ns, as_tracked, motion.track);
 }
 
 std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
                                                std::optional<std::int64_t> image_ns) {
-  const auto predicted = track_.predict(now_ns, target_ns);
+  auto& [reports, motion, light, shape] = states_;
+  const auto predicted = motion.track.predict(now_ns, target_ns);
   if (!predicted) {
-    presence_.no_hand(target_ns);
-    sight_.no_hand(target_ns);
+    light.presence.no_hand(target_ns);
+    light.sight.no_hand(target_ns);
     return std::nullopt;
   }
-  const Filtered filtered = landmarks_.filter(now_ns, target_ns, *predicted);
+  const Filtered filtered = motion.landmarks.filter(now_ns, target_ns, *predicted);
   HandFrame frame;
-  frame.presence = presence_.at(target_ns, track_.newest_ns(), filtered.seen_ns);
+  frame.presence = light.presence.at(target_ns, motion.track.newest_ns(), filtered.seen_ns);
   if (frame.presence == 0) {
-    sight_.no_hand(target_ns);
+    light.sight.no_hand(target_ns);
     return std::nullopt;
   }
-  frame.corrected = ladder_.take(track_, target_ns, image_ns, *predicted, filtered);
+  frame.corrected = motion.ladder.take(motion.track, target_ns, image_ns, *predicted, filtered);
   frame.registered.landmarks = frame.corrected.landmarks;
   return frame;
 }
 
-HandMask::Expected HandPipeline::expected(const HandFrame& frame, std::int64_t image_ns) const {
-  HandMask::Expected hand{side_,          track_.pose_at(image_ns),    &frame.corrected,
-                          frame.presence, frame.registered.moved_then, frame.registered.moved_now};
-  if (frame.skinned) {
-    hand.landings_px = frame.skinned->landings_px;
-    hand.depths_m = frame.skinned->depth_m;
-  }
-  return hand;
+HandMask::Sought HandPipeline::sought(const HandFrame& frame, std::int64_t image_ns) const {
+  return {side_, states_.motion.track.projected_at(image_ns), frame.corrected.offset_px(),
+          frame.corrected.has_landmarks};
+}
+
+HandMask::Moved HandPipeline::moved(const HandFrame& frame) const {
+  return {frame.presence,
+          frame.corrected.posed.landmarks,
+          frame.corrected.landmarks,
+          frame.registered.moved_then,
+          frame.registered.moved_now,
+          frame.skinned->projected_px,
+          frame.skinned->depth_m};
 }
 
 void HandPipeline::dim(HandFrame& frame, std::int64_t target_ns) {
-  frame.presence = std::min(frame.presence, sight_.at(target_ns, is_shown_));
+  frame.presence =
+      std::min(frame.presence, states_.light.sight.at(target_ns, states_.light.is_shown));
 }
 
 std::optional<LateRegistration::Hand> HandPipeline::to_register(const HandFrame& frame) const {
@@ -134,7 +142,8 @@ std::optional<LateRegistration::Hand> HandPipeline::to_register(const HandFrame&
 
 LateRegistration::Hand HandPipeline::late_hand(const HandFrame& frame) const {
   const Corrected& corrected = frame.corrected;
-  return {side_, &track_, corrected.tracker, corrected.offset_px(), corrected.is_alone};
+  return {side_, &states_.motion.track, corrected.posed.landmarks, corrected.offset_px(),
+          corrected.is_alone};
 }
 
 void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
@@ -146,82 +155,94 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
     return;
   }
   frame.registered = late.correct(late_hand(frame), target_ns, corrected.registered);
-  if (corrected.registered == 1) ladder_.registered(target_ns, frame.registered.moved_now);
+  if (corrected.registered == 1)
+    states_.motion.ladder.registered(target_ns, frame.registered.moved_now);
+}
+
+/// The pose as the landmarks show that it is turned and bent, if the camera can see it so.
+ProjectedPose HandPipeline::posed(const HandFrame& frame) const {
+  const Corrected& corrected = frame.corrected;
+  const bool is_bent = settings_.skin.bend && corrected.has_landmarks;
+  if (!settings_.skin.turn && !is_bent) return corrected.posed;
+  msg::HandPose pose = corrected.posed.pose;
+  if (settings_.skin.turn) pose = states_.reports.orientation_bias.turned(pose);
+  if (is_bent) pose = bent(pose, frame.registered.landmarks, calibration_);
+  return project(calibration_, pose).value_or(corrected.posed);
 }
 
 void HandPipeline::skin(HandFrame& frame, float shading) {
-  frame.drawn_from = frame.corrected.tracker;
-  msg::HandPose pose = frame.corrected.pose;
-  const auto draw_from = [&](const msg::HandPose& changed) {
-    if (const auto joints_px = project_landmarks(calibration_, changed)) {
-      frame.drawn_from = *joints_px;
-      pose = changed;
-    }
-  };
-  if (settings_.skin.turn) draw_from(turn_.turned(pose));
-  if (settings_.skin.bend && frame.corrected.has_landmarks)
-    draw_from(bent(pose, frame.registered.landmarks, calibration_));
-  frame.depths_m = landmark_depths_m(calibration_, pose);
-  frame.skinned = surface_.pose(pose, settings_.skin, calibration_, shading, frame.presence);
+  auto& shape = states_.shape;
+  frame.drawn = posed(frame);
+  frame.from_px = to_projector(frame.drawn.landmarks, frame.drawn);
+  frame.to_px = shape.fingers.moved(to_projector(frame.registered.landmarks, frame.drawn));
+  frame.skinned =
+      shape.surface.pose(frame.drawn.pose, settings_.skin, calibration_, shading, frame.presence);
 }
 
 LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px,
-                                          const std::array<float, kLandmarks>& depths_m) const {
+                                          const ProjectedPose& depths) const {
   LandmarkPoints points;
   for (int i = 0; i < kLandmarks; ++i)
-    points[i] = calibration_.to_projector(camera_px[i], depths_m[i]);
+    points[i] = calibration_.to_projector(camera_px[i], static_cast<float>(depths.depths_m[i]));
   return points;
 }
 
 int HandPipeline::correct(HandFrame& frame) {
   const Corrected& corrected = frame.corrected;
   if (!corrected.has_landmarks) return 0;
+  auto& shape = states_.shape;
   const Skinned& skinned = *frame.skinned;
   if (corrected.moves < Rung::landmarks) {
-    mover_.move(fit_rung(corrected.moves, from_px(frame), to_px(frame)), skinned.landings_px);
+    shape.mover.move(fit_rung(corrected.moves, frame.from_px, frame.to_px), skinned.projected_px);
   } else {
-    correct_vertices(settings_.correct, surface_.mesh(), from_px(frame), to_px(frame),
-                     skinned.landings_px);
+    correct_vertices(settings_.correct, shape.surface.mesh(), frame.from_px, frame.to_px,
+                     skinned.projected_px);
   }
-  if (settings_.correct.outline) palm_.move(to_px(frame), skinned.landings_px);
+  if (settings_.correct.outline) shape.palm.move(frame.to_px, skinned.projected_px);
   if (corrected.moves < Rung::fingers) return 0;
-  return untangler_.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
+  return shape.foldover_repair.repair(skinned.seen_px, skinned.projected_px, skinned.facing_sign);
 }
 
 int HandPipeline::foldovers(const HandFrame& frame) const {
   const Skinned& skinned = *frame.skinned;
-  return untangler_.count(skinned.seen_px, skinned.landings_px, skinned.facing_sign);
+  return states_.shape.foldover_repair.count(skinned.seen_px, skinned.projected_px,
+                                             skinned.facing_sign);
 }
 
 void HandPipeline::learn_outline(const HandFrame& frame, std::int64_t target_ns, GreyView mask) {
   if (!frame.corrected.has_landmarks) return;
-  const LandmarkPoints landmarks_px = to_px(frame);
+  auto& shape = states_.shape;
   if (settings_.skin.fit && settings_.skin.widths)
-    surface_.learn_widths(target_ns, landmarks_px, mask);
+    shape.surface.learn_widths(target_ns, frame.to_px, mask);
   // Landmarks without sigmas may be exact: the twin's model has none, and pulling them to the
   // outline of a drawn shape that is not exact makes them worse.
   if (settings_.correct.method != config::CorrectMethod::vertices || !settings_.correct.outline ||
-      !has_sigmas_)
+      !states_.reports.has_sigmas)
     return;
-  palm_.measure(target_ns, frame.skinned->landings_px, landmarks_px, mask);
-  fingers_.measure(target_ns, frame.skinned->landings_px, landmarks_px, mask);
+  shape.palm.measure(target_ns, frame.skinned->projected_px, frame.to_px, mask);
+  shape.fingers.measure(target_ns, frame.skinned->projected_px, frame.to_px, mask);
 }
 
 DrawnHand HandPipeline::drawn(const Skinned& skinned,
                               std::span<const glm::vec2> position_px) const {
-  return {&surface_.mesh(), &picture_, position_px, skinned.depth_m, skinned.light, revision_};
+  return {&states_.shape.surface.mesh(),
+          &picture_,
+          position_px,
+          skinned.depth_m,
+          skinned.light,
+          revision_};
 }
 
 FrameHand HandPipeline::described(const HandFrame& frame) const {
   const Corrected& corrected = frame.corrected;
   FrameHand hand;
   hand.side = side_;
-  hand.tracker = corrected.tracker;
+  hand.tracker = corrected.posed.landmarks;
   hand.corrected = frame.registered.landmarks;
   hand.presence = frame.presence;
   hand.has_landmarks = corrected.has_landmarks;
   hand.rung = corrected.rung;
-  if (frame.skinned) hand.landings = frame.skinned->landings_px;
+  if (frame.skinned) hand.projected_px = frame.skinned->projected_px;
   return hand;
 }
 

@@ -2,17 +2,17 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <string>
+#include <utility>
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
 #include "config/sections/projector.hpp"
 #include "renderer/correct/finger_outline.hpp"
+#include "renderer/correct/foldover_repair.hpp"
 #include "renderer/correct/palm_outline.hpp"
 #include "renderer/correct/rung_mover.hpp"
-#include "renderer/correct/untangle.hpp"
 #include "renderer/draw/painter.hpp"
-#include "renderer/filter/joint_definitions.hpp"
+#include "renderer/filter/landmark_offset.hpp"
 #include "renderer/filter/landmark_track.hpp"
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
@@ -22,7 +22,7 @@
 #include "renderer/predict/presence.hpp"
 #include "renderer/register/late_registration.hpp"
 #include "renderer/skin/hand_surface.hpp"
-#include "renderer/skin/hand_turn.hpp"
+#include "renderer/skin/orientation_bias.hpp"
 
 namespace handcast::renderer {
 
@@ -30,19 +30,59 @@ namespace handcast::renderer {
 /// or if Q̂ does not move with P, whose prediction late registration corrects.
 config::Registration registration_of(const config::Cascade& settings);
 
-/// One hand in one frame: the results of the steps so far.
+/// One hand in one frame: the value that each step made.
 struct HandFrame {
-  Corrected corrected;                       ///< result of predict, filter and ladder
-  RegisteredHand registered;                 ///< result of register
-  float presence = 1;                        ///< share of its light, 0..1
-  std::optional<Skinned> skinned;            ///< result of skin; its landings are moved by correct
-  LandmarkPoints drawn_from{};               ///< result of skin: P of the pose that was skinned
-  std::array<float, kLandmarks> depths_m{};  ///< result of skin: of its landmarks
+  Corrected corrected;        ///< predict, filter and ladder
+  float presence = 1;         ///< share of its light, 0..1
+  RegisteredHand registered;  ///< register
+  ProjectedPose drawn;        ///< skin: the pose that was skinned
+  /// Skin: the landmarks before and after the correction, P of `drawn` and Q̂, projector px.
+  /// @{
+  LandmarkPoints from_px{}, to_px{};
+  /// @}
+  std::optional<Skinned> skinned;  ///< skin; its projected vertices are moved by correct
 };
 
-/// The steps for one hand, with their states. The pipeline does a step for all hands before the
-/// next step, because the hands share the camera's image. The steps after predict() are done in the
-/// order of their declaration, on the frame that it returned; each may be left out. One thread.
+/// What is known of one hand from one message or frame to the next.
+struct HandStates {
+  /// How the reports of the sensors differ from the hand.
+  struct Reports {
+    FingerSnaps snaps;                 ///< of the tracker: fingers that it has lost
+    OrientationBias orientation_bias;  ///< of the tracker: how it turns the hand
+    LandmarkOffset landmark_offset;    ///< of the detector: where it sees the tracker's joints
+    bool has_sigmas = false;           ///< the detector says how wrong its landmarks may be
+  } reports;
+  /// Where the hand is: the states of predict, filter and ladder.
+  struct Motion {
+    HandTrack track;
+    LandmarkTrack landmarks;
+    HandLadder ladder;
+  } motion;
+  /// How much light it gets.
+  struct Light {
+    Presence presence;      ///< by the age of the sensors' data
+    Sight sight;            ///< by what the camera shows
+    bool is_shown = false;  ///< by the newest image
+  } light;
+  /// The person's hand: the states of skin and correct.
+  struct Shape {
+    explicit Shape(HandSurface hand)
+        : surface(std::move(hand)),
+          fingers(surface.mesh()),
+          palm(surface.mesh()),
+          mover(surface.mesh()),
+          foldover_repair(surface.mesh()) {}
+
+    HandSurface surface;
+    FingerOutline fingers;
+    PalmOutline palm;
+    RungMover mover;
+    FoldoverRepair foldover_repair;
+  } shape;
+};
+
+/// The steps for one hand. The pipeline does a step for all hands before the next step, because the
+/// hands share the camera's image (Pipeline::place()). One thread.
 class HandPipeline {
  public:
   /// Loads the mesh and the content of one hand of the settings. `oracle`: see
@@ -56,7 +96,7 @@ class HandPipeline {
   Side side() const { return side_; }
 
   /// Adds a tracker sample or a detection of this hand, with origin `origin_ns`, that arrived at
-  /// `now_ns`.
+  /// `now_ns`. A pose that is not plausible (is_plausible()) is dropped.
   /// @{
   void push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose);
   void push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandLandmarks& seen);
@@ -65,10 +105,10 @@ class HandPipeline {
   /// the landmarks. Empty if the newest tracker sample is more than 0.2 s older.
   /// @{
   std::optional<msg::HandPose> expected_pose(std::int64_t time_ns) const {
-    return track_.recent_pose(time_ns);
+    return states_.motion.track.recent_pose(time_ns);
   }
   std::optional<LandmarkPoints> expected_landmarks(std::int64_t time_ns) const {
-    return landmarks_.expected_at(time_ns, track_);
+    return states_.motion.landmarks.expected_at(time_ns, states_.motion.track);
   }
   /// @}
 
@@ -78,10 +118,12 @@ class HandPipeline {
   std::optional<HandFrame> predict(std::int64_t now_ns, std::int64_t target_ns,
                                    std::optional<std::int64_t> image_ns);
 
-  /// Where HandMask should search for the hand in an image exposed at `image_ns`. Borrows `frame`.
-  HandMask::Expected expected(const HandFrame& frame, std::int64_t image_ns) const;
+  /// The hand to be found in an image exposed at `image_ns`.
+  HandMask::Sought sought(const HandFrame& frame, std::int64_t image_ns) const;
+  /// The hand to which its mask is moved.
+  HandMask::Moved moved(const HandFrame& frame) const;
   /// Sets whether the newest image shows the hand (HandMask::shows()).
-  void set_shown(bool is_shown) { is_shown_ = is_shown; }
+  void set_shown(bool is_shown) { states_.light.is_shown = is_shown; }
   /// Fades the light of a hand that the newest image does not show (Sight).
   void dim(HandFrame& frame, std::int64_t target_ns);
 
@@ -92,19 +134,10 @@ class HandPipeline {
 
   /// Step skin: poses the mesh. `shading`: see HandSurface::pose().
   void skin(HandFrame& frame, float shading);
-  /// After skin(): P and Q̂ in projector px, the landmarks before and after the correction.
-  /// @{
-  LandmarkPoints from_px(const HandFrame& frame) const {
-    return to_projector(frame.drawn_from, frame.depths_m);
-  }
-  LandmarkPoints to_px(const HandFrame& frame) const {
-    return fingers_.moved(to_projector(frame.registered.landmarks, frame.depths_m));
-  }
-  /// @}
-  /// Step correct: moves the landings from P onto Q̂ by the model of the frame's rung. Returns the
-  /// number of triangles that remain turned over.
+  /// Step correct: moves the projected vertices from P onto Q̂ by the model of the frame's rung.
+  /// Returns the number of triangles that remain turned over.
   int correct(HandFrame& frame);
-  /// The number of triangles that a warp of the landings has turned over.
+  /// The number of triangles that a warp of the projected vertices has turned over.
   int foldovers(const HandFrame& frame) const;
   /// Learns the widths of the person's fingers, where they are beside their landmarks, and the
   /// borders of the palm. `mask`: of this hand, projector px.
@@ -114,7 +147,9 @@ class HandPipeline {
   /// picture.
   DrawnHand drawn(const Skinned& skinned, std::span<const glm::vec2> position_px) const;
   /// Bounds of the drawn vertices if they are at `position_px`.
-  Rect bounds(std::span<const glm::vec2> position_px) const { return surface_.bounds(position_px); }
+  Rect bounds(std::span<const glm::vec2> position_px) const {
+    return states_.shape.surface.bounds(position_px);
+  }
   /// The hand for scores and traces.
   FrameHand described(const HandFrame& frame) const;
 
@@ -122,29 +157,14 @@ class HandPipeline {
   HandPipeline(Side side, const config::Cascade& settings, const calib::Calibration& calibration,
                HandSurface surface, MipChain picture, LandmarkOracle oracle);
 
-  LandmarkPoints to_projector(const LandmarkPoints& camera_px,
-                              const std::array<float, kLandmarks>& depths_m) const;
+  ProjectedPose posed(const HandFrame& frame) const;
+  LandmarkPoints to_projector(const LandmarkPoints& camera_px, const ProjectedPose& depths) const;
   LateRegistration::Hand late_hand(const HandFrame& frame) const;
 
   Side side_;
   config::Cascade settings_;
   calib::Calibration calibration_;
-
-  FingerSnaps snaps_;
-  HandTrack track_;
-  LandmarkTrack landmarks_;
-  Presence presence_;
-  HandLadder ladder_;
-  Sight sight_;
-  bool is_shown_ = false;
-  HandSurface surface_;
-  HandTurn turn_;
-  JointDefinitions definitions_;
-  bool has_sigmas_ = false;  ///< the detector says how wrong its landmarks may be
-  FingerOutline fingers_;
-  PalmOutline palm_;
-  RungMover mover_;
-  Untangler untangler_;
+  HandStates states_;
   MipChain picture_;
   std::uint64_t revision_ = new_revision();  ///< of the mesh and the picture
 };

@@ -5,10 +5,7 @@
 #include <future>
 #include <utility>
 
-#include "ipc/base/log.hpp"
 #include "renderer/correct/deform.hpp"
-#include "renderer/draw/cpu/cpu_painter.hpp"
-#include "renderer/predict/plausible_pose.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -58,13 +55,12 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
                    const calib::Calibration& calibration, HandPipeline left, HandPipeline right,
                    std::unique_ptr<Painter> painter)
     : settings_(settings),
-      camera_from_tracker_(calibration.camera_from_tracker),
       shading_(static_cast<float>(content.shading)),
       screen_{0, 0, calibration.projector_width_px, calibration.projector_height_px},
       both_{std::move(left), std::move(right)},
       mask_(settings.mask, calibration, content.smooth),
       late_(registration_of(settings), settings.filter, calibration),
-      painter_(painter ? std::move(painter) : make_cpu_painter(screen_.x1, screen_.y1)) {}
+      painter_(std::move(painter), settings.fill, screen_.x1, screen_.y1) {}
 
 void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
   const std::int64_t origin_ns = reported.header.origin_ns;
@@ -74,7 +70,7 @@ void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
       reported, {both_[0].expected_pose(origin_ns), both_[1].expected_pose(origin_ns)});
   for (HandPipeline& hand : both_)
     if (const msg::HandPose* pose = poses.find(hand.side());
-        pose && pose->confidence >= kLeastConfidence && is_plausible(*pose, camera_from_tracker_))
+        pose && pose->confidence >= kLeastConfidence)
       hand.push(now_ns, origin_ns, *pose);
 }
 
@@ -89,104 +85,70 @@ void Pipeline::push(std::int64_t now_ns, const msg::Landmarks& reported) {
       hand.push(now_ns, origin_ns, *seen);
 }
 
-std::span<const FrameHand> Pipeline::track(std::int64_t now_ns, std::int64_t target_ns) {
-  predict(now_ns, target_ns, expected_image_ns(target_ns));
-  if (last_image_) dim(target_ns);
-  register_motion(target_ns);
-  if (looked_ns_) learn(*std::exchange(looked_ns_, std::nullopt), target_ns);
-  return frame_hands();
-}
-
-/// Learns from the image of find_masks() as render() does, without a drawing.
-void Pipeline::learn(std::int64_t image_ns, std::int64_t target_ns) {
-  const auto is_same = [](const HandMask::Expected& then, const HandInFrame& now) {
-    return then.side == now.hand->side();
-  };
-  if (!std::ranges::equal(expected_, hands_, is_same)) return;
-  for (auto& [hand, frame] : hands_) {
-    hand->skin(frame, 0);
-    hand->correct(frame);
-  }
-  expect(image_ns);
-  mask_.advance(expected_);
-  learn_outline(target_ns);
-  for (auto& [hand, frame] : hands_) frame.skinned.reset();
-}
-
-void Pipeline::look(const TimedImage& camera) {
-  if (!late_.on() || !camera || !late_.is_new(camera) || is_early(now_ns_, camera.origin_ns))
-    return;
-  find_masks(camera);
-  register_late(camera);
-  looked_ns_ = camera.origin_ns;
-}
-
 Frame Pipeline::render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera) {
-  stages_.start();
-  const bool has_image = camera && !is_early(now_ns, camera.origin_ns);
-  newest_.image_id = has_image ? camera.id : 0;
-  newest_.image_ns = has_image ? camera.origin_ns : 0;
-  const bool is_masked = has_image && settings_.fill.method != config::FillMethod::none;
-  last_image_ = is_masked ? std::optional(ImageUse{target_ns, camera.origin_ns}) : std::nullopt;
-  predict(now_ns, target_ns, expected_image_ns(target_ns));
-  stages_.mark(Stage::predict);
-
-  if (is_masked) {
-    find_masks(camera);
-    dim(target_ns);
-    stages_.mark(Stage::mask);
-    register_late(camera);
-  }
-  register_motion(target_ns);
-  if (late_.on()) stages_.mark(Stage::registration);
-  for (auto& [hand, frame] : hands_) hand->skin(frame, shading_);
-  stages_.mark(Stage::skin);
-  const int foldovers = correct();
-  stages_.mark(Stage::correct, rungs());
-  Rect region;
-  if (is_masked) {
-    region = advance_masks(camera);
-    learn_outline(target_ns);
-    stages_.mark(Stage::advance);
-  } else {
-    region = landing_bounds();
-  }
-
-  FillCounts counts = paint(region, is_masked);
-  auto device = painter_->device_image();
-  View<const std::uint32_t> colour;
-  if (!device) colour = painter_->colour();
-  if (replace_failed_painter()) {
-    device.reset();
-    counts = paint(region, is_masked);
-    colour = painter_->colour();
-  }
-  for (const auto& [stage, took_ns] : painter_->device_passes()) stages_.add(stage, took_ns);
-  stages_.finish();
+  const Placed placed = place(now_ns, target_ns, camera, true);
   Frame frame;
   frame.target_ns = target_ns;
   frame.made_from = newest_;
-  if (!region.empty()) frame.region = region;
-  frame.colour = colour;
+  if (!placed.region.empty()) frame.region = placed.region;
   frame.hands = frame_hands();
-  frame.foldovers = foldovers;
-  frame.fill = counts;
+  frame.foldovers = placed.foldovers;
+  painter_.draw(drawing_of(placed), stages_, frame);
+  stages_.finish();
   frame.stages = stages_.marks();
-  frame.device = device;
-  if (!device) add_surface(frame);
   return frame;
 }
 
-void Pipeline::add_surface(Frame& frame) {
-  if (!shows_surface_ || frame.region.empty()) return;
-  frame.uv = painter_->uv();
-  frame.surface = painter_->surface();
+std::span<const FrameHand> Pipeline::track(std::int64_t now_ns, std::int64_t target_ns,
+                                           const TimedImage& camera) {
+  place(now_ns, target_ns, camera, false);
+  return frame_hands();
 }
 
-void Pipeline::read_back(Frame& frame) {
-  if (frame.colour.data != nullptr) return;
-  frame.colour = painter_->colour();
-  add_surface(frame);
+/// The method: the steps of a frame in their order, except draw and fill.
+Pipeline::Placed Pipeline::place(std::int64_t now_ns, std::int64_t target_ns,
+                                 const TimedImage& camera, bool is_drawn) {
+  stages_.start();
+  const bool has_image = camera && !is_early(now_ns, camera.origin_ns);
+  const bool is_seen = has_image && (is_drawn ? settings_.fill.method != config::FillMethod::none
+                                              : late_.on() && late_.is_new(camera));
+  if (is_drawn) {
+    newest_.image_id = has_image ? camera.id : 0;
+    newest_.image_ns = has_image ? camera.origin_ns : 0;
+    last_image_ = is_seen ? std::optional(ImageUse{target_ns, camera.origin_ns}) : std::nullopt;
+  }
+
+  // If nothing is drawn, the hands are searched where the frame before had them.
+  if (is_seen && !is_drawn) see(camera);
+  predict(now_ns, target_ns);
+  stages_.mark(Stage::predict);
+  if (is_seen && is_drawn) see(camera);
+  auto& hands = passed_.hands;
+  if (last_image_)
+    for (auto& [hand, frame] : hands) hand->dim(frame, target_ns);
+  if (late_.on()) {
+    for (auto& [hand, frame] : hands) hand->register_motion(frame, late_, target_ns);
+    stages_.mark(Stage::registration);
+  }
+
+  const auto was_sought = [](const HandInFrame& now, const HandMask::Sought& then) {
+    return now.hand->side() == then.side;
+  };
+  Placed placed{.is_masked = is_seen && std::ranges::equal(hands, passed_.sought, was_sought)};
+  if (!is_drawn && !placed.is_masked) return placed;
+  for (auto& [hand, frame] : hands) hand->skin(frame, is_drawn ? shading_ : 0);
+  stages_.mark(Stage::skin);
+  // If nothing is drawn, nothing is warped: the outline is learned from corrected vertices.
+  placed.foldovers = correct(is_drawn ? settings_.correct.method : config::CorrectMethod::vertices);
+  stages_.mark(Stage::correct, rungs());
+  if (!placed.is_masked) {
+    placed.region = projected_bounds();
+    return placed;
+  }
+  placed.region = advance_masks();
+  learn_outline(target_ns);
+  stages_.mark(Stage::advance);
+  return placed;
 }
 
 /// The exposure of the image that a frame for `target_ns` can be registered to. The image is
@@ -196,56 +158,42 @@ std::optional<std::int64_t> Pipeline::expected_image_ns(std::int64_t target_ns) 
   return target_ns - (last_image_->target_ns - last_image_->origin_ns);
 }
 
-void Pipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
-                       std::optional<std::int64_t> image_ns) {
-  now_ns_ = now_ns;
-  hands_.clear();
+void Pipeline::predict(std::int64_t now_ns, std::int64_t target_ns) {
+  passed_.hands.clear();
   for (HandPipeline& hand : both_)
-    if (auto frame = hand.predict(now_ns, target_ns, image_ns)) hands_.push_back({&hand, *frame});
+    if (auto frame = hand.predict(now_ns, target_ns, expected_image_ns(target_ns)))
+      passed_.hands.push_back({&hand, *frame});
 }
 
-void Pipeline::expect(std::int64_t image_ns) {
-  expected_.clear();
-  for (const auto& [hand, frame] : hands_) expected_.push_back(hand->expected(frame, image_ns));
-}
-
-void Pipeline::find_masks(const TimedImage& camera) {
-  expect(camera.origin_ns);
-  mask_.find(camera, expected_);
-  for (std::size_t h = 0; h < hands_.size(); ++h) hands_[h].hand->set_shown(mask_.shows(h));
-}
-
-void Pipeline::dim(std::int64_t target_ns) {
-  for (auto& [hand, frame] : hands_) hand->dim(frame, target_ns);
-}
-
-/// Registers the hands in a new image, after find_masks().
-void Pipeline::register_late(const TimedImage& camera) {
+/// Finds the masks of the hands in an image and registers the hands in it.
+void Pipeline::see(const TimedImage& camera) {
+  auto& [hands, sought, moved, late, grid, drawn, described] = passed_;
+  sought.clear();
+  for (const auto& [hand, frame] : hands) sought.push_back(hand->sought(frame, camera.origin_ns));
+  mask_.find(camera, sought);
+  for (std::size_t h = 0; h < hands.size(); ++h) hands[h].hand->set_shown(mask_.shows(h));
+  stages_.mark(Stage::mask);
   if (!late_.on()) return;
-  late_hands_.clear();
-  for (const auto& [hand, frame] : hands_)
-    if (const auto late = hand->to_register(frame)) late_hands_.push_back(*late);
-  late_.look(mask_.silhouette(camera), late_hands_);
+  late.clear();
+  for (const auto& [hand, frame] : hands)
+    if (const auto registered = hand->to_register(frame)) late.push_back(*registered);
+  late_.look(mask_.silhouette(camera), late);
 }
 
-void Pipeline::register_motion(std::int64_t target_ns) {
-  if (!late_.on()) return;
-  for (auto& [hand, frame] : hands_) hand->register_motion(frame, late_, target_ns);
+Rect Pipeline::advance_masks() {
+  passed_.moved.clear();
+  for (const auto& [hand, frame] : passed_.hands) passed_.moved.push_back(hand->moved(frame));
+  return mask_.advance(passed_.moved);
 }
 
-Rect Pipeline::advance_masks(const TimedImage& camera) {
-  expect(camera.origin_ns);
-  return mask_.advance(expected_);
-}
-
-/// Moves the landings, and makes the grid if the drawing will be warped. Returns the number of
-/// triangles that are turned over.
-int Pipeline::correct() {
-  grid_.reset();
-  if (settings_.correct.method == config::CorrectMethod::grid) return correct_by_grid();
+/// Moves the projected vertices, and makes the grid if the drawing will be warped. Returns the
+/// number of triangles that are turned over.
+int Pipeline::correct(config::CorrectMethod method) {
+  passed_.grid.reset();
+  if (method == config::CorrectMethod::grid) return correct_by_grid();
   int foldovers = 0;
-  if (settings_.correct.method == config::CorrectMethod::vertices)
-    for (auto& [hand, frame] : hands_) foldovers += hand->correct(frame);
+  if (method == config::CorrectMethod::vertices)
+    for (auto& [hand, frame] : passed_.hands) foldovers += hand->correct(frame);
   return foldovers;
 }
 
@@ -263,23 +211,25 @@ static std::span<const int> control_points(config::GridPoints points) {
 
 /// One grid for all hands. A hand without landmarks adds control points that do not move.
 int Pipeline::correct_by_grid() {
-  if (static_cast<int>(hands_.size()) > settings_.correct.grid_hands ||
-      std::ranges::none_of(
-          hands_, [](const HandInFrame& each) { return each.frame.corrected.has_landmarks; }))
+  const auto has_landmarks = [](const HandInFrame& each) {
+    return each.frame.corrected.has_landmarks;
+  };
+  auto& hands = passed_.hands;
+  if (static_cast<int>(hands.size()) > settings_.correct.grid_hands ||
+      std::ranges::none_of(hands, has_landmarks))
     return 0;
   std::vector<glm::vec2> p, q;
-  for (const auto& [hand, frame] : hands_) {
-    const LandmarkPoints from = hand->from_px(frame), to = hand->to_px(frame);
+  for (const auto& [hand, frame] : hands)
     for (const int i : control_points(settings_.correct.grid_points)) {
-      p.push_back(from[i]);
-      q.push_back(to[i]);
+      p.push_back(frame.from_px[i]);
+      q.push_back(frame.to_px[i]);
     }
-  }
-  grid_ = make_warp_grid(settings_.correct, screen_,
-                         MovingLeastSquares(p, q, static_cast<float>(settings_.correct.alpha)));
+  const auto& grid = passed_.grid =
+      make_warp_grid(settings_.correct, screen_,
+                     MovingLeastSquares(p, q, static_cast<float>(settings_.correct.alpha)));
   int foldovers = 0;
-  for (auto& [hand, frame] : hands_) {
-    for (glm::vec2& landing : frame.skinned->landings_px) landing = (*grid_)(landing);
+  for (auto& [hand, frame] : hands) {
+    for (glm::vec2& vertex : frame.skinned->projected_px) vertex = (*grid)(vertex);
     foldovers += hand->foldovers(frame);
   }
   return foldovers;
@@ -287,65 +237,48 @@ int Pipeline::correct_by_grid() {
 
 std::uint32_t Pipeline::rungs() const {
   std::uint32_t detail = 0;
-  for (const auto& [hand, frame] : hands_)
+  for (const auto& [hand, frame] : passed_.hands)
     detail = msg::with_rung(detail, hand->side(), frame.corrected.rung);
   return detail;
 }
 
 void Pipeline::learn_outline(std::int64_t target_ns) {
-  for (std::size_t h = 0; h < hands_.size(); ++h)
-    if (mask_.shows(h))
-      hands_[h].hand->learn_outline(hands_[h].frame, target_ns, mask_.in_projector());
+  for (std::size_t h = 0; h < passed_.hands.size(); ++h)
+    if (mask_.shows(h)) {
+      const auto& [hand, frame] = passed_.hands[h];
+      hand->learn_outline(frame, target_ns, mask_.in_projector());
+    }
 }
 
-Rect Pipeline::landing_bounds() const {
+Rect Pipeline::projected_bounds() const {
   Rect bounds;
-  for (const auto& [hand, frame] : hands_)
-    bounds = bounds.joined(hand->bounds(frame.skinned->landings_px));
+  for (const auto& [hand, frame] : passed_.hands)
+    bounds = bounds.joined(hand->bounds(frame.skinned->projected_px));
   return on_screen(bounds);
 }
 
-FillCounts Pipeline::paint(const Rect& region, bool is_masked) {
-  if (region.empty()) return {};
-  drawn_.clear();
+FrameDrawing Pipeline::drawing_of(const Placed& placed) {
+  auto& [hands, sought, moved, late, grid, drawn, described] = passed_;
+  drawn.clear();
   Rect source;
-  for (const auto& [hand, frame] : hands_) {
+  for (const auto& [hand, frame] : hands) {
     if (frame.presence <= 0) continue;
     const Skinned& skinned = *frame.skinned;
-    drawn_.push_back(hand->drawn(skinned, grid_ ? skinned.seen_px : skinned.landings_px));
-    source = source.joined(hand->bounds(skinned.seen_px));
+    drawn.push_back(hand->drawn(skinned, grid ? skinned.seen_px : skinned.projected_px));
+    if (grid) source = source.joined(hand->bounds(skinned.seen_px));
   }
-  source = on_screen(source);
-  const bool is_warped = grid_ && !source.empty();
-  painter_->draw(drawn_, is_warped ? source : region);
-  stages_.mark(Stage::draw);
-  if (is_warped) {
-    painter_->warp(*grid_, source, region);
-    stages_.mark(Stage::warp);
-  }
-  if (!is_masked) return {};
-  const FillCounts counts = painter_->fill(mask_.in_projector(), settings_.fill, region);
-  stages_.mark(Stage::fill);
-  return counts;
-}
-
-/// Returns true if the frame must be painted again.
-bool Pipeline::replace_failed_painter() {
-  const auto failure = painter_->failure();
-  if (!failure) return false;
-  log::warning("{}; drawing with cpu until the next start", failure->what);
-  painter_ = make_cpu_painter(screen_.x1, screen_.y1);
-  return true;
+  return {drawn, placed.region, on_screen(source), grid ? &*grid : nullptr,
+          placed.is_masked ? mask_.in_projector() : GreyView{}};
 }
 
 std::span<const FrameHand> Pipeline::frame_hands() {
-  frame_hands_.clear();
+  passed_.described.clear();
   int drawn = 0;
-  for (const auto& [hand, frame] : hands_) {
-    frame_hands_.push_back(hand->described(frame));
-    if (frame.presence > 0) frame_hands_.back().drawn_as = drawn++;
+  for (const auto& [hand, frame] : passed_.hands) {
+    passed_.described.push_back(hand->described(frame));
+    if (frame.presence > 0) passed_.described.back().drawn_as = drawn++;
   }
-  return frame_hands_;
+  return passed_.described;
 }
 
 }  // namespace handcast::renderer

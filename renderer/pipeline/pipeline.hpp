@@ -16,6 +16,7 @@
 #include "renderer/draw/painter.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/pipeline/frame.hpp"
+#include "renderer/pipeline/frame_painter.hpp"
 #include "renderer/pipeline/hand_pipeline.hpp"
 #include "renderer/pipeline/stage_clock.hpp"
 #include "renderer/predict/hand_sides.hpp"
@@ -51,32 +52,29 @@ class Pipeline {
   void push(std::int64_t now_ns, const msg::Landmarks& reported);
   /// @}
 
-  /// The first half of render(): the hands and their landmarks at `target_ns`, without drawing.
-  /// Call it for frames that are not drawn, because filters remember their output of every frame.
-  /// Landings are empty. Valid until the next call of track() or render().
-  std::span<const FrameHand> track(std::int64_t now_ns, std::int64_t target_ns);
-
-  /// Takes the image of a frame that is not drawn, because late registration follows the hands
-  /// through all images and the person's widths are learned from them. Call it before track() of
-  /// that frame; render() takes its own image. Not needed if looks() is false. Ignores an image
-  /// that is not new, or is more than 50 ms later than the `now_ns` of the last frame.
-  void look(const TimedImage& camera);
-  /// True if look() has an effect.
-  bool looks() const { return late_.on(); }
-
   /// Draws the frame whose photons arrive at `target_ns`. `camera`: the newest image, or none; an
   /// image more than 50 ms later than `now_ns` is ignored. Without hands the frame is dark and its
   /// region empty.
   Frame render(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera);
 
+  /// The same without drawing: the hands and their landmarks. Call it for frames that are not
+  /// drawn, because filters remember their output of every frame, late registration follows the
+  /// hands through all images, and the person's hand is learned from them. An image that was given
+  /// before is ignored. No vertices are projected, unless the frame learns from its image. Valid
+  /// until the next call of track() or render().
+  std::span<const FrameHand> track(std::int64_t now_ns, std::int64_t target_ns,
+                                   const TimedImage& camera = {});
+  /// True if track() uses images.
+  bool looks() const { return late_.on(); }
+
   /// Whether frames have Frame::uv and Frame::surface, for an observer. Off at first: a GPU needs
   /// time to read them back.
-  void show_surface(bool on) { shows_surface_ = on; }
+  void show_surface(bool on) { painter_.show_surface(on); }
 
   /// Adds Frame::colour to a frame of the last render() that has only Frame::device, because its
   /// painter draws for the share group of an output, and the surface if it is shown. Call it after
   /// the light.
-  void read_back(Frame& frame);
+  void read_back(Frame& frame) { painter_.read_back(frame); }
 
  private:
   /// One hand of the frame and the results of the steps so far.
@@ -88,55 +86,54 @@ class Pipeline {
   struct ImageUse {
     std::int64_t target_ns, origin_ns;
   };
+  /// A frame before it is drawn.
+  struct Placed {
+    Rect region;             ///< contains all light
+    bool is_masked = false;  ///< the masks were found in the frame's image
+    int foldovers = 0;       ///< triangles that the correction turned over
+  };
+  /// What the steps pass on in one frame. A member so that its memory is reused.
+  struct Passed {
+    std::vector<HandInFrame> hands;
+    std::vector<HandMask::Sought> sought;
+    std::vector<HandMask::Moved> moved;
+    std::vector<LateRegistration::Hand> late;
+    std::optional<WarpGrid> grid;
+    std::vector<DrawnHand> drawn;
+    std::vector<FrameHand> described;
+  };
 
   Pipeline(const config::Cascade& settings, const config::Content& content,
            const calib::Calibration& calibration, HandPipeline left, HandPipeline right,
            std::unique_ptr<Painter> painter);
 
-  void predict(std::int64_t now_ns, std::int64_t target_ns, std::optional<std::int64_t> image_ns);
-  std::optional<std::int64_t> expected_image_ns(std::int64_t target_ns) const;
-  void expect(std::int64_t image_ns);
-  void find_masks(const TimedImage& camera);
-  void dim(std::int64_t target_ns);
-  void register_late(const TimedImage& camera);
-  void register_motion(std::int64_t target_ns);
-  Rect advance_masks(const TimedImage& camera);
-  int correct();
+  Placed place(std::int64_t now_ns, std::int64_t target_ns, const TimedImage& camera,
+               bool is_drawn);
+  void predict(std::int64_t now_ns, std::int64_t target_ns);
+  void see(const TimedImage& camera);
+  int correct(config::CorrectMethod method);
   int correct_by_grid();
-  void learn(std::int64_t image_ns, std::int64_t target_ns);
+  Rect advance_masks();
   void learn_outline(std::int64_t target_ns);
+  FrameDrawing drawing_of(const Placed& placed);
+  std::optional<std::int64_t> expected_image_ns(std::int64_t target_ns) const;
   std::uint32_t rungs() const;
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
-  Rect landing_bounds() const;
-  FillCounts paint(const Rect& region, bool is_masked);
-  void add_surface(Frame& frame);
-  bool replace_failed_painter();
+  Rect projected_bounds() const;
   std::span<const FrameHand> frame_hands();
 
   config::Cascade settings_;
-  glm::dmat4 camera_from_tracker_;
   float shading_;
   Rect screen_;
   HandSides sides_;
   std::array<HandPipeline, 2> both_;  ///< left, right
   HandMask mask_;
   LateRegistration late_;
-  std::unique_ptr<Painter> painter_;
+  FramePainter painter_;
   StageClock stages_;
-  msg::MadeFrom newest_;  ///< the newest messages, and the image of the last frame
-  bool shows_surface_ = false;
-  std::int64_t now_ns_ = 0;             ///< of the last frame
+  msg::MadeFrom newest_;                ///< the newest messages, and the image of the last frame
   std::optional<ImageUse> last_image_;  ///< of the last drawn frame, if it had an image
-
-  std::optional<std::int64_t> looked_ns_;  ///< exposure of the image of look(), until track()
-
-  // Of one frame; members so that their memory is reused.
-  std::vector<HandInFrame> hands_;            ///< the hands of the frame
-  std::vector<HandMask::Expected> expected_;  ///< one per entry of hands_
-  std::vector<LateRegistration::Hand> late_hands_;
-  std::vector<DrawnHand> drawn_;
-  std::optional<WarpGrid> grid_;
-  std::vector<FrameHand> frame_hands_;
+  Passed passed_;
 };
 
 }  // namespace handcast::renderer

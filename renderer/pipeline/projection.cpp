@@ -50,13 +50,13 @@ void copy_shown(const Frame& frame, msg::Projection& projection) {
   projection.has_shown = 1;
 }
 
-void copy_landings(const FrameHand& hand, msg::ProjectedHand& projected) {
+void copy_vertices(const FrameHand& hand, msg::ProjectedHand& projected) {
   projected.side = hand.side;
   projected.presence = hand.presence;
   projected.vertex_count = static_cast<std::uint32_t>(
-      std::min<std::size_t>(hand.landings.size(), projected.landings.size()));
+      std::min<std::size_t>(hand.projected_px.size(), projected.landings.size()));
   for (std::uint32_t i = 0; i < projected.vertex_count; ++i)
-    projected.landings[i] = {hand.landings[i].x, hand.landings[i].y};
+    projected.landings[i] = {hand.projected_px[i].x, hand.projected_px[i].y};
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ void write_projection(const Frame& frame, msg::Projection& projection, std::size
   projection.hand_count = static_cast<std::uint32_t>(
       std::min<std::size_t>(frame.hands.size(), projection.hands.size()));
   for (std::uint32_t i = 0; i < projection.hand_count; ++i)
-    copy_landings(frame.hands[i], projection.hands[i]);
+    copy_vertices(frame.hands[i], projection.hands[i]);
 
   const auto& region = frame.region;
   projection.region_x_px = projection.region_y_px = 0;

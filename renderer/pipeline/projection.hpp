@@ -8,7 +8,7 @@
 
 namespace handcast::renderer {
 
-/// Writes a finished frame as the message that observers read: its times, origins and landings, and
+/// Writes a finished frame as the message that observers read: its times, origins and vertices, and
 /// the pixels of its region into the tail, and what they show if the frame has it. `tail_bytes`:
 /// the space after the struct; a region that does not fit is left out. The caller sets
 /// header.frame_id and lit_ns.

@@ -6,7 +6,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "renderer/base/joint_math.hpp"
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -2,7 +2,6 @@
 #include "renderer/predict/hand_track.hpp"
 
 #include "renderer/predict/presence.hpp"
-#include "renderer/predict/project_landmarks.hpp"
 
 namespace handcast::renderer {
 
@@ -14,15 +13,19 @@ PoseHistory::Pushed HandTrack::push(std::int64_t now_ns, std::int64_t origin_ns,
 }
 
 std::optional<Predicted> HandTrack::predict(std::int64_t now_ns, std::int64_t target_ns) const {
-  const auto pose = pose_at(target_ns);
-  const auto landmarks = projected(pose);
-  if (!landmarks) return std::nullopt;
+  const auto posed = projected_at(target_ns);
+  if (!posed) return std::nullopt;
   const bool is_silent = now_ns - heard_ns_ > history_.patience_ns() || !history_.settled();
-  return Predicted{*pose, *landmarks, is_silent};
+  return Predicted{*posed, is_silent};
 }
 
 std::optional<msg::HandPose> HandTrack::pose_at(std::int64_t time_ns) const {
   return history_.at(time_ns, Presence::kLongest_ns);
+}
+
+std::optional<ProjectedPose> HandTrack::projected_at(std::int64_t time_ns) const {
+  const auto pose = pose_at(time_ns);
+  return pose ? project(calibration_, *pose) : std::nullopt;
 }
 
 std::optional<LandmarkPoints> HandTrack::landmarks_at(std::int64_t time_ns) const {

@@ -8,14 +8,14 @@
 #include "ipc/msg/hand_poses.hpp"
 #include "renderer/base/landmark_points.hpp"
 #include "renderer/predict/pose_history.hpp"
+#include "renderer/predict/projected_pose.hpp"
 
 namespace handcast::renderer {
 
 /// One hand at the time of the photons (T), from the tracker alone.
 struct Predicted {
-  msg::HandPose pose;          ///< tracker space
-  LandmarkPoints landmarks{};  ///< P: the landmarks of the pose in the camera
-  bool is_silent = false;      ///< no sample for a while, or a jump too recent for a velocity
+  ProjectedPose posed;
+  bool is_silent = false;  ///< no sample for a while, or a jump too recent for a velocity
 };
 
 /// Step "predict" and its state: the recent tracker samples of one hand, from which a pose is
@@ -29,14 +29,15 @@ class HandTrack {
   /// Adds a tracker sample of this hand that was taken at `origin_ns` and arrived at `now_ns`.
   PoseHistory::Pushed push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose);
 
-  /// The hand at `target_ns`. Empty if there is no pose (see pose_at()) or no P for it (see
-  /// project_landmarks()).
+  /// The hand at `target_ns`. Empty if projected_at() is.
   std::optional<Predicted> predict(std::int64_t now_ns, std::int64_t target_ns) const;
 
   /// The pose at `time_ns` from the samples so far: interpolated, predicted, or held. Empty if
   /// there is no sample or the newest one is more than 0.9 s older than `time_ns`.
   std::optional<msg::HandPose> pose_at(std::int64_t time_ns) const;
-  /// P of pose_at(); empty if there is none.
+  /// pose_at(), projected. Empty if there is no pose, or no P for it (see project()).
+  std::optional<ProjectedPose> projected_at(std::int64_t time_ns) const;
+  /// P of projected_at(); empty if there is none.
   std::optional<LandmarkPoints> landmarks_at(std::int64_t time_ns) const;
   /// The same as pose_at(), but empty if the newest sample is more than 0.2 s older.
   std::optional<msg::HandPose> recent_pose(std::int64_t time_ns) const {

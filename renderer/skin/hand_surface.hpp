@@ -20,7 +20,7 @@ namespace handcast::renderer {
 /// HandSurface until its next pose().
 struct Skinned {
   std::span<const glm::vec2> seen_px;  ///< projector px, in the pose that was skinned
-  std::span<glm::vec2> landings_px;    ///< the same; to be moved by the step "correct"
+  std::span<glm::vec2> projected_px;   ///< the same; to be moved by the step "correct"
   std::span<const float> depth_m;      ///< distance along the camera's axis
   std::span<const float> light;        ///< factor of the levels, 0..1; empty: 1 everywhere
   /// Sign of the area (projector px, y down) of a triangle that faces the camera.
@@ -46,8 +46,8 @@ class HandSurface {
   Skinned pose(const msg::HandPose& pose, const config::Skin& settings,
                const calib::Calibration& calibration, float shading, float presence = 1);
 
-  /// Learns the widths of the fingers from the landings of the last pose(), after correction, and
-  /// the landmarks and the mask at the same time, `time_ns`. All in projector px.
+  /// Learns the widths of the fingers from the projected vertices of the last pose(), after
+  /// correction, and the landmarks and the mask at the same time, `time_ns`. All in projector px.
   void learn_widths(std::int64_t time_ns, const LandmarkPoints& landmarks_px, GreyView mask);
 
   /// The mesh without the forearm. All vertices are kept.

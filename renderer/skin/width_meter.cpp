@@ -79,14 +79,14 @@ WidthMeter::WidthMeter(const HandMesh& mesh) {
   }
 }
 
-void WidthMeter::measure(std::int64_t time_ns, std::span<const glm::vec2> landings_px,
+void WidthMeter::measure(std::int64_t time_ns, std::span<const glm::vec2> projected_px,
                          const LandmarkPoints& landmarks_px, GreyView mask) {
   const std::int64_t step_ns = time_ns - last_ns_;
   if (step_ns > kForget_ns) forget();
   const float still_px = kFastest_px_s * static_cast<float>(ns_to_seconds(step_ns));
   for (Bone& bone : bones_) {
     if (glm::distance(landmarks_px[bone.landmark], last_px_[bone.landmark]) > still_px) continue;
-    if (const auto ratio = ratio_at(bone, landings_px, landmarks_px, mask))
+    if (const auto ratio = ratio_at(bone, projected_px, landmarks_px, mask))
       bone.note(factor_ * *ratio);
   }
   last_ns_ = time_ns;
@@ -94,7 +94,7 @@ void WidthMeter::measure(std::int64_t time_ns, std::span<const glm::vec2> landin
   if (const auto factor = typical()) factor_ += std::clamp(*factor - factor_, -kStep, kStep);
 }
 
-std::optional<float> WidthMeter::ratio_at(const Bone& bone, std::span<const glm::vec2> landings_px,
+std::optional<float> WidthMeter::ratio_at(const Bone& bone, std::span<const glm::vec2> projected_px,
                                           const LandmarkPoints& landmarks_px, GreyView mask) const {
   const glm::vec2 start = landmarks_px[bone.landmark], end = landmarks_px[bone.landmark + 1];
   const float length_px = glm::distance(start, end);
@@ -103,7 +103,7 @@ std::optional<float> WidthMeter::ratio_at(const Bone& bone, std::span<const glm:
                   middle = 0.5f * (start + end);
   float low = 0, high = 0;
   for (const auto& [a, b] : bone.edges) {
-    const glm::vec2 from = landings_px[a] - middle, to = landings_px[b] - middle;
+    const glm::vec2 from = projected_px[a] - middle, to = projected_px[b] - middle;
     const float before = glm::dot(from, along), behind = glm::dot(to, along);
     if (before * behind > 0 || before == behind) continue;
     const float side = glm::dot(glm::mix(from, to, before / (before - behind)), across);

@@ -25,7 +25,7 @@ class WidthMeter {
 
   /// Measures one frame that was drawn with factor(): its vertices and landmarks after all
   /// corrections, and the mask of the hand at the same time, all in projector px.
-  void measure(std::int64_t time_ns, std::span<const glm::vec2> landings_px,
+  void measure(std::int64_t time_ns, std::span<const glm::vec2> projected_px,
                const LandmarkPoints& landmarks_px, GreyView mask);
 
   /// The factor for the widths of the next frame, 0.93..1.2; 1 until enough is measured. It
@@ -46,7 +46,7 @@ class WidthMeter {
   };
   /// The width of the mask at a bone divided by the width of the drawn bone. Empty if it cannot be
   /// measured.
-  std::optional<float> ratio_at(const Bone& bone, std::span<const glm::vec2> landings_px,
+  std::optional<float> ratio_at(const Bone& bone, std::span<const glm::vec2> projected_px,
                                 const LandmarkPoints& landmarks_px, GreyView mask) const;
   void forget();
   std::optional<float> typical() const;

@@ -8,7 +8,8 @@ find_package(fmt REQUIRED)
 find_package(tl-expected REQUIRED)
 find_package(nlohmann_json REQUIRED)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
-find_package(PNG REQUIRED)
+pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
+find_package(ZLIB REQUIRED)
 find_package(JPEG REQUIRED)
 pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(eigen3 REQUIRED IMPORTED_TARGET eigen3)
@@ -19,6 +20,10 @@ find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs videoio aruco cal
 foreach(part core imgproc imgcodecs videoio aruco calib3d features2d)
   target_include_directories(opencv_${part} SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 endforeach()
+
+# Only the messages of ONNX files: libonnx itself would register all operators at each start.
+find_library(ONNX_PROTO_LIBRARY onnx_proto REQUIRED)
+pkg_check_modules(protobuf REQUIRED IMPORTED_TARGET protobuf)
 
 # oneDNN's own CMake file also requires OpenCL's headers.
 find_library(DNNL_LIBRARY dnnl REQUIRED)
@@ -64,7 +69,7 @@ endfunction()
 
 find_package(OpenCV QUIET COMPONENTS dnn)
 handcast_found(found OpenCV_dnn_FOUND)
-handcast_feature(OPENCV_DNN "executor opencv of the landmark models (libopencv-dev)" ${found})
+handcast_feature(OPENCV_DNN "tests of networks against OpenCV's (libopencv-dev)" ${found})
 if(HANDCAST_WITH_OPENCV_DNN)
   target_include_directories(opencv_dnn SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
 endif()

@@ -161,10 +161,19 @@ endfunction()
 # made by the program itself and installed with it.
 function(handcast_service name)
   handcast_program(handcast-${name} ${ARGN})
+  handcast_description(${name} ${name})
+endfunction()
+
+# handcast_instance(program name): handcast-PROGRAM --as NAME is the service NAME.
+function(handcast_instance program name)
+  handcast_description(${program} ${name} --as ${name})
+endfunction()
+
+function(handcast_description program name)
   set(folder ${CMAKE_BINARY_DIR}/share/handcast/services)
-  add_custom_command(TARGET handcast-${name} POST_BUILD
+  add_custom_command(TARGET handcast-${program} POST_BUILD
     COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
-    COMMAND handcast-${name} --describe > ${folder}/${name}.json
+    COMMAND handcast-${program} ${ARGN} --describe > ${folder}/${name}.json
     BYPRODUCTS ${folder}/${name}.json)
   install(FILES ${folder}/${name}.json DESTINATION ${HANDCAST_INSTALL_SHAREDIR}/services)
 endfunction()
@@ -172,13 +181,14 @@ endfunction()
 set(handcast_test_options -O1)
 
 # handcast_test([SUFFIX word] SOURCES a_test.cpp ... USES folder ... [LIBRARIES target ...] [NEEDS target ...] [TIMEOUT seconds]
-#               [LABELS ...] [NO_HANDS])
+#               [LABELS ...] [NO_HANDS] [SHORT filter])
 #
 # Declares a GoogleTest program and a ctest named after the folder: tests/renderer/mask -> test_renderer_mask[_SUFFIX].
 # NEEDS: targets of programs and files that the test uses when it runs; the hands made by the build are added automatically, unless
 # NO_HANDS says that the test does not read them. A test with the label `threads` also runs with the thread sanitizer: see .ci/run.
+# SHORT: the whole program takes minutes and has the label `nightly`; what the filter selects is a test of its own, NAME_short.
 function(handcast_test)
-  cmake_parse_arguments(ARG "NO_HANDS" "SUFFIX;TIMEOUT" "SOURCES;USES;LIBRARIES;NEEDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "NO_HANDS" "SUFFIX;TIMEOUT;SHORT" "SOURCES;USES;LIBRARIES;NEEDS;LABELS" ${ARGN})
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
   string(REPLACE "/" "_" name test_${folder})
   if(ARG_SUFFIX)
@@ -198,14 +208,22 @@ function(handcast_test)
     add_dependencies(${name} ${ARG_NEEDS})
   endif()
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+  set(tests ${name})
+  if(ARG_SHORT)
+    add_test(NAME ${name}_short COMMAND ${name} --gtest_filter=${ARG_SHORT} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    list(APPEND tests ${name}_short)
+  endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
   if(HANDCAST_SANITIZE)
     math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")  # sanitizers are slow; a hang still ends
   endif()
-  set_tests_properties(${name} PROPERTIES
+  set_tests_properties(${tests} PROPERTIES
     TIMEOUT ${ARG_TIMEOUT}
     LABELS "${ARG_LABELS}"
     ENVIRONMENT "HANDCAST_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};HANDCAST_SOURCE=${CMAKE_SOURCE_DIR}")
+  if(ARG_SHORT)
+    set_property(TEST ${name} APPEND PROPERTY LABELS nightly)
+  endif()
 endfunction()

@@ -7,21 +7,15 @@
 namespace handcast::camera {
 
 #ifdef HANDCAST_WITH_ARAVIS
-Result<std::unique_ptr<Camera>> open_aravis(const config::Rig&, const calib::Calibration&,
-                                            const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Camera>> open_aravis(const Opening&);
 #endif
 #ifdef HANDCAST_WITH_LIBUSB
-Result<std::unique_ptr<Camera>> open_leap(const config::Rig&, const calib::Calibration&,
-                                          const std::int64_t& epoch_ns);
-Result<void> check_leap(const config::Rig&, const calib::Calibration&,
-                        const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Camera>> open_leap(const Opening&);
+Result<void> check_leap(const Opening&);
 #endif
-Result<std::unique_ptr<Camera>> open_twin(const config::Rig&, const calib::Calibration&,
-                                          const std::int64_t& epoch_ns);
-Result<std::unique_ptr<Camera>> open_replay(const config::Rig&, const calib::Calibration&,
-                                            const std::int64_t& epoch_ns);
-Result<std::unique_ptr<Camera>> open_v4l2(const config::Rig&, const calib::Calibration&,
-                                          const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Camera>> open_twin(const Opening&);
+Result<std::unique_ptr<Camera>> open_replay(const Opening&);
+Result<std::unique_ptr<Camera>> open_v4l2(const Opening&);
 
 static constexpr std::array kBackends{
 #ifdef HANDCAST_WITH_ARAVIS
@@ -59,11 +53,32 @@ static constexpr std::array kBackends{
 
 std::span<const CameraBackend> camera_backends() { return kBackends; }
 
+Result<Opening> opening_of(const config::Rig& rig, const calib::Calibration& calibration,
+                           std::int64_t epoch_ns, config::Viewpoint at) {
+  auto camera = calib::camera_at(calibration, at);
+  if (!camera) return tl::make_unexpected(camera.error());
+  return Opening{rig, calibration, epoch_ns, at, config::camera_at(rig, at), std::move(*camera)};
+}
+
 Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig,
                                             const calib::Calibration& calibration,
-                                            std::int64_t epoch_ns) {
-  return service::open_backend("camera", rig.camera.backend, camera_backends(), rig, calibration,
-                               epoch_ns);
+                                            std::int64_t epoch_ns, config::Viewpoint at) {
+  const auto with = opening_of(rig, calibration, epoch_ns, at);
+  if (!with) return tl::make_unexpected(with.error());
+  const auto name = config::name_at(at, "camera");
+  const auto row = service::find_backend(name, with->settings.backend, camera_backends());
+  if (!row) return tl::make_unexpected(row.error());
+  return service::in_backend(name, row->name, row->open(*with));
+}
+
+Result<void> check_camera(const config::Rig& rig, const calib::Calibration& calibration,
+                          config::Viewpoint at) {
+  const auto with = opening_of(rig, calibration, now_ns(), at);
+  if (!with) return tl::make_unexpected(with.error());
+  const auto name = config::name_at(at, "camera");
+  const auto row = service::find_backend(name, with->settings.backend, camera_backends());
+  if (!row) return tl::make_unexpected(row.error());
+  return service::in_backend(name, row->name, row->examine(*with));
 }
 
 }  // namespace handcast::camera

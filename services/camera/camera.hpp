@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -44,17 +46,46 @@ class Camera {
   virtual void watch_light(ipc::Reader<msg::Projection> /*projections*/) {}
 };
 
-/// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,
-/// ns).
-using CameraBackend = service::Backend<Camera, config::Rig, calib::Calibration, std::int64_t>;
+/// What a camera is opened with. It refers to the rig and its calibration.
+struct Opening {
+  const config::Rig& rig;
+  const calib::Calibration& calibration;
+  std::int64_t epoch_ns = 0;       ///< time zero of the rig, CLOCK_MONOTONIC
+  config::Viewpoint at{};          ///< which of the rig's cameras it is
+  const config::Camera& settings;  ///< its section of the rig
+  calib::PlacedCamera camera;      ///< its lens and place by the calibration
+};
+
+/// The opening of the camera at a viewpoint. Errors: bad_config (the calibration has no second
+/// camera).
+Result<Opening> opening_of(const config::Rig& rig, const calib::Calibration& calibration,
+                           std::int64_t epoch_ns, config::Viewpoint at = config::Viewpoint::first);
+
+/// A back end. Its errors and lines of the log name neither the service nor the back end, which
+/// open_camera(), check_camera() and the service put before them. They name settings as the section
+/// of the service has them: "v4l2.format".
+using CameraBackend = service::Backend<Camera, Opening>;
 
 /// All back ends of this build.
 std::span<const CameraBackend> camera_backends();
 
-/// Opens the back end rig.camera.backend. Errors: bad_config (unknown back end, or its settings are
-/// wrong), and those of the back end.
+/// Opens the back end that the rig names for the camera at a viewpoint. Errors: bad_config (unknown
+/// back end, or its settings are wrong), those of opening_of() and of the back end.
 Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig,
                                             const calib::Calibration& calibration,
-                                            std::int64_t epoch_ns);
+                                            std::int64_t epoch_ns,
+                                            config::Viewpoint at = config::Viewpoint::first);
+/// Checks it: see service::Backend::check. Errors: those of open_camera().
+Result<void> check_camera(const config::Rig& rig, const calib::Calibration& calibration,
+                          config::Viewpoint at);
+
+/// Checks that an image fits into the tail of its message. Errors: bad_config (it does not).
+inline Result<void> check_room(int width_px, int height_px, std::size_t tail_bytes) {
+  const std::size_t needed = static_cast<std::size_t>(width_px) * height_px;
+  if (needed <= tail_bytes) return {};
+  return fail(Errc::bad_config,
+              fmt::format("an image of {} x {} px does not fit the {} bytes of its ring's slots",
+                          width_px, height_px, tail_bytes));
+}
 
 }  // namespace handcast::camera

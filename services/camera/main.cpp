@@ -1,28 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <optional>
 
 #include "config/second_view.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "services/camera/camera.hpp"
-#include "services/camera/frame_size.hpp"
 #include "services/runtime/context.hpp"
-#include "services/runtime/second_view.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
+using config::Viewpoint;
 using service::must;
-
-#ifdef HANDCAST_SECOND_VIEW
-constexpr bool kIsSecondView = true;  ///< this program is handcast-camera2
-#else
-constexpr bool kIsSecondView = false;
-#endif
 
 using Frames = ipc::Writer<msg::CameraFrame>;
 using Slot = ipc::Loan<msg::CameraFrame>;
 
-/// Captures into the slot of camera.frames, and of a stereo camera into that of camera2.frames,
-/// which is empty if readers hold all slots of that ring: the other eye's image is left out then.
+/// Captures into the slot of the service's ring, and of a stereo camera into that of
+/// camera2.frames, which is empty if readers hold all slots of that ring: the other eye's image is
+/// left out then.
 static Result<void> capture(camera::Camera& source, Slot& slot, std::optional<Slot>& second,
                             const calib::Calibration& calibration) {
   slot->origin_error_ns = 0;
@@ -48,8 +43,8 @@ static Result<void> check_other_eye(const config::Rig& rig) {
 /// The ring of the other eye's images; empty if the camera has none. Errors: those of
 /// check_other_eye() and of the ring.
 static Result<std::optional<Frames>> second_frames_of(const camera::Camera& source,
-                                                      service::Context& context) {
-  if (kIsSecondView || !source.has_second_image()) return std::nullopt;
+                                                      service::Context& context, Viewpoint at) {
+  if (at == Viewpoint::second || !source.has_second_image()) return std::nullopt;
   if (auto is_free = check_other_eye(context.rig()); !is_free)
     return tl::make_unexpected(is_free.error());
   return context.writer<msg::CameraFrame>("camera2.frames").map([](Frames&& frames) {
@@ -57,16 +52,17 @@ static Result<std::optional<Frames>> second_frames_of(const camera::Camera& sour
   });
 }
 
-/// Publishes the images of the camera to the ring camera.frames, and those of the other eye of a
+/// Publishes the images of the camera at a viewpoint to its ring, and those of the other eye of a
 /// stereo camera to camera2.frames.
-static void run_camera(service::Context& context) {
-  if (service::is_exclusive(context.rig().camera.backend, camera::camera_backends()))
-    context.stand_by();
+static void run_camera(service::Context& context, Viewpoint at) {
+  const auto name = config::name_at(at, "camera"), ring = config::name_at(at, "camera.frames");
+  const auto& backend = config::camera_at(context.rig(), at).backend;
+  if (service::is_exclusive(backend, camera::camera_backends())) context.stand_by();
   const auto source =
-      must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns()));
+      must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns(), at));
   context.stand_by();
-  auto frames = must(context.writer<msg::CameraFrame>("camera.frames"));
-  auto second_frames = must(second_frames_of(*source, context));
+  auto frames = must(context.writer<msg::CameraFrame>(ring));
+  auto second_frames = must(second_frames_of(*source, context, at));
 
   if (source->sees_light())
     source->watch_light(must(context.reader<msg::Projection>("projection.frames")));
@@ -75,13 +71,15 @@ static void run_camera(service::Context& context) {
   while (context.running()) {
     auto slot = frames.loan();
     if (!slot) {
-      context.tolerate({Errc::timeout, "camera: all slots of camera.frames are held by readers"});
+      context.tolerate({Errc::timeout, name + ": all slots of its ring are held by readers"});
       sleep_until_ns(now_ns() + to_ns(1ms));
       continue;
     }
     std::optional<Slot> second;
     if (second_frames) second.emplace(second_frames->loan());
-    if (const auto captured = capture(*source, slot, second, context.calibration()); !captured) {
+    const auto captured =
+        service::in_backend(name, backend, capture(*source, slot, second, context.calibration()));
+    if (!captured) {
       context.tolerate(captured.error());
       continue;
     }
@@ -94,17 +92,20 @@ static void run_camera(service::Context& context) {
   }
 }
 
-static Result<void> check_camera(const config::Rig& rig, const calib::Calibration& calibration) {
+static Result<void> check(const config::Rig& rig, const calib::Calibration& calibration,
+                          Viewpoint at) {
   constexpr std::size_t kRoom = msg::kLargestCameraWidth_px * msg::kLargestCameraHeight_px;
-  const auto& camera = calibration.camera;
-  if (auto fits = camera::check_room(camera.width_px, camera.height_px, kRoom); !fits) return fits;
-  if (!kIsSecondView && config::has_two_eyes(rig.camera))
+  const auto camera = calib::camera_at(calibration, at);
+  if (!camera) return tl::make_unexpected(camera.error());
+  const auto& model = camera->model;
+  if (auto fits = camera::check_room(model.width_px, model.height_px, kRoom); !fits)
+    return fail_in(config::name_at(at, "camera"), fits.error());
+  if (at == Viewpoint::first && config::has_two_eyes(rig.camera))
     if (auto is_free = check_other_eye(rig); !is_free) return is_free;
-  return service::check_backend("camera", rig.camera.backend, camera::camera_backends(), rig,
-                                calibration, now_ns());
+  return camera::check_camera(rig, calibration, at);
 }
 
-static daemon::ServiceDescription description() {
+static daemon::ServiceDescription describe(Viewpoint at) {
   daemon::ServiceDescription first{.name = "camera",
                                    .summary = "Delivers the frames of the infrared camera.",
                                    .paced_by = "its device",
@@ -112,11 +113,19 @@ static daemon::ServiceDescription description() {
                                    .subscribes = {"projection.frames"},
                                    .settings = {"camera.rate_hz", "camera.exposure_ms"},
                                    .backends = service::describe_rows(camera::camera_backends())};
-  if (kIsSecondView) return service::of_second_view(std::move(first));
-  first.publishes.emplace_back("camera2.frames");
-  return first;
+  auto description = service::describe_at(at, std::move(first));
+  if (at == Viewpoint::first) description.publishes.emplace_back("camera2.frames");
+  return description;
+}
+
+static service::Instance instance_at(Viewpoint at) {
+  return {describe(at), [at](service::Context& context) { run_camera(context, at); },
+          [at](const config::Rig& rig, const calib::Calibration& calibration) {
+            return check(rig, calibration, at);
+          }};
 }
 
 int main(int argc, char** argv) {
-  return service::run(description(), argc, argv, run_camera, check_camera);
+  return service::run(std::array{instance_at(Viewpoint::first), instance_at(Viewpoint::second)},
+                      argc, argv);
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/npy_pictures.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -8,7 +6,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
-#include "services/camera/png_pictures.hpp"
+#include "services/camera/played_pictures.hpp"
 #include "services/recording/arrays/npy.hpp"
 
 namespace handcast::camera {

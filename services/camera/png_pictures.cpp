@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/png_pictures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "ipc/base/clock.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
+#include "services/camera/played_pictures.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 
 namespace handcast::camera {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
-#include "services/camera/picture_source.hpp"
+#include "services/camera/played_pictures.hpp"
 
 namespace handcast::camera {
 

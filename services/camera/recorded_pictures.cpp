@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/recorded_pictures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "calib/calibration.hpp"
 #include "ipc/base/log.hpp"
+#include "services/camera/played_pictures.hpp"
 #include "services/recording/about.hpp"
 
 namespace handcast::camera {
@@ -35,8 +34,8 @@ void say_if_calibrated_otherwise(const std::filesystem::path& folder, std::uint3
   const auto recorded = calib::load_calibration(file);
   if (recorded && recorded->id == ours) return;
   log::warning(
-      "camera 'replay': the images were recorded with another calibration than that of the rig; "
-      "theirs is '{}' (calibration)",
+      "the images were recorded with another calibration than that of the rig; theirs is '{}' "
+      "(calibration)",
       file.string());
 }
 
@@ -44,7 +43,8 @@ void say_if_calibrated_otherwise(const std::filesystem::path& folder, std::uint3
 
 Result<PlayedPictures> open_recorded_pictures(const std::filesystem::path& folder,
                                               const PlayedAs& as) {
-  auto reader = StreamReader::open<msg::CameraFrame>(folder, "camera.frames");
+  auto reader = StreamReader::open<msg::CameraFrame>(
+      folder, recording::stream_of(folder, as.stream, "camera.frames"));
   if (!reader) return tl::make_unexpected(reader.error());
   const auto other = std::ranges::find_if(reader->rows(), [&](const auto& row) {
     return !std::cmp_equal(row.width_px, as.width_px) ||

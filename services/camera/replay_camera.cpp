@@ -2,12 +2,8 @@
 #include <algorithm>
 
 #include "services/camera/camera.hpp"
-#include "services/camera/film_pictures.hpp"
-#include "services/camera/frame_size.hpp"
-#include "services/camera/npy_pictures.hpp"
-#include "services/camera/png_pictures.hpp"
+#include "services/camera/played_pictures.hpp"
 #include "services/camera/read_ahead.hpp"
-#include "services/camera/recorded_pictures.hpp"
 #include "services/recording/about.hpp"
 
 namespace handcast::camera {
@@ -35,16 +31,16 @@ class ReplayCamera final : public Camera {
     if (!item_ || (pace_ == config::Pace::recorded && item_->due_ns > deadline.time_ns())) {
       const bool is_over = !std::exchange(item_, std::nullopt);
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, is_over ? "camera 'replay': the recording is over"
-                                         : "camera 'replay': no frame before the deadline");
+      return fail(Errc::timeout,
+                  is_over ? "the recording is over" : "no frame before the deadline");
     }
     const auto picture = pictures_.get(item_->number, deadline);
     // One that has not been read yet is asked for again.
     if (!picture && picture.error().code == Errc::timeout)
-      return fail_in("camera 'replay'", picture.error());
+      return tl::make_unexpected(picture.error());
     const auto item = *std::exchange(item_, std::nullopt);
     last_ns_ = item.due_ns;
-    if (!picture) return fail_in("camera 'replay'", picture.error());
+    if (!picture) return tl::make_unexpected(picture.error());
     deliver(item, **picture, frame);
     return {};
   }
@@ -87,22 +83,20 @@ Result<PlayedPictures> open_pictures(const fs::path& from, const PlayedAs& as) {
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_replay(const config::Rig& rig,
-                                            const calib::Calibration& calibration,
-                                            const std::int64_t& epoch_ns) {
-  const auto& settings = rig.camera.replay;
+Result<std::unique_ptr<Camera>> open_replay(const Opening& with) {
+  const auto& settings = with.settings.replay;
   if (settings.directory.empty())
-    return fail(Errc::bad_config,
-                "camera 'replay': no recording is given; set camera.replay.directory");
-  const PlayedAs as{calibration.camera.width_px,
-                    calibration.camera.height_px,
-                    calibration.id,
-                    ms_to_ns(rig.camera.exposure_ms),
-                    rig.camera.rate_hz,
-                    epoch_ns,
+    return fail(Errc::bad_config, "no recording is given; set replay.directory");
+  const PlayedAs as{config::name_at(with.at, "camera.frames"),
+                    with.camera.model.width_px,
+                    with.camera.model.height_px,
+                    with.calibration.id,
+                    ms_to_ns(with.settings.exposure_ms),
+                    with.settings.rate_hz,
+                    with.epoch_ns,
                     settings.loop};
   auto pictures = open_pictures(settings.directory, as);
-  if (!pictures) return fail_in("camera 'replay'", pictures.error());
+  if (!pictures) return tl::make_unexpected(pictures.error());
   return std::make_unique<ReplayCamera>(std::move(*pictures), as, settings.pace);
 }
 

@@ -12,13 +12,9 @@
 
 namespace handcast::landmarks {
 
-Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig&,
-                                                        const calib::Calibration&,
-                                                        const std::int64_t& epoch_ns);
-Result<std::unique_ptr<Detector>> open_twin(const config::Rig&, const calib::Calibration&,
-                                            const std::int64_t& epoch_ns);
-Result<std::unique_ptr<Detector>> open_replay(const config::Rig&, const calib::Calibration&,
-                                              const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Detector>> open_network_detector(const Opening&);
+Result<std::unique_ptr<Detector>> open_twin(const Opening&);
+Result<std::unique_ptr<Detector>> open_replay(const Opening&);
 
 static constexpr DetectorBackend kTwin{
     .name = "twin",
@@ -54,37 +50,54 @@ std::span<const DetectorBackend> detector_backends() {
   return kBackends;
 }
 
-DetectorChoice choose_detector(const config::Rig& rig) {
-  const auto& settings = rig.landmarks;
+DetectorChoice choose_detector(const config::Rig& rig, config::Viewpoint at) {
+  const auto& settings = config::landmarks_at(rig, at);
   // A folder that does not exist is a wrong setting and not a missing file.
   const auto folder = models_folder(settings.models);
   if (settings.fallback.empty() || !folder) return {settings.backend, {}};
-  const auto missing =
-      missing_file(settings.backend, {.executor = settings.executor, .folder = *folder});
+  const auto missing = missing_file(settings.backend, {.folder = *folder});
   if (missing.empty()) return {settings.backend, {}};
   return {settings.fallback,
-          fmt::format("landmarks: '{}' is missing, so '{}' takes the place of '{}' "
-                      "(landmarks.fallback)",
-                      missing.string(), settings.fallback, settings.backend)};
+          fmt::format("{0}: '{1}' is missing, so '{2}' takes the place of '{3}' ({0}.fallback)",
+                      config::name_at(at, "landmarks"), missing.string(), settings.fallback,
+                      settings.backend)};
 }
 
-Result<void> check_fallback(const config::Rig& rig) {
-  const auto& fallback = rig.landmarks.fallback;
+/// Errors: bad_config (its fallback names no back end, or the calibration has no such camera).
+static Result<Opening> opening_of(const config::Rig& rig, const calib::Calibration& calibration,
+                                  std::int64_t epoch_ns, config::Viewpoint at) {
   const auto names = service::names_of(detector_backends());
-  if (fallback.empty() || std::ranges::find(names, fallback) != names.end()) return {};
-  return fail(Errc::bad_config,
-              fmt::format("landmarks.fallback: there is no back end '{}'; there are: {}", fallback,
-                          join(names, ", ")));
+  auto settings = config::landmarks_at(rig, at);
+  const auto& fallback = settings.fallback;
+  if (!fallback.empty() && std::ranges::find(names, fallback) == names.end())
+    return fail(Errc::bad_config, fmt::format("{}: there is no back end '{}'; there are: {}",
+                                              config::name_at(at, "landmarks.fallback"), fallback,
+                                              join(names, ", ")));
+  auto camera = calib::camera_at(calibration, at);
+  if (!camera) return tl::make_unexpected(camera.error());
+  settings.backend = choose_detector(rig, at).backend;
+  return Opening{rig, calibration, epoch_ns, at, std::move(settings), std::move(*camera)};
 }
 
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
-                                                std::int64_t epoch_ns) {
-  if (auto known = check_fallback(rig); !known) return tl::make_unexpected(known.error());
-  auto chosen = rig;
-  chosen.landmarks.backend = choose_detector(rig).backend;
-  return service::open_backend("landmarks", chosen.landmarks.backend, detector_backends(), chosen,
-                               calibration, epoch_ns);
+                                                std::int64_t epoch_ns, config::Viewpoint at) {
+  const auto with = opening_of(rig, calibration, epoch_ns, at);
+  if (!with) return tl::make_unexpected(with.error());
+  const auto name = config::name_at(at, "landmarks");
+  const auto row = service::find_backend(name, with->settings.backend, detector_backends());
+  if (!row) return tl::make_unexpected(row.error());
+  return service::in_backend(name, row->name, row->open(*with));
+}
+
+Result<void> check_detector(const config::Rig& rig, const calib::Calibration& calibration,
+                            config::Viewpoint at) {
+  const auto with = opening_of(rig, calibration, now_ns(), at);
+  if (!with) return tl::make_unexpected(with.error());
+  const auto name = config::name_at(at, "landmarks");
+  const auto row = service::find_backend(name, with->settings.backend, detector_backends());
+  if (!row) return tl::make_unexpected(row.error());
+  return service::in_backend(name, row->name, row->examine(*with));
 }
 
 }  // namespace handcast::landmarks

@@ -32,29 +32,43 @@ class Detector {
                                         Deadline deadline) = 0;
 };
 
-/// A row of the table of detectors, opened with the rig, its calibration and its epoch (ns).
-using DetectorBackend = service::Backend<Detector, config::Rig, calib::Calibration, std::int64_t>;
+/// What a detector is opened with. It refers to the rig and its calibration.
+struct Opening {
+  const config::Rig& rig;
+  const calib::Calibration& calibration;
+  std::int64_t epoch_ns = 0;   ///< time zero of the rig, CLOCK_MONOTONIC
+  config::Viewpoint at{};      ///< whose images it gets
+  config::Landmarks settings;  ///< its section of the rig, with the back end that was chosen
+  calib::PlacedCamera camera;  ///< the lens and the place of the camera by the calibration
+};
+
+/// A row of the table of detectors. Its errors name neither the service nor the back end, which
+/// open_detector(), check_detector() and the service put before them. They name settings as the
+/// section of the service has them: "replay.directory".
+using DetectorBackend = service::Backend<Detector, Opening>;
 
 /// All detectors: the landmark models, the twin, recordings.
 std::span<const DetectorBackend> detector_backends();
 
-/// What finds the landmarks of a rig.
+/// What finds the landmarks in the images of a camera.
 struct DetectorChoice {
-  std::string backend;  ///< rig.landmarks.backend, or rig.landmarks.fallback
+  std::string backend;  ///< `backend` or `fallback` of its section
   /// Why it is the fallback: one sentence with the file that is missing. Empty if it is not.
   std::string why;
 };
 
 /// The detector that open_detector() opens: the fallback, if there is one and a file of the back
 /// end is missing.
-DetectorChoice choose_detector(const config::Rig& rig);
-
-/// Errors: bad_config (landmarks.fallback names no back end).
-Result<void> check_fallback(const config::Rig& rig);
+DetectorChoice choose_detector(const config::Rig& rig,
+                               config::Viewpoint at = config::Viewpoint::first);
 
 /// Opens the detector of choose_detector(). `epoch_ns`: the start of the rig. Errors: bad_config.
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
-                                                std::int64_t epoch_ns);
+                                                std::int64_t epoch_ns,
+                                                config::Viewpoint at = config::Viewpoint::first);
+/// Checks it: see service::Backend::check. Errors: those of open_detector().
+Result<void> check_detector(const config::Rig& rig, const calib::Calibration& calibration,
+                            config::Viewpoint at);
 
 }  // namespace handcast::landmarks

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
+
 #include "ipc/base/log.hpp"
 #include "ipc/msg/detector_note.hpp"
 #include "ipc/msg/same_calibration.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
 #include "services/runtime/context.hpp"
-#include "services/runtime/second_view.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
+using config::Viewpoint;
 using service::must;
 
 /// Takes all samples of the tracker that have arrived. A rig without a tracker has no such ring;
@@ -22,20 +24,21 @@ static void take_poses(service::Context& context, Result<ipc::Reader<msg::HandPo
   if (sample.error().code != Errc::timeout) context.tolerate(sample.error());
 }
 
-/// Publishes the landmarks of the newest camera frame on landmarks.hands, back to back. Frames that
-/// arrive during a detection are skipped.
-static void run_landmarks(service::Context& context) {
-  const auto choice = landmarks::choose_detector(context.rig());
+/// Publishes the landmarks of the newest frame of the camera at a viewpoint, back to back. Frames
+/// that arrive during a detection are skipped.
+static void run_landmarks(service::Context& context, Viewpoint at) {
+  const auto choice = landmarks::choose_detector(context.rig(), at);
+  const auto name = config::name_at(at, "landmarks");
   const msg::DetectorNote note{.is_fallback = !choice.why.empty()};
   if (!choice.why.empty()) log::warning("{}", choice.why);
   if (service::is_exclusive(choice.backend, landmarks::detector_backends())) context.stand_by();
   const auto detector =
-      must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns()));
+      must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns(), at));
   context.stand_by();
-  auto frames = must(context.reader<msg::CameraFrame>("camera.frames"));
+  auto frames = must(context.reader<msg::CameraFrame>(config::name_at(at, "camera.frames")));
   auto poses = context.reader<msg::HandPoses>("pose.hands");
-  landmarks::TrackerHints tracker(context.calibration());
-  auto hands = must(context.writer<msg::Landmarks>("landmarks.hands"));
+  landmarks::TrackerHints tracker(must(calib::camera_at(context.calibration(), at)));
+  auto hands = must(context.writer<msg::Landmarks>(config::name_at(at, "landmarks.hands")));
 
   context.ready();
   while (context.running()) {
@@ -54,6 +57,7 @@ static void run_landmarks(service::Context& context) {
     auto found = detector->detect(**frame, hints, Deadline::in(50ms));
     while (!found && found.error().code == Errc::timeout && context.running())
       found = detector->detect(**frame, hints, Deadline::in(50ms));
+    found = service::in_backend(name, choice.backend, std::move(found));
     if (!found) {
       context.tolerate(found.error());
       continue;
@@ -65,31 +69,22 @@ static void run_landmarks(service::Context& context) {
   }
 }
 
-static Result<void> check_landmarks(const config::Rig& rig, const calib::Calibration& calibration) {
-  if (auto known = landmarks::check_fallback(rig); !known) return known;
-  auto chosen = rig;
-  chosen.landmarks.backend = landmarks::choose_detector(rig).backend;
-  return service::check_backend("landmarks", chosen.landmarks.backend,
-                                landmarks::detector_backends(), chosen, calibration, now_ns());
-}
-
-/// HANDCAST_SECOND_VIEW: this program is handcast-landmarks2.
-static daemon::ServiceDescription description() {
-  daemon::ServiceDescription first{
-      .name = "landmarks",
-      .summary = "Finds the landmarks of the hands in camera images.",
-      .paced_by = "camera.frames",
-      .publishes = {"landmarks.hands"},
-      .subscribes = {"camera.frames", "pose.hands"},
-      .settings = {"landmarks.fallback"},
-      .backends = service::describe_rows(landmarks::detector_backends())};
-#ifdef HANDCAST_SECOND_VIEW
-  return service::of_second_view(std::move(first));
-#else
-  return first;
-#endif
+static service::Instance instance_at(Viewpoint at) {
+  return {service::describe_at(
+              at, {.name = "landmarks",
+                   .summary = "Finds the landmarks of the hands in camera images.",
+                   .paced_by = "camera.frames",
+                   .publishes = {"landmarks.hands"},
+                   .subscribes = {"camera.frames", "pose.hands"},
+                   .settings = {"landmarks.fallback"},
+                   .backends = service::describe_rows(landmarks::detector_backends())}),
+          [at](service::Context& context) { run_landmarks(context, at); },
+          [at](const config::Rig& rig, const calib::Calibration& calibration) {
+            return landmarks::check_detector(rig, calibration, at);
+          }};
 }
 
 int main(int argc, char** argv) {
-  return service::run(description(), argc, argv, run_landmarks, check_landmarks);
+  return service::run(std::array{instance_at(Viewpoint::first), instance_at(Viewpoint::second)},
+                      argc, argv);
 }

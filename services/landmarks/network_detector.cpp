@@ -70,24 +70,22 @@ Result<void> check_pixels(const calib::CameraModel& camera) {
 
 }  // namespace
 
-Result<std::unique_ptr<Detector>> open_network_detector(const config::Rig& rig,
-                                                        const calib::Calibration& calibration,
-                                                        const std::int64_t&) {
-  const auto& settings = rig.landmarks;
-  if (auto square = check_pixels(calibration.camera); !square)
-    return fail_in(fmt::format("landmarks '{}'", settings.backend), square.error());
+Result<std::unique_ptr<Detector>> open_network_detector(const Opening& with) {
+  const auto& settings = with.settings;
+  const auto& pose = with.rig.pose;
+  if (auto square = check_pixels(with.camera.model); !square)
+    return tl::make_unexpected(square.error());
   const auto folder = models_folder(settings.models);
-  if (!folder) return fail_in("landmarks.models", folder.error());
-  auto model =
-      open_landmark_model(settings.backend, {.executor = settings.executor, .folder = *folder});
-  if (!model) return fail_in(fmt::format("landmarks '{}'", settings.backend), model.error());
-  const bool has_hints = rig.pose.backend != "none";
+  if (!folder) return fail_in("models", folder.error());
+  auto model = open_landmark_model(settings.backend, {.folder = *folder});
+  if (!model) return tl::make_unexpected(model.error());
+  const bool has_hints = pose.backend != "none";
   // The poses of `stereo` are made from these landmarks, too, but of two views: good hints, once
   // the hands were found.
-  const bool lifts = !has_hints || rig.pose.backend == "stereo" || rig.pose.second == "stereo";
+  const bool lifts = !has_hints || pose.backend == "stereo" || pose.second == "stereo";
   HandFinder finder(std::move(*model), settings.hands,
                     lifts ? HandFinder::Poses::of_landmarks : HandFinder::Poses::of_a_tracker);
-  return std::make_unique<NetworkDetector>(std::move(finder), calibration.camera, has_hints);
+  return std::make_unique<NetworkDetector>(std::move(finder), with.camera.model, has_hints);
 }
 
 }  // namespace handcast::landmarks

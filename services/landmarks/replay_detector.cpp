@@ -29,7 +29,7 @@ class ReplayDetector final : public Detector {
     const auto item = loop_.nearest(frame.header.origin_ns);
     if (!item) {
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, "landmarks 'replay': the recording is over");
+      return fail(Errc::timeout, "the recording is over");
     }
     msg::Landmarks landmarks;
     landmarks.header = {frame.header.frame_id, frame.header.origin_ns, 0};
@@ -57,13 +57,12 @@ class RecordedDetector final : public Detector {
     const auto item = schedule_.at_or_after(std::max(now_ns() - kLate_ns, last_ns_ + 1));
     if (!item || item->due_ns > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, item ? "landmarks 'replay': none before the deadline"
-                                      : "landmarks 'replay': the recording is over");
+      return fail(Errc::timeout, item ? "none before the deadline" : "the recording is over");
     }
     last_ns_ = item->due_ns;
     msg::Landmarks landmarks;
     if (auto read = reader_.read(item->index, landmarks); !read)
-      return fail_in("landmarks 'replay'", read.error());
+      return tl::make_unexpected(read.error());
     landmarks.header = {item->frame_id, item->origin_ns, 0};
     sleep_until_ns(item->due_ns);
     return landmarks;
@@ -75,12 +74,15 @@ class RecordedDetector final : public Detector {
   std::int64_t last_ns_ = 0;  ///< when the last landmarks were due
 };
 
-Result<std::unique_ptr<Detector>> open_recorded(const config::Replay& settings,
-                                                std::int64_t epoch_ns) {
-  auto reader =
-      recording::StreamReader::open<msg::Landmarks>(settings.directory, "landmarks.hands");
+Result<std::unique_ptr<Detector>> open_recorded(const Opening& with) {
+  const auto& settings = with.settings.replay;
+  auto reader = recording::StreamReader::open<msg::Landmarks>(
+      settings.directory,
+      recording::stream_of(settings.directory, config::name_at(with.at, "landmarks.hands"),
+                           "landmarks.hands"));
   if (!reader) return tl::make_unexpected(reader.error());
-  auto schedule = recording::Schedule::make(settings.directory, *reader, epoch_ns, settings.loop);
+  auto schedule =
+      recording::Schedule::make(settings.directory, *reader, with.epoch_ns, settings.loop);
   if (!schedule) return tl::make_unexpected(schedule.error());
   return std::make_unique<RecordedDetector>(std::move(*reader), std::move(*schedule));
 }
@@ -147,12 +149,15 @@ Result<Track> read_track(const fs::path& file, std::size_t count, msg::Side side
   return track;
 }
 
-Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int64_t epoch_ns) {
+}  // namespace
+
+Result<std::unique_ptr<Detector>> open_replay(const Opening& with) {
+  const auto& settings = with.settings.replay;
   const fs::path folder = settings.directory;
-  if (folder.empty()) return fail(Errc::bad_config, "landmarks.replay.directory names no folder");
+  if (folder.empty()) return fail(Errc::bad_config, "replay.directory names no folder");
   if (auto there = recording::check_folder(folder); !there)
     return tl::make_unexpected(there.error());
-  if (recording::is_recording(folder)) return open_recorded(settings, epoch_ns);
+  if (recording::is_recording(folder)) return open_recorded(with);
   auto times_ns = recording::read_stamps_ns(folder / "landmarks_timestamps.npy");
   if (!times_ns) return tl::make_unexpected(times_ns.error());
   const auto stamps_ns = recording::read_all_stamps_ns(folder);
@@ -169,19 +174,10 @@ Result<std::unique_ptr<Detector>> read(const config::Replay& settings, std::int6
     return fail(Errc::bad_config,
                 fmt::format("'{}' holds neither landmarks_left.npy nor landmarks_right.npy",
                             folder.string()));
-  auto loop = timing::Loop::make(std::move(*times_ns), timing::Lap::of(*stamps_ns), epoch_ns,
+  auto loop = timing::Loop::make(std::move(*times_ns), timing::Lap::of(*stamps_ns), with.epoch_ns,
                                  settings.loop, timing::kLoneStep_ns);
   if (!loop) return fail_in("landmarks_timestamps.npy", loop.error());
   return std::make_unique<ReplayDetector>(std::move(hands), std::move(*loop));
-}
-
-}  // namespace
-
-Result<std::unique_ptr<Detector>> open_replay(const config::Rig& rig, const calib::Calibration&,
-                                              const std::int64_t& epoch_ns) {
-  auto detector = read(rig.landmarks.replay, epoch_ns);
-  if (!detector) return fail_in("landmarks 'replay'", detector.error());
-  return detector;
 }
 
 }  // namespace handcast::landmarks

@@ -1,12 +1,81 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "ipc/msg/same_calibration.hpp"
 #include "ipc/msg/tracker_faults.hpp"
+#include "ipc/ring/reader.hpp"
 #include "services/pose/drift/calibration_watch.hpp"
-#include "services/pose/landmark_feed.hpp"
 #include "services/pose/pose_source.hpp"
 #include "services/runtime/context.hpp"
+
+namespace handcast::pose {
+namespace {
+
+/// The landmarks of the cameras, on their way to a source. One thread.
+class LandmarkFeed {
+ public:
+  using Ring = Result<ipc::Reader<msg::Landmarks>>;
+
+  /// `rings`: landmarks.hands and landmarks2.hands. `calibration`: the id of the rig's; landmarks
+  /// of another one are not passed on.
+  LandmarkFeed(std::array<Ring, kMostViews> rings, std::uint32_t calibration)
+      : rings_(std::move(rings)), calibration_(calibration) {}
+
+  /// Passes what has arrived to the source. If it needs landmarks, waits for them: 50 ms, or with
+  /// two views 2 ms for the awaited one. Errors: timeout (nothing arrived, which is no fault: the
+  /// first landmarks come after the service is ready), bad_data (another calibration), those of
+  /// the ring.
+  Result<void> pass_on(PoseSource& source);
+  /// The next landmarks of the first view that were not read yet; empty if there are none.
+  std::optional<msg::Landmarks> next();
+
+ private:
+  Result<void> pass_on(PoseSource& source, int view, Deadline deadline);
+
+  std::array<Ring, kMostViews> rings_;
+  std::uint32_t calibration_;
+};
+
+using namespace std::chrono_literals;
+
+Result<void> LandmarkFeed::pass_on(PoseSource& source) {
+  if (source.views() == 1)
+    return pass_on(source, 0, source.needs_landmarks() ? Deadline::in(50ms) : Deadline::now());
+  // The landmarks of the other view are taken at most so late.
+  constexpr auto kOtherView = 2ms;
+  const int awaited = source.awaited_view();
+  auto first = pass_on(source, awaited,
+                       source.needs_landmarks() ? Deadline::in(kOtherView) : Deadline::now());
+  if (!first && first.error().code != Errc::timeout) return first;
+  auto other = pass_on(source, 1 - awaited, Deadline::now());
+  if (!other && other.error().code != Errc::timeout) return other;
+  return {};
+}
+
+Result<void> LandmarkFeed::pass_on(PoseSource& source, int view, Deadline deadline) {
+  auto& ring = rings_[static_cast<std::size_t>(view)];
+  if (!ring) return tl::make_unexpected(ring.error());
+  const auto seen = ring->latest(deadline);
+  if (!seen) return tl::make_unexpected(seen.error());
+  if (auto ours = msg::check_calibration(**seen, calibration_); !ours) return ours;
+  source.see(**seen, view);
+  return {};
+}
+
+std::optional<msg::Landmarks> LandmarkFeed::next() {
+  if (!rings_.front()) return std::nullopt;
+  const auto seen = rings_.front()->next(Deadline::now());
+  return seen ? std::optional(**seen) : std::nullopt;
+}
+
+}  // namespace
+
+}  // namespace handcast::pose
 
 using namespace handcast;
 using namespace std::chrono_literals;

@@ -35,7 +35,7 @@ class FileProjector final : public Projector {
     if (auto claimed = claim(); !claimed) return tl::make_unexpected(claimed.error());
     auto times = clock_.take(deadline);
     if (!times || frame_id % every_ != 0) return times;
-    if (const auto written = writer_.write(frame, light, times->lit_ns); !written)
+    if (const auto written = writer_.write(frame, light, times->display_ns); !written)
       return fail(Errc::bad_data, "projector 'file': " + written.error().what);
     return times;
   }

@@ -23,7 +23,7 @@ class KmsProjector final : public Projector {
     const auto flip = screen_->show(picture_.view(), frame.region, deadline);
     if (!flip) return fail_in("projector 'kms'", flip.error());
     return PresentTimes{.handed_ns = flip->handed_ns,
-                        .lit_ns = flip->flip_ns + latency_ns_ + screen_->refresh_ns() / 2,
+                        .display_ns = flip->flip_ns + latency_ns_ + screen_->refresh_ns() / 2,
                         .note = {msg::LightSource::kernel, flip->refreshes},
                         .next_ns = flip->flip_ns + screen_->refresh_ns()};
   }

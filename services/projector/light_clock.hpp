@@ -31,7 +31,7 @@ class LightClock {
     free_ns_ = std::max(free_ns_ + period_ns_, handed_ns);
     return PresentTimes{
         .handed_ns = handed_ns,
-        .lit_ns = handed_ns + latency_ns_ + period_ns_ / 2,
+        .display_ns = handed_ns + latency_ns_ + period_ns_ / 2,
         .note = {msg::LightSource::settings, refreshes_.since_last(handed_ns, period_ns_)}};
   }
 

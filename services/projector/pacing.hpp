@@ -71,7 +71,7 @@ class Horizon {
   /// Adds the times of a frame that was begun at `begin_ns`.
   void learn(std::int64_t begin_ns, const PresentTimes& times) {
     software_.add(times.handed_ns - begin_ns);
-    light_.add(times.lit_ns - times.handed_ns);
+    light_.add(times.display_ns - times.handed_ns);
   }
 
  private:

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "ipc/base/log.hpp"
-#include "renderer/content/picture.hpp"
-#include "renderer/output/jpeg.hpp"
+#include "renderer/media/jpeg.hpp"
+#include "renderer/media/picture.hpp"
 
 namespace handcast::projector {
 namespace {
@@ -50,7 +50,7 @@ Result<void> PictureWriter::write(const renderer::Frame& frame, const renderer::
         "frames come faster than they can be written to '{}' and are left out; a larger "
         "projector.file.every leaves out none",
         folder_.string());
-  auto& [picture, lit, lit_ns] = waiting_;
+  auto& [picture, lit, display_ns] = waiting_;
   if (picture.width() != frame.colour.width || picture.height() != frame.colour.height) {
     picture = renderer::Texture(frame.colour.width, frame.colour.height);
     lit = {};
@@ -58,7 +58,7 @@ Result<void> PictureWriter::write(const renderer::Frame& frame, const renderer::
   for (int y = lit.y0; y < lit.y1; ++y) std::fill_n(picture.row(y) + lit.x0, lit.width(), 0);
   lit = frame.region.within(picture.width(), picture.height());
   renderer::write_light(frame.colour, lit, light, picture.view());
-  lit_ns = time_ns;
+  display_ns = time_ns;
   is_waiting_ = true;
   changed_.notify_all();
   return std::exchange(failed_, {});

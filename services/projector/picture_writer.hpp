@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "ipc/base/result.hpp"
-#include "renderer/output/film.hpp"
+#include "renderer/media/film.hpp"
 #include "renderer/output/light.hpp"
 #include "renderer/pipeline/frame.hpp"
 

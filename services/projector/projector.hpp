@@ -17,9 +17,9 @@ namespace handcast::projector {
 
 /// The times of a presented frame, CLOCK_MONOTONIC.
 struct PresentTimes {
-  std::int64_t handed_ns = 0;  ///< when the projector took the frame
-  std::int64_t lit_ns = 0;     ///< the middle of the time it is lit
-  msg::LightNote note;         ///< who said when it is lit
+  std::int64_t handed_ns = 0;   ///< when the projector took the frame
+  std::int64_t display_ns = 0;  ///< the middle of the time it is lit
+  msg::LightNote note;          ///< who said when it is lit
   /// When the projector can take the next frame, if it has a rhythm of its own; 0: frames are drawn
   /// at projector.rate_hz.
   std::int64_t next_ns = 0;

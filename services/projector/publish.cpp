@@ -10,7 +10,7 @@ void write_projection(const renderer::Frame& frame, std::uint64_t frame_id,
                       std::size_t tail_bytes) {
   renderer::write_projection(frame, projection, tail_bytes);
   projection.header.frame_id = frame_id;
-  projection.lit_ns = times.lit_ns;
+  projection.lit_ns = times.display_ns;
 }
 
 void publish_projection(const renderer::Frame& frame, std::uint64_t frame_id,

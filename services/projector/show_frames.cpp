@@ -27,9 +27,8 @@ void show_frames(service::Context& context, Show show) {
     const auto* picture = show.test_pictures.at(begin_ns, target_ns);
     auto frame =
         picture ? *picture : show.pipeline.render(begin_ns, target_ns, show.inputs.image());
-    const std::int64_t drawn_ns = now_ns();
     const auto times =
-        show.projector.present(frame, frame_id, show.brightness.at(drawn_ns), Deadline::in(50ms));
+        show.projector.present(frame, frame_id, show.brightness.at(now_ns()), Deadline::in(50ms));
     show.pipeline.read_back(frame);
     next_ns =
         times && times->next_ns != 0 ? horizon.begin_ns(times->next_ns) : pacer.next_ns(now_ns());
@@ -40,8 +39,8 @@ void show_frames(service::Context& context, Show show) {
     last_light.presented();
     horizon.learn(begin_ns, *times);
     publish_projection(frame, frame_id, *times, show.projections);
-    context.mark({frame_id, frame.made_from.image_ns},
-                 time_sheet(frame.stages, begin_ns, drawn_ns, *times), frame.made_from);
+    context.mark({frame_id, frame.made_from.image_ns}, time_sheet(frame.stages, *times),
+                 frame.made_from);
   }
 }
 

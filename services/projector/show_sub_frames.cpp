@@ -73,9 +73,8 @@ class SubFrameLoop {
     const auto frame =
         picture ? *picture
                 : show_.pipeline.render(begin_ns, drawing.target_ns, show_.inputs.image());
-    const std::int64_t drawn_ns = now_ns();
     packer_->add(frame.colour, frame.region, drawing.first, drawing.count);
-    messages_.keep(frame, drawing.count, begin_ns, drawn_ns);
+    messages_.keep(frame, drawing.count);
     return frame;
   }
 

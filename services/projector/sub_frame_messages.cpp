@@ -9,8 +9,7 @@
 
 namespace handcast::projector {
 
-void SubFrameMessages::keep(const renderer::Frame& frame, int count, std::int64_t begin_ns,
-                            std::int64_t drawn_ns) {
+void SubFrameMessages::keep(const renderer::Frame& frame, int count) {
   if (kept_ == drawings_.size()) drawings_.emplace_back();
   Drawing& drawing = drawings_[kept_++];
   const std::size_t bytes = msg::Projection::bytes(static_cast<std::size_t>(frame.region.width()),
@@ -20,8 +19,6 @@ void SubFrameMessages::keep(const renderer::Frame& frame, int count, std::int64_
   write_projection(frame, 0, {}, message, bytes - sizeof message);
   drawing.stages.assign(frame.stages.begin(), frame.stages.end());
   drawing.count = count;
-  drawing.begin_ns = begin_ns;
-  drawing.drawn_ns = drawn_ns;
 }
 
 void SubFrameMessages::handed_over(const SubFramePlan& plan, std::uint64_t first_id,
@@ -55,12 +52,11 @@ void SubFrameMessages::publish_next() {
       slot && kept.used_bytes() <= sizeof kept + slot.tail_bytes()) {
     std::memcpy(static_cast<void*>(&*slot), &kept, kept.used_bytes());
     slot->header.frame_id = id;
-    slot->lit_ns = sub_frame.times.lit_ns;
+    slot->lit_ns = sub_frame.times.display_ns;
     projections_.publish(std::move(slot));
   }
   if (sub_frame.is_first)
-    mark_({id, kept.made_from.image_ns},
-          time_sheet(drawing.stages, drawing.begin_ns, drawing.drawn_ns, sub_frame.times),
+    mark_({id, kept.made_from.image_ns}, time_sheet(drawing.stages, sub_frame.times),
           kept.made_from);
 }
 

@@ -29,7 +29,7 @@ class SubFrameMessages {
       : projections_(std::move(projections)), mark_(std::move(mark)) {}
 
   /// Keeps a copy of a drawing of the output frame that is being drawn.
-  void keep(const renderer::Frame& frame, int count, std::int64_t begin_ns, std::int64_t drawn_ns);
+  void keep(const renderer::Frame& frame, int count);
   /// The last drawing is lit in `count` more sub-frames.
   void extend(int count) { drawings_[kept_ - 1].count += count; }
   /// The output frame was handed over as `times` say; the ids of its sub-frames begin with
@@ -48,7 +48,6 @@ class SubFrameMessages {
     std::vector<std::uint64_t> message;  ///< the bytes of a msg::Projection
     std::vector<msg::StageMark> stages;
     int count = 0;
-    std::int64_t begin_ns = 0, drawn_ns = 0;
   };
   /// One message of the output frame that is lit.
   struct SubFrame {

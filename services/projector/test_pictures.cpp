@@ -3,11 +3,15 @@
 
 #include <cstddef>
 
+#include "ipc/base/clock.hpp"
+
 namespace handcast::projector {
 
 const renderer::Frame* TestPictures::at(std::int64_t time_ns, std::int64_t target_ns) {
   if (!take_newest() && time_ns >= until_ns_) return nullptr;
   frame_.target_ns = target_ns;
+  mark_ = {msg::Stage::frame, 0, time_ns, now_ns()};
+  frame_.stages = {&mark_, 1};
   return &frame_;
 }
 

@@ -26,6 +26,7 @@ class TestPictures {
   ipc::Reader<msg::TestPicture> pictures_;
   renderer::Texture image_;
   renderer::Frame frame_;
+  msg::StageMark mark_;        ///< of frame_
   std::int64_t until_ns_ = 0;  ///< when the picture in image_ has lasted long enough
 };
 

@@ -40,7 +40,7 @@ class WindowProjector final : public Projector {
       warn_if_rates_differ(*refresh_ns, settings_);
     return PresentTimes{
         .handed_ns = shown->handed_ns,
-        .lit_ns = shown->shown_ns + latency_ns_ + refresh_ns.value_or(period_ns_) / 2,
+        .display_ns = shown->shown_ns + latency_ns_ + refresh_ns.value_or(period_ns_) / 2,
         .note = {msg::LightSource::window,
                  refreshes_.since_last(shown->shown_ns, refresh_ns.value_or(period_ns_))},
         .next_ns = refresh_ns ? shown->shown_ns + *refresh_ns : 0};

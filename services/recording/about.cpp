@@ -70,6 +70,12 @@ bool is_recording(const std::filesystem::path& folder) {
   return std::filesystem::exists(folder / kAboutFile, failed);
 }
 
+std::string stream_of(const std::filesystem::path& folder, std::string wanted,
+                      std::string otherwise) {
+  const auto about = read_about(folder);
+  return about && !about->layouts.contains(wanted) ? otherwise : wanted;
+}
+
 Result<void> check_folder(const std::filesystem::path& folder) {
   std::error_code failed;
   if (std::filesystem::is_directory(folder, failed)) return {};

@@ -31,6 +31,11 @@ Result<About> read_about(const std::filesystem::path& folder);
 /// True if the folder is a recording of `handcast record`.
 bool is_recording(const std::filesystem::path& folder);
 
+/// The stream of a recording that plays as `wanted`: this one, or `otherwise` if the recording does
+/// not have it. A second camera may have been recorded alone, as the only one of its rig.
+std::string stream_of(const std::filesystem::path& folder, std::string wanted,
+                      std::string otherwise);
+
 /// Errors: bad_config (there is no such folder).
 Result<void> check_folder(const std::filesystem::path& folder);
 

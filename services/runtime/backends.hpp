@@ -34,6 +34,14 @@ struct Backend {
   /// and leaves devices and services alone, which a running rig may use. Errors: those of open()
   /// that a person must change. Null: it opens the back end, unless that is exclusive.
   Result<void> (*check)(const Args&...) = nullptr;
+
+  /// Checks it: calls `check`, or else opens it, unless it is exclusive. Errors: theirs.
+  Result<void> examine(const Args&... args) const {
+    if (check) return check(args...);
+    if (exclusive) return {};
+    const auto opened = open(args...);
+    return opened ? Result<void>() : tl::make_unexpected(opened.error());
+  }
 };
 
 /// The rows of a table without their code, in its order.
@@ -58,29 +66,43 @@ std::vector<std::string_view> names_of(std::span<const Row> table) {
   return names;
 }
 
-/// Opens the back end called `name`. Errors: bad_config with the known names if there is none of
-/// this name; those of the back end.
+/// The back end called `name`. Errors: bad_config with the known names if there is none of this
+/// name.
 template <class Interface, class... Args>
-Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::string_view name,
-                                                std::span<const Backend<Interface, Args...>> table,
-                                                const Args&... args) {
+Result<Backend<Interface, Args...>> find_backend(
+    std::string_view what, std::string_view name,
+    std::span<const Backend<Interface, Args...>> table) {
   for (const auto& row : table)
-    if (row.name == name) return row.open(args...);
+    if (row.name == name) return row;
   return fail(Errc::bad_config, fmt::format("{}: no back end '{}'; this build has: {}", what, name,
                                             join(names_of(table), ", ")));
 }
 
-/// Checks the back end called `name`: see Backend::check. Errors: those of the check and of
-/// open_backend().
+/// Opens the back end called `name`. Errors: those of find_backend() and of the back end.
+template <class Interface, class... Args>
+Result<std::unique_ptr<Interface>> open_backend(std::string_view what, std::string_view name,
+                                                std::span<const Backend<Interface, Args...>> table,
+                                                const Args&... args) {
+  const auto row = find_backend(what, name, table);
+  if (!row) return tl::make_unexpected(row.error());
+  return row->open(args...);
+}
+
+/// Checks the back end called `name`. Errors: those of find_backend() and of Backend::examine().
 template <class Interface, class... Args>
 Result<void> check_backend(std::string_view what, std::string_view name,
                            std::span<const Backend<Interface, Args...>> table,
                            const Args&... args) {
-  for (const auto& row : table)
-    if (row.name == name && (row.check || row.exclusive))
-      return row.check ? row.check(args...) : Result<void>();
-  const auto opened = open_backend(what, name, table, args...);
-  return opened ? Result<void>() : tl::make_unexpected(opened.error());
+  const auto row = find_backend(what, name, table);
+  return row ? row->examine(args...) : tl::make_unexpected(row.error());
+}
+
+/// Passes on what a back end returned, an error with its service and its name before the sentence:
+/// "camera2 'v4l2': no camera is attached".
+template <class T>
+Result<T> in_backend(std::string_view service, std::string_view backend, Result<T> result) {
+  if (result) return result;
+  return fail_in(fmt::format("{} '{}'", service, backend), std::move(result.error()));
 }
 
 /// Whether a spare must not open this back end before its turn.

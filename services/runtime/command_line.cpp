@@ -8,10 +8,14 @@
 namespace handcast::service {
 namespace {
 
-bool takes_value(std::string_view option) { return option == "--config" || option == "--set"; }
+bool takes_value(std::string_view option) {
+  return option == "--as" || option == "--config" || option == "--set";
+}
 
 Result<void> apply(CommandLine& line, std::string_view option, std::string_view value) {
-  if (option == "--config")
+  if (option == "--as")
+    line.instance = value;
+  else if (option == "--config")
     line.config_file = value;
   else if (value.find('=') == std::string_view::npos)
     return fail(Errc::bad_config, fmt::format("--set {}: expected path=value", value));

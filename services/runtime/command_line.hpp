@@ -12,6 +12,7 @@ struct CommandLine {
   /// The task of the process: to work, to check the rig, or to print what an option asks for.
   enum class Task { serve, check, help, version, backends, describe };
   Task task = Task::serve;            ///< the last of these options, otherwise serve
+  std::string instance;               ///< --as NAME; empty: the program's own name
   std::string config_file;            ///< --config FILE
   std::vector<std::string> settings;  ///< --set path=value, in their order
 };

@@ -7,7 +7,6 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/stop_signal.hpp"
-#include "services/runtime/second_view.hpp"
 
 namespace handcast::service {
 namespace {
@@ -55,10 +54,8 @@ void Context::stand_by() {
   open_marks();
 }
 
-Result<ipc::Segment> Context::take_segment(std::string_view asked,
+Result<ipc::Segment> Context::take_segment(const std::string& stream,
                                            const std::vector<std::string>& described) {
-  const std::string stream =
-      description_.is_second_view ? of_second_view(asked) : std::string(asked);
   if (std::ranges::find(described, stream) == described.end())
     return fail(Errc::bad_config, fmt::format("ring '{}' is not in the description of {}", stream,
                                               description_.name));

@@ -45,12 +45,11 @@ class Context {
   /// The time of the rig's start, the same for every daemon of the rig: time zero of the twin.
   std::int64_t epoch_ns() const { return supervision_.epoch_ns(); }
 
-  /// The writer of a ring; in a service of the second view, of its own ring of that kind. A spare
-  /// waits for its turn first (see stand_by()), and then until the worker that it replaces has left
-  /// the ring. Errors: bad_config (the description does not name the ring, or there is none), those
-  /// of ipc::Writer::attach().
+  /// The writer of a ring. A spare waits for its turn first (see stand_by()), and then until the
+  /// worker that it replaces has left the ring. Errors: bad_config (the description does not name
+  /// the ring, or there is none), those of ipc::Writer::attach().
   template <class T>
-  Result<ipc::Writer<T>> writer(std::string_view stream) {
+  Result<ipc::Writer<T>> writer(const std::string& stream) {
     stand_by();
     auto segment = take_segment(stream, description_.publishes);
     if (!segment) return tl::make_unexpected(segment.error());
@@ -59,7 +58,7 @@ class Context {
   /// A reader of a ring. `wait`: how it waits for messages; empty: as set in [NAME.process].
   /// Errors: see writer().
   template <class T>
-  Result<ipc::Reader<T>> reader(std::string_view stream,
+  Result<ipc::Reader<T>> reader(const std::string& stream,
                                 std::optional<ipc::Wait> wait = std::nullopt) {
     auto segment = take_segment(stream, description_.subscribes);
     if (!segment) return tl::make_unexpected(segment.error());
@@ -95,7 +94,7 @@ class Context {
           calib::Calibration calibration);
 
  private:
-  Result<ipc::Segment> take_segment(std::string_view asked,
+  Result<ipc::Segment> take_segment(const std::string& stream,
                                     const std::vector<std::string>& described);
   Result<ipc::Segment> open_segment(std::string_view stream) const;
   void open_marks();
@@ -119,9 +118,24 @@ daemon::ServiceDescription complete(daemon::ServiceDescription description);
 /// Opens what a daemon opens at its start, but neither rings nor devices, and closes it again.
 using Check = std::function<Result<void>(const config::Rig&, const calib::Calibration&)>;
 
-/// The main function of all daemons: parses the command line, loads the rig and runs `body`, or,
-/// with --check, `check`. Returns the exit code. `description` need not be complete().
+/// A daemon as one of the services that its program can be: of a rig with two cameras, `camera` and
+/// `camera2` are instances of handcast-camera.
+struct Instance {
+  daemon::ServiceDescription description;  ///< need not be complete()
+  std::function<void(Context&)> body;      ///< its work
+  Check check{};                           ///< what --check does; null: nothing of its own
+};
+
+/// The main function of all daemons: parses the command line, loads the rig and runs the body, or,
+/// with --check, the check, of the instance that --as names, or else of the first one. Returns the
+/// exit code.
+int run(std::span<const Instance> instances, int argc, char** argv);
+/// The same for a program that is one service.
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body, const Check& check = {});
+
+/// The description of the service at a viewpoint, from that of the service at the first one: the
+/// names of its rings, sections and settings are those of config::name_at().
+daemon::ServiceDescription describe_at(config::Viewpoint at, daemon::ServiceDescription first);
 
 }  // namespace handcast::service

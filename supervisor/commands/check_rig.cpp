@@ -85,10 +85,11 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 /// The faults that the program of a service finds.
-std::vector<std::string> ask(const std::string& service, const std::filesystem::path& file,
+std::vector<std::string> ask(const ServiceSpec& spec, const std::filesystem::path& file,
                              const std::vector<std::string>& settings, double patience_s) {
-  std::vector<std::string> command{(program_folder() / ("handcast-" + service)).string(),
-                                   "--config", file.string(), "--check"};
+  const auto& service = spec.name;
+  auto command = command_of(spec, program_folder());
+  command.insert(command.end(), {"--config", file.string(), "--check"});
   for (const auto& setting : settings) command.insert(command.end(), {"--set", setting});
   const auto outcome = run_and_read(command, patience_s);
   if (!outcome) return {outcome.error().what};
@@ -125,7 +126,7 @@ std::vector<std::string> faults_of(const config::Rig& rig, const std::filesystem
                            : check_backend(catalogue, service.name, service.backend);
     if (!known) faults.push_back(fmt::format("{}.backend: {}", service.name, known.error().what));
     if (!known) continue;
-    for (auto& fault : ask(service.name, file, settings, rig.supervisor.ready_s))
+    for (auto& fault : ask(service, file, settings, rig.supervisor.ready_s))
       if (!is_known(fault)) faults.push_back(std::move(fault));
   }
   return faults;

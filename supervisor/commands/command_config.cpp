@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "config/measured.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/join.hpp"
 #include "supervisor/base/options.hpp"
@@ -21,6 +22,15 @@ int check(const config::Rig& rig, const std::string& file,
     return complain(kExitConfig, fmt::format("{}:\n{}", file, join(faults, "\n")));
   fmt::print("{} is in order\n", file);
   return kExitDone;
+}
+
+/// Prints as comments where values come from that are not those of the rig file.
+void print_measured(const std::filesystem::path& rig_file) {
+  const auto file = config::measured_file_of(rig_file);
+  const auto settings = config::read_measured(file);
+  if (!settings || settings->empty()) return;
+  fmt::print("# {} sets:\n", file.string());
+  for (const auto& [path, value] : *settings) fmt::print("#   {} = {}\n", path, value);
 }
 
 }  // namespace
@@ -50,6 +60,7 @@ int run_config(const Arguments& arguments) {
           : config::load_rig(options->words.front(), settings);
   if (!rig) return complain(rig.error());
   if (checks) return check(*rig, options->words.front(), settings);
+  if (!options->words.empty()) print_measured(options->words.front());
   fmt::print("{}", config::print_rig(*rig));
   return kExitDone;
 }

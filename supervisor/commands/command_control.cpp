@@ -4,7 +4,6 @@
 
 #include <map>
 
-#include "config/renamed_settings.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/control/control_client.hpp"
 #include "supervisor/base/options.hpp"
@@ -67,15 +66,6 @@ std::string print_reload(const nlohmann::json& answer) {
   return done + print_swaps(answer);
 }
 
-/// The present name of the back end. Reports the use of an old name.
-std::string current_backend(const control::Request& request) {
-  const auto report = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
-  return config::current_form({request.service + ".backend", request.backend}, "swap",
-                              config::renamed_settings(), report)
-      .front()
-      .value;
-}
-
 /// Runs a verb whose arguments are `words`: SERVICE, and perhaps BACKEND. Prints `done` on success,
 /// with {0} for the service and {1} for the back end.
 int ask_with_words(const char* verb, const Arguments& arguments,
@@ -90,7 +80,7 @@ int ask_with_words(const char* verb, const Arguments& arguments,
   if (words.size() > 1) request.backend = options->words[1];
   const auto [exit_code, answer] = send(options->value("--rig"), request);
   if (exit_code != kExitDone) return exit_code;
-  fmt::print("{}", fmt::format(fmt::runtime(done), request.service, current_backend(request)));
+  fmt::print("{}", fmt::format(fmt::runtime(done), request.service, request.backend));
   if (answer.contains("pause_ms"))
     fmt::print(" (the stream paused for {:.0f} ms)", answer["pause_ms"].get<double>());
   fmt::print("\n");

@@ -147,10 +147,12 @@ Service::MaybeEvent Service::carry_out(const action::Tell& tell) {
 
 Result<Child> Service::spawn(bool spare) const {
   const auto with = spare && wanted_ ? *wanted_ : settings();
-  std::vector<std::string> arguments{"--config", fmt::format("/proc/self/fd/{}", with.rig_fd)};
+  const auto command = command_of(spec_, launch_.program_folder);
+  std::vector<std::string> arguments(command.begin() + 1, command.end());
+  arguments.insert(arguments.end(), {"--config", fmt::format("/proc/self/fd/{}", with.rig_fd)});
   if (!with.swapped.empty())
     arguments.insert(arguments.end(), {"--set", spec_.name + ".backend=" + with.swapped});
-  return Child::spawn({.program = launch_.program_folder / ("handcast-" + spec_.name),
+  return Child::spawn({.program = command.front(),
                        .arguments = std::move(arguments),
                        .rings = launch_.rings,
                        .epoch_ns = launch_.epoch_ns,

@@ -13,9 +13,7 @@
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/msg/tracker_faults.hpp"
-#include "supervisor/record/histogram.hpp"
-#include "supervisor/record/light_count.hpp"
-#include "supervisor/record/loss_count.hpp"
+#include "supervisor/record/counts.hpp"
 
 namespace handcast::supervisor {
 

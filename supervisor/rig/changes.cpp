@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "supervisor/rig/present_backend.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
 namespace handcast::supervisor {
@@ -25,15 +24,13 @@ void Changes::restart(Service& service, ControlServer::Reply reply) {
   replace(service, service.spec().backend, pending);
 }
 
-void Changes::swap(Service& service, const std::string& word, ControlServer::Reply reply) {
+void Changes::swap(Service& service, const std::string& backend, ControlServer::Reply reply) {
   const auto name = service.spec().name;
-  const auto backend = present_backend(name, word, rig_.config);
-  if (!backend) return reply(control::failure(backend.error().what));
-  if (const auto known = check_backend(rig_.catalogue, name, *backend); !known)
+  if (const auto known = check_backend(rig_.catalogue, name, backend); !known)
     return reply(control::failure(known.error().what));
-  auto& pending = pending_[name] = {std::move(reply), *backend, service.spec().backend};
-  if (!service.works()) return give_backend(service, *backend, true);
-  replace(service, *backend, pending);
+  auto& pending = pending_[name] = {std::move(reply), backend, service.spec().backend};
+  if (!service.works()) return give_backend(service, backend, true);
+  replace(service, backend, pending);
 }
 
 /// Prepares a replacement. A standby that was started with the same settings is one already.

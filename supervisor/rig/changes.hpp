@@ -20,9 +20,8 @@ class Changes {
 
   /// Restarts a service.
   void restart(Service& service, ControlServer::Reply reply);
-  /// Restarts a service with the back end `word`, which may be an old name. Refuses a back end that
-  /// the service does not have.
-  void swap(Service& service, const std::string& word, ControlServer::Reply reply);
+  /// Restarts a service with another back end. Refuses one that the service does not have.
+  void swap(Service& service, const std::string& backend, ControlServer::Reply reply);
   /// Replaces the services whose replacements are prepared. Call it on every tick.
   void tick();
 

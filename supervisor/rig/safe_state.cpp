@@ -29,20 +29,20 @@ bool has_ended_by_itself(const Service& service) {
 void leave_safe(const Service& service, const Launch& launch, const std::function<void()>& beat) {
   const auto& spec = service.spec();
   if (!spec.has_safe_state || has_ended_by_itself(service)) return;
-  const auto program = launch.program_folder / ("handcast-" + spec.name);
+  auto command = command_of(spec, launch.program_folder);
+  command.insert(command.end(),
+                 {"--safe", "--config", fmt::format("/proc/self/fd/{}", launch.rig_fd)});
   SpawnFiles files;
   files.inherit(launch.rig_fd);
-  const auto pid = spawn(
-      {program.string(), "--safe", "--config", fmt::format("/proc/self/fd/{}", launch.rig_fd)},
-      files);
+  const auto pid = spawn(command, files);
+  const auto& program = command.front();
   if (!pid)
-    return log::error("{} --safe cannot be started: {}", program.string(),
-                      std::strerror(pid.error()));
+    return log::error("{} --safe cannot be started: {}", program, std::strerror(pid.error()));
   const auto process = open_pidfd(*pid);
   for (const auto limit = Deadline::in(kPatience); !ends_within(process, kLook_s);) {
     beat();
     if (!limit.passed()) continue;
-    log::error("{} --safe has not ended within {} s; killed", program.string(), kPatience.count());
+    log::error("{} --safe has not ended within {} s; killed", program, kPatience.count());
     send_signal(process, SIGKILL);
     ends_within(process, kLook_s);
     break;

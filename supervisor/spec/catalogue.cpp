@@ -89,6 +89,12 @@ std::string print_backends(const Catalogue& catalogue) {
       "[docs/writing-a-back-end.md](../docs/writing-a-back-end.md) says how to add one.\n";
   for (const auto& [name, service] : catalogue) {
     if (service.backends.empty()) continue;
+    if (const auto first = config::name_at_first(name); !first.empty()) {
+      page += fmt::format(
+          "\n## {}\n\n{}\nThe back ends of {}, which read the settings of the second camera.\n",
+          name, service.summary, first);
+      continue;
+    }
     page += fmt::format("\n## {}\n\n{}\n\n| back end | | reads | |\n|---|---|---|---|\n", name,
                         service.summary);
     for (const auto& backend : service.backends) page += row(backend);

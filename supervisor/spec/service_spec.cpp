@@ -49,14 +49,17 @@ std::vector<ipc::RingSpec> all_streams() {
 void add_second_view(const config::Rig& rig, std::vector<ServiceSpec>& services) {
   const bool has_camera = rig.camera2.backend != "none";
   if (has_camera)
-    services.push_back({"camera2", "camera2.frames", rig.camera2.backend, rig.camera2.rate_hz});
+    services.push_back({.name = "camera2",
+                        .stream = "camera2.frames",
+                        .backend = rig.camera2.backend,
+                        .wanted_hz = rig.camera2.rate_hz,
+                        .instance_of = "camera"});
   if (has_camera || rig.pose.backend == "stereo" || rig.pose.second == "stereo")
-    services.push_back({"landmarks2",
-                        "landmarks2.hands",
-                        rig.landmarks2.backend,
-                        0,
-                        "",
-                        {has_camera ? "camera2" : "camera"}});
+    services.push_back({.name = "landmarks2",
+                        .stream = "landmarks2.hands",
+                        .backend = rig.landmarks2.backend,
+                        .needs = {has_camera ? "camera2" : "camera"},
+                        .instance_of = "landmarks"});
 }
 
 ipc::RingSpec marks_of(const ServiceSpec& service) {
@@ -65,6 +68,12 @@ ipc::RingSpec marks_of(const ServiceSpec& service) {
 }
 
 }  // namespace
+
+std::vector<std::string> command_of(const ServiceSpec& service,
+                                    const std::filesystem::path& program_folder) {
+  if (service.instance_of.empty()) return {program_folder / ("handcast-" + service.name)};
+  return {program_folder / ("handcast-" + service.instance_of), "--as", service.name};
+}
 
 std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& catalogue) {
   std::vector<ServiceSpec> services{

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +13,7 @@ namespace handcast::supervisor {
 
 /// The specification of a service of a rig.
 struct ServiceSpec {
-  std::string name;         ///< "camera": the program is handcast-camera
+  std::string name;         ///< "camera"; of an instance of a program, "camera2"
   std::string stream;       ///< the ring that it publishes; "" for none
   std::string backend;      ///< its back end; "" if the service has no back ends
   double wanted_hz = 0;     ///< the configured rate; 0 if it has none
@@ -27,7 +28,14 @@ struct ServiceSpec {
   bool counts_sub_frames = false;
   /// Its program has the task --safe, for a device that must not stay as a dead service left it.
   bool has_safe_state = false;
+  /// The service whose program it is an instance of: "camera" for camera2; "" for its own program.
+  std::string instance_of{};
 };
+
+/// The begin of the command line of a service: its program in this folder, which --as tells what it
+/// is if that is not its own name.
+std::vector<std::string> command_of(const ServiceSpec& service,
+                                    const std::filesystem::path& program_folder);
 
 /// The services of a rig, in an order in which each needs only those before it.
 std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& catalogue);

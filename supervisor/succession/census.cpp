@@ -23,7 +23,7 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr int kMostRounds = 5;  ///< of looking for services that are left
+constexpr int kMostSearches = 5;  ///< of looking for services that are left
 
 std::optional<pid_t> pid_in(const std::string& name) {
   pid_t pid = 0;
@@ -52,7 +52,12 @@ std::int64_t number_in(std::string_view environment, std::string_view variable) 
   return number;
 }
 
+/// The instance that --as names on its command line, or else the name of its program.
 std::string service_name(const std::filesystem::path& process) {
+  constexpr std::string_view kInstance("\0--as\0", 6);
+  const auto words = proc_text(process / "cmdline");
+  if (const auto option = words.find(kInstance); option != std::string::npos)
+    return words.substr(option + kInstance.size()).c_str();
   std::error_code error;
   auto program = std::filesystem::read_symlink(process / "exe", error).filename().string();
   if (const auto deleted = program.find(" (deleted)"); deleted != std::string::npos)
@@ -124,7 +129,7 @@ std::vector<FoundProcess> find_services(const std::string& name) {
 int end_services(const std::string& name, double patience_s, std::int64_t before_ns) {
   std::set<pid_t> ended;
   const auto deadline = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(patience_s)));
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMostSearches; ++round) {
     auto found = find_services(name);
     std::erase_if(found, [&](const auto& process) { return process.epoch_ns > before_ns; });
     if (found.empty()) break;

@@ -13,7 +13,7 @@ namespace handcast::supervisor {
 /// A living process of a service, as /proc shows it.
 struct FoundProcess {
   std::string rig;            ///< name of its rig
-  std::string service;        ///< name of its program without "handcast-"
+  std::string service;        ///< of an instance its name, else that of its program
   pid_t pid = 0;              ///< its pid
   UniqueFd pidfd;             ///< readable when it has ended
   std::int64_t epoch_ns = 0;  ///< start of its rig

@@ -25,7 +25,7 @@ constexpr auto kPatience = std::chrono::milliseconds(600);
 /// The time that a keeper gets to stop a rig whose supervisor hangs.
 constexpr double kKeeper_s = 2.5;
 /// The time that services get to stop without a supervisor.
-constexpr double kServices_s = 0.5;
+constexpr double kServicesEnd_s = 0.5;
 /// The time in which systemd starts a supervisor again that was killed.
 constexpr double kRevival_s = 1.5;
 constexpr int kMostRounds = 3;  ///< of stopping supervisors that come back
@@ -85,7 +85,8 @@ Forced end_by_force(const std::string& name, const Process& supervisor, std::int
     send_signal(supervisor.pidfd, SIGKILL);
     ends_within(supervisor.pidfd, 1);
   }
-  return {std::max(found, end_services(name, kServices_s, before_ns)), static_cast<bool>(keeper)};
+  return {std::max(found, end_services(name, kServicesEnd_s, before_ns)),
+          static_cast<bool>(keeper)};
 }
 
 }  // namespace
@@ -108,7 +109,7 @@ Result<StopReport> stop_rig(const std::string& name) {
       return tl::make_unexpected(answer.error());
     if (answer) {
       report.by_supervisor = true;
-      report.ended += end_services(name, kServices_s, before_ns);
+      report.ended += end_services(name, kServicesEnd_s, before_ns);
       return report;
     }
     const auto supervisor = open_process(control::listener_of(*address));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time of each landmark network, and of a whole estimate of each landmark model, in each
-// executor on one core. The executors of one network take turns.
+// The time of each landmark network, ours and OpenCV's in turns, and of a whole estimate of each
+// landmark model, on one core.
 //   bench_landmarks [--goals FILE] [--rounds N] [NETWORK.onnx...]
 // Without files: the network that comes with handcast, those of ../shared/models (HANDCAST_MODELS
 // names another folder), and the whole estimates.
@@ -108,7 +108,7 @@ void measure_known(int rounds, Medians& medians) {
        {shipped, folder / "first_trial.onnx", folder / "hand_landmark_lite.onnx",
         folder / "palm_detection_lite.onnx"})
     if (is_there(file)) measure(network_subjects(file), rounds, medians);
-  for (const auto& model : estimate_subjects(folder)) measure(model, rounds, medians);
+  for (const auto& model : estimate_subjects(folder)) measure({model}, rounds, medians);
 }
 
 Options parse(int argc, char** argv) {

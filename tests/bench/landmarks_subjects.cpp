@@ -6,10 +6,12 @@
 #include <cmath>
 #include <memory>
 
-#include "config/settings/choice.hpp"
 #include "services/landmarks/inference/cost.hpp"
 #include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
+#ifdef HANDCAST_WITH_OPENCV_DNN
+#include "tests/services/landmarks/inference/opencv_network.hpp"
+#endif
 
 namespace handcast::bench {
 namespace {
@@ -41,11 +43,10 @@ struct Scene {
   }
 };
 
-Subject estimate_with(std::unique_ptr<LandmarkModel> model, const std::string& name,
-                      std::string_view executor) {
+Subject estimate_with(std::unique_ptr<LandmarkModel> model, const std::string& name) {
   const std::shared_ptr<LandmarkModel> shared = std::move(model);
   const auto scene = std::make_shared<Scene>();
-  return {name, std::string(executor), 0, [shared, scene] {
+  return {name, "onednn", 0, [shared, scene] {
             return shared
                 ->estimate(scene->image.view(), scene->region, msg::Side::left, scene->joints_px,
                            scene->ignored)
@@ -62,38 +63,39 @@ void report(const std::string& name, std::string_view executor, const Error& err
 std::string estimate_of(const std::string& model) { return model + ", whole estimate"; }
 
 std::vector<Subject> network_subjects(const fs::path& file) {
+  using Open = Result<std::unique_ptr<Network>> (*)(const fs::path& file);
   std::vector<Subject> subjects;
   const std::string name = file.stem().string();
-  for (const auto executor : executors()) {
-    const auto word = config::word_of(executor);
-    auto opened = open_network(executor, file);
+  for (const auto& [executor, open] : {
+           std::pair{"onednn", Open{open_network}},
+#ifdef HANDCAST_WITH_OPENCV_DNN
+           std::pair{"opencv", Open{open_opencv_network}},
+#endif
+       }) {
+    auto opened = open(file);
     if (!opened) {
-      report(name, word, opened.error());
+      report(name, executor, opened.error());
       continue;
     }
     const std::shared_ptr<Network> network = std::move(*opened);
     unsigned seed = 1;
     for (std::size_t i = 0; i < network->inputs().size(); ++i)
       for (float& number : network->input(i)) number = noise(seed);
-    subjects.push_back({name, std::string(word), network_mmac(file).value_or(0),
+    subjects.push_back({name, executor, network_mmac(file).value_or(0),
                         [network] { return network->run().has_value(); }});
   }
   return subjects;
 }
 
-std::vector<std::vector<Subject>> estimate_subjects(const fs::path& models) {
-  std::vector<std::vector<Subject>> subjects;
+std::vector<Subject> estimate_subjects(const fs::path& models) {
+  std::vector<Subject> subjects;
   for (const auto& model : landmark_models()) {
-    subjects.emplace_back();
     const auto name = estimate_of(std::string(model.name));
-    for (const auto executor : executors()) {
-      const auto word = config::word_of(executor);
-      auto opened = model.open({.executor = executor, .folder = models});
-      if (opened)
-        subjects.back().push_back(estimate_with(std::move(opened->landmarks), name, word));
-      else
-        report(name, word, opened.error());
-    }
+    auto opened = model.open({.folder = models});
+    if (opened)
+      subjects.push_back(estimate_with(std::move(opened->landmarks), name));
+    else
+      report(name, "onednn", opened.error());
   }
   return subjects;
 }

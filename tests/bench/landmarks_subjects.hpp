@@ -14,12 +14,12 @@ struct Subject {
   std::function<bool()> run;  ///< false if it failed
 };
 
-/// The network of a file in each executor, on noise. What cannot be opened is reported and left
-/// out.
+/// The network of a file, ours ("onednn") and OpenCV's, on noise. What cannot be opened is reported
+/// and left out.
 std::vector<Subject> network_subjects(const std::filesystem::path& file);
-/// Whole estimates of each landmark model in each executor: crop, network, decoding. `models`:
-/// folder of MediaPipe's files.
-std::vector<std::vector<Subject>> estimate_subjects(const std::filesystem::path& models);
+/// A whole estimate of each landmark model: crop, network, decoding. `models`: folder of
+/// MediaPipe's files.
+std::vector<Subject> estimate_subjects(const std::filesystem::path& models);
 
 /// The name of a landmark model's estimate as a subject.
 std::string estimate_of(const std::string& model);

@@ -48,7 +48,7 @@ PainterScene::PainterScene(std::string its_name, int hands, const renderer::test
   place_hand(Side::left, pose, hands == 1 ? 0 : -0.085f, calibration);
   if (hands > 1) place_hand(Side::right, pose, 0.085f, calibration);
   for (const auto& hand : hands_)
-    drawn.push_back({&hand->surface.mesh(), &picture_, hand->skinned.landings_px,
+    drawn.push_back({&hand->surface.mesh(), &picture_, hand->skinned.projected_px,
                      hand->skinned.depth_m, hand->skinned.light, hand->revision});
   make_mask(width_px, height_px);
   grid = renderer::test::bent_grid({0, 0, width_px, height_px});
@@ -62,7 +62,7 @@ void PainterScene::place_hand(Side side, const renderer::testing::Pose& pose, fl
   Hand& hand =
       *hands_.emplace_back(std::make_unique<Hand>(Hand{HandSurface(std::move(*mesh), 14), {}}));
   hand.skinned = hand.surface.pose(reported, {.fit = false}, calibration, 0.5f);
-  region = region.joined(hand.surface.bounds(hand.skinned.landings_px));
+  region = region.joined(hand.surface.bounds(hand.skinned.projected_px));
 }
 
 void PainterScene::make_mask(int width_px, int height_px) {

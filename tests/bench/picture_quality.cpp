@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "renderer/base/srgb.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "renderer/pipeline/pipeline.hpp"
-#include "services/lab/twin/motions.hpp"
+#include "services/lab/twin/motion.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 #include "tests/scratch.hpp"
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "services/recording/packed_image.hpp"
 #include "tests/bench/goals.hpp"

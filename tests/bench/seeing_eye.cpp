@@ -13,8 +13,8 @@ namespace {
 using namespace std::chrono_literals;
 
 /// The camera as its sensor has it, with fewer rows.
-calib::Calibration sensor_of(calib::Calibration seen, int rows_per_row) {
-  auto& camera = seen.camera;
+calib::PlacedCamera sensor_of(calib::PlacedCamera seen, int rows_per_row) {
+  auto& camera = seen.model;
   camera.height_px /= rows_per_row;
   camera.fy_px /= rows_per_row;
   camera.cy_px = (camera.cy_px + 0.5) / rows_per_row - 0.5;
@@ -23,36 +23,42 @@ calib::Calibration sensor_of(calib::Calibration seen, int rows_per_row) {
 
 }  // namespace
 
-Result<std::unique_ptr<SeeingEye>> SeeingEye::open(const calib::Calibration& seen, int rows_per_row,
+Result<std::unique_ptr<SeeingEye>> SeeingEye::open(const calib::Calibration& calibration,
+                                                   config::Viewpoint at, int rows_per_row,
                                                    const config::Rig& rig, const twin::Twin& twin) {
-  auto detector = landmarks::open_detector(rig, seen, 0);
+  auto camera = calib::camera_at(calibration, at);
+  if (!camera) return tl::make_unexpected(camera.error());
+  auto detector = landmarks::open_detector(rig, calibration, 0, at);
   if (!detector) return tl::make_unexpected(detector.error());
-  return std::unique_ptr<SeeingEye>(
-      new SeeingEye(seen, rows_per_row, rig, twin, std::move(*detector)));
+  return std::unique_ptr<SeeingEye>(new SeeingEye(calibration, at, std::move(*camera), rows_per_row,
+                                                  rig, twin, std::move(*detector)));
 }
 
-SeeingEye::SeeingEye(const calib::Calibration& seen, int rows_per_row, const config::Rig& rig,
+SeeingEye::SeeingEye(const calib::Calibration& calibration, config::Viewpoint at,
+                     calib::PlacedCamera camera, int rows_per_row, const config::Rig& rig,
                      const twin::Twin& twin, std::unique_ptr<landmarks::Detector> detector)
     : twin_(twin),
-      calibration_(seen),
+      calibration_(calibration),
+      at_(at),
+      camera_(std::move(camera)),
       rig_(rig),
-      scene_(rig.twin.image, rig.twin.seed, sensor_of(seen, rows_per_row)),
+      scene_(rig.twin.image, rig.twin.seed, sensor_of(camera_, rows_per_row)),
       exposure_ns_(ms_to_ns(rig.camera.exposure_ms)),
       detector_(std::move(detector)),
-      hints_(seen),
-      sensor_(seen.camera.width_px, seen.camera.height_px / rows_per_row),
-      frame_(msg::CameraFrame::bytes(seen.camera.width_px, seen.camera.height_px)) {
+      hints_(camera_),
+      sensor_(camera_.model.width_px, camera_.model.height_px / rows_per_row),
+      frame_(msg::CameraFrame::bytes(camera_.model.width_px, camera_.model.height_px)) {
   for (const auto side : {msg::Side::left, msg::Side::right})
     if (twin.joints(side, 0)) scene_.set_hand(side, twin.true_hand(side));
-  frame_->width_px = static_cast<std::uint32_t>(seen.camera.width_px);
-  frame_->height_px = static_cast<std::uint32_t>(seen.camera.height_px);
+  frame_->width_px = static_cast<std::uint32_t>(camera_.model.width_px);
+  frame_->height_px = static_cast<std::uint32_t>(camera_.model.height_px);
 }
 
 Result<void> SeeingEye::forget() {
-  auto detector = landmarks::open_detector(rig_, calibration_, 0);
+  auto detector = landmarks::open_detector(rig_, calibration_, 0, at_);
   if (!detector) return tl::make_unexpected(detector.error());
   detector_ = std::move(*detector);
-  hints_ = landmarks::TrackerHints(calibration_);
+  hints_ = landmarks::TrackerHints(camera_);
   return {};
 }
 
@@ -77,14 +83,14 @@ void SeeingEye::write_frame() {
 }
 
 std::vector<Miss> SeeingEye::compare(const msg::Landmarks& seen) const {
-  const auto& camera = calibration_.camera;
+  const auto& camera = camera_.model;
   const glm::dvec2 square(1, camera.fx_px / camera.fy_px);
   std::vector<Miss> misses;
   for (std::uint32_t h = 0; h < seen.count; ++h) {
     const auto truth = twin_.joints(seen.hands[h].side, seen.header.origin_ns);
     if (!truth) continue;
     for (int i = 0; i < msg::kLandmarks; ++i) {
-      const glm::dvec3 at_m(calibration_.camera_from_tracker *
+      const glm::dvec3 at_m(camera_.from_tracker *
                             glm::dvec4((*truth)[msg::kJointOfLandmark[i]][3]));
       const auto& point = seen.hands[h].points[i];
       const glm::dvec3 ray((point.x_px - camera.cx_px) / camera.fx_px,

@@ -24,10 +24,11 @@ struct Miss {
 /// A camera before the twin's hands, with its landmark detector.
 class SeeingEye {
  public:
-  /// `seen`: the calibration with the camera as the detector has it. `rows_per_row`: rows of its
-  /// images for each row of the sensor; the driver of the Leap controller makes the one of the
+  /// `at`: which camera of the calibration it is, as the detector has it. `rows_per_row`: rows of
+  /// its images for each row of the sensor; the driver of the Leap controller makes the one of the
   /// other. Opens rig.landmarks; `twin` outlives it. Errors: those of open_detector().
-  static Result<std::unique_ptr<SeeingEye>> open(const calib::Calibration& seen, int rows_per_row,
+  static Result<std::unique_ptr<SeeingEye>> open(const calib::Calibration& calibration,
+                                                 config::Viewpoint at, int rows_per_row,
                                                  const config::Rig& rig, const twin::Twin& twin);
 
   /// What the poses predict, for the detector.
@@ -40,12 +41,15 @@ class SeeingEye {
   std::vector<Miss> compare(const msg::Landmarks& seen) const;
 
  private:
-  SeeingEye(const calib::Calibration& seen, int rows_per_row, const config::Rig& rig,
-            const twin::Twin& twin, std::unique_ptr<landmarks::Detector> detector);
+  SeeingEye(const calib::Calibration& calibration, config::Viewpoint at, calib::PlacedCamera camera,
+            int rows_per_row, const config::Rig& rig, const twin::Twin& twin,
+            std::unique_ptr<landmarks::Detector> detector);
   void write_frame();
 
   const twin::Twin& twin_;
   calib::Calibration calibration_;
+  config::Viewpoint at_;
+  calib::PlacedCamera camera_;
   config::Rig rig_;
   twin::CameraScene scene_;
   std::int64_t exposure_ns_;

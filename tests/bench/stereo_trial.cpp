@@ -155,16 +155,18 @@ Result<StereoTrial> run_trial(const StereoRig& stereo, config::Rig rig, const Tr
   const auto& [seconds, hints, anew_s] = plan;
   rig.twin.image.gain = stereo.gain;
   rig.landmarks.backend = "handcast";
+  rig.camera2 = rig.camera;
+  rig.landmarks2 = rig.landmarks;
   rig.pose.backend = hints ? "stereo" : "none";
   const auto twin = twin::Twin::create(rig, calib::reference_rig());
   if (!twin) return tl::make_unexpected(twin.error());
-  const auto open = [&](const calib::Calibration& seen, int seed) {
+  const auto open = [&](config::Viewpoint at, int seed) {
     auto moved = rig;
     moved.twin.seed += seed;
-    return SeeingEye::open(seen, stereo.rows_per_row, moved, **twin);
+    return SeeingEye::open(stereo.calibration, at, stereo.rows_per_row, moved, **twin);
   };
-  auto first = open(stereo.calibration, 0);
-  auto second = open(calib::second_view(stereo.calibration), 1000);
+  auto first = open(config::Viewpoint::first, 0);
+  auto second = open(config::Viewpoint::second, 1000);
   if (!first) return tl::make_unexpected(first.error());
   if (!second) return tl::make_unexpected(second.error());
   auto tracker =

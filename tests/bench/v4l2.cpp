@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "renderer/output/jpeg.hpp"
+#include "renderer/media/jpeg.hpp"
 #include "services/camera/v4l2/convert.hpp"
 #include "tests/bench/percentiles.hpp"
 

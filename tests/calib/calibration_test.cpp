@@ -241,21 +241,22 @@ TEST(SecondCamera, IsRefusedIfItCannotBe) {
   EXPECT_THAT(half.error().what, HasSubstr("camera2_from_camera.x"));
 }
 
-TEST(SecondView, IsTheSameRigFromTheOtherCamera) {
+TEST(PlacedCamera, TheSecondOneHasItsOwnLensAndPlace) {
+  using config::Viewpoint;
   const auto rig = two_cameras();
-  const auto second = second_view(rig);
-  EXPECT_EQ(second.camera.width_px, 640);
-  EXPECT_EQ(second.camera_device, "B-77");
+  const auto first = camera_at(rig, Viewpoint::first).value(),
+             second = camera_at(rig, Viewpoint::second).value();
+  EXPECT_EQ(first.model.width_px, rig.camera.width_px);
+  EXPECT_EQ(first.from_tracker, rig.camera_from_tracker);
+  EXPECT_EQ(second.model.width_px, 640);
+  EXPECT_EQ(second.device, "B-77");
   const glm::dvec4 in_tracker(0.1, 0.2, 0.3, 1);
-  const auto first_m = rig.camera_from_tracker * in_tracker;
-  EXPECT_LT(
-      glm::distance(second.camera_from_tracker * in_tracker, rig.camera2->from_camera * first_m),
-      1e-12);
-  const auto back = first_view(second);
-  EXPECT_EQ(back.camera.width_px, rig.camera.width_px);
-  EXPECT_LT(largest_difference(back.camera_from_tracker, rig.camera_from_tracker), 1e-12);
-  EXPECT_LT(largest_difference(back.camera2->from_camera, rig.camera2->from_camera), 1e-12);
-  EXPECT_FALSE(back.is_second_view);
+  EXPECT_LT(glm::distance(second.from_tracker * in_tracker,
+                          rig.camera2->from_camera * (first.from_tracker * in_tracker)),
+            1e-12);
+  const auto none = camera_at(reference_rig(), Viewpoint::second);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, Errc::bad_config);
 }
 
 }  // namespace

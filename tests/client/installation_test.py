@@ -24,7 +24,7 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parent
 REPOSITORY = SOURCE.parent.parent
 PATIENCE_S = 60  # ends what hangs
-PROGRAMS = {"handcast", "handcast-camera", "handcast-camera2", "handcast-pose", "handcast-landmarks", "handcast-landmarks2",
+PROGRAMS = {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks",
             "handcast-projector", "handcast-observer", "handcast-simulate", "handcast-sweep",
             "handcast-detect", "handcast-report", "handcast-chart", "handcast-devices",
             "handcast-doctor", "handcast-init", "handcast-record", "handcast-calibrate", "handcast-template"}

@@ -274,5 +274,29 @@ TEST(Rig, EveryServiceRunsAsItsOwnSectionSays) {
   EXPECT_EQ(process_of(rig, "moon").priority, 0);
 }
 
+TEST(Viewpoint, TheSecondOneHasNamesOfItsOwnForWhatIsItsOwn) {
+  const auto second = [](std::string_view name) { return name_at(Viewpoint::second, name); };
+  EXPECT_EQ(second("camera"), "camera2");
+  EXPECT_EQ(second("camera.v4l2.device"), "camera2.v4l2.device");
+  EXPECT_EQ(second("landmarks.hands"), "landmarks2.hands");
+  EXPECT_EQ(second("pose.hands"), "pose.hands") << "both views read the same poses";
+  EXPECT_EQ(second("cameras.x"), "cameras.x");
+  EXPECT_EQ(name_at(Viewpoint::first, "camera.frames"), "camera.frames");
+  EXPECT_EQ(name_at_first("landmarks2.models"), "landmarks.models");
+  EXPECT_EQ(name_at_first("camera2"), "camera");
+  EXPECT_EQ(name_at_first("camera.frames"), "");
+  EXPECT_EQ(name_at_first("pose.hands"), "");
+}
+
+TEST(Viewpoint, EachHasSectionsOfItsOwn) {
+  Rig rig;
+  rig.camera2.rate_hz = 100;
+  rig.landmarks2.hands = 1;
+  EXPECT_EQ(camera_at(rig, Viewpoint::first).rate_hz, rig.camera.rate_hz);
+  EXPECT_EQ(camera_at(rig, Viewpoint::second).rate_hz, 100);
+  EXPECT_EQ(landmarks_at(rig, Viewpoint::first).hands, 2);
+  EXPECT_EQ(landmarks_at(rig, Viewpoint::second).hands, 1);
+}
+
 }  // namespace
 }  // namespace handcast::config

@@ -4,8 +4,7 @@
 
 namespace handcast::camera {
 
-Result<std::unique_ptr<Camera>> open_noise(const config::Rig&, const calib::Calibration&,
-                                           const std::int64_t& epoch_ns);
+Result<std::unique_ptr<Camera>> open_noise(const Opening& with);
 
 namespace {
 

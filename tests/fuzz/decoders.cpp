@@ -7,7 +7,6 @@
 
 #include "services/landmarks/models/handcast_network.hpp"
 #include "services/landmarks/models/mediapipe_palms.hpp"
-#include "services/landmarks/models/mediapipe_regions.hpp"
 #include "tests/fuzz/input.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A .glb file as the model of a hand: read, painted, skinned, corrected, untangled, and scored as
+// A .glb file as the model of a hand: read, painted, skinned, corrected, repaired, and scored as
 // the true hand of the twin.
 // Limits: 10 s and 1 GB per input.
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "ipc/msg/owned.hpp"
 #include "renderer/content/chart_map.hpp"
 #include "renderer/correct/deform.hpp"
-#include "renderer/correct/untangle.hpp"
+#include "renderer/correct/foldover_repair.hpp"
 #include "renderer/skin/hand_surface.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "tests/fuzz/input.hpp"
@@ -39,9 +39,9 @@ msg::Owned<msg::Projection> draw(const HandMesh& mesh, const twin::Twin& twin,
     p[i] = calibration.to_projector(seen[i]);
     q[i] = p[i] + glm::vec2(i % 4 == 0 ? -20 : 20, static_cast<float>(i));
   }
-  renderer::correct_vertices(cascade.correct, surface.mesh(), p, q, skinned.landings_px);
-  renderer::Untangler untangler(surface.mesh());
-  fuzz::require(untangler.untangle(skinned.seen_px, skinned.landings_px, skinned.facing_sign) >= 0);
+  renderer::correct_vertices(cascade.correct, surface.mesh(), p, q, skinned.projected_px);
+  renderer::FoldoverRepair repair(surface.mesh());
+  fuzz::require(repair.repair(skinned.seen_px, skinned.projected_px, skinned.facing_sign) >= 0);
 
   msg::Owned<msg::Projection> projection;
   projection->lit_ns = kTime_ns;
@@ -51,7 +51,7 @@ msg::Owned<msg::Projection> draw(const HandMesh& mesh, const twin::Twin& twin,
   hand.vertex_count =
       static_cast<std::uint32_t>(std::min<std::size_t>(mesh.vertex_count(), msg::kMaxVertices));
   for (std::uint32_t v = 0; v < hand.vertex_count; ++v)
-    hand.landings[v] = {skinned.landings_px[v].x, skinned.landings_px[v].y};
+    hand.landings[v] = {skinned.projected_px[v].x, skinned.projected_px[v].y};
   return projection;
 }
 

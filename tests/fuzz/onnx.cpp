@@ -10,10 +10,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace handcast::landmarks;
   const auto model = onnx::parse_model({data, size});
   if (!model) return 0;
-  fuzz::require(onnx::parse_model(onnx::write_model(*model)).has_value());
   static fuzz::MemoryFile file;
   file.write({data, size});
-  const auto network = open_network(config::Executor::onednn, file.path());
+  const auto network = open_network(file.path());
   if (!network) return 0;
   for (std::size_t i = 0; i < (*network)->inputs().size(); ++i)
     std::ranges::fill((*network)->input(i), 0.5f);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A PNG or JPEG file.
 // Limits: 10 s and 1 GB per input.
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 
 #include "tests/fuzz/input.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "services/camera/camera.hpp"
-#include "services/lab/twin/motions.hpp"
+#include "services/lab/twin/motion.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/pose/pose_source.hpp"
 #include "tests/fuzz/input.hpp"

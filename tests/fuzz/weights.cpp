@@ -10,6 +10,7 @@
 #include "services/landmarks/inference/onnx/model.hpp"
 #include "services/landmarks/models/handcast_model.hpp"
 #include "tests/fuzz/input.hpp"
+#include "tests/services/landmarks/inference/write_onnx.hpp"
 
 namespace {
 
@@ -58,7 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   change(model, fuzz::Reader({data, size}));
   static fuzz::MemoryFile file;
   file.write(onnx::write_model(model));
-  auto network = HandcastModel::open(config::Executor::onednn, file.path());
+  auto network = HandcastModel::open(file.path());
   if (!network) return 0;
   HandFinder finder({std::make_unique<HandcastModel>(std::move(*network)), std::nullopt}, 2);
   static const auto image = picture();

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "tests/system/running_rig.hpp"
 
 namespace handcast::system_test {

@@ -217,30 +217,6 @@ TEST_F(Faults, APoseSourceIsSwappedForARecordingWhileTheOthersRunOn) {
   expect_more_light();
 }
 
-TEST_F(Faults, AnOldNameOfABackEndIsReportedOnceAndTheNewOneIsUsed) {
-  const auto rig = up({"--set", "landmarks.backend=own"});
-  wait_until_light();
-  EXPECT_EQ(service("landmarks")["backend"], "handcast");
-  const auto log = rig->log();
-  const auto report = log.find("--set: landmarks.backend = \"own\" is now \"handcast\"");
-  ASSERT_NE(report, std::string::npos) << log;
-  EXPECT_EQ(log.find("is now", log.find("is now") + 1), std::string::npos)
-      << "the services read the applied rig, which has the new form:\n"
-      << log;
-
-  ASSERT_EQ(handcast({"swap", "landmarks", "twin"}).exit_code, 0);
-  const auto swapped = handcast({"swap", "landmarks", "own"});
-  EXPECT_EQ(swapped.exit_code, 0) << swapped.log;
-  EXPECT_THAT(swapped.output, HasSubstr("landmarks is ready with 'handcast'"));
-  EXPECT_THAT(swapped.log, HasSubstr("swap: landmarks.backend = \"own\" is now \"handcast\""));
-  EXPECT_EQ(service("landmarks")["backend"], "handcast");
-
-  const auto other_executor = handcast({"swap", "landmarks", "opencv"});
-  EXPECT_EQ(other_executor.exit_code, 100);
-  EXPECT_THAT(other_executor.log, HasSubstr("but the rig has landmarks.executor = \"onednn\""));
-  expect_more_light();
-}
-
 TEST_F(Faults, ASwapThatCannotWorkChangesNothing) {
   const auto rig = up();
   wait_until_light();

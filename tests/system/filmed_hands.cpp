@@ -10,8 +10,8 @@ namespace handcast::system_test {
 namespace {
 
 /// The camera as its sensor has it, with half of the rows.
-calib::Calibration sensor_of(calib::Calibration seen) {
-  auto& camera = seen.camera;
+calib::PlacedCamera sensor_of(calib::PlacedCamera seen) {
+  auto& camera = seen.model;
   camera.height_px /= 2;
   camera.fy_px /= 2;
   camera.cy_px = (camera.cy_px + 0.5) / 2 - 0.5;
@@ -29,7 +29,8 @@ FilmedHands::FilmedHands(const config::Rig& rig, const calib::Calibration& calib
   images_.resize(static_cast<std::size_t>(images));
   renderer::Image<std::uint8_t> drawn(kWidth_px, kHeight_px);
   for (std::size_t eye = 0; eye < 2; ++eye) {
-    const auto seen = sensor_of(eye == 0 ? calibration : calib::second_view(calibration));
+    const auto seen =
+        sensor_of(calib::camera_at(calibration, static_cast<config::Viewpoint>(eye)).value());
     twin::CameraScene scene(rig.twin.image, rig.twin.seed + static_cast<int>(eye), seen);
     for (const auto side : {msg::Side::left, msg::Side::right})
       if (twin_->joints(side, 0)) scene.set_hand(side, twin_->true_hand(side));

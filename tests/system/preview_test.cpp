@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "tests/system/running_rig.hpp"
 #include "tests/system/variable.hpp"
 

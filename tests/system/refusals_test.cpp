@@ -200,7 +200,7 @@ TEST_F(Refusals, AFaultOfTheSecondCameraNamesItsOwnSettings) {
   EXPECT_EQ(outcome.exit_code, 100);
   EXPECT_THAT(outcome.log,
               AllOf(HasSubstr("camera2 'replay': no recording is given; set "
-                              "camera2.replay.directory"),
+                              "replay.directory"),
                     HasSubstr("landmarks2.fallback"), Not(HasSubstr("landmarks.fallback"))));
 }
 

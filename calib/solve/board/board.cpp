@@ -10,7 +10,7 @@
 namespace handcast::calib {
 namespace {
 
-constexpr int kFewest = 3, kMost = 60;
+constexpr int kFewestInARow = 3, kMostInARow = 60;
 constexpr double kSmallest_mm = 1, kLargest_mm = 1000;
 
 /// The corners of both ends have the same colours if columns and rows are both even or both odd.
@@ -42,12 +42,12 @@ Result<void> check_charuco(const Board& board) {
 }  // namespace
 
 Result<void> check_board(const Board& board) {
-  const auto fits = [](int count) { return count >= kFewest && count <= kMost; };
+  const auto fits = [](int count) { return count >= kFewestInARow && count <= kMostInARow; };
   if (!fits(board.columns) || !fits(board.rows))
     return fail(Errc::bad_config,
                 fmt::format("A board of {} x {} is not possible; columns and rows must be between "
                             "{} and {}.",
-                            board.columns, board.rows, kFewest, kMost));
+                            board.columns, board.rows, kFewestInARow, kMostInARow));
   if (!(board.square_mm >= kSmallest_mm && board.square_mm <= kLargest_mm))
     return fail(Errc::bad_config,
                 fmt::format("Squares of {} mm are not possible; their size must be between {} mm "

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+/// How the points of each kind of board are found. Images: 8 bits, grey.
 #pragma once
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "calib/solve/board/board.hpp"
 
-/// How the points of each kind of board are found. Images: 8 bits, grey.
 namespace handcast::calib {
 
 /// A point of the board in the image.

@@ -20,7 +20,7 @@ namespace {
 constexpr double kWindow = 0.3, kWindowBesideMarker = 0.12;
 /// @}
 constexpr int kLeastWindow_px = 2, kLargestWindow_px = 16;
-constexpr std::size_t kFewest = 6;
+constexpr std::size_t kFewestPoints = 6;
 /// Points farther from the others' homography are mistakes, in squares. A lens bends less.
 constexpr double kMistake = 0.5;
 /// How far a corner may be from where its neighbours place it, as a share of the distance to them.
@@ -144,7 +144,7 @@ void erase_covered(const Board& board, const cv::Mat1b& image, std::vector<Found
 
 bool enough(const Board& board, const std::vector<Found>& found) {
   const bool whole = board.kind != BoardKind::charuco;
-  if (found.size() < (whole ? points_of(board).size() : kFewest)) return false;
+  if (found.size() < (whole ? points_of(board).size() : kFewestPoints)) return false;
   return is_wide(in_squares(board, found));
 }
 

@@ -12,7 +12,7 @@ namespace handcast::calib {
 namespace {
 
 constexpr double kHalf_s = 0.003;  ///< before and after an edge
-constexpr std::size_t kLeastToggles = 6;
+constexpr std::size_t kLeastEdges = 6;
 constexpr double kLeastStep = 1e-3, kLeastStepInNoise = 5, kMostScatter_ms = 5;
 
 /// By sample: the mean after it minus the mean before it; 0 near the ends.
@@ -127,10 +127,10 @@ Result<LightDelay> fit_sound_delay(std::span<const Toggle> toggles, const SoundC
   if (auto inverted = edges_of(toggles, clip, steps, true);
       median_of(inverted, &Edge::step) > median_of(edges, &Edge::step))
     edges = std::move(inverted);
-  if (edges.size() < kLeastToggles)
+  if (edges.size() < kLeastEdges)
     return fail(Errc::bad_data, fmt::format("{} changes of the light were recorded, and {} are "
                                             "needed",
-                                            edges.size(), kLeastToggles));
+                                            edges.size(), kLeastEdges));
   std::vector<double> sizes;
   for (const float step : steps) sizes.push_back(std::abs(step));
   const double noise = median(std::move(sizes)), step = median_of(edges, &Edge::step);

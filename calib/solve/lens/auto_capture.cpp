@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "calib/solve/lens/tilt.hpp"
+#include "calib/solve/lens/coverage.hpp"
 
 namespace handcast::calib {
 namespace {

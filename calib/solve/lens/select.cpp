@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "calib/solve/lens/tilt.hpp"
+#include "calib/solve/lens/coverage.hpp"
 
 namespace handcast::calib {
 namespace {

@@ -54,7 +54,7 @@ struct PairFit {
 /// Where the second of two cameras is, from views of a board that both saw. The lenses are kept;
 /// the poses of the boards and that of the second camera are fitted together to the corners of both
 /// images. Views that contradict the others are left out. The spreads are a bootstrap over the
-/// views with drawn errors of both lenses (pair_spread.hpp).
+/// views with drawn errors of both lenses (describe_spread()).
 ///
 /// Errors: bad_data, with a sentence that says what to do: too few views, or views that contradict
 /// each other.

@@ -5,8 +5,128 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+
+#include "calib/solve/tracker/first_pose.hpp"
 
 namespace handcast::calib {
+
+Cover cover_of(const Observations& o, const TrackerPose& pose, const std::vector<bool>& inliers) {
+  constexpr int kSquare_px = 60, kLeast = 3;
+  std::map<std::pair<int, int>, int> squares;
+  std::vector<double> depths_m;
+  for (std::size_t i = 0; i < inliers.size(); ++i) {
+    const auto& s = o.sightings[i];
+    const auto moving = o.track.at(s.point, s.time_s + pose.offset_s);
+    if (!inliers[i] || !moving) continue;
+    depths_m.push_back(pose.apply(moving->at_m).z);
+    if (s.px.x >= 0 && s.px.x < o.camera.width_px && s.px.y >= 0 && s.px.y < o.camera.height_px)
+      ++squares[{static_cast<int>(s.px.x) / kSquare_px, static_cast<int>(s.px.y) / kSquare_px}];
+  }
+  const auto full =
+      std::ranges::count_if(squares, [](const auto& s) { return s.second >= kLeast; });
+  const double area_px2 = static_cast<double>(o.camera.width_px) * o.camera.height_px;
+  return {static_cast<double>(full) * kSquare_px * kSquare_px / area_px2,
+          percentile_of(depths_m, 0.98) - percentile_of(depths_m, 0.02)};
+}
+
+std::optional<MisfitRun> misfit_run(const Observations& o, const std::vector<bool>& inliers) {
+  constexpr double kBin_s = 0.1, kLeast_s = 0.5, kFewer = 0.25;
+  const double begin_s = o.sightings.front().time_s;
+  struct Bin {
+    double seen = 0, fit = 0;
+  };
+  std::vector<Bin> bins;
+  for (std::size_t i = 0; i < inliers.size(); ++i) {
+    const auto bin = static_cast<std::size_t>((o.sightings[i].time_s - begin_s) / kBin_s);
+    if (bins.size() <= bin) bins.resize(bin + 1);
+    ++bins[bin].seen;
+    bins[bin].fit += inliers[i];
+  }
+  std::vector<double> shares;
+  for (const auto& bin : bins)
+    if (bin.seen > 0) shares.push_back(bin.fit / bin.seen);
+  const double usual = percentile_of(shares, 0.5);
+
+  // The run with the largest sum of what is missing to half of the usual share (Kadane).
+  double sum = 0, best = 0;
+  std::size_t from = 0, best_from = 0, best_to = 0;
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    sum += bins[b].seen > 0 ? usual / 2 - bins[b].fit / bins[b].seen : 0;
+    if (sum <= 0) {
+      sum = 0;
+      from = b + 1;
+    } else if (sum > best) {
+      best = sum;
+      best_from = from;
+      best_to = b + 1;
+    }
+  }
+  // What fits by chance at the start or the end goes with the run.
+  if (4 * best_from < best_to - best_from) best_from = 0;
+  if (4 * (bins.size() - best_to) < best_to - best_from) best_to = bins.size();
+  const auto length = static_cast<double>(best_to - best_from);
+  const bool few = best > (0.5 - kFewer) * usual * length;
+  if (length * kBin_s < kLeast_s || !few) return std::nullopt;
+  return MisfitRun{static_cast<double>(best_from) * kBin_s, static_cast<double>(best_to) * kBin_s};
+}
+
+std::optional<std::string> other_finger(const Observations& o, const Refined& refined) {
+  constexpr std::size_t kLeastImages = 20;
+  std::map<std::pair<int, int>, std::set<double>> fits;  // times by point and other point
+  const auto distances = o.distances_px(refined.pose);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const auto& s = o.sightings[i];
+    const double limit_px = kTukey * refined.scale * s.sigma;
+    if (!(distances[i] >= limit_px)) continue;
+    for (int other = 0; other < o.track.points(); ++other) {
+      const auto moving = o.track.at(other, s.time_s + refined.pose.offset_s);
+      const auto at = moving ? refined.pose.apply(moving->at_m) : glm::dvec3(0);
+      if (at.z > 0 && glm::distance(o.camera.project(at), s.px) < limit_px)
+        fits[{s.point, other}].insert(s.time_s);
+    }
+  }
+  if (fits.empty()) return std::nullopt;
+  const auto& [points, times_s] =
+      *std::ranges::max_element(fits, {}, [](const auto& fit) { return fit.second.size(); });
+  if (times_s.size() < kLeastImages) return std::nullopt;
+  const std::vector<double> sorted(times_s.begin(), times_s.end());
+  const double begin_s = o.sightings.front().time_s;
+  const double from_s = percentile_of(sorted, 0.02), to_s = percentile_of(sorted, 0.98);
+  std::size_t outliers = 0;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const auto& s = o.sightings[i];
+    outliers += s.point == points.first && s.time_s >= from_s && s.time_s <= to_s &&
+                distances[i] >= kTukey * refined.scale * s.sigma;
+  }
+  if (2 * times_s.size() < outliers) return std::nullopt;
+  return fmt::format(
+      "Between {:.1f} and {:.1f} s, {} sightings of point {} fit point {}: another "
+      "finger was seen.",
+      from_s - begin_s, to_s - begin_s, times_s.size(), points.first, points.second);
+}
+
+std::optional<std::string> mirrored_fit(const Observations& o, double cost_px2) {
+  constexpr double kMuchBetter = 0.7;
+  const auto better = [&](const Observations& other) {
+    const auto found = first_poses(other);
+    return !found.empty() && found.front().cost_px2 < kMuchBetter * cost_px2;
+  };
+  auto image = o;
+  for (auto& s : image.sightings) s.px.x = 2 * o.camera.cx_px - s.px.x;
+  if (better(image))
+    return "The mirrored image fits much better: the camera's image is mirrored, or the points "
+           "of the hand are.";
+  const auto mirrored = o.track.mirrored_hand();
+  if (!mirrored) return std::nullopt;
+  auto hand = o;
+  hand.track = *mirrored;
+  if (better(hand))
+    return "The mirrored hand fits much better: the tracker takes the hand for the other one.";
+  return std::nullopt;
+}
+
 namespace {
 
 /// The limits in the documentation of Quality.

@@ -53,7 +53,7 @@ class Setup {
     });
     if (set) return {};
     return fail(set.error().code,
-                fmt::format("camera.aravis.format: {}; the camera has {}", set.error().what,
+                fmt::format("aravis.format: {}; the camera has {}", set.error().what,
                             words_of_feature(camera_, "PixelFormat")));
   }
 
@@ -72,7 +72,7 @@ class Setup {
       return fail(
           Errc::bad_config,
           fmt::format("an image of {} x {} px at {}, {} does not fit the camera's {} x {} px; the "
-                      "size is that of the calibration, the corner is camera.aravis.offset_x_px "
+                      "size is that of the calibration, the corner is aravis.offset_x_px "
                       "and offset_y_px",
                       width_px_, height_px_, x_px, y_px, most_width, most_height));
     if (auto set = step("region",
@@ -110,18 +110,17 @@ class Setup {
         ask([&](GError** error) { return arv_camera_is_binning_available(camera_, error); });
     if (!available || !*available) {
       if (binning == 1) return {};
-      return fail(Errc::bad_config, "camera.aravis.binning: this camera has no binning");
+      return fail(Errc::bad_config, "aravis.binning: this camera has no binning");
     }
     gint least = 0, most = 0;
-    if (auto bounds = step("camera.aravis.binning",
+    if (auto bounds = step("aravis.binning",
                            [&](GError** error) {
                              arv_camera_get_x_binning_bounds(camera_, &least, &most, error);
                            });
         !bounds)
       return bounds;
-    if (binning > std::max(most, 1))
-      return outside("camera.aravis.binning", binning, least, most, "px");
-    return step("camera.aravis.binning",
+    if (binning > std::max(most, 1)) return outside("aravis.binning", binning, least, most, "px");
+    return step("aravis.binning",
                 [&](GError** error) { arv_camera_set_binning(camera_, binning, binning, error); });
   }
 
@@ -145,7 +144,7 @@ class Setup {
         ask([&](GError** error) { arv_camera_set_trigger(camera_, source.c_str(), error); });
     if (set) return {};
     return fail(set.error().code,
-                fmt::format("camera.aravis.trigger_line: {}; the camera has {}", set.error().what,
+                fmt::format("aravis.trigger_line: {}; the camera has {}", set.error().what,
                             words_of_feature(camera_, "TriggerSource")));
   }
 
@@ -153,7 +152,7 @@ class Setup {
     (void)ask(
         [&](GError** error) { arv_camera_set_exposure_time_auto(camera_, ARV_AUTO_OFF, error); });
     double least_us = 0, most_us = 0;
-    if (auto bounds = step("camera.exposure_ms",
+    if (auto bounds = step("exposure_ms",
                            [&](GError** error) {
                              arv_camera_get_exposure_time_bounds(camera_, &least_us, &most_us,
                                                                  error);
@@ -162,16 +161,15 @@ class Setup {
       return bounds;
     const double wanted_us = settings_.exposure_ms * 1e3;
     if (wanted_us < least_us || wanted_us > most_us)
-      return outside("camera.exposure_ms", settings_.exposure_ms, least_us / 1e3, most_us / 1e3,
-                     "ms");
+      return outside("exposure_ms", settings_.exposure_ms, least_us / 1e3, most_us / 1e3, "ms");
     if (auto set =
-            step("camera.exposure_ms",
+            step("exposure_ms",
                  [&](GError** error) { arv_camera_set_exposure_time(camera_, wanted_us, error); });
         !set)
       return set;
     const auto made_us =
         ask([&](GError** error) { return arv_camera_get_exposure_time(camera_, error); });
-    if (!made_us) return fail_in("camera.exposure_ms", made_us.error());
+    if (!made_us) return fail_in("exposure_ms", made_us.error());
     accepted_.exposure_ms = *made_us / 1e3;
     return {};
   }
@@ -180,26 +178,25 @@ class Setup {
   Result<void> set_rate() {
     if (settings_.aravis.trigger != Trigger::free_run) return {};
     double least_hz = 0, most_hz = 0;
-    if (auto bounds = step("camera.rate_hz",
+    if (auto bounds = step("rate_hz",
                            [&](GError** error) {
                              arv_camera_get_frame_rate_bounds(camera_, &least_hz, &most_hz, error);
                            });
         !bounds)
       return bounds;
     if (settings_.rate_hz < least_hz || settings_.rate_hz > most_hz)
-      return outside("camera.rate_hz", settings_.rate_hz, least_hz, most_hz, "Hz");
+      return outside("rate_hz", settings_.rate_hz, least_hz, most_hz, "Hz");
     if (auto set = step(
-            "camera.rate_hz",
+            "rate_hz",
             [&](GError** error) { arv_camera_set_frame_rate(camera_, settings_.rate_hz, error); });
         !set)
       return set;
     const auto made_hz =
         ask([&](GError** error) { return arv_camera_get_frame_rate(camera_, error); });
-    if (!made_hz) return fail_in("camera.rate_hz", made_hz.error());
+    if (!made_hz) return fail_in("rate_hz", made_hz.error());
     accepted_.rate_hz = *made_hz;
     if (std::abs(*made_hz - settings_.rate_hz) > 0.005 * settings_.rate_hz)
-      log::warning("camera: it runs at {:.1f} Hz instead of {:.1f} Hz", *made_hz,
-                   settings_.rate_hz);
+      log::warning("it runs at {:.1f} Hz instead of {:.1f} Hz", *made_hz, settings_.rate_hz);
     return {};
   }
 
@@ -209,10 +206,10 @@ class Setup {
         ask([&](GError** error) { return arv_camera_is_gain_available(camera_, error); });
     if (!available || !*available) {
       if (settings_.aravis.gain_db == 0) return {};
-      return fail(Errc::bad_config, "camera.aravis.gain_db: this camera has no gain");
+      return fail(Errc::bad_config, "aravis.gain_db: this camera has no gain");
     }
     double least_db = 0, most_db = 0;
-    if (auto bounds = step("camera.aravis.gain_db",
+    if (auto bounds = step("aravis.gain_db",
                            [&](GError** error) {
                              arv_camera_get_gain_bounds(camera_, &least_db, &most_db, error);
                            });
@@ -220,8 +217,8 @@ class Setup {
       return bounds;
     const double wanted_db = settings_.aravis.gain_db == 0 ? least_db : settings_.aravis.gain_db;
     if (wanted_db < least_db || wanted_db > most_db)
-      return outside("camera.aravis.gain_db", wanted_db, least_db, most_db, "dB");
-    return step("camera.aravis.gain_db",
+      return outside("aravis.gain_db", wanted_db, least_db, most_db, "dB");
+    return step("aravis.gain_db",
                 [&](GError** error) { arv_camera_set_gain(camera_, wanted_db, error); });
   }
 
@@ -231,7 +228,7 @@ class Setup {
                                         std::pair{"LineMode", std::string("Output")},
                                         std::pair{"LineSource", std::string("ExposureActive")}})
       if (auto set = set_feature(camera_, fmt::format("{}={}", feature, word)); !set)
-        return fail_in("camera.aravis.exposure_line", set.error());
+        return fail_in("aravis.exposure_line", set.error());
     return {};
   }
 
@@ -241,7 +238,7 @@ class Setup {
     arv_camera_gv_set_stream_options(camera_, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
     arv_camera_gv_set_packet_size_adjustment(camera_, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
     const int bytes = settings_.aravis.packet_bytes;
-    if (auto set = step("camera.aravis.packet_bytes",
+    if (auto set = step("aravis.packet_bytes",
                         [&](GError** error) {
                           if (bytes == 0)
                             arv_camera_gv_auto_packet_size(camera_, error);
@@ -250,7 +247,7 @@ class Setup {
                         });
         !set)
       return set;
-    if (auto set = step("camera.aravis.packet_delay_us",
+    if (auto set = step("aravis.packet_delay_us",
                         [&](GError** error) {
                           arv_camera_gv_set_packet_delay(
                               camera_, std::llround(settings_.aravis.packet_delay_us * 1e3), error);
@@ -259,7 +256,7 @@ class Setup {
       return set;
     const auto made =
         ask([&](GError** error) { return arv_camera_gv_get_packet_size(camera_, error); });
-    if (!made) return fail_in("camera.aravis.packet_bytes", made.error());
+    if (!made) return fail_in("aravis.packet_bytes", made.error());
     accepted_.packet_bytes = static_cast<int>(*made);
     return {};
   }
@@ -267,7 +264,7 @@ class Setup {
   Result<void> set_features() {
     for (const auto& feature : settings_.aravis.features)
       if (auto set = set_feature(camera_, feature); !set)
-        return fail_in("camera.aravis.features", set.error());
+        return fail_in("aravis.features", set.error());
     return {};
   }
 

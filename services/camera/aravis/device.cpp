@@ -102,7 +102,7 @@ Result<Device> find_device(const std::string& name) {
     return fail(Errc::unavailable,
                 fmt::format("there is no camera '{}', but {}", name, describe(list_devices())));
   return fail(Errc::bad_config,
-              fmt::format("several cameras are attached; set camera.aravis.device to the serial "
+              fmt::format("several cameras are attached; set aravis.device to the serial "
                           "number of one: {}",
                           describe(devices)));
 }

@@ -8,6 +8,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/join.hpp"
+#include "services/camera/leap/lens_fit.hpp"
 
 namespace handcast::camera::leap {
 namespace {
@@ -59,10 +60,9 @@ Result<Controller> open_controller(const std::string& wanted) {
   if (std::ranges::find(ports, wanted) != ports.end()) return open_at(wanted);
   if (!wanted.empty()) return open_by_serial(wanted, ports);
   if (ports.size() == 1) return open_at(ports.front());
-  return fail(
-      Errc::bad_config,
-      fmt::format("camera.leap.device: several controllers are attached, at the USB ports {}",
-                  join(ports, ", ")));
+  return fail(Errc::bad_config,
+              fmt::format("leap.device: several controllers are attached, at the USB ports {}",
+                          join(ports, ", ")));
 }
 
 Result<std::vector<std::uint8_t>> read_memory(UsbDevice& device, int address, std::size_t count) {
@@ -86,6 +86,17 @@ Result<ControllerCalibration> read_calibration(UsbDevice& device) {
   auto calibration = parse_calibration(*block);
   if (!calibration) return fail_in("calibration of the controller", calibration.error());
   return calibration;
+}
+
+Result<std::string> calibration_file_from(const std::string& wanted, bool of_right_eye,
+                                          int width_px, int height_px) {
+  auto controller = open_controller(wanted);
+  if (!controller) return tl::make_unexpected(controller.error());
+  const auto calibration = read_calibration(controller->device);
+  if (!calibration) return tl::make_unexpected(calibration.error());
+  return calibration_file_of(*calibration, controller->serial,
+                             of_right_eye ? config::Eye::right : config::Eye::left, width_px,
+                             height_px);
 }
 
 }  // namespace handcast::camera::leap

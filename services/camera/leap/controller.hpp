@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/base/result.hpp"
 #include "services/camera/leap/calibration_block.hpp"
 #include "services/camera/leap/usb_device.hpp"
 
@@ -28,5 +29,12 @@ Result<std::vector<std::uint8_t>> read_memory(UsbDevice& device, int address, st
 /// Reads the calibration that a controller was given by its maker, in 0.7 s. Errors: those of
 /// read_memory() and parse_calibration().
 Result<ControllerCalibration> read_calibration(UsbDevice& device);
+
+/// Reads the calibration of a controller and makes a calibration file of its left or right eye, for
+/// images of a size; see calibration_file_of(). `wanted`: camera.leap.device. Opens the controller
+/// for about a second. Errors: those of open_controller(), read_calibration() and
+/// calibration_file_of().
+Result<std::string> calibration_file_from(const std::string& wanted, bool of_right_eye,
+                                          int width_px, int height_px);
 
 }  // namespace handcast::camera::leap

@@ -59,7 +59,7 @@ std::uint64_t FrameTimes::steps_to(const EndedFrame& frame) {
     }
     if (++bad_in_a_row_ == kMostBad) {
       are_stamps_good_ = false;
-      log::warning("camera 'leap': the stamps of the images are no times; their arrivals count");
+      log::warning("the stamps of the images are no times; their arrivals count");
     }
     ticks_ += std::max(arrival_ns, period_ns_) * 1e-9 * ticks_per_s_;
   }

@@ -26,7 +26,7 @@ Result<void> carry_out(UsbDevice& device, const ControlTransfer& transfer) {
 
 Result<void> bring_up(UsbDevice& device, const std::string& file) {
   const auto steps = load_bring_up(file);
-  if (!steps) return fail_in("camera.leap.bring_up", steps.error());
+  if (!steps) return fail_in("leap.bring_up", steps.error());
   for (const auto& step : *steps) {
     if (step.pause_ns > 0) sleep_until_ns(now_ns() + step.pause_ns);
     if (const auto done = carry_out(device, step.transfer); !done)
@@ -73,18 +73,18 @@ Result<std::size_t> set_up(UsbDevice& device, const config::Camera& settings,
 
 Result<std::unique_ptr<Session>> Session::start(const std::string& wanted,
                                                 const config::Camera& settings,
-                                                const calib::Calibration& calibration,
+                                                const calib::PlacedCamera& camera,
                                                 std::shared_ptr<Mailbox> mailbox, bool resets) {
   auto controller = open(wanted, resets);
   if (!controller) return tl::make_unexpected(controller.error());
-  if (auto ours = calib::check_device("camera", calibration.camera_device,
-                                      {controller->serial, controller->port});
+  if (auto ours =
+          calib::check_device("camera", camera.device, {controller->serial, controller->port});
       !ours)
     return tl::make_unexpected(ours.error());
   const auto description = controller->device.describe();
   if (!description) return tl::make_unexpected(description.error());
-  const auto mode = mode_of(*description, calibration.camera.width_px, calibration.camera.height_px,
-                            settings.rate_hz);
+  const auto mode =
+      mode_of(*description, camera.model.width_px, camera.model.height_px, settings.rate_hz);
   if (!mode) return tl::make_unexpected(mode.error());
   const auto payload_bytes = set_up(controller->device, settings, *mode);
   if (!payload_bytes) return tl::make_unexpected(payload_bytes.error());

@@ -22,7 +22,7 @@ class Session {
   /// bad_data (the controller does not do what it is asked), disconnected.
   static Result<std::unique_ptr<Session>> start(const std::string& wanted,
                                                 const config::Camera& settings,
-                                                const calib::Calibration& calibration,
+                                                const calib::PlacedCamera& camera,
                                                 std::shared_ptr<Mailbox> mailbox, bool resets);
 
   /// The serial number of the controller, or its USB port if it does not say.

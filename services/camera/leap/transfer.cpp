@@ -46,7 +46,7 @@ Result<std::vector<ControlTransfer>> transfers_of(const config::Leap& settings, 
   const double period_ms = 1e3 / mode.rate_hz;
   if (exposure_ms > period_ms || exposure_ms > kLongestExposure_ms)
     return fail(Errc::bad_config,
-                fmt::format("camera.exposure_ms: {:g} ms is longer than {:.4g} ms, the period of "
+                fmt::format("exposure_ms: {:g} ms is longer than {:.4g} ms, the period of "
                             "{}x{} at {:.4g} Hz",
                             exposure_ms, period_ms, mode.width_px, mode.height_px, mode.rate_hz));
   const auto exposure_us = static_cast<std::uint16_t>(std::lround(exposure_ms * 1e3));

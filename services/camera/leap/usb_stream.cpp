@@ -30,7 +30,7 @@ void make_realtime(int priority) {
   pthread_setname_np(pthread_self(), "camera-stream");
   const sched_param parameters{.sched_priority = priority > 0 ? priority : 1};
   if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) != 0 && priority > 0)
-    log::warning("camera: the thread that receives the images has no real-time priority");
+    log::warning("the thread that receives the images has no real-time priority");
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <optional>
 #include <thread>
 
-#include "services/camera/leap/payload_sink.hpp"
+#include "services/camera/leap/payload.hpp"
 #include "services/camera/leap/usb_device.hpp"
 
 namespace handcast::camera::leap {

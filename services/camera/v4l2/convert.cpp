@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "renderer/base/clones.hpp"
-#include "renderer/content/jpeg_decoder.hpp"
+#include "renderer/media/jpeg.hpp"
 
 namespace handcast::camera::v4l2 {
 namespace {

@@ -42,7 +42,7 @@ Result<void> set_exposure(const Device& device, double exposure_ms) {
   const auto control = find_control(device.fd.get(), V4L2_CID_EXPOSURE_ABSOLUTE);
   if (!control || control->is_read_only || control->is_inactive) {
     log::warning(
-        "camera 'v4l2': {} does not let programs set its exposure; {:g} ms (camera.exposure_ms) "
+        "{} does not let programs set its exposure; {:g} ms (exposure_ms) "
         "are assumed",
         describe(device.identity), exposure_ms);
     return {};
@@ -50,14 +50,14 @@ Result<void> set_exposure(const Device& device, double exposure_ms) {
   const std::int64_t units = std::llround(exposure_ms * 1e6 / kUnit_ns);
   if (units < control->least || units > control->most)
     return fail(Errc::bad_config,
-                fmt::format("{} cannot expose for {:g} ms (camera.exposure_ms); it can for {:g} to "
+                fmt::format("{} cannot expose for {:g} ms (exposure_ms); it can for {:g} to "
                             "{:g} ms",
                             describe(device.identity), exposure_ms, to_ms(control->least),
                             to_ms(control->most)));
   const auto held = write_control(device, *control, on_step(*control, units));
   if (!held) return tl::make_unexpected(held.error());
   if (*held != units)
-    log::info("camera 'v4l2': exposes for {:g} ms instead of {:g} ms", to_ms(*held), exposure_ms);
+    log::info("exposes for {:g} ms instead of {:g} ms", to_ms(*held), exposure_ms);
   return {};
 }
 

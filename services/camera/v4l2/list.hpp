@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "services/camera/v4l2/device.hpp"
-#include "services/camera/v4l2/sizes.hpp"
+#include "services/camera/v4l2/mode.hpp"
 
 namespace handcast::camera::v4l2 {
 

@@ -46,7 +46,7 @@ Error not_started(const Identity& identity, std::string_view what, int number) {
   if (number == ENOSPC)
     return {Errc::unavailable,
             fmt::format("{}: too little USB bandwidth is left; plug the camera into another port "
-                        "or set camera.v4l2.format to MJPEG",
+                        "or set v4l2.format to MJPEG",
                         describe(identity))};
   return error_of(identity, Errc::unavailable, what, number);
 }

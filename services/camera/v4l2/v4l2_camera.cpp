@@ -1,22 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "ipc/base/log.hpp"
 #include "services/camera/camera.hpp"
-#include "services/camera/frame_size.hpp"
 #include "services/camera/v4l2/controls.hpp"
 #include "services/camera/v4l2/convert.hpp"
 #include "services/camera/v4l2/exposure.hpp"
+#include "services/camera/v4l2/loss_count.hpp"
 #include "services/camera/v4l2/mode.hpp"
-#include "services/camera/v4l2/newest_image.hpp"
+#include "services/camera/v4l2/stream.hpp"
+
+namespace handcast::camera::v4l2 {
+namespace {
+
+/// An image and its number.
+struct Numbered {
+  Filled image;
+  std::uint64_t number = 0;
+};
+
+Result<std::vector<Numbered>> take_all(Stream& stream, LossCount& losses) {
+  std::vector<Numbered> images;
+  while (images.size() < stream.buffers()) {
+    const auto image = stream.take();
+    if (!image) return tl::make_unexpected(image.error());
+    if (!*image) return images;
+    images.push_back({**image, losses.arrived((*image)->sequence)});
+  }
+  losses.all_were_full();
+  return images;
+}
+
+/// Takes everything from a stream and gives all but the newest image back. Broken images are
+/// dropped. If all buffers were full, even the newest image may be old, because the driver had no
+/// buffer for those after it: all are dropped. Empty if no image is left. Errors: disconnected.
+Result<std::optional<Numbered>> take_newest(Stream& stream, LossCount& losses) {
+  const auto images = take_all(stream, losses);
+  if (!images) return tl::make_unexpected(images.error());
+  const bool is_late = images->size() == stream.buffers();
+  std::optional<Numbered> newest;
+  for (const auto& one : *images) {
+    const bool is_broken = one.image.is_broken || one.image.bytes.empty();
+    const bool is_dropped = is_broken || is_late;
+    if (is_broken) losses.incomplete();
+    if ((!is_broken && is_late) || (!is_dropped && newest)) losses.skipped();
+    const auto* given = is_dropped ? &one : newest ? &*newest : nullptr;
+    if (given != nullptr)
+      if (auto done = stream.give_back(given->image); !done)
+        return tl::make_unexpected(done.error());
+    if (!is_dropped) newest = one;
+  }
+  return newest;
+}
+
+}  // namespace
+
+}  // namespace handcast::camera::v4l2
 
 namespace handcast::camera {
 namespace {
 
 using namespace v4l2;
 
-constexpr std::string_view kPlace = "camera 'v4l2'";
 /// Without a whole image for this long, the camera is taken for lost. The first one may take
 /// longer: cameras start slowly.
 /// @{
@@ -41,11 +89,10 @@ class V4l2Camera final : public Camera {
     if (auto room = check_room(layout_.width_px, layout_.height_px, tail_bytes); !room) return room;
     forgive_absence();
     const auto newest = wait_for_newest(deadline);
-    if (!newest) return fail_in(kPlace, newest.error());
+    if (!newest) return tl::make_unexpected(newest.error());
     auto written = write(*newest, frame);
-    if (auto done = stream_->give_back(newest->image); !done) return fail_in(kPlace, done.error());
-    if (!written) return fail_in(kPlace, written.error());
-    return {};
+    if (auto done = stream_->give_back(newest->image); !done) return done;
+    return written;
   }
 
  private:
@@ -104,9 +151,8 @@ class V4l2Camera final : public Camera {
   void say_if_unstamped(const ImageTimes& times) {
     if (std::exchange(has_said_, true) || times.stamp_of != StampOf::nothing) return;
     log::warning(
-        "{}: the driver stamps images with another clock than CLOCK_MONOTONIC; their times are "
-        "those of their arrival, less camera.delivery_ms",
-        kPlace);
+        "the driver stamps images with another clock than CLOCK_MONOTONIC; their times are those "
+        "of their arrival, less delivery_ms");
   }
 
   std::unique_ptr<Device> device_;  ///< the stream refers to it
@@ -123,12 +169,12 @@ class V4l2Camera final : public Camera {
 /// Reports what the camera holds.
 void report(const Device& device, const Mode& mode, double asked_hz) {
   const auto text =
-      fmt::format("{}: {} sends {} {}x{}", kPlace, describe(device.identity),
-                  word_of(mode.layout.format), mode.layout.width_px, mode.layout.height_px);
+      fmt::format("{} sends {} {}x{}", describe(device.identity), word_of(mode.layout.format),
+                  mode.layout.width_px, mode.layout.height_px);
   if (mode.rate_hz <= 0) return log::warning("{}; its driver does not say at which rate", text);
   if (std::abs(mode.rate_hz - asked_hz) < 0.01 * asked_hz)
     return log::info("{} at {:.4g} Hz", text, mode.rate_hz);
-  log::warning("{} at {:.4g} Hz instead of {:g} Hz (camera.rate_hz)", text, mode.rate_hz, asked_hz);
+  log::warning("{} at {:.4g} Hz instead of {:g} Hz (rate_hz)", text, mode.rate_hz, asked_hz);
 }
 
 Result<Mode> configure(const Device& device, const config::Camera& settings, Size size) {
@@ -144,30 +190,28 @@ Result<Mode> configure(const Device& device, const config::Camera& settings, Siz
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_v4l2(const config::Rig& rig,
-                                          const calib::Calibration& calibration,
-                                          const std::int64_t& epoch_ns) {
-  const auto& settings = rig.camera;
+Result<std::unique_ptr<Camera>> open_v4l2(const Opening& with) {
+  const auto& settings = with.settings;
   auto found = find_device(settings.v4l2.device);
-  if (!found) return fail_in(kPlace, found.error());
+  if (!found) return tl::make_unexpected(found.error());
   auto device = std::make_unique<Device>(std::move(*found));
   const auto& identity = device->identity;
-  if (auto ours = calib::check_device("camera", calibration.camera_device,
+  if (auto ours = calib::check_device("camera", with.camera.device,
                                       {identity.card, identity.bus, identity.path});
       !ours)
-    return fail_in(kPlace, ours.error());
-  const auto mode =
-      configure(*device, settings, {calibration.camera.width_px, calibration.camera.height_px});
-  if (!mode) return fail_in(kPlace, mode.error());
+    return tl::make_unexpected(ours.error());
+  const auto& model = with.camera.model;
+  const auto mode = configure(*device, settings, {model.width_px, model.height_px});
+  if (!mode) return tl::make_unexpected(mode.error());
   const double rate_hz = mode->rate_hz > 0 ? mode->rate_hz : settings.rate_hz;
   const StreamTimes times{.exposure = held_exposure(device->fd.get(), settings.exposure_ms),
                           .delivery_ns = ms_to_ns(settings.delivery_ms),
                           .period_ns = seconds_to_ns(1 / rate_hz)};
   auto stream = Stream::start(*device);
-  if (!stream) return fail_in(kPlace, stream.error());
+  if (!stream) return tl::make_unexpected(stream.error());
   // Numbers go on over restarts of the service.
-  const auto first_id =
-      static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns() - epoch_ns, 0) / times.period_ns);
+  const auto first_id = static_cast<std::uint64_t>(
+      std::max<std::int64_t>(now_ns() - with.epoch_ns, 0) / times.period_ns);
   return std::make_unique<V4l2Camera>(std::move(device), std::move(*stream), mode->layout, times,
                                       first_id);
 }

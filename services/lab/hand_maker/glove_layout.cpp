@@ -2,13 +2,83 @@
 #include "services/lab/hand_maker/glove_layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "services/lab/hand_maker/finger_axis.hpp"
+#include "services/lab/hand_maker/rest_pose.hpp"
 
 namespace handcast::renderer {
 namespace {
+
+/// The polyline through a finger's joints, from the MCP joint (thumb: the CMC joint) to the tip,
+/// with axes that turn smoothly. Positions on it are given by their arc length from its start.
+class FingerAxis {
+ public:
+  /// Copies the joints of one finger.
+  FingerAxis(const RestPose& rest, int finger);
+
+  /// Arc length of the tip.
+  double length_mm() const { return arc_mm_[kBones]; }
+  /// Arc length of joint `k`, 0..3.
+  double joint_mm(int k) const { return arc_mm_[k]; }
+  /// The point at an arc length, which is clamped to the ends.
+  glm::dvec3 point(double arc_mm) const;
+  /// The axes at an arc length. Columns as in RestPose.
+  glm::dmat3 axes(double arc_mm) const;
+  /// The radius of the finger at an arc length, interpolated between its joints.
+  double radius_mm(const HandShape& shape, double arc_mm) const;
+
+ private:
+  static constexpr int kBones = 3;
+  std::size_t bone_at(double arc_mm) const;
+
+  int finger_;
+  std::array<glm::dvec3, kBones + 1> joint_;
+  std::array<glm::dmat3, kBones> axes_;
+  std::array<double, kBones + 1> arc_mm_{};
+};
+
+FingerAxis::FingerAxis(const RestPose& rest, int finger) : finger_(finger) {
+  const int first = tip_of(finger) - kBones;
+  for (int k = 0; k <= kBones; ++k) joint_[k] = rest.position_mm[first + k];
+  for (int k = 0; k < kBones; ++k) {
+    axes_[k] = rest.axes[first + k];
+    arc_mm_[k + 1] = arc_mm_[k] + glm::distance(joint_[k], joint_[k + 1]);
+  }
+}
+
+std::size_t FingerAxis::bone_at(double arc_mm) const {
+  std::size_t bone = 0;
+  while (bone + 1 < kBones && arc_mm >= arc_mm_[bone + 1]) ++bone;
+  return bone;
+}
+
+glm::dvec3 FingerAxis::point(double arc_mm) const {
+  const std::size_t k = bone_at(arc_mm);
+  const double share =
+      (std::clamp(arc_mm, 0.0, length_mm()) - arc_mm_[k]) / (arc_mm_[k + 1] - arc_mm_[k]);
+  return glm::mix(joint_[k], joint_[k + 1], share);
+}
+
+glm::dmat3 FingerAxis::axes(double arc_mm) const {
+  constexpr double kReach = 5;  // mm: decay of a bone's weight beyond its ends
+  glm::dmat3 sum(0);
+  for (int k = 0; k < kBones; ++k) {
+    const double beyond = std::max({0.0, arc_mm_[k] - arc_mm, arc_mm - arc_mm_[k + 1]}) / kReach;
+    sum += axes_[k] * std::exp(-beyond * beyond);
+  }
+  const glm::dvec3 proximal = glm::normalize(sum[2]);
+  const glm::dvec3 lateral = glm::normalize(sum[0] - proximal * glm::dot(sum[0], proximal));
+  return {lateral, glm::cross(proximal, lateral), proximal};
+}
+
+double FingerAxis::radius_mm(const HandShape& shape, double arc_mm) const {
+  const std::size_t k = bone_at(arc_mm);
+  const double share = std::clamp((arc_mm - arc_mm_[k]) / (arc_mm_[k + 1] - arc_mm_[k]), 0.0, 1.0);
+  return std::lerp(double(shape.radius_mm[finger_][k]), double(shape.radius_mm[finger_][k + 1]),
+                   share);
+}
 
 using namespace glove;
 

@@ -36,15 +36,15 @@ class TwinDetector final : public FrameDetector {
 /// A detector of services/landmarks, called as by its daemon.
 class RealDetector final : public FrameDetector {
  public:
-  RealDetector(std::unique_ptr<landmarks::Detector> detector, const config::Camera& camera,
-               const calib::Calibration& calibration, const twin::Twin& twin)
+  RealDetector(std::unique_ptr<landmarks::Detector> detector, double exposure_ms,
+               const calib::PlacedCamera& camera, const twin::Twin& twin)
       : detector_(std::move(detector)),
         twin_(twin),
-        tracker_(calibration),
-        frame_(sizeof(msg::CameraFrame) + pixels_of(calibration.camera)) {
-    frame_->exposure_ns = ms_to_ns(camera.exposure_ms);
-    frame_->width_px = static_cast<std::uint32_t>(calibration.camera.width_px);
-    frame_->height_px = static_cast<std::uint32_t>(calibration.camera.height_px);
+        tracker_(camera),
+        frame_(sizeof(msg::CameraFrame) + pixels_of(camera.model)) {
+    frame_->exposure_ns = ms_to_ns(exposure_ms);
+    frame_->width_px = static_cast<std::uint32_t>(camera.model.width_px);
+    frame_->height_px = static_cast<std::uint32_t>(camera.model.height_px);
   }
 
   void tell(const msg::HandPoses& poses) override { tracker_.push(poses); }
@@ -78,8 +78,8 @@ std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin) {
   return std::make_unique<TwinDetector>(twin);
 }
 
-landmarks::DetectorChoice simulated_backend(const config::Rig& rig) {
-  auto choice = landmarks::choose_detector(rig);
+landmarks::DetectorChoice simulated_backend(const config::Rig& rig, config::Viewpoint at) {
+  auto choice = landmarks::choose_detector(rig, at);
   if (choice.backend == "replay")
     choice = {"twin",
               "landmarks: recorded landmarks belong to other images, so 'twin' takes their "
@@ -92,7 +92,7 @@ std::vector<std::filesystem::path> network_files(const config::Rig& rig) {
   const auto backend = simulated_backend(rig).backend;
   for (const auto& model : landmarks::landmark_models()) {
     if (model.name != backend || !folder) continue;
-    auto files = model.files({.executor = rig.landmarks.executor, .folder = *folder});
+    auto files = model.files({.folder = *folder});
     files.push_back(*folder / landmarks::kMediapipePalmFile);  // read by each of them if it exists
     return files;
   }
@@ -101,11 +101,15 @@ std::vector<std::filesystem::path> network_files(const config::Rig& rig) {
 
 Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,
                                                            const calib::Calibration& calibration,
-                                                           const twin::Twin& twin) {
-  if (simulated_backend(rig).backend == "twin") return make_twin_detector(twin);
-  auto detector = landmarks::open_detector(rig, calibration, 0);
+                                                           const twin::Twin& twin,
+                                                           config::Viewpoint at) {
+  if (simulated_backend(rig, at).backend == "twin") return make_twin_detector(twin);
+  const auto camera = calib::camera_at(calibration, at);
+  if (!camera) return tl::make_unexpected(camera.error());
+  auto detector = landmarks::open_detector(rig, calibration, 0, at);
   if (!detector) return tl::make_unexpected(detector.error());
-  return std::make_unique<RealDetector>(std::move(*detector), rig.camera, calibration, twin);
+  return std::make_unique<RealDetector>(std::move(*detector),
+                                        config::camera_at(rig, at).exposure_ms, *camera, twin);
 }
 
 }  // namespace handcast::simulate

@@ -12,11 +12,17 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
-#include "services/lab/simulate/exposure.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
 
 namespace handcast::simulate {
+
+/// A frame of the twin's camera.
+struct Exposure {
+  std::uint64_t frame_id = 0;  ///< number of the frame
+  std::int64_t origin_ns = 0;  ///< true middle of its exposure, since the epoch
+  std::int64_t stamp_ns = 0;   ///< that time by the camera's clock, which the cascade sees
+};
 
 /// The result of a landmark detector on one frame.
 struct Detection {
@@ -41,16 +47,19 @@ std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin);
 /// The back end that the simulator runs for a rig: that of landmarks::choose_detector(), on the
 /// twin's images, except that "replay" becomes "twin" because recorded landmarks belong to other
 /// images.
-landmarks::DetectorChoice simulated_backend(const config::Rig& rig);
+landmarks::DetectorChoice simulated_backend(const config::Rig& rig,
+                                            config::Viewpoint at = config::Viewpoint::first);
 
 /// The files of networks that it reads, some of which need not exist; none if it runs no network.
 std::vector<std::filesystem::path> network_files(const config::Rig& rig);
 
 /// Opens the detector of simulated_backend(). A real detector has the age, the clock error and the
-/// faults of the twin's model (Twin::spoil), but neither its noise nor its bias. `twin` must
-/// outlive it. Errors: those of landmarks::open_detector (bad_config if a model is missing).
+/// faults of the twin's model (Twin::spoil), but neither its noise nor its bias. `twin`: at the
+/// same viewpoint; it must outlive the detector. Errors: those of landmarks::open_detector
+/// (bad_config if a model is missing).
 Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,
                                                            const calib::Calibration& calibration,
-                                                           const twin::Twin& twin);
+                                                           const twin::Twin& twin,
+                                                           config::Viewpoint at);
 
 }  // namespace handcast::simulate

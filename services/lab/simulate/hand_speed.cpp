@@ -14,11 +14,11 @@ constexpr double kGap_s = 0.01;  ///< no speed is computed over a longer gap
 }  // namespace
 
 double HandSpeed::add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m,
-                      std::int64_t lit_ns) {
+                      std::int64_t display_ns) {
   auto& trail = trails_[static_cast<std::size_t>(side)];
-  const double elapsed_s = ns_to_seconds(lit_ns - trail.lit_ns);
+  const double elapsed_s = ns_to_seconds(display_ns - trail.display_ns);
   double speed_m_s = 0;
-  if (trail.lit_ns > 0 && elapsed_s > 0 && elapsed_s < kGap_s) {
+  if (trail.display_ns > 0 && elapsed_s > 0 && elapsed_s < kGap_s) {
     double path_m = 0;
     for (std::size_t i = 0; i < landmarks_m.size(); ++i)
       path_m += glm::length(landmarks_m[i] - trail.landmarks_m[i]);
@@ -28,7 +28,7 @@ double HandSpeed::add(msg::Side side, const std::array<glm::dvec3, msg::kLandmar
     ++count_;
     sum_m_s_ += speed_m_s;
   }
-  trail = {lit_ns, landmarks_m};
+  trail = {display_ns, landmarks_m};
   return speed_m_s;
 }
 

@@ -16,14 +16,14 @@ class HandSpeed {
   /// Adds the landmarks of one hand (one space, metres) at the time of a projector frame. Returns
   /// the speed, m/s; 0 for the first frame of a hand.
   double add(msg::Side side, const std::array<glm::dvec3, msg::kLandmarks>& landmarks_m,
-             std::int64_t lit_ns);
+             std::int64_t display_ns);
   /// {"mean", "p95"} in m/s, the latter to 0.01; null if there was no hand.
   nlohmann::json to_json() const;
 
  private:
   static constexpr double kStep_m_s = 0.01;
   struct Trail {
-    std::int64_t lit_ns = 0;
+    std::int64_t display_ns = 0;
     std::array<glm::dvec3, msg::kLandmarks> landmarks_m{};
   };
   std::array<Trail, msg::kMaxHands> trails_;

@@ -24,11 +24,11 @@ double LandmarkErrors::mean_mm() const {
   return std::accumulate(mm.begin(), mm.end(), 0.0) / static_cast<double>(mm.size());
 }
 
-std::optional<LandmarkErrors> landmark_errors(const renderer::FrameHand& hand, std::int64_t lit_ns,
-                                              const twin::Twin& twin,
+std::optional<LandmarkErrors> landmark_errors(const renderer::FrameHand& hand,
+                                              std::int64_t display_ns, const twin::Twin& twin,
                                               const calib::Calibration& calibration) {
-  const auto truth = twin.landmarks(hand.side, lit_ns);
-  const auto joints = twin.joints(hand.side, lit_ns);
+  const auto truth = twin.landmarks(hand.side, display_ns);
+  const auto joints = twin.joints(hand.side, display_ns);
   if (!truth || !joints) return std::nullopt;
   LandmarkErrors errors;
   for (std::size_t i = 0; i < truth->size(); ++i) {

@@ -18,9 +18,9 @@ struct LandmarkErrors {
   /// Mean over the landmarks.
   double mean_mm() const;
 };
-/// The errors of a hand whose light is on at `lit_ns`; empty if there is no such true hand.
-std::optional<LandmarkErrors> landmark_errors(const renderer::FrameHand& hand, std::int64_t lit_ns,
-                                              const twin::Twin& twin,
+/// The errors of a hand whose light is on at `display_ns`; empty if there is no such true hand.
+std::optional<LandmarkErrors> landmark_errors(const renderer::FrameHand& hand,
+                                              std::int64_t display_ns, const twin::Twin& twin,
                                               const calib::Calibration& calibration);
 
 /// Quality of the light of one projector frame.

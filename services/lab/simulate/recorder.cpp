@@ -6,11 +6,17 @@
 #include <algorithm>
 #include <utility>
 
-#include "services/lab/simulate/png.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 
 namespace handcast::simulate {
 namespace {
+
+bool is_numbered_png(const std::filesystem::path& file) {
+  const auto stem = file.stem().string();
+  return file.extension() == ".png" && stem.size() == 6 &&
+         stem.find_first_not_of("0123456789") == std::string::npos;
+}
 
 constexpr std::int64_t kStep_ns = 100'000;  ///< shorter than the period of any camera
 
@@ -26,6 +32,23 @@ Result<void> prepare(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+std::filesystem::path numbered_png(const std::filesystem::path& folder, std::size_t number) {
+  return folder / fmt::format("{:06}.png", number);
+}
+
+Result<void> remove_numbered_pngs(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed))
+    if (is_numbered_png(entry->path())) files.push_back(entry->path());
+  for (const auto& file : files)
+    if (std::filesystem::remove(file, failed); failed)
+      return fail(Errc::bad_config,
+                  fmt::format("{}: cannot be removed: {}", file.string(), failed.message()));
+  return {};
+}
 
 RecordingFeed::RecordingFeed(std::unique_ptr<SensorFeed> source, const calib::CameraModel& camera,
                              std::filesystem::path folder)
@@ -57,7 +80,8 @@ void RecordingFeed::keep_images(std::int64_t now_ns) {
     newest_ = newest;
     source_->image(*newest_, image_.view());
     const auto file = numbered_png(folder_ / "camera", image_times_us_.size());
-    if (auto written = write_png(file, std::as_const(image_).view()); !written && pictures_)
+    if (auto written = renderer::write_png(file, std::as_const(image_).view());
+        !written && pictures_)
       pictures_ = std::move(written);
     image_times_us_.push_back(recording::to_us(newest_->stamp_ns));
   }

@@ -13,6 +13,12 @@
 
 namespace handcast::simulate {
 
+/// The file of picture `number` in a folder: NNNNNN.png.
+std::filesystem::path numbered_png(const std::filesystem::path& folder, std::size_t number);
+/// Removes all files with such names from a folder, and no others. Errors: bad_config (a file
+/// cannot be removed).
+Result<void> remove_numbered_pngs(const std::filesystem::path& folder);
+
 /// Passes on the messages of another feed and writes them as a recording for the replay back ends.
 /// Every camera frame that arrives is written, whether or not the cascade uses it.
 ///
@@ -35,8 +41,8 @@ class RecordingFeed : public SensorFeed {
   }
   void image(const Exposure& exposure, renderer::View<std::uint8_t> pixels) override;
 
-  /// Writes the messages and the time stamps. Errors: bad_config (a picture cannot be
-  /// written), unavailable (another file), bad_data (fewer than two samples of a hand).
+  /// Writes the messages and the time stamps. Errors: bad_config, unavailable (a file cannot be
+  /// written), bad_data (fewer than two samples of a hand).
   Result<void> save() const;
 
  private:

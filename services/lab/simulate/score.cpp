@@ -8,14 +8,14 @@
 #include <optional>
 
 #include "ipc/base/clock.hpp"
-#include "services/lab/simulate/counting_feed.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/lab/simulate/detector_tally.hpp"
 #include "services/lab/simulate/hand_speed.hpp"
 #include "services/lab/simulate/jitter.hpp"
 #include "services/lab/simulate/photograph.hpp"
-#include "services/lab/simulate/png.hpp"
 #include "services/lab/simulate/recorder.hpp"
 #include "services/lab/simulate/recovery.hpp"
+#include "services/lab/simulate/sensor_feed.hpp"
 #include "services/lab/simulate/trace.hpp"
 #include "services/lab/twin/metrics.hpp"
 
@@ -142,33 +142,33 @@ class Products {
     const auto score = judge_->score(*tick.projection);
     metrics_.add(score);
     for (const auto& hand : score.hands)
-      light_jitter_.add(hand.side, tick.lit_ns, light_points(hand),
+      light_jitter_.add(hand.side, tick.display_ns, light_points(hand),
                         speed_m_s_[static_cast<std::size_t>(hand.side)]);
     metrics_.add_stages(tick.frame->stages);
     metrics_.add_foldovers(tick.frame->foldovers);
     for (const auto& hand : tick.hands) metrics_.add_rung(hand.rung);
     if (const auto origin_ns = tick.projection->header.origin_ns; origin_ns > 0) {
-      motion_to_photon_ms_ += ns_to_ms(tick.lit_ns - origin_ns);
+      motion_to_photon_ms_ += ns_to_ms(tick.display_ns - origin_ns);
       ++with_exposure_;
     }
     return picture(drawn_++, *tick.projection);
   }
 
-  void add_speeds(std::int64_t lit_ns) {
+  void add_speeds(std::int64_t display_ns) {
     for (const auto side : {msg::Side::left, msg::Side::right}) {
-      const auto joints = twin_.joints(side, lit_ns);
+      const auto joints = twin_.joints(side, display_ns);
       if (!joints) continue;
       std::array<glm::dvec3, msg::kLandmarks> places_m;
       for (std::size_t i = 0; i < places_m.size(); ++i)
         places_m[i] = (*joints)[msg::kJointOfLandmark[i]][3];
-      speed_m_s_[static_cast<std::size_t>(side)] = hand_speed_.add(side, places_m, lit_ns);
+      speed_m_s_[static_cast<std::size_t>(side)] = hand_speed_.add(side, places_m, display_ns);
     }
   }
 
   Result<void> picture(std::int64_t frame, const msg::Projection& projection) {
     if (!photographer_ || frame % options_.picture_every != 0) return {};
-    return write_png(numbered_png(options_.frames_directory, pictures_++),
-                     photographer_->take(projection));
+    return renderer::write_png(numbered_png(options_.frames_directory, pictures_++),
+                               photographer_->take(projection));
   }
 
   const Options& options_;

@@ -17,13 +17,13 @@ Result<Trace> Trace::open(const std::filesystem::path& file) {
   return Trace(file, std::move(stream));
 }
 
-void Trace::add(std::int64_t lit_ns, const renderer::FrameHand& hand,
+void Trace::add(std::int64_t display_ns, const renderer::FrameHand& hand,
                 const std::array<glm::vec2, msg::kLandmarks>& truth) {
   for (std::size_t i = 0; i < truth.size(); ++i)
-    stream_ << fmt::format("{:.6f},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n",
-                           ns_to_seconds(lit_ns), hand.side == msg::Side::left ? "left" : "right",
-                           i, truth[i].x, truth[i].y, hand.tracker[i].x, hand.tracker[i].y,
-                           hand.corrected[i].x, hand.corrected[i].y);
+    stream_ << fmt::format(
+        "{:.6f},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}\n", ns_to_seconds(display_ns),
+        hand.side == msg::Side::left ? "left" : "right", i, truth[i].x, truth[i].y,
+        hand.tracker[i].x, hand.tracker[i].y, hand.corrected[i].x, hand.corrected[i].y);
 }
 
 Result<void> Trace::close() {

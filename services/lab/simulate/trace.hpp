@@ -16,8 +16,8 @@ class Trace {
  public:
   /// Creates the file and writes the header line. Errors: bad_config (it cannot be written).
   static Result<Trace> open(const std::filesystem::path& file);
-  /// Writes the lines of one hand whose light is on at `lit_ns`.
-  void add(std::int64_t lit_ns, const renderer::FrameHand& hand,
+  /// Writes the lines of one hand whose light is on at `display_ns`.
+  void add(std::int64_t display_ns, const renderer::FrameHand& hand,
            const std::array<glm::vec2, msg::kLandmarks>& truth);
   /// Closes the file; must be the last call. Errors: unavailable (lines are missing, e.g. because
   /// the disk is full).

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "services/lab/simulate/back_to_back.hpp"
 #include "services/lab/simulate/second_view.hpp"
 #include "services/lab/simulate/sensor_feed.hpp"
 

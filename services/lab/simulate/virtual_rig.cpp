@@ -17,7 +17,7 @@ Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibra
   auto pipeline =
       renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, calibration, truth);
   if (!pipeline) return tl::make_unexpected(pipeline.error());
-  auto detector = open_frame_detector(rig, calibration, **twin);
+  auto detector = open_frame_detector(rig, calibration, **twin, config::Viewpoint::first);
   if (!detector) return tl::make_unexpected(detector.error());
   VirtualRig parts{std::move(*twin), std::move(*pipeline), std::move(*detector), std::nullopt,
                    nullptr};

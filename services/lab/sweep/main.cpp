@@ -11,7 +11,7 @@
 #include "ipc/base/verb_options.hpp"
 #include "ipc/base/version.hpp"
 #include "services/lab/sweep/columns.hpp"
-#include "services/lab/sweep/merge.hpp"
+#include "services/lab/sweep/results.hpp"
 #include "services/lab/sweep/runner.hpp"
 
 namespace handcast::sweep {

@@ -183,9 +183,7 @@ class Reader {
   }
 
   Choice choice(const std::string& path, const Value& value) {
-    auto document = nested(path, value);
-    config::replace_renamed(document, file_.string(), config::renamed_settings(),
-                            config::log_renamed);
+    const auto document = nested(path, value);
     config::apply_document(document, file_.string(), listing_, faults_);
     const auto text = print(value);
     const bool is_path = config::is_path(path, text);

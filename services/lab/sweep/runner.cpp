@@ -2,20 +2,98 @@
 #include "services/lab/sweep/runner.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <thread>
 
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
 #include "services/lab/simulate/score.hpp"
 #include "services/lab/sweep/columns.hpp"
-#include "services/lab/sweep/merge.hpp"
-#include "services/lab/sweep/progress.hpp"
+#include "services/lab/sweep/results.hpp"
 
 namespace handcast::sweep {
 namespace {
+
+/// Prints the progress of a sweep on stderr: one line that is overwritten on a terminal, else a
+/// line every 10 %. Thread-safe.
+class Progress {
+ public:
+  /// `plan` is printed before the progress. If `quiet`, only say() prints.
+  Progress(std::string plan, std::size_t runs, bool quiet);
+  /// Ends the line on a terminal.
+  ~Progress();
+
+  /// Counts a run.
+  void one_done(bool failed);
+  /// Prints a message on a line of its own.
+  void say(const std::string& sentence);
+
+ private:
+  void show();
+
+  std::string plan_;
+  std::size_t runs_;
+  bool quiet_, terminal_;
+  std::mutex mutex_;
+  std::size_t done_ = 0, failed_ = 0, tenths_ = 0;
+  std::int64_t start_ns_, shown_ns_ = 0;
+};
+
+constexpr const char* kClearLine = "\r\033[K";
+constexpr std::int64_t kPause_ns = 100'000'000;  ///< least time between updates of the terminal
+
+std::string print_span(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+Progress::Progress(std::string plan, std::size_t runs, bool quiet)
+    : plan_(std::move(plan)),
+      runs_(runs),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO)),
+      start_ns_(now_ns()) {}
+
+Progress::~Progress() {
+  if (terminal_ && !quiet_ && done_ > 0) log::put("\n");
+}
+
+void Progress::one_done(bool failed) {
+  const std::lock_guard lock(mutex_);
+  ++done_;
+  failed_ += failed;
+  const auto tenths = 10 * done_ / runs_;
+  const bool due =
+      terminal_ ? now_ns() >= shown_ns_ + kPause_ns || done_ == runs_ : tenths > tenths_;
+  tenths_ = tenths;
+  if (due && !quiet_) show();
+}
+
+void Progress::say(const std::string& sentence) {
+  const std::lock_guard lock(mutex_);
+  log::put(fmt::format("{}{}\n", terminal_ ? kClearLine : "", sentence));
+}
+
+void Progress::show() {
+  shown_ns_ = now_ns();
+  const auto elapsed_s = ns_to_seconds(shown_ns_ - start_ns_);
+  const auto rate_hz = static_cast<double>(done_) / elapsed_s;
+  log::put(fmt::format("{}sweep {}: {} of {} runs, {} %{}, {:.3g} runs a second, about {} left{}",
+                       terminal_ ? kClearLine : "", plan_, done_, runs_, 100 * done_ / runs_,
+                       failed_ ? fmt::format(", {} failed", failed_) : "", rate_hz,
+                       print_span(static_cast<double>(runs_ - done_) / rate_hz),
+                       terminal_ ? "" : "\n"));
+}
 
 simulate::Options options_of(const Plan& plan) {
   simulate::Options options;

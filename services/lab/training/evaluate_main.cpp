@@ -8,8 +8,7 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
-#include "config/settings/choice.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
@@ -166,7 +165,6 @@ int main(int argc, char** argv) try {
   using namespace handcast::landmarks::training;
   landmarks::ModelOptions options{.folder = landmarks::models_folder("").value()};
   std::filesystem::path drawings;
-  std::string executor(config::word_of(options.executor));
   std::vector<std::string> names = all_models(), motions, pictures;
   int count = 200;
   std::string mesh = config::TwinShape{}.mesh;
@@ -174,8 +172,6 @@ int main(int argc, char** argv) try {
       "Runs landmark models on renders of motions and on real pictures; prints JSON lines for "
       "evaluate.py."};
   app.add_option("--backend", names, "The landmark models to compare")->capture_default_str();
-  app.add_option("--executor", executor, "The library that runs the networks")
-      ->capture_default_str();
   app.add_option("--network", options.handcast_network,
                  "The file of handcast's network, if not the one that comes with handcast");
   app.add_option("--models", options.folder, "The folder of MediaPipe's files");
@@ -189,9 +185,6 @@ int main(int argc, char** argv) try {
   app.add_option("--count", count, "Frames of each motion")->check(CLI::Range(10, 100000));
   CLI11_PARSE(app, argc, argv);
 
-  const auto chosen = config::choice_named<config::Executor>(executor);
-  if (!chosen) throw std::runtime_error(fmt::format("there is no executor '{}'", executor));
-  options.executor = *chosen;
   const auto models = open(names, options);
   Result<void> done;
   if (!models) done = tl::make_unexpected(models.error());

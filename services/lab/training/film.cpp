@@ -8,8 +8,8 @@
 namespace handcast::landmarks::training {
 namespace {
 
-constexpr int kSide = handcast_network::kSide_px;
-constexpr int kPixels = kSide * kSide;
+constexpr int kCropSide_px = handcast_network::kSide_px;
+constexpr int kPixels = kCropSide_px * kCropSide_px;
 
 /// An approximately normal number with mean 0 and variance 1, -3.5..3.5: the sum of four uniform
 /// ones.
@@ -39,7 +39,7 @@ void put_behind(const float* wall, const float* cover, float* image) {
   for (int i = 0; i < kPixels; ++i) image[i] += wall[i] * (1 - cover[i]);
 }
 
-int clamped(int i) { return std::clamp(i, 0, kSide - 1); }
+int clamped(int i) { return std::clamp(i, 0, kCropSide_px - 1); }
 
 /// The brightness of a pattern of the projector, 0..1. `kind`: 0..4.
 float pattern_at(int kind, float x, float y) {
@@ -72,21 +72,21 @@ void Film::blend_waves(Dice& dice, int cells, float strength, std::vector<float>
   const int knots = cells + 1;
   knots_.resize(static_cast<std::size_t>(knots) * knots);
   for (float& knot : knots_) knot = rough_normal(dice.bits());
-  std::array<int, kSide> cell;
-  std::array<float, kSide> ease;
-  for (int i = 0; i < kSide; ++i) {
-    const float at = (static_cast<float>(i) + 0.5f) * static_cast<float>(cells) / kSide;
+  std::array<int, kCropSide_px> cell;
+  std::array<float, kCropSide_px> ease;
+  for (int i = 0; i < kCropSide_px; ++i) {
+    const float at = (static_cast<float>(i) + 0.5f) * static_cast<float>(cells) / kCropSide_px;
     cell[i] = static_cast<int>(at);
     const float u = at - static_cast<float>(cell[i]);
     ease[i] = u * u * (3 - 2 * u);
   }
   std::vector<float> row(knots);
-  for (int y = 0; y < kSide; ++y) {
+  for (int y = 0; y < kCropSide_px; ++y) {
     const float* upper = &knots_[static_cast<std::size_t>(cell[y]) * knots];
     for (int k = 0; k < knots; ++k) row[k] = upper[k] + (upper[k + knots] - upper[k]) * ease[y];
-    for (int x = 0; x < kSide; ++x) {
+    for (int x = 0; x < kCropSide_px; ++x) {
       const float value = row[cell[x]] + (row[cell[x] + 1] - row[cell[x]]) * ease[x];
-      image[y * kSide + x] *= std::max(0.0f, 1 + strength * value);
+      image[y * kCropSide_px + x] *= std::max(0.0f, 1 + strength * value);
     }
   }
 }
@@ -99,20 +99,20 @@ void Film::texture(Dice& dice) {
 
 /// An ellipse or a box, uniformly bright or shaded like a ball.
 void Film::add_thing(Dice& dice) {
-  const float x = dice.between(0, kSide), y = dice.between(0, kSide),
+  const float x = dice.between(0, kCropSide_px), y = dice.between(0, kCropSide_px),
               angle = dice.between(0, 3.14f);
   const float long_px = dice.magnitude(3, 45), wide_px = dice.magnitude(2, 30),
               bright = dice.chance(0.25f) ? dice.uniform() : dice.between(0, 0.4f);
   const bool box = dice.chance(0.4f), ball = dice.chance(0.3f);
   const float c = std::cos(angle), s = std::sin(angle);
-  for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) {
+  for (int j = 0; j < kCropSide_px; ++j)
+    for (int i = 0; i < kCropSide_px; ++i) {
       const float dx = static_cast<float>(i) - x, dy = static_cast<float>(j) - y;
       const float u = (dx * c + dy * s) / long_px, v = (dy * c - dx * s) / wide_px;
       const float out = box ? std::max(std::abs(u), std::abs(v)) : u * u + v * v;
       if (out < 1)
-        wall_[j * kSide + i] = ball ? bright * std::sqrt(1 - std::min(1.0f, u * u + v * v))
-                                    : wall_[j * kSide + i] + bright;
+        wall_[j * kCropSide_px + i] = ball ? bright * std::sqrt(1 - std::min(1.0f, u * u + v * v))
+                                           : wall_[j * kCropSide_px + i] + bright;
     }
 }
 
@@ -134,9 +134,9 @@ void Film::leak(Dice& dice) {
   const float c = period * std::cos(angle), s = period * std::sin(angle),
               start = dice.between(0, 6.28f);
   const bool follows = dice.chance(0.6f);  // only the hand is lit
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x) {
-      const int i = y * kSide + x;
+  for (int y = 0; y < kCropSide_px; ++y)
+    for (int x = 0; x < kCropSide_px; ++x) {
+      const int i = y * kCropSide_px + x;
       const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
       const float light = pattern_at(kind, fx * c + fy * s + start, fy * c - fx * s);
       image_[i] += light * (cover_[i] * on_hand + (follows ? 0 : (1 - cover_[i]) * on_wall));
@@ -145,12 +145,12 @@ void Film::leak(Dice& dice) {
 
 void Film::cover(Dice& dice) {
   const float angle = dice.between(0, 6.28f), c = std::cos(angle), s = std::sin(angle);
-  const float edge = dice.between(0.1f, 0.45f) * kSide, dark = dice.between(0, 0.08f);
-  constexpr float kMiddle = kSide / 2.f;
-  for (int y = 0; y < kSide; ++y)
-    for (int x = 0; x < kSide; ++x)
+  const float edge = dice.between(0.1f, 0.45f) * kCropSide_px, dark = dice.between(0, 0.08f);
+  constexpr float kMiddle = kCropSide_px / 2.f;
+  for (int y = 0; y < kCropSide_px; ++y)
+    for (int x = 0; x < kCropSide_px; ++x)
       if ((static_cast<float>(x) - kMiddle) * c + (static_cast<float>(y) - kMiddle) * s > edge)
-        image_[y * kSide + x] = dark;
+        image_[y * kCropSide_px + x] = dark;
 }
 
 /// A separable Gaussian.
@@ -161,19 +161,20 @@ void Film::blur_across(float sigma_px) {
   for (int k = -reach; k <= reach; ++k)
     sum +=
         weights.emplace_back(std::exp(-0.5f * static_cast<float>(k * k) / (sigma_px * sigma_px)));
-  std::vector<float> padded(kSide + 2 * reach);
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = -reach; x < kSide + reach; ++x) padded[x + reach] = image_[y * kSide + clamped(x)];
-    float* row = &other_[y * kSide];
-    std::fill_n(row, kSide, 0.0f);
+  std::vector<float> padded(kCropSide_px + 2 * reach);
+  for (int y = 0; y < kCropSide_px; ++y) {
+    for (int x = -reach; x < kCropSide_px + reach; ++x)
+      padded[x + reach] = image_[y * kCropSide_px + clamped(x)];
+    float* row = &other_[y * kCropSide_px];
+    std::fill_n(row, kCropSide_px, 0.0f);
     for (int k = 0; k <= 2 * reach; ++k)
-      add_scaled(padded.data() + k, weights[k] / sum, row, kSide);
+      add_scaled(padded.data() + k, weights[k] / sum, row, kCropSide_px);
   }
   std::ranges::fill(image_, 0.0f);
-  for (int y = 0; y < kSide; ++y)
+  for (int y = 0; y < kCropSide_px; ++y)
     for (int k = 0; k <= 2 * reach; ++k)
-      add_scaled(&other_[clamped(y + k - reach) * kSide], weights[k] / sum, &image_[y * kSide],
-                 kSide);
+      add_scaled(&other_[clamped(y + k - reach) * kCropSide_px], weights[k] / sum,
+                 &image_[y * kCropSide_px], kCropSide_px);
 }
 
 /// The mean along a short straight line.
@@ -184,9 +185,9 @@ void Film::smear(float length_px, float angle_rad) {
     const float along = (static_cast<float>(k) / static_cast<float>(steps - 1) - 0.5f) * length_px;
     const int dx = static_cast<int>(std::lround(along * std::cos(angle_rad))),
               dy = static_cast<int>(std::lround(along * std::sin(angle_rad)));
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x)
-        other_[y * kSide + x] += image_[clamped(y + dy) * kSide + clamped(x + dx)];
+    for (int y = 0; y < kCropSide_px; ++y)
+      for (int x = 0; x < kCropSide_px; ++x)
+        other_[y * kCropSide_px + x] += image_[clamped(y + dy) * kCropSide_px + clamped(x + dx)];
   }
   for (int i = 0; i < kPixels; ++i) image_[i] = other_[i] / static_cast<float>(steps);
 }

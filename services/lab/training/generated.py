@@ -9,7 +9,7 @@ import torch
 
 from network import LANDMARKS, SIDE
 
-UNIT, SHIFT = 170.0, 0.4  # Sample::kUnit in sample.hpp, kShownShift in handcast_network.hpp
+UNIT, SHIFT = 170.0, 0.4  # Sample::kUnit in film.hpp, kShownShift in handcast_network.hpp
 SAMPLE = np.dtype(
     [
         ("tracker", "<f4", (LANDMARKS, 2)),

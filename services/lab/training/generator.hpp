@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "services/lab/training/film.hpp"
-#include "services/lab/training/sample.hpp"
 #include "services/lab/training/scene.hpp"
 
 namespace handcast::landmarks::training {

@@ -15,7 +15,6 @@ using renderer::JointFrames;
 constexpr int kFineSide = handcast_network::kSide_px * Scene::kFine;
 constexpr int kShadowSide = 96;
 constexpr float kFront = -1;  // counter-clockwise from outside, on a screen whose y points down
-constexpr int kWrist = 1;
 constexpr std::size_t kBallsPerHand = 35;
 
 /// A wave of period 1, close to a sine (two parabolas); turns > -64.
@@ -135,14 +134,14 @@ void Scene::add_hand(Dice& dice, const Person& person, const JointFrames& in_cam
   const float tone = gloved ? dice.between(0.05f, 1.1f) : dice.between(0.5f, 1);
   const glm::mat4 bend = glm::rotate(glm::mat4(1), dice.normal(0.3f), {1, 0, 0}) *
                          glm::rotate(glm::mat4(1), dice.normal(0.18f), {0, 1, 0});
-  const glm::mat4 camera_from_arm = in_camera[kWrist] * bend;
+  const glm::mat4 camera_from_arm = in_camera[kWristJoint] * bend;
 
   Shot& hand = next_shot();
   hand.is_arm = false;
   hand.surface.positions.resize(person.mesh.vertex_count());
   hand.surface.normals.resize(person.mesh.vertex_count());
   renderer::skin(person.mesh, in_camera, hand.surface.positions, hand.surface.normals);
-  bend_wrist(person, in_camera[kWrist], camera_from_arm, hand.surface);
+  bend_wrist(person, in_camera[kWristJoint], camera_from_arm, hand.surface);
   const float fatter_m = dice.normal(0.0007f) + (gloved ? dice.between(0, 0.003f) : 0);
   for (std::size_t v = 0; v < hand.surface.positions.size(); ++v)
     hand.surface.positions[v] += fatter_m * hand.surface.normals[v];

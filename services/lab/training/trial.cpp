@@ -13,8 +13,8 @@ namespace {
 using renderer::JointFrames;
 using Joints = std::array<glm::vec3, msg::kLandmarks>;  // camera axes, metres
 
-constexpr msg::Side kSide = msg::Side::left;  // the recordings are of left hands
-constexpr std::uint64_t kPersonSeed = 500;    // whose hand a built-in motion moves
+constexpr msg::Side kRecordedSide = msg::Side::left;  // the recordings are of left hands
+constexpr std::uint64_t kPersonSeed = 500;            // whose hand a built-in motion moves
 
 Joints joints_of(const JointFrames& frames) {
   Joints joints;
@@ -97,7 +97,7 @@ std::uint64_t Trials::frame(int i, int count) const {
 }
 
 std::optional<JointFrames> Trials::in_camera(int i, int count) const {
-  auto joints = twin_->joints(kSide, twin_->camera_origin_ns(frame(i, count)));
+  auto joints = twin_->joints(kRecordedSide, twin_->camera_origin_ns(frame(i, count)));
   if (joints)
     for (auto& joint : *joints) joint = glm::mat4(calibration_.camera_from_tracker) * joint;
   return joints;
@@ -113,7 +113,7 @@ Points Trials::image_px(const JointFrames& frames) const {
 
 std::optional<Trial> Trials::make(int i, int count) {
   Trial trial{.image = {calibration_.camera.width_px, calibration_.camera.height_px},
-              .side = kSide};
+              .side = kRecordedSide};
   const auto now = in_camera(i, count);
   if (!now) return std::nullopt;
   twin_->camera_image(frame(i, count), trial.image.view());

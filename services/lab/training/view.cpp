@@ -11,7 +11,6 @@ namespace {
 using renderer::JointFrames;
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr int kWrist = 1;
 
 glm::vec3 draw_direction(Dice& dice) {
   return glm::normalize(glm::vec3(dice.normal(1), dice.normal(1), dice.normal(1)) + 1e-6f);
@@ -110,7 +109,7 @@ Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vec
   const float turned_rad = other_pose && dice.chance(0.5f) ? dice.normal(0.5f) : dice.normal(0.12f);
   const glm::mat4 wrong = turn(turned_rad, draw_direction(dice)) *
                           glm::scale(glm::mat4(1), glm::vec3(std::exp(dice.normal(0.05f))));
-  glm::mat4 camera_from_wrist = in_camera[kWrist];
+  glm::mat4 camera_from_wrist = in_camera[kWristJoint];
   const glm::vec4 wrist = camera_from_wrist[3];
   camera_from_wrist[3] = {0, 0, 0, 1};
   camera_from_wrist = wrong * camera_from_wrist;

@@ -3,12 +3,14 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "services/lab/twin/finger_pose.hpp"
+
 namespace handcast::twin {
 namespace {
 
 using renderer::kJoints;
 
-constexpr int kWrist = 1, kThumbRoot = 2;
+constexpr int kThumbRoot = 2;
 constexpr std::array<int, 5> kFirstPhalanx{3, 7, 12, 17, 22};  ///< XR joints at the MCPs
 
 glm::dmat4 turn(double radians, const glm::dvec3& axis) {
@@ -54,7 +56,7 @@ renderer::JointFrames Articulation::frames(renderer::Side side, const glm::dmat4
                                            const Bend& bend) const {
   const auto turns = turns_of(bend);
   std::array<glm::dmat4, kJoints> wrist_from_joint;
-  wrist_from_joint[kWrist] = glm::dmat4(1);
+  wrist_from_joint[kWristJoint] = glm::dmat4(1);
   wrist_from_joint[0] = parent_from_joint_[0];
   for (int j = kThumbRoot; j < kJoints; ++j)
     wrist_from_joint[j] =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/lab/twin/background.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -9,8 +9,7 @@
 #include "ipc/base/clock.hpp"
 #include "renderer/base/clones.hpp"
 #include "services/lab/twin/background.hpp"
-#include "services/lab/twin/homography.hpp"
-#include "services/lab/twin/lamp.hpp"
+#include "services/lab/twin/true_geometry.hpp"
 
 namespace handcast::twin {
 namespace {

@@ -10,7 +10,6 @@
 #include "services/lab/twin/flat_picture.hpp"
 #include "services/lab/twin/held_board.hpp"
 #include "services/lab/twin/image_sensor.hpp"
-#include "services/lab/twin/quad_image.hpp"
 #include "services/lab/twin/true_geometry.hpp"
 
 namespace handcast::twin {

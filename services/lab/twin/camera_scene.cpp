@@ -7,11 +7,10 @@
 #include "ipc/base/clock.hpp"
 #include "renderer/base/clones.hpp"
 #include "services/lab/twin/background.hpp"
-#include "services/lab/twin/bystander.hpp"
 #include "services/lab/twin/grey_surface.hpp"
-#include "services/lab/twin/lamp.hpp"
+#include "services/lab/twin/person.hpp"
 #include "services/lab/twin/skin_pattern.hpp"
-#include "services/lab/twin/table_mirror.hpp"
+#include "services/lab/twin/solid.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -27,11 +26,11 @@ void add_row(const float* from, float* to, int count) {
 }  // namespace
 
 CameraScene::CameraScene(const config::TwinImage& settings, int seed,
-                         const calib::Calibration& calibration)
+                         const calib::PlacedCamera& camera)
     : settings_(settings),
       seed_(seed),
-      camera_(calibration.camera),
-      camera_from_tracker_(calibration.camera_from_tracker),
+      camera_(camera.model),
+      camera_from_tracker_(camera.from_tracker),
       background_(make_background(settings, camera_, Random(seed, Stream::image_clutter))),
       sensor_(settings, seed, camera_.width_px),
       table_spread_(settings.table > 0 ? kTableBlur_px : 0),

@@ -12,10 +12,9 @@
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/lab/twin/image_faults.hpp"
 #include "services/lab/twin/image_sensor.hpp"
-#include "services/lab/twin/point_spread.hpp"
 #include "services/lab/twin/solid.hpp"
 #include "services/lab/twin/surface.hpp"
-#include "services/lab/twin/true_hand.hpp"
+#include "services/lab/twin/true_hands.hpp"
 
 namespace handcast::twin {
 
@@ -31,8 +30,8 @@ using TruthAt = std::function<std::optional<JointFrames>(Side side, std::int64_t
 /// faults. Reuses its buffers: not thread-safe.
 class CameraScene {
  public:
-  /// Copies the settings and the calibration. `seed` selects the noise and the holes.
-  CameraScene(const config::TwinImage& settings, int seed, const calib::Calibration& calibration);
+  /// Copies the settings and the camera. `seed` selects the noise and the holes.
+  CameraScene(const config::TwinImage& settings, int seed, const calib::PlacedCamera& camera);
 
   /// Sets one hand, which must outlive the scene. A hand that was not set is not drawn.
   void set_hand(Side side, const TrueHand& flesh);

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "services/lab/twin/gestures.hpp"
-#include "services/lab/twin/posture_steps.hpp"
 
 namespace handcast::twin {
 namespace {

@@ -10,7 +10,7 @@ namespace handcast::twin {
 namespace {
 
 constexpr int kIndexKnuckle = 7, kMiddleKnuckle = 12, kLittleKnuckle = 22;
-constexpr int kWrist = 1, kIndexPip = 8, kMiddlePip = 13, kFromPipToTip = 3;
+constexpr int kIndexPip = 8, kMiddlePip = 13, kFromPipToTip = 3;
 
 glm::dmat4 rigid_inverse(const glm::dmat4& m) {
   glm::dmat4 inverse(glm::transpose(glm::dmat3(m)));
@@ -30,10 +30,8 @@ glm::mat4 mean_of(const glm::mat4& a, const glm::mat4& b) {
   return mean;
 }
 
-glm::vec3 place(const JointFrames& frames, int joint) { return glm::vec3(frames[joint][3]); }
-
 float distance_in(const JointFrames& frames, int from, int to) {
-  return glm::distance(place(frames, from), place(frames, to));
+  return glm::distance(joint_position(frames, from), joint_position(frames, to));
 }
 
 /// Turns a frame by the smallest angle so that its -z points to `end`.
@@ -89,7 +87,7 @@ JointFrames nearer_to(const JointFrames& frames, const JointFrames& rest, double
   JointFrames nearer = frames;
   for (int j = 0; j < kJoints; ++j) {
     const int parent = renderer::kJointParent[j];
-    if (j == kWrist || parent < 0) continue;
+    if (j == kWristJoint || parent < 0) continue;
     const glm::dmat4 now = rigid_inverse(glm::dmat4(frames[parent])) * glm::dmat4(frames[j]);
     const glm::dmat3 then = glm::transpose(glm::dmat3(rest[parent])) * glm::dmat3(rest[j]);
     glm::dmat4 local(
@@ -101,28 +99,31 @@ JointFrames nearer_to(const JointFrames& frames, const JointFrames& rest, double
 }
 
 glm::mat3 palm_axes(const JointFrames& frames) {
-  const glm::vec3 length = glm::normalize(place(frames, kMiddleKnuckle) - place(frames, kWrist)),
-                  across = place(frames, kIndexKnuckle) - place(frames, kLittleKnuckle),
+  const glm::vec3 length = glm::normalize(joint_position(frames, kMiddleKnuckle) -
+                                          joint_position(frames, kWristJoint)),
+                  across = joint_position(frames, kIndexKnuckle) -
+                           joint_position(frames, kLittleKnuckle),
                   side = glm::normalize(across - glm::dot(across, length) * length);
   return {side, glm::cross(length, side), length};
 }
 
 JointFrames with_bones_of(const JointFrames& rest, const JointFrames& frames) {
   JointFrames result = frames;
-  const glm::mat4 posed_from_rest = frames[kWrist] * glm::inverse(rest[kWrist]);
+  const glm::mat4 posed_from_rest = frames[kWristJoint] * glm::inverse(rest[kWristJoint]);
   const auto put = [&](int joint, int seen_from, int from) {
-    const glm::vec3 way = place(frames, joint) - place(frames, seen_from);
-    const glm::vec3 at = place(result, from) + distance_in(rest, from, joint) * glm::normalize(way);
+    const glm::vec3 way = joint_position(frames, joint) - joint_position(frames, seen_from);
+    const glm::vec3 at =
+        joint_position(result, from) + distance_in(rest, from, joint) * glm::normalize(way);
     result[joint][3] = glm::vec4(at, 1);
   };
   for (int f = 0; f < kFingers; ++f) {
     const int base = kMetacarpalJoint[f], knuckle = base + 1;
     result[base][3] = posed_from_rest * rest[base][3];
-    const int fixed = f == 0 ? base : kWrist;
+    const int fixed = f == 0 ? base : kWristJoint;
     put(knuckle, fixed, fixed);
     for (int joint = knuckle + 1; joint <= tip_joint(f); ++joint) put(joint, joint - 1, joint - 1);
     for (int joint = base; joint < tip_joint(f); ++joint)
-      aim_at(place(result, joint + 1), result[joint]);
+      aim_at(joint_position(result, joint + 1), result[joint]);
   }
   result[0][3] = posed_from_rest * rest[0][3];
   return result;

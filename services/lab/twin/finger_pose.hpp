@@ -13,12 +13,17 @@ namespace handcast::twin {
 using renderer::JointFrames;
 using renderer::kJoints;
 
+inline constexpr int kWristJoint = 1;
 inline constexpr int kFingers = 5;
 inline constexpr std::array<int, kFingers> kMetacarpalJoint{2, 6, 11, 16, 21};
 /// The joints of a finger that bend, from the palm on. The thumb's third is not used.
 inline constexpr int kBends = 3;
 /// Number of joints that bend: MCP and IP of the thumb; MCP, PIP and DIP of the others.
 constexpr int bends_of(int finger) { return finger == 0 ? 2 : kBends; }
+/// The position of a joint.
+inline glm::vec3 joint_position(const JointFrames& frames, int joint) {
+  return glm::vec3(frames[joint][3]);
+}
 /// The joint at which bend `i` of a finger is, and the finger's tip.
 /// @{
 constexpr int bend_joint(int finger, int i) { return kMetacarpalJoint[finger] + 1 + i; }

@@ -6,14 +6,12 @@
 #include "renderer/skin/skinning.hpp"
 #include "services/lab/twin/finger_pose.hpp"
 #include "services/lab/twin/random.hpp"
-#include "services/lab/twin/true_hand.hpp"
+#include "services/lab/twin/true_hands.hpp"
 
 namespace handcast::twin {
 namespace {
 
 using renderer::HandMesh;
-
-constexpr int kWrist = 1;
 
 bool is_tip(int joint) {
   for (int f = 0; f < kFingers; ++f)
@@ -22,9 +20,7 @@ bool is_tip(int joint) {
 }
 
 /// The joint at the far end of a bone; -1 at a tip, in the wrist and in the palm.
-int far_end(int joint) { return joint <= kWrist || is_tip(joint) ? -1 : joint + 1; }
-
-glm::vec3 place(const JointFrames& frames, int joint) { return glm::vec3(frames[joint][3]); }
+int far_end(int joint) { return joint <= kWristJoint || is_tip(joint) ? -1 : joint + 1; }
 
 /// The rotation by the smallest angle that turns one direction into another.
 glm::mat3 shortest_turn(const glm::vec3& from, const glm::vec3& to) {
@@ -50,24 +46,26 @@ class BoneMaps {
  private:
   glm::mat4 map_of(int joint) const {
     const int end = far_end(joint);
-    if (end < 0 && joint > kWrist) return maps_[joint - 1];  // a tip goes with its phalanx
+    if (end < 0 && joint > kWristJoint) return maps_[joint - 1];  // a tip goes with its phalanx
     glm::vec3 direction = -glm::vec3(rest_[joint][2]);
     glm::mat3 turn = turn_;
     float stretch = size_;
     if (end >= 0) {
-      const glm::vec3 from = turn_ * (place(model_.rest, end) - place(model_.rest, joint));
-      direction = place(rest_, end) - place(rest_, joint);
+      const glm::vec3 from =
+          turn_ * (joint_position(model_.rest, end) - joint_position(model_.rest, joint));
+      direction = joint_position(rest_, end) - joint_position(rest_, joint);
       turn = shortest_turn(from, direction) * turn_;
       stretch = glm::length(direction) / length_of_model(joint, end);
     }
     const glm::mat3 shape = scaled(joint, glm::normalize(direction), stretch) * turn;
-    return glm::translate(glm::mat4(1), place(rest_, joint)) * glm::mat4(shape) *
-           glm::translate(glm::mat4(1), -place(model_.rest, joint));
+    return glm::translate(glm::mat4(1), joint_position(rest_, joint)) * glm::mat4(shape) *
+           glm::translate(glm::mat4(1), -joint_position(model_.rest, joint));
   }
 
   /// The length of a bone of the model; of a last phalanx, to the skin of the tip.
   float length_of_model(int joint, int end) const {
-    const glm::vec3 from = place(model_.rest, joint), to = place(model_.rest, end);
+    const glm::vec3 from = joint_position(model_.rest, joint),
+                    to = joint_position(model_.rest, end);
     const float length = glm::distance(from, to);
     if (!is_tip(end)) return length;
     const glm::vec3 along = (to - from) / length;
@@ -120,7 +118,7 @@ void add_bulges(TrueHand& hand, float bulge) {
       if (finger_of_joint(j) < 0 || far_end(j) < 0) continue;
       const float between = 4 * weight[j] * weight[renderer::kJointParent[j]];
       const float inside = -glm::dot(mesh.normals[v], glm::vec3(mesh.rest[j][1]));
-      const glm::vec3 away = mesh.positions[v] - place(mesh.rest, j);
+      const glm::vec3 away = mesh.positions[v] - joint_position(mesh.rest, j);
       const float far_m = bulge * between * std::max(inside, 0.0f) * glm::length(away);
       if (far_m <= hand.bulge_m[v]) continue;
       hand.bulge_m[v] = far_m;

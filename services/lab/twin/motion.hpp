@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "calib/calibration.hpp"
 #include "config/sections/twin.hpp"
 #include "ipc/base/result.hpp"
 #include "services/lab/hand_maker/hand_shape.hpp"
+#include "services/recording/arrays/recorded_hands.hpp"
 
 namespace handcast::twin {
 
@@ -32,5 +34,17 @@ class Motion {
 /// file, a truncated or malformed .npy file.
 Result<std::unique_ptr<Motion>> open_motion(const config::Twin& settings,
                                             const calib::Calibration& calibration);
+
+/// The names of the built-in motions, separated by commas.
+std::string builtin_motion_names();
+
+/// Makes a motion whose joint angles are smooth functions of time, in front of the camera. Returns
+/// null if the name is unknown.
+std::unique_ptr<Motion> make_builtin_motion(std::string_view name, const config::Twin& settings,
+                                            const calib::Calibration& calibration);
+
+/// Makes a motion from a recording: its spline, played forwards and backwards in turn.
+std::unique_ptr<Motion> make_recorded_motion(const recording::RecordedHands& recording,
+                                             const config::Twin& settings);
 
 }  // namespace handcast::twin

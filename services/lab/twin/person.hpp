@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+
+#include "calib/calibration.hpp"
 #include "config/sections/twin.hpp"
+#include "renderer/hand/hand_mesh.hpp"
 #include "services/lab/hand_maker/hand_shape.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 
@@ -19,5 +22,11 @@ renderer::HandShape recorded_shape(const recording::RecordedHands& recording);
 /// its breadth and the seed.
 renderer::HandShape person_of(const renderer::HandShape& recorded,
                               const config::TwinShape& settings, int seed);
+
+/// The joints of a second person's hand, open and at rest at the right edge of the image, 0.12 m
+/// behind the hands, its forearm leaving the image. Camera axes, metres. It has no tracker and is
+/// nobody's truth.
+renderer::JointFrames bystander_joints(const renderer::HandMesh& hand,
+                                       const calib::CameraModel& camera);
 
 }  // namespace handcast::twin

@@ -6,7 +6,7 @@
 
 #include "renderer/base/clones.hpp"
 #include "renderer/skin/skinning.hpp"
-#include "services/lab/twin/true_hand.hpp"
+#include "services/lab/twin/true_hands.hpp"
 
 namespace handcast::twin {
 namespace {

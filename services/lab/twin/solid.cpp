@@ -2,6 +2,7 @@
 #include "services/lab/twin/solid.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace handcast::twin {
@@ -42,6 +43,14 @@ Solid make_held_object() {
   // The palm joint's y axis leaves the back of the hand; the fingers close around the object.
   const glm::vec3 before_palm_m(0, -0.040f, -0.030f), half_axes_m(0.075f, 0.025f, 0.025f);
   return make_ellipsoid(before_palm_m, half_axes_m);
+}
+
+void mirror_in_table(std::span<glm::vec3> positions, std::span<glm::vec3> normals) {
+  const glm::vec3 point(0, 0, 0.88f), normal = glm::normalize(glm::vec3(0, 0.17f, -1));
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    positions[v] -= 2 * glm::dot(positions[v] - point, normal) * normal;
+    normals[v] -= 2 * glm::dot(normals[v], normal) * normal;
+  }
 }
 
 }  // namespace handcast::twin

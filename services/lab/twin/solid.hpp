@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace handcast::twin {
@@ -29,5 +30,13 @@ inline constexpr float kReflectorGrey = 1000;
 /// It is taped around the finger tip, so it is drawn this much nearer to the camera: flesh of the
 /// finger tip itself does not hide it, and other flesh does.
 inline constexpr float kReflectorNearer_m = 0.012f;
+
+/// Standard deviation of the blur of the mirror image: the table is glossy, not a mirror.
+inline constexpr double kTableBlur_px = 4;
+
+/// Reflects a surface in the glossy table: a plane 0.15 m behind the hands' nominal distance,
+/// tilted by 10 degrees so that the mirror image shows beside the fingers. Camera axes, metres. The
+/// triangles turn from counter-clockwise to clockwise.
+void mirror_in_table(std::span<glm::vec3> positions, std::span<glm::vec3> normals);
 
 }  // namespace handcast::twin

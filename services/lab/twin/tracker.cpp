@@ -11,7 +11,7 @@
 namespace handcast::twin {
 namespace {
 
-constexpr int kWrist = 1, kIndexMetacarpal = 6, kMiddleMetacarpal = 11;
+constexpr int kIndexMetacarpal = 6, kMiddleMetacarpal = 11;
 /// Offset and drift along the camera's axis relative to those across it.
 constexpr double kDepthShare = 0.3;
 constexpr double kMinDrift_hz = 0.2, kMaxDrift_hz = 1.5;
@@ -173,7 +173,7 @@ std::optional<JointFrames> TrackerModel::lagging(std::int64_t time_ns,
              wrist = truth(time_ns - ms_to_ns(settings_.lag_ms * kWristLag));
   if (!fingers || !wrist) return now;
   const glm::dmat4 later =
-      glm::dmat4((*wrist)[kWrist]) * glm::inverse(glm::dmat4((*fingers)[kWrist]));
+      glm::dmat4((*wrist)[kWristJoint]) * glm::inverse(glm::dmat4((*fingers)[kWristJoint]));
   JointFrames seen;
   for (int j = 0; j < msg::kJoints; ++j) seen[j] = glm::mat4(later * glm::dmat4((*fingers)[j]));
   return seen;
@@ -198,7 +198,7 @@ JointFrames TrackerModel::seen(std::uint64_t k, std::uint64_t shown, Side side,
 msg::HandPose TrackerModel::placed(std::uint64_t shown, Side side, const JointFrames& seen) const {
   const Place& place = places_[static_cast<std::size_t>(side)];
   const glm::dmat3 tracker_from_camera = glm::transpose(glm::dmat3(camera_from_tracker_));
-  const glm::dvec3 wrist(seen[kWrist][3]);
+  const glm::dvec3 wrist(seen[kWristJoint][3]);
   const double distance_m = (camera_from_tracker_ * glm::dvec4(wrist, 1)).z;
   const double seconds = ns_to_seconds(sample_ns(shown));
   msg::HandPose pose;

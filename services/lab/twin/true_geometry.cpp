@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/lab/twin/true_geometry.hpp"
 
-#include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "services/lab/twin/homography.hpp"
 #include "services/lab/twin/random.hpp"
 
 namespace handcast::twin {

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 
+#include "services/lab/twin/finger_pose.hpp"
+
 namespace handcast::twin {
 namespace {
 
 using renderer::Rect;
 
-constexpr int kWrist = 1;
 constexpr float kArmBegins_m = 0.005f;  ///< behind the wrist
 /// Velocities are central differences over this time before and after.
 constexpr std::int64_t kVelocityStep_ns = 1'000'000;
@@ -87,7 +88,7 @@ void TrueView::find_velocities(SeenHand& hand, std::int64_t time_ns, const Joint
 void TrueView::pose_arm(SeenHand& hand, const JointFrames& joints) {
   after_.clear();
   for (const glm::vec3& position : forearms_[static_cast<std::size_t>(hand.side)].positions)
-    after_.push_back(glm::vec3(joints[kWrist] * glm::vec4(position, 1)));
+    after_.push_back(glm::vec3(joints[kWristJoint] * glm::vec4(position, 1)));
   project(after_, hand.arm);
 }
 

@@ -4,25 +4,75 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 
 #include "calib/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
 #include "services/lab/twin/board_scene.hpp"
 #include "services/lab/twin/camera_scene.hpp"
-#include "services/lab/twin/camera_times.hpp"
 #include "services/lab/twin/detector.hpp"
+#include "services/lab/twin/random.hpp"
+#include "services/lab/twin/sensor_clock.hpp"
 #include "services/lab/twin/tracker.hpp"
 
 namespace handcast::twin {
 namespace {
 
+/// The times of the twin's camera: what is true, and what its stamps say. Pure functions of the
+/// settings, the seed and the number of the frame. Times are ns since the rig's epoch.
+class CameraTimes {
+ public:
+  /// Copies what it needs.
+  CameraTimes(const config::Camera& camera, const config::Twin& twin);
+
+  /// The true middle of the exposure of frame `k`.
+  std::int64_t origin_ns(std::uint64_t k) const;
+  /// The middle of its exposure by the camera's clock: the only time that the cascade sees.
+  std::int64_t stamp_ns(std::uint64_t k) const { return clock_.stamp_ns(k, origin_ns(k)); }
+  /// The time at which frame `k` is in memory. Does not decrease with k.
+  std::int64_t arrival_ns(std::uint64_t k) const;
+  /// True if frame `k` never arrives.
+  bool lost(std::uint64_t k) const;
+  /// The true time of the image of this id and stamp. An image that is not this camera's is taken
+  /// at its stamp.
+  std::int64_t true_ns(std::uint64_t frame_id, std::int64_t stamp) const {
+    return stamp == stamp_ns(frame_id) ? origin_ns(frame_id) : stamp;
+  }
+
+ private:
+  double rate_hz_, lost_, burst_;
+  std::int64_t transfer_ns_;  ///< from the middle of an exposure to the image in memory
+  Random loss_, bursts_;
+  SensorClock clock_;
+};
+
+CameraTimes::CameraTimes(const config::Camera& camera, const config::Twin& twin)
+    : rate_hz_(camera.rate_hz),
+      lost_(twin.image.lost),
+      burst_(twin.image.burst),
+      transfer_ns_(ms_to_ns(camera.exposure_ms) / 2 + ms_to_ns(twin.image.delivery_ms)),
+      loss_(twin.seed, Stream::camera_loss),
+      bursts_(twin.seed, Stream::camera_burst),
+      clock_(twin.image.clock, 0, seconds_to_ns(1 / camera.rate_hz),
+             Random(twin.seed, Stream::camera_clock)) {}
+
+std::int64_t CameraTimes::origin_ns(std::uint64_t k) const {
+  return seconds_to_ns(static_cast<double>(k) / rate_hz_);
+}
+
+std::int64_t CameraTimes::arrival_ns(std::uint64_t k) const {
+  return burst_arrival_ns(k, burst_, bursts_,
+                          [this](std::uint64_t i) { return origin_ns(i) + transfer_ns_; });
+}
+
+bool CameraTimes::lost(std::uint64_t k) const { return loss_.uniform(k) < lost_; }
+
 constexpr std::array<Side, 2> kSides{Side::left, Side::right};
 
 /// The camera through which the twin is seen.
 struct SeenFrom {
-  calib::Calibration truth;     ///< its true lens and place
+  calib::PlacedCamera truth;    ///< its true lens and place
   calib::CameraModel believed;  ///< its lens by the rig's calibration
+  config::Camera settings;      ///< its section of the rig
   int seed;                     ///< of its noise and its detector's errors
   glm::dmat4 from_first{1};     ///< from the space of the first camera to its own
 };
@@ -33,15 +83,15 @@ class RigTwin final : public Twin {
           std::unique_ptr<Motion> motion, std::unique_ptr<TrueHands> hands)
       : geometry_(geometry),
         view_(view),
-        exposure_ns_(ms_to_ns(rig.camera.exposure_ms)),
-        camera_(rig),
+        exposure_ns_(ms_to_ns(view.settings.exposure_ms)),
+        camera_(view.settings, rig.twin),
         absent_(rig.twin.hands == config::TwinHands::left    ? std::optional(Side::right)
                 : rig.twin.hands == config::TwinHands::right ? std::optional(Side::left)
                                                              : std::nullopt),
         motion_(std::move(motion)),
         hands_(std::move(hands)),
         tracker_(rig.twin.tracker, rig.twin.seed, geometry.calibration(), motion_->shape()),
-        detector_(rig.twin.detector, view.seed, view.truth.camera, motion_->shape()),
+        detector_(rig.twin.detector, view.seed, view.truth.model, motion_->shape()),
         settings_(rig.twin) {}
 
   std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const override {
@@ -56,8 +106,8 @@ class RigTwin final : public Twin {
       Side side, std::int64_t time_ns) const override {
     const auto truth = joints(side, time_ns);
     if (!truth) return std::nullopt;
-    const auto& truth_camera = view_.truth.camera;
-    const auto& camera_from_tracker = view_.truth.camera_from_tracker;
+    const auto& truth_camera = view_.truth.model;
+    const auto& camera_from_tracker = view_.truth.from_tracker;
     std::array<glm::vec2, msg::kLandmarks> points;
     for (int i = 0; i < msg::kLandmarks; ++i) {
       const glm::dvec4 place((*truth)[msg::kJointOfLandmark[i]][3]);
@@ -108,8 +158,8 @@ class RigTwin final : public Twin {
       return fail(Errc::bad_config,
                   "twin: the rig has one camera; set twin.prop.views = \"first\"");
     if (auto usable = check(picture); !usable) return usable;
-    board_.emplace(settings_, geometry_,
-                   SceneView{view_.truth.camera, view_.from_first, view_.seed}, picture);
+    board_.emplace(settings_, geometry_, SceneView{view_.truth.model, view_.from_first, view_.seed},
+                   picture);
     return {};
   }
 
@@ -141,7 +191,7 @@ class RigTwin final : public Twin {
 
  private:
   JointFrames in_camera(JointFrames frames) const {
-    const glm::dmat4& camera_from_tracker = view_.truth.camera_from_tracker;
+    const glm::dmat4& camera_from_tracker = view_.truth.from_tracker;
     for (auto& frame : frames) frame = glm::mat4(camera_from_tracker * glm::dmat4(frame));
     return frames;
   }
@@ -191,28 +241,35 @@ static Result<calib::Calibration> true_base(const config::Rig& rig,
   return base;
 }
 
-/// The camera that `calibration` is of.
-static SeenFrom seen_from(const calib::Calibration& calibration, const TrueGeometry& geometry,
-                          int seed) {
+/// Errors: bad_config (the calibration has no such camera).
+static Result<SeenFrom> seen_from(const config::Rig& rig, const calib::Calibration& calibration,
+                                  const TrueGeometry& geometry, config::Viewpoint at) {
   constexpr int kOtherSeed = 1000;
-  if (!calibration.is_second_view) return {geometry.calibration(), calibration.camera, seed};
+  const auto believed = calib::camera_at(calibration, at);
+  if (!believed) return tl::make_unexpected(believed.error());
   const auto& truth = geometry.calibration();
-  return {calib::second_view(truth), calibration.camera, seed + kOtherSeed,
-          truth.camera2->from_camera};
+  SeenFrom view{calib::camera_at(truth, at).value(), believed->model, config::camera_at(rig, at),
+                rig.twin.seed};
+  if (at == config::Viewpoint::first) return view;
+  view.seed += kOtherSeed;
+  view.from_first = truth.camera2->from_camera;
+  return view;
 }
 
-Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig, const calib::Calibration& seen) {
-  const auto calibration = calib::first_view(seen);
+Result<std::unique_ptr<Twin>> Twin::create(const config::Rig& rig,
+                                           const calib::Calibration& calibration,
+                                           config::Viewpoint at) {
   const auto base = true_base(rig, calibration);
   if (!base) return tl::make_unexpected(base.error());
   const TrueGeometry geometry(rig.twin.geometry, rig.twin.seed, *base, calibration.camera);
+  const auto view = seen_from(rig, calibration, geometry, at);
+  if (!view) return tl::make_unexpected(view.error());
   auto motion = open_motion(rig.twin, geometry.calibration());
   if (!motion) return tl::make_unexpected(motion.error());
   const auto moves = [&](Side side) { return (*motion)->at(side, 0).has_value(); };
   auto hands = TrueHands::create(rig, {moves(Side::left), moves(Side::right)}, (*motion)->shape());
   if (!hands) return tl::make_unexpected(hands.error());
-  return std::make_unique<RigTwin>(rig, geometry, seen_from(seen, geometry, rig.twin.seed),
-                                   std::move(*motion), std::move(*hands));
+  return std::make_unique<RigTwin>(rig, geometry, *view, std::move(*motion), std::move(*hands));
 }
 
 }  // namespace handcast::twin

@@ -27,11 +27,12 @@ namespace handcast::twin {
 /// epoch (virtual or real). Not thread-safe: use one object per thread.
 class Twin {
  public:
-  /// Creates the twin of a rig; copies what it needs. With calib::second_view(), the world is the
-  /// same, and camera and detector are those of the second view. Errors: those of open_motion and
-  /// of loading the hand models (bad_config).
+  /// Creates the twin of a rig; copies what it needs. Camera and detector are those of a viewpoint;
+  /// the world is the same for all. Errors: bad_config (the calibration has no such camera), those
+  /// of open_motion and of loading the hand models (bad_config).
   static Result<std::unique_ptr<Twin>> create(const config::Rig& rig,
-                                              const calib::Calibration& calibration);
+                                              const calib::Calibration& calibration,
+                                              config::Viewpoint at = config::Viewpoint::first);
   virtual ~Twin() = default;
 
   /// The true joints of one hand in tracker space; empty if there is no such hand at that time, and
@@ -110,7 +111,7 @@ struct FrameScore {
   };
   static constexpr std::size_t kParts = 6;  ///< thumb to little finger, palm
 
-  std::int64_t lit_ns = 0;  ///< time of the light, since the epoch
+  std::int64_t display_ns = 0;  ///< time of the light, since the epoch
   /// The score of one hand.
   struct Hand {
     Side side = Side::left;          ///< which hand it is
@@ -140,9 +141,11 @@ class Judge {
   /// of the projector.
   static std::unique_ptr<Judge> create(const Twin& twin, int step_px);
   virtual ~Judge() = default;
-  /// Scores one projection. projection.lit_ns must be in ns since the twin's epoch. Without shown
-  /// points all of the surface counts as missing.
-  virtual FrameScore score(const msg::Projection& projection) = 0;
+  /// Scores one projection. `epoch_ns`: the twin's epoch, on the clock of the projection. Without
+  /// shown points all of the surface counts as missing.
+  virtual FrameScore score(const msg::Projection& projection, std::int64_t epoch_ns) = 0;
+  /// Scores one whose times are ns since the twin's epoch.
+  FrameScore score(const msg::Projection& projection) { return score(projection, 0); }
 };
 
 }  // namespace handcast::twin

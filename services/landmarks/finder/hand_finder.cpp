@@ -23,8 +23,6 @@ constexpr std::int64_t kCompareSidesEvery_ns = 25'000'000, kSideMemory_ns = 1'50
 msg::Side other(msg::Side side) {
   return side == msg::Side::left ? msg::Side::right : msg::Side::left;
 }
-std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
-
 bool any(const Hints& hints_px) { return std::ranges::any_of(hints_px, is_usable); }
 
 /// True if a part of the region may lie in the image.

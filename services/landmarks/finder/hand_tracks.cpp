@@ -11,8 +11,6 @@ constexpr float kSameHand = 0.35f;  ///< largest mean distance of the points, in
 constexpr float kSureConfidence = 0.5f;  ///< of one landmark
 constexpr std::int64_t kForget_ns = 300'000'000;
 
-std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
-
 /// The hint if it is near enough to belong to the hand at these points; otherwise empty.
 std::optional<Points> if_near(const std::optional<Points>& hint_px, const Points& points_px,
                               const LandmarkModel& model) {

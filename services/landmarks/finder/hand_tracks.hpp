@@ -25,6 +25,8 @@ struct HandCandidate {
   int comparisons = 0;                ///< FoundHand::comparisons
 };
 
+/// The place of a hand in an array by side.
+inline std::size_t index_of(msg::Side side) { return static_cast<std::size_t>(side); }
 /// True if the tracker has the hand, at finite coordinates.
 bool is_usable(const std::optional<Points>& hint_px);
 /// True if both sets of points lie on the same hand.

@@ -7,7 +7,7 @@
 namespace handcast::landmarks {
 
 /// The multiplications with weights in a network's convolutions and matrix products, in millions.
-/// Errors: those of open_network(Executor::onednn).
+/// Errors: those of open_network().
 Result<double> network_mmac(const std::filesystem::path& file);
 
 }  // namespace handcast::landmarks

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "config/sections/executor.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::landmarks {
@@ -42,14 +41,9 @@ class Network {
   virtual std::span<const float> output(std::size_t i) const = 0;
 };
 
-/// The executors that this build has.
-std::vector<config::Executor> executors();
-
 /// Opens a network and runs it once, so that its first run() is no slower than the others. Errors
-/// (bad_config): this build does not have the executor; the file is missing or is not an ONNX file,
-/// or it has an operator or a shape that the executor does not support, or weights that are not
-/// finite.
-Result<std::unique_ptr<Network>> open_network(config::Executor executor,
-                                              const std::filesystem::path& file);
+/// (bad_config): the file is missing or is not an ONNX file, or it has an operator or a shape that
+/// is not supported, or weights that are not finite.
+Result<std::unique_ptr<Network>> open_network(const std::filesystem::path& file);
 
 }  // namespace handcast::landmarks

@@ -26,8 +26,8 @@ bool is_handcast_network(const Network& network) {
 
 }  // namespace
 
-Result<HandcastModel> HandcastModel::open(config::Executor executor, const fs::path& file) {
-  auto network = open_network(executor, file);
+Result<HandcastModel> HandcastModel::open(const fs::path& file) {
+  auto network = open_network(file);
   if (!network) return tl::make_unexpected(network.error());
   if (!is_handcast_network(**network))
     return fail(Errc::bad_config,
@@ -76,12 +76,12 @@ Result<OpenedModel> open_handcast_model(const ModelOptions& options) {
             "'{}', which comes with handcast, is missing; set HANDCAST_ASSETS to the folder of the "
             "assets",
             file.string()));
-  auto landmarks = HandcastModel::open(options.executor, file);
+  auto landmarks = HandcastModel::open(file);
   if (!landmarks) return tl::make_unexpected(landmarks.error());
   OpenedModel opened{std::make_unique<HandcastModel>(std::move(*landmarks)), std::nullopt};
   const fs::path palm_file = options.folder / kMediapipePalmFile;
   if (!fs::exists(palm_file, ignored)) return opened;
-  auto palms = MediapipePalmNetwork::open(options.executor, palm_file);
+  auto palms = MediapipePalmNetwork::open(palm_file);
   if (!palms) return tl::make_unexpected(palms.error());
   opened.palms = std::move(*palms);
   return opened;

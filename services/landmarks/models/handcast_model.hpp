@@ -5,7 +5,6 @@
 #include "services/landmarks/crop/crop.hpp"
 #include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/models/handcast_network.hpp"
-#include "services/landmarks/models/landmark_model.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 
 namespace handcast::landmarks {
@@ -15,7 +14,7 @@ namespace handcast::landmarks {
 class HandcastModel final : public LandmarkModel {
  public:
   /// Errors (bad_config): `file` contains another network, or those of open_network().
-  static Result<HandcastModel> open(config::Executor executor, const std::filesystem::path& file);
+  static Result<HandcastModel> open(const std::filesystem::path& file);
 
   Traits traits() const override { return {.passes_at_first = 2, .reads_tracker = true}; }
   Region region_around(const Points& points_px) const override {

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/models/handcast_network.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "renderer/base/clones.hpp"
 #include "services/landmarks/crop/histogram.hpp"
-#include "services/landmarks/models/exponential.hpp"
 
 namespace handcast::landmarks::handcast_network {
 namespace {

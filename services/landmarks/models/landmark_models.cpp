@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string>
 
 #include "services/landmarks/models/handcast_model.hpp"
@@ -11,8 +10,7 @@
 
 namespace handcast::landmarks {
 
-static constexpr config::SettingList kReads{"landmarks.executor", "landmarks.models",
-                                            "landmarks.hands", "pose.backend"};
+static constexpr config::SettingList kReads{"landmarks.models", "landmarks.hands", "pose.backend"};
 
 static constexpr std::array kModels{
     LandmarkModelRow{.name = "handcast",

@@ -25,17 +25,15 @@ bool has_shapes(const Network& network, const NetworkShapes& expected) {
 
 }  // namespace
 
-Result<std::unique_ptr<Network>> open_mediapipe_network(config::Executor executor,
-                                                        const fs::path& file,
+Result<std::unique_ptr<Network>> open_mediapipe_network(const fs::path& file,
                                                         const NetworkShapes& expected) {
   std::error_code ignored;
   if (!fs::exists(file, ignored))
     return fail(
         Errc::bad_config,
-        fmt::format(
-            "'{}' is missing; scripts/get-models fetches it, or set landmarks.models to its folder",
-            file.string()));
-  auto network = open_network(executor, file);
+        fmt::format("'{}' is missing; scripts/get-models fetches it, or set models to its folder",
+                    file.string()));
+  auto network = open_network(file);
   if (!network) return network;
   if (!has_shapes(**network, expected))
     return fail(Errc::bad_config,

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "config/sections/executor.hpp"
 #include "services/landmarks/inference/network.hpp"
 
 namespace handcast::landmarks {
@@ -24,8 +23,7 @@ struct NetworkShapes {
 
 /// Opens one of MediaPipe's files. Errors (bad_config): it is missing, its shapes are not those
 /// expected, or those of open_network().
-Result<std::unique_ptr<Network>> open_mediapipe_network(config::Executor executor,
-                                                        const std::filesystem::path& file,
+Result<std::unique_ptr<Network>> open_mediapipe_network(const std::filesystem::path& file,
                                                         const NetworkShapes& expected);
 
 }  // namespace handcast::landmarks

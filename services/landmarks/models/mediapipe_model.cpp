@@ -3,15 +3,14 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/landmarks/models/mediapipe_files.hpp"
-#include "services/landmarks/models/mediapipe_regions.hpp"
+#include "services/landmarks/models/mediapipe_palms.hpp"
 
 namespace handcast::landmarks {
 
-Result<MediapipeModel> MediapipeModel::open(config::Executor executor,
-                                            const std::filesystem::path& file) {
+Result<MediapipeModel> MediapipeModel::open(const std::filesystem::path& file) {
   static const NetworkShapes kShapes{
       "the hand landmark network", {1, kSide_px, kSide_px, 3}, {{1, 63}, {1, 1}, {1, 1}, {1, 63}}};
-  auto network = open_mediapipe_network(executor, file, kShapes);
+  auto network = open_mediapipe_network(file, kShapes);
   if (!network) return tl::make_unexpected(network.error());
   return MediapipeModel(std::move(*network));
 }
@@ -50,9 +49,9 @@ std::vector<std::filesystem::path> mediapipe_files(const ModelOptions& options) 
 }
 
 Result<OpenedModel> open_mediapipe_model(const ModelOptions& options) {
-  auto landmarks = MediapipeModel::open(options.executor, options.folder / kMediapipeHandFile);
+  auto landmarks = MediapipeModel::open(options.folder / kMediapipeHandFile);
   if (!landmarks) return tl::make_unexpected(landmarks.error());
-  auto palms = MediapipePalmNetwork::open(options.executor, options.folder / kMediapipePalmFile);
+  auto palms = MediapipePalmNetwork::open(options.folder / kMediapipePalmFile);
   if (!palms) return tl::make_unexpected(palms.error());
   return OpenedModel{std::make_unique<MediapipeModel>(std::move(*landmarks)), std::move(*palms)};
 }

@@ -4,7 +4,6 @@
 
 #include "services/landmarks/crop/crop.hpp"
 #include "services/landmarks/inference/network.hpp"
-#include "services/landmarks/models/landmark_model.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 
 namespace handcast::landmarks {
@@ -13,7 +12,7 @@ namespace handcast::landmarks {
 class MediapipeModel final : public LandmarkModel {
  public:
   /// `file`: of the landmark network. Errors: those of open_mediapipe_network().
-  static Result<MediapipeModel> open(config::Executor executor, const std::filesystem::path& file);
+  static Result<MediapipeModel> open(const std::filesystem::path& file);
 
   /// The sigma makes the light nearest to its place on the twin (DECISIONS.md).
   Traits traits() const override {

@@ -3,10 +3,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "services/landmarks/models/mediapipe_regions.hpp"
+#include "services/landmarks/models/mediapipe_files.hpp"
 
 namespace handcast::landmarks {
+namespace {
+
+constexpr std::array kPalmAndMiddleJoints{0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18};
+constexpr float kLandmarkScale = 2.0f, kLandmarkShift = -0.1f;
+constexpr float kPalmScale = 2.6f, kPalmShift = -0.5f;
+
+/// The region's angle at which `from` to `to` points up.
+float angle_of(glm::vec2 from, glm::vec2 to) { return std::atan2(to.x - from.x, from.y - to.y); }
+
+/// Shifts the box along its own vertical by a share of its height and makes it a square, `scale`
+/// times its longer side.
+Region square_of(glm::vec2 centre_px, glm::vec2 extent_px, float angle_rad, float scale,
+                 float shift) {
+  const glm::vec2 moved = centre_px + turned({0, shift * extent_px.y}, angle_rad);
+  return {moved, scale * std::max(extent_px.x, extent_px.y), angle_rad};
+}
+
+}  // namespace
+
+Region mediapipe_region_of_landmarks(const Points& points_px) {
+  const glm::vec2 knuckles = 0.25f * (points_px[5] + points_px[13]) + 0.5f * points_px[9];
+  const float angle_rad = angle_of(points_px[0], knuckles);
+  glm::vec2 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+  for (const int i : kPalmAndMiddleJoints) {
+    const glm::vec2 upright = turned(points_px[i], -angle_rad);
+    low = glm::min(low, upright);
+    high = glm::max(high, upright);
+  }
+  return square_of(turned(0.5f * (low + high), angle_rad), high - low, angle_rad, kLandmarkScale,
+                   kLandmarkShift);
+}
+
+Region mediapipe_region_of_palm(glm::vec2 centre_px, glm::vec2 extent_px, glm::vec2 wrist_px,
+                                glm::vec2 middle_knuckle_px) {
+  return square_of(centre_px, extent_px, angle_of(wrist_px, middle_knuckle_px), kPalmScale,
+                   kPalmShift);
+}
+
 namespace {
 
 constexpr float kSamePalm = 0.3f;  ///< least intersection over union
@@ -103,6 +142,26 @@ Region region_of_palm(const Palm& palm, const Region& shown) {
   const auto in_image = [&](glm::vec2 at) { return shown.to_image(at - 0.5f); };
   return mediapipe_region_of_palm(in_image(palm.centre), palm.extent * shown.size_px,
                                   in_image(palm.points[0]), in_image(palm.points[2]));
+}
+
+Result<MediapipePalmNetwork> MediapipePalmNetwork::open(const std::filesystem::path& file) {
+  static const NetworkShapes kShapes{"the palm network",
+                                     {1, kPalmSide_px, kPalmSide_px, 3},
+                                     {{1, kPalmAnchors, kPalmValues}, {1, kPalmAnchors, 1}}};
+  auto network = open_mediapipe_network(file, kShapes);
+  if (!network) return tl::make_unexpected(network.error());
+  return MediapipePalmNetwork(std::move(*network));
+}
+
+Result<std::vector<Region>> MediapipePalmNetwork::search(renderer::GreyView image) {
+  const Region whole = region_of_image(image.width, image.height);
+  crop_.cut(image, whole);
+  crop_.write_rgb(network_->input(0));
+  if (const auto done = network_->run(); !done) return tl::make_unexpected(done.error());
+  std::vector<Region> regions;
+  for (const auto& palm : decode_palms(network_->output(0), network_->output(1)))
+    regions.push_back(region_of_palm(palm, whole));
+  return regions;
 }
 
 }  // namespace handcast::landmarks

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
@@ -18,8 +19,8 @@ using Hints = std::array<std::optional<Points>, msg::kMaxHands>;
 /// The tracker's hands at the time of any image. One thread.
 class TrackerHints {
  public:
-  /// Stores the calibration, with which it projects.
-  explicit TrackerHints(const calib::Calibration& calibration) : calibration_(calibration) {}
+  /// Stores the camera in whose image they are.
+  explicit TrackerHints(calib::PlacedCamera camera) : camera_(std::move(camera)) {}
 
   /// Adds a sample of the tracker.
   void push(const msg::HandPoses& poses);
@@ -28,7 +29,7 @@ class TrackerHints {
   Hints at(std::int64_t time_ns) const;
 
  private:
-  calib::Calibration calibration_;
+  calib::PlacedCamera camera_;
   std::array<renderer::PoseHistory, msg::kMaxHands> histories_{renderer::PoseHistory(prediction()),
                                                                renderer::PoseHistory(prediction())};
 
@@ -36,10 +37,6 @@ class TrackerHints {
     return {.method = config::PredictMethod::velocity, .limit_ms = 40};
   }
 };
-
-/// The joints of a pose that belong to the 21 landmarks, in undistorted camera pixels; empty if one
-/// of them is behind the camera.
-std::optional<Points> project(const calib::Calibration& calibration, const msg::HandPose& pose);
 
 /// From undistorted pixels to pixels of the image.
 Points distorted(const calib::CameraModel& camera, const Points& undistorted_px);

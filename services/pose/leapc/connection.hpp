@@ -1,19 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "calib/clock_map.hpp"
 #include "config/sections/leapc.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/result.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "services/pose/leapc/declarations.hpp"
 #include "services/pose/leapc/devices.hpp"
 #include "services/pose/leapc/event_reader.hpp"
-#include "services/pose/leapc/host_clock.hpp"
 #include "services/pose/leapc/library.hpp"
-#include "services/pose/leapc/mailbox.hpp"
 
 namespace handcast::pose::leapc {
+
+/// Maps the time stamps of Ultraleap's service to CLOCK_MONOTONIC with the library's clock rebaser.
+/// A stamp that it maps to a time after the arrival, or to one that is long past, cannot be of the
+/// service's clock; it is mapped by the lower envelope of the arrivals instead. One thread.
+class HostClock {
+ public:
+  /// `least_age_ns`: of a sample when it arrives, for the lower envelope. `call` must outlive it.
+  HostClock(const Functions& call, std::int64_t least_age_ns);
+  HostClock(const HostClock&) = delete;
+  HostClock& operator=(const HostClock&) = delete;
+  ~HostClock();
+
+  /// The time of a stamp that arrived at `arrival_ns`, CLOCK_MONOTONIC. Call it at the arrival.
+  std::int64_t origin_ns(std::int64_t stamp_us, std::int64_t arrival_ns);
+
+  /// True if the last stamp was mapped by its arrival.
+  bool is_guessed() const { return is_guessed_; }
+
+ private:
+  std::int64_t rebased_age_ns(std::int64_t stamp_us, std::int64_t arrival_ns);
+
+  const Functions& call_;
+  std::int64_t least_age_ns_;
+  RebaserHandle rebaser_ = nullptr;
+  std::int64_t updated_ns_ = 0;
+  calib::ClockMap arrivals_;
+  bool is_guessed_ = false;
+};
+
+/// Holds the newest sample until it is taken, and says why there is none. Any thread.
+class Mailbox {
+ public:
+  /// Replaces the sample, or the error, that is waiting.
+  void put(Result<msg::HandPoses> sample);
+  /// Why no samples come; empty: they should.
+  void say(std::string trouble);
+  /// The newest sample, as soon as there is one. Errors: timeout, with the trouble; the error that
+  /// was put.
+  Result<msg::HandPoses> take(Deadline deadline);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::optional<Result<msg::HandPoses>> newest_;
+  std::string trouble_;
+};
 
 /// A connection to Ultraleap's service, polled on a thread of its own. Makes it anew if the service
 /// was away. Leaves samples, and why there are none, in a mailbox.

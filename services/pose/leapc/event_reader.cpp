@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "services/joints/leap_hand.hpp"
-#include "services/pose/leapc/memory.hpp"
+#include "services/pose/leapc/library.hpp"
 
 namespace handcast::pose::leapc {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,16 @@
 #include "services/pose/leapc/declarations.hpp"
 
 namespace handcast::pose::leapc {
+
+/// Copies memory of this process that another library points to. Returns false, instead of ending
+/// the process, if it is not readable. Any thread.
+bool copy_memory(const void* from, void* to, std::size_t bytes);
+
+/// The same for one structure.
+template <class T>
+bool copy_memory(const T* from, T& to) {
+  return copy_memory(from, &to, sizeof to);
+}
 
 /// Ultraleap's library in this process.
 struct Library {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only for the files that call the loader.
 #pragma once
 #include <openxr/openxr.h>
 
+#include <array>
 #include <cstring>
 #include <string>
 
 #include "ipc/base/result.hpp"
 
 namespace handcast::pose::openxr {
+
+// Only for the files that call the loader.
 
 /// The reaction to a result that is an error.
 Errc code_of(XrResult result);
@@ -20,5 +22,12 @@ template <std::size_t kSize>
 std::string text_of(const char (&text)[kSize]) {
   return {text, strnlen(text, kSize)};
 }
+
+/// The extensions without which a runtime is of no use.
+std::array<const char*, 3> needed_extensions();
+
+/// Loads the active runtime and looks whether it has them. `runtime`: its name, for people. Errors:
+/// unavailable (it cannot be loaded), bad_config (it lacks one, and what that means).
+Result<void> check_extensions(const std::string& runtime);
 
 }  // namespace handcast::pose::openxr

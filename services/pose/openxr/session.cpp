@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "ipc/base/log.hpp"
-#include "services/pose/openxr/extensions.hpp"
 #include "services/pose/openxr/manifest.hpp"
 #include "services/pose/openxr/results.hpp"
 

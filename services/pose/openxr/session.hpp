@@ -7,7 +7,7 @@
 #include "config/sections/openxr.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/result.hpp"
-#include "services/pose/openxr/answer.hpp"
+#include "services/pose/openxr/sampler.hpp"
 
 namespace handcast::pose::openxr {
 

@@ -2,14 +2,60 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <deque>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <optional>
 
 #include "config/sections/handover.hpp"
 #include "ipc/msg/hand_poses.hpp"
-#include "services/pose/pair/joint_offsets.hpp"
-#include "services/pose/pair/recent_poses.hpp"
 
 namespace handcast::pose {
+
+/// By how much two sources differ about one hand: a displacement and a rotation of each joint, in
+/// tracker space. A value.
+class JointOffsets {
+ public:
+  /// What must be applied to `from` to get `to`.
+  static JointOffsets between(const msg::HandPose& from, const msg::HandPose& to);
+
+  /// `pose` with `share` (0..1) of the offsets.
+  msg::HandPose applied(const msg::HandPose& pose, float share) const;
+  /// Moves by `share` (0..1) towards other offsets.
+  void approach(const JointOffsets& other, float share);
+  /// The offsets the other way round.
+  JointOffsets reversed() const;
+  /// The largest and the mean distance to the displacements of other offsets.
+  /// @{
+  float farthest_m(const JointOffsets& other) const;
+  float mean_m(const JointOffsets& other) const;
+  /// @}
+
+ private:
+  std::array<glm::vec3, msg::kJoints> moved_m_{};
+  std::array<glm::quat, msg::kJoints> turned_{};  ///< w >= 0
+};
+
+/// The poses of one hand over the last quarter of a second. One thread.
+class RecentPoses {
+ public:
+  /// Adds a pose; ignored if it is not newer than the newest one.
+  void add(std::int64_t origin_ns, const msg::HandPose& pose);
+  /// The pose at `time_ns`: interpolated; the nearest one up to 20 ms beside the samples. Empty if
+  /// there is none.
+  std::optional<msg::HandPose> at(std::int64_t time_ns) const;
+  /// Time of the newest pose, 0 if there is none.
+  std::int64_t newest_ns() const { return poses_.empty() ? 0 : poses_.back().origin_ns; }
+  /// Forgets all poses.
+  void clear() { poses_.clear(); }
+
+ private:
+  struct Timed {
+    std::int64_t origin_ns;
+    msg::HandPose pose;
+  };
+  std::deque<Timed> poses_;  ///< oldest first
+};
 
 /// The two sources of a pair.
 enum class From { first = 0, second = 1 };

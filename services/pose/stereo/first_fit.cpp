@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/pose/lift/starts.hpp"
-#include "services/pose/stereo/triangulate.hpp"
+#include "services/pose/lift/fit.hpp"
+#include "services/pose/stereo/view.hpp"
 
 namespace handcast::pose::stereo {
 namespace {
 
-constexpr int kSteps = 20;
+constexpr int kFirstFitSteps = 20;
 
 /// Pairs of landmarks in a palm whose distance tells how far away it is.
 constexpr std::array<std::array<int, 2>, 4> kPalmBones{{{0, 5}, {0, 9}, {0, 17}, {5, 17}}};
@@ -84,7 +84,7 @@ std::optional<HandFit> first_fit(const Skeleton& skeleton, const Views& views,
   for (const Posture& posture :
        starts_for(skeleton, views[from].camera, *depth_m, *seen[from], log_size)) {
     const HandState start = state_of(views[from], posture, *depth_m, bones.mean);
-    const HandFit fit = fit_views(skeleton, views, seen, bones, start, kSteps);
+    const HandFit fit = fit_views(skeleton, views, seen, bones, start, kFirstFitSteps);
     if (!best || fit.cost < best->cost) best = fit;
   }
   return best;

@@ -5,14 +5,54 @@
 #include <cmath>
 #include <limits>
 
-#include "services/pose/stereo/triangulate.hpp"
+#include "services/pose/stereo/view.hpp"
 
 namespace handcast::pose::stereo {
 namespace {
 
+constexpr double kSmallest_px = 6;
+/// Bones have other forms than the model's, and the landmarks of a detector other places: a share
+/// of the hand's extent, about 1.5 mm.
+constexpr double kModelShare = 0.025;
+
+}  // namespace
+
+double extent_px(const std::array<glm::dvec2, msg::kLandmarks>& px) {
+  glm::dvec2 mean(0);
+  for (const auto& point : px) mean += point / static_cast<double>(msg::kLandmarks);
+  double squares = 0;
+  for (const auto& point : px) squares += glm::dot(point - mean, point - mean);
+  return std::sqrt(squares / msg::kLandmarks);
+}
+
+std::optional<SeenHand> read(const msg::HandLandmarks& landmarks) {
+  SeenHand hand;
+  int count = 0;
+  for (int i = 0; i < msg::kLandmarks; ++i) {
+    const auto& point = landmarks.points[i];
+    if (!std::isfinite(point.x_px) || !std::isfinite(point.y_px) ||
+        !std::isfinite(point.sigma_px) || !std::isfinite(point.confidence))
+      return std::nullopt;
+    hand.px[i] = {point.x_px, point.y_px};
+    count += point.confidence > 0 ? 1 : 0;
+  }
+  const double extent = extent_px(hand.px);
+  if (count < kFewestSeen || !(extent > kSmallest_px) || !(extent < 1e5)) return std::nullopt;
+  for (int i = 0; i < msg::kLandmarks; ++i) {
+    const auto& point = landmarks.points[i];
+    if (!(point.confidence > 0)) continue;
+    const double sigma_px = std::clamp<double>(point.sigma_px, 0, extent);
+    hand.sigma_px[i] =
+        std::hypot(sigma_px, kModelShare * extent) / std::clamp<double>(point.confidence, 0.2, 1);
+  }
+  return hand;
+}
+
+namespace {
+
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kMostMisfit = 9;  ///< of one landmark, sigmas squared
-constexpr double kSizeSd = 0.3;    ///< of the logarithm of the palm's size
+constexpr double kMostMisfit = 9;    ///< of one landmark, sigmas squared
+constexpr double kPalmSizeSd = 0.3;  ///< of the logarithm of the palm's size
 constexpr double kMostSizeCost = 16;
 /// The costs of a report that is left out, of a hand in one view alone, and of a side that the
 /// detector contradicts: for a hand that is not followed, and for one that is.
@@ -24,13 +64,13 @@ constexpr double kBegins = 2;
 constexpr double kElsewhere = 6, kMostElsewhere = 20;
 
 /// Pairs of landmarks in a palm whose distance tells its size.
-constexpr std::array<std::array<int, 2>, 5> kPalmBones{{{0, 5}, {0, 9}, {0, 17}, {5, 17}, {1, 9}}};
+constexpr std::array<std::array<int, 2>, 5> kPalmSpans{{{0, 5}, {0, 9}, {0, 17}, {5, 17}, {1, 9}}};
 
 /// The logarithm of the palm's size relative to the model's.
 double log_size_of(const Skeleton& skeleton,
                    const std::array<std::optional<SpacePoint>, msg::kLandmarks>& points) {
   double seen_m = 0, model_m = 0;
-  for (const auto& [a, b] : kPalmBones) {
+  for (const auto& [a, b] : kPalmSpans) {
     if (!points[a] || !points[b]) continue;
     seen_m += glm::distance(points[a]->place_m, points[b]->place_m);
     model_m += glm::distance(skeleton.at_rest_m(msg::kJointOfLandmark[a]),
@@ -122,7 +162,7 @@ double misfit_of(const Skeleton& skeleton, const Views& views, const SeenHand& f
     behind += points[i] ? 0 : 1;
   }
   if (both < kFewestSeen || 2 * behind > both) return kNever;
-  const double off = log_size_of(skeleton, points) / kSizeSd;
+  const double off = log_size_of(skeleton, points) / kPalmSizeSd;
   return sum / both + std::min(0.5 * off * off, kMostSizeCost);
 }
 

@@ -11,7 +11,7 @@ namespace handcast::pose::stereo {
 namespace {
 
 /// Images within this time have the same errors.
-constexpr double kErrorsLast_s = 0.4;
+constexpr double kSideErrorsLast_s = 0.4;
 /// From comparison to comparison, until the side is sure and then.
 constexpr std::int64_t kOften_ns = 50'000'000, kRarely_ns = 400'000'000;
 constexpr double kSure = 4, kMost = 8;
@@ -25,7 +25,7 @@ constexpr double kFitsNeither = 60;
 /// What an image adds to one of `before`, as a share; 0 if there is none.
 double share_since(const std::optional<std::int64_t>& before, std::int64_t time_ns) {
   if (!before) return 0;
-  return std::clamp(ns_to_seconds(time_ns - *before) / kErrorsLast_s, 0.0, 1.0);
+  return std::clamp(ns_to_seconds(time_ns - *before) / kSideErrorsLast_s, 0.0, 1.0);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ipc/base/clock.hpp"
-#include "services/pose/lift/starts.hpp"
+#include "services/pose/lift/fit.hpp"
 #include "services/pose/stereo/first_fit.hpp"
 
 namespace handcast::pose::stereo {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
-#include "services/joints/leap_layout.hpp"
+#include "services/joints/leap_hand.hpp"
 
 namespace handcast::recording {
 namespace {

@@ -125,17 +125,8 @@ Result<void> correct_tracker(const Options& options, const config::Rig& rig,
                                         drift->across_mm, drift->turn_deg);
   const auto written = write_and_keep(rig.calibration, calib::print_calibration(corrected));
   if (!written) return tl::make_unexpected(written.error());
-  fmt::print("{}\n`handcast reload` applies it; --undo takes it back\n", *written);
-  return {};
-}
-
-Result<void> undo(const config::Rig& rig) {
-  if (auto has_file = check_file(rig); !has_file) return has_file;
-  const auto taken_back = take_back(rig.calibration, [](const std::filesystem::path& kept) {
-    return calib::load_calibration(kept).map([](const auto&) {});
-  });
-  if (!taken_back) return tl::make_unexpected(taken_back.error());
-  fmt::print("{}; `handcast reload` applies it\n", *taken_back);
+  fmt::print("the calibration is in {}\n`handcast reload` applies it; --undo takes it back\n",
+             *written);
   return {};
 }
 

@@ -14,8 +14,4 @@ namespace handcast::calibrate {
 Result<void> correct_tracker(const Options& options, const config::Rig& rig,
                              const calib::Calibration& used);
 
-/// Puts the calibration that was kept last in the place of the rig's. Errors: bad_config (the rig
-/// names no calibration, or none was kept), unavailable.
-Result<void> undo(const config::Rig& rig);
-
 }  // namespace handcast::calibrate

@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/calibrate/hand_over.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <ctime>
+
+#include "config/settings/quoted.hpp"
 #include "ipc/base/write_whole.hpp"
-#include "services/tools/calibrate/rig_file_edit.hpp"
+#include "services/tools/calibrate/kept_file.hpp"
 
 namespace handcast::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// As a rig file may name it.
+/// As a rig file may name it, in quotes.
 std::string name_from(const fs::path& rig_file, const fs::path& file) {
   const bool is_beside = file.parent_path() == fs::absolute(rig_file).parent_path();
-  return (is_beside ? file.filename() : file).string();
+  return config::quoted((is_beside ? file.filename() : file).string());
 }
 
 /// Where the truth of a twin is kept.
@@ -36,16 +41,56 @@ Result<void> keep_truth(const Options& options, const calib::Calibration& runnin
 }
 
 /// The settings that name files.
-std::vector<MeasuredSetting> names_of(const Options& options, const config::Rig& rig,
-                                      const Session& session) {
+std::vector<config::MeasuredSetting> names_of(const Options& options, const config::Rig& rig,
+                                              const Session& session) {
   std::error_code unknown;
-  std::vector<MeasuredSetting> names;
+  std::vector<config::MeasuredSetting> names;
   if (!session.has_measured() || !fs::exists(session.target(), unknown)) return names;
   if (fs::path(rig.calibration) != session.target())
     names.push_back({"calibration", name_from(options.rig_file, session.target())});
   if (is_true_by_name(rig) && fs::exists(truth_of(options), unknown))
     names.push_back({"twin.geometry.calibration", name_from(options.rig_file, truth_of(options))});
   return names;
+}
+
+std::string heading_of(const fs::path& rig_file) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return fmt::format(
+      "# Measured values, which win over those of {0}. `handcast calibrate --apply` wrote\n"
+      "# this file at {1:%Y-%m-%d %H:%M}; without it the rig has the values of {0} again.\n",
+      rig_file.filename().string(), local);
+}
+
+/// Writes settings to the file of measured ones; others that it has stay. Returns a sentence.
+Result<std::string> apply_settings(const fs::path& rig_file,
+                                   std::span<const config::MeasuredSetting> settings) {
+  const auto file = config::measured_file_of(rig_file);
+  const auto before = config::read_measured(file);
+  if (!before) return tl::make_unexpected(before.error());
+  auto all = *before;
+  for (const auto& setting : settings) {
+    const auto same = std::ranges::find(all, setting.path, &config::MeasuredSetting::path);
+    if (same == all.end())
+      all.push_back(setting);
+    else
+      same->value = setting.value;
+  }
+  const auto text = heading_of(rig_file) + config::print_measured(all);
+  const auto after = config::parse_measured(text, file);
+  if (!after) return tl::make_unexpected(after.error());
+  if (*after == *before) return fmt::format("{} has these settings already", file.string());
+  std::error_code unknown;
+  if (!fs::exists(file, unknown))  // so that undo() has something to put back
+    if (auto first = write_whole(file, heading_of(rig_file)); !first)
+      return tl::make_unexpected(first.error());
+  return write_and_keep(file, text).map([&](const std::string& written) {
+    return fmt::format(
+        "measured settings, which win over those of {0}, are in {1}; `handcast calibrate {0} "
+        "--undo` takes them back",
+        rig_file.string(), written);
+  });
 }
 
 }  // namespace
@@ -63,21 +108,35 @@ Result<void> hand_over(const Options& options, const config::Rig& rig,
   const auto measured = session.settings();
   settings.insert(settings.end(), measured.begin(), measured.end());
   if (settings.empty()) return {};
-  Result<void> applied;
-  if (options.apply) {
-    const auto sentence = apply_settings(options.rig_file, settings);
-    if (sentence) {
-      fmt::print("{}:\n", *sentence);
-      session.forget_settings();
-    } else {
-      applied = tl::make_unexpected(sentence.error());
-    }
-  }
-  if (!options.apply || !applied)
-    fmt::print("settings for {}{}:\n", options.rig_file.string(),
-               options.apply ? "" : ", which --apply writes there");
-  for (const auto& setting : settings) fmt::print("  {} = {}\n", setting.path, as_toml(setting));
-  return applied;
+  const auto file = config::measured_file_of(options.rig_file);
+  const auto applied = options.apply
+                           ? apply_settings(options.rig_file, settings)
+                           : fmt::format("settings, which --apply writes to {}", file.string());
+  fmt::print("{}:\n", applied ? *applied : "measured settings, which could not be written");
+  for (const auto& [path, value] : settings) fmt::print("  {} = {}\n", path, value);
+  if (!applied) return tl::make_unexpected(applied.error());
+  if (options.apply) session.forget_settings();
+  return {};
+}
+
+Result<void> undo(const Options& options, const config::Rig& rig) {
+  const auto measured = config::measured_file_of(fs::absolute(options.rig_file));
+  const auto newest = std::max(newest_time(rig.calibration), newest_time(measured));
+  if (newest.empty())
+    return fail(Errc::bad_config, fmt::format("nothing is kept of {} that could be taken back",
+                                              options.rig_file.string()));
+  const auto take = [&](const fs::path& file, const IsUsable& is_usable) -> Result<void> {
+    if (newest_time(file) != newest) return {};
+    return take_back(file, is_usable).map([](const auto& done) { fmt::print("{}\n", done); });
+  };
+  auto taken = take(rig.calibration, [](const fs::path& kept) {
+    return calib::load_calibration(kept).map([](const auto&) {});
+  });
+  if (taken)
+    taken = take(measured, [](const fs::path& kept) {
+      return config::read_measured(kept).map([](const auto&) {});
+    });
+  return taken.map([] { fmt::print("`handcast reload` applies it\n"); });
 }
 
 }  // namespace handcast::calibrate

@@ -24,12 +24,20 @@ fs::path in_folder(const fs::path& file, const std::string& stem) {
   return file.parent_path() / (stem + file.extension().string());
 }
 
-/// A name that is free: with a number if several files are kept within a second.
+/// Of the first file that this process keeps: what it changes is taken back together.
+const std::string& time_in_names() {
+  static const std::string text = [] {
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    localtime_r(&now, &local);
+    return fmt::format("{:%Y-%m-%dT%H%M%S}", local);
+  }();
+  return text;
+}
+
+/// A name that is free: with a number if a process keeps several versions.
 fs::path free_name_of(const fs::path& file) {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  const auto stem = fmt::format("{}.{:%Y-%m-%dT%H%M%S}", file.stem().string(), local);
+  const auto stem = fmt::format("{}.{}", file.stem().string(), time_in_names());
   auto name = in_folder(file, stem);
   std::error_code unknown;
   for (int number = 2; fs::exists(name, unknown); ++number)
@@ -65,7 +73,7 @@ std::vector<fs::path> all_kept(const fs::path& file) {
   std::error_code unknown;
   for (const auto& entry : fs::directory_iterator(file.parent_path(), unknown))
     if (is_kept_of(file, entry.path())) kept.push_back(entry.path());
-  // Those of one second by their numbers: "...00" before "...00.2" before "...00.10".
+  // Those of one time by their numbers: "...00" before "...00.2" before "...00.10".
   const auto second = file.stem().string().size() + 1 + kTime.size();
   std::ranges::sort(kept, std::greater<>(), [second](const fs::path& path) {
     const auto stem = path.stem().string();
@@ -74,8 +82,7 @@ std::vector<fs::path> all_kept(const fs::path& file) {
   return kept;
 }
 
-}  // namespace
-
+/// Copies a file to a free name, which it returns.
 Result<fs::path> keep_old(const fs::path& file) {
   const auto old = free_name_of(file);
   std::error_code error;
@@ -91,8 +98,10 @@ Result<fs::path> keep_old(const fs::path& file) {
   return old;
 }
 
+}  // namespace
+
 Result<std::string> write_and_keep(const fs::path& file, const std::string& text) {
-  std::string sentence = fmt::format("the calibration is in {}", file.string());
+  std::string sentence = file.string();
   std::error_code unknown;
   if (fs::exists(file, unknown)) {
     const auto old = keep_old(file);
@@ -100,6 +109,12 @@ Result<std::string> write_and_keep(const fs::path& file, const std::string& text
     sentence += fmt::format("; the one before it is kept as {}", old->filename().string());
   }
   return write_whole(file, text).map([&] { return sentence; });
+}
+
+std::string newest_time(const fs::path& file) {
+  const auto kept = all_kept(file);
+  if (kept.empty()) return {};
+  return kept.front().stem().string().substr(file.stem().string().size() + 1, kTime.size());
 }
 
 Result<std::string> take_back(const fs::path& file, const IsUsable& is_usable) {

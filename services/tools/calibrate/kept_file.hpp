@@ -9,13 +9,14 @@
 /// Files that are never lost: what it was is kept beside it, with the time in its name.
 namespace handcast::calibrate {
 
-/// Copies a file to a name beside it with the time in it, before another takes its place:
-/// rig.2026-11-25T001500.toml. Returns the name. Errors: unavailable (it cannot be copied).
-Result<std::filesystem::path> keep_old(const std::filesystem::path& file);
-
-/// Writes the text to the file. If there was one, it is kept as STEM.TIME.EXTENSION. Returns a
-/// sentence that says where both are. Errors: unavailable (a file cannot be written).
+/// Writes the text to the file. If there was one, it is kept as STEM.TIME.EXTENSION:
+/// rig.2026-11-25T001500.toml. All files that one process keeps have the same time. Returns the
+/// names of both: "rig.toml; the one before it is kept as ...". Errors: unavailable (a file cannot
+/// be written).
 Result<std::string> write_and_keep(const std::filesystem::path& file, const std::string& text);
+
+/// The time in the name of the newest kept file; empty if none is kept.
+std::string newest_time(const std::filesystem::path& file);
 
 /// Says why a kept file cannot be used.
 using IsUsable = std::function<Result<void>(const std::filesystem::path&)>;

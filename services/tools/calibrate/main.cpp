@@ -94,7 +94,7 @@ Result<int> run(Options options) {
   if (!rig) return tl::make_unexpected(rig.error());
   const auto done = [] { return kExitDone; };
   // Also if the calibration cannot be read any more.
-  if (options.undo) return undo(*rig).map(done);
+  if (options.undo) return undo(options, *rig).map(done);
   if (auto possible = check_steps(options, *rig); !possible)
     return tl::make_unexpected(possible.error());
   // Before anything is forgotten. Without these, nothing may be left to be measured.

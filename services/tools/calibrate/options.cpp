@@ -99,8 +99,8 @@ Result<Options> parse(int argc, char** argv) {
   app.add_flag(
       "--apply", options.apply,
       "Writes the settings that were measured (projector.latency_ms, projector.gamma), and "
-      "the name of a new calibration file, to the rig file, in which all else stays as it "
-      "is; the old file is kept");
+      "the name of a new calibration file, to RIG.measured.toml, whose values win over those of "
+      "the rig file; the old file is kept");
   app.add_option("--photodiode", options.photodiode,
                  "An ALSA capture device with a photodiode in the projector's light: the step "
                  "light measures with it when the light comes, for a camera that does not see it");
@@ -122,8 +122,9 @@ Result<Options> parse(int argc, char** argv) {
       "--correct", options.correct,
       "Corrects a tracker that has moved a little, by hands that are held still, while the "
       "rig is up; asks before it writes");
-  app.add_flag("--undo", options.undo,
-               "Puts back the calibration file that was there before the last change");
+  app.add_flag(
+      "--undo", options.undo,
+      "Puts back the calibration and the measured settings that the last call has changed");
   auto text = parse_options(app, argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   if (!(options.text = std::move(*text)).empty()) return options;

@@ -40,8 +40,8 @@ struct Options {
   double reflector_mm = 0;
   std::filesystem::path points;  ///< folder of recorded points; nothing else is done
   bool correct = false;          ///< corrects a tracker that has moved while the rig is up
-  bool undo = false;             ///< takes back the last change of the calibration file
-  bool apply = false;            ///< writes measured settings to the rig file
+  bool undo = false;             ///< takes back what the last call has changed
+  bool apply = false;            ///< writes measured settings to a file beside the rig file
   std::string photodiode;        ///< ALSA device with a photodiode in the light; empty: none
   std::string text{};            ///< that --help or --version asks for; "" if the program shall run
 };

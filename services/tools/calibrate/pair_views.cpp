@@ -10,7 +10,7 @@
 
 #include "calib/solve/board/board_finder.hpp"
 #include "calib/solve/lens/auto_capture.hpp"
-#include "calib/solve/lens/board_pose.hpp"
+#include "calib/solve/lens/solve.hpp"
 #include "calib/solve/pair/pair_off.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "services/tools/calibrate/lens_step.hpp"

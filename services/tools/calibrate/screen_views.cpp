@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "calib/solve/lens/board_pose.hpp"
-#include "calib/solve/screen/pattern_check.hpp"
+#include "calib/solve/lens/solve.hpp"
+#include "calib/solve/screen/gray_code.hpp"
 
 namespace handcast::calibrate {
 namespace {

@@ -13,10 +13,10 @@
 #include "calib/solve/board/board_name.hpp"
 #include "config/settings/choice.hpp"
 #include "config/settings/files.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "services/tools/calibrate/check_steps.hpp"
 #include "services/tools/calibrate/kept_file.hpp"
-#include "services/tools/calibrate/kept_settings.hpp"
 #include "services/tools/calibrate/pieces.hpp"
 
 namespace handcast::calibrate {
@@ -109,6 +109,25 @@ calib::Calibration without_guess(calib::Calibration draft, const fs::path& targe
   return draft;
 }
 
+/// The settings that a step has measured. A file with none is ignored with a sentence.
+std::vector<config::MeasuredSetting> read_settings(const fs::path& file) {
+  std::error_code unknown;
+  if (!fs::exists(file, unknown)) return {};
+  auto settings = config::read_measured(file);
+  if (settings && !settings->empty()) return std::move(*settings);
+  fmt::print(stderr, "  {} holds no measured settings, and is ignored: measure that step again\n",
+             printable(file.string()));
+  return {};
+}
+
+Result<void> write_settings(const fs::path& file,
+                            const std::vector<config::MeasuredSetting>& settings) {
+  if (!settings.empty()) return write_whole(file, config::print_measured(settings));
+  std::error_code absent;
+  fs::remove(file, absent);
+  return {};
+}
+
 }  // namespace
 
 Result<Session> Session::open(const Options& options, const config::Rig& rig,
@@ -178,8 +197,8 @@ bool Session::is_pending() const {
   return has_measured() && (fs::exists(file(kPending), unknown) || !fs::exists(target_, unknown));
 }
 
-std::vector<MeasuredSetting> Session::settings() const {
-  std::vector<MeasuredSetting> all;
+std::vector<config::MeasuredSetting> Session::settings() const {
+  std::vector<config::MeasuredSetting> all;
   for (const Step step : kSteps) {
     const auto settings = read_settings(settings_of(step));
     all.insert(all.end(), settings.begin(), settings.end());
@@ -196,11 +215,12 @@ fs::path Session::settings_of(Step step) const {
   return file(fmt::format("{}.settings", config::word_of(step)));
 }
 
-Result<void> Session::keep_settings(Step step, const std::vector<MeasuredSetting>& settings) const {
+Result<void> Session::keep_settings(Step step,
+                                    const std::vector<config::MeasuredSetting>& settings) const {
   for (const Step other : kSteps) {
     auto older = read_settings(settings_of(other));
-    const auto outdated = std::erase_if(older, [&](const MeasuredSetting& old) {
-      return std::ranges::count(settings, old.path, &MeasuredSetting::path) > 0;
+    const auto outdated = std::erase_if(older, [&](const config::MeasuredSetting& old) {
+      return std::ranges::count(settings, old.path, &config::MeasuredSetting::path) > 0;
     });
     if (other == step || outdated == 0) continue;
     if (auto written = write_settings(settings_of(other), older); !written) return written;
@@ -261,7 +281,7 @@ Result<std::string> Session::finish() const {
   std::error_code absent;
   fs::remove(file(kPending), absent);
   return write_whole(file("opencv.yml"), calib::print_opencv_file(measured)).map([&] {
-    return *sentence;
+    return "the calibration is in " + *sentence;
   });
 }
 

@@ -6,16 +6,11 @@
 #include <vector>
 
 #include "calib/calibration.hpp"
+#include "config/measured.hpp"
 #include "config/rig.hpp"
 #include "services/tools/calibrate/options.hpp"
 
 namespace handcast::calibrate {
-
-/// A setting of the rig file that was measured.
-struct MeasuredSetting {
-  std::string path;   ///< "projector.latency_ms"
-  std::string value;  ///< as --set takes it; a file relative to the rig file
-};
 
 /// What a step has found out.
 struct Outcome {
@@ -23,7 +18,7 @@ struct Outcome {
   bool is_good = true;                ///< false: it must not take the place of what there is
   std::vector<std::string> findings;  ///< what a person should know or do, most important first
   std::string pictures{};             ///< HTML for the report
-  std::vector<MeasuredSetting> settings{};
+  std::vector<config::MeasuredSetting> settings{};
   bool is_checked = true;  ///< false: a check could not measure anything, and says why
   std::string meaning{};   ///< for the report: what the figures of `made` are, and which are good
 };
@@ -64,8 +59,8 @@ class Session {
   /// because there is no such file, until finish().
   bool is_pending() const;
   /// The settings that the steps have measured; of one that two have measured, the newest.
-  std::vector<MeasuredSetting> settings() const;
-  /// To be called when they are in the rig file.
+  std::vector<config::MeasuredSetting> settings() const;
+  /// To be called when they are in the rig's file of measured settings.
   void forget_settings() const;
   /// Makes what a step has measured the draft, keeps the step's outcome and settings, and writes
   /// the report anew. What was measured with an older lens is forgotten. Errors: bad_data (the
@@ -80,7 +75,7 @@ class Session {
   Session(std::filesystem::path folder, std::filesystem::path target, calib::Calibration draft)
       : folder_(std::move(folder)), target_(std::move(target)), draft_(std::move(draft)) {}
   void forget(Step step);
-  Result<void> keep_settings(Step step, const std::vector<MeasuredSetting>& settings) const;
+  Result<void> keep_settings(Step step, const std::vector<config::MeasuredSetting>& settings) const;
   Result<void> write_report() const;
   std::filesystem::path piece_of(Step step) const;
   std::filesystem::path settings_of(Step step) const;

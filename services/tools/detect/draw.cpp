@@ -13,8 +13,8 @@ constexpr Colour rgb(unsigned red, unsigned green, unsigned blue) {
   return red | green << 8 | blue << 16 | 0xff000000u;
 }
 
-constexpr std::array kFinger{rgb(255, 196, 0), rgb(0, 220, 120), rgb(0, 200, 255),
-                             rgb(150, 120, 255), rgb(255, 90, 160)};
+constexpr std::array kFingerColours{rgb(255, 196, 0), rgb(0, 220, 120), rgb(0, 200, 255),
+                                    rgb(150, 120, 255), rgb(255, 90, 160)};
 constexpr Colour kWrist = rgb(255, 255, 255), kRegion = rgb(90, 140, 90),
                  kTracker = rgb(230, 80, 60);
 constexpr double kBrightest = 0.998;  ///< fraction of the pixels that stay below white
@@ -64,9 +64,10 @@ void draw_hand(renderer::Texture& picture, const landmarks::Points& points, floa
   for (int finger = 0; finger < 5; ++finger)
     for (int k = 1; k <= 4; ++k)
       line(picture, points[k == 1 ? 0 : 4 * finger + k - 1], points[4 * finger + k], 0.8f * pen,
-           kFinger[finger]);
+           kFingerColours[finger]);
   for (int finger = 0; finger < 5; ++finger)
-    for (int k = 1; k <= 4; ++k) dot(picture, points[4 * finger + k], 2.2f * pen, kFinger[finger]);
+    for (int k = 1; k <= 4; ++k)
+      dot(picture, points[4 * finger + k], 2.2f * pen, kFingerColours[finger]);
   dot(picture, points[0], 2.6f * pen, kWrist);
 }
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "config/settings/choice.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/verb_options.hpp"
@@ -26,11 +25,6 @@ std::string backend_help() {
   for (const auto& model : landmarks::landmark_models())
     text += fmt::format(" {}: {}", model.name, model.sentence);
   return text;
-}
-
-std::vector<std::string> executor_words() {
-  const auto words = words_of(config::Executor{});
-  return {words.begin(), words.end()};
 }
 
 int detect(const Options& options) {
@@ -64,18 +58,8 @@ static int run_verb(int argc, char** argv) {
       ->default_str("left");
   app.add_option("--model", options.models,
                  "The folder of MediaPipe's files; scripts/get-models fetches them");
-  app.add_option_function<std::string>(
-         "--backend", [&](const std::string& name) { detect::set_backend(options, name); },
-         detect::backend_help())
+  app.add_option("--backend", options.backend, detect::backend_help())
       ->default_str("mediapipe, or handcast without its files");
-  app.add_option_function<std::string>(
-         "--executor",
-         [&](const std::string& word) {
-           options.executor = *config::choice_named<config::Executor>(word);
-         },
-         "The library that runs the networks")
-      ->check(CLI::IsMember(detect::executor_words()))
-      ->default_str(std::string(config::word_of(options.executor)));
   app.add_option("--hands", options.hands, "The largest number of hands")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();

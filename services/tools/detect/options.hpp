@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "config/sections/executor.hpp"
 #include "ipc/msg/hand_poses.hpp"
 
 namespace handcast::detect {
@@ -15,17 +14,12 @@ struct Options {
   std::vector<std::filesystem::path> joints;  ///< --joints: one per image, or none
   msg::Side joints_side = msg::Side::left;    ///< --side: of the hand in `joints`
   std::string backend;  ///< the landmark model; empty: MediaPipe, or ours if its files are missing
-  config::Executor executor = config::Executor::onednn;  ///< the library that runs the networks
-  std::string models;                 ///< folder of the networks' files; empty: see models_folder()
+  std::string models;   ///< folder of the networks' files; empty: see models_folder()
   std::filesystem::path output = "";  ///< --out: folder for drawings; empty: no drawings
   int hands = 2;                      ///< the largest number of hands
   int repeat = 1;                     ///< number of detections per picture
   bool json = false;                  ///< print JSON
   bool quiet = false;                 ///< print no progress
 };
-
-/// Sets the landmark model. An old name is read as the current one, may set the executor as well,
-/// and is reported on stderr.
-void set_backend(Options& options, const std::string& name);
 
 }  // namespace handcast::detect

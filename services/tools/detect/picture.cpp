@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "renderer/content/picture.hpp"
-#include "services/joints/leap_layout.hpp"
+#include "renderer/media/picture.hpp"
+#include "services/joints/leap_hand.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 
 namespace handcast::detect {

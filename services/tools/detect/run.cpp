@@ -5,17 +5,87 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
-#include "renderer/content/picture.hpp"
+#include "ipc/base/clock.hpp"
+#include "renderer/media/picture.hpp"
+#include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
 #include "services/tools/detect/draw.hpp"
 #include "services/tools/detect/picture.hpp"
-#include "services/tools/detect/result.hpp"
 
 namespace handcast::detect {
 namespace {
+
+/// The hands in one picture.
+struct Result {
+  std::filesystem::path image;              ///< file of the picture
+  std::vector<landmarks::FoundHand> hands;  ///< the hands
+  landmarks::HandFinder::Times times;       ///< medians over the repetitions
+};
+
+/// "left" or "right".
+const char* name_of(msg::Side side) { return side == msg::Side::left ? "left" : "right"; }
+
+constexpr std::array kFingerNames{"thumb", "index", "middle", "ring", "little"};
+
+std::string table_of(const landmarks::Points& points) {
+  std::string text = fmt::format("    wrist   {:7.1f} {:7.1f}\n", points[0].x, points[0].y);
+  for (int finger = 0; finger < 5; ++finger) {
+    text += fmt::format("    {:7}", kFingerNames[finger]);
+    for (int k = 1; k <= 4; ++k)
+      text += fmt::format(" {:7.1f} {:7.1f} {}", points[4 * finger + k].x, points[4 * finger + k].y,
+                          k < 4 ? " " : "");
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  }
+  return text;
+}
+
+nlohmann::json json_of(const landmarks::FoundHand& hand) {
+  auto points = nlohmann::json::array();
+  for (const auto& point : hand.points_px) points.push_back({point.x, point.y});
+  return {{"side", name_of(hand.side)}, {"presence", hand.presence}, {"points_px", points}};
+}
+
+/// One line for the picture; for each hand one line and a table of its points.
+std::string print_text(const Result& result) {
+  const auto& times = result.times;
+  std::string text =
+      fmt::format("{}: {} hand{}, {:.2f} ms (crop {:.2f}, network {:.2f}{})\n",
+                  result.image.string(), result.hands.size(), result.hands.size() == 1 ? "" : "s",
+                  ns_to_ms(times.all_ns), ns_to_ms(times.crop_ns), ns_to_ms(times.network_ns),
+                  times.palm_runs > 0 ? fmt::format(", palm {:.2f}", ns_to_ms(times.palm_ns)) : "");
+  for (const auto& hand : result.hands)
+    text += fmt::format("  {} hand, presence {:.3f}; px from palm to tip:\n{}", name_of(hand.side),
+                        hand.presence, table_of(hand.points_px));
+  return text;
+}
+
+/// JSON of all pictures:
+/// {"images":[{"image","ms":{"all","crop","network","palm"},"hands":[{"side","presence","points_px":[[x,y],...]}]}]}
+std::string print_json(const std::vector<Result>& results) {
+  auto images = nlohmann::json::array();
+  for (const auto& result : results) {
+    auto hands = nlohmann::json::array();
+    for (const auto& hand : result.hands) hands.push_back(json_of(hand));
+    const auto& times = result.times;
+    images.push_back({{"image", result.image.string()},
+                      {"ms",
+                       {{"all", ns_to_ms(times.all_ns)},
+                        {"crop", ns_to_ms(times.crop_ns)},
+                        {"network", ns_to_ms(times.network_ns)},
+                        {"palm", ns_to_ms(times.palm_ns)}}},
+                      {"hands", hands}});
+  }
+  return nlohmann::json{{"images", images}}.dump(1, ' ', false,
+                                                 nlohmann::json::error_handler_t::replace) +
+         "\n";  // a path need not be UTF-8
+}
 
 namespace fs = std::filesystem;
 using Times = landmarks::HandFinder::Times;
@@ -98,7 +168,7 @@ handcast::Result<Result> detect_in(landmarks::HandFinder& finder, const Options&
 handcast::Result<landmarks::OpenedModel> open_model(const Options& options) {
   const auto folder = landmarks::models_folder(options.models);
   if (!folder) return tl::make_unexpected(folder.error());
-  const landmarks::ModelOptions settings{.executor = options.executor, .folder = *folder};
+  const landmarks::ModelOptions settings{.folder = *folder};
   if (!options.backend.empty()) return landmarks::open_landmark_model(options.backend, settings);
   auto mediapipe = landmarks::open_landmark_model("mediapipe", settings);
   if (mediapipe || !options.models.empty()) return mediapipe;

@@ -9,7 +9,6 @@
 
 #include "calib/calibration.hpp"
 #include "services/tools/init/candidate.hpp"
-#include "services/tools/init/fitting.hpp"
 #include "services/tools/init/options.hpp"
 #include "services/tools/init/prompt.hpp"
 

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <vector>
 
+#include "config/measured.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
@@ -30,17 +31,22 @@ int complain(int exit_code, const std::string& sentence) {
 /// Refuses to replace a file by accident.
 Result<void> check_file(const Options& options) {
   std::error_code unknown;
-  if (!options.force && std::filesystem::is_regular_file(options.file, unknown))
-    return fail(Errc::bad_config, fmt::format("'{}' exists; --force replaces it, or name another "
-                                              "file: handcast init FILE",
-                                              options.file.string()));
+  for (const auto& file : {options.file, config::measured_file_of(options.file)})
+    if (!options.force && std::filesystem::is_regular_file(file, unknown))
+      return fail(Errc::bad_config, fmt::format("'{}' exists; --force replaces it, or name another "
+                                                "file: handcast init FILE",
+                                                file.string()));
   return check_writable(options.file);
 }
 
 Result<void> write(const Options& options, const std::string& text) {
   // The file may have come while a person answered.
   if (auto possible = check_file(options); !possible) return possible;
-  return write_whole(options.file, text);
+  return write_whole(options.file, text).map([&] {
+    // Measured values would win over those of the new file.
+    std::error_code absent;
+    std::filesystem::remove(config::measured_file_of(options.file), absent);
+  });
 }
 
 /// What is attached. The search for cameras takes a second, so it is left out where the answer is

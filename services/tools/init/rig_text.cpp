@@ -56,7 +56,7 @@ std::string calibration(const Plan& plan, const std::filesystem::path& file) {
   if (!plan.needs_calibration()) return {};
   return fmt::format(
       "\n# THIS IS MISSING. Without a calibration of camera and projector the light misses the "
-      "hand. This makes it, and names it in this file:\n"
+      "hand. This makes it, and names it in a file beside this one:\n"
       "#   {}\n"
       "# calibration = {}\n",
       calibrate_command(plan, file.filename()),

@@ -1,12 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 // handcast preview: what a running rig sees and does, as a picture.
+
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/write_whole.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/tools/preview/live.hpp"
-#include "services/tools/preview/shot.hpp"
+#include "services/tools/preview/options.hpp"
+#include "services/tools/preview/rig_feed.hpp"
+
+namespace handcast::preview {
+namespace {
+
+/// Watches a rig for options.after_s and writes a picture. Errors: those of RigFeed, bad_config or
+/// unavailable (the file cannot be written).
+Result<void> shoot(const Options& options) {
+  if (auto possible = check_writable(options.shot); !possible) return possible;
+  auto feed = RigFeed::open(options.rig);
+  if (!feed) return tl::make_unexpected(std::move(feed.error()));
+  const auto end_ns = now_ns() + seconds_to_ns(options.after_s);
+  for (auto next_ns = now_ns(); next_ns < end_ns; next_ns += RigFeed::kPeriod_ns) {
+    sleep_until_ns(next_ns);
+    if (auto well = feed->look(); !well) return well;
+  }
+  const auto picture = draw(feed->scene(), feed->gauges(), options.look);
+  return renderer::write_png(options.shot, picture.view());
+}
+
+}  // namespace
+}  // namespace handcast::preview
 
 static int complain(int exit_code, const std::string& sentence) {
   fmt::print(stderr, "handcast preview: {}\n", sentence);

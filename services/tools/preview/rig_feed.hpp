@@ -15,7 +15,7 @@
 #include "ipc/msg/projection.hpp"
 #include "services/tools/preview/layout/gauges.hpp"
 #include "services/tools/preview/scene/scene_maker.hpp"
-#include "services/tools/preview/series.hpp"
+#include "services/tools/preview/status_gauges.hpp"
 
 namespace handcast::preview {
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "ipc/msg/owned.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/recording/about.hpp"
 #include "services/recording/arrays/sensor_arrays.hpp"
 #include "services/recording/recording_reader.hpp"
@@ -44,7 +44,7 @@ Result<std::vector<std::int64_t>> write_images(const fs::path& recording, const 
     msg::CameraFrame frame;
     if (!reader->read(i, frame, image.pixels())) continue;
     const auto file = folder / fmt::format("{:06}.png", times_us.size());
-    if (auto written = renderer::write_png(file, image); !written)
+    if (auto written = renderer::write_png(file, image.view()); !written)
       return tl::make_unexpected(written.error());
     times_us.push_back(recording::to_us(row.origin_ns));
   }

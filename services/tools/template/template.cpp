@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "renderer/content/chart_map.hpp"
-#include "renderer/content/picture.hpp"
 #include "renderer/content/textures.hpp"
+#include "renderer/media/picture.hpp"
 
 namespace handcast::picture {
 namespace {
@@ -97,7 +97,7 @@ Result<std::vector<fs::path>> write_templates(const config::Hand& hands, const f
     if (auto saved = renderer::write_png(written.back(), coloured.view()); !saved)
       return tl::make_unexpected(saved.error());
     written.push_back(folder / fmt::format("{}_lines.png", side));
-    if (auto saved = renderer::write_png(written.back(), lines); !saved)
+    if (auto saved = renderer::write_png(written.back(), lines.view()); !saved)
       return tl::make_unexpected(saved.error());
   }
   return written;

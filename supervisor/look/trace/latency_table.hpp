@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "supervisor/record/counts.hpp"
 #include "supervisor/record/history.hpp"
-#include "supervisor/record/light_count.hpp"
 
 namespace handcast::supervisor {
 

@@ -10,8 +10,8 @@
 // needs cstdio
 #include <jpeglib.h>
 
-#include "renderer/content/picture.hpp"
 #include "renderer/content/textures.hpp"
+#include "renderer/media/picture.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "renderer/correct/deform.hpp"
-#include "renderer/correct/untangle.hpp"
+#include "renderer/correct/foldover_repair.hpp"
 #include "tests/renderer/paper_hand.hpp"
 
 namespace handcast::renderer {
@@ -161,47 +161,47 @@ struct RealHand {
 
 TEST(VertexCorrection, OnTheRealMeshNoTriangleThatFacesTheCameraStaysTurnedOver) {
   RealHand hand;
-  Untangler untangler(hand.mesh);
+  FoldoverRepair repair(hand.mesh);
   std::mt19937 random(9);
   for (const float sigma_px : {4.0f, 8.0f, 16.0f})
     for (int trial = 0; trial < 100; ++trial) {
       auto vertices = hand.vertices_px;
       correct_vertices({}, hand.mesh, hand.landmarks_px,
                        moved_at_random(hand.landmarks_px, sigma_px, random), vertices);
-      EXPECT_EQ(untangler.untangle(hand.vertices_px, vertices, -1), 0) << sigma_px;
+      EXPECT_EQ(repair.repair(hand.vertices_px, vertices, -1), 0) << sigma_px;
       EXPECT_EQ(hand.turned_over(vertices), 0) << sigma_px;
     }
 }
 
 TEST(VertexCorrection, AKnotThatSmoothingDoesNotMendIsShiftedAsOne) {
   RealHand hand;
-  Untangler untangler(hand.mesh);
+  FoldoverRepair repair(hand.mesh);
   std::mt19937 random(12);
   for (int trial = 0; trial < 50; ++trial) {
     auto vertices = hand.vertices_px;
     std::normal_distribution<float> wild(0, 12);
     for (glm::vec2& vertex : vertices) vertex += glm::vec2(wild(random), wild(random));
-    EXPECT_EQ(untangler.untangle(hand.vertices_px, vertices, -1), 0);
+    EXPECT_EQ(repair.repair(hand.vertices_px, vertices, -1), 0);
     EXPECT_EQ(hand.turned_over(vertices), 0);
   }
 }
 
 // Where a float has no room for a pixel, joined corners still look turned over.
-TEST(VertexCorrection, UntanglingEndsAlsoFarOutsideTheScreen) {
+TEST(VertexCorrection, RepairEndsAlsoFarOutsideTheScreen) {
   RealHand hand;
-  Untangler untangler(hand.mesh);
+  FoldoverRepair repair(hand.mesh);
   std::mt19937 random(13);
   for (const float far : {1e6f, 1e9f, 1e20f, 1e38f}) {
     auto vertices = hand.vertices_px;
     std::normal_distribution<float> wild(0, far);
     for (glm::vec2& vertex : vertices) vertex += glm::vec2(wild(random), wild(random));
-    untangler.untangle(hand.vertices_px, vertices, -1);
+    repair.repair(hand.vertices_px, vertices, -1);
   }
 }
 
-TEST(VertexCorrection, UntanglingMovesSliversOnly) {
+TEST(VertexCorrection, RepairMovesSliversOnly) {
   RealHand hand;
-  Untangler untangler(hand.mesh);
+  FoldoverRepair repair(hand.mesh);
   std::mt19937 random(10);
   double most_px = 0;
   for (int trial = 0; trial < 100; ++trial) {
@@ -209,7 +209,7 @@ TEST(VertexCorrection, UntanglingMovesSliversOnly) {
     correct_vertices({}, hand.mesh, hand.landmarks_px,
                      moved_at_random(hand.landmarks_px, 8, random), vertices);
     const auto corrected = vertices;
-    untangler.untangle(hand.vertices_px, vertices, -1);
+    repair.repair(hand.vertices_px, vertices, -1);
     int moved = 0;
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       const double px = glm::distance(vertices[v], corrected[v]);
@@ -221,7 +221,7 @@ TEST(VertexCorrection, UntanglingMovesSliversOnly) {
   EXPECT_LT(most_px, 6);
 }
 
-TEST(VertexCorrection, AMeshOfMoreTrianglesThanSixteenBitsNumberIsUntangled) {
+TEST(VertexCorrection, AMeshOfMoreTrianglesThanSixteenBitsNumberIsRepaired) {
   constexpr int kSide = 200;
   HandMesh mesh;
   std::vector<glm::vec2> before;
@@ -237,23 +237,23 @@ TEST(VertexCorrection, AMeshOfMoreTrianglesThanSixteenBitsNumberIsUntangled) {
   ASSERT_GT(mesh.triangles.size(), 65536u);
   auto after = before;
   after[at(100, kSide - 2)] += glm::vec2(9, 7);
-  EXPECT_EQ(Untangler(mesh).untangle(before, after, 1), 0);
+  EXPECT_EQ(FoldoverRepair(mesh).repair(before, after, 1), 0);
   for (const auto& [a, b, c] : mesh.triangles) {
     const glm::vec2 u = after[b] - after[a], v = after[c] - after[a];
     ASSERT_GT(u.x * v.y - u.y * v.x, -0.02f);
   }
 }
 
-TEST(VertexCorrection, UntanglingKeepsSeamsClosed) {
+TEST(VertexCorrection, RepairKeepsSeamsClosed) {
   RealHand hand;
-  Untangler untangler(hand.mesh);
+  FoldoverRepair repair(hand.mesh);
   std::mt19937 random(11);
   std::map<std::array<float, 3>, std::size_t> first_at;
   for (int trial = 0; trial < 50; ++trial) {
     auto vertices = hand.vertices_px;
     correct_vertices({}, hand.mesh, hand.landmarks_px,
                      moved_at_random(hand.landmarks_px, 12, random), vertices);
-    untangler.untangle(hand.vertices_px, vertices, -1);
+    repair.repair(hand.vertices_px, vertices, -1);
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       const glm::vec3& at = hand.mesh.positions[v];
       const std::size_t twin = first_at.emplace(std::array{at.x, at.y, at.z}, v).first->second;

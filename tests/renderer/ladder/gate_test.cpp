@@ -10,7 +10,7 @@
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/ladder/hindsight.hpp"
 #include "renderer/pipeline/pipeline.hpp"
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 
 namespace handcast::renderer {

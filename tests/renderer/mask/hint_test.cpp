@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 
 namespace handcast::renderer {
@@ -15,9 +15,8 @@ TEST(Hint, AHandFarOutsideTheImageIsNotLookedForEvenWhereTheLensWouldFoldItIn) {
   calibration.camera.k2 = calibration.camera.k3 = 0;
   ASSERT_FALSE(calibration.camera.folds());
   const auto hint_at = [&](float x_m) {
-    Corrected hand{.pose = pose_of(Side::left, {x_m, 0, 0})};
-    hand.tracker = hand.landmarks = *project_landmarks(calibration, hand.pose);
-    return make_hint(calibration, {}, hand.pose, hand);
+    return make_hint(calibration, {}, *project(calibration, pose_of(Side::left, {x_m, 0, 0})), {},
+                     false);
   };
   EXPECT_TRUE(hint_at(0));
   EXPECT_TRUE(hint_at(0.2f));    // partly in the image

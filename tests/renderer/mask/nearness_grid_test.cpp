@@ -17,9 +17,9 @@ constexpr int kColumns = 5, kRows = 4, kStep_px = 8;
 
 TEST(NearnessGrid, TakesTheNearestVertexAroundEachPoint) {
   NearnessGrid grid(kColumns, kRows, kStep_px);
-  const std::array<glm::vec2, 3> landings{{{16, 8}, {17, 9}, {32, 24}}};
+  const std::array<glm::vec2, 3> vertices{{{16, 8}, {17, 9}, {32, 24}}};
   const std::array<float, 3> depths{0.8f, 0.5f, 1.0f};
-  grid.set(landings, depths, 1.0);
+  grid.set(vertices, depths, 1.0);
   EXPECT_FLOAT_EQ(grid.points()[1 * kColumns + 2], 1.0f) << "1 / 0.5 - 1 / 1";
   EXPECT_FLOAT_EQ(grid.points()[3 * kColumns + 4], 0.0f);
   EXPECT_FLOAT_EQ(grid.most(), 1.0f);

@@ -10,10 +10,10 @@
 #include <glm/gtx/quaternion.hpp>
 #include <optional>
 
-#include "renderer/content/picture.hpp"
 #include "renderer/mask/hand_mask.hpp"
-#include "renderer/predict/project_landmarks.hpp"
-#include "services/joints/leap_layout.hpp"
+#include "renderer/media/picture.hpp"
+#include "renderer/predict/projected_pose.hpp"
+#include "services/joints/leap_hand.hpp"
 #include "services/recording/arrays/npy.hpp"
 #include "tests/renderer/mask/outline_score.hpp"
 #include "tests/renderer/mask/real_outlines.hpp"
@@ -126,18 +126,18 @@ std::optional<Found> find_in(const RealOutline& outline, bool landmarks) {
   const auto pose = tracker_pose(name);
   if (!image || !pose) return std::nullopt;
   const auto rig = captures_calibration();
-  Corrected hand{.pose = *pose, .has_landmarks = landmarks};
-  hand.tracker = hand.landmarks = *project_landmarks(rig, *pose);
+  HandMask::Sought hand{
+      .side = Side::left, .then = project(rig, *pose), .has_landmarks = landmarks};
   if (landmarks)
-    for (int i = 0; i < kLandmarks; ++i) hand.landmarks[i] = camera_px(outline.landmarks[i]);
+    for (int i = 0; i < kLandmarks; ++i)
+      hand.offset_px[i] = camera_px(outline.landmarks[i]) - hand.then->landmarks[i];
 
   HandMask step({}, rig);
-  const HandMask::Expected expected{.side = Side::left, .then = *pose, .hand = &hand};
   const TimedImage camera{image->view(), 0};
-  step.find(camera, std::span(&expected, 1));
+  step.find(camera, std::span(&hand, 1));
   const auto found = step.silhouette(camera);
   const auto truth = truth_of(outline);
-  const auto hint = make_hint(rig, {}, *pose, hand)->hint;
+  const auto hint = make_hint(rig, {}, *hand.then, hand.offset_px, landmarks)->hint;
   const auto score = score_outline(found.mask, truth.view(), [&](glm::vec2 at) {
     return glm::dot(at - hint.wrist_px, hint.to_elbow) < -kCut_px;
   });

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "renderer/mask/hand_mask.hpp"
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "services/lab/twin/surface.hpp"
 #include "tests/renderer/mask/outline_score.hpp"
 #include "tests/services/lab/twin/world.hpp"
@@ -81,12 +81,11 @@ OutlineScore worst_score(const config::TwinImage& image) {
       Image<std::uint8_t> picture(720, 540);
       twin->camera_image(k, picture.view());
       const auto joints = *twin->joints(Side::left, twin->camera_origin_ns(k));
-      Corrected hand{.pose = pose_of(joints), .has_landmarks = true};
-      hand.tracker = hand.landmarks = *project_landmarks(rig, hand.pose);
-      const HandMask::Expected expected{.side = Side::left, .then = hand.pose, .hand = &hand};
+      const HandMask::Sought hand{
+          .side = Side::left, .then = project(rig, pose_of(joints)), .has_landmarks = true};
       const TimedImage camera{picture.view(), 0};
-      step.find(camera, std::span(&expected, 1));
-      const auto hint = make_hint(rig, {}, hand.pose, hand)->hint;
+      step.find(camera, std::span(&hand, 1));
+      const auto hint = make_hint(rig, {}, *hand.then, {}, true)->hint;
       const auto score = score_outline(
           step.silhouette(camera).mask, silhouette_of(*twin, joints).view(),
           [&](glm::vec2 at) { return glm::dot(at - hint.wrist_px, hint.to_elbow) < -kCut_px; });

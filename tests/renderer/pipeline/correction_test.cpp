@@ -22,7 +22,7 @@ TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
   const auto pipeline = make_pipeline(cascade(GetParam(), config::FillMethod::none));
   const auto hand = pose_of(Side::left);
   feed_still(*pipeline, {hand});
-  const glm::vec2 before = mean_landing(pipeline->render(20 * kMs, 24 * kMs, {}).hands[0]);
+  const glm::vec2 before = mean_vertex(pipeline->render(20 * kMs, 24 * kMs, {}).hands[0]);
   const int lit_before = lit_pixels(pipeline->render(20 * kMs, 24 * kMs, {}));
   feed_landmarks(*pipeline, calibration, hand, {12, -6});
   const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {});
@@ -32,7 +32,7 @@ TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
   const glm::dvec2 at = frame.hands[0].tracker[9];
   const glm::dvec2 moved =
       calibration.to_projector(at + glm::dvec2(12, -6)) - calibration.to_projector(at);
-  const glm::vec2 landed = mean_landing(frame.hands[0]) - before;
+  const glm::vec2 landed = mean_vertex(frame.hands[0]) - before;
   EXPECT_NEAR(landed.x, moved.x, 0.7);
   EXPECT_NEAR(landed.y, moved.y, 0.7);
   EXPECT_EQ(frame.foldovers, 0);
@@ -45,8 +45,8 @@ TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
         high = glm::max(high, glm::dvec2(x, y));
       }
   glm::vec2 tip{1e9f};
-  for (const glm::vec2& landing : frame.hands[0].landings) tip = glm::min(tip, landing);
-  EXPECT_NEAR(low.x, tip.x, 3);  // the light is at the landings
+  for (const glm::vec2& vertex : frame.hands[0].projected_px) tip = glm::min(tip, vertex);
+  EXPECT_NEAR(low.x, tip.x, 3);  // the light is at the vertices
   EXPECT_NEAR(low.y, tip.y, 3);
   EXPECT_NEAR(lit_pixels(frame), lit_before, 0.03 * lit_before);
 }
@@ -93,12 +93,12 @@ TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
 }
 
 /// A detector that sees the index finger beside its place, and images that show where it is: the
-/// mean distance of the landings from those with a flawless detector, projector px.
+/// mean distance of the vertices from those with a flawless detector, projector px.
 float beside_px(bool outline, float sigma_px = 3) {
   const auto calibration = rig_above_hand();
   const auto hand = pose_of(Side::left);
   const auto image = image_of(calibration, {hand});
-  const auto landings = [&](float wrong_px) {
+  const auto vertices = [&](float wrong_px) {
     auto settings = cascade(config::CorrectMethod::vertices, config::FillMethod::reflect);
     settings.correct.outline = outline;
     settings.filter.definitions = false;
@@ -109,13 +109,12 @@ float beside_px(bool outline, float sigma_px = 3) {
       for (auto& point : seen.hands[0].points) point.sigma_px = sigma_px;
       for (const int i : {6, 7, 8}) seen.hands[0].points[i].x_px += wrong_px;
       pipeline->push(t, seen);
-      pipeline->look({image.view(), t - 2 * kMs, static_cast<std::uint64_t>(t)});
-      pipeline->track(t, t + 4 * kMs);
+      pipeline->track(t, t + 4 * kMs, {image.view(), t - 2 * kMs, static_cast<std::uint64_t>(t)});
     }
     const auto hands = pipeline->render(400 * kMs, 404 * kMs, {image.view(), 398 * kMs, 1}).hands;
-    return std::vector<glm::vec2>(hands[0].landings.begin(), hands[0].landings.end());
+    return std::vector<glm::vec2>(hands[0].projected_px.begin(), hands[0].projected_px.end());
   };
-  const auto right = landings(0), wrong = landings(6);
+  const auto right = vertices(0), wrong = vertices(6);
   float sum_px = 0;
   for (std::size_t v = 0; v < right.size(); ++v) sum_px += glm::distance(right[v], wrong[v]);
   return sum_px / static_cast<float>(right.size());
@@ -148,11 +147,11 @@ TEST(Correction, AGridThatFoldsIsCounted) {
 }
 
 /// How far the light of the grid's correction is from the drawing, by hand: the mean distance of
-/// the landings from those without a correction, px. `displaced`: the landmark that the detector
+/// the vertices from those without a correction, px. `displaced`: the landmark that the detector
 /// sees 12 px aside; -1: all.
 std::vector<float> moved_by_grid(config::Cascade settings, std::vector<Side> sides, int displaced) {
   const auto calibration = rig_above_hand();
-  const auto landings = [&](config::CorrectMethod method) {
+  const auto vertices = [&](config::CorrectMethod method) {
     settings.correct.method = method;
     const auto pipeline = make_pipeline(settings);
     std::vector<msg::HandPose> hands;
@@ -169,11 +168,11 @@ std::vector<float> moved_by_grid(config::Cascade settings, std::vector<Side> sid
     pipeline->push(100 * kMs, seen);
     std::vector<std::vector<glm::vec2>> places;
     for (const auto& hand : pipeline->render(104 * kMs, 108 * kMs, {}).hands)
-      places.emplace_back(hand.landings.begin(), hand.landings.end());
+      places.emplace_back(hand.projected_px.begin(), hand.projected_px.end());
     return places;
   };
-  const auto drawn = landings(config::CorrectMethod::none),
-             corrected = landings(config::CorrectMethod::grid);
+  const auto drawn = vertices(config::CorrectMethod::none),
+             corrected = vertices(config::CorrectMethod::grid);
   std::vector<float> moved;
   for (std::size_t h = 0; h < drawn.size(); ++h) {
     moved.push_back(0);
@@ -217,7 +216,7 @@ TEST(PapersGrid, TheReleasedProgramDoesNotCorrectTwoHands) {
     EXPECT_GT(each, 1);
 }
 
-/// All pixels and landings of a moving hand with noisy sensors, for a quarter of a second.
+/// All pixels and vertices of a moving hand with noisy sensors, for a quarter of a second.
 std::vector<std::uint32_t> everything(const config::Cascade& settings) {
   const auto calibration = rig_above_hand();
   const auto pipeline = make_pipeline(settings);
@@ -237,8 +236,8 @@ std::vector<std::uint32_t> everything(const config::Cascade& settings) {
     for (int y = frame.region.y0; y < frame.region.y1; ++y)
       for (int x = frame.region.x0; x < frame.region.x1; ++x) all.push_back(frame.colour.at(x, y));
     for (const FrameHand& each : frame.hands)
-      for (const glm::vec2& landing : each.landings)
-        all.push_back(std::bit_cast<std::uint32_t>(landing.x));
+      for (const glm::vec2& vertex : each.projected_px)
+        all.push_back(std::bit_cast<std::uint32_t>(vertex.x));
   }
   return all;
 }

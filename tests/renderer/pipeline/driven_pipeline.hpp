@@ -94,10 +94,10 @@ inline LightCount count_light(const Frame& frame, const calib::Calibration& cali
   return count;
 }
 
-inline glm::vec2 mean_landing(const FrameHand& hand) {
+inline glm::vec2 mean_vertex(const FrameHand& hand) {
   glm::vec2 sum{0};
-  for (const glm::vec2& landing : hand.landings)
-    sum += landing / static_cast<float>(hand.landings.size());
+  for (const glm::vec2& vertex : hand.projected_px)
+    sum += vertex / static_cast<float>(hand.projected_px.size());
   return sum;
 }
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 #include "tests/renderer/poses.hpp"
 
@@ -205,7 +205,7 @@ Drawn drawn(float true_deg, float reported_deg, const config::Skin& skin) {
   auto frame = *hand.predict(400 * kMs, 404 * kMs, std::nullopt);
   hand.skin(frame, 0);
   const auto& skin_px = frame.skinned->seen_px;
-  return {frame.drawn_from, {skin_px.begin(), skin_px.end()}};
+  return {frame.drawn.landmarks, {skin_px.begin(), skin_px.end()}};
 }
 
 /// The mean distance of the joints of finger tips, px.

@@ -117,7 +117,7 @@ TEST(Pipeline, TrackingSaysWhatRenderingWouldUse) {
   ASSERT_EQ(tracked.size(), 1u);
   EXPECT_EQ(tracked[0].tracker, frame.hands[0].tracker);
   EXPECT_EQ(tracked[0].corrected, frame.hands[0].corrected);
-  EXPECT_TRUE(tracked[0].landings.empty());
+  EXPECT_TRUE(tracked[0].projected_px.empty());
 }
 
 TEST_P(EverySide, TheEdgeOfASmoothPictureIsLitInPart) {
@@ -202,11 +202,12 @@ TEST(Pipeline, WhatIsStampedInTheFutureOutdatesNothing) {
     if (ahead_ns > 0) {
       pipeline->push(60 * kMs, poses_of(60 * kMs + ahead_ns, {elsewhere}));
       pipeline->push(60 * kMs, landmarks_of(calibration, 60 * kMs + ahead_ns, elsewhere, {}));
-      pipeline->look({image.view(), 60 * kMs + ahead_ns});
+      pipeline->track(60 * kMs, 64 * kMs, {image.view(), 60 * kMs + ahead_ns});
       EXPECT_EQ(
           lit_pixels(pipeline->render(60 * kMs, 64 * kMs, {image.view(), 60 * kMs + ahead_ns})),
           lit_pixels(pipeline->render(60 * kMs, 64 * kMs, {})));
     } else {
+      pipeline->track(60 * kMs, 64 * kMs);
       pipeline->render(60 * kMs, 64 * kMs, {});
       pipeline->render(60 * kMs, 64 * kMs, {});
     }

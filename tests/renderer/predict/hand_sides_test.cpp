@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/predict/hand_track.hpp"
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 
 namespace handcast::renderer {

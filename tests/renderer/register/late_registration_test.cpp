@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 
 namespace handcast::renderer {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "renderer/base/joint_math.hpp"
-#include "renderer/predict/project_landmarks.hpp"
+#include "renderer/predict/projected_pose.hpp"
 #include "tests/renderer/hand_pose.hpp"
 #include "tests/renderer/poses.hpp"
 

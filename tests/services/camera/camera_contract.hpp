@@ -33,7 +33,7 @@ class CameraContract : public testing::TestWithParam<CameraBackend> {
     if (GetParam().name == "replay")
       test::write_pictures(scratch_.path(), 3, calibration_.camera.width_px,
                            calibration_.camera.height_px);
-    auto opened = GetParam().open(rig_, calibration_, epoch_ns_);
+    auto opened = GetParam().open(opening_of(rig_, calibration_, epoch_ns_).value());
     if (!opened) throw std::runtime_error(opened.error().what);
     camera_ = std::move(*opened);
   }
@@ -60,7 +60,8 @@ class CameraContract : public testing::TestWithParam<CameraBackend> {
   std::optional<SecondFrame> second_frame(const config::Rig& rig) {
     for (int attempt = 1; attempt <= 10; ++attempt) {
       camera_.reset();  // a device is opened only once at a time
-      auto opened = GetParam().open(rig, calibration_, now_ns() + attempt * to_ns(400ms));
+      const auto epoch_ns = now_ns() + attempt * to_ns(400ms);
+      auto opened = GetParam().open(opening_of(rig, calibration_, epoch_ns).value());
       if (!opened) throw std::runtime_error(opened.error().what);
       camera_ = std::move(*opened);
       if (!capture(Deadline::in(10s))) continue;

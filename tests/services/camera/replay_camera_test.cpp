@@ -85,7 +85,7 @@ TEST_F(ReplayCamera, IsATimeoutAtItsEndWhereItIsNotToRepeat) {
 
 TEST_F(ReplayCamera, SaysWhenNoFolderIsNamed) {
   rig_.camera.replay.directory.clear();
-  expect_refused("camera.replay.directory");
+  expect_refused("set replay.directory");
 }
 
 TEST_F(ReplayCamera, SaysWhenTheFolderIsMissing) {

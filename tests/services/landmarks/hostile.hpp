@@ -36,7 +36,7 @@ class Sights {
     const std::int64_t origin_ns = twin_->camera_origin_ns(frame);
     Sight sight{Grey(camera.width_px, camera.height_px), {}, {}, seconds};
     twin_->camera_image(frame, sight.image.view());
-    landmarks::TrackerHints tracker(calib::reference_rig());
+    landmarks::TrackerHints tracker(first_camera(calib::reference_rig()));
     for (auto k = number(seconds - 0.05, twin_->tracker_time_ns(1000));
          twin_->tracker_sample(k).arrival_ns <= origin_ns; ++k)
       tracker.push(twin_->tracker_sample(k).poses);

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contract of every detector, and the twin's.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-#include "config/settings/choice.hpp"
 #include "services/lab/training/trial.hpp"
-#include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/detector_scenes.hpp"
@@ -18,27 +15,20 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A row of the table of detectors; a landmark model comes once for each executor.
-struct Subject {
-  std::string_view backend;
-  config::Executor executor = config::Executor::onednn;
-};
-
 bool is_landmark_model(std::string_view backend) {
   const auto models = landmark_models();
   return std::ranges::find(models, backend, &LandmarkModelRow::name) != models.end();
 }
 
-class DetectorContract : public testing::TestWithParam<Subject> {
+class DetectorContract : public testing::TestWithParam<std::string_view> {
  protected:
   void SetUp() override {
-    if (GetParam().backend == "mediapipe") SKIP_WITHOUT_MODELS();
-    if (is_landmark_model(GetParam().backend)) {
+    if (GetParam() == "mediapipe") SKIP_WITHOUT_MODELS();
+    if (is_landmark_model(GetParam())) {
       auto shown = training::Trials::open("builtin:open_close", 1)->make(1, 10).value();
       scene_.emplace(test::Capture{std::move(shown.image), shown.tracker_px});
     }
-    rig_.landmarks.backend = GetParam().backend;
-    rig_.landmarks.executor = GetParam().executor;
+    rig_.landmarks.backend = GetParam();
     rig_.landmarks.models = test::models();
     rig_.landmarks.replay.directory = scratch_.path();
     write_detections(scratch_.path(), 4);
@@ -93,7 +83,7 @@ TEST_P(DetectorContract, ADetectionNotDoneInTimeIsATimeoutAndGoesOn) {
 // does not see.
 TEST_P(DetectorContract, LandmarksDependOnlyOnTheSettingsThatTheirRowNames) {
   const auto backends = detector_backends();
-  const auto row = std::ranges::find(backends, GetParam().backend, &DetectorBackend::name);
+  const auto row = std::ranges::find(backends, GetParam(), &DetectorBackend::name);
   rig_.twin.motion = "builtin:two_hands";
   const std::int64_t origin_ns = epoch_ns_ + to_ns(300ms);
   const auto first_landmarks = [&](const config::Rig& rig) {
@@ -107,21 +97,9 @@ TEST_P(DetectorContract, LandmarksDependOnlyOnTheSettingsThatTheirRowNames) {
       << "a setting is missing in the row's `reads`";
 }
 
-std::vector<Subject> all() {
-  std::vector<Subject> subjects;
-  for (const auto name : service::names_of(detector_backends())) {
-    if (!is_landmark_model(name)) subjects.push_back({name});
-    if (is_landmark_model(name))
-      for (const auto executor : executors()) subjects.push_back({name, executor});
-  }
-  return subjects;
-}
-std::string title_of(const testing::TestParamInfo<Subject>& info) {
-  const auto& [backend, executor] = info.param;
-  return is_landmark_model(backend) ? fmt::format("{}_{}", backend, config::word_of(executor))
-                                    : std::string(backend);
-}
-INSTANTIATE_TEST_SUITE_P(Backends, DetectorContract, testing::ValuesIn(all()), title_of);
+INSTANTIATE_TEST_SUITE_P(Backends, DetectorContract,
+                         testing::ValuesIn(service::names_of(detector_backends())),
+                         [](const auto& named) { return std::string(named.param); });
 
 TEST(TwinDetector, TakesAsLongAsTheRigSays) {
   config::Rig rig;

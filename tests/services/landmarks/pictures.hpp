@@ -12,7 +12,7 @@
 #include <string>
 
 #include "renderer/base/image.hpp"
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/landmarks/geometry/points.hpp"
 #include "services/landmarks/models/mediapipe_files.hpp"
 #include "services/tools/detect/picture.hpp"

@@ -49,8 +49,8 @@ inline Result<void> sample(PoseSource& source, msg::HandPoses& poses, Deadline d
     const std::uint64_t run = at_ns ? static_cast<std::uint64_t>(*at_ns) : runs++;
     const std::int64_t origin_ns = at_ns.value_or(now_ns());
     for (int view = 0; view < source.views(); ++view) {
-      const auto seen_by = view == 0 ? two_cameras() : calib::second_view(two_cameras());
-      const auto twin = twin::Twin::create(rig, seen_by).value();
+      const auto at = view == 0 ? config::Viewpoint::first : config::Viewpoint::second;
+      const auto twin = twin::Twin::create(rig, two_cameras(), at).value();
       auto seen = twin->detect(0, run, 0).landmarks;
       seen.header.origin_ns = origin_ns;
       source.see(seen, view);

@@ -99,21 +99,21 @@ TEST_P(MovingHand, EachSubFrameIsTheFrameOfItsOwnTime) {
   SubFramePlan plan(settings);
   plan.start(kStart_ns);
   packer->begin(1);
-  std::vector<std::int64_t> lit_ns;
+  std::vector<std::int64_t> display_ns;
   while (const auto next = plan.next(kStart_ns)) {
     const auto frame = drawing->render(kStart_ns, next->target_ns, {});
     packer->add(frame.colour, frame.region, next->first, next->count);
     plan.drawn(*next, kMs / 10);
-    lit_ns.push_back(next->target_ns);
+    display_ns.push_back(next->target_ns);
   }
-  ASSERT_EQ(lit_ns.size(), static_cast<std::size_t>(config::sub_frames_of(GetParam())));
+  ASSERT_EQ(display_ns.size(), static_cast<std::size_t>(config::sub_frames_of(GetParam())));
 
   const auto alone = fast_hand(calibration);
   renderer::Texture first;
-  for (std::size_t k = 0; k < lit_ns.size(); ++k) {
-    EXPECT_NEAR(static_cast<double>(lit_ns[k] - lit_ns[0]),
+  for (std::size_t k = 0; k < display_ns.size(); ++k) {
+    EXPECT_NEAR(static_cast<double>(display_ns[k] - display_ns[0]),
                 static_cast<double>(k) * 1e9 / settings.rate_hz, 50);
-    const auto expected = copy_of(alone->render(kStart_ns, lit_ns[k], {}));
+    const auto expected = copy_of(alone->render(kStart_ns, display_ns[k], {}));
     if (k == 0) first = expected;
     EXPECT_EQ(differences(GetParam(), packer->image(), static_cast<int>(k), expected), 0) << k;
     if (k > 0) {

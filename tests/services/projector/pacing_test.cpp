@@ -60,7 +60,7 @@ TEST(Horizon, FollowsTheMeasuredTimeAndNotOneSlowFrame) {
   const auto learn = [&](int frames, std::int64_t software_ms, std::int64_t light_ms) {
     for (int i = 0; i < frames; ++i)
       horizon.learn(kMs, {.handed_ns = (1 + software_ms) * kMs,
-                          .lit_ns = (1 + software_ms + light_ms) * kMs});
+                          .display_ns = (1 + software_ms + light_ms) * kMs});
   };
   learn(40, 1, 4);
   learn(1, 50, 50);
@@ -80,7 +80,7 @@ TEST(Horizon, DoesNotBeginEverEarlierIfFramesWaitForTheProjector) {
   for (std::int64_t refresh = 1; refresh <= 200; ++refresh) {
     const std::int64_t next_ns = refresh * 16 * kMs;
     const std::int64_t begin_ns = horizon.begin_ns(next_ns);
-    horizon.learn(begin_ns, {.handed_ns = begin_ns + 2 * kMs, .lit_ns = next_ns + 3 * kMs});
+    horizon.learn(begin_ns, {.handed_ns = begin_ns + 2 * kMs, .display_ns = next_ns + 3 * kMs});
   }
   EXPECT_EQ(horizon.begin_ns(0), -2'800'000);  // 2 ms of software, a quarter of it, and 0.3 ms
   EXPECT_NEAR(horizon.target_ns(horizon.begin_ns(0)), 3 * kMs, 1000);

@@ -18,7 +18,7 @@ class WriteProjection : public testing::Test {
     frame_.colour = pixels_.view();
     frame_.region = {2, 1, 5, 4};
     hand_.side = renderer::Side::right;
-    hand_.landings = landings_;
+    hand_.projected_px = vertices_;
     frame_.hands = {&hand_, 1};
     frame_.foldovers = 3;
   }
@@ -31,7 +31,7 @@ class WriteProjection : public testing::Test {
   /// The room that a region of 3 x 3 pixels needs.
   static constexpr std::size_t kTail = msg::Projection::bytes(3, 3) - sizeof(msg::Projection);
   renderer::Image<std::uint32_t> pixels_{8, 6};
-  std::vector<glm::vec2> landings_{{1, 2}, {3, 4}};
+  std::vector<glm::vec2> vertices_{{1, 2}, {3, 4}};
   renderer::FrameHand hand_;
   renderer::Frame frame_;
   std::vector<std::uint64_t> memory_;
@@ -106,9 +106,9 @@ TEST_F(WriteProjection, SaysWhatEveryFourthPixelShowsAndOnWhichHand) {
 }
 
 TEST_F(WriteProjection, LandingsAndHandsBeyondTheMessagesRoomAreLeftOut) {
-  landings_.assign(msg::kMaxVertices + 50, {7, 8});
-  landings_.back() = {-1, -1};
-  hand_.landings = landings_;
+  vertices_.assign(msg::kMaxVertices + 50, {7, 8});
+  vertices_.back() = {-1, -1};
+  hand_.projected_px = vertices_;
   const std::vector<renderer::FrameHand> many(msg::kMaxHands + 2, hand_);
   frame_.hands = many;
   const auto& projection = write(8 * 6 * 4);

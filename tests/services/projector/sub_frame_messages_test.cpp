@@ -31,10 +31,12 @@ class SubFrameMessagesTest : public testing::Test {
     frame.colour = pixels.view();
     frame.region = {1, 2, 2, 3};
     frame.target_ns = target_ns;
-    messages_.keep(frame, count, target_ns - 9 * kMs, target_ns - 8 * kMs);
+    const msg::StageMark mark{msg::Stage::frame, 0, target_ns - 9 * kMs, target_ns - 8 * kMs};
+    frame.stages = {&mark, 1};
+    messages_.keep(frame, count);
   }
 
-  /// The message that is published next, as frame_id, pixel, target_ns, lit_ns.
+  /// The message that is published next, as frame_id, pixel, target_ns, display_ns.
   using Seen = std::tuple<std::uint64_t, std::uint32_t, std::int64_t, std::int64_t>;
   std::vector<Seen> seen() {
     std::vector<Seen> all;
@@ -104,7 +106,7 @@ TEST_F(SubFrameMessagesTest, AnOutputFrameThatWasNotShownIsNotPublished) {
   draw(2, 60, 4);
   messages_.handed_over(plan_, 4, {100 * kMs, 113 * kMs});
   messages_.publish(1000 * kMs);
-  for (const auto& [id, pixel, target_ns, lit_ns] : seen()) EXPECT_EQ(pixel, 2u);
+  for (const auto& [id, pixel, target_ns, display_ns] : seen()) EXPECT_EQ(pixel, 2u);
 }
 
 }  // namespace

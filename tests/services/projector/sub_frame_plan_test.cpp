@@ -181,7 +181,7 @@ TEST(SubFramePlan, FollowsTheRhythmOfTheProjector) {
   plan.start(kStart_ns);
   plan.drawn({0, 8}, kMs / 2);
   plan.presented({.handed_ns = kStart_ns + 3 * kMs,
-                  .lit_ns = kStart_ns + 12 * kMs,
+                  .display_ns = kStart_ns + 12 * kMs,
                   .next_ns = kStart_ns + 17 * kMs});
   plan.start(kStart_ns + 4 * kMs);
   EXPECT_EQ(plan.hand_over_ns(), kStart_ns + 17 * kMs);
@@ -190,10 +190,10 @@ TEST(SubFramePlan, FollowsTheRhythmOfTheProjector) {
 TEST(SubFramePlan, EachSubFrameIsLitForItsOwnPartOfTheOutputFrame) {
   const SubFramePlan plan(settings(1));
   const PresentTimes output{100 * kMs, 107 * kMs};
-  EXPECT_EQ(plan.times_of(0, output).lit_ns, 102 * kMs + kMs * 5 / 8);
-  EXPECT_EQ(plan.times_of(7, output).lit_ns, 112 * kMs - kMs * 5 / 8);
-  EXPECT_EQ(plan.times_of(7, output).lit_ns - plan.times_of(7, output).handed_ns,
-            plan.times_of(0, output).lit_ns - plan.times_of(0, output).handed_ns);
+  EXPECT_EQ(plan.times_of(0, output).display_ns, 102 * kMs + kMs * 5 / 8);
+  EXPECT_EQ(plan.times_of(7, output).display_ns, 112 * kMs - kMs * 5 / 8);
+  EXPECT_EQ(plan.times_of(7, output).display_ns - plan.times_of(7, output).handed_ns,
+            plan.times_of(0, output).display_ns - plan.times_of(0, output).handed_ns);
 }
 
 }  // namespace

@@ -48,6 +48,16 @@ TEST_F(TestPicturesTest, APictureFillsTheScreenWithItsLevels) {
   EXPECT_TRUE(frame->hands.empty());
 }
 
+TEST_F(TestPicturesTest, TheTimeOfAPictureIsMarkedAsThatOfAFrame) {
+  publish(5, 0x40);
+  const auto begin_ns = now_ns();
+  const auto* frame = pictures_.at(begin_ns, kTarget_ns);
+  ASSERT_NE(frame, nullptr);
+  ASSERT_EQ(frame->stages.size(), 1u);
+  EXPECT_EQ(frame->stages[0].stage, msg::Stage::frame);
+  EXPECT_EQ(frame->stages[0].begin_ns, begin_ns);
+}
+
 TEST_F(TestPicturesTest, APictureStaysUntilItsTimeIsOverAndThenHandsAreDrawn) {
   publish(5, 0x40);
   const auto published_ns = now_ns();

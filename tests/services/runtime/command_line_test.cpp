@@ -21,6 +21,11 @@ TEST(CommandLine, SettingsKeepTheirOrder) {
   EXPECT_THAT(line->settings, ElementsAre("a.b=1", "a.b=x=y"));
 }
 
+TEST(CommandLine, AnInstanceIsNamed) {
+  EXPECT_EQ(parse({"--as", "camera2", "--config", "rig.toml"})->instance, "camera2");
+  EXPECT_EQ(parse({"--config", "rig.toml"})->instance, "");
+}
+
 TEST(CommandLine, WhatCannotBeUnderstoodIsNamed) {
   EXPECT_THAT(parse({"--config"}).error().what, HasSubstr("--config needs a value"));
   EXPECT_THAT(parse({"--frobnicate"}).error().what, HasSubstr("'--frobnicate'"));

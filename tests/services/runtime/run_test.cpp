@@ -20,6 +20,7 @@
 namespace handcast::service {
 namespace {
 
+using testing::ElementsAre;
 using testing::ExitedWithCode;
 using testing::HasSubstr;
 
@@ -377,6 +378,68 @@ TEST_F(Run, ACoreThatIsNotThereIsExitHundred) {
   write_rig("[pose.process]\ncores = [1000]\n");
   EXPECT_EXIT(_exit(daemon(do_nothing)), ExitedWithCode(kExitConfig),
               "pose.process.cores: there is no core 1000");
+}
+
+/// A program that is two services.
+class Instances : public Run {
+ protected:
+  int program(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "handcast-camera");
+    std::vector<char*> pointers;
+    for (auto& argument : arguments) pointers.push_back(argument.data());
+    const auto instance = [](const std::string& name) {
+      return Instance{{.name = name, .summary = "Sees.", .paced_by = "its device"},
+                      [name](Context&) { log::info("this is {}", name); },
+                      [name](const config::Rig&, const calib::Calibration&) -> Result<void> {
+                        return fail(Errc::bad_config, name + " cannot see");
+                      }};
+    };
+    return run(std::array{instance("camera"), instance("camera2")},
+               static_cast<int>(pointers.size()), pointers.data());
+  }
+};
+
+TEST_F(Instances, TheFirstOneRunsUnlessAnotherIsNamed) {
+  EXPECT_EXIT(_exit(program({"--config", rig_})), ExitedWithCode(0),
+              " camera +info +this is camera\n");
+  EXPECT_EXIT(_exit(program({"--as", "camera2", "--config", rig_})), ExitedWithCode(0),
+              " camera2 +info +this is camera2\n");
+  EXPECT_EXIT(_exit(program({"--as", "camera", "--config", rig_})), ExitedWithCode(0),
+              "this is camera\n");
+}
+
+TEST_F(Instances, EachHasItsOwnSchedulingCheckAndDescription) {
+  write_rig("[camera2.process]\ncores = [1000]\n");
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(program({"--as", "camera2", "--config", rig_, "--check"}), kExitConfig);
+  const auto faults = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(faults, HasSubstr("camera2.process.cores: there is no core 1000"));
+  EXPECT_THAT(faults, HasSubstr("camera2 cannot see"));
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(program({"--as", "camera2", "--describe"}), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("\"camera2.process\""));
+}
+
+TEST_F(Instances, OneThatTheProgramIsNotIsRefusedWithThoseThatItIs) {
+  EXPECT_EXIT(_exit(program({"--as", "camera3", "--config", rig_})), ExitedWithCode(kExitUsage),
+              "--as camera3: this program is camera or camera2");
+}
+
+TEST(DescribeAt, TheSecondViewpointHasItsOwnRingsAndSettings) {
+  const auto second = describe_at(config::Viewpoint::second,
+                                  {.name = "landmarks",
+                                   .summary = "Finds.",
+                                   .paced_by = "camera.frames",
+                                   .publishes = {"landmarks.hands"},
+                                   .subscribes = {"camera.frames", "pose.hands"},
+                                   .settings = {"landmarks.hands"},
+                                   .backends = {{"a", "A.", {"camera.rate_hz", "twin"}}}});
+  EXPECT_EQ(second.name, "landmarks2");
+  EXPECT_EQ(second.paced_by, "camera2.frames");
+  EXPECT_THAT(second.publishes, ElementsAre("landmarks2.hands"));
+  EXPECT_THAT(second.subscribes, ElementsAre("camera2.frames", "pose.hands"));
+  EXPECT_THAT(second.settings, ElementsAre("landmarks2.hands"));
+  EXPECT_THAT(second.backends[0].settings, ElementsAre("camera2.rate_hz", "twin"));
 }
 
 }  // namespace

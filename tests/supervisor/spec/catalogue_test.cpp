@@ -15,6 +15,7 @@
 namespace handcast::supervisor {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
@@ -156,6 +157,18 @@ TEST(BuiltCatalogue, ASecondCameraHasServicesOfItsOwn) {
   EXPECT_THAT(camera2.settings, testing::Contains("camera2.rate_hz"));
   EXPECT_THAT(catalogue.at("landmarks2").subscribes,
               testing::ElementsAre("camera2.frames", "pose.hands"));
+}
+
+TEST(BuiltCatalogue, AnInstanceIsStartedAsTheProgramOfTheFirst) {
+  config::Rig rig;
+  rig.camera2.backend = "twin";
+  std::map<std::string, std::vector<std::string>> commands;
+  for (const auto& spec : services_of(rig, test::built_catalogue()))
+    commands[spec.name] = command_of(spec, "/opt/bin");
+  EXPECT_THAT(commands["camera"], ElementsAre("/opt/bin/handcast-camera"));
+  EXPECT_THAT(commands["camera2"], ElementsAre("/opt/bin/handcast-camera", "--as", "camera2"));
+  EXPECT_THAT(commands["landmarks2"],
+              ElementsAre("/opt/bin/handcast-landmarks", "--as", "landmarks2"));
 }
 
 TEST(BuiltCatalogue, ARigWithoutAProjectorToCommandHasNoServiceForIt) {

@@ -101,8 +101,8 @@ TEST(Fingerprint, ATwinRigsServicesDependOnTheirOwnSettingsAndOnWhatTheTwinMakes
                truth_and({"landmarks", "twin.detector", "twin.image.delivery_ms", "twin.image.lost",
                           "twin.image.burst", "twin.image.clock_drift_ppm",
                           "twin.image.clock_jitter_ms", "camera.rate_hz", "camera.exposure_ms"}),
-               settings_in({"landmarks.replay", "landmarks.executor", "landmarks.models",
-                            "landmarks.hands", "landmarks.process.standby"}));
+               settings_in({"landmarks.replay", "landmarks.models", "landmarks.hands",
+                            "landmarks.process.standby"}));
 }
 
 TEST(Fingerprint, ADetectorOfNetworksDependsOnItsModelsAndNotOnTheTwin) {
@@ -132,8 +132,7 @@ TEST(Fingerprint, AReplayedRigsServicesDoNotDependOnTheTwin) {
                settings_in({"pose.none", "pose.leapc", "pose.openxr", "pose.stereo",
                             "pose.process.standby"}));
   expect_reads("landmarks", replay(), {"landmarks"},
-               settings_in({"landmarks.executor", "landmarks.models", "landmarks.hands",
-                            "landmarks.process.standby"}));
+               settings_in({"landmarks.models", "landmarks.hands", "landmarks.process.standby"}));
 }
 
 config::Rig with_camera(const char* backend) {

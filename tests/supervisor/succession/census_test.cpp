@@ -31,6 +31,13 @@ TEST_F(Census, AServiceIsFoundByItsEnvironment) {
   EXPECT_THAT(find_services("desk"), IsEmpty());  // a zombie is no service
 }
 
+TEST_F(Census, AnInstanceOfAProgramHasItsOwnName) {
+  service("sleep 1000; true", now_ns(), {"handcast-camera", "--as", "camera2", "--config", "x"});
+  const auto found = find_services("desk");
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].service, "camera2");
+}
+
 TEST_F(Census, TheProcessesThatAServiceStartsAreNotServices) {
   service("sleep 1000 & sleep 1000");
   usleep(50'000);

@@ -17,9 +17,13 @@ namespace handcast::supervisor {
 /// Services of the rig "desk" that no supervisor knows of.
 class Orphans : public testing::Test {
  protected:
-  Child& service(const std::string& script, std::int64_t epoch_ns = now_ns()) {
+  /// `words`: those after the script on its command line.
+  Child& service(const std::string& script, std::int64_t epoch_ns = now_ns(),
+                 const std::vector<std::string>& words = {}) {
+    std::vector<std::string> arguments{"-c", script};
+    arguments.insert(arguments.end(), words.begin(), words.end());
     auto child = Child::spawn({.program = "/bin/bash",
-                               .arguments = {"-c", script},
+                               .arguments = std::move(arguments),
                                .epoch_ns = epoch_ns,
                                .rig = control::address_of("desk").value().text,
                                .state_fd = 2});

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+/// What the implicit hand is made of. Millimetres; axes as in renderer::HandShape.
 #pragma once
 #include <vector>
 
 #include "services/lab/hand_maker/rest_pose.hpp"
 #include "services/lab/twin/implicit/limb.hpp"
 
-/// What the implicit hand is made of. Millimetres; axes as in renderer::HandShape.
 namespace handcast::twin {
 
 /// The joint that moves a limb from a place along it on.

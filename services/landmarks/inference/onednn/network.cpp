@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The executor `onednn`: runs a graph with oneDNN's primitives. Shapes, layouts and the order of
+// Runs a graph with oneDNN's primitives. Shapes, layouts and the order of
 // the weights are determined once, when the network is opened.
 #include "services/landmarks/inference/network.hpp"
 
@@ -152,7 +152,7 @@ Result<std::unique_ptr<OnednnNetwork>> open(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<std::unique_ptr<Network>> open_onednn_network(const std::filesystem::path& file) {
+Result<std::unique_ptr<Network>> open_network(const std::filesystem::path& file) {
   return open(file).map(
       [](std::unique_ptr<OnednnNetwork> network) -> std::unique_ptr<Network> { return network; });
 }

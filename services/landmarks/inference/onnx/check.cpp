@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/landmarks/inference/onnx/check.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
+
+#include "services/landmarks/inference/onnx/model.hpp"
 
 namespace handcast::landmarks::onnx {
 

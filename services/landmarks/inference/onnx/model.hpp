@@ -96,7 +96,8 @@ struct Model {
 Result<Model> read_model(const std::filesystem::path& file);
 /// The same from memory; errors do not name a file.
 Result<Model> parse_model(std::span<const std::uint8_t> bytes);
-/// The model as the bytes of an ONNX file.
-std::vector<std::uint8_t> write_model(const Model& model);
+/// Checks that the graph is valid: fixed extents, each value computed once and before it is used,
+/// finite constants. Errors: bad_config.
+Result<void> check_model(const Model& model);
 
 }  // namespace handcast::landmarks::onnx

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Field numbers: onnx.proto of the ONNX project, IR version 3 and up.
+// Fields: onnx.proto of the ONNX project, IR version 3 and up.
 #include <fmt/format.h>
+
+#define ONNX_ML 1  // the only kind that is installed
+#include <onnx/onnx_pb.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "ipc/base/input_file.hpp"
-#include "services/landmarks/inference/onnx/check.hpp"
 #include "services/landmarks/inference/onnx/model.hpp"
-#include "services/landmarks/inference/onnx/wire.hpp"
 
 namespace handcast::landmarks::onnx {
 
 namespace {
+
+using ::onnx::AttributeProto, ::onnx::GraphProto, ::onnx::ModelProto, ::onnx::NodeProto,
+    ::onnx::TensorProto, ::onnx::ValueInfoProto;
 
 /// An exception inside this file: parse_model() turns it into an error.
 struct Broken {
@@ -21,45 +25,6 @@ struct Broken {
 };
 
 [[noreturn]] void broken(std::string what) { throw Broken{std::move(what)}; }
-
-/// Calls `visit` with each field of a message.
-template <class Visit>
-void each_field(Bytes message, const char* what, Visit&& visit) {
-  WireReader reader(message);
-  while (const auto field = reader.next()) visit(*field);
-  if (reader.broken())
-    broken(fmt::format("it is not an ONNX file, or damaged (the {} is cut off)", what));
-}
-
-void append_integers(const Field& field, std::vector<std::int64_t>& list) {
-  if (!field.is_bytes) return list.push_back(field.integer());
-  WireReader packed(field.bytes);
-  while (!packed.at_end()) {
-    const auto value = packed.varint();
-    if (!value) broken("it is damaged (a list of integers is cut off)");
-    list.push_back(static_cast<std::int64_t>(*value));
-  }
-}
-
-/// The little-endian numbers of `bytes`.
-template <class T>
-std::vector<T> numbers_of(Bytes bytes) {
-  if (bytes.size() % sizeof(T) != 0) broken("it is damaged (a list of numbers is cut off)");
-  std::vector<T> numbers(bytes.size() / sizeof(T));
-  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
-  return numbers;
-}
-
-template <class T, class U>
-void append(const std::vector<U>& from, std::vector<T>& to) {
-  to.reserve(to.size() + from.size());
-  for (const U value : from) to.push_back(static_cast<T>(value));
-}
-
-void append_floats(const Field& field, std::vector<float>& list) {
-  if (field.is_bytes) return append(numbers_of<float>(field.bytes), list);
-  list.push_back(field.number32());
-}
 
 float half_to_float(std::uint16_t half) {
   const int exponent = half >> 10 & 31, mantissa = half & 1023;
@@ -69,29 +34,40 @@ float half_to_float(std::uint16_t half) {
   return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
 }
 
-enum DataType { kFloat = 1, kInt32 = 6, kInt64 = 7, kBool = 9, kFloat16 = 10, kDouble = 11 };
+/// Appends the little-endian numbers of `raw`, which are of type `From`.
+template <class From, class To>
+void append_raw(const std::string& raw, std::vector<To>& to) {
+  if (raw.size() % sizeof(From) != 0) broken("it is damaged (a list of numbers is cut off)");
+  std::vector<From> numbers(raw.size() / sizeof(From));
+  if (!numbers.empty()) std::memcpy(numbers.data(), raw.data(), raw.size());
+  to.reserve(to.size() + numbers.size());
+  for (const From number : numbers) to.push_back(static_cast<To>(number));
+}
 
-void append_raw(Bytes raw, std::int64_t type, Tensor& tensor) {
-  switch (type) {
-    case kFloat:
-      return append(numbers_of<float>(raw), tensor.floats);
-    case kDouble:
-      return append(numbers_of<double>(raw), tensor.floats);
-    case kInt32:
-      return append(numbers_of<std::int32_t>(raw), tensor.integers);
-    case kInt64:
-      return append(numbers_of<std::int64_t>(raw), tensor.integers);
-    case kBool:
-      return append(numbers_of<std::uint8_t>(raw), tensor.integers);
-    case kFloat16:
-      for (const std::uint16_t half : numbers_of<std::uint16_t>(raw))
-        tensor.floats.push_back(half_to_float(half));
+void append_raw(const TensorProto& from, Tensor& tensor) {
+  const std::string& raw = from.raw_data();
+  switch (from.data_type()) {
+    case TensorProto::FLOAT:
+      return append_raw<float>(raw, tensor.floats);
+    case TensorProto::DOUBLE:
+      return append_raw<double>(raw, tensor.floats);
+    case TensorProto::INT32:
+      return append_raw<std::int32_t>(raw, tensor.integers);
+    case TensorProto::INT64:
+      return append_raw<std::int64_t>(raw, tensor.integers);
+    case TensorProto::BOOL:
+      return append_raw<std::uint8_t>(raw, tensor.integers);
+    case TensorProto::FLOAT16: {
+      std::vector<std::uint16_t> halves;
+      append_raw<std::uint16_t>(raw, halves);
+      for (const std::uint16_t half : halves) tensor.floats.push_back(half_to_float(half));
       return;
+    }
     default:
       broken(
           fmt::format("a constant has type {}; supported are float, float16, double, int32, "
                       "int64 and bool",
-                      type));
+                      from.data_type()));
   }
 }
 
@@ -107,148 +83,53 @@ void check_size(const Tensor& tensor, const std::string& name) {
                        to_string(tensor.shape), given));
 }
 
-Tensor read_tensor(Bytes message, std::string& name) {
-  Tensor tensor;
-  std::int64_t type = 0;
-  Bytes raw;
-  bool outside = false;
-  std::vector<std::int64_t> words;
-  each_field(message, "constant", [&](const Field& field) {
-    switch (field.number) {
-      case 1:
-        append_integers(field, tensor.shape);
-        break;
-      case 2:
-        type = field.integer();
-        break;
-      case 4:
-        append_floats(field, tensor.floats);
-        break;
-      case 5:
-        append_integers(field, words);
-        break;
-      case 7:
-        append_integers(field, tensor.integers);
-        break;
-      case 8:
-        name = field.text();
-        break;
-      case 9:
-        raw = field.bytes;
-        break;
-      case 10:
-        append(numbers_of<double>(field.bytes), tensor.floats);
-        break;
-      case 14:
-        outside = field.value == 1;
-        break;
-      default:
-        break;
-    }
-  });
-  if (outside)
-    broken(fmt::format("the constant '{}' is in another file, which is not supported", name));
-  append_raw(raw, type, tensor);
-  for (const std::int64_t word : words) {
-    if (type == kFloat16)
+Tensor tensor_of(const TensorProto& from) {
+  if (from.data_location() == TensorProto::EXTERNAL)
+    broken(
+        fmt::format("the constant '{}' is in another file, which is not supported", from.name()));
+  Tensor tensor{.shape = {from.dims().begin(), from.dims().end()},
+                .floats = {from.float_data().begin(), from.float_data().end()},
+                .integers = {from.int64_data().begin(), from.int64_data().end()}};
+  for (const double number : from.double_data())
+    tensor.floats.push_back(static_cast<float>(number));
+  append_raw(from, tensor);
+  for (const std::int32_t word : from.int32_data()) {
+    if (from.data_type() == TensorProto::FLOAT16)
       tensor.floats.push_back(half_to_float(static_cast<std::uint16_t>(word)));
     else
       tensor.integers.push_back(word);
   }
-  check_size(tensor, name);
+  check_size(tensor, from.name());
   return tensor;
 }
 
-std::pair<std::string, Attribute> read_attribute(Bytes message) {
-  std::string name, unused;
-  Attribute attribute;
-  bool has_tensor = false;
-  each_field(message, "attribute", [&](const Field& field) {
-    switch (field.number) {
-      case 1:
-        name = field.text();
-        break;
-      case 2:
-        attribute.number = field.number32();
-        break;
-      case 3:
-        attribute.integer = field.integer();
-        break;
-      case 4:
-        attribute.text = field.text();
-        break;
-      case 5:
-        attribute.tensor = read_tensor(field.bytes, unused);
-        has_tensor = true;
-        break;
-      case 7:
-        append_floats(field, attribute.numbers);
-        break;
-      case 8:
-        append_integers(field, attribute.integers);
-        break;
-      case 20:
-        attribute.kind = static_cast<Attribute::Kind>(field.value & 15);
-        break;
-      default:
-        break;
-    }
-  });
-  if (attribute.kind == Attribute::kTensor && !has_tensor)
-    broken(fmt::format("it is damaged (the attribute '{}' has no value)", name));
-  return {std::move(name), std::move(attribute)};
+Attribute attribute_of(const AttributeProto& from) {
+  Attribute attribute{.kind = static_cast<Attribute::Kind>(from.type()),
+                      .integer = from.i(),
+                      .number = from.f(),
+                      .text = from.s(),
+                      .integers = {from.ints().begin(), from.ints().end()},
+                      .numbers = {from.floats().begin(), from.floats().end()}};
+  if (from.has_t()) attribute.tensor = tensor_of(from.t());
+  if (attribute.kind == Attribute::kTensor && !from.has_t())
+    broken(fmt::format("it is damaged (the attribute '{}' has no value)", from.name()));
+  return attribute;
 }
 
-Node read_node(Bytes message) {
-  Node node;
-  each_field(message, "node", [&](const Field& field) {
-    switch (field.number) {
-      case 1:
-        node.inputs.push_back(field.text());
-        break;
-      case 2:
-        node.outputs.push_back(field.text());
-        break;
-      case 4:
-        node.op = field.text();
-        break;
-      case 5:
-        node.attributes.insert(read_attribute(field.bytes));
-        break;
-      default:
-        break;
-    }
-  });
+Node node_of(const NodeProto& from) {
+  Node node{.op = from.op_type(),
+            .inputs = {from.input().begin(), from.input().end()},
+            .outputs = {from.output().begin(), from.output().end()}};
+  for (const auto& attribute : from.attribute())
+    node.attributes.emplace(attribute.name(), attribute_of(attribute));
   return node;
 }
 
-/// TensorShapeProto. A free extent (one with a name, or with neither) is 0.
-Shape read_shape(Bytes message) {
-  Shape shape;
-  each_field(message, "shape", [&](const Field& field) {
-    if (field.number != 1) return;
-    std::int64_t extent = 0;
-    each_field(field.bytes, "shape", [&](const Field& part) {
-      if (part.number == 1) extent = part.integer();
-    });
-    shape.push_back(extent);
-  });
-  return shape;
-}
-
-/// ValueInfoProto > TypeProto > its tensor type > its shape.
-Port read_port(Bytes message) {
-  Port port;
-  each_field(message, "port", [&](const Field& field) {
-    if (field.number == 1) port.name = field.text();
-    if (field.number != 2) return;
-    each_field(field.bytes, "type", [&](const Field& type) {
-      if (type.number != 1) return;
-      each_field(type.bytes, "type", [&](const Field& part) {
-        if (part.number == 2) port.shape = read_shape(part.bytes);
-      });
-    });
-  });
+/// A free extent (one with a name, or with neither) is 0; that of the batch becomes 1.
+Port port_of(const ValueInfoProto& from) {
+  Port port{.name = from.name()};
+  for (const auto& extent : from.type().tensor_type().shape().dim())
+    port.shape.push_back(extent.dim_value());
   if (!port.shape.empty() && port.shape[0] == 0) port.shape[0] = 1;
   return port;
 }
@@ -265,55 +146,30 @@ void add_node(Model& model, Node node) {
   add_constant(model, node.outputs[0], std::move(node.attributes["value"].tensor));
 }
 
-void read_graph(Bytes message, Model& model) {
-  each_field(message, "graph", [&](const Field& field) {
-    switch (field.number) {
-      case 1:
-        add_node(model, read_node(field.bytes));
-        break;
-      case 5: {
-        std::string name;
-        Tensor tensor = read_tensor(field.bytes, name);
-        add_constant(model, name, std::move(tensor));
-        break;
-      }
-      case 11:
-        model.inputs.push_back(read_port(field.bytes));
-        break;
-      case 12:
-        model.outputs.push_back(read_port(field.bytes));
-        break;
-      default:
-        break;
-    }
-  });
+Model model_of(const ModelProto& file) {
+  Model model;
+  for (const auto& opset : file.opset_import())
+    if (opset.domain().empty() || opset.domain() == "ai.onnx") model.opset = opset.version();
+  const GraphProto& graph = file.graph();
+  for (const auto& node : graph.node()) add_node(model, node_of(node));
+  for (const auto& constant : graph.initializer())
+    add_constant(model, constant.name(), tensor_of(constant));
+  for (const auto& input : graph.input()) model.inputs.push_back(port_of(input));
+  for (const auto& output : graph.output()) model.outputs.push_back(port_of(output));
   // Before IR version 4, constants are listed among the inputs, too.
   std::erase_if(model.inputs,
                 [&](const Port& port) { return model.constants.contains(port.name); });
-}
-
-void read_opset(Bytes message, Model& model) {
-  std::string domain;
-  std::int64_t version = 0;
-  each_field(message, "operator set", [&](const Field& field) {
-    if (field.number == 1) domain = field.text();
-    if (field.number == 2) version = field.integer();
-  });
-  if (domain.empty() || domain == "ai.onnx") model.opset = version;
+  return model;
 }
 
 }  // namespace
 
 Result<Model> parse_model(std::span<const std::uint8_t> bytes) try {
-  Model model;
-  bool has_graph = false;
-  each_field(bytes, "model", [&](const Field& field) {
-    if (field.number == 8) read_opset(field.bytes, model);
-    if (field.number != 7) return;
-    if (std::exchange(has_graph, true)) broken("it has two graphs");
-    read_graph(field.bytes, model);
-  });
-  if (!has_graph) broken("it is not an ONNX file: it has no graph");
+  ModelProto file;
+  if (!file.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())))
+    broken("it is not an ONNX file, or damaged");
+  if (!file.has_graph()) broken("it is not an ONNX file: it has no graph");
+  Model model = model_of(file);
   if (auto sound = check_model(model); !sound) return tl::make_unexpected(sound.error());
   return model;
 } catch (const Broken& error) {

@@ -6,7 +6,6 @@
 
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/tools/preview/layout/panels.hpp"
-#include "services/tools/preview/layout/theme.hpp"
 
 namespace handcast::preview {
 namespace {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "services/tools/preview/layout/panels.hpp"
-#include "services/tools/preview/layout/theme.hpp"
 
 namespace handcast::preview {
 namespace {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "services/tools/preview/layout/panels.hpp"
-#include "services/tools/preview/layout/theme.hpp"
 
 namespace handcast::preview {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "renderer/predict/plausible_pose.hpp"
-#include "services/tools/preview/scene/sane_time.hpp"
+#include "services/tools/preview/scene/scene.hpp"
 
 namespace handcast::preview {
 namespace {

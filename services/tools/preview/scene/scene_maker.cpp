@@ -8,12 +8,50 @@
 #include <cstring>
 #include <utility>
 
+#include "calib/sub_frames.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "ipc/msg/same_calibration.hpp"
-#include "renderer/predict/project_landmarks.hpp"
-#include "services/tools/preview/scene/sane_time.hpp"
+#include "renderer/predict/projected_pose.hpp"
 
 namespace handcast::preview {
+
+Result<World> load_world(const config::Rig& rig) {
+  auto calibration = calib::load_calibration(rig.calibration, rig.projector.packing);
+  if (!calibration) return tl::make_unexpected(std::move(calibration.error()));
+  World world{.calibration = *calibration,
+              .mask = rig.cascade.mask,
+              .predict = rig.cascade.predict,
+              .hands = {}};
+  for (const auto& [side, file] :
+       {std::pair{msg::Side::left, rig.hand.left}, std::pair{msg::Side::right, rig.hand.right}}) {
+    auto mesh = renderer::load_hand_or_default(file, side);
+    if (!mesh) return tl::make_unexpected(std::move(mesh.error()));
+    world.hands[static_cast<std::size_t>(side)] = std::move(*mesh);
+  }
+  return world;
+}
+
+static constexpr int kStep_px = 8;
+
+FromCamera::FromCamera(const calib::Calibration& calibration)
+    : columns_(calibration.camera.width_px / kStep_px + 2),
+      rows_(calibration.camera.height_px / kStep_px + 2) {
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column)
+      table_.emplace_back(calibration.to_projector(
+          calibration.camera.undistort(glm::dvec2(column * kStep_px, row * kStep_px))));
+}
+
+glm::vec2 FromCamera::operator()(glm::vec2 image_px) const {
+  const glm::vec2 at = image_px / static_cast<float>(kStep_px);
+  const int column = std::clamp(static_cast<int>(std::floor(at.x)), 0, columns_ - 2),
+            row = std::clamp(static_cast<int>(std::floor(at.y)), 0, rows_ - 2);
+  const float u = at.x - static_cast<float>(column), v = at.y - static_cast<float>(row);
+  const auto* top = &table_[static_cast<std::size_t>(row) * columns_ + column];
+  const auto* bottom = top + columns_;
+  return (1 - v) * ((1 - u) * top[0] + u * top[1]) + v * ((1 - u) * bottom[0] + u * bottom[1]);
+}
+
 namespace {
 
 using renderer::Similarity;
@@ -134,22 +172,17 @@ void SceneMaker::find_mask(const msg::CameraFrame& frame) {
        static_cast<int>(frame.width_px)},
       sane_ns(frame.header.origin_ns),
       frame.header.frame_id};
-  std::array<renderer::Corrected, kSides.size()> corrected;
-  std::vector<renderer::HandMask::Expected> expected;
-  for (std::size_t i = 0; i < kSides.size(); ++i) {
-    const auto pose = hands_->pose_at(kSides[i], image.origin_ns);
-    const auto tracker =
-        pose ? renderer::project_landmarks(world_->calibration, *pose) : std::nullopt;
-    if (!tracker) continue;
-    const auto offset = hands_->offset_at(kSides[i], image.origin_ns);
-    corrected[i].pose = *pose;
-    corrected[i].tracker = *tracker;
-    corrected[i].landmarks = offset ? renderer::sum(*tracker, *offset) : *tracker;
-    corrected[i].has_landmarks = offset.has_value();
-    expected.push_back({.side = kSides[i], .then = pose, .hand = &corrected[i]});
+  std::vector<renderer::HandMask::Sought> sought;
+  for (const auto side : kSides) {
+    const auto pose = hands_->pose_at(side, image.origin_ns);
+    const auto posed = pose ? renderer::project(world_->calibration, *pose) : std::nullopt;
+    if (!posed) continue;
+    const auto offset_px = hands_->offset_at(side, image.origin_ns);
+    sought.push_back(
+        {side, posed, offset_px.value_or(renderer::LandmarkPoints{}), offset_px.has_value()});
   }
-  if (expected.empty()) return;
-  mask_->find(image, expected);
+  if (sought.empty()) return;
+  mask_->find(image, sought);
   hand_px_ = mask_->silhouette(image).mask;
 }
 

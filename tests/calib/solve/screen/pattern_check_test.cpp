@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calib/solve/screen/pattern_check.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include "renderer/draw/cpu/cpu_painter.hpp"
 #include "renderer/draw/gl/gl_painter.hpp"
 #include "renderer/skin/hand_surface.hpp"
-#include "services/lab/twin/motions.hpp"
+#include "services/lab/twin/motion.hpp"
 #include "tests/renderer/draw/bent_grid.hpp"
 #include "tests/renderer/draw/gl/difference.hpp"
 #include "tests/renderer/hand_pose.hpp"
@@ -38,7 +38,7 @@ struct Hand {
   Skinned skinned;
 
   DrawnHand drawn() const {
-    return {&surface.mesh(), &texture,      skinned.landings_px,
+    return {&surface.mesh(), &texture,      skinned.projected_px,
             skinned.depth_m, skinned.light, revision};
   }
 };
@@ -107,7 +107,7 @@ class Parity : public testing::TestWithParam<std::string> {
       hand.skinned =
           hand.surface.pose(pose_of(hand.side, *frames), {.fit = false}, calibration_, 0.6f);
       drawn_.push_back(hand.drawn());
-      region = region.joined(hand.surface.bounds(hand.skinned.landings_px));
+      region = region.joined(hand.surface.bounds(hand.skinned.projected_px));
     }
     return region.grown(24).within(kScreen.x1, kScreen.y1);
   }

@@ -177,9 +177,9 @@ TEST_F(AravisCamera, ARefusedSettingIsNamedWithTheRangeOfTheCamera) {
   EXPECT_THAT(refused([](auto& c) { c.aravis.offset_x_px = 2000; }),
               AllOf(HasSubstr("360 x 270 px at 2000, 0"), HasSubstr("2048 x 2048 px")));
   EXPECT_THAT(refused([](auto& c) { c.aravis.gain_db = 50; }),
-              AllOf(HasSubstr("camera.aravis.gain_db"), HasSubstr("50"), HasSubstr("0..10")));
+              AllOf(HasSubstr("aravis.gain_db"), HasSubstr("50"), HasSubstr("0..10")));
   EXPECT_THAT(refused([](auto& c) { c.aravis.format = config::PixelFormat::mono12_packed; }),
-              AllOf(HasSubstr("camera.aravis.format"), HasSubstr("Mono8")));
+              AllOf(HasSubstr("aravis.format"), HasSubstr("Mono8")));
   EXPECT_THAT(refused([](auto& c) { c.aravis.features = {"NoSuchThing=1"}; }),
               HasSubstr("the camera has no feature 'NoSuchThing'"));
   EXPECT_THAT(refused([](auto& c) { c.aravis.features = {"AcquisitionMode=Sideways"}; }),

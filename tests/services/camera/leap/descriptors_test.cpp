@@ -98,7 +98,7 @@ TEST(LeapTransfers, AnExposureLongerThanThePeriodIsRefused) {
   const auto transfers = transfers_of({}, 9, mode);
   ASSERT_FALSE(transfers);
   EXPECT_EQ(transfers.error().code, Errc::bad_config);
-  EXPECT_THAT(transfers.error().what, AllOf(HasSubstr("camera.exposure_ms"), HasSubstr("8.696")));
+  EXPECT_THAT(transfers.error().what, AllOf(HasSubstr("exposure_ms"), HasSubstr("8.696")));
 }
 
 TEST(LeapTransfers, AnAnswerOfAnotherModeIsRefused) {

@@ -2,7 +2,7 @@
 // A controller while all goes well, and what is refused.
 #include <fstream>
 
-#include "services/camera/leap/calibration_file.hpp"
+#include "services/camera/leap/controller.hpp"
 #include "tests/services/camera/camera_contract.hpp"
 #include "tests/services/camera/leap/leap_test.hpp"
 
@@ -18,10 +18,9 @@ using testing::HasSubstr;
 
 /// The row over a controller that is plugged in when it is first opened.
 const CameraBackend& row_over_a_controller() {
-  static constexpr auto kOpen = [](const config::Rig& rig, const calib::Calibration& calibration,
-                                   const std::int64_t& epoch_ns) {
+  static constexpr auto kOpen = [](const Opening& with) {
     static EmulatedLeap device;
-    return open_camera(rig, calibration, epoch_ns);
+    return open_camera(with.rig, with.calibration, with.epoch_ns);
   };
   static const CameraBackend the_row = [] {
     auto row = *std::ranges::find(camera_backends(), "leap", &CameraBackend::name);
@@ -119,7 +118,7 @@ TEST_F(Leap, WhatCannotWorkIsRefusedWithASentence) {
   expect_refused(Errc::bad_config, {"640x240 at 115 Hz"});
   calibration_.camera.width_px = 640;
   rig_.camera.exposure_ms = 20;
-  expect_refused(Errc::bad_config, {"camera.exposure_ms"});
+  expect_refused(Errc::bad_config, {"exposure_ms"});
   rig_.camera.exposure_ms = 2;
   calibration_.camera_device = "another one";
   expect_refused(Errc::bad_config, {"another one"});
@@ -142,7 +141,7 @@ TEST_F(Leap, OldFirmwareIsBroughtUpByAFile) {
   device_->with_model([](LeapModel& model) { model.is_locked = true; });
   ASSERT_TRUE(open());
   EXPECT_FALSE(capture(2s));
-  EXPECT_THAT(capture(100ms).error().what, HasSubstr("camera.leap.bring_up"));
+  EXPECT_THAT(capture(100ms).error().what, HasSubstr("(leap.bring_up)"));
   camera_.reset();
   const test::Scratch scratch;
   const auto file = std::filesystem::path(scratch.path()) / "unlock.txt";
@@ -152,7 +151,7 @@ TEST_F(Leap, OldFirmwareIsBroughtUpByAFile) {
   EXPECT_TRUE(capture());
   std::ofstream(file) << "set 5\n";
   camera_.reset();
-  expect_refused(Errc::bad_config, {"camera.leap.bring_up", ":1: `set`"});
+  expect_refused(Errc::bad_config, {"leap.bring_up", ":1: `set`"});
 }
 
 TEST_F(Leap, ACalibrationIsReadFromAController) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/v4l2/control.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "services/camera/v4l2/controls.hpp"
 
 namespace handcast::camera::v4l2 {
 namespace {

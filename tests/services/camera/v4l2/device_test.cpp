@@ -66,7 +66,7 @@ TEST(FindDevice, WhereSeveralFitAPersonMustChoose) {
   const EmulatedWebcam camera(first()), other(second());
   expect_refused("", Errc::bad_config,
                  HasSubstr("several cameras are attached; the cameras are 'Front' (/dev/video0, "
-                           "usb-1), 'Side' (/dev/video4, usb-2); set camera.v4l2.device"));
+                           "usb-1), 'Side' (/dev/video4, usb-2); set v4l2.device"));
 }
 
 TEST(FindDevice, AnAbsentOneMayComeLater) {

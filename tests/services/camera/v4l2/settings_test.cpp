@@ -92,7 +92,7 @@ TEST_F(WebcamSettings, TheExposureIsSetAndNoLongerAutomatic) {
 TEST_F(WebcamSettings, AnExposureOutOfRangeIsRefusedWithTheRange) {
   const EmulatedWebcam webcam(test::small_webcam());
   rig_.camera.exposure_ms = 0.2;
-  expect_refused(Errc::bad_config, HasSubstr("cannot expose for 0.2 ms (camera.exposure_ms); it "
+  expect_refused(Errc::bad_config, HasSubstr("cannot expose for 0.2 ms (exposure_ms); it "
                                              "can for 0.3 to 204.7 ms"));
 }
 
@@ -177,7 +177,7 @@ TEST_F(WebcamSettings, ABusyCameraIsUnavailable) {
 TEST_F(WebcamSettings, TooLittleBandwidthHasItsRemedy) {
   EmulatedWebcam webcam(test::small_webcam());
   webcam.set({.stream_fails = ENOSPC});
-  expect_refused(Errc::unavailable, HasSubstr("set camera.v4l2.format to MJPEG"));
+  expect_refused(Errc::unavailable, HasSubstr("set v4l2.format to MJPEG"));
   EXPECT_EQ(webcam.buffers(), 0) << "the buffers are given back";
 }
 

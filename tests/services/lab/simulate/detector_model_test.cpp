@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "services/lab/simulate/error_memory.hpp"
+#include "services/lab/simulate/detector_tally.hpp"
 #include "services/lab/simulate/score.hpp"
 #include "tests/services/lab/simulate/run_rig.hpp"
 

@@ -84,7 +84,7 @@ Outcome outcome_of(const std::string& rung, const twin::Twin& world, SensorFeed&
   while (simulation.now_ns() < 600'000'000)
     simulation.step([&](const Tick& tick) {
       for (const auto& hand : tick.hands) {
-        const auto truth = *world.landmarks(hand.side, tick.lit_ns);
+        const auto truth = *world.landmarks(hand.side, tick.display_ns);
         for (std::size_t i = 0; i < truth.size(); ++i)
           outcome.error_px += glm::distance(hand.corrected[i], truth[i]) / msg::kLandmarks;
         outcome.with_landmarks += hand.rung > msg::Rung::predict;

@@ -51,9 +51,9 @@ config::Rig rig_with(const std::string& motion, Settings settings) {
 }
 
 Moment moment_of(const Tick& tick, const twin::Twin& world) {
-  Moment moment{ns_to_seconds(tick.lit_ns)};
+  Moment moment{ns_to_seconds(tick.display_ns)};
   for (const auto& hand : tick.hands) {
-    const auto truth = world.landmarks(hand.side, tick.lit_ns);
+    const auto truth = world.landmarks(hand.side, tick.display_ns);
     for (const auto& point : hand.corrected)
       moment.finite = moment.finite && std::isfinite(point.x) && std::isfinite(point.y);
     if (!truth) continue;
@@ -73,7 +73,7 @@ class LightMeter {
     const auto& frame = *tick.frame;
     std::vector<bool> lit(static_cast<std::size_t>(frame.colour.width) *
                           static_cast<std::size_t>(frame.colour.height));
-    Light light{ns_to_seconds(tick.lit_ns), 0, 0, frame.foldovers, 0};
+    Light light{ns_to_seconds(tick.display_ns), 0, 0, frame.foldovers, 0};
     for (int y = frame.region.y0; y < frame.region.y1; ++y)
       for (int x = frame.region.x0; x < frame.region.x1; ++x)
         if (const std::uint32_t colour = frame.colour.row(y)[x]; colour >> 24) {

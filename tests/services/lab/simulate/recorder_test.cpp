@@ -7,7 +7,6 @@
 #include <set>
 
 #include "ipc/base/clock.hpp"
-#include "services/lab/simulate/png.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/services/lab/simulate/run_rig.hpp"
 

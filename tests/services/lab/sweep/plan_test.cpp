@@ -91,24 +91,6 @@ TEST(Plan, AVariantIsOnlyFromThoseAbove) {
               HasSubstr(":2: variant.from: no variant above is called 'b'"));
 }
 
-TEST(Plan, AnOldFormOfASettingIsReportedOnceAtItsLineAndRunInItsNewForm) {
-  testing::internal::CaptureStderr();
-  const auto plan =
-      plan_of("[settings]\nlandmarks.backend = \"opencv\"\n[grid]\ntwin.speed = [1, 2, 3]\n");
-  ASSERT_TRUE(plan) << plan.error().what;
-  const auto expansion = expand(*plan);
-  ASSERT_TRUE(expansion) << expansion.error().what;
-  for (const auto& run : expansion->runs) {
-    const auto rig = rig_of(*plan, run);
-    ASSERT_TRUE(rig) << rig.error().what;
-    EXPECT_EQ(rig->landmarks.backend, "mediapipe");
-    EXPECT_EQ(rig->landmarks.executor, config::Executor::opencv);
-  }
-  const auto log = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(log, HasSubstr("/plans/test.toml:3: landmarks.backend = \"opencv\" is now"));
-  EXPECT_EQ(std::ranges::count(log, '\n'), 1) << log;
-}
-
 TEST(Plan, WithoutVariantsAndGridItIsOneRunOfItsRig) {
   const auto plan = plan_of("seconds = 2\njoints_only = true\n");
   ASSERT_TRUE(plan) << plan.error().what;

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "services/lab/sweep/merge.hpp"
 #include "tests/services/lab/sweep/plans.hpp"
 
 namespace handcast::sweep {

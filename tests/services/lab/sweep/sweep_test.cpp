@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "services/lab/simulate/score.hpp"
-#include "services/lab/sweep/merge.hpp"
+#include "services/lab/sweep/results.hpp"
 #include "services/lab/sweep/runner.hpp"
 #include "tests/services/lab/sweep/plans.hpp"
 

@@ -20,7 +20,7 @@ std::filesystem::path shipped() { return std::filesystem::path(HANDCAST_SHIPPED_
 class Shipped : public testing::Test {
  protected:
   void SetUp() override {
-    auto opened = open_network(config::Executor::onednn, shipped());
+    auto opened = open_network(shipped());
     ASSERT_TRUE(opened) << opened.error().what;
     network_ = std::move(*opened);
   }

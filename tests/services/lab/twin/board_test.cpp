@@ -75,7 +75,7 @@ TEST(Board, ASecondCameraSeesTheSameBoardFromItsOwnPlace) {
   rig.twin.prop.views = config::TwinPropViews::both;
   const auto cameras = two_cameras();
   auto first = Twin::create(rig, cameras).value(),
-       second = Twin::create(rig, calib::second_view(cameras)).value();
+       second = Twin::create(rig, cameras, config::Viewpoint::second).value();
   ASSERT_TRUE(first->show_board(checkerboard(100)));
   ASSERT_TRUE(second->show_board(checkerboard(100)));
   for (int place = 0; place < HeldBoard::kPlaces; place += 4) {
@@ -108,7 +108,7 @@ TEST(Board, ItIsMovedThroughTheImageOfTheCameraThatIsNamed) {
   auto rig = board_rig();
   rig.twin.prop.views = config::TwinPropViews::second;
   const auto cameras = two_cameras();
-  auto second = Twin::create(rig, calib::second_view(cameras)).value();
+  auto second = Twin::create(rig, cameras, config::Viewpoint::second).value();
   ASSERT_TRUE(second->show_board(checkerboard(20)));
   double leftmost = 720, rightmost = 0;
   for (int place = 0; place < HeldBoard::kPlaces; ++place) {
@@ -134,7 +134,7 @@ TEST(Board, TheTrueSecondCameraIsThatOfTheTrueRig) {
   auto believed = truth;
   believed.camera2->from_camera[3].x += 0.02;
   auto first = Twin::create(rig, believed).value(),
-       second = Twin::create(rig, calib::second_view(believed)).value();
+       second = Twin::create(rig, believed, config::Viewpoint::second).value();
   ASSERT_TRUE(first->show_board(checkerboard(20)));
   ASSERT_TRUE(second->show_board(checkerboard(20)));
   const auto off = *second->board_pose(0) - truth.camera2->from_camera * *first->board_pose(0);

@@ -143,7 +143,7 @@ TEST(Camera, TheSecondViewSeesTheSameWorldFromItsOwnPlace) {
   from_camera[3].x = -0.05;
   cameras.camera2 = calib::SecondCamera{{}, cameras.camera, from_camera};
   const auto first = Twin::create(rig, cameras).value(),
-             second = Twin::create(rig, calib::second_view(cameras)).value();
+             second = Twin::create(rig, cameras, config::Viewpoint::second).value();
   const auto here = first->joints(Side::left, 0).value(),
              there = second->joints(Side::left, 0).value();
   EXPECT_EQ(here[10], there[10]) << "one hand";

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/lab/twin/point_spread.hpp"
+#include "services/lab/twin/image_sensor.hpp"
 #include "tests/services/lab/twin/world.hpp"
 
 /// Each setting of the twin's images changes what it names, and two twins agree.

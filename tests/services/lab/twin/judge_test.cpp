@@ -103,7 +103,7 @@ class JudgeOf : public testing::TestWithParam<const char*> {
 TEST_P(JudgeOf, PerfectLightHasNoError) {
   auto light = light_of(*twin_, kLit_ns);
   const auto score = judge_->score(*light);
-  EXPECT_EQ(score.lit_ns, kLit_ns);
+  EXPECT_EQ(score.display_ns, kLit_ns);
   ASSERT_FALSE(score.hands.empty());
   for (const auto& hand : score.hands) {
     EXPECT_GT(hand.hand_px, 10'000);
@@ -138,9 +138,9 @@ TEST_P(JudgeOf, LightBesideItsPlaceIsThatFarOff) {
 TEST_P(JudgeOf, LateLightHasItsAgeAsEquivalentLatency) {
   double lag = 0, speed2 = 0;
   for (std::int64_t i = 0; i < 12; ++i) {
-    const std::int64_t lit_ns = kLit_ns + i * 137'000'000;
-    auto light = light_of(*twin_, lit_ns - 10'000'000);
-    light->lit_ns = lit_ns;
+    const std::int64_t display_ns = kLit_ns + i * 137'000'000;
+    auto light = light_of(*twin_, display_ns - 10'000'000);
+    light->lit_ns = display_ns;
     for (const auto& hand : judge_->score(*light).hands) {
       lag += hand.lag_px_s;
       speed2 += hand.speed2_px_s2;
@@ -254,11 +254,12 @@ TEST(Judge, LightWithoutAHandIsSpill) {
   const auto twin = twin_of(rig);
   const auto judge = Judge::create(*twin, 4);
   bool was_away = false;
-  for (std::int64_t lit_ns = 0; lit_ns < 10'000'000'000 && !was_away; lit_ns += 100'000'000) {
-    if (twin->joints(Side::left, lit_ns) || twin->joints(Side::right, lit_ns)) continue;
+  for (std::int64_t display_ns = 0; display_ns < 10'000'000'000 && !was_away;
+       display_ns += 100'000'000) {
+    if (twin->joints(Side::left, display_ns) || twin->joints(Side::right, display_ns)) continue;
     was_away = true;
     Projected light;
-    light->lit_ns = lit_ns;
+    light->lit_ns = display_ns;
     for (int y = 0; y < 20; ++y)
       for (int x = 0; x < 30; ++x) light.light(500 + x, 300 + y);
     const auto score = judge->score(*light);

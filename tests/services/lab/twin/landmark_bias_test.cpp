@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/lab/twin/landmark_bias.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "ipc/base/clock.hpp"
+#include "services/lab/twin/detector.hpp"
 #include "tests/services/lab/twin/world.hpp"
 
 /// The error of a landmark detector that depends on the pose.

@@ -4,7 +4,6 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/lab/twin/finger_errors.hpp"
-#include "services/lab/twin/hidden_fingers.hpp"
 #include "tests/services/lab/twin/world.hpp"
 
 /// What a tracker gets wrong about fingers, joints and its own time.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/lab/twin/true_hand.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "services/lab/hand_maker/glb_write.hpp"
 #include "services/lab/twin/flesh_model.hpp"
 #include "services/lab/twin/surface.hpp"
+#include "services/lab/twin/true_hands.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/lab/twin/world.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/mediapipe_model.hpp"
-#include "services/landmarks/models/mediapipe_regions.hpp"
+#include "services/landmarks/models/mediapipe_palms.hpp"
 #include "tests/services/landmarks/pictures.hpp"
 
 namespace handcast::landmarks {
@@ -104,7 +104,7 @@ TEST_F(MediapipeHandFinder, TipsLieAtTheEndsOfTheFingers) {
 // The half-pixel trap: what a place in the crop is called must not depend on which way the image is
 // turned over.
 TEST_F(MediapipeHandFinder, AMirroredImageGivesMirroredLandmarks) {
-  auto model = MediapipeModel::open(config::Executor::onednn, test::models() / kMediapipeHandFile);
+  auto model = MediapipeModel::open(test::models() / kMediapipeHandFile);
   ASSERT_TRUE(model) << model.error().what;
   EstimateTimes times;
   const auto estimate = [&](const test::Grey& image, const Region& region) {

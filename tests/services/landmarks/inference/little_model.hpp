@@ -9,6 +9,7 @@
 
 #include "services/landmarks/inference/network.hpp"
 #include "services/landmarks/inference/onnx/model.hpp"
+#include "tests/services/landmarks/inference/write_onnx.hpp"
 
 namespace handcast::landmarks {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The networks in ../shared/models (HANDCAST_MODELS names another folder): all executors agree, and
-// run on one core.
+// The networks in ../shared/models (HANDCAST_MODELS names another folder): OpenCV calculates the
+// same, and they run on one core.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 
-#include "config/settings/choice.hpp"
 #include "tests/services/landmarks/inference/little_model.hpp"
+#include "tests/services/landmarks/inference/opencv_network.hpp"
 
 namespace handcast::landmarks {
 namespace {
@@ -58,12 +58,11 @@ INSTANTIATE_TEST_SUITE_P(, Models,
                            return std::filesystem::path(entry.param.file).stem().string();
                          });
 
-TEST_P(Models, AgreeInBothExecutors) {
+#ifdef HANDCAST_WITH_OPENCV_DNN
+TEST_P(Models, CalculateWhatOpencvCalculates) {
   const std::filesystem::path file = models() / GetParam().file;
   NEEDS_MODEL(file);
-  if (executors().size() < 2) GTEST_SKIP() << "this build has one executor";
-  auto ours = open_network(config::Executor::onednn, file),
-       reference = open_network(config::Executor::opencv, file);
+  auto ours = open_network(file), reference = open_opencv_network(file);
   ASSERT_TRUE(ours) << ours.error().what;
   ASSERT_TRUE(reference) << reference.error().what;
   for (unsigned seed = 0; seed < 4; ++seed) {
@@ -85,22 +84,13 @@ TEST_P(Models, AgreeInBothExecutors) {
     }
   }
 }
-
-TEST(Executors, OneThatThisBuildLacksIsRefusedWithWhatIsMissing) {
-  if (executors().size() == 2) GTEST_SKIP() << "this build has every executor";
-  const auto network = open_network(config::Executor::opencv, "any.onnx");
-  ASSERT_FALSE(network);
-  EXPECT_EQ(network.error().code, Errc::bad_config);
-  EXPECT_EQ(network.error().what,
-            "the executor 'opencv' needs OpenCV's dnn module (HANDCAST_WITH_OPENCV_DNN), which "
-            "this build of handcast does not have");
-}
+#endif
 
 /// The time of all threads is the time of the calling one.
 TEST_P(Models, RunOnTheCallersCoreAlone) {
   const std::filesystem::path file = models() / GetParam().file;
   NEEDS_MODEL(file);
-  auto network = open_network(config::Executor::onednn, file);
+  auto network = open_network(file);
   ASSERT_TRUE(network) << network.error().what;
   const double process_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID),
                thread_s = seconds_of(CLOCK_THREAD_CPUTIME_ID);

@@ -7,6 +7,7 @@
 
 #include "config/settings/choice.hpp"
 #include "tests/services/landmarks/inference/little_model.hpp"
+#include "tests/services/landmarks/inference/opencv_network.hpp"
 
 namespace handcast::landmarks {
 namespace {
@@ -198,14 +199,24 @@ void expect_near(std::span<const float> actual, const std::vector<float>& expect
     ASSERT_NEAR(actual[i], expected[i], 2e-5) << what << " at " << i;
 }
 
-class EveryExecutor : public testing::TestWithParam<config::Executor> {};
-INSTANTIATE_TEST_SUITE_P(, EveryExecutor, testing::ValuesIn(executors()), [](const auto& named) {
-  return std::string(config::word_of(named.param));
-});
+using Open = Result<std::unique_ptr<Network>> (*)(const std::filesystem::path& file);
 
-TEST_P(EveryExecutor, CalculatesWhatTheLoopsCalculate) {
+/// Of ours, and of the oracle.
+class EveryNetwork : public testing::TestWithParam<std::pair<const char*, Open>> {
+ protected:
+  static auto open(const onnx::Model& model) { return GetParam().second(ModelFile(model).path()); }
+};
+INSTANTIATE_TEST_SUITE_P(, EveryNetwork,
+                         testing::Values(
+#ifdef HANDCAST_WITH_OPENCV_DNN
+                             std::pair{"opencv", Open{open_opencv_network}},
+#endif
+                             std::pair{"ours", Open{open_network}}),
+                         [](const auto& named) { return std::string(named.param.first); });
+
+TEST_P(EveryNetwork, CalculatesWhatTheLoopsCalculate) {
   const onnx::Model model = every_layer();
-  const auto network = open_network(GetParam(), ModelFile(model).path());
+  const auto network = open(model);
   ASSERT_TRUE(network) << network.error().what;
   for (unsigned seed = 20; seed < 25; ++seed) {
     fill((*network)->input(0), seed);
@@ -216,8 +227,8 @@ TEST_P(EveryExecutor, CalculatesWhatTheLoopsCalculate) {
   }
 }
 
-TEST_P(EveryExecutor, LeavesItsInputAsItWasAndForgetsThePreviousRun) {
-  const auto network = open_network(GetParam(), ModelFile(every_layer()).path());
+TEST_P(EveryNetwork, LeavesItsInputAsItWasAndForgetsThePreviousRun) {
+  const auto network = open(every_layer());
   ASSERT_TRUE(network) << network.error().what;
   Network& net = **network;
   const auto run_with = [&](unsigned seed) {
@@ -255,9 +266,9 @@ onnx::Model residual_model(bool needed_later) {
   return model;
 }
 
-TEST_P(EveryExecutor, ASumIsNotWrittenOverWhatIsStillConvolved) {
+TEST_P(EveryNetwork, ASumIsNotWrittenOverWhatIsStillConvolved) {
   const onnx::Model model = residual_model(false);
-  const auto network = open_network(GetParam(), ModelFile(model).path());
+  const auto network = open(model);
   ASSERT_TRUE(network) << network.error().what;
   fill((*network)->input(0), 3);
   ASSERT_TRUE((*network)->run());
@@ -268,9 +279,9 @@ TEST_P(EveryExecutor, ASumIsNotWrittenOverWhatIsStillConvolved) {
   expect_near((*network)->output(0), y.values, "residual");
 }
 
-TEST_P(EveryExecutor, ASumIsNotWrittenOverWhatIsNeededLater) {
+TEST_P(EveryNetwork, ASumIsNotWrittenOverWhatIsNeededLater) {
   const onnx::Model model = residual_model(true);
-  const auto network = open_network(GetParam(), ModelFile(model).path());
+  const auto network = open(model);
   ASSERT_TRUE(network) << network.error().what;
   fill((*network)->input(0), 3);
   ASSERT_TRUE((*network)->run());
@@ -297,9 +308,9 @@ onnx::Model padded_model() {
   return model;
 }
 
-TEST_P(EveryExecutor, PadsWithZerosEveryTime) {
+TEST_P(EveryNetwork, PadsWithZerosEveryTime) {
   const onnx::Model model = padded_model();
-  const auto network = open_network(GetParam(), ModelFile(model).path());
+  const auto network = open(model);
   ASSERT_TRUE(network) << network.error().what;
   for (unsigned seed = 3; seed < 6; ++seed) {
     fill((*network)->input(0), seed);

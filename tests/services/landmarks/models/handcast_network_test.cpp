@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "services/landmarks/crop/crop.hpp"
-#include "services/landmarks/models/exponential.hpp"
 
 namespace handcast::landmarks::handcast_network {
 namespace {

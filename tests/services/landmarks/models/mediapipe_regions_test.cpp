@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/landmarks/models/mediapipe_regions.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "services/landmarks/models/mediapipe_palms.hpp"
 
 namespace handcast::landmarks {
 namespace {

@@ -31,7 +31,7 @@ float x_px(const Hints& hints, msg::Side side) {
 }
 
 TEST(TrackerHints, GoOnAsTheHandMovedUpToTheImagesTime) {
-  TrackerHints tracker(calib::reference_rig());
+  TrackerHints tracker(first_camera(calib::reference_rig()));
   for (int i = 0; i <= 10; ++i)
     tracker.push(poses_at(to_ns(10ms) * i, msg::Side::right, 0.001 * i));
   const double centre = calib::reference_rig().camera.cx_px,
@@ -42,20 +42,22 @@ TEST(TrackerHints, GoOnAsTheHandMovedUpToTheImagesTime) {
 }
 
 TEST(TrackerHints, AreGoneSoonAfterTheHandIs) {
-  TrackerHints tracker(calib::reference_rig());
+  TrackerHints tracker(first_camera(calib::reference_rig()));
   EXPECT_FALSE(tracker.at(0)[0]);
   tracker.push(poses_at(0, msg::Side::left, 0));
   EXPECT_TRUE(tracker.at(to_ns(90ms))[0]);
   EXPECT_FALSE(tracker.at(to_ns(120ms))[0]);
 }
 
-TEST(TrackerHints, AHandBehindTheCameraIsNotInItsImage) {
+TEST(TrackerHints, AHandThatReachesTheCameraIsNotInItsImage) {
   msg::HandPoses poses = poses_at(0, msg::Side::left, 0);
-  const glm::dvec3 behind(glm::inverse(calib::reference_rig().camera_from_tracker) *
-                          glm::dvec4(0, 0, -0.2, 1));
+  const glm::dvec3 near(glm::inverse(calib::reference_rig().camera_from_tracker) *
+                        glm::dvec4(0, 0, 0.02, 1));
   poses.hands[0].joints[msg::kJointOfLandmark[20]].position_m = {
-      static_cast<float>(behind.x), static_cast<float>(behind.y), static_cast<float>(behind.z)};
-  EXPECT_FALSE(project(calib::reference_rig(), poses.hands[0]));
+      static_cast<float>(near.x), static_cast<float>(near.y), static_cast<float>(near.z)};
+  TrackerHints tracker(first_camera(calib::reference_rig()));
+  tracker.push(poses);
+  EXPECT_FALSE(tracker.at(0)[0]);
 }
 
 TEST(TrackerHints, TheLensIsPutOnAndTakenOff) {

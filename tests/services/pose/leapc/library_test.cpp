@@ -7,7 +7,6 @@
 
 #include <fstream>
 
-#include "services/pose/leapc/memory.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/pose/leapc/leapc_rig.hpp"
 

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "services/pose/stereo/hand_track.hpp"
-#include "services/pose/stereo/likeness.hpp"
 #include "tests/services/pose/stereo/two_views.hpp"
 
 namespace handcast::pose::stereo {

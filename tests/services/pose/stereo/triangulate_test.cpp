@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/pose/stereo/triangulate.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <random>
 
+#include "services/pose/stereo/view.hpp"
 #include "tests/services/pose/stereo/two_views.hpp"
 
 namespace handcast::pose::stereo {

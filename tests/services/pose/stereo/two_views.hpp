@@ -28,7 +28,7 @@ class TwoViews {
       : rig_(std::move(rig)), calibration_(two_cameras()) {
     rig_.twin.motion = "builtin:" + motion;
     twins_[0] = twin::Twin::create(rig_, calibration_).value();
-    twins_[1] = twin::Twin::create(rig_, calib::second_view(calibration_)).value();
+    twins_[1] = twin::Twin::create(rig_, calibration_, config::Viewpoint::second).value();
     tracker_ = std::make_unique<StereoTracker>(
         StereoTracker::open(rig_, views_of(calibration_).value(),
                             glm::inverse(calibration_.camera_from_tracker))

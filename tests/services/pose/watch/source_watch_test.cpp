@@ -15,7 +15,7 @@
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
-#include "services/lab/twin/motions.hpp"
+#include "services/lab/twin/motion.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 

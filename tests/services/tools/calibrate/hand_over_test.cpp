@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const MeasuredSetting kLatency{"projector.latency_ms", "10.2"};
+const config::MeasuredSetting kLatency{"projector.latency_ms", "10.2"};
 
 /// Each call is one of the program: it reads the rig and opens the session anew.
 class HandOver : public testing::Test {
@@ -30,7 +30,7 @@ class HandOver : public testing::Test {
   calib::Calibration running() const { return *calib::load_calibration(rig().calibration); }
   Session open() const { return *Session::open(options_, rig(), running()); }
   /// Keeps a step with a lens of this focal length.
-  void measure(Step step, double fx_px, std::vector<MeasuredSetting> settings = {}) const {
+  void measure(Step step, double fx_px, std::vector<config::MeasuredSetting> settings = {}) const {
     auto session = open();
     auto measured = session.draft();
     measured.camera.fx_px = fx_px;
@@ -45,6 +45,14 @@ class HandOver : public testing::Test {
     auto printed = testing::internal::GetCapturedStdout();
     EXPECT_TRUE(done) << done.error().what;
     return printed;
+  }
+
+  fs::path measured_file() const { return config::measured_file_of(options_.rig_file); }
+  void take_back() const {
+    testing::internal::CaptureStdout();
+    const auto taken = undo(options_, rig());
+    testing::internal::GetCapturedStdout();
+    EXPECT_TRUE(taken) << taken.error().what;
   }
 
   test::Scratch scratch_;
@@ -72,13 +80,77 @@ TEST_F(HandOver, WhatWasOnlyPrintedIsAppliedLater) {
 }
 
 TEST_F(HandOver, SettingsStayUntilTheyCouldBeApplied) {
-  measure(Step::screen, 1200, {{"projector.no_such_setting", "1"}});
+  measure(Step::screen, 1200, {kLatency});
+  const auto rig_before = rig();
+  fs::create_directory(measured_file());
   options_.apply = true;
   auto session = open();
   testing::internal::CaptureStdout();
-  EXPECT_FALSE(hand_over(options_, rig(), running(), session));
-  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("  projector.no_such_setting = 1"));
+  EXPECT_FALSE(hand_over(options_, rig_before, calib::reference_rig(), session));
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("  projector.latency_ms = 10.2"));
+  fs::remove(measured_file());
   EXPECT_EQ(open().settings().size(), 1U);
+}
+
+TEST_F(HandOver, ThePersonsFileStaysAsItIs) {
+  const std::string text = "name = \"mine\"\r\nprojector = { latency_ms = 60 } # bright\r\n";
+  write_rig(text);
+  measure(Step::screen, 1200, {kLatency});
+  call(true);
+  EXPECT_EQ(*config::read_text(options_.rig_file), text);
+  EXPECT_EQ(rig().projector.latency_ms, 10.2);
+  fs::remove(measured_file());
+  EXPECT_EQ(rig().projector.latency_ms, 60) << "without the measured file it has its own values";
+}
+
+TEST_F(HandOver, EarlierMeasuredSettingsStayBesideNewOnes) {
+  std::ofstream(measured_file()) << "[projector]\nlatency_ms = 3\ngamma = 1.8\n";
+  measure(Step::light, 1200, {kLatency});
+  call(true);
+  EXPECT_EQ(rig().projector.latency_ms, 10.2);
+  EXPECT_EQ(rig().projector.gamma, 1.8);
+}
+
+TEST_F(HandOver, SettingsThatAreThereAlreadyAreNotWrittenAgain) {
+  std::ofstream(measured_file()) << "projector.gamma = 1.8\n";
+  measure(Step::light, 1200, {{"projector.gamma", "1.80"}});
+  call(true);
+  EXPECT_EQ(*config::read_text(measured_file()), "projector.gamma = 1.8\n");
+  EXPECT_EQ(open().settings().size(), 0U);
+}
+
+TEST_F(HandOver, TheLastChangeIsTakenBackAndThatToo) {
+  measure(Step::screen, 1200, {kLatency});
+  call(true);
+  measure(Step::screen, 1300, {{"projector.latency_ms", "4"}});
+  call(true);
+  const auto expect = [&](double fx_px, double latency_ms) {
+    EXPECT_EQ(running().camera.fx_px, fx_px);
+    EXPECT_EQ(rig().projector.latency_ms, latency_ms);
+  };
+  expect(1300, 4);
+  take_back();
+  expect(1200, 10.2);
+  take_back();
+  expect(1300, 4);
+}
+
+TEST_F(HandOver, AFirstCallIsTakenBackToThePersonsOwnValues) {
+  const auto before = config::print_rig(rig());
+  measure(Step::screen, 1200, {kLatency});
+  call(true);
+  const auto after = config::print_rig(rig());
+  ASSERT_NE(after, before);
+  take_back();
+  EXPECT_EQ(config::print_rig(rig()), before);
+  take_back();
+  EXPECT_EQ(config::print_rig(rig()), after);
+}
+
+TEST_F(HandOver, WithoutAnEarlierCallNothingIsTakenBack) {
+  const auto none = undo(options_, rig());
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, Errc::bad_config);
 }
 
 TEST_F(HandOver, TheTruthOfATwinStaysWhereItWas) {

@@ -190,24 +190,6 @@ TEST_F(Detect, WithoutAChoiceAndMediapipesFilesItTakesHandcastsModelAndSaysSo) {
   EXPECT_THAT(*text, HasSubstr("1_camera.png: 1 hand, "));
 }
 
-TEST(DetectOptions, AnOldNameOfABackEndIsTheCurrentOneAndMayNameTheExecutor) {
-  using config::Executor;
-  const auto set = [](const std::string& name) {
-    Options options;
-    testing::internal::CaptureStderr();
-    set_backend(options, name);
-    return std::tuple(options.backend, options.executor, testing::internal::GetCapturedStderr());
-  };
-  EXPECT_EQ(set("handcast"), std::tuple("handcast", Executor::onednn, ""));
-  EXPECT_EQ(set("own"),
-            std::tuple("handcast", Executor::onednn,
-                       "handcast detect: landmarks.backend = \"own\" is now \"handcast\"\n"));
-  EXPECT_EQ(set("opencv"),
-            std::tuple("mediapipe", Executor::opencv,
-                       "handcast detect: landmarks.backend = \"opencv\" is now \"mediapipe\" with "
-                       "landmarks.executor = \"opencv\"\n"));
-}
-
 TEST_F(Detect, IsAVerbWithTheUsualExitCodes) {
   const char* bin = std::getenv("HANDCAST_BIN");
   const std::string program = std::string(bin ? bin : "bin") + "/handcast-detect ";
@@ -218,10 +200,9 @@ TEST_F(Detect, IsAVerbWithTheUsualExitCodes) {
   };
   EXPECT_EQ(exit_code("--help"), 0);
   const std::string image = " " + options_.images[0].string();
-  EXPECT_EQ(exit_code("--backend mediapipe --executor onednn --model " + options_.models + image),
-            0);
+  EXPECT_EQ(exit_code("--backend mediapipe --model " + options_.models + image), 0);
   EXPECT_EQ(exit_code("--backend mediapipe --model " + scratch_.path().string() + image), 100);
-  EXPECT_NE(exit_code("--executor abacus --model " + options_.models + image), 0);
+  EXPECT_NE(exit_code("--abacus --model " + options_.models + image), 0);
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "services/tools/doctor/display.hpp"
-#include "services/tools/doctor/images.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
 #include "services/tools/doctor/rig_file.hpp"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/init/fitting.hpp"
-
 #include <gtest/gtest.h>
 
+#include "services/tools/init/candidate.hpp"
 #include "tests/services/tools/init/some_devices.hpp"
 
 namespace handcast::init {

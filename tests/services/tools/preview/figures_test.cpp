@@ -4,7 +4,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "services/tools/preview/series.hpp"
 #include "services/tools/preview/status_gauges.hpp"
 
 namespace handcast::preview {

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "renderer/content/picture.hpp"
+#include "renderer/media/picture.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/recording/recordings.hpp"

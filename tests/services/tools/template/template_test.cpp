@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "renderer/content/picture.hpp"
 #include "renderer/content/textures.hpp"
+#include "renderer/media/picture.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::picture {

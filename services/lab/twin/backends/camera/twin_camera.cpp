@@ -4,7 +4,6 @@
 #include "calib/solve/board/board_name.hpp"
 #include "calib/solve/board/draw_board.hpp"
 #include "services/camera/camera.hpp"
-#include "services/camera/frame_size.hpp"
 #include "services/lab/twin/backends/camera/seen_light.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "services/runtime/first_at.hpp"
@@ -70,7 +69,7 @@ class TwinCamera final : public Camera {
     while (twin_->camera_lost(k) && arrival_ns(k) <= deadline.time_ns()) ++k;
     if (arrival_ns(k) > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, "camera 'twin': no frame before the deadline");
+      return fail(Errc::timeout, "no frame before the deadline");
     }
     if (projections_) take_light(k);
     draw(k, frame);
@@ -131,16 +130,15 @@ class TwinCamera final : public Camera {
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_twin(const config::Rig& rig,
-                                          const calib::Calibration& calibration,
-                                          const std::int64_t& epoch_ns) {
-  auto twin = twin::Twin::create(rig, calibration);
-  if (!twin) return fail_in("camera 'twin'", twin.error());
-  auto camera =
-      std::make_unique<TwinCamera>(std::move(*twin), rig.camera, calibration.camera, epoch_ns);
+Result<std::unique_ptr<Camera>> open_twin(const Opening& with) {
+  const auto& rig = with.rig;
+  auto twin = twin::Twin::create(rig, with.calibration, with.at);
+  if (!twin) return tl::make_unexpected(twin.error());
+  auto camera = std::make_unique<TwinCamera>(std::move(*twin), with.settings, with.camera.model,
+                                             with.epoch_ns);
   if (rig.twin.prop.kind == config::TwinPropKind::board)
     if (auto shown = camera->show_board(rig.twin.prop, rig.projector); !shown)
-      return fail_in("camera 'twin': twin.prop.board", shown.error());
+      return fail_in("twin.prop.board", shown.error());
   camera->warm_up();
   return camera;
 }

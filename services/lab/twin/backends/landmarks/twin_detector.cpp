@@ -20,7 +20,7 @@ class TwinDetector final : public Detector {
     if (!under_way_) begin(frame.header);
     if (done_ns_ > deadline.time_ns()) {
       sleep_until_ns(deadline.time_ns());
-      return fail(Errc::timeout, "landmarks 'twin': not finished by the deadline");
+      return fail(Errc::timeout, "not finished by the deadline");
     }
     sleep_until_ns(done_ns_);
     const msg::Landmarks landmarks = *under_way_;
@@ -52,12 +52,10 @@ class TwinDetector final : public Detector {
 
 }  // namespace
 
-Result<std::unique_ptr<Detector>> open_twin(const config::Rig& rig,
-                                            const calib::Calibration& calibration,
-                                            const std::int64_t& epoch_ns) {
-  auto twin = twin::Twin::create(rig, calibration);
-  if (!twin) return fail_in("landmarks 'twin'", twin.error());
-  return std::make_unique<TwinDetector>(std::move(*twin), epoch_ns);
+Result<std::unique_ptr<Detector>> open_twin(const Opening& with) {
+  auto twin = twin::Twin::create(with.rig, with.calibration, with.at);
+  if (!twin) return tl::make_unexpected(twin.error());
+  return std::make_unique<TwinDetector>(std::move(*twin), with.epoch_ns);
 }
 
 }  // namespace handcast::landmarks

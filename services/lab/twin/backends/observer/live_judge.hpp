@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
-#include <vector>
 
 #include "services/lab/twin/backends/observer/live_score.hpp"
-#include "services/lab/twin/metrics.hpp"
+#include "services/lab/twin/twin.hpp"
 #include "services/observer/judge.hpp"
 
 namespace handcast::observer {
 
-/// Scores the live light against the true hand of the twin. Converts the times of the projector
-/// (CLOCK_MONOTONIC) to the clock of the twin, which starts at the epoch of the rig. One thread.
+/// Scores the live light against the true hand of the twin, whose clock starts at the epoch of the
+/// rig. One thread.
 class LiveJudge final : public Judge {
  public:
   /// `epoch_ns`: the epoch of the rig, CLOCK_MONOTONIC. Errors: bad_config (the motion of the twin
@@ -24,7 +23,9 @@ class LiveJudge final : public Judge {
   nlohmann::json scores() const override;
 
   /// Scores one projected frame.
-  twin::FrameScore score(const msg::Projection& projection);
+  twin::FrameScore score(const msg::Projection& projection) {
+    return judge_->score(projection, epoch_ns_);
+  }
 
  private:
   LiveJudge(std::unique_ptr<twin::Twin> twin, std::unique_ptr<twin::Judge> judge,
@@ -35,7 +36,6 @@ class LiveJudge final : public Judge {
   std::unique_ptr<twin::Judge> judge_;
   std::int64_t epoch_ns_;
   LiveScore scores_;
-  std::vector<std::uint64_t> message_;  ///< an aligned copy of the message, with shifted times
 };
 
 }  // namespace handcast::observer

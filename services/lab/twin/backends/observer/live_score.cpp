@@ -25,10 +25,10 @@ void LiveScore::add(twin::FrameScore score, int foldovers) {
     for (auto* values : {&hand.interior_px, &hand.interior_mm, &hand.missing_px})
       thin(*values, all);
   }
-  if (frames_ == 0) turn_ns_ = score.lit_ns;
-  if (score.lit_ns - turn_ns_ >= window_ns_) {
+  if (frames_ == 0) turn_ns_ = score.display_ns;
+  if (score.display_ns - turn_ns_ >= window_ns_) {
     older_ = std::exchange(newer_, {});
-    turn_ns_ = score.lit_ns;
+    turn_ns_ = score.display_ns;
   }
   for (twin::Metrics* window : {&older_, &newer_}) {
     window->add(score);

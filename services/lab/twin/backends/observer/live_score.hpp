@@ -14,7 +14,7 @@ class LiveScore {
   /// `window_ns`: the length of a window; one minute by default.
   explicit LiveScore(std::int64_t window_ns = 60'000'000'000) : window_ns_(window_ns) {}
 
-  /// Adds a frame; frames must come in the order of their lit_ns. At most 300 surface points of
+  /// Adds a frame; frames must come in the order of their display_ns. At most 300 surface points of
   /// each hand are kept, evenly chosen.
   void add(twin::FrameScore score, int foldovers);
   /// The metrics of the older window: see twin::Metrics::to_json().
@@ -24,7 +24,7 @@ class LiveScore {
 
  private:
   std::int64_t window_ns_;
-  std::int64_t turn_ns_ = 0;  ///< lit_ns of the first frame of the newer window
+  std::int64_t turn_ns_ = 0;  ///< display_ns of the first frame of the newer window
   std::int64_t frames_ = 0;
   twin::Metrics older_, newer_;
 };

@@ -13,12 +13,12 @@ namespace {
 constexpr int kWidth_px = 4, kHeight_px = 2;
 constexpr std::int64_t kPeriod_ns = 20, kShort_ns = 2;
 
-/// What a projector shows for a period around `lit_ns`.
-msg::Owned<msg::Projection> projection(std::uint64_t picture, std::int64_t lit_ns,
+/// What a projector shows for a period around `display_ns`.
+msg::Owned<msg::Projection> projection(std::uint64_t picture, std::int64_t display_ns,
                                        std::uint8_t level) {
   msg::Owned<msg::Projection> message(msg::Projection::bytes(kWidth_px, kHeight_px));
   message->test_picture = picture;
-  message->lit_ns = lit_ns;
+  message->lit_ns = display_ns;
   message->region_width_px = kWidth_px;
   message->region_height_px = kHeight_px;
   std::fill_n(message->pixels(), kWidth_px * kHeight_px, 0xff000000u | level * 0x010101u);

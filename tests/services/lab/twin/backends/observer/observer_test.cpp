@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-twin::FrameScore score_of(std::int64_t lit_ns, float error_mm, std::size_t points) {
+twin::FrameScore score_of(std::int64_t display_ns, float error_mm, std::size_t points) {
   twin::FrameScore score;
-  score.lit_ns = lit_ns;
+  score.display_ns = display_ns;
   auto& hand = score.hands.emplace_back();
   hand.interior_mm.assign(points, error_mm);
   hand.interior_px.assign(points, 2 * error_mm);

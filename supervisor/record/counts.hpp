@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "ipc/msg/frame_losses.hpp"
+#include "ipc/msg/light_source.hpp"
+
+namespace handcast::supervisor {
+
+/// A histogram of durations with logarithmic buckets, 16 per octave: percentiles are accurate to
+/// 4.5 %.
+class Histogram {
+ public:
+  /// Adds one duration; values below 1 ns count as 1 ns.
+  void add(std::int64_t span_ns);
+  /// Adds all durations of another histogram.
+  void add(const Histogram& other);
+  /// Removes all durations.
+  void clear() { *this = Histogram(); }
+
+  /// Number of durations.
+  std::uint64_t count() const { return count_; }
+  /// The duration that the fraction `share` (0..1) of all durations did not exceed; 0 if there are
+  /// none.
+  double percentile_ns(double share) const;
+
+ private:
+  static constexpr int kPerOctave = 16;
+  static constexpr int kOctaves = 38;  ///< 1 ns to 275 s
+
+  std::uint64_t count_ = 0;
+  std::array<std::uint32_t, kPerOctave * kOctaves> buckets_{};
+};
+
+/// The images of the camera that were lost in a run, by reason. See msg::FrameLosses.
+struct LossCount {
+  std::uint64_t missing = 0, incomplete = 0, underrun = 0, skipped = 0;
+
+  /// Adds what was lost before an image.
+  void add(const msg::FrameLosses& lost) {
+    missing += lost.missing;
+    incomplete += lost.incomplete;
+    underrun += lost.underrun;
+    skipped += lost.skipped;
+  }
+  /// The counts with their names in reports.
+  std::array<std::pair<std::string_view, std::uint64_t>, 4> by_reason() const {
+    return {{{"missing", missing},
+             {"incomplete", incomplete},
+             {"underrun", underrun},
+             {"skipped", skipped}}};
+  }
+};
+
+/// What the output made of the frames of the projector.
+struct LightCount {
+  std::optional<msg::LightSource> source;  ///< who says when light comes; empty: none came
+  std::uint64_t missed = 0;                ///< refreshes of the output without a new frame
+  std::uint64_t doubled = 0;               ///< frames that were shown for more than one refresh
+
+  /// Adds the light of a frame.
+  void add(const msg::LightNote& note) {
+    source = note.source;
+    if (note.refreshes < 2) return;
+    missed += note.refreshes - 1;
+    ++doubled;
+  }
+};
+
+}  // namespace handcast::supervisor
